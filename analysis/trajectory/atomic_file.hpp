@@ -1,0 +1,45 @@
+#pragma once
+/// \file
+/// Outputs that exist whole or not at all: write beside the final name, rename at the end.
+
+#include <filesystem>
+#include <string>
+
+namespace twincell {
+
+/// Reserves `NAME.part` for an output that will be called NAME. `commit` renames; a destructor without a commit
+/// deletes. Works for a file and for a folder (a folder of that name is replaced as a whole by `commit`).
+class AtomicPath {
+ public:
+  enum class Kind { file, folder };
+
+  /// \throws ConfigError if the parent folder is missing or cannot be written to, or if NAME is of the other kind.
+  explicit AtomicPath(std::filesystem::path final_path, Kind kind = Kind::file);
+  AtomicPath(AtomicPath&& other) noexcept;
+  AtomicPath& operator=(AtomicPath&&) = delete;
+  AtomicPath(const AtomicPath&) = delete;
+  AtomicPath& operator=(const AtomicPath&) = delete;
+  ~AtomicPath();
+
+  /// Where to write.
+  [[nodiscard]] const std::filesystem::path& part() const { return part_; }
+  /// What it will be called.
+  [[nodiscard]] const std::filesystem::path& final() const { return final_; }
+  /// Renames part to final. \throws RunError naming the path.
+  void commit();
+  /// Renames part to another name in the same folder (a run that failed keeps its frames under a name that says so).
+  void commit_as(const std::filesystem::path& other_name);
+
+ private:
+  std::filesystem::path final_;
+  std::filesystem::path part_;
+  bool open_ = true;
+};
+
+/// Writes `text` as a whole file. \throws ConfigError, RunError
+void write_text_file(const std::filesystem::path& path, const std::string& text);
+
+/// Reads a whole file. \throws InputError if it is missing or unreadable
+std::string read_text_file(const std::filesystem::path& path);
+
+}  // namespace twincell

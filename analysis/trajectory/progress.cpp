@@ -1,0 +1,10 @@
+#include "analysis/trajectory/progress.hpp"
+
+namespace twincell {
+
+Progress& Progress::none() {
+  static Progress silent;
+  return silent;
+}
+
+}  // namespace twincell

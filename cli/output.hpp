@@ -1,0 +1,61 @@
+#pragma once
+/// \file
+/// What all verbs share: common options, results on stdout, progress and warnings on stderr, signals.
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "analysis/trajectory/progress.hpp"
+#include "analysis/trajectory/provenance.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace twincell::cli {
+
+/// Options every verb has.
+struct Common {
+  bool json = false;   ///< stdout is one JSON document
+  bool quiet = false;  ///< no progress, no notes
+  int threads = 0;     ///< 0: one per core
+  std::optional<std::uint64_t> seed;  ///< where chance plays a part
+  std::string command_line;
+
+  /// Threads to use: the option, or the number of cores.
+  [[nodiscard]] int n_threads() const;
+  /// Provenance with command line, threads and seed filled in.
+  [[nodiscard]] Provenance provenance() const;
+};
+
+/// Makes a subcommand with the common options and an example in its help.
+CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, const std::string& summary,
+                   const std::string& example);
+
+/// Prints the result of a verb: `document` as JSON if --json was given, else `text`.
+void print_result(const Common& common, const nlohmann::json& document, const std::string& text);
+/// A note or warning on stderr ("note: …"), unless --quiet.
+void note(const Common& common, const std::string& text);
+
+/// Draws a bar on stderr if it is a terminal, a line per 10 % if not, nothing with --quiet. Throws Interrupted after
+/// SIGINT or SIGTERM.
+class ProgressBar : public Progress {
+ public:
+  ProgressBar(const Common& common, std::string label);
+  ~ProgressBar() override;
+  void update(std::int64_t done, std::int64_t total) override;
+
+ private:
+  std::string label_;
+  bool quiet_;
+  bool terminal_;
+  int last_percent_ = -1;
+  std::int64_t start_ns_;
+};
+
+/// Installs the signal handlers that ProgressBar watches.
+void watch_signals();
+
+}  // namespace twincell::cli

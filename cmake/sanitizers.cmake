@@ -1,0 +1,8 @@
+set(TWINCELL_SANITIZE "" CACHE STRING "Sanitizers, comma separated: address,undefined or thread")
+if(TWINCELL_SANITIZE MATCHES "thread" AND TWINCELL_SANITIZE MATCHES "address")
+  message(FATAL_ERROR "TWINCELL_SANITIZE: the thread and address sanitizers cannot be combined.")
+endif()
+if(TWINCELL_SANITIZE)
+  add_compile_options(-fsanitize=${TWINCELL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${TWINCELL_SANITIZE})
+endif()

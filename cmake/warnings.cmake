@@ -1,0 +1,10 @@
+# Linked privately by our own targets and never exported: a user's compiler flags are the user's.
+add_library(twincell_warnings INTERFACE)
+target_compile_options(twincell_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual
+  -Wnull-dereference -Wdouble-promotion -Wformat=2 -Wimplicit-fallthrough -Wunused)
+# Errors only where a preset asks (a newer compiler must not break a user's build).
+option(TWINCELL_WERROR "Treat warnings as errors" OFF)
+if(TWINCELL_WERROR)
+  target_compile_options(twincell_warnings INTERFACE -Werror)
+endif()
