@@ -2,6 +2,7 @@
 /// \file
 /// What all verbs share: common options, results on stdout, progress and warnings on stderr, signals.
 
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,9 +19,9 @@ namespace twincell::cli {
 
 /// Options every verb has.
 struct Common {
-  bool json = false;   ///< stdout is one JSON document
-  bool quiet = false;  ///< no progress, no notes
-  int threads = 0;     ///< 0: one per core
+  bool json = false;                  ///< stdout is one JSON document
+  bool quiet = false;                 ///< no progress, no notes
+  int threads = 0;                    ///< 0: one per core
   std::optional<std::uint64_t> seed;  ///< where chance plays a part
   std::string command_line;
 
@@ -39,8 +40,11 @@ void print_result(const Common& common, const nlohmann::json& document, const st
 /// A note or warning on stderr ("note: …"), unless --quiet.
 void note(const Common& common, const std::string& text);
 
-/// Draws a bar on stderr if it is a terminal, a line per 10 % if not, nothing with --quiet. Throws Interrupted after
-/// SIGINT or SIGTERM.
+/// Levenshtein distance, for "did you mean".
+std::size_t edit_distance(const std::string& a, const std::string& b);
+
+/// Draws a bar on stderr if it is a terminal, a line per 10 % if not, nothing with --quiet. Throws
+/// Interrupted after SIGINT or SIGTERM.
 class ProgressBar : public Progress {
  public:
   ProgressBar(const Common& common, std::string label);

@@ -16,12 +16,14 @@ namespace twincell {
 namespace fs = std::filesystem;
 
 AtomicPath::AtomicPath(fs::path final_path, Kind kind) : final_(std::move(final_path)) {
-  while (!final_.empty() && !final_.has_filename()) final_ = final_.parent_path();  // "report/" means "report"
+  while (!final_.empty() && !final_.has_filename())
+    final_ = final_.parent_path();  // "report/" means "report"
   const Where where{final_.string(), 0, 0, ""};
   if (final_.empty()) throw ConfigError({}, "The output has no name.");
   const fs::path parent = final_.has_parent_path() ? final_.parent_path() : fs::path(".");
   std::error_code ec;
-  if (!fs::is_directory(parent, ec)) throw ConfigError(where, "the output's folder '" + parent.string() + "' does not exist.");
+  if (!fs::is_directory(parent, ec))
+    throw ConfigError(where, "the output's folder '" + parent.string() + "' does not exist.");
   if (::access(parent.c_str(), W_OK | X_OK) != 0)
     throw ConfigError(where, "the output's folder '" + parent.string() + "' cannot be written to.");
   const bool exists = fs::exists(final_, ec);
@@ -37,20 +39,26 @@ AtomicPath::AtomicPath(fs::path final_path, Kind kind) : final_(std::move(final_
 }
 
 AtomicPath::AtomicPath(AtomicPath&& other) noexcept
-    : final_(std::move(other.final_)), part_(std::move(other.part_)), open_(std::exchange(other.open_, false)) {}
+    : final_(std::move(other.final_)),
+      part_(std::move(other.part_)),
+      open_(std::exchange(other.open_, false)) {}
 
 AtomicPath::~AtomicPath() {
   std::error_code ec;
   if (open_) fs::remove_all(part_, ec);
 }
 
-void AtomicPath::commit() { commit_as(final_); }
+void AtomicPath::commit() {
+  commit_as(final_);
+}
 
 void AtomicPath::commit_as(const fs::path& other_name) {
   std::error_code ec;
   if (fs::is_directory(part_, ec)) fs::remove_all(other_name, ec);
   fs::rename(part_, other_name, ec);
-  if (ec) throw RunError(other_name.string() + ": the finished output cannot be given its name (" + ec.message() + ").");
+  if (ec)
+    throw RunError(other_name.string() + ": the finished output cannot be given its name (" + ec.message() +
+                   ").");
   open_ = false;
 }
 
@@ -68,7 +76,8 @@ void write_text_file(const fs::path& path, const std::string& text) {
 std::string read_text_file(const fs::path& path) {
   std::error_code ec;
   if (!fs::exists(path, ec)) throw InputError({path.string(), 0, 0, ""}, "the file does not exist.");
-  if (fs::is_directory(path, ec)) throw InputError({path.string(), 0, 0, ""}, "this is a folder, a file is needed.");
+  if (fs::is_directory(path, ec))
+    throw InputError({path.string(), 0, 0, ""}, "this is a folder, a file is needed.");
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();

@@ -7,13 +7,15 @@
 
 namespace twincell {
 
-/// Reserves `NAME.part` for an output that will be called NAME. `commit` renames; a destructor without a commit
-/// deletes. Works for a file and for a folder (a folder of that name is replaced as a whole by `commit`).
+/// Reserves `NAME.part` for an output that will be called NAME. `commit` renames; a destructor without a
+/// commit deletes. Works for a file and for a folder (a folder of that name is replaced as a whole by
+/// `commit`).
 class AtomicPath {
  public:
   enum class Kind { file, folder };
 
-  /// \throws ConfigError if the parent folder is missing or cannot be written to, or if NAME is of the other kind.
+  /// \throws ConfigError if the parent folder is missing or cannot be written to, or if NAME is of the other
+  /// kind.
   explicit AtomicPath(std::filesystem::path final_path, Kind kind = Kind::file);
   AtomicPath(AtomicPath&& other) noexcept;
   AtomicPath& operator=(AtomicPath&&) = delete;
@@ -27,7 +29,8 @@ class AtomicPath {
   [[nodiscard]] const std::filesystem::path& final() const { return final_; }
   /// Renames part to final. \throws RunError naming the path.
   void commit();
-  /// Renames part to another name in the same folder (a run that failed keeps its frames under a name that says so).
+  /// Renames part to another name in the same folder (a run that failed keeps its frames under a name that
+  /// says so).
   void commit_as(const std::filesystem::path& other_name);
 
  private:

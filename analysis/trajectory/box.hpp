@@ -21,15 +21,19 @@ enum class Boundary {
   periodic,  ///< the far end is the near end
 };
 
-/// A cuboid cell in the frame in which the plate's mean height is z = 0 (so z_b(t) = A sin(omega t)); lengths in sigma.
+/// A cuboid cell in the frame in which the plate's mean height is z = 0 (so z_b(t) = A sin(omega t)); lengths
+/// in sigma.
 struct Box {
-  int dimension = 2;             ///< 2: plane (x, z); 3
-  Vec3 lower = Vec3::Zero();     ///< lower corner, sigma
-  Vec3 upper = Vec3(1, 1, 1);    ///< upper corner, sigma; in 2D upper.y() - lower.y() is the gap of the glass plates
+  int dimension = 2;          ///< 2: plane (x, z); 3
+  Vec3 lower = Vec3::Zero();  ///< lower corner, sigma
+  Vec3 upper =
+      Vec3(1, 1, 1);  ///< upper corner, sigma; in 2D upper.y() - lower.y() is the gap of the glass plates
   std::array<Boundary, 3> boundary = {Boundary::wall, Boundary::open, Boundary::wall};
 
   [[nodiscard]] Vec3 size() const { return upper - lower; }
-  [[nodiscard]] bool periodic(Axis axis) const { return boundary[static_cast<std::size_t>(axis)] == Boundary::periodic; }
+  [[nodiscard]] bool periodic(Axis axis) const {
+    return boundary[static_cast<std::size_t>(axis)] == Boundary::periodic;
+  }
 
   /// Shortest of the images of the separation `d`, periodic axes only.
   [[nodiscard]] Vec3 nearest_image(Vec3 d) const {

@@ -8,9 +8,13 @@
 
 namespace twincell {
 
-double Drive::period() const { return 2 * std::numbers::pi / omega; }
+double Drive::period() const {
+  return 2 * std::numbers::pi / omega;
+}
 
-double Drive::displacement(double fraction) const { return amplitude * std::sin(2 * std::numbers::pi * fraction); }
+double Drive::displacement(double fraction) const {
+  return amplitude * std::sin(2 * std::numbers::pi * fraction);
+}
 
 double Drive::velocity(double fraction) const {
   return amplitude * omega * std::cos(2 * std::numbers::pi * fraction);
@@ -31,7 +35,8 @@ std::vector<Term> terms_of(const DriveSpec& s, double gravity, const Where& wher
     if (!v) return;
     const Where here{where.file, where.line, where.column, where.key.empty() ? name : where.key + "." + name};
     require_range(here, *v, 0.0, std::nullopt, p == 0);
-    if (factor == 0) throw ConfigError(here, "has no meaning without gravity; give the amplitude or the peak velocity.");
+    if (factor == 0)
+      throw ConfigError(here, "has no meaning without gravity; give the amplitude or the peak velocity.");
     terms.push_back({name, *v * factor, p, q});
   };
   add("amplitude", s.amplitude, 1, 1, 0);
@@ -61,7 +66,8 @@ Drive solve_drive(const DriveSpec& spec, double gravity, const Where& where, Axi
       // A at rest (A = 0) leaves omega open unless it was stated itself.
       if (s.value == 0 || t.value == 0) {
         const Term* stated = s.p == 0 ? &s : t.p == 0 ? &t : nullptr;
-        if (stated == nullptr) throw ConfigError(where, "a plate at rest needs omega or frequency to say how long a cycle is.");
+        if (stated == nullptr)
+          throw ConfigError(where, "a plate at rest needs omega or frequency to say how long a cycle is.");
         drive.amplitude = 0;
         drive.omega = stated->value;
       }
@@ -73,14 +79,17 @@ Drive solve_drive(const DriveSpec& spec, double gravity, const Where& where, Axi
       for (const Term& u : terms) {
         const double implied = power(drive.amplitude, u.p) * power(drive.omega, u.q);
         if (std::abs(implied - u.value) > 1e-12 * std::max(std::abs(implied), std::abs(u.value)))
-          throw ConfigError(where, fmt::format("{} = {} contradicts the other numbers, from which it would be {} (they must agree to 1e-12).",
+          throw ConfigError(where, fmt::format("{} = {} contradicts the other numbers, from which it would "
+                                               "be {} (they must agree to 1e-12).",
                                                u.name, u.value, implied));
       }
       return drive;
     }
   }
-  throw ConfigError(where, terms.size() < 2 ? "two of amplitude, omega, frequency, gamma, k_m, peak_velocity are needed."
-                                            : "the numbers given fix only one of amplitude and omega; give an independent second one.");
+  throw ConfigError(
+      where, terms.size() < 2
+                 ? "two of amplitude, omega, frequency, gamma, k_m, peak_velocity are needed."
+                 : "the numbers given fix only one of amplitude and omega; give an independent second one.");
 }
 
 }  // namespace twincell

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Errors a user can meet. Each is one sentence that names the file, line, key, value and bound, and carries the
-/// exit code of the program. Faults of our own are asserts, not these.
+/// Errors a user can meet. Each is one sentence that names the file, line, key, value and bound, and carries
+/// the exit code of the program. Faults of our own are asserts, not these.
 
 #include <optional>
 #include <stdexcept>
@@ -63,11 +63,12 @@ class RunError : public Error {
 /// The user or the system asked the program to stop: exit code 130 or 143.
 class Interrupted : public Error {
  public:
-  explicit Interrupted(ExitCode code) : Error(code, "Stopped by a signal; no unfinished file was left behind.") {}
+  explicit Interrupted(ExitCode code)
+      : Error(code, "Stopped by a signal; no unfinished file was left behind.") {}
 };
 
-/// Throws ConfigError unless lower <= value <= upper (either bound may be absent; `open_lower` excludes the lower
-/// one). A value that is not finite never passes.
+/// Throws ConfigError unless lower <= value <= upper (either bound may be absent; `open_lower` excludes the
+/// lower one). A value that is not finite never passes.
 void require_range(const Where& where, double value, std::optional<double> lower, std::optional<double> upper,
                    bool open_lower = false);
 

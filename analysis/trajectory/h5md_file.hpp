@@ -35,7 +35,8 @@ class H5mdWriter : public TrajectorySink {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads an H5MD file; ours, or anyone's with explicit step and time and one particle group. What is missing is absent.
+/// Reads an H5MD file; ours, or anyone's with explicit step and time and one particle group. What is missing
+/// is absent.
 class H5mdReader : public TrajectorySource {
  public:
   /// \throws InputError if the file is missing, truncated, not HDF5, or not H5MD

@@ -75,8 +75,8 @@ class Series {
   Series() = default;
   /// \param record shape of one record (may be empty: a scalar series)
   /// \param records_per_chunk 1 for bead columns, 1024 for scalar series
-  Series(hid_t group, const std::string& name, hid_t file_type, std::vector<hsize_t> record, hsize_t records_per_chunk,
-         const void* fill = nullptr);
+  Series(hid_t group, const std::string& name, hid_t file_type, std::vector<hsize_t> record,
+         hsize_t records_per_chunk, const void* fill = nullptr);
   /// Opens an existing dataset for reading.
   Series(hid_t group, const std::string& name);
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(dataset_); }

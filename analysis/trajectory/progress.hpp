@@ -6,7 +6,8 @@
 
 namespace twincell {
 
-/// Handed to every long function. The default does nothing; the program's own draws a bar and watches for signals.
+/// Handed to every long function. The default does nothing; the program's own draws a bar and watches for
+/// signals.
 class Progress {
  public:
   virtual ~Progress() = default;

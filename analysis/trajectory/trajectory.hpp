@@ -2,10 +2,10 @@
 /// \file
 /// The trajectory: the one thing that imaging and simulation both make and that analysis reads.
 ///
-/// Frames x beads, in reduced units (units.hpp), in the frame of Box (plate mean at z = 0, z up). A bead's slot is
-/// its identity: slot i is the same bead in every frame. Beads of an experiment come and go: a slot that is empty in
-/// a frame has id -1 and position NaN, never zero. A column that nobody measured is absent (an empty vector), never
-/// filled in.
+/// Frames x beads, in reduced units (units.hpp), in the frame of Box (plate mean at z = 0, z up). A bead's
+/// slot is its identity: slot i is the same bead in every frame. Beads of an experiment come and go: a slot
+/// that is empty in a frame has id -1 and position NaN, never zero. A column that nobody measured is absent
+/// (an empty vector), never filled in.
 
 #include <cstddef>
 #include <cstdint>
@@ -37,11 +37,11 @@ struct TrajectoryInfo {
   std::optional<Drive> drive;
   int phases_per_cycle = 0;  ///< N_k, frames per drive cycle; 0 if not phase-locked
   Scale scale;
-  std::string source = "unknown";      ///< "simulation", "experiment" or "unknown"
-  std::vector<double> radius;          ///< per slot, sigma; empty if absent
-  std::vector<double> mass;            ///< per slot, m; empty if absent
-  std::vector<std::uint8_t> tracer;    ///< per slot, 1 for a tracer bead; empty if absent
-  std::string provenance_json;         ///< provenance.hpp; empty if absent
+  std::string source = "unknown";    ///< "simulation", "experiment" or "unknown"
+  std::vector<double> radius;        ///< per slot, sigma; empty if absent
+  std::vector<double> mass;          ///< per slot, m; empty if absent
+  std::vector<std::uint8_t> tracer;  ///< per slot, 1 for a tracer bead; empty if absent
+  std::string provenance_json;       ///< provenance.hpp; empty if absent
 };
 
 /// One moment.
@@ -55,9 +55,9 @@ struct Frame {
   double plate_height = kNoHeight;  ///< z_b, sigma; NaN unknown
   std::vector<Vec3> position;       ///< [n_beads], sigma; NaN where empty; not wrapped across periods
   std::vector<Vec3> velocity;       ///< [n_beads] or empty, sigma/t0
-  std::vector<Vec3> spin;           ///< [n_beads] or empty, angular velocity, 1/t0. A disc's counter-clockwise spin
-                                    ///< omega in the (x right, z up) drawing is the vector (0, -omega, 0)
-  std::vector<std::int64_t> id;     ///< [n_beads] or empty; slot number where filled, -1 where empty
+  std::vector<Vec3> spin;  ///< [n_beads] or empty, angular velocity, 1/t0. A disc's counter-clockwise spin
+                           ///< omega in the (x right, z up) drawing is the vector (0, -omega, 0)
+  std::vector<std::int64_t> id;  ///< [n_beads] or empty; slot number where filled, -1 where empty
 
   /// Whether slot i holds a bead in this frame.
   [[nodiscard]] bool present(std::size_t i) const { return id.empty() || id[i] >= 0; }

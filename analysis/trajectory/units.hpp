@@ -2,9 +2,9 @@
 /// \file
 /// Reduced units and what they are in the laboratory.
 ///
-/// Inside `sim` and `analysis` everything is in reduced units: bead diameter sigma, bead mass m, gravity g; hence
-/// t0 = sqrt(sigma/g), v0 = sqrt(g sigma) (Fortini & Huang 2015, sec. II). Inside `imaging`: pixels and frame
-/// numbers. A scale that is not known is absent, never 1.
+/// Inside `sim` and `analysis` everything is in reduced units: bead diameter sigma, bead mass m, gravity g;
+/// hence t0 = sqrt(sigma/g), v0 = sqrt(g sigma) (Fortini & Huang 2015, sec. II). Inside `imaging`: pixels and
+/// frame numbers. A scale that is not known is absent, never 1.
 
 #include <cmath>
 #include <optional>

@@ -1,0 +1,117 @@
+// twincell info FILE: what a trajectory holds.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "analysis/trajectory/h5md_file.hpp"
+#include "cli/output.hpp"
+#include "cli/verb.hpp"
+
+namespace twincell::cli {
+
+namespace {
+
+struct InfoOptions {
+  std::string file;
+};
+
+std::string boundary_word(Boundary b) {
+  return b == Boundary::wall ? "walls" : b == Boundary::periodic ? "periodic" : "open";
+}
+
+nlohmann::json describe(const H5mdReader& file) {
+  const TrajectoryInfo& t = file.info();
+  nlohmann::json d;
+  d["file"] = file.name();
+  d["source"] = t.source;
+  d["frames"] = file.n_frames();
+  d["beads"] = t.n_beads;
+  d["columns"] = nlohmann::json::array({"position"});
+  auto column = [&](bool present, const char* name) {
+    if (present) d["columns"].push_back(name);
+  };
+  column(t.columns.velocity, "velocity");
+  column(t.columns.spin, "spin");
+  column(t.columns.identity, "identity");
+  column(t.columns.phase, "drive phase and cycle");
+  column(t.columns.plate_height, "plate height");
+  column(!t.radius.empty(), "radius");
+  column(!t.mass.empty(), "mass");
+  column(!t.tracer.empty(), "tracer");
+  const Vec3 size = t.box.size();
+  d["box"] = {{"dimension", t.box.dimension},
+              {"size", {size.x(), size.y(), size.z()}},
+              {"boundary",
+               {boundary_word(t.box.boundary[0]), boundary_word(t.box.boundary[1]),
+                boundary_word(t.box.boundary[2])}}};
+  if (t.drive)
+    d["drive"] = {{"amplitude", t.drive->amplitude},
+                  {"omega", t.drive->omega},
+                  {"gamma", t.drive->gamma()},
+                  {"k_m", t.drive->k_m()}};
+  if (t.phases_per_cycle > 0) d["phases_per_cycle"] = t.phases_per_cycle;
+  if (t.scale.sigma_m) d["scale"]["sigma_m"] = *t.scale.sigma_m;
+  if (t.scale.gravity_m_s2) d["scale"]["gravity_m_s2"] = *t.scale.gravity_m_s2;
+  if (t.scale.pixels_per_sigma) d["scale"]["pixels_per_sigma"] = *t.scale.pixels_per_sigma;
+  Frame frame;
+  std::size_t fewest = t.n_beads, most = 0;
+  for (std::size_t f = 0; f < file.n_frames(); ++f) {
+    file.read(f, frame);
+    if (f == 0) d["first"] = {{"step", frame.step}, {"time", frame.time}};
+    d["last"] = {{"step", frame.step}, {"time", frame.time}, {"cycle", frame.cycle}};
+    fewest = std::min(fewest, frame.n_present());
+    most = std::max(most, frame.n_present());
+  }
+  d["beads_per_frame"] = {{"fewest", file.n_frames() > 0 ? fewest : 0}, {"most", most}};
+  d["provenance"] =
+      t.provenance_json.empty() ? nlohmann::json() : nlohmann::json::parse(t.provenance_json, nullptr, false);
+  return d;
+}
+
+std::string as_text(const nlohmann::json& d) {
+  std::string s =
+      fmt::format("{}\n  source      {}\n  frames      {}\n  beads       {} ({} to {} in a frame)\n",
+                  d["file"].get<std::string>(), d["source"].get<std::string>(), d["frames"].get<long>(),
+                  d["beads"].get<long>(), d["beads_per_frame"]["fewest"].get<long>(),
+                  d["beads_per_frame"]["most"].get<long>());
+  std::string columns;
+  for (const auto& c : d["columns"]) columns += (columns.empty() ? "" : ", ") + c.get<std::string>();
+  s += "  columns     " + columns + "\n";
+  const auto& box = d["box"];
+  s += fmt::format("  box         {}D, x {:g} ({}), y {:g} ({}), z {:g} ({}) sigma\n",
+                   box["dimension"].get<int>(), box["size"][0].get<double>(),
+                   box["boundary"][0].get<std::string>(), box["size"][1].get<double>(),
+                   box["boundary"][1].get<std::string>(), box["size"][2].get<double>(),
+                   box["boundary"][2].get<std::string>());
+  if (d.contains("first"))
+    s += fmt::format("  time        {:.6g} to {:.6g} t0, steps {} to {}\n", d["first"]["time"].get<double>(),
+                     d["last"]["time"].get<double>(), d["first"]["step"].get<long>(),
+                     d["last"]["step"].get<long>());
+  if (d.contains("drive"))
+    s += fmt::format("  drive       A = {:.6g} sigma, omega = {:.6g}/t0, Gamma = {:.6g}, K_m = {:.6g}\n",
+                     d["drive"]["amplitude"].get<double>(), d["drive"]["omega"].get<double>(),
+                     d["drive"]["gamma"].get<double>(), d["drive"]["k_m"].get<double>());
+  s += d.contains("phases_per_cycle")
+           ? fmt::format("  phases      {} per cycle\n", d["phases_per_cycle"].get<int>())
+           : "  phases      not phase-locked\n";
+  s += "  scale       " + (d.contains("scale") ? d["scale"].dump() : std::string("absent")) + "\n";
+  if (d["provenance"].is_object()) s += "  made by     " + d["provenance"].value("command_line", "") + "\n";
+  return s;
+}
+
+}  // namespace
+
+void add_info(CLI::App& program, Common& common) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App& verb = add_verb(program, common, "info", "What a trajectory file holds", "twincell info sim.h5");
+  verb.add_option("file", options->file, "Trajectory (H5MD)")->required();
+  verb.callback([options, &common] {
+    const H5mdReader file(options->file);
+    const nlohmann::json document = describe(file);
+    print_result(common, document, as_text(document));
+  });
+}
+
+}  // namespace twincell::cli

@@ -1,0 +1,127 @@
+// The program: a table of verbs.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <new>
+#include <string>
+
+#include "analysis/trajectory/error.hpp"
+#include "cli/output.hpp"
+#include "cli/verb.hpp"
+
+namespace {
+
+using namespace twincell;
+using namespace twincell::cli;
+
+// In the order in which a newcomer needs them.
+constexpr AddVerb kVerbs[] = {
+#ifdef TWINCELL_VERB_locate
+    add_locate,
+#endif
+#ifdef TWINCELL_VERB_track
+    add_track,
+#endif
+#ifdef TWINCELL_VERB_simulate
+    add_simulate,
+#endif
+#ifdef TWINCELL_VERB_render
+    add_render,
+#endif
+#ifdef TWINCELL_VERB_analyze
+    add_analyze,
+#endif
+#ifdef TWINCELL_VERB_compare
+    add_compare,
+#endif
+#ifdef TWINCELL_VERB_info
+    add_info,
+#endif
+#ifdef TWINCELL_VERB_validate
+    add_validate,
+#endif
+};
+
+int complain(const std::string& sentence, ExitCode code) {
+  std::fprintf(stderr, "twincell: %s\n", sentence.c_str());
+  return static_cast<int>(code);
+}
+
+std::string joined(int argc, char** argv) {
+  std::string line = "twincell";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    line += word.find_first_of(" '\"$&;|<>()*?") == std::string::npos ? " " + word : " '" + word + "'";
+  }
+  return line;
+}
+
+bool has_verb(const CLI::App& program, const std::string& word) {
+  const auto verbs = program.get_subcommands([](const CLI::App*) { return true; });
+  return std::any_of(verbs.begin(), verbs.end(),
+                     [&](const CLI::App* verb) { return verb->get_name() == word; });
+}
+
+/// "Did you mean": the verb with the smallest edit distance, if it is at most 3.
+std::string nearest_verb(const CLI::App& program, const std::string& word) {
+  std::string best;
+  std::size_t smallest = 4;
+  for (const CLI::App* verb : program.get_subcommands([](const CLI::App*) { return true; })) {
+    const std::size_t d = edit_distance(verb->get_name(), word);
+    if (d < smallest) {
+      smallest = d;
+      best = verb->get_name();
+    }
+  }
+  return best;
+}
+
+int run(int argc, char** argv) {
+  Common common;
+  common.command_line = joined(argc, argv);
+  CLI::App program("Vibrated beads: camera frames and simulations through one analysis.", "twincell");
+  program.set_version_flag("--version", [] { return version_line(); });
+  program.require_subcommand(0, 1);
+  program.footer(
+      "Exit codes: 0 done, 1 failed while running, 2 usage or configuration, 3 unreadable input,\n"
+      "4 a quality gate failed, 5 partial and resumable, 130/143 stopped by a signal.");
+  for (const AddVerb add : kVerbs) add(program, common);
+
+  if (argc == 3 && std::string(argv[1]) == "--version" && std::string(argv[2]) == "--json") {
+    std::printf("%s\n", version_json().c_str());
+    return 0;
+  }
+  if (argc > 1 && argv[1][0] != '-' && !has_verb(program, argv[1])) {
+    const std::string near = nearest_verb(program, argv[1]);
+    return complain(std::string("there is no verb '") + argv[1] + "'" +
+                        (near.empty() ? "; --help lists them." : "; did you mean '" + near + "'?"),
+                    ExitCode::usage);
+  }
+  try {
+    program.parse(argc, argv);
+    if (program.get_subcommands().empty()) std::printf("%s", program.help().c_str());
+    return 0;
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return program.exit(wanted);
+  } catch (const CLI::ParseError& e) {
+    return complain(std::string(e.what()) + (std::string(e.what()).ends_with('.') ? "" : ".") +
+                        " (--help shows the options.)",
+                    ExitCode::usage);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  watch_signals();
+  try {
+    return run(argc, argv);
+  } catch (const Error& e) {
+    return complain(e.what(), e.exit_code());
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory.", ExitCode::failed);
+  } catch (const std::exception& e) {
+    return complain(e.what(), ExitCode::failed);
+  }
+}

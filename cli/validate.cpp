@@ -1,0 +1,39 @@
+// twincell validate FILE: is it whole and conforming?
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
+#include "cli/output.hpp"
+#include "cli/verb.hpp"
+
+namespace twincell::cli {
+
+namespace {
+struct ValidateOptions {
+  std::string file;
+};
+}  // namespace
+
+void add_validate(CLI::App& program, Common& common) {
+  auto options = std::make_shared<ValidateOptions>();
+  CLI::App& verb =
+      add_verb(program, common, "validate", "Whether a trajectory file is whole and conforms to H5MD 1.1",
+               "twincell validate sim.h5");
+  verb.add_option("file", options->file, "Trajectory (H5MD)")->required();
+  verb.callback([options, &common] {
+    const auto faults = validate_h5md(options->file);
+    std::string text =
+        faults.empty() ? options->file + ": conforms to H5MD 1.1, every frame is readable.\n" : "";
+    for (const auto& fault : faults) text += options->file + ": " + fault + "\n";
+    print_result(common, {{"file", options->file}, {"conforms", faults.empty()}, {"faults", faults}}, text);
+    if (!faults.empty())
+      throw InputError({options->file, 0, 0, ""},
+                       fmt::format("{} fault{} found.", faults.size(), faults.size() == 1 ? "" : "s"));
+  });
+}
+
+}  // namespace twincell::cli
