@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Installs the build tree into a scratch folder and builds a program that knows only find_package(twincell).
+# usage: install_test.sh BUILD_DIR SOURCE_DIR
+set -euo pipefail
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cmake --install "$1" --prefix "$scratch/prefix" >/dev/null
+cmake -S "$2/tests/architecture/outside_program" -B "$scratch/build" -G Ninja -DCMAKE_PREFIX_PATH="$scratch/prefix" \
+  -DCMAKE_BUILD_TYPE=Release >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+cmake --build "$scratch/build" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+"$scratch/build/outside"
+"$scratch/prefix/bin/twincell" --version
