@@ -294,7 +294,7 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
                        position.size()));
   info.n_beads = position.record()[0];
   const hsize_t frames = position.size();
-  auto column = [&](const char* name, std::vector<hsize_t> record) {
+  auto column = [&](const char* name, const std::vector<hsize_t>& record) {
     h5::Series s(g.get(), std::string(name) + "/value");
     if (s && (s.size() != frames || s.record() != record))
       refuse(group + "/" + name, "its shape does not match that of position.");

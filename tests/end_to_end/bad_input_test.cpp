@@ -1,0 +1,125 @@
+// Bad input, as a user meets it: one sentence naming the culprit, the exit code of the table, nothing
+// half-written.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "analysis/trajectory/h5md_file.hpp"
+#include "tests/support/program.hpp"
+
+namespace twincell {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kUsage = 2, kInput = 3;
+
+void write(const fs::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+/// A refusal: the code, exactly one line on stderr that mentions every word, nothing on stdout.
+void expect_refusal(const std::vector<std::string>& words, int code,
+                    const std::vector<std::string>& mentioned) {
+  const Ran ran = run_program(words);
+  EXPECT_EQ(ran.code, code) << ran.err;
+  EXPECT_EQ(ran.out, "");
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  for (const auto& word : mentioned)
+    EXPECT_NE(ran.err.find(word), std::string::npos) << "'" << word << "' is not in: " << ran.err;
+}
+
+class BadInput : public ::testing::Test {
+ protected:
+  /// The folder must hold these names and no others after each case.
+  void expect_only(const std::vector<std::string>& names) const {
+    EXPECT_EQ(names_in(folder_.path()), names);
+  }
+
+  [[nodiscard]] std::string at(const std::string& name) const { return folder_ / name; }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BadInput, CommandLine) {
+  expect_refusal({"anallyze", "x.h5"}, kUsage, {"anallyze", "did you mean 'analyze'"});
+  expect_refusal({"info"}, kUsage, {"file"});
+  expect_refusal({"info", "a.h5", "--sped"}, kUsage, {"--sped"});
+  expect_refusal({"info", "a.h5", "--threads", "many"}, kUsage, {"--threads"});
+}
+
+TEST_F(BadInput, MissingFilesAreNamed) {
+  expect_refusal({"info", at("no.h5")}, kInput, {"no.h5", "does not exist"});
+  expect_refusal({"validate", at("no.h5")}, kInput, {"no.h5", "does not exist"});
+  expect_refusal({"analyze", at("no.h5")}, kInput, {"no.h5", "does not exist"});
+  expect_refusal({"simulate", at("no.toml"), "-o", at("o.h5")}, kInput, {"no.toml", "does not exist"});
+  expect_refusal({"locate", at("no.png"), "--diameter", "15", "-o", at("o.csv")}, kInput,
+                 {"no.png", "does not exist"});
+  expect_refusal({"track", at("none"), "--diameter", "15", "--frames-per-cycle", "20", "-o", at("o.h5")},
+                 kInput, {"none", "does not exist"});
+  expect_refusal({"render", at("no.h5"), "-o", at("frames")}, kInput, {"no.h5", "does not exist"});
+  expect_refusal({"compare", "--experiment", at("a.h5"), "--simulation", at("b.h5"), "-o", at("report")},
+                 kInput, {"a.h5", "does not exist"});
+  expect_only({});
+}
+
+TEST_F(BadInput, Images) {
+  fs::create_directory(at("empty"));
+  expect_refusal({"locate", at("empty"), "--diameter", "15", "-o", at("o.csv")}, kInput, {"empty"});
+  write(at("text.png"), "this is not a picture");
+  expect_refusal({"locate", at("text.png"), "--diameter", "15", "-o", at("o.csv")}, kInput, {"text.png"});
+  write(at("cut.tif"), std::string("II*\0\x08\0\0\0", 8));
+  expect_refusal({"locate", at("cut.tif"), "--diameter", "15", "-o", at("o.csv")}, kInput, {"cut.tif"});
+  expect_only({"cut.tif", "empty", "text.png"});
+}
+
+TEST_F(BadInput, Trajectories) {
+  write(at("text.h5"), "this is not HDF5");
+  for (const std::string verb : {"info", "validate", "analyze"})
+    expect_refusal({verb, at("text.h5")}, kInput, {"text.h5", "not an HDF5 file"});
+  expect_only({"text.h5"});
+}
+
+TEST_F(BadInput, Scenes) {
+  const std::string good_end = "\n[time]\ncycles = 1\n";
+  write(at("syntax.toml"), "[drive\ngamma = 1\n");
+  expect_refusal({"simulate", at("syntax.toml"), "-o", at("o.h5")}, kUsage, {"syntax.toml:1"});
+  write(at("key.toml"), "preset = \"fortini-huang-2015\"\n[drive]\nomega = 1.0\ngama = 1.5\n" + good_end);
+  expect_refusal({"simulate", at("key.toml"), "-o", at("o.h5")}, kUsage, {"key.toml:4", "gama"});
+  write(at("type.toml"),
+        "preset = \"fortini-huang-2015\"\n[drive]\nomega = 1.0\ngamma = \"strong\"\n" + good_end);
+  expect_refusal({"simulate", at("type.toml"), "-o", at("o.h5")}, kUsage, {"type.toml:4", "gamma"});
+  write(at("twice.toml"),
+        "preset = \"fortini-huang-2015\"\n[drive]\nomega = 1.0\ngamma = 1.5\namplitude = 3.0\n" + good_end);
+  expect_refusal({"simulate", at("twice.toml"), "-o", at("o.h5")}, kUsage, {"twice.toml", "1.5"});
+  expect_only({"key.toml", "syntax.toml", "twice.toml", "type.toml"});
+}
+
+TEST_F(BadInput, UnwritableOutput) {
+  const std::string scene =
+      std::string(TWINCELL_SOURCE_DIR) + "/data_samples/fortini-huang-crystal/scene.toml";
+  expect_refusal({"simulate", scene, "-o", at("no/such/place.h5")}, kUsage, {"no/such", "does not exist"});
+  fs::create_directory(at("taken.h5"));
+  expect_refusal({"simulate", scene, "-o", at("taken.h5")}, kUsage, {"taken.h5"});
+  expect_only({"taken.h5"});
+}
+
+// Ctrl-C in the middle of a run: exit code 130, nothing under the final name and nothing beside it.
+TEST_F(BadInput, InterruptLeavesNothing) {
+  const std::string scene =
+      std::string(TWINCELL_SOURCE_DIR) + "/data_samples/fortini-huang-crystal/scene.toml";
+  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, {SIGTERM, 143}}) {
+    RunningProgram program({"simulate", scene, "-o", at("o.h5"), "--set", "time.cycles=500"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    program.signal(signal);
+    const Ran ran = program.wait();
+    EXPECT_EQ(ran.code, code) << ran.err;
+    EXPECT_EQ(ran.out, "");
+    expect_only({});
+  }
+}
+
+}  // namespace
+}  // namespace twincell
