@@ -6,6 +6,7 @@
 #include <new>
 #include <string>
 
+#include "analysis/trajectory/config.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"

@@ -9,10 +9,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <numeric>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "analysis/trajectory/error.hpp"
 
@@ -69,19 +66,6 @@ void print_result(const Common& common, const nlohmann::json& document, const st
 
 void note(const Common& common, const std::string& text) {
   if (!common.quiet) std::fprintf(stderr, "note: %s\n", text.c_str());
-}
-
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({substituted, row[j] + 1, row[j - 1] + 1}));
-    }
-  }
-  return row.back();
 }
 
 ProgressBar::ProgressBar(const Common& common, std::string label)

@@ -2,7 +2,6 @@
 /// \file
 /// What all verbs share: common options, results on stdout, progress and warnings on stderr, signals.
 
-#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -39,9 +38,6 @@ CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, c
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text);
 /// A note or warning on stderr ("note: …"), unless --quiet.
 void note(const Common& common, const std::string& text);
-
-/// Levenshtein distance, for "did you mean".
-std::size_t edit_distance(const std::string& a, const std::string& b);
 
 /// Draws a bar on stderr if it is a terminal, a line per 10 % if not, nothing with --quiet. Throws
 /// Interrupted after SIGINT or SIGTERM.

@@ -1,0 +1,222 @@
+#include "analysis/trajectory/config.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <toml++/toml.h>
+#include <utility>
+
+#include "analysis/trajectory/atomic_file.hpp"
+
+namespace twincell {
+
+struct ConfigSection::Shared {
+  std::string name;           ///< file, for complaints about what is absent
+  toml::table table;
+  std::set<std::string> asked;  ///< full keys somebody asked for
+
+  Where where_of(const toml::node& node, const std::string& key) const {
+    const toml::source_region& at = node.source();
+    return {at.path ? *at.path : name, static_cast<long>(at.begin.line), static_cast<long>(at.begin.column), key};
+  }
+};
+
+namespace {
+
+/// What a TOML type is called in a complaint.
+std::string kind_of(const toml::node& node) {
+  std::ostringstream text;
+  text << node.type();
+  return text.str();
+}
+
+}  // namespace
+
+namespace {
+const toml::node* find(const toml::table& root, const std::string& path) {
+  const toml::node* node = &root;
+  for (std::size_t begin = 0; node != nullptr && begin <= path.size() && !path.empty();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const toml::table* table = node->as_table();
+    node = table == nullptr ? nullptr : table->get(std::string_view(path).substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return node;
+}
+}  // namespace
+
+Where ConfigSection::where(const std::string& key) const {
+  const std::string path = full(key);
+  if (const toml::node* node = find(shared_->table, path)) return shared_->where_of(*node, path);
+  if (const toml::node* table = find(shared_->table, path_); table != nullptr && !path_.empty())
+    return shared_->where_of(*table, path);
+  return {shared_->name, 0, 0, path};
+}
+
+bool ConfigSection::has(const std::string& key) const {
+  shared_->asked.insert(full(key));
+  return find(shared_->table, full(key)) != nullptr;
+}
+
+namespace {
+template <class T>
+std::optional<T> value_of(const toml::node* node, const Where& where, const char* wanted) {
+  if (node == nullptr) return std::nullopt;
+  const std::optional<T> value = node->value_exact<T>();
+  if (!value) throw ConfigError(where, fmt::format("{} is needed, not a {}.", wanted, kind_of(*node)));
+  return value;
+}
+}  // namespace
+
+std::optional<double> ConfigSection::number(const std::string& key) const {
+  if (!has(key)) return std::nullopt;
+  const toml::node* node = find(shared_->table, full(key));
+  if (const auto whole = node->value_exact<std::int64_t>()) return static_cast<double>(*whole);
+  const auto value = value_of<double>(node, where(key), "a number");
+  if (value && !std::isfinite(*value)) throw ConfigError(where(key), "a finite number is needed.");
+  return value;
+}
+
+std::optional<std::int64_t> ConfigSection::integer(const std::string& key) const {
+  return has(key) ? value_of<std::int64_t>(find(shared_->table, full(key)), where(key), "a whole number") : std::nullopt;
+}
+
+std::optional<bool> ConfigSection::boolean(const std::string& key) const {
+  return has(key) ? value_of<bool>(find(shared_->table, full(key)), where(key), "true or false") : std::nullopt;
+}
+
+std::optional<std::string> ConfigSection::text(const std::string& key) const {
+  return has(key) ? value_of<std::string>(find(shared_->table, full(key)), where(key), "a text in quotes") : std::nullopt;
+}
+
+std::optional<std::vector<double>> ConfigSection::numbers(const std::string& key, std::size_t count) const {
+  if (!has(key)) return std::nullopt;
+  const toml::array* list = find(shared_->table, full(key))->as_array();
+  std::vector<double> values;
+  if (list != nullptr)
+    for (const toml::node& item : *list)
+      if (const auto value = item.value<double>()) values.push_back(*value);
+  if (list == nullptr || values.size() != count || list->size() != count)
+    throw ConfigError(where(key), fmt::format("a list of {} numbers is needed.", count));
+  return values;
+}
+
+std::optional<std::string> ConfigSection::word(const std::string& key, const std::vector<std::string>& words) const {
+  const auto value = text(key);
+  if (value && std::find(words.begin(), words.end(), *value) == words.end())
+    throw ConfigError(where(key), fmt::format("'{}' is not one of {}.", *value, fmt::join(words, ", ")));
+  return value;
+}
+
+ConfigSection ConfigSection::section(const std::string& key) const {
+  const toml::node* node = has(key) ? find(shared_->table, full(key)) : nullptr;
+  if (node != nullptr && !node->is_table()) throw ConfigError(where(key), fmt::format("a table is needed, not a {}.", kind_of(*node)));
+  return {shared_, full(key)};
+}
+
+Config Config::from_text(const std::string& text, const std::string& name) {
+  auto shared = std::make_shared<ConfigSection::Shared>();
+  shared->name = name;
+  try {
+    shared->table = toml::parse(text, name);
+  } catch (const toml::parse_error& e) {
+    const auto& at = e.source().begin;
+    throw ConfigError({name, static_cast<long>(at.line), static_cast<long>(at.column), ""}, std::string(e.description()) + ".");
+  }
+  return Config(std::move(shared));
+}
+
+Config Config::from_file(const std::filesystem::path& path) { return from_text(read_text_file(path), path.string()); }
+
+namespace {
+
+/// Moves, because a copied node forgets where it stood.
+void merge(toml::table& lower, toml::table&& upper) {
+  for (auto&& [key, node] : upper) {
+    toml::node* below = lower.get(key);
+    if (below != nullptr && below->is_table() && node.is_table()) {
+      merge(*below->as_table(), std::move(*node.as_table()));
+      continue;
+    }
+    node.visit([&lower, k = std::string(key.str())](auto& value) { lower.insert_or_assign(k, std::move(value)); });
+  }
+}
+
+}  // namespace
+
+void Config::overlay(Config upper) {
+  merge(shared_->table, std::move(upper.shared_->table));
+  shared_->name = upper.shared_->name;
+}
+
+void Config::assign(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  const Where where{"--set", 0, 0, assignment};
+  if (equals == std::string::npos || equals == 0) throw ConfigError(where, "must have the form section.key=value.");
+  const std::string key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
+  const std::string name = shared_->name;
+  auto parsed = [&](const std::string& text) { return from_text(key + " = " + text + "\n", "--set " + key); };
+  try {
+    overlay(parsed(value));
+  } catch (const ConfigError&) {
+    std::string quoted = "\"";
+    for (char c : value) quoted += (c == '"' || c == '\\' ? std::string("\\") : std::string()) + c;
+    overlay(parsed(quoted + "\""));
+  }
+  shared_->name = name;
+}
+
+ConfigSection Config::root() const { return {shared_, ""}; }
+
+namespace {
+
+void walk(const toml::table& table, const std::string& path, const std::set<std::string>& asked,
+          const std::function<void(const std::string&, const toml::node&)>& complain) {
+  for (auto&& [key, node] : table) {
+    const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
+    if (!asked.contains(full)) complain(full, node);
+    if (const toml::table* below = node.as_table()) walk(*below, full, asked, complain);
+  }
+}
+
+}  // namespace
+
+void Config::refuse_unknown_keys() const {
+  walk(shared_->table, "", shared_->asked, [&](const std::string& key, const toml::node& node) {
+    const std::string* nearest = nullptr;
+    std::size_t smallest = 4;
+    for (const std::string& known : shared_->asked)
+      if (const std::size_t d = edit_distance(known, key); d < smallest) {
+        smallest = d;
+        nearest = &known;
+      }
+    throw ConfigError(shared_->where_of(node, key),
+                      nearest != nullptr ? fmt::format("there is no such key; did you mean '{}'?", *nearest) : "there is no such key.");
+  });
+}
+
+std::string Config::text() const {
+  std::ostringstream out;
+  out << shared_->table << "\n";
+  return out.str();
+}
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = std::exchange(row[j], std::min({substituted, row[j] + 1, row[j - 1] + 1}));
+    }
+  }
+  return row.back();
+}
+
+}  // namespace twincell

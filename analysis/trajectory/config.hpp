@@ -1,0 +1,70 @@
+#pragma once
+/// \file
+/// TOML configuration with positions: every complaint names file, line, column and key, and no key is ignored.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/trajectory/error.hpp"
+
+namespace twincell {
+
+/// One table of a configuration. Getters return nothing for an absent key and throw ConfigError for one of the
+/// wrong type. Asking for a key marks it as known.
+class ConfigSection {
+ public:
+  [[nodiscard]] std::optional<double> number(const std::string& key) const;
+  [[nodiscard]] std::optional<std::int64_t> integer(const std::string& key) const;
+  [[nodiscard]] std::optional<bool> boolean(const std::string& key) const;
+  [[nodiscard]] std::optional<std::string> text(const std::string& key) const;
+  /// A list of exactly `count` numbers.
+  [[nodiscard]] std::optional<std::vector<double>> numbers(const std::string& key, std::size_t count) const;
+  /// One of `words`; \throws ConfigError naming them otherwise.
+  [[nodiscard]] std::optional<std::string> word(const std::string& key, const std::vector<std::string>& words) const;
+  /// A table below this one; an absent table is an empty section.
+  [[nodiscard]] ConfigSection section(const std::string& key) const;
+  /// Whether the key is there.
+  [[nodiscard]] bool has(const std::string& key) const;
+  /// Where a key stands, or where its table stands if it is absent.
+  [[nodiscard]] Where where(const std::string& key) const;
+
+ private:
+  friend class Config;
+  struct Shared;
+  ConfigSection(std::shared_ptr<Shared> shared, std::string path) : shared_(std::move(shared)), path_(std::move(path)) {}
+  [[nodiscard]] std::string full(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+
+  std::shared_ptr<Shared> shared_;
+  std::string path_;
+};
+
+/// A whole configuration.
+class Config {
+ public:
+  /// \throws InputError if the file cannot be read, ConfigError "file:line:column: …" if it is not TOML
+  static Config from_file(const std::filesystem::path& path);
+  static Config from_text(const std::string& text, const std::string& name);
+
+  /// Lays `upper` over this one: its keys win, tables are merged.
+  void overlay(Config upper);
+  /// "section.key=value" from the command line; a value that is not TOML is taken as text.
+  void assign(const std::string& assignment);
+  [[nodiscard]] ConfigSection root() const;
+  /// \throws ConfigError for the first key that nobody asked for, with the nearest known one
+  void refuse_unknown_keys() const;
+  /// The resolved configuration as TOML.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  explicit Config(std::shared_ptr<ConfigSection::Shared> shared) : shared_(std::move(shared)) {}
+  std::shared_ptr<ConfigSection::Shared> shared_;
+};
+
+/// Levenshtein distance, for "did you mean".
+std::size_t edit_distance(const std::string& a, const std::string& b);
+
+}  // namespace twincell
