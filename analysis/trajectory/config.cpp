@@ -1,14 +1,14 @@
 #include "analysis/trajectory/config.hpp"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
-#include <functional>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <set>
 #include <sstream>
-#include <toml++/toml.h>
 #include <utility>
 
 #include "analysis/trajectory/atomic_file.hpp"
@@ -16,13 +16,14 @@
 namespace twincell {
 
 struct ConfigSection::Shared {
-  std::string name;           ///< file, for complaints about what is absent
+  std::string name;  ///< file, for complaints about what is absent
   toml::table table;
   std::set<std::string> asked;  ///< full keys somebody asked for
 
   Where where_of(const toml::node& node, const std::string& key) const {
     const toml::source_region& at = node.source();
-    return {at.path ? *at.path : name, static_cast<long>(at.begin.line), static_cast<long>(at.begin.column), key};
+    return {at.path ? *at.path : name, static_cast<long>(at.begin.line), static_cast<long>(at.begin.column),
+            key};
   }
 };
 
@@ -83,15 +84,18 @@ std::optional<double> ConfigSection::number(const std::string& key) const {
 }
 
 std::optional<std::int64_t> ConfigSection::integer(const std::string& key) const {
-  return has(key) ? value_of<std::int64_t>(find(shared_->table, full(key)), where(key), "a whole number") : std::nullopt;
+  return has(key) ? value_of<std::int64_t>(find(shared_->table, full(key)), where(key), "a whole number")
+                  : std::nullopt;
 }
 
 std::optional<bool> ConfigSection::boolean(const std::string& key) const {
-  return has(key) ? value_of<bool>(find(shared_->table, full(key)), where(key), "true or false") : std::nullopt;
+  return has(key) ? value_of<bool>(find(shared_->table, full(key)), where(key), "true or false")
+                  : std::nullopt;
 }
 
 std::optional<std::string> ConfigSection::text(const std::string& key) const {
-  return has(key) ? value_of<std::string>(find(shared_->table, full(key)), where(key), "a text in quotes") : std::nullopt;
+  return has(key) ? value_of<std::string>(find(shared_->table, full(key)), where(key), "a text in quotes")
+                  : std::nullopt;
 }
 
 std::optional<std::vector<double>> ConfigSection::numbers(const std::string& key, std::size_t count) const {
@@ -106,7 +110,8 @@ std::optional<std::vector<double>> ConfigSection::numbers(const std::string& key
   return values;
 }
 
-std::optional<std::string> ConfigSection::word(const std::string& key, const std::vector<std::string>& words) const {
+std::optional<std::string> ConfigSection::word(const std::string& key,
+                                               const std::vector<std::string>& words) const {
   const auto value = text(key);
   if (value && std::find(words.begin(), words.end(), *value) == words.end())
     throw ConfigError(where(key), fmt::format("'{}' is not one of {}.", *value, fmt::join(words, ", ")));
@@ -115,7 +120,8 @@ std::optional<std::string> ConfigSection::word(const std::string& key, const std
 
 ConfigSection ConfigSection::section(const std::string& key) const {
   const toml::node* node = has(key) ? find(shared_->table, full(key)) : nullptr;
-  if (node != nullptr && !node->is_table()) throw ConfigError(where(key), fmt::format("a table is needed, not a {}.", kind_of(*node)));
+  if (node != nullptr && !node->is_table())
+    throw ConfigError(where(key), fmt::format("a table is needed, not a {}.", kind_of(*node)));
   return {shared_, full(key)};
 }
 
@@ -126,12 +132,15 @@ Config Config::from_text(const std::string& text, const std::string& name) {
     shared->table = toml::parse(text, name);
   } catch (const toml::parse_error& e) {
     const auto& at = e.source().begin;
-    throw ConfigError({name, static_cast<long>(at.line), static_cast<long>(at.column), ""}, std::string(e.description()) + ".");
+    throw ConfigError({name, static_cast<long>(at.line), static_cast<long>(at.column), ""},
+                      std::string(e.description()) + ".");
   }
   return Config(std::move(shared));
 }
 
-Config Config::from_file(const std::filesystem::path& path) { return from_text(read_text_file(path), path.string()); }
+Config Config::from_file(const std::filesystem::path& path) {
+  return from_text(read_text_file(path), path.string());
+}
 
 namespace {
 
@@ -143,7 +152,8 @@ void merge(toml::table& lower, toml::table&& upper) {
       merge(*below->as_table(), std::move(*node.as_table()));
       continue;
     }
-    node.visit([&lower, k = std::string(key.str())](auto& value) { lower.insert_or_assign(k, std::move(value)); });
+    node.visit(
+        [&lower, k = std::string(key.str())](auto& value) { lower.insert_or_assign(k, std::move(value)); });
   }
 }
 
@@ -154,10 +164,22 @@ void Config::overlay(Config upper) {
   shared_->name = upper.shared_->name;
 }
 
+void Config::yield_to(const Config& upper, const std::string& section,
+                      const std::vector<std::string>& alternatives) {
+  const auto named = [&](const std::string& key) {
+    return find(upper.shared_->table, section + "." + key) != nullptr;
+  };
+  if (std::none_of(alternatives.begin(), alternatives.end(), named)) return;
+  const toml::node_view<toml::node> table = shared_->table.at_path(section);
+  if (!table.is_table()) return;
+  for (const auto& key : alternatives) table.as_table()->erase(key);
+}
+
 void Config::assign(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   const Where where{"--set", 0, 0, assignment};
-  if (equals == std::string::npos || equals == 0) throw ConfigError(where, "must have the form section.key=value.");
+  if (equals == std::string::npos || equals == 0)
+    throw ConfigError(where, "must have the form section.key=value.");
   const std::string key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
   const std::string name = shared_->name;
   auto parsed = [&](const std::string& text) { return from_text(key + " = " + text + "\n", "--set " + key); };
@@ -171,7 +193,9 @@ void Config::assign(const std::string& assignment) {
   shared_->name = name;
 }
 
-ConfigSection Config::root() const { return {shared_, ""}; }
+ConfigSection Config::root() const {
+  return {shared_, ""};
+}
 
 namespace {
 
@@ -196,7 +220,8 @@ void Config::refuse_unknown_keys() const {
         nearest = &known;
       }
     throw ConfigError(shared_->where_of(node, key),
-                      nearest != nullptr ? fmt::format("there is no such key; did you mean '{}'?", *nearest) : "there is no such key.");
+                      nearest != nullptr ? fmt::format("there is no such key; did you mean '{}'?", *nearest)
+                                         : "there is no such key.");
   });
 }
 

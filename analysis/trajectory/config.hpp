@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// TOML configuration with positions: every complaint names file, line, column and key, and no key is ignored.
+/// TOML configuration with positions: every complaint names file, line, column and key, and no key is
+/// ignored.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,8 +14,8 @@
 
 namespace twincell {
 
-/// One table of a configuration. Getters return nothing for an absent key and throw ConfigError for one of the
-/// wrong type. Asking for a key marks it as known.
+/// One table of a configuration. Getters return nothing for an absent key and throw ConfigError for one of
+/// the wrong type. Asking for a key marks it as known.
 class ConfigSection {
  public:
   [[nodiscard]] std::optional<double> number(const std::string& key) const;
@@ -24,7 +25,8 @@ class ConfigSection {
   /// A list of exactly `count` numbers.
   [[nodiscard]] std::optional<std::vector<double>> numbers(const std::string& key, std::size_t count) const;
   /// One of `words`; \throws ConfigError naming them otherwise.
-  [[nodiscard]] std::optional<std::string> word(const std::string& key, const std::vector<std::string>& words) const;
+  [[nodiscard]] std::optional<std::string> word(const std::string& key,
+                                                const std::vector<std::string>& words) const;
   /// A table below this one; an absent table is an empty section.
   [[nodiscard]] ConfigSection section(const std::string& key) const;
   /// Whether the key is there.
@@ -35,8 +37,11 @@ class ConfigSection {
  private:
   friend class Config;
   struct Shared;
-  ConfigSection(std::shared_ptr<Shared> shared, std::string path) : shared_(std::move(shared)), path_(std::move(path)) {}
-  [[nodiscard]] std::string full(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+  ConfigSection(std::shared_ptr<Shared> shared, std::string path)
+      : shared_(std::move(shared)), path_(std::move(path)) {}
+  [[nodiscard]] std::string full(const std::string& key) const {
+    return path_.empty() ? key : path_ + "." + key;
+  }
 
   std::shared_ptr<Shared> shared_;
   std::string path_;
@@ -51,6 +56,10 @@ class Config {
 
   /// Lays `upper` over this one: its keys win, tables are merged.
   void overlay(Config upper);
+  /// Removes the other members of a group of mutually exclusive keys of `section` when `upper` names one of
+  /// them, so that a user's choice displaces a preset's.
+  void yield_to(const Config& upper, const std::string& section,
+                const std::vector<std::string>& alternatives);
   /// "section.key=value" from the command line; a value that is not TOML is taken as text.
   void assign(const std::string& assignment);
   [[nodiscard]] ConfigSection root() const;

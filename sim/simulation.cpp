@@ -1,0 +1,135 @@
+#include "sim/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace twincell::sim {
+
+namespace {
+
+double kinetic_energy_per_bead(const System& s) {
+  double sum = 0;
+  for (const Bead& b : s.beads)
+    sum += 0.5 * (b.mass * (b.vx * b.vx + b.vz * b.vz) + b.inertia * b.spin * b.spin);
+  return s.beads.empty() ? 0 : sum / static_cast<double>(s.beads.size());
+}
+
+double top_of(const std::vector<Bead>& beads) {
+  double top = 0;
+  for (const Bead& b : beads) top = std::max(top, b.z + b.radius);
+  return top;
+}
+
+}  // namespace
+
+Simulation::Simulation(Scene scene, Progress& progress, KernelKind kind)
+    : scene_(std::move(scene)), plan_(make_plan(scene_)) {
+  Start start = make_start(scene_);
+  require_sound(start.beads, scene_, 0.05);
+  // High enough never to be reached: the bed, the plate's stroke, twice the ballistic height of the plate's
+  // speed, ten diameters.
+  const double v = scene_.drive.peak_velocity();
+  const double flight = scene_.gravity > 0 ? v * v / scene_.gravity : 0;
+  height_ =
+      scene_.height.value_or(std::ceil(top_of(start.beads) + 2 * scene_.drive.amplitude + 2 * flight + 10));
+
+  system_.beads = std::move(start.beads);
+  system_.forces.resize(system_.beads.size());
+  system_.width = scene_.width;
+  system_.side_walls_move = scene_.side_walls_move;
+  system_.gravity = scene_.gravity;
+  system_.steps_per_period = plan_.steps_per_period;
+  system_.dt = plan_.dt;
+  GuardLimits limits;
+  // A lid that the scene names binds; the one we chose merely keeps the box of the file finite.
+  limits.ceiling = scene_.height.value_or(0);
+  kernel_ = make_kernel(plan_, limits, kind);
+  settle(progress);
+  tracer_ = start.tracer.empty() ? choose_tracers(system_.beads, scene_) : std::move(start.tracer);
+}
+
+void Simulation::settle(Progress& progress) {
+  system_.drive = {Axis::z, 0, scene_.drive.omega};  // the plate rests at z = 0
+  if (system_.beads.empty() || scene_.gravity == 0 || scene_.settle_limit == 0) return;
+  // Rest must last: the energy is looked at every ten contact times.
+  const auto block = static_cast<std::int64_t>(10 * scene_.steps_per_contact);
+  const auto most = static_cast<std::int64_t>(scene_.settle_limit / system_.dt);
+  int quiet = 0;
+  while (system_.step < most && quiet < 2) {
+    kernel_->advance(system_, block);
+    settled_.energy_per_bead = kinetic_energy_per_bead(system_);
+    quiet = settled_.energy_per_bead < scene_.rest_energy ? quiet + 1 : 0;
+    progress.update(std::min(system_.step, most), most);
+  }
+  settled_.time = system_.time();
+  settled_.reached = quiet >= 2;
+}
+
+void Simulation::start_drive() {
+  system_.drive = scene_.drive;
+  system_.step = 0;
+  // At phase 0 the plate moves at A omega but does not accelerate: beads moving with it are in equilibrium.
+  // Beads at rest would be hit by a plate at full speed, which by itself breaks a crystal.
+  if (scene_.comoving)
+    for (Bead& b : system_.beads) b.vz += scene_.drive.peak_velocity();
+}
+
+TrajectoryInfo Simulation::trajectory_info() const {
+  TrajectoryInfo info;
+  info.n_beads = system_.beads.size();
+  info.columns = {
+      .velocity = true, .spin = plan_.rotation, .identity = false, .phase = true, .plate_height = true};
+  info.box.dimension = 2;
+  info.box.lower = Vec3(0, 0, 0);
+  info.box.upper = Vec3(scene_.width, 2 * scene_.radius, height_);
+  info.box.boundary = {scene_.periodic_sides ? Boundary::periodic : Boundary::wall, Boundary::open,
+                       Boundary::wall};
+  info.drive = scene_.drive;
+  info.phases_per_cycle = scene_.phases;
+  info.scale = scene_.scale;
+  info.source = "simulation";
+  for (const Bead& b : system_.beads) {
+    info.radius.push_back(b.radius);
+    info.mass.push_back(b.mass);
+  }
+  info.tracer = tracer_;
+  return info;
+}
+
+Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
+  Frame frame;
+  frame.step = system_.step;
+  frame.time = system_.time();
+  frame.cycle = cycle;
+  frame.phase = phase;
+  frame.plate_height = system_.plate_height();
+  for (const Bead& b : system_.beads) {
+    frame.position.emplace_back(b.x, 0, b.z);
+    frame.velocity.emplace_back(b.vx, 0, b.vz);
+    if (plan_.rotation) frame.spin.emplace_back(0, -b.spin, 0);
+  }
+  return frame;
+}
+
+void Simulation::run(TrajectorySink& sink, Progress& progress) {
+  start_drive();
+  const std::int64_t per_phase = plan_.steps_per_period / scene_.phases;
+  const std::int64_t total = (scene_.discard + scene_.cycles) * scene_.phases;
+  for (std::int64_t k = 0; k < total; ++k) {
+    const std::int64_t cycle = k / scene_.phases - scene_.discard;
+    if (cycle >= 0) sink.append(snapshot(cycle, static_cast<int>(k % scene_.phases)));
+    progress.update(k, total);
+    // In pieces of about a tenth of a second at most, so that a signal is noticed.
+    for (std::int64_t done = 0; done < per_phase;) {
+      const std::int64_t piece = std::min<std::int64_t>(
+          per_phase - done, 1 + 2'000'000 / (1 + static_cast<std::int64_t>(system_.beads.size())));
+      kernel_->advance(system_, piece);
+      done += piece;
+      steps_done_ += piece;
+      progress.update(k, total);
+    }
+  }
+  progress.update(total, total);
+}
+
+}  // namespace twincell::sim

@@ -1,0 +1,92 @@
+// The list kernel against the all-pairs oracle, and against itself with other rebuild habits: the same bits.
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "sim/simulation.hpp"
+#include "sim/start.hpp"
+#include "tests/support/collision.hpp"
+
+namespace twincell::sim {
+namespace {
+
+bool same_bits(const System& a, const System& b) {
+  return a.beads.size() == b.beads.size() &&
+         std::memcmp(a.beads.data(), b.beads.data(), a.beads.size() * sizeof(Bead)) == 0;
+}
+
+/// A shaken random bed after some thousand steps, by the given kernel.
+System shaken(const std::string& extra, KernelKind kind, std::int64_t rebuild_every,
+              std::int64_t steps = 12000) {
+  const Scene scene = read_scene_text(
+      "[beads]\ncount = 60\n[drive]\nomega = 1.0\ngamma = 3.0\n[start]\nkind = \"random\"\nseed = 5\n" +
+          extra,
+      "shaken");
+  const Plan plan = make_plan(scene);
+  System s;
+  s.beads = make_start(scene).beads;
+  for (Bead& b : s.beads) b.vz -= 2, b.vx *= 2, b.spin = b.vx;
+  s.width = scene.width;
+  s.drive = scene.drive;
+  s.steps_per_period = plan.steps_per_period;
+  s.dt = plan.dt;
+  const auto kernel = make_kernel(plan, {}, kind);
+  kernel->rebuild_every(rebuild_every);
+  kernel->advance(s, steps);
+  return s;
+}
+
+const std::string kPaperOne =
+    "[cell]\nwidth = 8.0\n[contact]\nk_n = 1e5\ngamma_n = 10.0\ngamma_t = 10.0\nk_t = 2e3\n";
+const std::string kDashpot =
+    "[cell]\nwidth = 8.0\nsides = \"periodic\"\n[contact]\nk_n = 1e5\nrestitution = 0.9\ntangential = "
+    "\"dashpot\"\nc_t_over_c_n = 1.0\nmu = 0.4\n";
+const std::string kSmooth =
+    "[cell]\nwidth = 8.0\nsides = \"periodic\"\n[contact]\nk_n = 1e5\nrestitution = 0.9\ntangential = "
+    "\"none\"\n";
+
+TEST(ListKernel, AgreesWithTheOracleToTheBit) {
+  for (const auto& law : {kPaperOne, kDashpot, kSmooth})
+    EXPECT_TRUE(same_bits(shaken(law, KernelKind::list, 0), shaken(law, KernelKind::all_pairs, 0))) << law;
+}
+
+TEST(ListKernel, RebuildHabitsChangeNothing) {  // V2.14, H22, H24: history is neither lost nor doubled
+  for (const auto& law : {kPaperOne, kDashpot}) {
+    const System seldom = shaken(law, KernelKind::list, 0);
+    EXPECT_TRUE(same_bits(seldom, shaken(law, KernelKind::list, 1))) << law;
+    EXPECT_TRUE(same_bits(seldom, shaken(law, KernelKind::list, 7))) << law;
+  }
+}
+
+TEST(ListKernel, SameSceneSameBits) {  // H12
+  EXPECT_TRUE(same_bits(shaken(kPaperOne, KernelKind::list, 0), shaken(kPaperOne, KernelKind::list, 0)));
+}
+
+TEST(ListKernel, FrictionOffIsTheSameAsMuZero) {  // EFFECTS: mu = 0 proves friction away, bit for bit
+  const System none = shaken(kSmooth, KernelKind::list, 0);
+  const System zero = shaken(
+      "[cell]\nwidth = 8.0\nsides = \"periodic\"\n[contact]\nk_n = 1e5\nrestitution = 0.9\ntangential = "
+      "\"dashpot\"\nc_t = 100.0\nmu = 0.0\n",
+      KernelKind::list, 0);
+  EXPECT_TRUE(same_bits(none, zero));
+}
+
+// A frictional pair that drifts through the periodic boundary in contact behaves as one that does not (H15).
+TEST(ListKernel, HistoryCrossesThePeriodicBoundary) {
+  auto run = [](double x) {
+    Bench b("[cell]\ngravity = 1.0\nsides = \"periodic\"\nwidth = 8.0\n");
+    b.add(x, 0.4999, 1, 0);
+    b.add(x + 0.9999, 0.4999, 1, 0);
+    b.advance_time(0.5);
+    return b.system;
+  };
+  const System inside = run(2.0), across = run(6.8);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(inside.beads[i].x - 2.0, across.beads[i].x - 6.8, 1e-11);
+    EXPECT_NEAR(inside.beads[i].spin, across.beads[i].spin, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace twincell::sim
