@@ -1,0 +1,101 @@
+#pragma once
+/// \file
+/// What an observable is and what it gives.
+///
+/// To add one: NAME.hpp and NAME.cpp with a make_NAME, one row in the list of observables.cpp, two lines in
+/// CMakeLists.txt, a test. Observables see frames and neighbours, never each other.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/neighbours.hpp"
+#include "analysis/statistics.hpp"
+#include "analysis/trajectory/progress.hpp"
+#include "analysis/trajectory/trajectory.hpp"
+
+namespace twincell {
+
+/// One measured quantity, or the reason why there is none.
+struct Result {
+  std::string name = {};
+  std::vector<double> values = {};      ///< row-major; one for a scalar; NaN where an element has no value
+  std::vector<std::size_t> shape = {};  ///< empty for a scalar
+  std::string text = {};                ///< value of a result that is a word (phase)
+  std::string unit = {};                ///< "sigma", "m g sigma", "1"
+  std::size_t n = 0;                    ///< how many independent samples entered
+  std::string n_of = {};                ///< samples of what: "cycles", "frames"
+  std::optional<Interval> interval = {};
+  std::string convention = {};  ///< choices that the definition leaves open, as made here
+  std::string source = {};      ///< equation
+  std::string absent = {};      ///< why there is no value; empty if there is one
+
+  [[nodiscard]] bool present() const { return absent.empty(); }
+  /// The scalar value; NaN if absent.
+  [[nodiscard]] double value() const;
+};
+
+/// A result without a value.
+Result absent_result(const std::string& name, const std::string& reason, const std::string& source);
+
+/// Which of the readings of eq. B4 (s_b_of in phase_thresholds.hpp).
+enum class SbForm { variance, about_rest, as_printed };
+
+/// Choices for one analysis.
+struct AnalysisOptions {
+  std::int64_t discard_cycles = 0;  ///< cycles left out at the beginning
+  SbForm s_b = SbForm::variance;
+  std::optional<double> neighbour_cutoff;  ///< sigma; default 1.2, for experiments 1.3
+  std::vector<std::string> only;           ///< names of results wanted; empty: all
+};
+
+/// What observables may know before the first frame.
+struct AnalysisContext {
+  const TrajectoryInfo& info;
+  const AnalysisOptions& options;
+  double cutoff;                     ///< neighbour cutoff, sigma
+  std::vector<std::size_t> tracers;  ///< slots
+  std::string tracer_choice;         ///< how they were chosen
+  std::string no_tracers;            ///< why there are none, if so
+  double
+      tracer_rest_height;  ///< mean height of the tracers above the plate when they were chosen; NaN unknown
+};
+
+/// One frame with what is computed at most once for all observables.
+class FrameView {
+ public:
+  FrameView(const Frame& frame, const AnalysisContext& context) : frame_(frame), context_(context) {}
+  [[nodiscard]] const Frame& frame() const { return frame_; }
+  [[nodiscard]] const Neighbours& neighbours() const;
+
+ private:
+  const Frame& frame_;
+  const AnalysisContext& context_;
+  mutable std::optional<Neighbours> neighbours_;
+};
+
+/// An accumulator: sees each frame once, in order.
+class Observable {
+ public:
+  virtual ~Observable() = default;
+  virtual void add(const FrameView& view) = 0;
+  [[nodiscard]] virtual std::vector<Result> results() const = 0;
+};
+
+/// All results of a trajectory in one pass; memory does not grow with the number of frames (series per cycle
+/// excepted). \throws ConfigError for an unknown name in `only`, a negative discard, a cutoff that is not
+/// positive; InputError for a
+///         trajectory without frames
+std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOptions& options = {},
+                            Progress& progress = Progress::none());
+
+/// Names that `analyze` can give, in order.
+std::vector<std::string> result_names();
+
+/// The result called `name`. \pre it is there
+const Result& find_result(const std::vector<Result>& results, const std::string& name);
+
+}  // namespace twincell

@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "analysis/granular_temperature.hpp"
+#include "analysis/observable.hpp"
+#include "analysis/order.hpp"
+#include "analysis/phase_thresholds.hpp"
+#include "analysis/tracers.hpp"
+
+namespace twincell {
+namespace {
+
+/// The list: which results, made by whom.
+struct Entry {
+  std::vector<std::string> names;
+  std::unique_ptr<Observable> (*make)(const AnalysisContext&);
+};
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> list = {
+      {{"s_k", "s_b", "s_j", "s_c", "cycle_of_convection", "phase"}, make_phase_thresholds},
+      {{"T_g"}, make_granular_temperature},
+      {{"q6", "psi6", "psi4", "hexagonal_fraction", "square_fraction", "q6_beads", "psi6_beads",
+        "psi4_beads"},
+       make_bond_order},
+  };
+  return list;
+}
+
+/// Touching beads are at 1, the next shell of a square lattice at 1.414: 1.2 lies between. Positions from
+/// images carry noise of some 0.03 sigma.
+double default_cutoff(const TrajectoryInfo& info) {
+  return info.source == "experiment" ? 1.3 : 1.2;
+}
+
+bool wanted(const AnalysisOptions& options, const std::string& name) {
+  return options.only.empty() ||
+         std::find(options.only.begin(), options.only.end(), name) != options.only.end();
+}
+
+void check(const AnalysisOptions& options) {
+  const auto names = result_names();
+  for (const std::string& name : options.only)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw ConfigError(
+          {.file = {}, .key = "only"},
+          fmt::format("there is no result called \"{}\"; there are {}", name, fmt::join(names, ", ")));
+  if (options.discard_cycles < 0)
+    throw ConfigError({.file = {}, .key = "discard"},
+                      fmt::format("{} cycles cannot be left out; at least 0", options.discard_cycles));
+  if (options.neighbour_cutoff)
+    require_range({.file = {}, .key = "cutoff"}, *options.neighbour_cutoff, 0, 100, true);
+}
+
+/// Chooses tracers on the first frame at phase 0 (the first of all if the frames have no phase).
+AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisOptions& options) {
+  const TrajectoryInfo& info = trajectory.info();
+  AnalysisContext context{info,
+                          options,
+                          options.neighbour_cutoff.value_or(default_cutoff(info)),
+                          {},
+                          {},
+                          {},
+                          std::numeric_limits<double>::quiet_NaN()};
+  Frame frame;
+  std::size_t index = 0;
+  trajectory.read(index, frame);
+  if (info.columns.phase)
+    while (frame.phase != 0 && index + 1 < trajectory.n_frames()) trajectory.read(++index, frame);
+  if (info.columns.phase && frame.phase != 0) trajectory.read(0, frame);
+
+  const TracerChoice choice = choose_tracers(info, frame);
+  context.tracers = choice.slots;
+  context.tracer_choice = choice.how;
+  if (choice.slots.empty())
+    context.no_tracers = info.tracer.empty() ? choice.how : "the trajectory marks no bead as a tracer";
+  const auto plate = plate_height(info, frame);
+  double sum = 0;
+  std::size_t n = 0;
+  for (const std::size_t slot : choice.slots)
+    if (frame.present(slot) && std::isfinite(frame.position[slot].z())) {
+      sum += frame.position[slot].z();
+      ++n;
+    }
+  if (plate && n > 0) context.tracer_rest_height = sum / static_cast<double>(n) - *plate;
+  return context;
+}
+
+}  // namespace
+
+double Result::value() const {
+  if (!present() || values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  return values.front();
+}
+
+Result absent_result(const std::string& name, const std::string& reason, const std::string& source) {
+  Result r{.name = name};
+  r.absent = reason;
+  r.source = source;
+  return r;
+}
+
+const Neighbours& FrameView::neighbours() const {
+  if (!neighbours_) neighbours_ = find_neighbours(frame_, context_.info.box, context_.cutoff);
+  return *neighbours_;
+}
+
+std::vector<std::string> result_names() {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries()) names.insert(names.end(), entry.names.begin(), entry.names.end());
+  return names;
+}
+
+const Result& find_result(const std::vector<Result>& results, const std::string& name) {
+  const auto found =
+      std::find_if(results.begin(), results.end(), [&](const Result& r) { return r.name == name; });
+  assert(found != results.end());
+  return *found;
+}
+
+std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOptions& options,
+                            Progress& progress) {
+  check(options);
+  if (trajectory.n_frames() == 0)
+    throw InputError({.file = trajectory.name(), .key = {}}, "the trajectory holds no frame");
+  const AnalysisContext context = make_context(trajectory, options);
+  if (options.discard_cycles > 0 && !context.info.columns.phase)
+    throw ConfigError({.file = trajectory.name(), .key = "discard"},
+                      "cycles cannot be left out of a trajectory whose frames have no cycle number");
+
+  std::vector<std::unique_ptr<Observable>> observables;
+  for (const Entry& entry : entries())
+    if (std::any_of(entry.names.begin(), entry.names.end(),
+                    [&](const std::string& name) { return wanted(options, name); }))
+      observables.push_back(entry.make(context));
+
+  Frame frame;
+  const std::size_t n_frames = trajectory.n_frames();
+  std::int64_t first_cycle = -1;
+  std::size_t used = 0;
+  for (std::size_t f = 0; f < n_frames; ++f) {
+    trajectory.read(f, frame);
+    progress.update(static_cast<std::int64_t>(f) + 1, static_cast<std::int64_t>(n_frames));
+    if (options.discard_cycles > 0) {
+      if (frame.cycle < 0) continue;
+      if (first_cycle < 0) first_cycle = frame.cycle;
+      if (frame.cycle < first_cycle + options.discard_cycles) continue;
+    }
+    ++used;
+    const FrameView view(frame, context);
+    for (const auto& observable : observables) observable->add(view);
+  }
+  if (used == 0)
+    throw ConfigError({.file = trajectory.name(), .key = "discard"},
+                      fmt::format("leaving out {} cycles leaves no frame", options.discard_cycles));
+
+  std::vector<Result> results;
+  for (const auto& observable : observables)
+    for (Result& r : observable->results())
+      if (wanted(options, r.name)) results.push_back(std::move(r));
+  return results;
+}
+
+}  // namespace twincell

@@ -1,0 +1,147 @@
+#include "analysis/results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/hdf5.hpp"
+
+namespace twincell {
+namespace {
+
+std::string value_text(const Result& r) {
+  if (!r.text.empty()) return r.text;
+  if (r.shape.empty()) return fmt::format("{:.6g}", r.value());
+  double low = NAN, high = NAN;
+  for (const double v : r.values) {
+    low = std::fmin(low, v);
+    high = std::fmax(high, v);
+  }
+  return fmt::format("{} values, {:.4g} to {:.4g}", fmt::join(r.shape, " x "), low, high);
+}
+
+std::string interval_text(const Result& r) {
+  return r.interval ? fmt::format("[{:.6g}, {:.6g}]", r.interval->low, r.interval->high) : "-";
+}
+
+nlohmann::json number(double v) {
+  return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr);
+}
+
+nlohmann::json to_json(const Result& r) {
+  nlohmann::json j;
+  j["source"] = r.source;
+  if (!r.present()) {
+    j["absent"] = r.absent;
+    return j;
+  }
+  if (!r.text.empty()) {
+    j["value"] = r.text;
+  } else if (r.shape.empty()) {
+    j["value"] = number(r.value());
+  } else {
+    j["value"] = nlohmann::json::array();
+    for (const double v : r.values) j["value"].push_back(number(v));
+    j["shape"] = r.shape;
+  }
+  if (!r.unit.empty()) j["unit"] = r.unit;
+  j["n"] = r.n;
+  j["n_of"] = r.n_of;
+  j["convention"] = r.convention;
+  if (r.interval)
+    j["interval"] = {{"low", number(r.interval->low)},
+                     {"high", number(r.interval->high)},
+                     {"level", r.interval->level},
+                     {"method", r.interval->method}};
+  return j;
+}
+
+/// HDF5 attributes are ASCII here; the few other characters our sentences may hold become '?'.
+std::string ascii(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c >= 128; }, '?');
+  return text;
+}
+
+void write_result(hid_t results, const Result& r) {
+  const h5::Handle group = h5::create_group(results, r.name);
+  h5::write_attribute(group.get(), "source", ascii(r.source));
+  if (!r.present()) {
+    h5::write_attribute(group.get(), "absent", ascii(r.absent));
+    return;
+  }
+  h5::write_attribute(group.get(), "unit", ascii(r.unit));
+  h5::write_attribute(group.get(), "convention", ascii(r.convention));
+  h5::write_attribute(group.get(), "n_of", r.n_of);
+  h5::write_attribute(group.get(), "n", static_cast<int>(std::min<std::size_t>(r.n, 2147483647)));
+  if (!r.text.empty()) {
+    h5::write_text(group.get(), "value", r.text);
+  } else if (r.shape.empty()) {
+    h5::write_scalar(group.get(), "value", r.value());
+  } else {
+    h5::write_dataset(group.get(), "value", r.values.data(),
+                      std::vector<hsize_t>(r.shape.begin(), r.shape.end()));
+  }
+  if (r.interval) {
+    const double bounds[2] = {r.interval->low, r.interval->high};
+    h5::write_dataset(group.get(), "interval", bounds, {2});
+    h5::write_attribute(group.get(), "interval_method",
+                        ascii(fmt::format("{:.0f} %, {}", 100 * r.interval->level, r.interval->method)));
+  }
+}
+
+}  // namespace
+
+std::string results_text(const std::vector<Result>& results) {
+  std::size_t name_width = 6, value_width = 5, interval_width = 12;
+  for (const Result& r : results) {
+    name_width = std::max(name_width, r.name.size());
+    if (!r.present()) continue;
+    value_width = std::max(value_width, value_text(r).size());
+    interval_width = std::max(interval_width, interval_text(r).size());
+  }
+  std::string text = fmt::format("{:<{}}  {:<{}}  {:<{}}  {:<9}  count\n", "result", name_width, "value",
+                                 value_width, "95 % interval", interval_width, "unit");
+  for (const Result& r : results) {
+    if (!r.present()) {
+      text += fmt::format("{:<{}}  absent: {}\n", r.name, name_width, r.absent);
+      continue;
+    }
+    text += fmt::format("{:<{}}  {:<{}}  {:<{}}  {:<9}  {} {}\n", r.name, name_width, value_text(r),
+                        value_width, interval_text(r), interval_width, r.unit, r.n, r.n_of);
+  }
+  text += "\nHow each was made\n";
+  for (const Result& r : results) {
+    if (!r.present()) continue;
+    text += fmt::format("  {}: {}", r.name, r.convention);
+    if (r.interval) text += fmt::format("; interval: {}", r.interval->method);
+    text += fmt::format(" ({})\n", r.source);
+  }
+  return text;
+}
+
+std::string results_json(const std::vector<Result>& results) {
+  nlohmann::json document = nlohmann::json::object();
+  for (const Result& r : results) document[r.name] = to_json(r);
+  return document.dump();
+}
+
+void write_results(const std::filesystem::path& path, const std::vector<Result>& results,
+                   const std::string& provenance_json) {
+  AtomicPath output(path);
+  h5::quiet();
+  {
+    const h5::Handle file = h5::own(H5Fcreate(output.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                                    "Creating " + path.string());
+    const h5::Handle group = h5::create_group(file.get(), "results");
+    for (const Result& r : results) write_result(group.get(), r);
+    h5::write_text(file.get(), "provenance", provenance_json);
+    h5::check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "Writing " + path.string());
+  }
+  output.commit();
+}
+
+}  // namespace twincell

@@ -1,0 +1,56 @@
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "analysis/observable.hpp"
+#include "analysis/results.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
+#include "cli/output.hpp"
+#include "cli/verb.hpp"
+
+namespace twincell::cli {
+namespace {
+
+struct AnalyzeOptions {
+  std::string trajectory;
+  std::string output;
+  AnalysisOptions analysis;
+};
+
+void run(const Common& common, const AnalyzeOptions& options) {
+  const H5mdReader trajectory(options.trajectory);
+  ProgressBar progress(common, "analyze");
+  const auto results = analyze(trajectory, options.analysis, progress);
+
+  Provenance provenance = common.provenance();
+  provenance.inputs = {options.trajectory};
+  const std::string provenance_json = provenance.to_json();
+  if (!options.output.empty()) write_results(options.output, results, provenance_json);
+
+  nlohmann::json document;
+  document["results"] = nlohmann::json::parse(results_json(results));
+  document["provenance"] = nlohmann::json::parse(provenance_json);
+  print_result(common, document, results_text(results));
+}
+
+}  // namespace
+
+void add_analyze(CLI::App& program, Common& common) {
+  CLI::App& verb =
+      add_verb(program, common, "analyze", "observables of a trajectory: phase, s_b, s_c, order, temperature",
+               "twincell analyze sim.h5 --discard 10 -o results.h5");
+  auto options = std::make_shared<AnalyzeOptions>();
+  verb.add_option("trajectory", options->trajectory, "trajectory (H5MD)")->required();
+  verb.add_option("-o,--output", options->output, "write the results to this HDF5 file too");
+  verb.add_option("--discard", options->analysis.discard_cycles, "cycles left out at the beginning")
+      ->capture_default_str();
+  verb.add_option("--s-b", options->analysis.s_b, "reading of eq. B4")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, SbForm>{{"variance", SbForm::variance},
+                                                                        {"about_rest", SbForm::about_rest},
+                                                                        {"as_printed", SbForm::as_printed}}));
+  verb.add_option("--only", options->analysis.only, "results wanted, comma separated")->delimiter(',');
+  verb.add_option("--cutoff", options->analysis.neighbour_cutoff,
+                  "neighbour distance, sigma (1.2; experiments 1.3)");
+  verb.callback([&common, options] { run(common, *options); });
+}
+
+}  // namespace twincell::cli

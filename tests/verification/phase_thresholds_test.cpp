@@ -1,0 +1,114 @@
+// s_b of the completely inelastic rigid bed, s_c of an imposed shear: closed forms, no dynamics.
+#include "analysis/phase_thresholds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/rigid_bed.hpp"
+
+using namespace twincell;
+using test::RigidBed;
+
+namespace {
+
+double measured_s_b(double gamma, SbForm form, int phases = 720) {
+  AnalysisOptions options;
+  options.s_b = form;
+  options.only = {"s_b"};
+  const auto results = analyze(
+      test::rigid_bed({.gamma = gamma, .columns = 6, .rows = 5, .phases = phases, .cycles = 2}), options);
+  return find_result(results, "s_b").value();
+}
+
+}  // namespace
+
+TEST(BouncingThreshold, TableOfTheRigidInelasticBed) {
+  const std::vector<std::array<double, 3>> table = {
+      {1.05, 0.0027, 0.0029}, {1.10, 0.0119, 0.0131}, {1.15, 0.0279, 0.0314},
+      {1.20, 0.0502, 0.0577}, {1.30, 0.1122, 0.1333}, {1.40, 0.1945, 0.2376},
+      {1.50, 0.2935, 0.3677}, {1.80, 0.6663, 0.8898}, {2.00, 0.9586, 1.3282}};
+  for (const auto& [gamma, variance, about_rest] : table) {
+    const double s_b = measured_s_b(gamma, SbForm::variance),
+                 s_rest = measured_s_b(gamma, SbForm::about_rest);
+    std::cout << "Gamma " << gamma << ": s_b " << s_b << " (" << variance << "), about rest " << s_rest
+              << " (" << about_rest << ")\n";
+    EXPECT_NEAR(s_b, variance, 1e-3);
+    EXPECT_NEAR(s_rest, about_rest, 1e-3);
+  }
+}
+
+TEST(BouncingThreshold, CriticalGamma) {
+  const auto critical = [](SbForm form) {
+    double low = 1.1, high = 1.25;
+    for (int i = 0; i < 13; ++i)
+      (measured_s_b((low + high) / 2, form) < kBouncingThreshold ? low : high) = (low + high) / 2;
+    return (low + high) / 2;
+  };
+  const double variance = critical(SbForm::variance), rest = critical(SbForm::about_rest);
+  std::cout << "Gamma* " << variance << " (1.1636), about rest " << rest << " (1.1542)\n";
+  EXPECT_NEAR(variance, 1.1636, 2e-4);
+  EXPECT_NEAR(rest, 1.1542, 2e-4);
+}
+
+TEST(BouncingThreshold, AsPrintedIsTheHeightOfTheTracers) {
+  // 5 rows: the tracers are the third, 0.5 + 2 (sqrt 3/2) above the plate.
+  const double printed = measured_s_b(0.5, SbForm::as_printed, 20);
+  EXPECT_NEAR(printed, 0.5 + std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(measured_s_b(0.5, SbForm::variance, 20), 0, 1e-12);
+}
+
+TEST(ConvectionThreshold, ImposedShearHasTheVarianceOfItsLine) {
+  const double shear = 0.03;
+  const int cycles = 12, columns = 20;
+  const auto results = analyze(
+      test::rigid_bed({.gamma = 1.5, .columns = columns, .cycles = cycles, .shear_per_cycle = shear}));
+  const Result& s_j = find_result(results, "s_j");
+  ASSERT_EQ(s_j.values.size(), static_cast<std::size_t>(cycles));
+  // The tracers are one row of n beads a distance 1 apart: var(x) = (n^2 - 1)/12.
+  const double n = find_result(results, "s_j").convention.find("spread of 20") != std::string::npos ? 20 : 19;
+  const double var_x = (n * n - 1) / 12;
+  double mean_j2 = 0;
+  for (int j = 0; j < cycles; ++j) {
+    EXPECT_NEAR(s_j.values[static_cast<std::size_t>(j)], shear * j * std::sqrt(var_x), 1e-12);
+    mean_j2 += static_cast<double>(j) * j / cycles;
+  }
+  EXPECT_NEAR(find_result(results, "s_c").value(), shear * std::sqrt(var_x * mean_j2), 1e-12);
+  // s_j first exceeds sigma at the first j > 1/(a sd(x)).
+  EXPECT_EQ(find_result(results, "cycle_of_convection").value(),
+            std::floor(1 / (shear * std::sqrt(var_x))) + 1);
+}
+
+TEST(PhaseLabel, FollowsTheTwoThresholds) {
+  const auto label = [](double gamma, double shear) {
+    return find_result(analyze(test::rigid_bed({.gamma = gamma, .cycles = 10, .shear_per_cycle = shear})),
+                       "phase")
+        .text;
+  };
+  EXPECT_EQ(label(1.10, 0), "co-moving");
+  EXPECT_EQ(label(1.20, 0), "bouncing");
+  EXPECT_EQ(label(1.80, 0.1), "convecting");
+  const double nan = std::nan("");
+  EXPECT_EQ(bed_phase(1.0 / 30, 0), BedPhase::co_moving);
+  EXPECT_EQ(bed_phase(1, 1), BedPhase::bouncing);
+  EXPECT_EQ(bed_phase(1, std::nextafter(1.0, 2.0)), BedPhase::convecting);
+  EXPECT_EQ(bed_phase(nan, 5), BedPhase::undetermined);
+  EXPECT_EQ(bed_phase(1, nan), BedPhase::undetermined);
+  EXPECT_EQ(bed_phase(0.01, nan), BedPhase::co_moving);
+}
+
+TEST(BouncingThreshold, ABedOfPeriodTwoIsAveragedOverAnEvenNumberOfCycles) {
+  // Lifted by 1 at phase 5 of odd cycles only: over an even number of cycles s(5) is 1/2, over 3 it would be
+  // 1/3.
+  MemoryTrajectory flat = test::rigid_bed({.gamma = 0.9, .cycles = 3});
+  MemoryTrajectory lifted(flat.info());
+  for (Frame frame : flat.frames()) {
+    if (frame.phase == 5 && frame.cycle % 2 == 1)
+      for (Vec3& r : frame.position) r.z() += 1;
+    lifted.append(frame);
+  }
+  const auto results = analyze(lifted);
+  const Result& s_k = find_result(results, "s_k");
+  EXPECT_EQ(s_k.n, 2U);
+  EXPECT_NEAR(s_k.values[5] - s_k.values[4], 0.5, 1e-12);
+}
