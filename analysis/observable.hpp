@@ -43,6 +43,8 @@ Result absent_result(const std::string& name, const std::string& reason, const s
 
 /// Which of the readings of eq. B4 (s_b_of in phase_thresholds.hpp).
 enum class SbForm { variance, about_rest, as_printed };
+/// The form of that name. \throws ConfigError for another
+SbForm s_b_named(const std::string& name);
 
 /// Choices for one analysis.
 struct AnalysisOptions {

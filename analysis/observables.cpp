@@ -104,6 +104,14 @@ Result absent_result(const std::string& name, const std::string& reason, const s
   return r;
 }
 
+SbForm s_b_named(const std::string& name) {
+  if (name == "variance") return SbForm::variance;
+  if (name == "about_rest") return SbForm::about_rest;
+  if (name == "as_printed") return SbForm::as_printed;
+  throw ConfigError({.file = {}, .key = "s_b"},
+                    fmt::format("\"{}\" is not one of variance, about_rest, as_printed", name));
+}
+
 const Neighbours& FrameView::neighbours() const {
   if (!neighbours_) neighbours_ = find_neighbours(frame_, context_.info.box, context_.cutoff);
   return *neighbours_;

@@ -13,6 +13,7 @@ namespace {
 struct AnalyzeOptions {
   std::string trajectory;
   std::string output;
+  std::string s_b = "variance";
   AnalysisOptions analysis;
 };
 
@@ -43,14 +44,16 @@ void add_analyze(CLI::App& program, Common& common) {
   verb.add_option("-o,--output", options->output, "write the results to this HDF5 file too");
   verb.add_option("--discard", options->analysis.discard_cycles, "cycles left out at the beginning")
       ->capture_default_str();
-  verb.add_option("--s-b", options->analysis.s_b, "reading of eq. B4")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, SbForm>{{"variance", SbForm::variance},
-                                                                        {"about_rest", SbForm::about_rest},
-                                                                        {"as_printed", SbForm::as_printed}}));
+  verb.add_option("--s-b", options->s_b, "reading of eq. B4")
+      ->check(CLI::IsMember({"variance", "about_rest", "as_printed"}))
+      ->capture_default_str();
   verb.add_option("--only", options->analysis.only, "results wanted, comma separated")->delimiter(',');
   verb.add_option("--cutoff", options->analysis.neighbour_cutoff,
                   "neighbour distance, sigma (1.2; experiments 1.3)");
-  verb.callback([&common, options] { run(common, *options); });
+  verb.callback([&common, options] {
+    options->analysis.s_b = s_b_named(options->s_b);
+    run(common, *options);
+  });
 }
 
 }  // namespace twincell::cli
