@@ -54,6 +54,11 @@ struct AnalysisOptions {
   std::vector<std::string> only;           ///< names of results wanted; empty: all
 };
 
+/// The cutoff of these options for this trajectory, sigma: touching beads are at 1, the next shell of a
+/// square lattice at 1.414; 1.2 lies between, and 1.3 leaves room for the noise of positions from images
+/// (0.03 sigma).
+double neighbour_cutoff(const TrajectoryInfo& info, const AnalysisOptions& options);
+
 /// What observables may know before the first frame.
 struct AnalysisContext {
   const TrajectoryInfo& info;

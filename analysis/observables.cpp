@@ -31,12 +31,6 @@ const std::vector<Entry>& entries() {
   return list;
 }
 
-/// Touching beads are at 1, the next shell of a square lattice at 1.414: 1.2 lies between. Positions from
-/// images carry noise of some 0.03 sigma.
-double default_cutoff(const TrajectoryInfo& info) {
-  return info.source == "experiment" ? 1.3 : 1.2;
-}
-
 bool wanted(const AnalysisOptions& options, const std::string& name) {
   return options.only.empty() ||
          std::find(options.only.begin(), options.only.end(), name) != options.only.end();
@@ -59,13 +53,8 @@ void check(const AnalysisOptions& options) {
 /// Chooses tracers on the first frame at phase 0 (the first of all if the frames have no phase).
 AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisOptions& options) {
   const TrajectoryInfo& info = trajectory.info();
-  AnalysisContext context{info,
-                          options,
-                          options.neighbour_cutoff.value_or(default_cutoff(info)),
-                          {},
-                          {},
-                          {},
-                          std::numeric_limits<double>::quiet_NaN()};
+  AnalysisContext context{info, options, neighbour_cutoff(info, options),         {},
+                          {},   {},      std::numeric_limits<double>::quiet_NaN()};
   Frame frame;
   std::size_t index = 0;
   trajectory.read(index, frame);
@@ -91,6 +80,10 @@ AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisO
 }
 
 }  // namespace
+
+double neighbour_cutoff(const TrajectoryInfo& info, const AnalysisOptions& options) {
+  return options.neighbour_cutoff.value_or(info.source == "experiment" ? 1.3 : 1.2);
+}
 
 double Result::value() const {
   if (!present() || values.empty()) return std::numeric_limits<double>::quiet_NaN();

@@ -1,0 +1,524 @@
+#include "analysis/figures.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "analysis/trajectory/atomic_file.hpp"
+
+extern char** environ;
+
+namespace twincell {
+namespace {
+
+// Okabe and Ito's colours: told apart by readers with any colour vision. Every colour has a shape of its own
+// as well.
+constexpr const char* kBlue = "#0072B2";
+constexpr const char* kOrange = "#E69F00";
+constexpr const char* kVermilion = "#D55E00";
+constexpr const char* kGreen = "#009E73";
+constexpr const char* kGrey = "#9A9A9A";
+constexpr const char* kPale = "#D8D8D8";
+
+constexpr std::array<BedPhase, 4> kPhases = {BedPhase::co_moving, BedPhase::bouncing, BedPhase::convecting,
+                                             BedPhase::undetermined};
+constexpr std::array<Side, 2> kSides = {Side::experiment, Side::simulation};
+
+const char* phase_colour(BedPhase phase) {
+  switch (phase) {
+    case BedPhase::co_moving:
+      return kBlue;
+    case BedPhase::bouncing:
+      return kOrange;
+    case BedPhase::convecting:
+      return kVermilion;
+    case BedPhase::undetermined:
+      break;
+  }
+  return kGrey;
+}
+
+/// gnuplot point types: circle, square, triangle, star; open for the experiment, filled for the simulation.
+int phase_point(BedPhase phase, Side side) {
+  const int filled = side == Side::simulation ? 1 : 0;
+  switch (phase) {
+    case BedPhase::co_moving:
+      return 6 + filled;
+    case BedPhase::bouncing:
+      return 4 + filled;
+    case BedPhase::convecting:
+      return 8 + filled;
+    case BedPhase::undetermined:
+      break;
+  }
+  return 2 + filled;
+}
+
+/// From dark blue to yellow, equal steps in lightness (viridis): for an ordered set of curves.
+std::string ordered_colour(std::size_t i, std::size_t n) {
+  static constexpr std::array<std::array<double, 3>, 5> stops = {
+      {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {222, 195, 30}}};
+  const double x = n < 2 ? 0.25 : 4.0 * static_cast<double>(i) / static_cast<double>(n - 1);
+  const auto low = std::min<std::size_t>(3, static_cast<std::size_t>(x));
+  const double w = x - static_cast<double>(low);
+  const auto mix = [&](std::size_t c) {
+    return static_cast<int>(std::lround((1 - w) * stops[low][c] + w * stops[low + 1][c]));
+  };
+  return fmt::format("#{:02X}{:02X}{:02X}", mix(0), mix(1), mix(2));
+}
+
+/// Commands all figures begin with.
+const char* kStyle =
+    "set encoding utf8\n"
+    "set border lw 1 lc rgb '#444444'\n"
+    "set tics textcolor rgb '#222222'\n"
+    "set grid lw 0.5 lc rgb '#DDDDDD'\n"
+    "set datafile missing '?'\n";
+
+/// Key of phases: symbols without data.
+std::string phase_key(const std::vector<Run>& runs) {
+  std::string entries;
+  for (const Side side : kSides)
+    for (const BedPhase phase : kPhases)
+      if (std::any_of(runs.begin(), runs.end(),
+                      [&](const Run& r) { return r.phase == phase && r.side == side; }))
+        entries +=
+            fmt::format(", keyentry with points pt {} ps 1.5 lw 1.8 lc rgb '{}' title '{}, {}'",
+                        phase_point(phase, side), phase_colour(phase), side_name(side), phase_name(phase));
+  return entries;
+}
+
+struct Range {
+  double low = INFINITY, high = -INFINITY;
+  void add(double v) {
+    if (!std::isfinite(v)) return;
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  [[nodiscard]] bool empty() const { return low > high; }
+  [[nodiscard]] Range padded(double share, double least) const {
+    if (empty()) return {0, 1};
+    const double pad = std::max(least, share * (high - low));
+    return {low - pad, high + pad};
+  }
+};
+
+Range gamma_range(const std::vector<Run>& runs) {
+  Range range;
+  for (const Run& run : runs) range.add(run.gamma);
+  return range.padded(0.08, 0.1);
+}
+
+/// Blocks of one phase and side each, `point(run)` one line; returns the plot clauses that draw them.
+template <class Point>
+std::string phase_blocks(const std::vector<Run>& runs, const std::string& name, std::string& data,
+                         const Point& point) {
+  std::string clauses;
+  int index = 0;
+  for (const Side side : kSides)
+    for (const BedPhase phase : kPhases) {
+      std::string block;
+      for (const Run& run : runs)
+        if (run.side == side && run.phase == phase) block += point(run);
+      if (block.empty()) continue;
+      data += fmt::format("# {}, {}\n{}\n\n", side_name(side), phase_name(phase), block);
+      clauses += fmt::format(
+          "{}'{}.dat' index {} using 1:2 with points pt {} ps 1.5 lw 1.8 lc rgb '{}' notitle",
+          clauses.empty() ? "" : ", ", name, index++, phase_point(phase, side), phase_colour(phase));
+    }
+  return clauses;
+}
+
+/// Distinct Gamma of all runs, ascending; values within 0.5 % count once.
+std::vector<double> distinct_gammas(const std::vector<Run>& runs) {
+  std::vector<double> gammas;
+  for (const Run& run : runs) gammas.push_back(run.gamma);
+  std::sort(gammas.begin(), gammas.end());
+  std::vector<double> distinct;
+  for (const double g : gammas)
+    if (distinct.empty() || g > 1.005 * distinct.back()) distinct.push_back(g);
+  return distinct;
+}
+
+std::string gamma_colour(const std::vector<double>& gammas, double gamma) {
+  const auto above = std::upper_bound(gammas.begin(), gammas.end(), gamma);
+  const auto i = above == gammas.begin() ? 0 : static_cast<std::size_t>(above - gammas.begin()) - 1;
+  return ordered_colour(i, gammas.size());
+}
+
+/// A panel per side, one curve per run, colours in order of Gamma. `points(run)` gives the block of one run
+/// ("" if absent).
+template <class Points>
+std::string curve_panels(const std::vector<Run>& runs, const std::string& name, std::string& data,
+                         const std::string& each_panel, const std::string& extra_clause,
+                         const Points& points) {
+  const auto gammas = distinct_gammas(runs);
+  std::string plot;
+  int index = 0;
+  for (const Side side : kSides) {
+    std::string clauses = extra_clause;
+    for (const double g : gammas)
+      for (const Run& run : runs) {
+        if (run.side != side || gamma_colour(gammas, run.gamma) != gamma_colour(gammas, g)) continue;
+        const std::string block = points(run);
+        if (block.empty()) continue;
+        data += fmt::format("# {} {} Gamma {:.4g}\n{}\n\n", side_name(side), run.name, run.gamma, block);
+        clauses += fmt::format(
+            "{}'{}.dat' index {} using 1:2 with linespoints pt {} ps 0.7 lw 1.8 lc rgb '{}' title 'Γ = "
+            "{:.3g}'",
+            clauses.empty() ? "" : ", ", name, index++, side == Side::simulation ? 7 : 6,
+            gamma_colour(gammas, run.gamma), run.gamma);
+      }
+    plot += fmt::format("set title '{}'\n{}", side_name(side), each_panel);
+    plot +=
+        clauses.empty() || clauses == extra_clause
+            ? fmt::format(
+                  "set label 99 'no value' at graph 0.5,0.5 center\nplot {} NaN notitle\nunset label 99\n",
+                  extra_clause.empty() ? "" : extra_clause + ",")
+            : "plot " + clauses + "\n";
+  }
+  return plot;
+}
+
+void run_gnuplot(const std::filesystem::path& folder, const std::string& script) {
+  const std::string messages = (folder / (script + ".log")).string();
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 2, (script + ".log").c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                   0644);
+  std::string program = "gnuplot", argument = script;
+  std::array<char*, 3> arguments = {program.data(), argument.data(), nullptr};
+  pid_t child = 0;
+  const int failure = posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failure == ENOENT)
+    throw RunError("Figures are drawn by gnuplot, which is not installed (Debian: gnuplot-nox).");
+  if (failure != 0) throw RunError(fmt::format("gnuplot could not be started: {}.", std::strerror(failure)));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) throw RunError(fmt::format("gnuplot was lost: {}.", std::strerror(errno)));
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    std::string words = read_text_file(messages);
+    std::replace(words.begin(), words.end(), '\n', ' ');
+    throw RunError(fmt::format("gnuplot failed on {}: {}", script, words.substr(0, 400)));
+  }
+  std::filesystem::remove(messages);
+}
+
+}  // namespace
+
+void draw(const Figure& figure, const std::filesystem::path& folder) {
+  const std::string script = fmt::format(
+      "# {0}\n# gnuplot {1}.gp draws {1}.svg and {1}.png\n"
+      "do for [kind in 'svg png'] {{\n"
+      "if (kind eq 'svg') {{\n"
+      "  set terminal svg size {2},{3} dynamic enhanced font 'Arial,14' background 'white'\n"
+      "}} else {{\n"
+      "  set terminal pngcairo size {4},{5} enhanced font 'sans,14' fontscale 1.6 linewidth 1.6 pointscale "
+      "1.6 background 'white'\n"
+      "}}\n"
+      "set output '{1}.' . kind\n"
+      "{6}{7}"
+      "unset output\n"
+      "reset\n"
+      "}}\n",
+      figure.title, figure.name, figure.width, figure.height, figure.width * 8 / 5, figure.height * 8 / 5,
+      kStyle, figure.plot);
+  write_text_file(folder / (figure.name + ".dat"), figure.data);
+  write_text_file(folder / (figure.name + ".gp"), script);
+  run_gnuplot(folder, figure.name + ".gp");
+}
+
+Figure phase_diagram_figure(const std::vector<Run>& runs) {
+  Figure f{.name = "phase_diagram",
+           .title = "Phase diagram",
+           .caption = {},
+           .width = 640,
+           .height = 560,
+           .plot = {},
+           .data = {}};
+  Range n_l;
+  bool one_omega = true;
+  for (const Run& run : runs) {
+    n_l.add(run.n_l);
+    one_omega = one_omega && std::abs(run.omega - runs.front().omega) <= 1e-3 * runs.front().omega;
+  }
+  const Range x = n_l.padded(0.12, 2);
+  // Side by side at one (N_l, Gamma): a symbol on top of another would hide it.
+  const double aside = 0.014 * (x.high - x.low);
+  const std::string clauses = phase_blocks(runs, f.name, f.data, [&](const Run& run) {
+    return fmt::format("{} {} {} # {}\n", run.n_l + (run.side == Side::experiment ? -aside : aside),
+                       run.gamma, run.k_m, run.name);
+  });
+  const Range y = gamma_range(runs);
+  f.plot =
+      fmt::format("set xlabel 'N_l σ'\nset ylabel 'Γ = A ω^2 / g'\nset xrange [{}:{}]\nset yrange [{}:{}]\n",
+                  x.low, x.high, y.low, y.high);
+  if (one_omega)
+    f.plot += fmt::format(
+        "set ytics nomirror\nset y2label 'K_m = A^2 ω^2 / σ g'\nset link y2 via y**2/{0} inverse "
+        "sqrt(y*{0})\nset y2tics\n",
+        runs.front().omega * runs.front().omega);
+  f.plot += "set key outside below center maxcols 2 samplen 1 spacing 1.2\nplot " + clauses +
+            phase_key(runs) + "\n";
+  f.caption =
+      "Phases of the bed over its number of layers and the strength of the drive. Open symbols: experiment "
+      "(drawn a little to the left); filled: "
+      "simulation (a little to the right).";
+  if (!one_omega) f.caption += " The runs differ in ω, so there is no common K_m axis.";
+  return f;
+}
+
+Figure phase_strip_figure(const std::vector<Run>& runs) {
+  Figure f{.name = "phase_strip",
+           .title = "Phases along the drive strength",
+           .caption = {},
+           .width = 640,
+           .height = 300,
+           .plot = {},
+           .data = {}};
+  const std::string clauses = phase_blocks(runs, f.name, f.data, [](const Run& run) {
+    return fmt::format("{} {} # {}\n", run.gamma, run.side == Side::experiment ? 1 : 0, run.name);
+  });
+  const Range x = gamma_range(runs);
+  f.plot = fmt::format(
+      "set xlabel 'Γ = A ω^2 / g'\nset xrange [{}:{}]\nset yrange [-0.6:1.6]\nset ytics ('experiment' 1, "
+      "'simulation' 0)\n",
+      x.low, x.high);
+  f.plot += "set key outside below center maxcols 2 samplen 1 spacing 1.2\nplot " + clauses +
+            phase_key(runs) + "\n";
+  f.caption = "The same phases along the drive strength, one row per side.";
+  return f;
+}
+
+Figure thresholds_figure(const std::vector<Run>& runs) {
+  Figure f{.name = "thresholds",
+           .title = "s_b and s_c against the drive strength",
+           .caption = {},
+           .width = 640,
+           .height = 780,
+           .plot = {},
+           .data = {}};
+  static constexpr double kFloor = 1e-4;  // a logarithmic axis has no zero
+  const Range x = gamma_range(runs);
+  f.plot = fmt::format(
+      "set multiplot layout 2,1\nset logscale y\nset format y '10^{{%T}}'\nset xrange [{}:{}]\nset xlabel 'Γ "
+      "= A ω^2 / g'\nset lmargin 10\n",
+      x.low, x.high);
+  int index = 0;
+  for (const char* name : {"s_b", "s_c"}) {
+    const bool bounce = std::string(name) == "s_b";
+    std::string clauses;
+    Range y;
+    y.add(bounce ? kBouncingThreshold : kConvectionThreshold);
+    for (const Side side : kSides) {
+      std::string block;
+      std::vector<const Run*> ordered;
+      for (const Run& run : runs)
+        if (run.side == side) ordered.push_back(&run);
+      std::stable_sort(ordered.begin(), ordered.end(),
+                       [](const Run* a, const Run* b) { return a->gamma < b->gamma; });
+      for (const Run* run : ordered) {
+        const Result& r = find_result(run->results, name);
+        if (!r.present()) continue;
+        const double low = r.interval ? r.interval->low : r.value(),
+                     high = r.interval ? r.interval->high : r.value();
+        const auto at_least_floor = [](double v) { return std::max(v, kFloor); };
+        block += fmt::format("{} {} {} {} {} # {}\n", run->gamma, at_least_floor(r.value()),
+                             at_least_floor(low), at_least_floor(high), r.value(), run->name);
+        y.add(at_least_floor(r.value()));
+        y.add(at_least_floor(low));
+        y.add(at_least_floor(high));
+      }
+      if (block.empty()) continue;
+      f.data += fmt::format("# {} {}: Gamma, value and interval as drawn, value\n{}\n\n", name,
+                            side_name(side), block);
+      const char* colour = side == Side::experiment ? "#222222" : kBlue;
+      const int point = side == Side::experiment ? 6 : 7;
+      clauses += fmt::format(
+          ", '{0}.dat' index {1} using 1:2 with lines lw 1 dt {5} lc rgb '{2}' notitle, '' index {1} using "
+          "1:2:3:4 with yerrorbars pt {3} ps 1.3 lw 1.6 lc rgb '{2}' title '{4}'",
+          f.name, index++, colour, point, side_name(side), side == Side::experiment ? 2 : 1);
+    }
+    f.plot += fmt::format("set ylabel '{} / σ'\nset yrange [{}:{}]\nset key {}\n", name, y.low / 2,
+                          y.high * 2, "top left samplen 2 opaque");
+    f.plot += fmt::format("plot {} with lines dt 4 lw 1.5 lc rgb '{}' title 'threshold {}'{}\n",
+                          bounce ? "1.0/30" : "1.0", kVermilion, bounce ? "σ/30" : "σ", clauses);
+  }
+  f.plot += "unset multiplot\n";
+  f.caption =
+      "Top: s_b, how far the bed's height over the plate varies through a cycle; above σ/30 the bed bounces. "
+      "Bottom: s_c, how far the tracer line is bent; above σ it "
+      "convects. Bars: 95 % intervals (s_b by bootstrap over tracers, s_c by block averages over cycles). "
+      "Values below 10⁻⁴ are drawn at 10⁻⁴.";
+  return f;
+}
+
+Figure s_k_figure(const std::vector<Run>& runs) {
+  Figure f{.name = "s_k",
+           .title = "Height of the tracers above the plate through a cycle",
+           .caption = {},
+           .width = 640,
+           .height = 780,
+           .plot = {},
+           .data = {}};
+  Range y;
+  const auto block = [&](const Run& run) -> std::string {
+    const Result& s = find_result(run.results, "s_k");
+    if (!s.present()) return {};
+    double mean = 0;
+    for (const double v : s.values) mean += v / static_cast<double>(s.values.size());
+    std::string text;
+    for (std::size_t k = 0; k < s.values.size(); ++k) {
+      y.add(s.values[k] - mean);
+      text += fmt::format("{} {} {}\n", static_cast<double>(k) / static_cast<double>(s.values.size()),
+                          s.values[k] - mean, s.values[k]);
+    }
+    return text;
+  };
+  const std::string panels = curve_panels(runs, f.name, f.data, "", "", block);
+  const Range range = y.padded(0.05, 0.02);
+  f.plot = fmt::format(
+      "set multiplot layout 2,1\nset xrange [0:1]\nset yrange [{}:{}]\nset xlabel 'phase k / N_k'\nset "
+      "ylabel 's(k) − mean, σ'\nset lmargin 9\n"
+      "set key outside right top samplen 1.5\n{}unset multiplot\n",
+      range.low, range.high, panels);
+  f.caption =
+      "Mean height of the tracers above the plate in each phase of the drive, about its mean over the cycle; "
+      "s_b is the root mean square of each curve.";
+  return f;
+}
+
+Figure s_j_figure(const std::vector<Run>& runs) {
+  Figure f{.name = "s_j",
+           .title = "Spread of the tracer line, cycle by cycle",
+           .caption = {},
+           .width = 640,
+           .height = 780,
+           .plot = {},
+           .data = {}};
+  Range y;
+  y.add(0);
+  y.add(kConvectionThreshold);
+  const auto block = [&](const Run& run) -> std::string {
+    const Result& s = find_result(run.results, "s_j");
+    if (!s.present()) return {};
+    std::string text;
+    for (std::size_t j = 0; j < s.values.size(); ++j) {
+      y.add(s.values[j]);
+      text += std::isfinite(s.values[j]) ? fmt::format("{} {}\n", j, s.values[j]) : fmt::format("{} ?\n", j);
+    }
+    return text;
+  };
+  const std::string threshold = fmt::format("1 with lines dt 4 lw 1.5 lc rgb '{}' title 'σ'", kVermilion);
+  const std::string panels = curve_panels(runs, f.name, f.data, "", threshold, block);
+  const Range range = y.padded(0.05, 0.02);
+  f.plot = fmt::format(
+      "set multiplot layout 2,1\nset yrange [{}:{}]\nset xlabel 'cycle j'\nset ylabel 's_j / σ'\nset lmargin "
+      "9\nset key outside right top samplen 1.5\n"
+      "{}unset multiplot\n",
+      range.low, range.high, panels);
+  f.caption =
+      "Spread of the tracers' heights at the beginning of each cycle. A curve that rises and then stays "
+      "tells of rearrangement, not of steady convection.";
+  return f;
+}
+
+Figure snapshots_figure(const std::vector<Run>& runs, const Match& match, const std::string& name) {
+  Figure f{.name = name,
+           .title = fmt::format("Local order at Γ = {:.3g}", match.gamma),
+           .caption = {},
+           .width = 640,
+           .height = 640,
+           .plot = {},
+           .data = {}};
+  struct Panel {
+    const Run* run;
+    const Snapshot* moment;
+    std::string title;
+  };
+  const Run* experiment = match.experiments.empty() ? nullptr : &runs[match.experiments.front()];
+  const Run* simulation = match.simulations.empty() ? nullptr : &runs[match.simulations.front()];
+  std::vector<Panel> panels;
+  for (const bool last : {false, true})
+    for (const Run* run : {experiment, simulation})
+      if (run != nullptr) {
+        const Snapshot& moment = last ? run->last : run->first;
+        panels.push_back({run, &moment,
+                          fmt::format("{}, {}", side_name(run->side),
+                                      moment.frame.cycle >= 0 ? fmt::format("cycle {}", moment.frame.cycle)
+                                                              : fmt::format("frame {}", moment.frame.step))});
+      }
+  const std::size_t columns = experiment != nullptr && simulation != nullptr ? 2 : 1;
+
+  Range x, z;  // relative to the plate, so that the panels can be compared
+  for (const Panel& p : panels) {
+    x.add(p.run->box.lower.x() - 0.6);
+    x.add(p.run->box.upper.x() + 0.6);
+    z.add(-0.8);
+    for (std::size_t i = 0; i < p.moment->frame.position.size(); ++i)
+      if (p.moment->frame.present(i)) z.add(p.moment->frame.position[i].z() - p.moment->plate + 1.2);
+  }
+  // A single high flyer shall not shrink the bed to a strip.
+  z.high = std::min(z.high, 3 * (x.high - x.low));
+
+  std::string plots;
+  int index = 0;
+  for (const Panel& p : panels) {
+    std::string block;
+    std::set<Structure> seen;
+    for (std::size_t i = 0; i < p.moment->frame.position.size(); ++i) {
+      if (!p.moment->frame.present(i) || !p.moment->frame.position[i].allFinite()) continue;
+      const Structure s = structure_of(p.moment->order, i);
+      const int colour = s == Structure::hexagonal ? 0x009E73
+                         : s == Structure::square  ? 0xD55E00
+                         : s == Structure::other   ? 0xE8E0C8
+                                                   : 0xFFFFFF;
+      const Vec3& r = p.moment->frame.position[i];
+      block += fmt::format("{:.5f} {:.5f} {:.4f} {} {}\n", r.x(), r.z() - p.moment->plate,
+                           p.run->radius.empty() ? 0.5 : p.run->radius[i], colour,
+                           std::isnan(p.moment->order.q6[i]) ? std::string("?")
+                                                             : fmt::format("{:.5f}", p.moment->order.q6[i]));
+    }
+    if (block.empty()) block = "? ? ? 0 ?\n";
+    f.data +=
+        fmt::format("# {} {}: x, z above the plate, radius, colour, q6\n{}\n\n", p.run->name, p.title, block);
+    plots += fmt::format(
+        "set title '{}' noenhanced\nset arrow 1 from {},0 to {},{} nohead lw 2 lc rgb '#222222'\nset arrow 2 "
+        "from {},0 to {},{} nohead lw 2 lc rgb '#222222'\n"
+        "set arrow 3 from {},0 to {},0 nohead lw 2 lc rgb '#222222'\n"
+        "plot '{}.dat' index {} using 1:2:3:4 with circles fs solid border lc rgb '#333333' lw 0.5 fc rgb "
+        "variable notitle\n",
+        p.title, p.run->box.lower.x(), p.run->box.lower.x(), z.high, p.run->box.upper.x(),
+        p.run->box.upper.x(), z.high, p.run->box.lower.x(), p.run->box.upper.x(), name, index++);
+  }
+  const double panel_width = 600.0 / static_cast<double>(columns);
+  const double panel_height = panel_width * (z.high - z.low) / (x.high - x.low) + 40;
+  f.height = static_cast<int>(panel_height * 2 + 70);
+  f.plot = fmt::format(
+      "set multiplot layout 2,{} margins 0.03,0.97,{},{} spacing 0.03,{}\nset size ratio -1\nset xrange "
+      "[{}:{}]\nset yrange [{}:{}]\nunset tics\nunset grid\nunset border\nunset key\n",
+      columns, 60.0 / f.height, 1 - 30.0 / f.height, 34.0 / f.height, x.low, x.high, z.low, z.high);
+  f.plot += plots + "unset multiplot\n";
+  f.caption = fmt::format(
+      "First and last frame at phase 0, beads to scale, heights above the plate. Green: hexagonal (6 "
+      "neighbours, |q6 − 0.741| < 0.05); red: square (4 neighbours, "
+      "|q6 − 0.586| < 0.03); pale: other; white: fewer than 2 neighbours. Neighbours within {} σ.",
+      experiment != nullptr && simulation != nullptr
+          ? fmt::format("{} (experiment) and {} (simulation)", experiment->cutoff, simulation->cutoff)
+          : fmt::format("{}", panels.empty() ? 0.0 : panels.front().run->cutoff));
+  return f;
+}
+
+}  // namespace twincell
