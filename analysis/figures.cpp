@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <set>
 
 #include "analysis/trajectory/atomic_file.hpp"
 
@@ -26,7 +25,8 @@ constexpr const char* kOrange = "#E69F00";
 constexpr const char* kVermilion = "#D55E00";
 constexpr const char* kGreen = "#009E73";
 constexpr const char* kGrey = "#9A9A9A";
-constexpr const char* kPale = "#D8D8D8";
+constexpr const char* kSand = "#E8E0C8";
+constexpr const char* kWhite = "#FFFFFF";
 
 constexpr std::array<BedPhase, 4> kPhases = {BedPhase::co_moving, BedPhase::bouncing, BedPhase::convecting,
                                              BedPhase::undetermined};
@@ -111,6 +111,13 @@ struct Range {
   }
 };
 
+/// Distance of tics that puts 4 to 10 of them on a range: 1, 2 or 5 times a power of ten.
+double tic_step(const Range& range) {
+  const double rough = std::max(1e-6, (range.high - range.low) / 6);
+  const double decade = std::pow(10, std::floor(std::log10(rough)));
+  return decade * (rough < 2 * decade ? 1 : rough < 5 * decade ? 2 : 5);
+}
+
 Range gamma_range(const std::vector<Run>& runs) {
   Range range;
   for (const Run& run : runs) range.add(run.gamma);
@@ -188,6 +195,170 @@ std::string curve_panels(const std::vector<Run>& runs, const std::string& name, 
   return plot;
 }
 
+/// What one snapshot panel shows.
+struct Panel {
+  const Run* run;
+  const Snapshot* moment;
+  std::string title;
+};
+
+struct StructureStyle {
+  Structure structure;
+  const char* colour;
+  const char* name;
+};
+constexpr std::array<StructureStyle, 4> kStructures = {
+    {{Structure::hexagonal, kGreen, "hexagonal"},
+     {Structure::square, kVermilion, "square"},
+     {Structure::other, kSand, "other"},
+     {Structure::undefined, kWhite, "under 2 neighbours"}}};
+
+/// Rows: first, last; columns: experiment, simulation.
+std::vector<Panel> snapshot_panels(const Run* experiment, const Run* simulation) {
+  std::vector<Panel> panels;
+  for (const bool last : {false, true})
+    for (const Run* run : {experiment, simulation}) {
+      if (run == nullptr) continue;
+      const Snapshot& moment = last ? run->last : run->first;
+      const std::string when = moment.frame.cycle >= 0 ? fmt::format("cycle {}", moment.frame.cycle)
+                                                       : fmt::format("frame {}", moment.frame.step);
+      panels.push_back({run, &moment, fmt::format("{}, {}", side_name(run->side), when)});
+    }
+  return panels;
+}
+
+/// Calls visit(x, z above the plate, radius, bead) for each bead of the panel.
+template <class Visit>
+void for_each_bead(const Panel& p, const Visit& visit) {
+  for (std::size_t i = 0; i < p.moment->frame.position.size(); ++i) {
+    const Vec3& r = p.moment->frame.position[i];
+    if (!p.moment->frame.present(i) || !r.allFinite()) continue;
+    visit(r.x(), r.z() - p.moment->plate, p.run->radius.empty() ? 0.5 : p.run->radius[i], i);
+  }
+}
+
+/// Where panels lie on the sheet, in pixels at 100 %.
+struct SnapshotSheet {
+  Range x, z;  ///< common to all panels, z above the plate
+  std::size_t columns = 1;
+  double scale = 1;  ///< pixels per sigma
+  static constexpr double kWidth = 640, kMargin = 12, kTitle = 30, kLegend = 44;
+
+  SnapshotSheet(const std::vector<Panel>& panels, std::size_t n_columns) : columns(n_columns) {
+    for (const Panel& p : panels) {
+      x.add(p.run->box.lower.x() - 0.3);
+      x.add(p.run->box.upper.x() + 0.3);
+      z.add(-0.6);
+      z.add(2);
+      for_each_bead(p,
+                    [&](double, double height, double radius, std::size_t) { z.add(height + radius + 0.5); });
+    }
+    z.high = std::min(z.high, 3 * (x.high - x.low));  // one high flyer shall not shrink the bed to a strip
+    scale = (kWidth - kMargin * static_cast<double>(columns + 1)) / static_cast<double>(columns) /
+            (x.high - x.low);
+  }
+  [[nodiscard]] double panel_width() const { return scale * (x.high - x.low); }
+  [[nodiscard]] double panel_height() const { return scale * (z.high - z.low); }
+  [[nodiscard]] double left(std::size_t panel) const {
+    return kMargin + static_cast<double>(panel % columns) * (panel_width() + kMargin);
+  }
+  [[nodiscard]] double top(std::size_t panel) const {
+    return kTitle + static_cast<double>(panel / columns) * (panel_height() + kTitle);
+  }
+  [[nodiscard]] double height() const { return 2 * (kTitle + panel_height()) + kLegend; }
+};
+
+/// The sheet as SVG with true circles: gnuplot's would be polygons of 72 corners, 50 times the size.
+std::string snapshots_svg(const std::vector<Panel>& panels, const SnapshotSheet& sheet) {
+  const int height = static_cast<int>(std::ceil(sheet.height()));
+  std::string svg = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 "
+      "{0} {1}\" "
+      "font-family=\"Arial, sans-serif\" font-size=\"15\">\n<rect width=\"{0}\" height=\"{1}\" "
+      "fill=\"white\"/>\n",
+      SnapshotSheet::kWidth, height);
+  for (std::size_t n = 0; n < panels.size(); ++n) {
+    const Panel& p = panels[n];
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
+                       sheet.left(n) + sheet.panel_width() / 2, sheet.top(n) - 9, p.title);
+    svg += fmt::format(
+        "<svg x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" viewBox=\"{:.3f} {:.3f} {:.3f} "
+        "{:.3f}\">\n",
+        sheet.left(n), sheet.top(n), sheet.panel_width(), sheet.panel_height(), sheet.x.low, -sheet.z.high,
+        sheet.x.high - sheet.x.low, sheet.z.high - sheet.z.low);
+    for (const StructureStyle& style : kStructures) {
+      svg += fmt::format("<g fill=\"{}\" stroke=\"#333333\" stroke-width=\"0.04\">\n", style.colour);
+      for_each_bead(p, [&](double x, double z, double radius, std::size_t i) {
+        if (structure_of(p.moment->order, i) != style.structure) return;
+        svg += fmt::format("<circle cx=\"{:.3f}\" cy=\"{:.3f}\" r=\"{:.3g}\"/>\n", x, -z, radius);
+      });
+      svg += "</g>\n";
+    }
+    svg += fmt::format(
+        "<path d=\"M{0:.3f} {1:.3f}V0H{2:.3f}V{1:.3f}\" fill=\"none\" stroke=\"#222222\" "
+        "stroke-width=\"0.15\"/>\n</svg>\n",
+        p.run->box.lower.x(), -sheet.z.high, p.run->box.upper.x());
+  }
+  double at = 20;
+  for (const StructureStyle& style : kStructures) {
+    svg += fmt::format(
+        "<circle cx=\"{0}\" cy=\"{1}\" r=\"8\" fill=\"{2}\" stroke=\"#333333\"/><text x=\"{3}\" "
+        "y=\"{4}\">{5}</text>\n",
+        at, height - 20, style.colour, at + 14, height - 15, style.name);
+    at += 150;
+  }
+  return svg + "</svg>\n";
+}
+
+/// The same sheet for gnuplot; fills `data`.
+std::string snapshots_plot(const std::vector<Panel>& panels, const SnapshotSheet& sheet,
+                           const std::string& name, std::string& data) {
+  const double height = std::ceil(sheet.height());
+  std::string plot = fmt::format(
+      "set multiplot\nset size ratio -1\nset xrange [{}:{}]\nset yrange [{}:{}]\nunset tics\nunset "
+      "grid\nunset border\nunset key\n",
+      sheet.x.low, sheet.x.high, sheet.z.low, sheet.z.high);
+  for (std::size_t n = 0; n < panels.size(); ++n) {
+    const Panel& p = panels[n];
+    std::string block;
+    for_each_bead(p, [&](double x, double z, double radius, std::size_t i) {
+      const Structure s = structure_of(p.moment->order, i);
+      const auto style = std::find_if(kStructures.begin(), kStructures.end(),
+                                      [&](const StructureStyle& t) { return t.structure == s; });
+      const double q6 = p.moment->order.q6[i];
+      block += fmt::format("{:.5f} {:.5f} {:.4f} 0x{} {}\n", x, z, radius, style->colour + 1,
+                           std::isnan(q6) ? "?" : fmt::format("{:.5f}", q6));
+    });
+    if (block.empty()) block = "? ? ? 0 ?\n";
+    data +=
+        fmt::format("# {} {}: x, z above the plate, radius, colour, q6\n{}\n\n", p.run->name, p.title, block);
+    plot += fmt::format(
+        "set lmargin at screen {}\nset rmargin at screen {}\nset tmargin at screen {}\nset bmargin at screen "
+        "{}\n",
+        sheet.left(n) / SnapshotSheet::kWidth, (sheet.left(n) + sheet.panel_width()) / SnapshotSheet::kWidth,
+        1 - sheet.top(n) / height, 1 - (sheet.top(n) + sheet.panel_height()) / height);
+    plot += fmt::format(
+        "set title '{0}' noenhanced offset 0,-0.5\n"
+        "set arrow 1 from {1},0 to {1},{3} nohead front lw 2 lc rgb '#222222'\n"
+        "set arrow 2 from {2},0 to {2},{3} nohead front lw 2 lc rgb '#222222'\n"
+        "set arrow 3 from {1},0 to {2},0 nohead front lw 2 lc rgb '#222222'\n",
+        p.title, p.run->box.lower.x(), p.run->box.upper.x(), sheet.z.high);
+    std::string key;
+    if (n + 1 == panels.size()) {
+      plot += fmt::format("set key at screen 0.5,{} center center horizontal samplen 1 Left reverse\n",
+                          20 / height);
+      for (const StructureStyle& style : kStructures)
+        key += fmt::format(", keyentry with circles fs solid border lc rgb '#333333' fc rgb '{}' title '{}'",
+                           style.colour, style.name);
+    }
+    plot += fmt::format(
+        "plot '{}.dat' index {} using 1:2:3:4 with circles fs solid border lc rgb '#333333' lw 0.5 fc rgb "
+        "variable notitle{}\n",
+        name, n, key);
+  }
+  return plot + "unset multiplot\n";
+}
+
 void run_gnuplot(const std::filesystem::path& folder, const std::string& script) {
   const std::string messages = (folder / (script + ".log")).string();
   posix_spawn_file_actions_t actions;
@@ -219,24 +390,29 @@ void run_gnuplot(const std::filesystem::path& folder, const std::string& script)
 }  // namespace
 
 void draw(const Figure& figure, const std::filesystem::path& folder) {
+  const bool own_svg = !figure.svg.empty();
   const std::string script = fmt::format(
-      "# {0}\n# gnuplot {1}.gp draws {1}.svg and {1}.png\n"
-      "do for [kind in 'svg png'] {{\n"
+      "# {0}\n# gnuplot {1}.gp draws {2}\n"
+      "do for [kind in '{3}'] {{\n"
       "if (kind eq 'svg') {{\n"
-      "  set terminal svg size {2},{3} dynamic enhanced font 'Arial,14' background 'white'\n"
+      "  set terminal svg size {4},{5} dynamic enhanced font 'Arial,14' background 'white'\n"
       "}} else {{\n"
-      "  set terminal pngcairo size {4},{5} enhanced font 'sans,14' fontscale 1.6 linewidth 1.6 pointscale "
-      "1.6 background 'white'\n"
+      "  set terminal pngcairo size {6},{7} enhanced font 'sans,14' fontscale 1.6 linewidth 1.6 pointscale "
+      "1.6 "
+      "background 'white'\n"
       "}}\n"
       "set output '{1}.' . kind\n"
-      "{6}{7}"
+      "{8}{9}"
       "unset output\n"
       "reset\n"
       "}}\n",
-      figure.title, figure.name, figure.width, figure.height, figure.width * 8 / 5, figure.height * 8 / 5,
+      figure.title, figure.name,
+      own_svg ? fmt::format("{}.png", figure.name) : fmt::format("{0}.svg and {0}.png", figure.name),
+      own_svg ? "png" : "svg png", figure.width, figure.height, figure.width * 8 / 5, figure.height * 8 / 5,
       kStyle, figure.plot);
   write_text_file(folder / (figure.name + ".dat"), figure.data);
   write_text_file(folder / (figure.name + ".gp"), script);
+  if (own_svg) write_text_file(folder / (figure.name + ".svg"), figure.svg);
   run_gnuplot(folder, figure.name + ".gp");
 }
 
@@ -247,14 +423,16 @@ Figure phase_diagram_figure(const std::vector<Run>& runs) {
            .width = 640,
            .height = 560,
            .plot = {},
-           .data = {}};
-  Range n_l;
+           .data = {},
+           .svg = {}};
+  Range n_l, k_m;
   bool one_omega = true;
   for (const Run& run : runs) {
+    k_m.add(run.k_m);
     n_l.add(run.n_l);
     one_omega = one_omega && std::abs(run.omega - runs.front().omega) <= 1e-3 * runs.front().omega;
   }
-  const Range x = n_l.padded(0.12, 2);
+  const Range x = n_l.padded(0.12, 5);
   // Side by side at one (N_l, Gamma): a symbol on top of another would hide it.
   const double aside = 0.014 * (x.high - x.low);
   const std::string clauses = phase_blocks(runs, f.name, f.data, [&](const Run& run) {
@@ -268,9 +446,9 @@ Figure phase_diagram_figure(const std::vector<Run>& runs) {
   if (one_omega)
     f.plot += fmt::format(
         "set ytics nomirror\nset y2label 'K_m = A^2 ω^2 / σ g'\nset link y2 via y**2/{0} inverse "
-        "sqrt(y*{0})\nset y2tics\n",
-        runs.front().omega * runs.front().omega);
-  f.plot += "set key outside below center maxcols 2 samplen 1 spacing 1.2\nplot " + clauses +
+        "sqrt(y*{0})\nset y2tics {1}\n",
+        runs.front().omega * runs.front().omega, tic_step(k_m));
+  f.plot += "set key outside below center maxcols 2 samplen 1 spacing 1.2 Left reverse\nplot " + clauses +
             phase_key(runs) + "\n";
   f.caption =
       "Phases of the bed over its number of layers and the strength of the drive. Open symbols: experiment "
@@ -287,7 +465,8 @@ Figure phase_strip_figure(const std::vector<Run>& runs) {
            .width = 640,
            .height = 300,
            .plot = {},
-           .data = {}};
+           .data = {},
+           .svg = {}};
   const std::string clauses = phase_blocks(runs, f.name, f.data, [](const Run& run) {
     return fmt::format("{} {} # {}\n", run.gamma, run.side == Side::experiment ? 1 : 0, run.name);
   });
@@ -296,7 +475,7 @@ Figure phase_strip_figure(const std::vector<Run>& runs) {
       "set xlabel 'Γ = A ω^2 / g'\nset xrange [{}:{}]\nset yrange [-0.6:1.6]\nset ytics ('experiment' 1, "
       "'simulation' 0)\n",
       x.low, x.high);
-  f.plot += "set key outside below center maxcols 2 samplen 1 spacing 1.2\nplot " + clauses +
+  f.plot += "set key outside below center maxcols 2 samplen 1 spacing 1.2 Left reverse\nplot " + clauses +
             phase_key(runs) + "\n";
   f.caption = "The same phases along the drive strength, one row per side.";
   return f;
@@ -309,7 +488,8 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
            .width = 640,
            .height = 780,
            .plot = {},
-           .data = {}};
+           .data = {},
+           .svg = {}};
   static constexpr double kFloor = 1e-4;  // a logarithmic axis has no zero
   const Range x = gamma_range(runs);
   f.plot = fmt::format(
@@ -352,7 +532,7 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
           f.name, index++, colour, point, side_name(side), side == Side::experiment ? 2 : 1);
     }
     f.plot += fmt::format("set ylabel '{} / σ'\nset yrange [{}:{}]\nset key {}\n", name, y.low / 2,
-                          y.high * 2, "top left samplen 2 opaque");
+                          y.high * 2, "outside below center horizontal samplen 2 Left reverse");
     f.plot += fmt::format("plot {} with lines dt 4 lw 1.5 lc rgb '{}' title 'threshold {}'{}\n",
                           bounce ? "1.0/30" : "1.0", kVermilion, bounce ? "σ/30" : "σ", clauses);
   }
@@ -372,7 +552,8 @@ Figure s_k_figure(const std::vector<Run>& runs) {
            .width = 640,
            .height = 780,
            .plot = {},
-           .data = {}};
+           .data = {},
+           .svg = {}};
   Range y;
   const auto block = [&](const Run& run) -> std::string {
     const Result& s = find_result(run.results, "s_k");
@@ -392,7 +573,7 @@ Figure s_k_figure(const std::vector<Run>& runs) {
   f.plot = fmt::format(
       "set multiplot layout 2,1\nset xrange [0:1]\nset yrange [{}:{}]\nset xlabel 'phase k / N_k'\nset "
       "ylabel 's(k) − mean, σ'\nset lmargin 9\n"
-      "set key outside right top samplen 1.5\n{}unset multiplot\n",
+      "set key outside right top samplen 1.5 Left reverse\n{}unset multiplot\n",
       range.low, range.high, panels);
   f.caption =
       "Mean height of the tracers above the plate in each phase of the drive, about its mean over the cycle; "
@@ -407,7 +588,8 @@ Figure s_j_figure(const std::vector<Run>& runs) {
            .width = 640,
            .height = 780,
            .plot = {},
-           .data = {}};
+           .data = {},
+           .svg = {}};
   Range y;
   y.add(0);
   y.add(kConvectionThreshold);
@@ -426,7 +608,7 @@ Figure s_j_figure(const std::vector<Run>& runs) {
   const Range range = y.padded(0.05, 0.02);
   f.plot = fmt::format(
       "set multiplot layout 2,1\nset yrange [{}:{}]\nset xlabel 'cycle j'\nset ylabel 's_j / σ'\nset lmargin "
-      "9\nset key outside right top samplen 1.5\n"
+      "9\nset key outside right top samplen 1.5 Left reverse\n"
       "{}unset multiplot\n",
       range.low, range.high, panels);
   f.caption =
@@ -436,88 +618,25 @@ Figure s_j_figure(const std::vector<Run>& runs) {
 }
 
 Figure snapshots_figure(const std::vector<Run>& runs, const Match& match, const std::string& name) {
-  Figure f{.name = name,
-           .title = fmt::format("Local order at Γ = {:.3g}", match.gamma),
-           .caption = {},
-           .width = 640,
-           .height = 640,
-           .plot = {},
-           .data = {}};
-  struct Panel {
-    const Run* run;
-    const Snapshot* moment;
-    std::string title;
-  };
   const Run* experiment = match.experiments.empty() ? nullptr : &runs[match.experiments.front()];
   const Run* simulation = match.simulations.empty() ? nullptr : &runs[match.simulations.front()];
-  std::vector<Panel> panels;
-  for (const bool last : {false, true})
-    for (const Run* run : {experiment, simulation})
-      if (run != nullptr) {
-        const Snapshot& moment = last ? run->last : run->first;
-        panels.push_back({run, &moment,
-                          fmt::format("{}, {}", side_name(run->side),
-                                      moment.frame.cycle >= 0 ? fmt::format("cycle {}", moment.frame.cycle)
-                                                              : fmt::format("frame {}", moment.frame.step))});
-      }
-  const std::size_t columns = experiment != nullptr && simulation != nullptr ? 2 : 1;
+  const auto panels = snapshot_panels(experiment, simulation);
+  const SnapshotSheet sheet(panels, experiment != nullptr && simulation != nullptr ? 2 : 1);
 
-  Range x, z;  // relative to the plate, so that the panels can be compared
-  for (const Panel& p : panels) {
-    x.add(p.run->box.lower.x() - 0.6);
-    x.add(p.run->box.upper.x() + 0.6);
-    z.add(-0.8);
-    for (std::size_t i = 0; i < p.moment->frame.position.size(); ++i)
-      if (p.moment->frame.present(i)) z.add(p.moment->frame.position[i].z() - p.moment->plate + 1.2);
-  }
-  // A single high flyer shall not shrink the bed to a strip.
-  z.high = std::min(z.high, 3 * (x.high - x.low));
-
-  std::string plots;
-  int index = 0;
-  for (const Panel& p : panels) {
-    std::string block;
-    std::set<Structure> seen;
-    for (std::size_t i = 0; i < p.moment->frame.position.size(); ++i) {
-      if (!p.moment->frame.present(i) || !p.moment->frame.position[i].allFinite()) continue;
-      const Structure s = structure_of(p.moment->order, i);
-      const int colour = s == Structure::hexagonal ? 0x009E73
-                         : s == Structure::square  ? 0xD55E00
-                         : s == Structure::other   ? 0xE8E0C8
-                                                   : 0xFFFFFF;
-      const Vec3& r = p.moment->frame.position[i];
-      block += fmt::format("{:.5f} {:.5f} {:.4f} {} {}\n", r.x(), r.z() - p.moment->plate,
-                           p.run->radius.empty() ? 0.5 : p.run->radius[i], colour,
-                           std::isnan(p.moment->order.q6[i]) ? std::string("?")
-                                                             : fmt::format("{:.5f}", p.moment->order.q6[i]));
-    }
-    if (block.empty()) block = "? ? ? 0 ?\n";
-    f.data +=
-        fmt::format("# {} {}: x, z above the plate, radius, colour, q6\n{}\n\n", p.run->name, p.title, block);
-    plots += fmt::format(
-        "set title '{}' noenhanced\nset arrow 1 from {},0 to {},{} nohead lw 2 lc rgb '#222222'\nset arrow 2 "
-        "from {},0 to {},{} nohead lw 2 lc rgb '#222222'\n"
-        "set arrow 3 from {},0 to {},0 nohead lw 2 lc rgb '#222222'\n"
-        "plot '{}.dat' index {} using 1:2:3:4 with circles fs solid border lc rgb '#333333' lw 0.5 fc rgb "
-        "variable notitle\n",
-        p.title, p.run->box.lower.x(), p.run->box.lower.x(), z.high, p.run->box.upper.x(),
-        p.run->box.upper.x(), z.high, p.run->box.lower.x(), p.run->box.upper.x(), name, index++);
-  }
-  const double panel_width = 600.0 / static_cast<double>(columns);
-  const double panel_height = panel_width * (z.high - z.low) / (x.high - x.low) + 40;
-  f.height = static_cast<int>(panel_height * 2 + 70);
-  f.plot = fmt::format(
-      "set multiplot layout 2,{} margins 0.03,0.97,{},{} spacing 0.03,{}\nset size ratio -1\nset xrange "
-      "[{}:{}]\nset yrange [{}:{}]\nunset tics\nunset grid\nunset border\nunset key\n",
-      columns, 60.0 / f.height, 1 - 30.0 / f.height, 34.0 / f.height, x.low, x.high, z.low, z.high);
-  f.plot += plots + "unset multiplot\n";
-  f.caption = fmt::format(
-      "First and last frame at phase 0, beads to scale, heights above the plate. Green: hexagonal (6 "
-      "neighbours, |q6 − 0.741| < 0.05); red: square (4 neighbours, "
-      "|q6 − 0.586| < 0.03); pale: other; white: fewer than 2 neighbours. Neighbours within {} σ.",
+  Figure f;
+  f.name = name;
+  f.title = fmt::format("Local order at Γ = {:.3g}", match.gamma);
+  f.height = static_cast<int>(std::ceil(sheet.height()));
+  f.svg = snapshots_svg(panels, sheet);
+  f.plot = snapshots_plot(panels, sheet, name, f.data);
+  f.caption =
+      "First and last frame at phase 0, beads to scale, heights above the plate. Hexagonal: 6 neighbours and "
+      "|q6 − 0.741| < "
+      "0.05; square: 4 neighbours and |q6 − 0.586| < 0.03. Neighbours are centres within ";
+  f.caption +=
       experiment != nullptr && simulation != nullptr
-          ? fmt::format("{} (experiment) and {} (simulation)", experiment->cutoff, simulation->cutoff)
-          : fmt::format("{}", panels.empty() ? 0.0 : panels.front().run->cutoff));
+          ? fmt::format("{} σ (experiment) and {} σ (simulation).", experiment->cutoff, simulation->cutoff)
+          : fmt::format("{} σ.", panels.front().run->cutoff);
   return f;
 }
 

@@ -37,13 +37,14 @@ std::string number(double v, const char* absent = "–") {
   return std::isfinite(v) ? fmt::format("{:.4g}", v) : absent;
 }
 
-/// "1.23 [1.10, 1.35]", or "absent".
-std::string with_interval(const Run& run, const std::string& name) {
+/// Value and, on a line of its own, its interval; or "absent".
+std::string value_and_interval(const Run& run, const std::string& name) {
   const Result& r = find_result(run.results, name);
   if (!r.present()) return "absent";
-  std::string text = fmt::format("{:.3g}", r.value());
-  if (r.interval) text += fmt::format(" [{:.3g}, {:.3g}]", r.interval->low, r.interval->high);
-  return text;
+  std::string html = fmt::format("{:.3g}", r.value());
+  if (r.interval)
+    html += fmt::format("<br><small>[{:.3g}, {:.3g}]</small>", r.interval->low, r.interval->high);
+  return html;
 }
 
 std::string phases_of(const std::vector<Run>& runs, const std::vector<std::size_t>& members) {
@@ -149,7 +150,7 @@ std::string chips(const std::vector<Run>& runs, const std::vector<std::size_t>& 
 std::string numbers_of(const std::vector<Run>& runs, const std::vector<std::size_t>& members,
                        const std::string& name) {
   std::vector<std::string> lines;
-  for (const std::size_t i : members) lines.push_back(escape(with_interval(runs[i], name)));
+  for (const std::size_t i : members) lines.push_back(value_and_interval(runs[i], name));
   return fmt::format("{}", fmt::join(lines, "<br>"));
 }
 
@@ -226,10 +227,9 @@ std::string conventions(const std::vector<Run>& runs) {
 /// The drawing alone, its identifiers made its own: several drawings share one page.
 std::string inline_svg(const std::string& file, const std::string& prefix, const std::string& title) {
   std::string svg = file.substr(file.find("<svg"));
-  svg = std::regex_replace(svg, std::regex("id=\"([^\"]+)\""), fmt::format("id=\"{}-$1\"", prefix));
-  svg =
-      std::regex_replace(svg, std::regex("(href=[\"'])#([^\"']+)([\"'])"), fmt::format("$1#{}-$2$3", prefix));
-  svg = std::regex_replace(svg, std::regex("url[(]#([^)]+)[)]"), fmt::format("url(#{}-$1)", prefix));
+  svg = std::regex_replace(svg, std::regex("(\\sid\\s*=\\s*[\"'])"), fmt::format("$1{}-", prefix));
+  svg = std::regex_replace(svg, std::regex("(href\\s*=\\s*[\"']#)"), fmt::format("$1{}-", prefix));
+  svg = std::regex_replace(svg, std::regex("(url[(]['\"]?#)"), fmt::format("$1{}-", prefix));
   return std::regex_replace(svg, std::regex("<svg"),
                             fmt::format("<svg role=\"img\" aria-label=\"{}\"", escape(title)),
                             std::regex_constants::format_first_only);
