@@ -113,9 +113,9 @@ struct Range {
 
 /// Distance of tics that puts 4 to 10 of them on a range: 1, 2 or 5 times a power of ten.
 double tic_step(const Range& range) {
-  const double rough = std::max(1e-6, (range.high - range.low) / 6);
+  const double rough = std::max(1e-6, (range.high - range.low) / 8);
   const double decade = std::pow(10, std::floor(std::log10(rough)));
-  return decade * (rough < 2 * decade ? 1 : rough < 5 * decade ? 2 : 5);
+  return decade * (rough <= decade ? 1 : rough <= 2 * decade ? 2 : rough <= 5 * decade ? 5 : 10);
 }
 
 Range gamma_range(const std::vector<Run>& runs) {
@@ -207,11 +207,10 @@ struct StructureStyle {
   const char* colour;
   const char* name;
 };
-constexpr std::array<StructureStyle, 4> kStructures = {
-    {{Structure::hexagonal, kGreen, "hexagonal"},
-     {Structure::square, kVermilion, "square"},
-     {Structure::other, kSand, "other"},
-     {Structure::undefined, kWhite, "under 2 neighbours"}}};
+constexpr std::array<StructureStyle, 4> kStructures = {{{Structure::hexagonal, kGreen, "hexagonal"},
+                                                        {Structure::square, kVermilion, "square"},
+                                                        {Structure::other, kSand, "other"},
+                                                        {Structure::undefined, kWhite, "under 2 bonds"}}};
 
 /// Rows: first, last; columns: experiment, simulation.
 std::vector<Panel> snapshot_panels(const Run* experiment, const Run* simulation) {
@@ -242,7 +241,7 @@ struct SnapshotSheet {
   Range x, z;  ///< common to all panels, z above the plate
   std::size_t columns = 1;
   double scale = 1;  ///< pixels per sigma
-  static constexpr double kWidth = 640, kMargin = 12, kTitle = 30, kLegend = 44;
+  static constexpr double kWidth = 540, kMargin = 12, kTitle = 30, kLegend = 44;
 
   SnapshotSheet(const std::vector<Panel>& panels, std::size_t n_columns) : columns(n_columns) {
     for (const Panel& p : panels) {
@@ -305,7 +304,7 @@ std::string snapshots_svg(const std::vector<Panel>& panels, const SnapshotSheet&
         "<circle cx=\"{0}\" cy=\"{1}\" r=\"8\" fill=\"{2}\" stroke=\"#333333\"/><text x=\"{3}\" "
         "y=\"{4}\">{5}</text>\n",
         at, height - 20, style.colour, at + 14, height - 15, style.name);
-    at += 150;
+    at += 128;
   }
   return svg + "</svg>\n";
 }
@@ -338,7 +337,7 @@ std::string snapshots_plot(const std::vector<Panel>& panels, const SnapshotSheet
         sheet.left(n) / SnapshotSheet::kWidth, (sheet.left(n) + sheet.panel_width()) / SnapshotSheet::kWidth,
         1 - sheet.top(n) / height, 1 - (sheet.top(n) + sheet.panel_height()) / height);
     plot += fmt::format(
-        "set title '{0}' noenhanced offset 0,-0.5\n"
+        "set title '{0}' noenhanced offset 0,-0.6\n"
         "set arrow 1 from {1},0 to {1},{3} nohead front lw 2 lc rgb '#222222'\n"
         "set arrow 2 from {2},0 to {2},{3} nohead front lw 2 lc rgb '#222222'\n"
         "set arrow 3 from {1},0 to {2},0 nohead front lw 2 lc rgb '#222222'\n",
@@ -395,9 +394,9 @@ void draw(const Figure& figure, const std::filesystem::path& folder) {
       "# {0}\n# gnuplot {1}.gp draws {2}\n"
       "do for [kind in '{3}'] {{\n"
       "if (kind eq 'svg') {{\n"
-      "  set terminal svg size {4},{5} dynamic enhanced font 'Arial,14' background 'white'\n"
+      "  set terminal svg size {4},{5} dynamic enhanced font 'Arial,15' background 'white'\n"
       "}} else {{\n"
-      "  set terminal pngcairo size {6},{7} enhanced font 'sans,14' fontscale 1.6 linewidth 1.6 pointscale "
+      "  set terminal pngcairo size {6},{7} enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale "
       "1.6 "
       "background 'white'\n"
       "}}\n"
@@ -420,8 +419,8 @@ Figure phase_diagram_figure(const std::vector<Run>& runs) {
   Figure f{.name = "phase_diagram",
            .title = "Phase diagram",
            .caption = {},
-           .width = 640,
-           .height = 560,
+           .width = 540,
+           .height = 500,
            .plot = {},
            .data = {},
            .svg = {}};
@@ -462,7 +461,7 @@ Figure phase_strip_figure(const std::vector<Run>& runs) {
   Figure f{.name = "phase_strip",
            .title = "Phases along the drive strength",
            .caption = {},
-           .width = 640,
+           .width = 540,
            .height = 300,
            .plot = {},
            .data = {},
@@ -485,8 +484,8 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
   Figure f{.name = "thresholds",
            .title = "s_b and s_c against the drive strength",
            .caption = {},
-           .width = 640,
-           .height = 780,
+           .width = 540,
+           .height = 740,
            .plot = {},
            .data = {},
            .svg = {}};
@@ -502,7 +501,8 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
     std::string clauses;
     Range y;
     y.add(bounce ? kBouncingThreshold : kConvectionThreshold);
-    for (const Side side : kSides) {
+    for (const Side side :
+         {Side::simulation, Side::experiment}) {  // the open symbols on top: both stay visible
       std::string block;
       std::vector<const Run*> ordered;
       for (const Run& run : runs)
@@ -528,8 +528,9 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
       const int point = side == Side::experiment ? 6 : 7;
       clauses += fmt::format(
           ", '{0}.dat' index {1} using 1:2 with lines lw 1 dt {5} lc rgb '{2}' notitle, '' index {1} using "
-          "1:2:3:4 with yerrorbars pt {3} ps 1.3 lw 1.6 lc rgb '{2}' title '{4}'",
-          f.name, index++, colour, point, side_name(side), side == Side::experiment ? 2 : 1);
+          "1:2:3:4 with yerrorbars pt {3} ps {6} lw 1.6 lc rgb '{2}' title '{4}'",
+          f.name, index++, colour, point, side_name(side), side == Side::experiment ? 2 : 1,
+          side == Side::experiment ? 1.7 : 0.9);
     }
     f.plot += fmt::format("set ylabel '{} / σ'\nset yrange [{}:{}]\nset key {}\n", name, y.low / 2,
                           y.high * 2, "outside below center horizontal samplen 2 Left reverse");
@@ -549,8 +550,8 @@ Figure s_k_figure(const std::vector<Run>& runs) {
   Figure f{.name = "s_k",
            .title = "Height of the tracers above the plate through a cycle",
            .caption = {},
-           .width = 640,
-           .height = 780,
+           .width = 540,
+           .height = 740,
            .plot = {},
            .data = {},
            .svg = {}};
@@ -585,8 +586,8 @@ Figure s_j_figure(const std::vector<Run>& runs) {
   Figure f{.name = "s_j",
            .title = "Spread of the tracer line, cycle by cycle",
            .caption = {},
-           .width = 640,
-           .height = 780,
+           .width = 540,
+           .height = 740,
            .plot = {},
            .data = {},
            .svg = {}};

@@ -16,11 +16,12 @@ struct Figure {
   std::string name = {};  ///< file name without ending
   std::string title = {};
   std::string caption = {};  ///< one paragraph: what is drawn and from what
-  int width = 640;      ///< pixels at 100 %
+  int width = 540;           ///< pixels at 100 %
   int height = 480;
   std::string plot = {};  ///< gnuplot commands, terminal and output excepted; reads NAME.dat
   std::string data = {};  ///< content of NAME.dat
-  std::string svg = {};  ///< the drawing itself where gnuplot's own would be too large; empty: gnuplot draws it
+  std::string svg =
+      {};  ///< the drawing itself where gnuplot's own would be too large; empty: gnuplot draws it
 };
 
 /// Writes NAME.gp and NAME.dat into `folder` and draws NAME.svg and NAME.png.

@@ -33,6 +33,13 @@ std::string escape(const std::string& text) {
   return out;
 }
 
+/// Escaped, with s_b, q6 and the like set as symbols with an index.
+std::string typeset(const std::string& text) {
+  return std::regex_replace(
+      std::regex_replace(escape(text), std::regex("\\b([sTNK])_([a-z])\\b"), "$1<sub>$2</sub>"),
+      std::regex("\\bq6\\b"), "q<sub>6</sub>");
+}
+
 std::string number(double v, const char* absent = "–") {
   return std::isfinite(v) ? fmt::format("{:.4g}", v) : absent;
 }
@@ -129,8 +136,8 @@ p.lead{font-size:1.1rem}
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.92rem;font-variant-numeric:tabular-nums}
 th,td{padding:.3rem .6rem;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}th{background:#f3f3f3}
 td.nowrap{white-space:nowrap}tr.differ td{background:#fff1e6}
-figure{margin:1rem 0 2rem}figure>.picture{overflow-x:auto;max-width:44rem}figure svg{display:block;width:100%;min-width:26rem;height:auto}
-figcaption{font-size:.92rem;color:#444;max-width:44rem}
+figure{margin:1rem 0 2rem}figure>.picture{overflow-x:auto;max-width:38rem}figure svg{display:block;width:100%;min-width:21rem;height:auto}
+figcaption{font-size:.92rem;color:#444;max-width:38rem}
 .chip{display:inline-block;padding:0 .5rem;border-radius:.7rem;color:#fff;white-space:nowrap}
 .co-moving{background:#0072B2}.bouncing{background:#E69F00;color:#000}.convecting{background:#B64E00}.undetermined{background:#6b6b6b}
 pre{overflow-x:auto;background:#f6f6f6;padding:.6rem;font-size:.85rem}summary{cursor:pointer}
@@ -253,9 +260,9 @@ std::string page(const std::vector<Run>& runs, const std::vector<Match>& matches
     html += fmt::format(
         "<h2>{}</h2>\n<figure><div class=\"picture\">{}</div><figcaption>{} <small>(figures/{}.svg, .png, "
         ".gp, .dat)</small></figcaption></figure>\n",
-        escape(figure.title),
+        typeset(figure.title),
         inline_svg(read_text_file(figure_folder / (figure.name + ".svg")), figure.name, figure.title),
-        escape(figure.caption), figure.name);
+        typeset(figure.caption), figure.name);
   html += "<h2>Runs</h2>\n" + runs_table(runs);
   html += "<h2>How each number was made</h2>\n" + conventions(runs);
   html += "<h2>Provenance</h2>\n<p>" + escape(version_line()) +

@@ -6,6 +6,10 @@
 namespace twincell {
 namespace {
 
+/// Rows of a lattice are at least 1/2 apart; images scatter by some 0.03. A random bed has less than half a
+/// row in such a band.
+constexpr double kRowTolerance = 0.2;
+
 std::vector<std::size_t> beads_of(const Frame& frame) {
   std::vector<std::size_t> beads;
   for (std::size_t i = 0; i < frame.position.size(); ++i)
@@ -28,7 +32,7 @@ std::vector<std::size_t> row_at(const Frame& frame, const std::vector<std::size_
   });
   std::vector<std::size_t> row;
   for (const std::size_t i : beads)
-    if (std::abs(frame.position[i].z() - frame.position[nearest].z()) <= 0.05) row.push_back(i);
+    if (std::abs(frame.position[i].z() - frame.position[nearest].z()) <= kRowTolerance) row.push_back(i);
   return row;
 }
 

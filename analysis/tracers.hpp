@@ -18,7 +18,7 @@ struct TracerChoice {
 
 /// The tracers the trajectory names (TrajectoryInfo::tracer); otherwise a straight horizontal line at
 /// mid-height H/2 of the bed in `first` (Fortini & Huang 2015, app. B, "initially at the centre"): the
-/// lattice row nearest to H/2 if a row within 0.05 sigma of one height holds at least 3/4 of the width's
+/// lattice row nearest to H/2 if a row within 0.2 sigma of one height holds at least 3/4 of the width's
 /// beads (crystal), else for each column of width sigma the bead nearest to H/2. H from the lowest bead to
 /// the 99th percentile, so that one high flyer does not shift it. Ties: the lower slot.
 TracerChoice choose_tracers(const TrajectoryInfo& info, const Frame& first);
