@@ -342,18 +342,16 @@ std::string snapshots_plot(const std::vector<Panel>& panels, const SnapshotSheet
         "set arrow 2 from {2},0 to {2},{3} nohead front lw 2 lc rgb '#222222'\n"
         "set arrow 3 from {1},0 to {2},0 nohead front lw 2 lc rgb '#222222'\n",
         p.title, p.run->box.lower.x(), p.run->box.upper.x(), sheet.z.high);
-    std::string key;
-    if (n + 1 == panels.size()) {
-      plot += fmt::format("set key at screen 0.5,{} center center horizontal samplen 1 Left reverse\n",
-                          20 / height);
-      for (const StructureStyle& style : kStructures)
-        key += fmt::format(", keyentry with circles fs solid border lc rgb '#333333' fc rgb '{}' title '{}'",
-                           style.colour, style.name);
-    }
+    if (n + 1 == panels.size())
+      for (std::size_t k = 0; k < kStructures.size(); ++k)
+        plot += fmt::format("set label {} '{}' at screen {},{} point pt {} ps 1.8 lc rgb '{}' offset 1.2,0\n",
+                            k + 1, kStructures[k].name, 0.06 + 0.24 * static_cast<double>(k), 20 / height,
+                            kStructures[k].colour == kWhite ? 6 : 7,
+                            kStructures[k].colour == kWhite ? "#333333" : kStructures[k].colour);
     plot += fmt::format(
         "plot '{}.dat' index {} using 1:2:3:4 with circles fs solid border lc rgb '#333333' lw 0.5 fc rgb "
-        "variable notitle{}\n",
-        name, n, key);
+        "variable notitle\n",
+        name, n);
   }
   return plot + "unset multiplot\n";
 }
@@ -447,8 +445,9 @@ Figure phase_diagram_figure(const std::vector<Run>& runs) {
         "set ytics nomirror\nset y2label 'K_m = A^2 ω^2 / σ g'\nset link y2 via y**2/{0} inverse "
         "sqrt(y*{0})\nset y2tics {1}\n",
         runs.front().omega * runs.front().omega, tic_step(k_m));
-  f.plot += "set key outside below center maxcols 2 samplen 1 spacing 1.2 Left reverse\nplot " + clauses +
-            phase_key(runs) + "\n";
+  f.plot +=
+      "set key outside below center vertical maxrows 3 samplen 1 spacing 1.1 width -5 Left reverse\nplot " +
+      clauses + phase_key(runs) + "\n";
   f.caption =
       "Phases of the bed over its number of layers and the strength of the drive. Open symbols: experiment "
       "(drawn a little to the left); filled: "
@@ -474,8 +473,9 @@ Figure phase_strip_figure(const std::vector<Run>& runs) {
       "set xlabel 'Γ = A ω^2 / g'\nset xrange [{}:{}]\nset yrange [-0.6:1.6]\nset ytics ('experiment' 1, "
       "'simulation' 0)\n",
       x.low, x.high);
-  f.plot += "set key outside below center maxcols 2 samplen 1 spacing 1.2 Left reverse\nplot " + clauses +
-            phase_key(runs) + "\n";
+  f.plot +=
+      "set key outside below center vertical maxrows 3 samplen 1 spacing 1.1 width -5 Left reverse\nplot " +
+      clauses + phase_key(runs) + "\n";
   f.caption = "The same phases along the drive strength, one row per side.";
   return f;
 }
@@ -526,14 +526,17 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
                             side_name(side), block);
       const char* colour = side == Side::experiment ? "#222222" : kBlue;
       const int point = side == Side::experiment ? 6 : 7;
+      // Bars and symbols apart: with bars, gnuplot clears the paper under an open symbol.
       clauses += fmt::format(
-          ", '{0}.dat' index {1} using 1:2 with lines lw 1 dt {5} lc rgb '{2}' notitle, '' index {1} using "
-          "1:2:3:4 with yerrorbars pt {3} ps {6} lw 1.6 lc rgb '{2}' title '{4}'",
-          f.name, index++, colour, point, side_name(side), side == Side::experiment ? 2 : 1,
-          side == Side::experiment ? 1.7 : 0.9);
+          ", '{0}.dat' index {1} using 1:2 with lines lw 1 dt {2} lc rgb '{3}' notitle, '' index {1} using "
+          "1:2:3:4 with yerrorbars "
+          "pt 0 lw 1.6 lc rgb '{3}' notitle, '' index {1} using 1:2 with points pt {4} ps {5} lw 1.6 lc rgb "
+          "'{3}' title '{6}'",
+          f.name, index++, side == Side::experiment ? 2 : 1, colour, point,
+          side == Side::experiment ? 1.6 : 0.9, side_name(side));
     }
     f.plot += fmt::format("set ylabel '{} / σ'\nset yrange [{}:{}]\nset key {}\n", name, y.low / 2,
-                          y.high * 2, "outside below center horizontal samplen 2 Left reverse");
+                          y.high * 2, "outside below center horizontal samplen 2 width -4 Left reverse");
     f.plot += fmt::format("plot {} with lines dt 4 lw 1.5 lc rgb '{}' title 'threshold {}'{}\n",
                           bounce ? "1.0/30" : "1.0", kVermilion, bounce ? "σ/30" : "σ", clauses);
   }
