@@ -81,7 +81,8 @@ const char* kStyle =
     "set border lw 1 lc rgb '#444444'\n"
     "set tics textcolor rgb '#222222'\n"
     "set grid lw 0.5 lc rgb '#DDDDDD'\n"
-    "set datafile missing '?'\n";
+    "set datafile missing '?'\n"
+    "set pointintervalbox 0\n";  // else error bars clear the paper under their symbol, other symbols included
 
 /// Key of phases: symbols without data.
 std::string phase_key(const std::vector<Run>& runs) {
@@ -345,7 +346,7 @@ std::string snapshots_plot(const std::vector<Panel>& panels, const SnapshotSheet
     if (n + 1 == panels.size())
       for (std::size_t k = 0; k < kStructures.size(); ++k)
         plot += fmt::format("set label {} '{}' at screen {},{} point pt {} ps 1.8 lc rgb '{}' offset 1.2,0\n",
-                            k + 1, kStructures[k].name, 0.06 + 0.24 * static_cast<double>(k), 20 / height,
+                            k + 1, kStructures[k].name, 0.04 + 0.235 * static_cast<double>(k), 20 / height,
                             kStructures[k].colour == kWhite ? 6 : 7,
                             kStructures[k].colour == kWhite ? "#333333" : kStructures[k].colour);
     plot += fmt::format(
@@ -446,7 +447,7 @@ Figure phase_diagram_figure(const std::vector<Run>& runs) {
         "sqrt(y*{0})\nset y2tics {1}\n",
         runs.front().omega * runs.front().omega, tic_step(k_m));
   f.plot +=
-      "set key outside below center vertical maxrows 3 samplen 1 spacing 1.1 width -5 Left reverse\nplot " +
+      "set key outside below center vertical maxrows 3 samplen 1 spacing 1.1 width -2 Left reverse\nplot " +
       clauses + phase_key(runs) + "\n";
   f.caption =
       "Phases of the bed over its number of layers and the strength of the drive. Open symbols: experiment "
@@ -474,7 +475,7 @@ Figure phase_strip_figure(const std::vector<Run>& runs) {
       "'simulation' 0)\n",
       x.low, x.high);
   f.plot +=
-      "set key outside below center vertical maxrows 3 samplen 1 spacing 1.1 width -5 Left reverse\nplot " +
+      "set key outside below center vertical maxrows 3 samplen 1 spacing 1.1 width -2 Left reverse\nplot " +
       clauses + phase_key(runs) + "\n";
   f.caption = "The same phases along the drive strength, one row per side.";
   return f;
@@ -526,18 +527,15 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
                             side_name(side), block);
       const char* colour = side == Side::experiment ? "#222222" : kBlue;
       const int point = side == Side::experiment ? 6 : 7;
-      // Bars and symbols apart: with bars, gnuplot clears the paper under an open symbol.
       clauses += fmt::format(
           ", '{0}.dat' index {1} using 1:2 with lines lw 1 dt {2} lc rgb '{3}' notitle, '' index {1} using "
-          "1:2:3:4 with yerrorbars "
-          "pt 0 lw 1.6 lc rgb '{3}' notitle, '' index {1} using 1:2 with points pt {4} ps {5} lw 1.6 lc rgb "
-          "'{3}' title '{6}'",
+          "1:2:3:4 with yerrorbars pt {4} ps {5} lw 1.6 lc rgb '{3}' title '{6}'",
           f.name, index++, side == Side::experiment ? 2 : 1, colour, point,
           side == Side::experiment ? 1.6 : 0.9, side_name(side));
     }
     f.plot += fmt::format("set ylabel '{} / σ'\nset yrange [{}:{}]\nset key {}\n", name, y.low / 2,
-                          y.high * 2, "outside below center horizontal samplen 2 width -4 Left reverse");
-    f.plot += fmt::format("plot {} with lines dt 4 lw 1.5 lc rgb '{}' title 'threshold {}'{}\n",
+                          y.high * 2, "outside below center horizontal samplen 1.5 width -4 Left reverse");
+    f.plot += fmt::format("plot {} with lines dt 4 lw 1.5 lc rgb '{}' title '{}'{}\n",
                           bounce ? "1.0/30" : "1.0", kVermilion, bounce ? "σ/30" : "σ", clauses);
   }
   f.plot += "unset multiplot\n";

@@ -1,0 +1,218 @@
+// analyze and compare as a user runs them, on beds whose s_b and s_c are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/hdf5.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/rigid_bed.hpp"
+
+namespace twincell {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string film(const fs::path& path, const test::RigidBed& bed) {
+  const TrajectoryInfo info = test::rigid_bed_info(bed);
+  H5mdWriter writer(path, info);
+  test::film_rigid_bed(bed, info, writer);
+  writer.finish();
+  return path.string();
+}
+
+test::RigidBed bed(double gamma, double shear, const std::string& source) {
+  return {.gamma = gamma,
+          .columns = 10,
+          .rows = 6,
+          .cycles = 8,
+          .shear_per_cycle = shear,
+          .velocities = source == "simulation",
+          .source = source};
+}
+
+int files_called(const fs::path& folder, const std::string& ending) {
+  int n = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) n += entry.path().extension() == ending ? 1 : 0;
+  return n;
+}
+
+/// Every element that is opened is closed, in order; attributes quoted; no bare ampersand. Enough to fail on
+/// a broken drawing.
+bool well_formed(const std::string& xml) {
+  std::vector<std::string> open;
+  for (std::size_t i = 0; i < xml.size(); ++i) {
+    if (xml[i] == '&') {
+      const auto end = xml.find(';', i);
+      if (end == std::string::npos || end - i > 8) return false;
+    }
+    if (xml[i] == '>') return false;
+    if (xml[i] != '<') continue;
+    if (xml.compare(i, 4, "<!--") == 0) {
+      i = xml.find("-->", i);
+      if (i == std::string::npos) return false;
+      i += 2;
+      continue;
+    }
+    std::size_t j = i + 1;
+    char quote = 0;
+    for (; j < xml.size() && (quote != 0 || xml[j] != '>'); ++j) {
+      if (quote != 0 && xml[j] == quote)
+        quote = 0;
+      else if (quote == 0 && (xml[j] == '"' || xml[j] == '\''))
+        quote = xml[j];
+      else if (xml[j] == '<')
+        return false;
+    }
+    if (j == xml.size()) return false;
+    const std::string tag = xml.substr(i + 1, j - i - 1);
+    const std::string name = tag.substr(tag.front() == '/' ? 1 : 0,
+                                        tag.find_first_of(" \t\n/>", 1) - (tag.front() == '/' ? 1 : 0));
+    if (tag.front() == '/') {
+      if (open.empty() || open.back() != name) return false;
+      open.pop_back();
+    } else if (tag.front() != '?' && tag.front() != '!' && tag.back() != '/') {
+      open.push_back(name);
+    }
+    i = j;
+  }
+  return open.empty();
+}
+
+}  // namespace
+
+TEST(Analyze, TextJsonAndFileSayTheSame) {
+  const TemporaryFolder folder;
+  const std::string file = film(folder / "sim.h5", bed(1.5, 0, "simulation"));
+  const Ran text = run_program({"analyze", file, "-q"});
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_EQ(text.err, "");
+  EXPECT_NE(text.out.find("bouncing"), std::string::npos);
+
+  const Ran json = run_program({"analyze", file, "--json", "-q", "-o", folder / "results.h5"});
+  ASSERT_EQ(json.code, 0) << json.err;
+  const auto document = nlohmann::json::parse(json.out);
+  const double s_b = document["results"]["s_b"]["value"];
+  std::cout << "s_b at Gamma 1.5 with 20 phases: " << s_b << " (0.2935 with infinitely many)\n";
+  EXPECT_NEAR(s_b, 0.2935, 0.01);
+  EXPECT_EQ(document["results"]["phase"]["value"], "bouncing");
+  EXPECT_EQ(document["results"]["s_k"]["value"].size(), 20U);
+  EXPECT_EQ(document["results"]["s_j"]["value"].size(), 8U);
+  EXPECT_EQ(document["provenance"]["inputs"].size(), 1U);
+
+  h5::quiet();
+  const h5::Handle h5file =
+      h5::own(H5Fopen((folder / "results.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "opening");
+  double stored = 0;
+  ASSERT_TRUE(h5::read_scalar(h5file.get(), "results/s_b/value", stored));
+  EXPECT_EQ(stored, s_b);
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"results.h5", "sim.h5"}));
+}
+
+TEST(Analyze, AbsentIsSaidInJson) {
+  const TemporaryFolder folder;
+  const std::string file = film(folder / "exp.h5", bed(1.5, 0, "experiment"));
+  const Ran ran = run_program({"analyze", file, "--json", "-q", "--only", "T_g,s_c"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto results = nlohmann::json::parse(ran.out)["results"];
+  EXPECT_EQ(results.size(), 2U);
+  EXPECT_TRUE(results["T_g"].contains("absent"));
+  EXPECT_FALSE(results["T_g"].contains("value"));
+}
+
+TEST(Analyze, Refusals) {
+  const TemporaryFolder folder;
+  const std::string file = film(folder / "sim.h5", bed(1.5, 0, "simulation"));
+  EXPECT_EQ(run_program({"analyze", folder / "no.h5", "-q"}).code, 3);
+  EXPECT_EQ(run_program({"analyze", file, "-q", "--only", "s_d"}).code, 2);
+  EXPECT_EQ(run_program({"analyze", file, "-q", "--discard", "8"}).code, 2);
+  EXPECT_EQ(run_program({"analyze", file, "-q", "-o", folder / "no/r.h5"}).code, 2);
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"sim.h5"}));
+}
+
+TEST(Compare, OneReportWithEverythingInIt) {
+  const TemporaryFolder folder;
+  std::vector<std::string> words = {"compare", "-q", "--json", "-o", folder / "report", "--experiment"};
+  words.push_back(film(folder / "exp_a<&>.h5", bed(1.10, 0, "experiment")));
+  words.push_back(film(folder / "exp_b.h5", bed(1.50, 0, "experiment")));
+  words.push_back(film(folder / "exp_c.h5", bed(2.00, 0.2, "experiment")));
+  words.emplace_back("--simulation");
+  words.push_back(film(folder / "sim_a.h5", bed(1.10, 0, "simulation")));
+  words.push_back(film(folder / "sim_b.h5", bed(1.505, 0, "simulation")));
+  words.push_back(film(folder / "sim_c.h5", bed(2.00, 0, "simulation")));
+  const Ran ran = run_program(words);
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto document = nlohmann::json::parse(ran.out);
+  ASSERT_EQ(document["matches"].size(), 3U);
+  EXPECT_EQ(document["matches"][0]["verdict"], "same");
+  EXPECT_EQ(document["matches"][0]["simulations"][0]["phase"], "co-moving");
+  EXPECT_EQ(document["matches"][1]["verdict"], "same");
+  EXPECT_EQ(document["matches"][1]["experiments"][0]["phase"], "bouncing");
+  EXPECT_EQ(document["matches"][2]["verdict"], "differ");
+  EXPECT_EQ(document["matches"][2]["experiments"][0]["phase"], "convecting");
+
+  const fs::path report = folder / "report";
+  EXPECT_EQ(names_in(report),
+            (std::vector<std::string>{"figures", "phases.txt", "provenance.json", "report.html",
+                                      "results.json", "runs.csv", "series_s_j.csv", "series_s_k.csv"}));
+  for (const char* ending : {".gp", ".dat", ".svg", ".png"})
+    EXPECT_EQ(files_called(report / "figures", ending), 8) << ending;
+  for (const auto& entry : fs::directory_iterator(report / "figures"))
+    if (entry.path().extension() == ".svg") {
+      EXPECT_TRUE(well_formed(read_text_file(entry.path()))) << entry.path();
+    } else if (entry.path().extension() == ".png") {
+      EXPECT_EQ(read_text_file(entry.path()).substr(1, 3), "PNG");
+    }
+
+  const std::string html = read_text_file(report / "report.html");
+  for (const char* outside : {"src=", "<script", "@import", "<link", "href=\"http"})
+    EXPECT_EQ(html.find(outside), std::string::npos) << outside;
+  EXPECT_EQ(html.find("exp_a<&>"), std::string::npos);  // a file name is text, not markup
+  EXPECT_NE(html.find("exp_a&lt;&amp;&gt;"), std::string::npos);
+  EXPECT_LT(html.size(), 2000000U);
+}
+
+TEST(Compare, TextEndsWithThePathOfTheReport) {
+  const TemporaryFolder folder;
+  const std::string one = film(folder / "exp.h5", bed(1.5, 0, "experiment"));
+  const Ran ran = run_program({"compare", "-q", "--experiment", one, "-o", folder / "report"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("only experiment"), std::string::npos);
+  const std::string last = "report: " + (folder / "report/report.html").string() + "\n";
+  EXPECT_EQ(ran.out.substr(ran.out.size() - last.size()), last);
+}
+
+TEST(Compare, Refusals) {
+  const TemporaryFolder folder;
+  const std::string file = film(folder / "sim.h5", bed(1.5, 0, "simulation"));
+  EXPECT_EQ(run_program({"compare", "-q", "-o", folder / "report"}).code, 2);
+  EXPECT_EQ(run_program({"compare", "-q", "--simulation", file}).code, 2);
+  EXPECT_EQ(run_program({"compare", "-q", "--simulation", folder / "no.h5", "-o", folder / "report"}).code,
+            3);
+  test::RigidBed still = bed(1.5, 0, "simulation");
+  TrajectoryInfo info = test::rigid_bed_info(still);
+  {
+    TrajectoryInfo undriven = info;
+    undriven.drive.reset();
+    H5mdWriter writer(folder / "undriven.h5", undriven);
+    test::film_rigid_bed(still, info, writer);
+    writer.finish();
+  }
+  const Ran undriven =
+      run_program({"compare", "-q", "--simulation", folder / "undriven.h5", "-o", folder / "report"});
+  EXPECT_EQ(undriven.code, 3);
+  EXPECT_NE(undriven.err.find("Gamma"), std::string::npos) << undriven.err;
+
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder.path().c_str(), 1);
+  const Ran no_gnuplot = run_program({"compare", "-q", "--simulation", file, "-o", folder / "report"});
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(no_gnuplot.code, 1);
+  EXPECT_NE(no_gnuplot.err.find("gnuplot"), std::string::npos) << no_gnuplot.err;
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"sim.h5", "undriven.h5"}));
+}
+
+}  // namespace twincell
