@@ -81,10 +81,7 @@ const char* kStyle =
     "set border lw 1 lc rgb '#444444'\n"
     "set tics textcolor rgb '#222222'\n"
     "set grid lw 0.5 lc rgb '#DDDDDD'\n"
-    "set datafile missing '?'\n"
-    "set pointintervalbox 0\n";  // else error bars clear the paper under their symbol, other symbols included
-
-/// Key of phases: symbols without data.
+    "set datafile missing '?'\n";
 std::string phase_key(const std::vector<Run>& runs) {
   std::string entries;
   for (const Side side : kSides)
@@ -502,8 +499,7 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
     std::string clauses;
     Range y;
     y.add(bounce ? kBouncingThreshold : kConvectionThreshold);
-    for (const Side side :
-         {Side::simulation, Side::experiment}) {  // the open symbols on top: both stay visible
+    for (const Side side : kSides) {  // the small filled symbol over the large open one: both stay visible
       std::string block;
       std::vector<const Run*> ordered;
       for (const Run& run : runs)
@@ -534,7 +530,7 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
           side == Side::experiment ? 1.6 : 0.9, side_name(side));
     }
     f.plot += fmt::format("set ylabel '{} / σ'\nset yrange [{}:{}]\nset key {}\n", name, y.low / 2,
-                          y.high * 2, "outside below center horizontal samplen 1.5 width -4 Left reverse");
+                          y.high * 2, "outside below center horizontal samplen 1.5 width -1 Left reverse");
     f.plot += fmt::format("plot {} with lines dt 4 lw 1.5 lc rgb '{}' title '{}'{}\n",
                           bounce ? "1.0/30" : "1.0", kVermilion, bounce ? "σ/30" : "σ", clauses);
   }
