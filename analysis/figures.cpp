@@ -163,32 +163,33 @@ std::string gamma_colour(const std::vector<double>& gammas, double gamma) {
 /// ("" if absent).
 template <class Points>
 std::string curve_panels(const std::vector<Run>& runs, const std::string& name, std::string& data,
-                         const std::string& each_panel, const std::string& extra_clause,
-                         const Points& points) {
+                         const std::string& extra_clause, const Points& points) {
   const auto gammas = distinct_gammas(runs);
   std::string plot;
   int index = 0;
   for (const Side side : kSides) {
-    std::string clauses = extra_clause;
-    for (const double g : gammas)
+    std::vector<std::string> clauses;
+    if (!extra_clause.empty()) clauses.push_back(extra_clause);
+    bool any = false;
+    for (const double gamma : gammas) {
+      bool named = false;  // runs of one Gamma share a colour and one entry in the key
       for (const Run& run : runs) {
-        if (run.side != side || gamma_colour(gammas, run.gamma) != gamma_colour(gammas, g)) continue;
+        if (run.side != side || gamma_colour(gammas, run.gamma) != gamma_colour(gammas, gamma)) continue;
         const std::string block = points(run);
         if (block.empty()) continue;
+        any = true;
         data += fmt::format("# {} {} Gamma {:.4g}\n{}\n\n", side_name(side), run.name, run.gamma, block);
-        clauses += fmt::format(
-            "{}'{}.dat' index {} using 1:2 with linespoints pt {} ps 0.7 lw 1.8 lc rgb '{}' title 'Γ = "
-            "{:.3g}'",
-            clauses.empty() ? "" : ", ", name, index++, side == Side::simulation ? 7 : 6,
-            gamma_colour(gammas, run.gamma), run.gamma);
+        clauses.push_back(
+            fmt::format("'{}.dat' index {} using 1:2 with linespoints pt {} ps 0.7 lw 1.8 lc rgb '{}' {}",
+                        name, index++, side == Side::simulation ? 7 : 6, gamma_colour(gammas, run.gamma),
+                        named ? "notitle" : fmt::format("title 'Γ = {:.3g}'", gamma)));
+        named = true;
       }
-    plot += fmt::format("set title '{}'\n{}", side_name(side), each_panel);
-    plot +=
-        clauses.empty() || clauses == extra_clause
-            ? fmt::format(
-                  "set label 99 'no value' at graph 0.5,0.5 center\nplot {} NaN notitle\nunset label 99\n",
-                  extra_clause.empty() ? "" : extra_clause + ",")
-            : "plot " + clauses + "\n";
+    }
+    if (!any) clauses.emplace_back("NaN notitle");
+    plot += fmt::format("set title '{}'\n", side_name(side));
+    if (!any) plot += "set label 99 'no value' at graph 0.5,0.5 center\n";
+    plot += fmt::format("plot {}\nunset label 99\n", fmt::join(clauses, ", "));
   }
   return plot;
 }
@@ -228,8 +229,8 @@ std::vector<Panel> snapshot_panels(const Run* experiment, const Run* simulation)
 template <class Visit>
 void for_each_bead(const Panel& p, const Visit& visit) {
   for (std::size_t i = 0; i < p.moment->frame.position.size(); ++i) {
-    const Vec3& r = p.moment->frame.position[i];
-    if (!p.moment->frame.present(i) || !r.allFinite()) continue;
+    if (!p.moment->frame.present(i) || !p.moment->frame.position[i].allFinite()) continue;
+    const Vec3 r = p.run->box.wrap(p.moment->frame.position[i]);
     visit(r.x(), r.z() - p.moment->plate, p.run->radius.empty() ? 0.5 : p.run->radius[i], i);
   }
 }
@@ -566,7 +567,7 @@ Figure s_k_figure(const std::vector<Run>& runs) {
     }
     return text;
   };
-  const std::string panels = curve_panels(runs, f.name, f.data, "", "", block);
+  const std::string panels = curve_panels(runs, f.name, f.data, "", block);
   const Range range = y.padded(0.05, 0.02);
   f.plot = fmt::format(
       "set multiplot layout 2,1\nset xrange [0:1]\nset yrange [{}:{}]\nset xlabel 'phase k / N_k'\nset "
@@ -602,10 +603,11 @@ Figure s_j_figure(const std::vector<Run>& runs) {
     return text;
   };
   const std::string threshold = fmt::format("1 with lines dt 4 lw 1.5 lc rgb '{}' title 'σ'", kVermilion);
-  const std::string panels = curve_panels(runs, f.name, f.data, "", threshold, block);
+  const std::string panels = curve_panels(runs, f.name, f.data, threshold, block);
   const Range range = y.padded(0.05, 0.02);
   f.plot = fmt::format(
-      "set multiplot layout 2,1\nset yrange [{}:{}]\nset xlabel 'cycle j'\nset ylabel 's_j / σ'\nset lmargin "
+      "set multiplot layout 2,1\nset yrange [{}:{}]\nset xlabel 'cycle j since the first analysed'\nset "
+      "ylabel 's_j / σ'\nset lmargin "
       "9\nset key outside right top samplen 1.5 Left reverse\n"
       "{}unset multiplot\n",
       range.low, range.high, panels);
