@@ -211,7 +211,7 @@ constexpr std::array<StructureStyle, 4> kStructures = {{{Structure::hexagonal, k
                                                         {Structure::other, kSand, "other"},
                                                         {Structure::undefined, kWhite, "under 2 bonds"}}};
 
-/// Rows: first, last; columns: experiment, simulation.
+/// Rows: first, last; columns: experiment, simulation. With one side only: one row, first and last.
 std::vector<Panel> snapshot_panels(const Run* experiment, const Run* simulation) {
   std::vector<Panel> panels;
   for (const bool last : {false, true})
@@ -238,11 +238,12 @@ void for_each_bead(const Panel& p, const Visit& visit) {
 /// Where panels lie on the sheet, in pixels at 100 %.
 struct SnapshotSheet {
   Range x, z;  ///< common to all panels, z above the plate
-  std::size_t columns = 1;
+  std::size_t columns = 2;
+  std::size_t rows = 1;
   double scale = 1;  ///< pixels per sigma
   static constexpr double kWidth = 540, kMargin = 12, kTitle = 30, kLegend = 44;
 
-  SnapshotSheet(const std::vector<Panel>& panels, std::size_t n_columns) : columns(n_columns) {
+  explicit SnapshotSheet(const std::vector<Panel>& panels) : rows((panels.size() + 1) / 2) {
     for (const Panel& p : panels) {
       x.add(p.run->box.lower.x() - 0.3);
       x.add(p.run->box.upper.x() + 0.3);
@@ -263,7 +264,9 @@ struct SnapshotSheet {
   [[nodiscard]] double top(std::size_t panel) const {
     return kTitle + static_cast<double>(panel / columns) * (panel_height() + kTitle);
   }
-  [[nodiscard]] double height() const { return 2 * (kTitle + panel_height()) + kLegend; }
+  [[nodiscard]] double height() const {
+    return static_cast<double>(rows) * (kTitle + panel_height()) + kLegend;
+  }
 };
 
 /// The sheet as SVG with true circles: gnuplot's would be polygons of 72 corners, 50 times the size.
@@ -621,7 +624,7 @@ Figure snapshots_figure(const std::vector<Run>& runs, const Match& match, const 
   const Run* experiment = match.experiments.empty() ? nullptr : &runs[match.experiments.front()];
   const Run* simulation = match.simulations.empty() ? nullptr : &runs[match.simulations.front()];
   const auto panels = snapshot_panels(experiment, simulation);
-  const SnapshotSheet sheet(panels, experiment != nullptr && simulation != nullptr ? 2 : 1);
+  const SnapshotSheet sheet(panels);
 
   Figure f;
   f.name = name;
