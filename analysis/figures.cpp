@@ -145,6 +145,7 @@ std::string phase_blocks(const std::vector<Run>& runs, const std::string& name, 
 /// Distinct Gamma of all runs, ascending; values within 0.5 % count once.
 std::vector<double> distinct_gammas(const std::vector<Run>& runs) {
   std::vector<double> gammas;
+  gammas.reserve(runs.size());
   for (const Run& run : runs) gammas.push_back(run.gamma);
   std::sort(gammas.begin(), gammas.end());
   std::vector<double> distinct;
@@ -262,7 +263,8 @@ struct SnapshotSheet {
     return kMargin + static_cast<double>(panel % columns) * (panel_width() + kMargin);
   }
   [[nodiscard]] double top(std::size_t panel) const {
-    return kTitle + static_cast<double>(panel / columns) * (panel_height() + kTitle);
+    const std::size_t row = panel / columns;
+    return kTitle + static_cast<double>(row) * (panel_height() + kTitle);
   }
   [[nodiscard]] double height() const {
     return static_cast<double>(rows) * (kTitle + panel_height()) + kLegend;

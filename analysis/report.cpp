@@ -59,6 +59,7 @@ std::string phases_of(const std::vector<Run>& runs, const std::vector<std::size_
   const BedPhase common = common_phase(runs, members);
   if (common != BedPhase::undetermined || members.size() == 1) return phase_name(common);
   std::vector<std::string> names;
+  names.reserve(members.size());
   for (const std::size_t i : members) names.push_back(phase_name(runs[i].phase));
   return fmt::format("{}", fmt::join(names, " / "));
 }
@@ -157,6 +158,7 @@ std::string chips(const std::vector<Run>& runs, const std::vector<std::size_t>& 
 std::string numbers_of(const std::vector<Run>& runs, const std::vector<std::size_t>& members,
                        const std::string& name) {
   std::vector<std::string> lines;
+  lines.reserve(members.size());
   for (const std::size_t i : members) lines.push_back(value_and_interval(runs[i], name));
   return fmt::format("{}", fmt::join(lines, "<br>"));
 }

@@ -19,6 +19,7 @@ std::vector<std::size_t> beads_of(const Frame& frame) {
 
 double mid_height(const Frame& frame, const std::vector<std::size_t>& beads) {
   std::vector<double> z;
+  z.reserve(beads.size());
   for (const std::size_t i : beads) z.push_back(frame.position[i].z());
   std::sort(z.begin(), z.end());
   const double top = z[static_cast<std::size_t>(0.99 * static_cast<double>(z.size() - 1))];

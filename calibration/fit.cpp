@@ -38,7 +38,7 @@ void add_covariance(FitReport& report, const Eigen::MatrixXd& jacobian, Residual
   }
   const Eigen::MatrixXd scaled = jacobian * scale.cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinV);
-  const Eigen::VectorXd s = svd.singularValues();
+  const Eigen::VectorXd& s = svd.singularValues();
   report.condition = s[0] * s[0] / (s[s.size() - 1] * s[s.size() - 1]);
   if (!(report.condition <= kLargestCondition)) {
     report.why_not =
