@@ -12,7 +12,7 @@ using test::RigidBed;
 
 namespace {
 
-double measured_s_b(double gamma, SbForm form, int phases = 720) {
+double measured_s_b(double gamma, SbForm form, int phases = 240) {
   AnalysisOptions options;
   options.s_b = form;
   options.only = {"s_b"};
