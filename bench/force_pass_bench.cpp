@@ -1,0 +1,40 @@
+// The list kernel beside the all-pairs oracle on the same driven bed, in one run. Items are particle-steps.
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "sim/kernel.hpp"
+#include "sim/start.hpp"
+
+namespace twincell::sim {
+namespace {
+
+/// A crystal of the first paper's beads riding on the plate at Gamma = 1.5.
+void force_pass(benchmark::State& state, KernelKind kind) {
+  const auto n = state.range(0);
+  const Scene scene = read_scene_text(
+      "preset = \"fortini-huang-2015\"\n[beads]\ncount = " + std::to_string(n) + "\n[drive]\ngamma = 1.5\n",
+      "bench");
+  const Plan plan = make_plan(scene);
+  System s;
+  s.beads = make_start(scene).beads;
+  for (Bead& b : s.beads) b.vz = scene.drive.peak_velocity();
+  s.width = scene.width;
+  s.drive = scene.drive;
+  s.steps_per_period = plan.steps_per_period;
+  s.dt = plan.dt;
+  const auto kernel = make_kernel(plan, {}, kind);
+  constexpr std::int64_t kSteps = 500;
+  for (auto _ : state) kernel->advance(s, kSteps);
+  state.SetItemsProcessed(state.iterations() * kSteps * n);
+  state.counters["list_builds"] = static_cast<double>(kernel->list_builds());
+}
+
+BENCHMARK_CAPTURE(force_pass, list, KernelKind::list)->Arg(40)->Arg(200)->Arg(800);
+BENCHMARK_CAPTURE(force_pass, all_pairs, KernelKind::all_pairs)->Arg(40)->Arg(200)->Arg(800);
+
+}  // namespace
+}  // namespace twincell::sim
+
+BENCHMARK_MAIN();
