@@ -60,10 +60,14 @@ class CellGrid {
     std::int32_t bead;
     bool operator<(const Entry& o) const { return key != o.key ? key < o.key : bead < o.bead; }
   };
-  [[nodiscard]] std::int64_t column(double x) const {
-    return wrapped(static_cast<std::int64_t>(std::floor(x / width_)));
+  [[nodiscard]] std::int64_t column(double x) const { return wrapped(whole(x / width_)); }
+  [[nodiscard]] std::int64_t row(double z) const { return whole(z / reach_); }
+  /// Coordinates beyond any cell, or none at all, share one far cell: the guard stops such a run, and until
+  /// then the conversion must be defined.
+  static std::int64_t whole(double q) {
+    constexpr double kFar = 1e6;
+    return std::abs(q) < kFar ? static_cast<std::int64_t>(std::floor(q)) : static_cast<std::int64_t>(kFar);
   }
-  [[nodiscard]] std::int64_t row(double z) const { return static_cast<std::int64_t>(std::floor(z / reach_)); }
   [[nodiscard]] std::int64_t wrapped(std::int64_t c) const {
     return columns_ > 0 ? ((c % columns_) + columns_) % columns_ : c;
   }
