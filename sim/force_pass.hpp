@@ -18,7 +18,8 @@ class ListForces {
   /// Must be called after positions changed by other means than the integrator.
   double operator()(System& s) {
     list_.refresh(s, rebuild_every_ > 0 && ++calls_ % rebuild_every_ == 0);
-    for (std::size_t i = 0; i < s.beads.size(); ++i) s.forces[i] = {0, -s.gravity * s.beads[i].mass, 0};
+    for (std::size_t i = 0; i < s.beads.size(); ++i)
+      s.forces[i] = {s.gravity_x * s.beads[i].mass, -s.gravity * s.beads[i].mass, 0};
     double largest = 0;
     for (Pair& p : list_.pairs) {
       const Bead &a = s.beads[static_cast<std::size_t>(p.i)], &b = s.beads[static_cast<std::size_t>(p.j)];

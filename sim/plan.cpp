@@ -68,7 +68,9 @@ void list_effects(const Scene& s, Plan& plan) {
     add("tangential history", spring ? State::off_by_proof : State::off_by_scene,
         spring ? "mu = 0" : "no tangential spring");
   if (s.gravity > 0)
-    add("gravity", State::on, fmt::format("g = {:g}", s.gravity));
+    add("gravity", State::on,
+        s.tilt == 0 ? fmt::format("g = {:g}", s.gravity)
+                    : fmt::format("g = {:g}, cell tilted by {:g} degrees", s.gravity, s.tilt));
   else
     add("gravity", State::off_by_scene, "cell.gravity = 0");
   if (s.periodic_sides)

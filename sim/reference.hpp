@@ -19,7 +19,8 @@ class AllPairsForces {
   double operator()(System& s) {
     const int n = static_cast<int>(s.beads.size());
     double largest = 0;
-    for (int i = 0; i < n; ++i) at(s.forces, i) = {0, -s.gravity * at(s.beads, i).mass, 0};
+    for (int i = 0; i < n; ++i)
+      at(s.forces, i) = {s.gravity_x * at(s.beads, i).mass, -s.gravity * at(s.beads, i).mass, 0};
     for (int i = 0; i < n; ++i)
       for (int j = i + 1; j < n; ++j) {
         const Bead &a = at(s.beads, i), &b = at(s.beads, j);

@@ -82,6 +82,7 @@ void read_cell(const Section& s, Scene& scene) {
   if (const auto v = s.word("sides", {"walls", "periodic"})) scene.periodic_sides = *v == "periodic";
   if (const auto v = s.word("side_walls", {"move", "rest"})) scene.side_walls_move = *v == "move";
   scene.gravity = bounded(s, "gravity", scene.gravity, 0, std::nullopt);
+  scene.tilt = bounded(s, "tilt", scene.tilt, -45, 45);
 }
 
 void read_beads(const Section& s, Scene& scene) {
@@ -158,6 +159,11 @@ Scene interpret(const Config& config, const std::string& name) {
   config.refuse_unknown_keys();
   if (!scene.n_beads && scene.start != StartKind::trajectory)
     throw ConfigError(root.section("beads").where("count"), "the number of beads is missing.");
+  if (scene.periodic_sides && scene.width < 4 * scene.radius)
+    throw ConfigError(
+        root.section("cell").where("width"),
+        fmt::format("a bead would touch two images of another: {:g} is less than two diameters, {:g}.",
+                    scene.width, 4 * scene.radius));
   if (scene.gravity == 0 && scene.periodic_sides)
     throw ConfigError(root.section("cell").where("gravity"),
                       "without gravity and without a lid the beads leave for ever.");

@@ -41,6 +41,7 @@ struct Scene {
   bool periodic_sides = false;
   bool side_walls_move = true;
   double gravity = 1;
+  double tilt = 0;  ///< degrees by which the cell leans, x downhill: g = (sin, -cos) of it
 
   std::optional<std::size_t> n_beads;  ///< absent only with a trajectory start
   double radius = 0.5, mass = 1;

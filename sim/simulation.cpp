@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace twincell::sim {
 
@@ -37,7 +38,9 @@ Simulation::Simulation(Scene scene, Progress& progress, KernelKind kind)
   system_.forces.resize(system_.beads.size());
   system_.width = scene_.width;
   system_.side_walls_move = scene_.side_walls_move;
-  system_.gravity = scene_.gravity;
+  const double tilt = scene_.tilt * std::numbers::pi / 180;
+  system_.gravity = scene_.gravity * std::cos(tilt);
+  system_.gravity_x = scene_.gravity * std::sin(tilt);
   system_.steps_per_period = plan_.steps_per_period;
   system_.dt = plan_.dt;
   GuardLimits limits;

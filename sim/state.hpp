@@ -33,6 +33,7 @@ struct System {
   double width = 20;
   bool side_walls_move = true;  ///< side walls ride with the plate
   double gravity = 1;           ///< along -z
+  double gravity_x = 0;         ///< along +x: a tilted cell
 
   Drive drive;
   std::int64_t steps_per_period = 1;
