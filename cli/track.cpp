@@ -1,0 +1,158 @@
+// twincell track STACK: locate, phase-lock, link: a trajectory.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
+#include "cli/output.hpp"
+#include "cli/verb.hpp"
+#include "imaging/pipeline.hpp"
+#include "imaging/score.hpp"
+
+namespace twincell::cli {
+
+namespace {
+
+struct TrackOptions {
+  std::string stack, output, cell_file, csv, truth;
+  std::vector<double> scored_rows, origin;
+  std::optional<double> pixels_per_sigma, gamma, amplitude, width, height;
+  std::optional<int> frames_per_cycle, first_phase;
+  int shortest = 1;
+  LocatorOptions locator;
+  LinkOptions link;
+};
+
+// Flags override the file.
+CellDescription resolve_cell(const TrackOptions& o) {
+  CellDescription cell = o.cell_file.empty() ? CellDescription{} : read_cell(o.cell_file);
+  if (o.pixels_per_sigma) cell.pixels_per_sigma = o.pixels_per_sigma;
+  if (o.origin.size() == 2) cell.origin = PixelPoint{o.origin[0], o.origin[1]};
+  if (o.frames_per_cycle) cell.phase_lock.frames_per_cycle = *o.frames_per_cycle;
+  if (o.first_phase) cell.phase_lock.first_phase = *o.first_phase;
+  if (o.width) cell.width = o.width;
+  if (o.height) cell.height = o.height;
+  if (o.gamma || o.amplitude)
+    cell.drive_spec = {.amplitude = o.amplitude,
+                       .omega = {},
+                       .frequency = {},
+                       .gamma = o.gamma,
+                       .k_m = {},
+                       .peak_velocity = {}};
+  cell.phase_lock.check(Where{.file = {}, .key = "first-phase"});
+  return cell;
+}
+
+void write_csv(const std::string& path, const TrackedStack& stack, const PhaseLock& lock) {
+  std::string text = "y,x,frame,particle,radius,tracer,phase,cycle\n";
+  for (std::size_t f = 0; f < stack.frames.size(); ++f)
+    for (const TrackedBead& b : stack.frames[f])
+      text += fmt::format("{:.4f},{:.4f},{},{},{:.4f},{},{},{}\n", b.y_px, b.x_px, f, b.track, b.radius_px,
+                          b.tracer ? 1 : 0, lock.phase(static_cast<std::int64_t>(f)),
+                          lock.cycle(static_cast<std::int64_t>(f)));
+  write_text_file(path, text);
+}
+
+Score score_against(const TrackOptions& o, const TrackedStack& stack) {
+  const auto truth = read_truth(o.truth);
+  Scorer scorer(o.scored_rows.size() == 2 ? ScoredRows{o.scored_rows[0], o.scored_rows[1]} : ScoredRows{});
+  for (std::size_t f = 0; f < std::min(truth.size(), stack.frames.size()); ++f) {
+    std::vector<FoundBead> found;
+    for (const TrackedBead& b : stack.frames[f]) found.push_back({b.x_px, b.y_px, b.track});
+    scorer.add(truth[f], found);
+  }
+  return scorer.score();
+}
+
+void run(TrackOptions& o, const Common& common) {
+  const CellDescription cell = resolve_cell(o);
+  (void)cell.drive();  // a drive that contradicts itself is refused before the work, not after
+  o.locator.preprocess.bright |= cell.bright;
+  if (o.locator.diameter_px <= 0) o.locator.diameter_px = cell.pixels_per_sigma.value_or(0);
+  const auto frames = open_frames(o.stack);
+  TrackedStack stack;
+  {
+    ProgressBar bar(common, "track");
+    stack = track_stack(*frames, o.locator, o.link, cell, common.n_threads(), bar);
+  }
+  TrackPlan plan = plan_trajectory(stack, cell, o.locator.diameter_px, o.shortest);
+  Provenance provenance = common.provenance();
+  provenance.config = cell.text;
+  provenance.inputs.emplace_back(o.stack);
+  plan.info.provenance_json = provenance.to_json();
+  H5mdWriter writer(o.output, plan.info);
+  write_trajectory(stack, plan, cell, writer);
+  writer.finish();
+  if (!o.csv.empty()) write_csv(o.csv, stack, cell.phase_lock);
+
+  if (!cell.pixels_per_sigma)
+    note(common,
+         fmt::format("no scale was given: sigma is the bead diameter of {:.3f} px.", o.locator.diameter_px));
+  if (!plan.info.columns.plate_height)
+    note(common,
+         "drive or frames per cycle unknown: time is the frame number, and the plate's height is absent.");
+  std::size_t beads = 0;
+  for (const auto& frame : stack.frames) beads += frame.size();
+  nlohmann::json document = {{"stack", o.stack},
+                             {"output", o.output},
+                             {"frames", stack.frames.size()},
+                             {"beads_located", beads},
+                             {"tracks", stack.n_tracks},
+                             {"slots", plan.info.n_beads},
+                             {"outside_cell", stack.outside_cell}};
+  std::string text = fmt::format(
+      "{} frames, {} beads located, {} tracks ({} written), {} detections outside the cell left out\n",
+      stack.frames.size(), beads, stack.n_tracks, plan.info.n_beads, stack.outside_cell);
+  if (!o.truth.empty()) {
+    const Score s = score_against(o, stack);
+    document["truth"] = {{"recall", s.recall()},
+                         {"precision", s.precision()},
+                         {"rms_px", s.rms},
+                         {"links", s.links},
+                         {"wrong_links", s.wrong_links}};
+    text += fmt::format(
+        "against the truth: recall {:.4f}, precision {:.4f}, rms {:.4f} px, {} links of which {} wrong\n",
+        s.recall(), s.precision(), s.rms, s.links, s.wrong_links);
+  }
+  print_result(common, document, text);
+}
+
+}  // namespace
+
+void add_track(CLI::App& program, Common& common) {
+  auto o = std::make_shared<TrackOptions>();
+  CLI::App& verb = add_verb(program, common, "track", "Locate and link: from a stack to a trajectory",
+                            "twincell track frames/ -o exp.h5 --cell CELL.toml");
+  verb.add_option("stack", o->stack, "Folder of pictures, multi-page TIFF or video")->required();
+  verb.add_option("-o,--output", o->output, "Trajectory (H5MD)")->required();
+  verb.add_option("--cell", o->cell_file, "CELL.toml: scale, origin, size, drive of the cell");
+  verb.add_option("--pixels-per-sigma", o->pixels_per_sigma, "Camera pixels per bead diameter")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--origin-px", o->origin, "Lower-left inside corner, plate at its mean, px")->expected(2);
+  verb.add_option("--cell-width", o->width, "Between the side walls, sigma")->check(CLI::PositiveNumber);
+  verb.add_option("--cell-height", o->height, "sigma")->check(CLI::PositiveNumber);
+  verb.add_option("--frames-per-cycle", o->frames_per_cycle, "Frames per drive cycle; 0: not phase-locked")
+      ->check(CLI::NonNegativeNumber);
+  verb.add_option("--first-phase", o->first_phase, "Phase of the first frame")->check(CLI::NonNegativeNumber);
+  verb.add_option("--drive-gamma", o->gamma, "A omega^2/g (with --drive-amplitude)");
+  verb.add_option("--drive-amplitude", o->amplitude, "A, sigma");
+  verb.add_option("--diameter", o->locator.diameter_px, "Bead diameter, px; absent: the scale, or estimated")
+      ->check(CLI::Range(3.0, 400.0));
+  verb.add_option("--locator", o->locator.finder, "Finder")->check(CLI::IsMember(finder_names()));
+  verb.add_flag("--bright", o->locator.preprocess.bright, "Beads are brighter than what lies behind them");
+  verb.add_option("--range", o->link.range_diameters, "Longest step from the predicted place, diameters");
+  verb.add_option("--memory", o->link.memory, "Frames for which a bead may be missing");
+  verb.add_option("--shortest", o->shortest, "Tracks seen in fewer frames are left out")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--csv", o->csv, "Table of tracks (trackpy's columns)");
+  verb.add_option("--truth", o->truth, "Score against truth.csv or a folder of truth_NN.csv");
+  verb.add_option("--scored-rows", o->scored_rows, "First and last row that is scored, px")->expected(2);
+  verb.callback([o, &common] { run(*o, common); });
+}
+
+}  // namespace twincell::cli

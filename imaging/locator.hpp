@@ -1,0 +1,72 @@
+#pragma once
+/// \file
+/// Beads in one frame: find -> refine -> judge.
+///
+/// find (vote_locator.hpp, hough_locator.hpp) proposes circle centres; refine (refine.hpp) fits the picture
+/// itself; judge (judge.hpp) drops what cannot be an opaque disc. Each is a pure function with its options.
+///
+/// To add a finder: a class that satisfies CircleFinder in a header of its own, its .cpp, and one word in the
+/// list in locators.cpp. Nothing else names it.
+
+#include <concepts>
+#include <opencv2/core.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "imaging/judge.hpp"
+#include "imaging/preprocess.hpp"
+#include "imaging/refine.hpp"
+
+namespace twincell {
+
+/// What every finder is told.
+struct FindOptions {
+  double radius_px = 0;     ///< bead radius, > 1.5
+  double min_score = 0.15;  ///< share of a full circle's edge that must point at a centre, 0 .. 1
+};
+
+/// A finder: a type with a name that turns darkness into proposals, best first.
+template <class F>
+concept CircleFinder = requires(const Prepared& image, const FindOptions& options) {
+  { F::name } -> std::convertible_to<std::string_view>;
+  { F::find(image, options) } -> std::same_as<std::vector<Proposal>>;
+};
+
+/// How beads are located.
+struct LocatorOptions {
+  std::string finder = "vote";  ///< one of finder_names()
+  double diameter_px = 0;       ///< bead diameter, 3 .. 400; 0: estimated from the first frame
+  PreprocessOptions preprocess;
+  FindOptions find;  ///< its radius is set from the diameter
+  RefineOptions refine;
+  JudgeOptions judge;
+  /// \throws ConfigError naming the option and its bound
+  void check() const;
+};
+
+/// Time and count of one stage.
+struct StageReport {
+  std::string stage;      ///< "prepare", "find", "refine", "judge"
+  double seconds = 0;     ///< wall time of the calling thread
+  std::size_t beads = 0;  ///< proposals or beads after the stage
+};
+
+/// One frame located.
+struct Located {
+  std::vector<Detection> beads;  ///< ordered by y, then x
+  double blur_px = 0;            ///< standard deviation of the edge found by the fit
+  std::vector<StageReport> stages;
+};
+
+/// Names that LocatorOptions::finder may take, the default first.
+std::vector<std::string> finder_names();
+
+/// Locates the beads in one grey frame. Pure; needs diameter_px > 0. \throws ConfigError as `check`
+Located locate(const cv::Mat& grey, const LocatorOptions& options);
+
+/// Bead diameter (px) at which the gradient votes of a frame meet most sharply, sought between 6 and 80 px.
+/// Good to a few per cent for beads of one size. Returns 0 if nothing round stands out.
+double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options);
+
+}  // namespace twincell

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <tuple>
+
+#include "analysis/trajectory/error.hpp"
+#include "imaging/hough_locator.hpp"
+#include "imaging/locator.hpp"
+#include "imaging/vote_locator.hpp"
+
+namespace twincell {
+
+namespace {
+
+// The list of finders; the first is the default.
+using Finders = std::tuple<VoteFinder, HoughFinder>;
+
+template <class Visit>
+void for_each_finder(Visit&& visit) {
+  std::apply(
+      [&]<CircleFinder... F>(const F&...) { (visit.template operator()<F>(), ...); }, Finders{});
+}
+
+std::vector<Proposal> find(const std::string& finder, const Prepared& image, const FindOptions& options) {
+  std::vector<Proposal> found;
+  for_each_finder([&]<class F>() {
+    if (F::name == finder) found = F::find(image, options);
+  });
+  return found;
+}
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+std::vector<std::string> finder_names() {
+  std::vector<std::string> names;
+  for_each_finder([&]<class F>() { names.emplace_back(F::name); });
+  return names;
+}
+
+void LocatorOptions::check() const {
+  auto range = [](const char* key, double value, double lower, double upper) {
+    require_range(Where{.file = {}, .key = key}, value, lower, upper);
+  };
+  range("diameter", diameter_px, 3, 400);
+  range("min-score", find.min_score, 0.01, 1);
+  range("sweeps", refine.sweeps, 1, 100);
+  range("tolerance", refine.tolerance_px, 1e-9, 1);
+  range("ring", refine.ring_px, 1, 50);
+  range("blur", refine.blur_px, 0, 10);
+  range("radius-spread", refine.radius_spread, 1e-6, 1);
+  range("radius-tolerance", judge.radius_tolerance, 0, 1);
+  std::string names;
+  for (const std::string& name : finder_names()) {
+    if (name == finder) return;
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  throw ConfigError(Where{.file = {}, .key = "locator"},
+                    fmt::format("there is no locator '{}'; there are: {}.", finder, names));
+}
+
+Located locate(const cv::Mat& grey, const LocatorOptions& options) {
+  options.check();
+  const double radius = options.diameter_px / 2;
+  Located result;
+  Stopwatch watch;
+  const Prepared image = prepare(grey, options.preprocess, radius);
+  result.stages.push_back({"prepare", watch.lap(), 0});
+  FindOptions wanted = options.find;
+  wanted.radius_px = radius;
+  const std::vector<Proposal> proposals = find(options.finder, image, wanted);
+  result.stages.push_back({"find", watch.lap(), proposals.size()});
+  Refined refined = refine(image, proposals, radius, options.refine);
+  result.blur_px = refined.blur_px;
+  result.stages.push_back({"refine", watch.lap(), refined.beads.size()});
+  result.beads = judge(std::move(refined.beads), radius, grey.cols, grey.rows, options.judge);
+  result.stages.push_back({"judge", watch.lap(), result.beads.size()});
+  return result;
+}
+
+double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options) {
+  const double smallest = 3, largest = std::min(40.0, 0.5 * std::min(grey.cols, grey.rows));
+  if (largest < smallest) return 0;
+  const Prepared image = prepare(grey, options, largest);
+  double best = 0, best_radius = 0;
+  for (double r = smallest; r <= largest; r *= 1.03) {
+    const double sharpness = vote_sharpness(image.darkness, r);
+    if (sharpness > best) {
+      best = sharpness;
+      best_radius = r;
+    }
+  }
+  return 2 * best_radius;
+}
+
+}  // namespace twincell

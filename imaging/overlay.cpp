@@ -1,0 +1,49 @@
+#include "imaging/overlay.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/error.hpp"
+
+namespace twincell {
+
+cv::Mat3b draw_overlay(const cv::Mat& grey, const std::vector<Detection>& beads, int enlarge) {
+  // The upper end of the grey scale is the frame's own, so that 10- and 12-bit frames are not drawn black.
+  double top = 0;
+  cv::minMaxLoc(grey, nullptr, &top);
+  cv::Mat1b byte;
+  grey.convertTo(byte, CV_8U, grey.depth() == CV_8U || top <= 0 ? 1.0 : 255 / top);
+  cv::Mat3b picture;
+  cv::cvtColor(byte, picture, cv::COLOR_GRAY2BGR);
+  cv::resize(picture, picture, cv::Size(), enlarge, enlarge, cv::INTER_LINEAR);
+  constexpr int shift = 4, one = 1 << shift;  // OpenCV draws at sixteenths of a pixel
+  auto enlarged = [&](double v) { return cvRound((enlarge * (v + 0.5) - 0.5) * one); };
+  for (const Detection& b : beads) {
+    const cv::Scalar colour = b.tracer ? cv::Scalar(255, 0, 255)
+                              : b.edge ? cv::Scalar(0, 140, 255)
+                                       : cv::Scalar(60, 200, 0);
+    const cv::Point centre(enlarged(b.x), enlarged(b.y));
+    cv::circle(picture, centre, cvRound(enlarge * b.radius * one), colour, 1, cv::LINE_AA, shift);
+    cv::circle(picture, centre, one, colour, cv::FILLED, cv::LINE_AA, shift);
+  }
+  return picture;
+}
+
+void write_overlay(const std::filesystem::path& png, const cv::Mat& grey,
+                   const std::vector<Detection>& beads) {
+  const int enlarge = std::clamp(1600 / std::max(grey.cols, 1), 1, 4);
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", draw_overlay(grey, beads, enlarge), bytes))
+    throw RunError(png.string() + ": the overlay cannot be encoded as PNG.");
+  AtomicPath path(png);
+  std::ofstream out(path.part(), std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) throw RunError(png.string() + ": cannot be written.");
+  path.commit();
+}
+
+}  // namespace twincell
