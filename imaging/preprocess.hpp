@@ -9,7 +9,7 @@ namespace twincell {
 /// How a frame is made ready.
 struct PreprocessOptions {
   bool bright = false;  ///< discs brighter than what lies behind them (front light), not dark on a back-light
-  double opaque_radii = 1.4;  ///< dark regions that hold a disc of this many bead radii are walls, > 1
+  double opaque_radii = 2.5;  ///< dark regions that hold a disc of this many bead radii are walls, > 1
 };
 
 /// A frame ready for finding and fitting.

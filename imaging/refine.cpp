@@ -15,7 +15,10 @@ using Normal = Eigen::Matrix<double, 5, 5>;  // x, y, R, a, l
 using Step = Eigen::Matrix<double, 5, 1>;
 
 constexpr double kHuber =
-    0.1;                      // darkness; the noise of a usable frame is below it, rims of clear beads above
+    0.1;  // darkness; the noise of a usable frame is below it, rims of clear beads above
+constexpr double kMinInterior = 0.3;  // median darkness inside R/2 that a proposal must show
+constexpr double kMissedDarkness =
+    0.35;                     // mean residual of a disc that nobody proposed; half that of the palest tracer
 constexpr double kReach = 4;  // beyond this many pixels from the rim P is 0 or 1
 constexpr double kTypicalNoise = 0.03;  // darkness: weight of the priors against the data
 
@@ -48,12 +51,14 @@ class PictureFit {
     cv::dilate(image.opaque, excluded_, cv::Mat(), cv::Point(-1, -1), 2);
   }
 
+  // A proposal that is bright inside is a void or a clear bead; fitted along, it would spoil its neighbours.
   void add(const Proposal& p) {
     Detection b;
     b.x = p.x;
     b.y = p.y;
     b.radius = radius_;
     b.darkness = 1;
+    if (interior(b) < kMinInterior) return;
     beads_.push_back(b);
     patches_.push_back(draw(b));
     apply(patches_.back(), 1);
@@ -77,12 +82,15 @@ class PictureFit {
     disc /= cv::sum(disc)[0];
     cv::Mat1f filled;
     cv::filter2D(residual, filled, CV_32F, disc, {-1, -1}, 0, cv::BORDER_REPLICATE);
+    // Opaque discs do not overlap: a centre within 1.3 R of a known one is that one's own misfit.
+    for (const Detection& b : beads_)
+      cv::circle(filled, cv::Point(cvRound(b.x), cvRound(b.y)), cvRound(1.3 * radius_), 0, cv::FILLED);
     std::size_t added = 0;
     while (added < beads_.size() + 100) {
       double top = 0;
       cv::Point at;
       cv::minMaxLoc(filled, nullptr, &top, nullptr, &at);
-      if (top < 0.6) break;
+      if (top < kMissedDarkness) break;
       cv::circle(filled, at, cvCeil(radius_), 0, cv::FILLED);
       add({static_cast<double>(at.x), static_cast<double>(at.y), 0});
       ++added;

@@ -49,7 +49,7 @@ struct Detection {
 
 /// How the fit is done.
 struct RefineOptions {
-  int sweeps = 12;              ///< at most, 1 .. 100
+  int sweeps = 30;              ///< at most, 1 .. 1000
   double tolerance_px = 2e-3;   ///< a sweep that moves no bead further is the last, > 0
   double ring_px = 3;           ///< half width of the ring, > 1
   double blur_px = 0;           ///< edge blur s; 0: fitted
