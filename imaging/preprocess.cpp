@@ -63,18 +63,21 @@ cv::Mat1f bright_envelope(const cv::Mat1f& image) {
   return surface;
 }
 
-// Morphological opening of the dark region by a disc, through two exact distance maps.
+// Morphological opening of the dark region by a disc, through two exact distance maps. The frame is continued
+// beyond its border, so that a thin strip of plate at the bottom of a frame is as thick as the plate is.
 cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double disc_radius_px) {
+  const int pad = cvCeil(2 * disc_radius_px);
   cv::Mat1b dark = darkness > 0.75f;
-  cv::Mat1b regions = cv::Mat1b::zeros(dark.size());
-  if (cv::countNonZero(dark) == static_cast<int>(dark.total())) return regions;
+  cv::copyMakeBorder(dark, dark, pad, pad, pad, pad, cv::BORDER_REPLICATE);
+  if (cv::countNonZero(dark) == static_cast<int>(dark.total())) return cv::Mat1b::zeros(darkness.size());
   cv::Mat1f inside;
   cv::distanceTransform(dark, inside, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   const cv::Mat1b core = inside > disc_radius_px;
-  if (cv::countNonZero(core) == 0) return regions;
+  if (cv::countNonZero(core) == 0) return cv::Mat1b::zeros(darkness.size());
   cv::Mat1f to_core;
   cv::distanceTransform(~core, to_core, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  return to_core < disc_radius_px;
+  const cv::Mat1b regions = to_core < disc_radius_px;
+  return regions(cv::Rect(pad, pad, darkness.cols, darkness.rows)).clone();
 }
 
 }  // namespace

@@ -51,14 +51,15 @@ class PictureFit {
     cv::dilate(image.opaque, excluded_, cv::Mat(), cv::Point(-1, -1), 2);
   }
 
-  // A proposal that is bright inside is a void or a clear bead; fitted along, it would spoil its neighbours.
+  // A proposal that is bright inside is a void or a clear bead, one with its centre in a wall is the wall's
+  // edge; fitted along, they would spoil their neighbours.
   void add(const Proposal& p) {
     Detection b;
     b.x = p.x;
     b.y = p.y;
     b.radius = radius_;
     b.darkness = 1;
-    if (interior(b) < kMinInterior) return;
+    if (interior(b) < kMinInterior || in_wall(b)) return;
     beads_.push_back(b);
     patches_.push_back(draw(b));
     apply(patches_.back(), 1);
@@ -239,6 +240,10 @@ class PictureFit {
     b.size = std::sqrt((xx + yy) / b.mass);
     const double spread = std::hypot(xx - yy, 2 * xy), sum = xx + yy;
     b.ecc = sum + spread > 0 ? std::sqrt(2 * spread / (sum + spread)) : 0;
+  }
+  [[nodiscard]] bool in_wall(const Detection& b) const {
+    const cv::Point at(cvRound(b.x), cvRound(b.y));
+    return cv::Rect(0, 0, d_.cols, d_.rows).contains(at) && excluded_(at) != 0;
   }
   [[nodiscard]] double interior(const Detection& b) const {
     std::vector<float> inside;

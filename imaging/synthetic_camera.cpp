@@ -152,11 +152,15 @@ std::size_t render(const TrajectorySource& trajectory, const CameraOptions& opti
     trajectory.read(f, frame);
     if (f == 0) first_phase = std::max(0, static_cast<int>(frame.phase));
     const auto file = place.part() / fmt::format("frame_{:05}.png", f);
-    if (!cv::imwrite(file.string(), camera.expose(frame)))
+    if (!cv::imwrite(file.string(), camera.expose(frame), {cv::IMWRITE_PNG_COMPRESSION, 9}))
       throw RunError(file.string() + ": cannot be written.");
     for (std::size_t k = 0; k < info.n_beads; ++k) {
       if (!frame.present(k) || !std::isfinite(frame.position[k].x())) continue;
       const PixelPoint p = camera.pixel_frame().pixel_from_cell(frame.position[k]);
+      // The truth is of what can be seen: a bead that flies out of the picture is not in it.
+      if (p.x_px < -0.5 || p.y_px < -0.5 || p.x_px > camera.size().width - 0.5 ||
+          p.y_px > camera.size().height - 0.5)
+        continue;
       truth += fmt::format("{},{},{:.5f},{:.5f},{:.5f},{},{},{}\n", f, k, p.x_px, p.y_px, camera.radius_px(k),
                            info.tracer.empty() ? 0 : int{info.tracer[k]}, frame.phase, frame.cycle);
     }

@@ -39,6 +39,8 @@ class SyntheticCamera {
   SyntheticCamera(const CameraOptions& options, const TrajectoryInfo& info);
   /// One frame; noise depends on seed and frame.step alone. Slots without a bead are not drawn.
   [[nodiscard]] cv::Mat1b expose(const Frame& frame) const;
+  /// Size of a frame, px.
+  [[nodiscard]] cv::Size size() const { return size_; }
   [[nodiscard]] const PixelFrame& pixel_frame() const { return map_; }
   [[nodiscard]] double radius_px(std::size_t slot) const;
 
