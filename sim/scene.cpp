@@ -96,7 +96,7 @@ void read_beads(const Section& s, Scene& scene) {
                                   scene.width));
 }
 
-void read_drive(const Section& s, Scene& scene) {
+DriveSpec read_drive(const Section& s, Scene& scene) {
   DriveSpec spec;
   spec.amplitude = s.number("amplitude");
   spec.omega = s.number("omega");
@@ -104,8 +104,8 @@ void read_drive(const Section& s, Scene& scene) {
   spec.gamma = s.number("gamma");
   spec.k_m = s.number("k_m");
   spec.peak_velocity = s.number("peak_velocity");
-  scene.drive = solve_drive(spec, scene.gravity, s.where(""), Axis::z);
   if (const auto v = s.word("start", {"comoving", "abrupt"})) scene.comoving = *v == "comoving";
+  return spec;
 }
 
 void read_start(const Section& s, Scene& scene) {
@@ -152,11 +152,13 @@ Scene interpret(const Config& config, const std::string& name) {
     throw ConfigError(wall.where(""),
                       "beads and walls must follow the same kind of law; their parameters may differ (mu = 0 "
                       "makes a smooth wall).");
-  read_drive(root.section("drive"), scene);
+  const DriveSpec drive = read_drive(root.section("drive"), scene);
   read_start(root.section("start"), scene);
   read_time(root.section("time"), scene);
   read_scale(root.section("scale"), scene);
+  // A misspelt key explains more than what is missing because of it.
   config.refuse_unknown_keys();
+  scene.drive = solve_drive(drive, scene.gravity, root.section("drive").where(""), Axis::z);
   if (!scene.n_beads && scene.start != StartKind::trajectory)
     throw ConfigError(root.section("beads").where("count"), "the number of beads is missing.");
   if (scene.periodic_sides && scene.width < 4 * scene.radius)

@@ -144,23 +144,24 @@ Config Config::from_file(const std::filesystem::path& path) {
 
 namespace {
 
-/// Moves, because a copied node forgets where it stood.
-void merge(toml::table& lower, toml::table&& upper) {
-  for (auto&& [key, node] : upper) {
-    toml::node* below = lower.get(key);
-    if (below != nullptr && below->is_table() && node.is_table()) {
-      merge(*below->as_table(), std::move(*node.as_table()));
-      continue;
-    }
-    node.visit(
-        [&lower, k = std::string(key.str())](auto& value) { lower.insert_or_assign(k, std::move(value)); });
+/// Puts what `lower` has and `upper` has not into `upper`, whose tables thus keep their own place in the
+/// file. Moves, because a copied node forgets where it stood.
+void fill_in(toml::table& upper, toml::table&& lower) {
+  for (auto&& [key, node] : lower) {
+    toml::node* above = upper.get(key);
+    if (above == nullptr)
+      node.visit(
+          [&upper, k = std::string(key.str())](auto& value) { upper.insert_or_assign(k, std::move(value)); });
+    else if (above->is_table() && node.is_table())
+      fill_in(*above->as_table(), std::move(*node.as_table()));
   }
 }
 
 }  // namespace
 
 void Config::overlay(Config upper) {
-  merge(shared_->table, std::move(upper.shared_->table));
+  fill_in(upper.shared_->table, std::move(shared_->table));
+  shared_->table = std::move(upper.shared_->table);
   shared_->name = upper.shared_->name;
 }
 

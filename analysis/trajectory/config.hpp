@@ -31,7 +31,7 @@ class ConfigSection {
   [[nodiscard]] ConfigSection section(const std::string& key) const;
   /// Whether the key is there.
   [[nodiscard]] bool has(const std::string& key) const;
-  /// Where a key stands, or where its table stands if it is absent.
+  /// Where a key stands, or where its table stands if it is absent; of the empty key: the table itself.
   [[nodiscard]] Where where(const std::string& key) const;
 
  private:
@@ -40,7 +40,7 @@ class ConfigSection {
   ConfigSection(std::shared_ptr<Shared> shared, std::string path)
       : shared_(std::move(shared)), path_(std::move(path)) {}
   [[nodiscard]] std::string full(const std::string& key) const {
-    return path_.empty() ? key : path_ + "." + key;
+    return path_.empty() || key.empty() ? path_ + key : path_ + "." + key;
   }
 
   std::shared_ptr<Shared> shared_;

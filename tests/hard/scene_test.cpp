@@ -58,7 +58,13 @@ TEST(Scene, ComplaintsNameLineKeyValueAndBound) {
                    "start.from: a start from a trajectory needs the name of its file");
   expect_complaint("preset = \"fortini\"\n", "'fortini' is not one of fortini-huang-2015");
   expect_complaint("[drive]\nomega = 1.0\ngamma = 1.0\n", "beads.count: the number of beads is missing");
-  expect_complaint(kGood + "amplitude = 9.0\n", "contradicts the other numbers");
+  expect_complaint(
+      kGood + "amplitude = 9.0\n",
+      "scene.toml:4:1: drive: gamma = 1.5 contradicts the other numbers, from which it would be 9");
+  expect_complaint("[beads]\ncount = 1\n[drive]\ngama = 1.0\n",
+                   "scene.toml:4:8: drive.gama: there is no such key; did you mean 'drive.gamma'?");
+  expect_complaint("[beads]\ncount = 1\n[drive]\ngamma = 1.0\n",
+                   "scene.toml:3:1: drive: two of amplitude, omega,");
   expect_complaint(kGood + "[cell]\ndimension = 3\n", "3 is not simulated by this version");
 }
 

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# The demo gives what data_samples/demo/expected.csv says, and the report is whole.
+# usage: demo_test.sh SOURCE_DIR SCRATCH
+set -euo pipefail
+report=$2/demo_report
+said=$("$1/data_samples/demo/demo.sh" "$report")
+while IFS=, read -r gamma experiment simulation; do
+  [ "$gamma" != gamma ] || continue
+  grep -Eq "^ *$gamma(0*) .* $experiment +$simulation " <<<"$said" || { echo "Gamma = $gamma is not $experiment / $simulation in:"; echo "$said"; exit 1; }
+done <"$1/data_samples/demo/expected.csv"
+grep -q "^report: $report/report.html$" <<<"$said"
+[ -s "$report/report.html" ]
+! grep -Eq '(src|href)="https?://' "$report/report.html"
+for figure in phase_diagram thresholds s_k s_j; do
+  for form in svg png gp dat; do [ -s "$report/figures/$figure.$form" ] || { echo "$figure.$form is missing"; exit 1; }; done
+done
+echo "$said"
