@@ -52,9 +52,11 @@ std::vector<std::uint8_t> bytes_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-std::uint32_t big_endian(const std::uint8_t* b) {
-  return std::uint32_t{b[0]} << 24 | std::uint32_t{b[1]} << 16 | std::uint32_t{b[2]} << 8 |
-         std::uint32_t{b[3]};
+/// Number of `n` bytes at b.
+std::uint64_t unsigned_number(const std::uint8_t* b, std::size_t n, bool big_first) {
+  std::uint64_t v = 0;
+  for (std::size_t i = 0; i < n; ++i) v |= std::uint64_t{b[big_first ? n - 1 - i : i]} << (8 * i);
+  return v;
 }
 
 std::uint32_t crc32(const std::uint8_t* data, std::size_t n) {
@@ -79,9 +81,9 @@ void require_whole_png(const fs::path& file, const std::vector<std::uint8_t>& b)
   if (b.size() < 8 || !std::equal(magic.begin(), magic.end(), b.begin()))
     refuse(file, "is not a PNG picture.");
   for (std::size_t at = 8; at + 12 <= b.size();) {
-    const std::size_t length = big_endian(&b[at]);
+    const std::size_t length = unsigned_number(&b[at], 4, true);
     if (length > b.size() - at - 12) break;
-    if (crc32(&b[at + 4], length + 4) != big_endian(&b[at + 8 + length]))
+    if (crc32(&b[at + 4], length + 4) != unsigned_number(&b[at + 8 + length], 4, true))
       refuse(file, fmt::format("is damaged: the PNG chunk at byte {} fails its checksum.", at));
     if (std::equal(&b[at + 4], &b[at + 8], "IEND")) return;
     at += 12 + length;
@@ -97,14 +99,95 @@ void require_whole_jpeg(const fs::path& file, const std::vector<std::uint8_t>& b
     refuse(file, fmt::format("is truncated: the JPEG picture does not end within its {} bytes.", b.size()));
 }
 
+/// Walks the directories of a TIFF or BigTIFF (one per page) without reading the pixels. A decoder stops at
+/// the first link of the chain that points nowhere, so that a truncated stack looks like a shorter one.
+class TiffWalk {
+ public:
+  explicit TiffWalk(const fs::path& file) : file_(file), in_(file, std::ios::binary) {
+    if (!in_) refuse(file_, "cannot be opened for reading.");
+    std::error_code ignored;
+    size_ = fs::file_size(file_, ignored);
+  }
+  void require_whole() {
+    if (size_ == 0) refuse(file_, "is empty.");
+    const std::vector<std::uint8_t> head = size_ >= 8 ? bytes(0, 8) : std::vector<std::uint8_t>(8);
+    big_first_ = head[0] == 'M';
+    const std::uint64_t version = unsigned_number(&head[2], 2, big_first_);
+    if (head[0] != head[1] || (head[0] != 'I' && head[0] != 'M') || (version != 42 && version != 43))
+      refuse(file_, "is not a TIFF picture.");
+    wide_ = version == 43;
+    std::uint64_t at = wide_ ? number(8, 8) : number(4, 4);
+    // A chain longer than the file has room for goes round in circles.
+    for (std::uint64_t links = 0; at != 0; ++links) {
+      if (links > size_ / 8) refuse(file_, "is damaged: its chain of pages has no end.");
+      at = after(at);
+    }
+  }
+
+ private:
+  // Checks the directory at `at`; returns where the next one is.
+  std::uint64_t after(std::uint64_t at) {
+    const std::uint64_t count_bytes = wide_ ? 8 : 2, entry_bytes = wide_ ? 20 : 12, word = wide_ ? 8 : 4;
+    const std::uint64_t n = number(at, count_bytes);
+    if (n > size_ / entry_bytes) truncated();
+    std::vector<std::uint64_t> offsets, lengths;
+    for (std::uint64_t i = 0; i < n; ++i) {
+      const std::uint64_t entry = at + count_bytes + i * entry_bytes, tag = number(entry, 2);
+      if (tag == 273 || tag == 324) offsets = values(entry);  // StripOffsets, TileOffsets
+      if (tag == 279 || tag == 325) lengths = values(entry);  // their byte counts
+    }
+    for (std::size_t i = 0; i < std::min(offsets.size(), lengths.size()); ++i)
+      if (offsets[i] > size_ || lengths[i] > size_ - offsets[i]) truncated();
+    return number(at + count_bytes + n * entry_bytes, word);
+  }
+  std::vector<std::uint64_t> values(std::uint64_t entry) {
+    const std::uint64_t type = number(entry + 2, 2), word = wide_ ? 8 : 4;
+    const std::uint64_t each = type == 3 ? 2 : type == 4 ? 4 : type == 16 ? 8 : 0;  // SHORT, LONG, LONG8
+    const std::uint64_t n = number(entry + 4, word), here = entry + 4 + word;
+    if (each == 0) return {};
+    if (n > size_ / each) truncated();
+    const std::uint64_t from = n * each <= word ? here : number(here, word);
+    const std::vector<std::uint8_t> b = bytes(from, n * each);
+    std::vector<std::uint64_t> v;
+    for (std::uint64_t i = 0; i < n; ++i) v.push_back(unsigned_number(&b[i * each], each, big_first_));
+    return v;
+  }
+  std::uint64_t number(std::uint64_t at, std::uint64_t n) {
+    return unsigned_number(bytes(at, n).data(), n, big_first_);
+  }
+  std::vector<std::uint8_t> bytes(std::uint64_t at, std::uint64_t n) {
+    if (at > size_ || n > size_ - at) truncated();
+    std::vector<std::uint8_t> b(n);
+    in_.seekg(static_cast<std::streamoff>(at));
+    in_.read(reinterpret_cast<char*>(b.data()), static_cast<std::streamsize>(n));
+    if (!in_) truncated();
+    return b;
+  }
+  [[noreturn]] void truncated() {
+    refuse(file_, fmt::format("is truncated: a TIFF page does not end within its {} bytes.", size_));
+  }
+  fs::path file_;
+  std::ifstream in_;
+  std::uint64_t size_ = 0;
+  bool big_first_ = false, wide_ = false;
+};
+
+void require_whole_bmp(const fs::path& file, const std::vector<std::uint8_t>& b) {
+  if (b.size() < 6 || b[0] != 'B' || b[1] != 'M') refuse(file, "is not a BMP picture.");
+  if (unsigned_number(&b[2], 4, false) > b.size())
+    refuse(file, fmt::format("is truncated: the BMP picture does not end within its {} bytes.", b.size()));
+}
+
 void require_whole(const fs::path& file) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) refuse(file, "is a folder, not a picture.");
+  if (is_tiff(file)) return TiffWalk(file).require_whole();
   const std::vector<std::uint8_t> bytes = bytes_of(file);
   if (bytes.empty()) refuse(file, "is empty.");
   const std::string e = extension_of(file);
   if (e == ".png") require_whole_png(file, bytes);
   if (e == ".jpg" || e == ".jpeg") require_whole_jpeg(file, bytes);
+  if (e == ".bmp") require_whole_bmp(file, bytes);
 }
 
 /// One grey channel, bit depth kept.
