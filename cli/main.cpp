@@ -18,30 +18,7 @@ using namespace twincell::cli;
 
 // In the order in which a newcomer needs them.
 constexpr AddVerb kVerbs[] = {
-#ifdef TWINCELL_VERB_locate
-    add_locate,
-#endif
-#ifdef TWINCELL_VERB_track
-    add_track,
-#endif
-#ifdef TWINCELL_VERB_simulate
-    add_simulate,
-#endif
-#ifdef TWINCELL_VERB_render
-    add_render,
-#endif
-#ifdef TWINCELL_VERB_analyze
-    add_analyze,
-#endif
-#ifdef TWINCELL_VERB_compare
-    add_compare,
-#endif
-#ifdef TWINCELL_VERB_info
-    add_info,
-#endif
-#ifdef TWINCELL_VERB_validate
-    add_validate,
-#endif
+    add_locate, add_track, add_simulate, add_render, add_analyze, add_compare, add_info, add_validate,
 };
 
 int complain(const std::string& sentence, ExitCode code) {
