@@ -31,6 +31,7 @@ std::vector<Detection> without_overlaps(std::vector<Detection> beads, double max
 void flag_tracers(std::vector<Detection>& beads, double below) {
   if (beads.empty()) return;
   std::vector<double> interior;
+  interior.reserve(beads.size());
   for (const Detection& b : beads) interior.push_back(b.interior);
   const auto middle = interior.begin() + static_cast<std::ptrdiff_t>(interior.size() / 2);
   std::nth_element(interior.begin(), middle, interior.end());

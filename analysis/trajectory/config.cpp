@@ -68,7 +68,7 @@ namespace {
 template <class T>
 std::optional<T> value_of(const toml::node* node, const Where& where, const char* wanted) {
   if (node == nullptr) return std::nullopt;
-  const std::optional<T> value = node->value_exact<T>();
+  std::optional<T> value = node->value_exact<T>();
   if (!value) throw ConfigError(where, fmt::format("{} is needed, not a {}.", wanted, kind_of(*node)));
   return value;
 }
@@ -112,7 +112,7 @@ std::optional<std::vector<double>> ConfigSection::numbers(const std::string& key
 
 std::optional<std::string> ConfigSection::word(const std::string& key,
                                                const std::vector<std::string>& words) const {
-  const auto value = text(key);
+  auto value = text(key);
   if (value && std::find(words.begin(), words.end(), *value) == words.end())
     throw ConfigError(where(key), fmt::format("'{}' is not one of {}.", *value, fmt::join(words, ", ")));
   return value;
@@ -159,7 +159,7 @@ void fill_in(toml::table& upper, toml::table&& lower) {
 
 }  // namespace
 
-void Config::overlay(Config upper) {
+void Config::overlay(Config&& upper) {
   fill_in(upper.shared_->table, std::move(shared_->table));
   shared_->table = std::move(upper.shared_->table);
   shared_->name = upper.shared_->name;

@@ -55,7 +55,7 @@ class Config {
   static Config from_text(const std::string& text, const std::string& name);
 
   /// Lays `upper` over this one: its keys win, tables are merged.
-  void overlay(Config upper);
+  void overlay(Config&& upper);
   /// Removes the other members of a group of mutually exclusive keys of `section` when `upper` names one of
   /// them, so that a user's choice displaces a preset's.
   void yield_to(const Config& upper, const std::string& section,
