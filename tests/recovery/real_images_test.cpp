@@ -1,0 +1,60 @@
+// Frames nobody on this project made, with published truth: back-lit opaque beads in a narrow flume
+// (Lafaye de Micheaux, Ducottet, Frey, Machine Vision and Applications 29 (2018) 735), halved to 14 px beads.
+// The truth is good to 0.05 px.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <map>
+
+#include "imaging/pipeline.hpp"
+#include "imaging/score.hpp"
+
+using namespace twincell;
+
+TEST(RealImages, BedloadIsFoundLinkedAndRepeats) {
+  const std::filesystem::path folder = TWINCELL_SOURCE_DIR "/../shared/real_images/bedload_left_half";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "The real images are not beside the source tree.";
+  const auto truth = read_truth(folder);
+  ASSERT_EQ(truth.size(), 20U);
+  LocatorOptions locator;
+  locator.diameter_px = 14.1;
+  const auto frames = open_frames(folder);
+  const TrackedStack stack = track_stack(*frames, locator, {}, {}, 1);
+  ASSERT_EQ(stack.frames.size(), truth.size());
+  const ScoredRows rows{30, 147.5};  // between the water line and the glued base
+  Scorer scorer(rows);
+  std::map<std::int64_t, TrackedBead> before;
+  double squares = 0;
+  std::size_t resting = 0;
+  for (std::size_t f = 0; f < truth.size(); ++f) {
+    std::vector<FoundBead> found;
+    std::map<std::int64_t, TrackedBead> now;
+    for (const TrackedBead& b : stack.frames[f]) {
+      found.push_back({b.x_px, b.y_px, b.track});
+      if (b.y_px < rows.first || b.y_px > rows.last) continue;
+      now[b.track] = b;
+      const auto old = before.find(b.track);
+      if (old == before.end()) continue;
+      const double dx = b.x_px - old->second.x_px, dy = b.y_px - old->second.y_px;
+      if (std::hypot(dx, dy) > 0.15) continue;  // it moves
+      squares += (dx * dx + dy * dy) / 4;       // a difference has twice the variance of a place
+      ++resting;
+    }
+    scorer.add(truth[f], found);
+    before = std::move(now);
+  }
+  const Score s = scorer.score();
+  ASSERT_GT(resting, 1000U);
+  const double repeat = std::sqrt(squares / static_cast<double>(resting));
+  std::cout << "recall " << s.recall() << ", precision " << s.precision() << ", rms " << s.rms << " px, bias "
+            << s.bias_x << " " << s.bias_y << " px, " << s.wrong_links << " of " << s.links
+            << " links wrong, repeatability of resting beads " << repeat << " px\n";
+  EXPECT_EQ(s.recall(), 1);
+  EXPECT_EQ(s.precision(), 1);
+  EXPECT_LE(s.rms, 0.08);
+  EXPECT_GT(s.links, 2500U);
+  EXPECT_EQ(s.wrong_links, 0U);
+  EXPECT_LE(repeat, 0.02);
+}
