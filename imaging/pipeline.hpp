@@ -49,8 +49,8 @@ TrackedStack track_stack(FrameSource& frames, LocatorOptions& locator, LinkOptio
 
 /// What a trajectory made from a stack will say of itself. Lengths are in sigma with sigma =
 /// cell.pixels_per_sigma or, where that is unknown, the located diameter; the origin is the cell's or, where
-/// that is unknown, the lower left corner of the picture. `keep[t]` is the slot of track t, or -1 for a track
-/// shorter than `shortest` frames.
+/// that is unknown, the lower left corner of the picture. `slot_of_track[t]` is the slot of track t, or -1
+/// for a track shorter than `shortest` frames.
 struct TrackPlan {
   TrajectoryInfo info;
   PixelFrame pixel_frame;
