@@ -49,9 +49,12 @@ class Bins {
 // equal peaks the shortest shift. Then the median of the shifts that fall there.
 PixelPoint common_motion(const std::vector<PixelPoint>& from, const Bins& to, double d, double reach) {
   const double cell = d / 8;
-  const int half = static_cast<int>(std::ceil(reach / cell)) + 1, n = 2 * half + 1;
-  std::vector<int> count(static_cast<std::size_t>(n * n));
-  auto index = [&](int i, int j) { return static_cast<std::size_t>((j + half) * n + i + half); };
+  const int half = static_cast<int>(std::ceil(reach / cell)) + 1;
+  const auto n = static_cast<std::size_t>(2 * half + 1);
+  std::vector<int> count(n * n);
+  auto index = [&](int i, int j) {
+    return static_cast<std::size_t>(j + half) * n + static_cast<std::size_t>(i + half);
+  };
   auto cell_of = [&](double v) { return static_cast<int>(std::lround(v / cell)); };
   for (const PixelPoint& p : from)
     to.within(p, reach, [&](std::size_t, double dx, double dy) { ++count[index(cell_of(dx), cell_of(dy))]; });

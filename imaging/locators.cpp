@@ -96,7 +96,9 @@ double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options) 
   if (largest < smallest) return 0;
   const Prepared image = prepare(grey, options, largest);
   double best = 0, best_radius = 0;
-  for (double r = smallest; r <= largest; r *= 1.03) {
+  const int steps = static_cast<int>(std::log(largest / smallest) / std::log(1.03));
+  for (int k = 0; k <= steps; ++k) {
+    const double r = smallest * std::pow(1.03, k);
     const double sharpness = vote_sharpness(image.darkness, r);
     if (sharpness > best) {
       best = sharpness;

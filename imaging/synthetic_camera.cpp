@@ -26,7 +26,9 @@ class DiscProfile {
   DiscProfile(double radius, double s) {
     const double end = radius + 5 * s;
     const int n = 400;
-    for (double r = 0; r <= end; r += kTableStep_px) {
+    const int steps = static_cast<int>(end / kTableStep_px);
+    for (int k = 0; k <= steps; ++k) {
+      const double r = k * kTableStep_px;
       double sum = 0;
       for (int i = 0; i < n; ++i) {
         const double angle = std::numbers::pi * (i + 0.5) / n, u = -radius * std::cos(angle);
