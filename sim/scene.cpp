@@ -17,28 +17,6 @@ using Section = ConfigSection;
 const std::vector<std::string> kNormalDamping = {"gamma_n", "c_n", "restitution"};
 const std::vector<std::string> kTangentialDamping = {"gamma_t", "c_t", "c_t_over_c_n"};
 
-double bounded(const Section& s, const std::string& key, double fallback, std::optional<double> lower,
-               std::optional<double> upper, bool open_lower = false) {
-  const double value = s.number(key).value_or(fallback);
-  require_range(s.where(key), value, lower, upper, open_lower);
-  return value;
-}
-
-std::optional<double> optional_bounded(const Section& s, const std::string& key, double lower,
-                                       std::optional<double> upper, bool open_lower = false) {
-  const auto value = s.number(key);
-  if (value) require_range(s.where(key), *value, lower, upper, open_lower);
-  return value;
-}
-
-std::int64_t whole(const Section& s, const std::string& key, std::int64_t fallback, std::int64_t lower,
-                   std::int64_t upper) {
-  const std::int64_t value = s.integer(key).value_or(fallback);
-  require_range(s.where(key), static_cast<double>(value), static_cast<double>(lower),
-                static_cast<double>(upper));
-  return value;
-}
-
 void at_most_one(const Section& s, const std::vector<std::string>& keys) {
   std::vector<std::string> given;
   for (const auto& key : keys)
@@ -50,26 +28,26 @@ void at_most_one(const Section& s, const std::vector<std::string>& keys) {
 
 /// A key of `contact.wall` that is absent is taken from `contact`: the papers use the same numbers for both.
 void read_contact(const Section& s, ContactSpec& c) {
-  c.k_n = bounded(s, "k_n", c.k_n, 0, 1e12, true);
+  c.k_n = s.number_in("k_n", 0, 1e12, true).value_or(c.k_n);
   at_most_one(s, kNormalDamping);
   if (s.has("gamma_n") || s.has("c_n") || s.has("restitution"))
     c.gamma_n = c.c_n = c.restitution = std::nullopt;
-  if (const auto v = optional_bounded(s, "gamma_n", 0, std::nullopt)) c.gamma_n = v;
-  if (const auto v = optional_bounded(s, "c_n", 0, std::nullopt)) c.c_n = v;
-  if (const auto v = optional_bounded(s, "restitution", 0, 1.0, true)) c.restitution = v;
+  if (const auto v = s.number_in("gamma_n", 0, std::nullopt)) c.gamma_n = v;
+  if (const auto v = s.number_in("c_n", 0, std::nullopt)) c.c_n = v;
+  if (const auto v = s.number_in("restitution", 0, 1.0, true)) c.restitution = v;
   if (const auto v = s.word("tension", {"allowed", "clipped"})) c.tension = *v == "allowed";
   if (const auto v = s.word("tangential", {"none", "dashpot", "spring"}))
     c.tangential = *v == "none"      ? ContactSpec::Tangential::none
                    : *v == "dashpot" ? ContactSpec::Tangential::dashpot
                                      : ContactSpec::Tangential::spring;
-  c.k_t = bounded(s, "k_t", c.k_t, 0, 1e12);
+  c.k_t = s.number_in("k_t", 0, 1e12).value_or(c.k_t);
   at_most_one(s, kTangentialDamping);
   if (s.has("gamma_t") || s.has("c_t") || s.has("c_t_over_c_n"))
     c.gamma_t = c.c_t = c.c_t_over_c_n = std::nullopt;
-  if (const auto v = optional_bounded(s, "gamma_t", 0, std::nullopt)) c.gamma_t = v;
-  if (const auto v = optional_bounded(s, "c_t", 0, std::nullopt)) c.c_t = v;
-  if (const auto v = optional_bounded(s, "c_t_over_c_n", 0, std::nullopt)) c.c_t_over_c_n = v;
-  c.mu = bounded(s, "mu", c.mu, 0, 1e12);
+  if (const auto v = s.number_in("gamma_t", 0, std::nullopt)) c.gamma_t = v;
+  if (const auto v = s.number_in("c_t", 0, std::nullopt)) c.c_t = v;
+  if (const auto v = s.number_in("c_t_over_c_n", 0, std::nullopt)) c.c_t_over_c_n = v;
+  c.mu = s.number_in("mu", 0, 1e12).value_or(c.mu);
   if (const auto v = s.word("slip", {"rescale", "spring_only"})) c.slip_rescales = *v == "rescale";
 }
 
@@ -77,18 +55,19 @@ void read_cell(const Section& s, Scene& scene) {
   if (const auto d = s.integer("dimension"); d && *d != 2)
     throw ConfigError(s.where("dimension"),
                       fmt::format("{} is not simulated by this version, which knows 2.", *d));
-  scene.width = bounded(s, "width", scene.width, 0, 1e6, true);
-  scene.height = optional_bounded(s, "height", 0, std::nullopt, true);
+  scene.width = s.number_in("width", 0, 1e6, true).value_or(scene.width);
+  scene.height = s.number_in("height", 0, std::nullopt, true);
   if (const auto v = s.word("sides", {"walls", "periodic"})) scene.periodic_sides = *v == "periodic";
   if (const auto v = s.word("side_walls", {"move", "rest"})) scene.side_walls_move = *v == "move";
-  scene.gravity = bounded(s, "gravity", scene.gravity, 0, std::nullopt);
-  scene.tilt = bounded(s, "tilt", scene.tilt, -45, 45);
+  scene.gravity = s.number_in("gravity", 0, std::nullopt).value_or(scene.gravity);
+  scene.tilt = s.number_in("tilt", -45, 45).value_or(scene.tilt);
 }
 
 void read_beads(const Section& s, Scene& scene) {
-  if (s.has("count")) scene.n_beads = static_cast<std::size_t>(whole(s, "count", 0, 0, 10'000'000));
-  scene.radius = bounded(s, "radius", scene.radius, 0, 1e6, true);
-  scene.mass = bounded(s, "mass", scene.mass, 0, 1e12, true);
+  if (s.has("count"))
+    scene.n_beads = static_cast<std::size_t>(s.integer_in("count", 0, 10'000'000).value_or(0));
+  scene.radius = s.number_in("radius", 0, 1e6, true).value_or(scene.radius);
+  scene.mass = s.number_in("mass", 0, 1e12, true).value_or(scene.mass);
   if (const auto v = s.word("inertia", {"disc", "sphere"})) scene.inertia_factor = *v == "disc" ? 0.5 : 0.4;
   if (2 * scene.radius > scene.width)
     throw ConfigError(s.where("radius"),
@@ -97,13 +76,7 @@ void read_beads(const Section& s, Scene& scene) {
 }
 
 DriveSpec read_drive(const Section& s, Scene& scene) {
-  DriveSpec spec;
-  spec.amplitude = s.number("amplitude");
-  spec.omega = s.number("omega");
-  spec.frequency = s.number("frequency");
-  spec.gamma = s.number("gamma");
-  spec.k_m = s.number("k_m");
-  spec.peak_velocity = s.number("peak_velocity");
+  const DriveSpec spec = read_drive_spec(s);
   if (const auto v = s.word("start", {"comoving", "abrupt"})) scene.comoving = *v == "comoving";
   return spec;
 }
@@ -112,11 +85,11 @@ void read_start(const Section& s, Scene& scene) {
   const std::vector<std::string> words = {"crystal_a", "crystal_b", "random", "trajectory"};
   if (const auto v = s.word("kind", words))
     scene.start = static_cast<StartKind>(std::find(words.begin(), words.end(), *v) - words.begin());
-  scene.seed = static_cast<std::uint64_t>(whole(s, "seed", 1, 0, std::int64_t{1} << 53));
+  scene.seed = static_cast<std::uint64_t>(s.integer_in("seed", 0, std::int64_t{1} << 53).value_or(1));
   if (const auto v = s.text("from")) scene.from = *v;
-  scene.frame = static_cast<std::size_t>(whole(s, "frame", 0, 0, std::int64_t{1} << 40));
-  scene.rest_energy = bounded(s, "rest_energy", scene.rest_energy, 0, std::nullopt, true);
-  scene.settle_limit = bounded(s, "settle_limit", scene.settle_limit, 0, 1e6);
+  scene.frame = static_cast<std::size_t>(s.integer_in("frame", 0, std::int64_t{1} << 40).value_or(0));
+  scene.rest_energy = s.number_in("rest_energy", 0, std::nullopt, true).value_or(scene.rest_energy);
+  scene.settle_limit = s.number_in("settle_limit", 0, 1e6).value_or(scene.settle_limit);
   if (scene.start == StartKind::trajectory && scene.from.empty())
     throw ConfigError(s.where("from"), "a start from a trajectory needs the name of its file.");
   if (scene.start != StartKind::trajectory && !scene.from.empty())
@@ -124,15 +97,15 @@ void read_start(const Section& s, Scene& scene) {
 }
 
 void read_time(const Section& s, Scene& scene) {
-  scene.steps_per_contact = bounded(s, "steps_per_contact", scene.steps_per_contact, 8, 1e6);
-  scene.discard = whole(s, "discard", scene.discard, 0, 1'000'000);
-  scene.cycles = whole(s, "cycles", scene.cycles, 1, 100'000'000);
-  scene.phases = static_cast<int>(whole(s, "phases", scene.phases, 1, 10'000));
+  scene.steps_per_contact = s.number_in("steps_per_contact", 8, 1e6).value_or(scene.steps_per_contact);
+  scene.discard = s.integer_in("discard", 0, 1'000'000).value_or(scene.discard);
+  scene.cycles = s.integer_in("cycles", 1, 100'000'000).value_or(scene.cycles);
+  scene.phases = static_cast<int>(s.integer_in("phases", 1, 10'000).value_or(scene.phases));
 }
 
 void read_scale(const Section& s, Scene& scene) {
-  scene.scale.sigma_m = optional_bounded(s, "sigma_m", 0, std::nullopt, true);
-  scene.scale.gravity_m_s2 = optional_bounded(s, "gravity_m_s2", 0, std::nullopt, true);
+  scene.scale.sigma_m = s.number_in("sigma_m", 0, std::nullopt, true);
+  scene.scale.gravity_m_s2 = s.number_in("gravity_m_s2", 0, std::nullopt, true);
 }
 
 Scene interpret(const Config& config, const std::string& name) {

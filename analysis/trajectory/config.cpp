@@ -88,6 +88,22 @@ std::optional<std::int64_t> ConfigSection::integer(const std::string& key) const
                   : std::nullopt;
 }
 
+std::optional<double> ConfigSection::number_in(const std::string& key, std::optional<double> lower,
+                                               std::optional<double> upper, bool open_lower) const {
+  auto value = number(key);
+  if (value) require_range(where(key), *value, lower, upper, open_lower);
+  return value;
+}
+
+std::optional<std::int64_t> ConfigSection::integer_in(const std::string& key, std::int64_t lower,
+                                                      std::int64_t upper) const {
+  auto value = integer(key);
+  if (value)
+    require_range(where(key), static_cast<double>(*value), static_cast<double>(lower),
+                  static_cast<double>(upper));
+  return value;
+}
+
 std::optional<bool> ConfigSection::boolean(const std::string& key) const {
   return has(key) ? value_of<bool>(find(shared_->table, full(key)), where(key), "true or false")
                   : std::nullopt;

@@ -22,6 +22,12 @@ class ConfigSection {
   [[nodiscard]] std::optional<std::int64_t> integer(const std::string& key) const;
   [[nodiscard]] std::optional<bool> boolean(const std::string& key) const;
   [[nodiscard]] std::optional<std::string> text(const std::string& key) const;
+  /// A number or whole number within bounds. \throws ConfigError as require_range
+  [[nodiscard]] std::optional<double> number_in(const std::string& key, std::optional<double> lower,
+                                                std::optional<double> upper = std::nullopt,
+                                                bool open_lower = false) const;
+  [[nodiscard]] std::optional<std::int64_t> integer_in(const std::string& key, std::int64_t lower,
+                                                       std::int64_t upper) const;
   /// A list of exactly `count` numbers.
   [[nodiscard]] std::optional<std::vector<double>> numbers(const std::string& key, std::size_t count) const;
   /// One of `words`; \throws ConfigError naming them otherwise.

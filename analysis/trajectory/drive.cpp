@@ -50,6 +50,11 @@ std::vector<Term> terms_of(const DriveSpec& s, double gravity, const Where& wher
 
 }  // namespace
 
+DriveSpec read_drive_spec(const ConfigSection& drive) {
+  return {drive.number("amplitude"), drive.number("omega"), drive.number("frequency"),
+          drive.number("gamma"),     drive.number("k_m"),   drive.number("peak_velocity")};
+}
+
 Drive solve_drive(const DriveSpec& spec, double gravity, const Where& where, Axis axis) {
   const auto terms = terms_of(spec, gravity, where);
   // Of two independent statements the exponents form an invertible 2 x 2 matrix in (ln A, ln omega).

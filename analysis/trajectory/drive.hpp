@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "analysis/trajectory/box.hpp"
+#include "analysis/trajectory/config.hpp"
 #include "analysis/trajectory/error.hpp"
 
 namespace twincell {
@@ -43,6 +44,9 @@ struct DriveSpec {
   std::optional<double> k_m;            ///< A^2 omega^2/(sigma g); also W, S
   std::optional<double> peak_velocity;  ///< A omega
 };
+
+/// Reads the six words of a DriveSpec from a `[drive]` table, as scenes and cells state it.
+DriveSpec read_drive_spec(const ConfigSection& drive);
 
 /// Solves a DriveSpec for A and omega.
 /// \param gravity magnitude of g in reduced units; Gamma and K_m are refused when it is 0

@@ -33,7 +33,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
 const std::vector<std::pair<std::string, std::set<std::string>>> kLibraryHomes = {
     {"opencv2/", {"imaging", "tests", "bench"}},
     {"ceres/", {"calibration", "tests"}},
-    {"toml++/", {"trajectory", "sim", "imaging", "cli"}},
+    {"toml++/", {"trajectory"}},
     {"CLI/", {"cli"}},
     {"hdf5.h", {"trajectory", "tests"}},
 };
