@@ -1,5 +1,7 @@
 // The products of the law lists, compiled here and nowhere else.
 
+#include <utility>
+
 #include "sim/force_pass.hpp"
 #include "sim/integrate.hpp"
 #include "sim/kernel.hpp"
@@ -21,6 +23,9 @@ class Kernel2d : public Kernel {
     for (std::int64_t k = 0; k < steps; ++k) {
       const double largest = verlet_step<Laws::Tangential::kNeedsSpin>(s, forces_);
       if (!(largest <= limits_.overlap)) explain_overlap(s, limits_, Laws::Side::kWalls ? 0 : s.width);
+      // A bead that is not finite, or fast, makes the list stale at once: looking then finds it in the same
+      // step.
+      if (std::exchange(builds_, forces_.builds()) != forces_.builds()) check_motion(s, limits_);
     }
     check_motion(s, limits_);
   }
@@ -31,6 +36,7 @@ class Kernel2d : public Kernel {
   Forces forces_;
   GuardLimits limits_;
   bool started_ = false;
+  std::int64_t builds_ = 0;
 };
 
 /// Verlet skin: second neighbours of a hexagonal packing sit at 1.73 sigma, so a quarter diameter adds no

@@ -129,12 +129,23 @@ Plan make_plan(const Scene& s) {
   add_limits("bead-wall", plan.wall, m_wall, inverse_one, plan.limits);
   double shortest = HUGE_VAL;
   for (const TimeLimit& limit : plan.limits) shortest = std::min(shortest, limit.time);
-  plan.steps_per_period =
-      static_cast<std::int64_t>(std::ceil(s.drive.period() / (shortest / s.steps_per_contact)));
+  constexpr double kMostSteps = 1e10, kMostTravel = 0.05;
+  const double steps = s.drive.period() / (shortest / s.steps_per_contact);
+  if (!(steps <= kMostSteps))
+    throw ConfigError(
+        {s.file, 0, 0, "drive"},
+        fmt::format("a cycle of {:.3g} t0 takes {:.3g} steps of the shortest contact, the bound is {:g}.",
+                    s.drive.period(), steps, kMostSteps));
+  plan.steps_per_period = static_cast<std::int64_t>(std::ceil(steps));
   // Phases divide the period into whole numbers of steps.
   const std::int64_t rest = plan.steps_per_period % s.phases;
   if (rest != 0) plan.steps_per_period += s.phases - rest;
   plan.dt = s.drive.period() / static_cast<double>(plan.steps_per_period);
+  if (const double travel = s.drive.peak_velocity() * plan.dt; travel > kMostTravel)
+    throw ConfigError({s.file, 0, 0, "drive"},
+                      fmt::format("the plate moves {:.3g} sigma in one step, the bound is {:g}; raise "
+                                  "time.steps_per_contact or contact.k_n.",
+                                  travel, kMostTravel));
   list_effects(s, plan);
   return plan;
 }

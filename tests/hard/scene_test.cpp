@@ -5,6 +5,7 @@
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "sim/simulation.hpp"
+#include "tests/support/collision.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace twincell::sim {
@@ -83,6 +84,20 @@ TEST(Plan, StepFollowsTheStiffestRate) {  // H7: a tangential dashpot that is fa
   const double usual = make_plan(read_scene_text(kGood, "s")).dt;
   const double fast = make_plan(read_scene_text(kGood + "[contact]\ngamma_t = 1e5\n", "s")).dt;
   EXPECT_LT(fast, usual / 10);
+}
+
+TEST(Plan, AbsurdScenesAreRefusedAtOnce) {  // H18
+  auto refusal = [](const std::vector<std::string>& set) {
+    try {
+      make_plan(read_scene_text(kGood, "scene.toml", set));
+    } catch (const ConfigError& e) {
+      return std::string(e.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_NE(refusal({"drive.omega=1e-9"}).find("scene.toml: drive: a cycle of 6.28e+09 t0 takes"),
+            std::string::npos);
+  EXPECT_NE(refusal({"drive.gamma=1e5"}).find("the plate moves 4.45 sigma in one step"), std::string::npos);
 }
 
 TEST(Start, NoBeadsAndOneBeadRun) {  // H21
@@ -174,6 +189,22 @@ TEST(Run, StopsWithStepBeadAndCause) {  // H18, H20
     EXPECT_NE(std::string(e.what()).find("overlap"), std::string::npos) << e.what();
   }
   EXPECT_GT(out.n_frames(), 0U);  // the frames up to there were handed over
+}
+
+TEST(Run, ANumberThatIsNoneIsFoundInItsStep) {
+  Bench b("[cell]\ngravity = 1.0\n");
+  b.add(5, 3, 0, 0);
+  b.add(9, 3, 0, 0);
+  b.kernel->advance(b.system, 100);
+  b.system.beads[1].vx = std::nan("");
+  try {
+    b.kernel->advance(b.system, 100000);
+    FAIL() << "a speed that is not a number was accepted";
+  } catch (const RunError& e) {
+    EXPECT_NE(std::string(e.what()).find("step 101, "), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("bead 1 is no longer at a finite position"), std::string::npos)
+        << e.what();
+  }
 }
 
 TEST(Run, ABeadAtTheLidSaysSo) {
