@@ -3,6 +3,7 @@
 
 #include "analysis/observable.hpp"
 #include "analysis/results.hpp"
+#include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
@@ -19,6 +20,8 @@ struct AnalyzeOptions {
 
 void run(const Common& common, const AnalyzeOptions& options) {
   const H5mdReader trajectory(options.trajectory);
+  // An unwritable place is found before the work, not after.
+  if (!options.output.empty()) AtomicPath{options.output};
   ProgressBar progress(common, "analyze");
   const auto results = analyze(trajectory, options.analysis, progress);
 

@@ -3,6 +3,7 @@
 
 #include "analysis/phase_diagram.hpp"
 #include "analysis/report.hpp"
+#include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
@@ -24,6 +25,7 @@ void run(const Common& common, const CompareOptions& options) {
     throw ConfigError({.file = {}, .key = "compare"},
                       "there is nothing to compare: give --experiment and --simulation trajectories");
   require_range({.file = {}, .key = "--tolerance"}, options.tolerance, 0, 0.5);
+  { const AtomicPath probe(options.output, AtomicPath::Kind::folder); }  // found before the work, not after
   Provenance provenance = common.provenance();
   std::vector<Run> runs;
   const auto add = [&](const std::vector<std::string>& files, Side side) {

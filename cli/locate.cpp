@@ -55,6 +55,11 @@ void run(LocateOptions& o, const Common& common) {
   Scorer scorer(rows);
 
   const auto frames = open_frames(o.stack);
+  const auto announced = static_cast<std::int64_t>(frames->announced());
+  if (!o.overlay.empty() && announced > 0 && o.overlay_frame >= announced)
+    throw ConfigError(Where{.file = {}, .key = "--overlay-frame"},
+                      fmt::format("{} was asked for, the stack has {} frames, counted from 0.",
+                                  o.overlay_frame, announced));
   AtomicPath table(o.output);
   std::ofstream out(table.part());
   out << kHeading;
@@ -91,8 +96,9 @@ void run(LocateOptions& o, const Common& common) {
   out.close();
   if (!out) throw RunError(o.output + ": cannot be written.");
   if (!o.overlay.empty() && !drawn)
-    throw ConfigError(Where{.file = {}, .key = "overlay-frame"},
-                      fmt::format("is {}, but the stack has {} frames, counted from 0.", o.overlay_frame, n));
+    throw ConfigError(
+        Where{.file = {}, .key = "--overlay-frame"},
+        fmt::format("{} was asked for, the stack has {} frames, counted from 0.", o.overlay_frame, n));
   table.commit();
   document["diameter_px"] = o.locator.diameter_px;
   if (estimated)

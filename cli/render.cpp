@@ -49,7 +49,7 @@ void add_render(CLI::App& program, Common& common) {
   verb.add_option("--read-noise", c.read_noise, "Grey levels");
   verb.add_option("--tracer-darkness", c.tracer_darkness, "Darkness of tracers, 0.4 .. 1");
   verb.add_option("--exposure", c.exposure, "Motion blur: exposure in t0 (needs velocities)");
-  verb.add_option("--max-height", c.max_height, "Height shown, sigma; 0: the box");
+  verb.add_option("--max-height", c.max_height, "Height shown, sigma; 0: as high as beads get");
   verb.callback([o, &common] { run(*o, common); });
 }
 

@@ -142,10 +142,31 @@ cv::Mat1b SyntheticCamera::expose(const Frame& frame) const {
   return picture;
 }
 
+namespace {
+
+// The box of a simulation is tall enough never to be touched, so most of it would be a picture of nothing.
+double height_of_beads(const TrajectorySource& trajectory, Progress& progress) {
+  constexpr double kHeadroom = 2;
+  double top = 0;
+  Frame frame;
+  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
+    trajectory.read(f, frame);
+    for (std::size_t k = 0; k < frame.position.size(); ++k)
+      if (frame.present(k) && std::isfinite(frame.position[k].z()))
+        top = std::max(top, frame.position[k].z());
+    progress.update(0, static_cast<std::int64_t>(trajectory.n_frames()));
+  }
+  return std::min(trajectory.info().box.size().z(), top + kHeadroom);
+}
+
+}  // namespace
+
 std::size_t render(const TrajectorySource& trajectory, const CameraOptions& options,
                    const std::filesystem::path& folder, Progress& progress) {
   const TrajectoryInfo& info = trajectory.info();
-  const SyntheticCamera camera(options, info);
+  CameraOptions fitted = options;
+  if (fitted.max_height == 0) fitted.max_height = height_of_beads(trajectory, progress);
+  const SyntheticCamera camera(fitted, info);
   AtomicPath place(folder, AtomicPath::Kind::folder);
   std::string truth = "frame,id,x_px,y_px,r_px,tracer,phase,cycle\n";
   Frame frame;

@@ -27,7 +27,8 @@ struct CameraOptions {
   double read_noise = 1;            ///< grey levels, standard deviation, 0 .. 50
   double tracer_darkness = 0.6;     ///< darkness of a tracer disc, 0.4 .. 1
   double exposure = 0;              ///< t0; > 0 needs velocities, and smears along them
-  double max_height = 0;            ///< sigma shown above the plate; 0: the box's height
+  double max_height = 0;            ///< sigma shown above the plate; 0: the box's height, in render() the
+                                    ///< highest bead of the trajectory and two more
   std::uint64_t seed = 1;           ///< of the noise
   void check() const;               ///< \throws ConfigError
 };
