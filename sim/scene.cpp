@@ -114,9 +114,7 @@ void read_intruder(const Section& s, Scene& scene) {
   if (!radius) throw ConfigError(s.where("radius"), "an intruder needs its radius.");
   if (!z) throw ConfigError(s.where("z"), "an intruder needs the height at which it starts.");
   intruder.radius = *radius;
-  // Of the same material, unless its mass is given.
-  const double ratio = intruder.radius / scene.radius, powers = scene.inertia_factor == 0.5 ? 2 : 3;
-  intruder.mass = s.number_in("mass", 0, 1e12, true).value_or(scene.mass * std::pow(ratio, powers));
+  intruder.mass = s.number_in("mass", 0, 1e12, true).value_or(scene.mass_of(intruder.radius));
   intruder.x = s.number("x").value_or(scene.width / 2);
   if (scene.dimension == 2) refuse(s, {"y"}, "a 2D cell has no y.");
   intruder.y = scene.dimension == 3 ? s.number("y").value_or(scene.depth / 2) : 0;
@@ -425,6 +423,10 @@ double largest_deviation(SizeSpread spread, double width) {
       break;
   }
   return std::min(3 * width, 0.9);
+}
+
+double Scene::mass_of(double bead_radius) const {
+  return mass * std::pow(bead_radius / radius, inertia_factor == 0.5 ? 2 : 3);
 }
 
 std::vector<Wall> Scene::walls() const {
