@@ -1,4 +1,4 @@
-// Parameters that laws refuse, plans that cannot be, runs that go wrong: refused or stopped with one sentence.
+// Parameters that laws refuse, plans that cannot be, runs that go wrong: refused or stopped, in one sentence.
 
 #include <gtest/gtest.h>
 
