@@ -215,6 +215,29 @@ TEST(Sizes, MassesAreThoseOfOneMaterial) {
   }
 }
 
+TEST(Start, ShippedScenesBeginAsTheirSourceSays) {
+  const auto sample = [](const std::string& name) {
+    const Scene s = read_scene(std::string(TWINCELL_SOURCE_DIR) + "/data_samples/" + name + "/scene.toml");
+    auto beads = make_start(s).beads;
+    EXPECT_NO_THROW(require_sound(beads, s, 1e-8)) << name;
+    return std::pair(s, beads);
+  };
+  EXPECT_EQ(sample("fortini-huang-crystal").second.size(), 400U);
+  const auto [rough, spheres] = sample("bhateja-rough-3d");
+  EXPECT_DOUBLE_EQ(rough.drive.omega, std::sqrt(5));
+  EXPECT_EQ(spheres.size(), 100U);
+  const auto [slot, between] = sample("slot-3d");
+  ASSERT_EQ(between.size(), 400U);
+  for (const Bead& b : between) {
+    EXPECT_NEAR(b.radius, 0.5, 0.015);
+    EXPECT_NEAR(b.y, 1.15 / 2, 0.09);
+  }
+  const auto [with_intruder, bed] = sample("intruder");
+  ASSERT_EQ(bed.size(), 401U);
+  EXPECT_DOUBLE_EQ(bed.back().mass, 25);
+  EXPECT_DOUBLE_EQ(bed.back().z - bed.back().radius, 0.5);
+}
+
 TEST(Start, AnySizesAndAnIntruderOverlapNowhere) {
   for (const std::string& text : {kFlat, kSpace})
     for (const char* kind : {"crystal_a", "crystal_b", "random"})
