@@ -66,7 +66,7 @@ TEST(Scene, ComplaintsNameLineKeyValueAndBound) {
                    "scene.toml:4:8: drive.gama: there is no such key; did you mean 'drive.gamma'?");
   expect_complaint("[beads]\ncount = 1\n[drive]\ngamma = 1.0\n",
                    "scene.toml:3:1: drive: two of amplitude, omega,");
-  expect_complaint(kGood + "[cell]\ndimension = 3\n", "3 is not simulated by this version");
+  expect_complaint(kGood + "[cell]\ndimension = 3\n", "a 3D cell needs its depth");
 }
 
 TEST(Scene, RestitutionOneHasNoDamping) {  // H11
@@ -201,7 +201,7 @@ TEST(Run, ANumberThatIsNoneIsFoundInItsStep) {
     b.kernel->advance(b.system, 100000);
     FAIL() << "a speed that is not a number was accepted";
   } catch (const RunError& e) {
-    EXPECT_NE(std::string(e.what()).find("step 101, "), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("step 100, "), std::string::npos) << e.what();
     EXPECT_NE(std::string(e.what()).find("bead 1 is no longer at a finite position"), std::string::npos)
         << e.what();
   }
