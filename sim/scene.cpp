@@ -383,6 +383,9 @@ Scene interpret(const Config& config, const std::string& name) {
   read_scale(root.section("scale"), scene);
   // A misspelt key explains more than what is missing because of it.
   config.refuse_unknown_keys();
+  const ContactChoice& laws = scene.contact;
+  check_laws(laws.normal, laws.tangential, laws.rolling, laws.bead);
+  for (const auto& [wall, table] : laws.wall) check_laws(laws.normal, laws.tangential, laws.rolling, table);
   scene.drive = solve_drive(spec, g, drive.where(""), scene.drive.axis);
   const bool from_file = scene.start == StartKind::trajectory || scene.start == StartKind::table;
   if (!scene.n_beads && !from_file)
@@ -405,7 +408,8 @@ Scene resolve(Config config, const std::string& name, const std::vector<std::str
   const auto chosen = std::find_if(all.begin(), all.end(), [&](const auto& p) { return p.first == *preset; });
   Config base = Config::from_text(chosen->second, "preset " + *preset);
   for (const char* section : {"contact", "contact.wall"})
-    for (const auto& group : kAlternatives) base.yield_to(config, section, group);
+    for (const auto& group : {normal_damping_keys(), tangential_damping_keys()})
+      base.yield_to(config, section, group);
   base.yield_to(config, "beads", {"count", "layers"});
   base.overlay(std::move(config));
   return interpret(base, name);

