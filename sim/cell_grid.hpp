@@ -17,8 +17,7 @@ inline Vec3 centre_of(const Bead& b) {
   return {b.x, b.y, b.z};
 }
 
-/// From r to the nearest of its images: r + nearest_shift(r) is the shortest. Axes of period 0 are not
-/// periodic.
+/// From r to the nearest of its images: r + nearest_shift(r) is the shortest. Period 0: not periodic.
 inline Vec3 nearest_shift(const Vec3& r, const std::array<double, 3>& period) {
   Vec3 shift = Vec3::Zero();
   for (int a = 0; a < 3; ++a)
@@ -31,28 +30,32 @@ inline Vec3 nearest_shift(const Vec3& r, const std::array<double, 3>& period) {
 /// cell beside one a hundred times larger.
 class CellGrid {
  public:
-  /// \param n most beads that will be inserted
-  /// \param largest_radius of all beads
+  /// \param radii of all beads that will be inserted or looked for
   /// \param margin gap between surfaces up to which around() finds beads
   /// \param dimension 2: y is ignored
   /// \param period of x, y, z; 0: not periodic
-  CellGrid(std::size_t n, double largest_radius, double margin, int dimension,
+  CellGrid(const std::vector<double>& radii, double margin, int dimension,
            const std::array<double, 3>& period)
-      : largest_(largest_radius), dimension_(dimension), period_(period), next_(n, -1) {
+      : dimension_(dimension), period_(period), next_(radii.size(), -1) {
     std::size_t capacity = 16;
-    while (capacity < 2 * n) capacity *= 2;
+    while (capacity < 2 * radii.size()) capacity *= 2;
     slots_.resize(capacity);
-    // Wider than the reach by more than rounding can move a bead across cells.
-    constexpr double kSlack = 1 + 1e-6;
-    for (int k = 0; k < kClasses; ++k) {
-      Level& level = levels_[static_cast<std::size_t>(k)];
-      const double reach = std::max((2 * std::ldexp(largest_, -k) + margin) * kSlack, kTiny);
-      for (std::size_t a = 0; a < 3; ++a) {
-        if (period[a] > 0)
-          level.count[a] = static_cast<std::int64_t>(std::clamp(std::floor(period[a] / reach), 1.0, kFar));
-        level.edge[a] = period[a] > 0 ? period[a] / static_cast<double>(level.count[a]) : reach;
-      }
+    for (const double r : radii) largest_ = std::max(largest_, r);
+    std::array<double, kClasses> reach{};
+    for (const double r : radii) {
+      double& of_class = reach[static_cast<std::size_t>(size_class(r))];
+      of_class = std::max(of_class, 2 * r + margin);
     }
+    // Wider than the reach by more than rounding can move a bead across cells.
+    constexpr double kSlack = 1 + 1e-6, kTiny = 1e-12;
+    for (std::size_t k = 0; k < kClasses; ++k)
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double edge = std::max(reach[k] * kSlack, kTiny);
+        levels_[k].count[a] =
+            period[a] > 0 ? static_cast<std::int64_t>(std::clamp(std::floor(period[a] / edge), 1.0, kFar))
+                          : 0;
+        levels_[k].edge[a] = period[a] > 0 ? period[a] / static_cast<double>(levels_[k].count[a]) : edge;
+      }
   }
 
   /// 0 for radii in (largest/2, largest], 1 for the next half, and so on.
@@ -69,8 +72,9 @@ class CellGrid {
     const int k = size_class(radius);
     Level& level = levels_[static_cast<std::size_t>(k)];
     ++level.beads;
-    Slot& slot = slots_[find(key(k, cell(level, r)))];
-    slot.key = key(k, cell(level, r));
+    const std::uint64_t here = key(k, cell(level, r));
+    Slot& slot = slots_[find(here)];
+    slot.key = here;
     next_[static_cast<std::size_t>(bead)] = slot.first;
     slot.first = bead;
   }
@@ -104,7 +108,6 @@ class CellGrid {
  private:
   static constexpr int kClasses = 15;      ///< the sixteenth that a key could hold is the empty key's
   static constexpr double kFar = 1 << 19;  ///< cells from the origin; beyond, they are merged into one
-  static constexpr double kTiny = 1e-12;
   static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
   using Cell = std::array<std::int64_t, 3>;
 
@@ -139,7 +142,7 @@ class CellGrid {
   }
   static std::uint64_t key(int size_class, const Cell& c) {
     std::uint64_t k = static_cast<std::uint64_t>(size_class);
-    for (const std::int64_t x : c)  // 20 bits hold a coordinate, one more its neighbours' at either end
+    for (const std::int64_t x : c)  // beyond 20 bits opposite ends share a key, which costs a look
       k = (k << 20) | (static_cast<std::uint64_t>(x + (std::int64_t{1} << 19)) & 0xFFFFF);
     return k;
   }
@@ -153,7 +156,7 @@ class CellGrid {
     return at;
   }
 
-  double largest_;
+  double largest_ = 0;
   int dimension_;
   std::array<double, 3> period_;
   std::array<Level, kClasses> levels_;
@@ -168,14 +171,15 @@ class CellGrid {
 template <class Visit>
 void for_each_near_pair(const std::vector<Bead>& beads, int dimension, const std::array<double, 3>& period,
                         double margin, Visit visit) {
-  double largest = 0;
-  for (const Bead& b : beads) largest = std::max(largest, b.radius);
-  CellGrid grid(beads.size(), largest, margin, dimension, period);
+  std::vector<double> radii;
+  radii.reserve(beads.size());
+  for (const Bead& b : beads) radii.push_back(b.radius);
+  CellGrid grid(radii, margin, dimension, period);
   // Large beads first: each then has only to look for its equals and its betters.
   std::vector<std::pair<int, std::int32_t>> order;
   order.reserve(beads.size());
-  for (const Bead& b : beads)
-    order.emplace_back(grid.size_class(b.radius), static_cast<std::int32_t>(order.size()));
+  for (const double r : radii)
+    order.emplace_back(grid.size_class(r), static_cast<std::int32_t>(order.size()));
   std::sort(order.begin(), order.end());
   for (const auto& [size_class, k] : order) {
     const Bead& b = beads[static_cast<std::size_t>(k)];

@@ -41,14 +41,12 @@ tangential = "none"
 mu = 0.0
 )";
   static const std::vector<std::pair<std::string, std::string>> all = {
-      // Table I and section II; omega = 1/t0, so that A = Gamma and K_m = Gamma^2. Side walls ride with the
-      // plate.
+      // Table I and section II; omega = 1/t0, so that A = Gamma and K_m = Gamma^2. By default side walls ride
+      // with the plate and beads are discs, in a 3D slot spheres.
       {"fortini-huang-2015", R"(
 [cell]
 width = 20.0
 sides = "walls"
-[beads]
-inertia = "disc"
 [contact]
 k_n = 1e6
 gamma_n = 100.0
@@ -89,8 +87,7 @@ axis = "x"
 amplitude = 10.0
 )"},
       // Fig. 6: no gravity, a lid ten diameters above the floor that moves with it. Without g the only clock
-      // is
-      // d/V_p, so the drive is named by A and omega.
+      // is d/V_p, so the drive is named by A and omega.
       {"bhateja-2016-zero-g", R"(
 [cell]
 dimension = 3
