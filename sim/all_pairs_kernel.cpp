@@ -78,7 +78,7 @@ class AllPairsKernel : public Kernel {
     constexpr std::size_t kMostMemory = 7;
     const auto n = static_cast<std::int32_t>(s.beads.size());
     PairArgs p{};
-    p.records = beads_.records(), p.forces = beads_.forces();
+    p.records = beads_.records(), p.spins = beads_.spins(), p.forces = beads_.forces();
     p.packets = 1, p.dt = s.dt, p.magic = magic_;
     for (std::int32_t i = 0; i < n; ++i)
       for (std::int32_t j = i + 1; j < n; ++j) {
@@ -106,7 +106,8 @@ class AllPairsKernel : public Kernel {
     for (std::size_t w = 0; w < s.walls.size(); ++w) {
       const Wall& wall = s.walls[w];
       WallArgs g{};
-      g.records = p.records, g.forces = p.forces, g.packets = 1, g.dt = s.dt, g.magic = magic_;
+      g.records = p.records, g.spins = p.spins, g.forces = p.forces, g.packets = 1, g.dt = s.dt,
+      g.magic = magic_;
       Vec3 v = Vec3::Zero();
       if (wall.moves) v[axis] = plate_velocity;
       g.n[0] = wall.n.x(), g.velocity[0] = v.x();

@@ -156,12 +156,8 @@ struct HighwayLanes {
     }
     HWY_INLINE static Row load(const double* p) { return {hn::Load(Four(), p)}; }
     void store(double* p) const { hn::Store(raw, Four(), p); }
-    [[nodiscard]] Row low_to_high() const { return {hn::ConcatLowerLower(Four(), raw, hn::Zero(Four()))}; }
-    [[nodiscard]] Row high_to_low() const { return {hn::ConcatUpperUpper(Four(), hn::Zero(Four()), raw)}; }
+    [[nodiscard]] HWY_INLINE Row swapped() const { return {hn::SwapAdjacentBlocks(raw)}; }
     HWY_INLINE static Row low_high(Row a, Row b) { return {hn::ConcatUpperLower(Four(), b.raw, a.raw)}; }
-    HWY_INLINE static Row with_first(Row a, double first) {
-      return {hn::IfThenElse(hn::FirstN(Four(), 1), hn::Set(Four(), first), a.raw)};
-    }
     HWY_INLINE friend Row operator+(Row a, Row b) { return {hn::Add(a.raw, b.raw)}; }
     HWY_INLINE friend Row operator*(Row a, Row b) { return {hn::Mul(a.raw, b.raw)}; }
     HWY_INLINE friend Row fma(Row a, Row b, Row c) { return {hn::MulAdd(a.raw, b.raw, c.raw)}; }
@@ -169,6 +165,86 @@ struct HighwayLanes {
     HWY_INLINE friend Row abs(Row a) { return {hn::Abs(a.raw)}; }
     HWY_INLINE friend Row max(Row a, Row b) { return {hn::Max(a.raw, b.raw)}; }
   };
+
+  /// Integrates whole blocks of 2D beads, as many records to a vector as fit, and returns the first bead that
+  /// is left. The same operations in the same order as one bead at a time.
+  static constexpr int kBlock = kLanes;
+  template <bool kPredicted, int kKicks, bool kDrift>
+  static std::int64_t integrate_blocks(const IntegrateArgs& p, Row h_row, Row dt_row, Row gravity_row,
+                                       Row fallen_row, Row& most_row) {
+    const Wide d;
+    constexpr int kBeads = kLanes / 4;  // of a vector
+    const Raw h = spread(h_row), dt = spread(dt_row), gravity = spread(gravity_row),
+              fallen = spread(fallen_row);
+    const auto upper = hn::Ne(spread(Row::high(1, 1)), hn::Zero(d));
+    const Raw alike = spread(Row{hn::Load(Four(), p.inv_mass)}),
+              alike_kick = hn::Set(d, -(p.dt / 2) * p.turn[0]);
+    Raw most = hn::Zero(d);
+    std::int64_t b = p.begin;
+    for (; b + kBlock <= p.end; b += kBlock) {
+      Raw f[4];
+      for (int k = 0; k < 4; ++k) {
+        const std::int64_t at = 4 * (b + kBeads * k);
+        f[k] = hn::LoadU(d, p.forces + at);
+        const Raw inv_m = p.inertia_step == 0 ? alike : hn::LoadU(d, p.inv_mass + at);
+        const Raw a = hn::MulAdd(hn::SwapAdjacentBlocks(f[k]), inv_m, gravity);
+        const Raw r = hn::LoadU(d, p.records + at);
+        Raw v = kPredicted ? hn::LoadU(d, p.velocities + at) : r;
+        for (int kick = 0; kick < kKicks; ++kick) v = hn::MulAdd(h, a, v);
+        Raw next = kPredicted ? r : v;
+        if constexpr (kDrift) {
+          next = hn::MulAdd(hn::SwapAdjacentBlocks(v), dt, next);
+          hn::StoreU(hn::Zero(d), d, p.forces + at);
+        }
+        if constexpr (kPredicted) {
+          hn::StoreU(v, d, p.velocities + at);
+          next = hn::IfThenElse(upper, kDrift ? hn::MulAdd(h, a, v) : v, next);
+        }
+        hn::StoreU(next, d, p.records + at);
+        most = hn::Max(most, hn::Abs(hn::Sub(v, hn::Add(hn::LoadU(d, p.reference + at), fallen))));
+      }
+      if (!p.spin) continue;
+      // The turning moments are the third numbers of the force rows.
+      Raw q;
+      if constexpr (kLanes == 8)
+        q = hn::ConcatOdd(d, hn::ConcatEven(d, f[3], f[2]), hn::ConcatEven(d, f[1], f[0]));
+      else
+        q = hn::ConcatUpperLower(
+            d,
+            hn::SwapAdjacentBlocks(
+                hn::InterleaveLower(d, hn::SwapAdjacentBlocks(f[2]), hn::SwapAdjacentBlocks(f[3]))),
+            hn::InterleaveLower(d, hn::SwapAdjacentBlocks(f[0]), hn::SwapAdjacentBlocks(f[1])));
+      Raw kick = alike_kick;
+      if (p.inertia_step != 0) kick = hn::Mul(hn::Set(d, -(p.dt / 2)), hn::LoadU(d, p.turn + b));
+      kick = hn::Mul(kick, q);
+      Raw s = hn::LoadU(d, (kPredicted ? p.held_spins : p.spins) + b);
+      for (int n = 0; n < kKicks; ++n) s = hn::Add(s, kick);
+      if constexpr (kPredicted) {
+        hn::StoreU(s, d, p.held_spins + b);
+        if constexpr (kDrift) s = hn::Add(s, kick);
+      }
+      hn::StoreU(s, d, p.spins + b);
+    }
+    most_row = max(most_row, folded(most));
+    return b;
+  }
+  /// The larger of a vector's rows.
+  template <class R>
+  HWY_INLINE static Row folded(R r) {
+    if constexpr (kLanes == 8)
+      return max(Row{hn::LowerHalf(Four(), r)}, Row{hn::UpperHalf(Four(), r)});
+    else
+      return Row{r};
+  }
+  /// A row in every row of a vector.
+  HWY_INLINE static Raw spread(Row r) { return spread_raw(r.raw); }
+  template <class R>
+  HWY_INLINE static Raw spread_raw(R r) {
+    if constexpr (kLanes == 8)
+      return hn::Combine(Wide(), r, r);
+    else
+      return r;
+  }
 
   HWY_INLINE static V load(const double* p) {
     return by_side([&](int k) HWY_ATTR { return hn::LoadU(Wide(), p + k * kLanes); });
@@ -245,37 +321,47 @@ struct HighwayLanes {
     }
   }
   template <int D>
-  HWY_INLINE static void spin_sums(const double* records, const std::int32_t* i, const std::int32_t* j,
-                                   V* s) {
-    spins_of<D>(
-        [=](int k, int at, auto tag) HWY_ATTR {
-          return hn::Add(hn::Load(tag, records + i[k] + at), hn::Load(tag, records + j[k] + at));
-        },
-        s);
+  HWY_INLINE static void spin_sums(const double* spin, const std::int32_t* i, const std::int32_t* j, V* s) {
+    if constexpr (D == 2)
+      gather([=](int k) HWY_ATTR { return *at(spin, i[k], 4) + *at(spin, j[k], 4); }, s);
+    else
+      spins_of(
+          [=](int k) HWY_ATTR {
+            return hn::Add(hn::Load(Four(), at(spin, i[k], 2)), hn::Load(Four(), at(spin, j[k], 2)));
+          },
+          s);
   }
   template <int D>
-  HWY_INLINE static void spins(const double* records, const std::int32_t* i, V* s) {
-    spins_of<D>([=](int k, int at, auto tag) HWY_ATTR { return hn::Load(tag, records + i[k] + at); }, s);
+  HWY_INLINE static void spins(const double* spin, const std::int32_t* i, V* s) {
+    if constexpr (D == 2)
+      gather([=](int k) HWY_ATTR { return *at(spin, i[k], 4); }, s);
+    else
+      spins_of([=](int k) HWY_ATTR { return hn::Load(Four(), at(spin, i[k], 2)); }, s);
   }
-  template <int D, class Get>
-  HWY_INLINE static void spins_of(Get get, V* s) {
-    if constexpr (D == 2) {
-      const Two d2;
-      for (int side = 0; side < kSide; ++side) {
-        const auto two = [&](int k) HWY_ATTR {
-          const int at = side * kLanes + k;
-          return hn::InterleaveLower(d2, get(at, 4, d2), get(at + 1, 4, d2));
-        };
-        if constexpr (kLanes == 8)
-          s[0].raw[side] =
-              hn::Combine(Wide(), hn::Combine(Four(), two(6), two(4)), hn::Combine(Four(), two(2), two(0)));
-        else
-          s[0].raw[side] = hn::Combine(Four(), two(2), two(0));
-      }
-    } else {
-      V* const to[3] = {&s[0], &s[1], &s[2]};
-      transpose<3>([&](int k) HWY_ATTR { return get(k, 8, Four()); }, to);
+  /// Numbers that stand `part` times as dense as records do: the processor scales the index by 8/part.
+  HWY_INLINE static const double* at(const double* numbers, std::int32_t i, int part) {
+    return reinterpret_cast<const double*>(reinterpret_cast<const char*>(numbers) +
+                                           std::ptrdiff_t{8 / part} * i);
+  }
+  template <class Get>
+  HWY_INLINE static void gather(Get number, V* s) {
+    const Two d2;
+    for (int side = 0; side < kSide; ++side) {
+      const auto two = [&](int k) HWY_ATTR {
+        return hn::InterleaveLower(d2, hn::Set(d2, number(side * kLanes + k)),
+                                   hn::Set(d2, number(side * kLanes + k + 1)));
+      };
+      if constexpr (kLanes == 8)
+        s[0].raw[side] =
+            hn::Combine(Wide(), hn::Combine(Four(), two(6), two(4)), hn::Combine(Four(), two(2), two(0)));
+      else
+        s[0].raw[side] = hn::Combine(Four(), two(2), two(0));
     }
+  }
+  template <class Get>
+  HWY_INLINE static void spins_of(Get row, V* s) {
+    V* const to[3] = {&s[0], &s[1], &s[2]};
+    transpose<3>(row, to);
   }
 
   template <class R>
@@ -302,10 +388,6 @@ struct HighwayLanes {
       }
     }
   }
-  /// Where forces on the bead stand whose record begins at number i: forces take half the room.
-  HWY_INLINE static double* of(double* forces, std::int32_t i) {
-    return reinterpret_cast<double*>(reinterpret_cast<char*>(forces) + std::ptrdiff_t{4} * i);
-  }
   HWY_INLINE static void add_row(double* at, FourRaw f) {
     hn::Store(hn::Add(hn::Load(Four(), at), f), Four(), at);
   }
@@ -313,7 +395,7 @@ struct HighwayLanes {
   template <int D, bool kSpin>
   HWY_INLINE static void add_one(double* forces, const std::int32_t* i, const V* f, const V* q) {
     const auto to = [=](int offset) {
-      return [=](int k, FourRaw row) HWY_ATTR { add_row(of(forces, i[k]) + offset, row); };
+      return [=](int k, FourRaw row) HWY_ATTR { add_row(forces + i[k] + offset, row); };
     };
     if constexpr (D == 2) {
       rows(f[0], f[1], kSpin ? q[0] : V(0.0), to(0));
@@ -339,14 +421,14 @@ struct HighwayLanes {
            : kSpin ? q_i[0]
                    : V(0.0),
            [&](int k, FourRaw row) HWY_ATTR {
-             add_row(of(forces, i[k]), row);
-             double* at = of(forces, j[k]);
+             add_row(forces + i[k], row);
+             double* at = forces + j[k];
              hn::Store(hn::MulAdd(row, signs, hn::Load(Four(), at)), Four(), at);
            });
       if constexpr (D == 3 && kSpin)
         rows(q_i[0], q_i[1], q_i[2], [&](int k, FourRaw row) HWY_ATTR {
-          add_row(of(forces, i[k]) + 4, row);
-          add_row(of(forces, j[k]) + 4, row);
+          add_row(forces + i[k] + 4, row);
+          add_row(forces + j[k] + 4, row);
         });
     }
   }

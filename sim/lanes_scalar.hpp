@@ -10,6 +10,7 @@ namespace twincell::sim {
 struct ScalarLanes {
   using V = double;
   static constexpr int kWidth = 1;
+  static constexpr int kBlock = 0;  ///< beads that integrate_blocks() would take at a time
 
   /// Four numbers of a record.
   struct Row {
@@ -22,10 +23,8 @@ struct ScalarLanes {
     void store(double* p) const {
       for (int k = 0; k < 4; ++k) p[k] = c[k];
     }
-    [[nodiscard]] Row low_to_high() const { return {{0, 0, c[0], c[1]}}; }
-    [[nodiscard]] Row high_to_low() const { return {{c[2], c[3], 0, 0}}; }
+    [[nodiscard]] Row swapped() const { return {{c[2], c[3], c[0], c[1]}}; }
     static Row low_high(Row a, Row b) { return {{a.c[0], a.c[1], b.c[2], b.c[3]}}; }
-    static Row with_first(Row a, double first) { return {{first, a.c[1], a.c[2], a.c[3]}}; }
     template <class F>
     static Row each(F f) {
       return {{f(0), f(1), f(2), f(3)}};
@@ -60,7 +59,7 @@ struct ScalarLanes {
     const double* a = records + *i;
     for (int k = 0; k < D; ++k) {
       r[k] = a[k];
-      v[k] = a[(D == 2 ? 2 : 4) + k];
+      v[k] = a[kRecord<D> / 2 + k];
     }
   }
   template <int D>
@@ -74,19 +73,19 @@ struct ScalarLanes {
     }
   }
   template <int D>
-  static void spins(const double* records, const std::int32_t* i, V* s) {
-    for (int k = 0; k < kTurns<D>; ++k) s[k] = records[*i + (D == 2 ? 4 : 8) + k];
+  static void spins(const double* spin, const std::int32_t* i, V* s) {
+    for (int k = 0; k < kTurns<D>; ++k) s[k] = spin[spin_place<D>(*i) + k];
   }
   template <int D>
-  static void spin_sums(const double* records, const std::int32_t* i, const std::int32_t* j, V* s) {
+  static void spin_sums(const double* spin, const std::int32_t* i, const std::int32_t* j, V* s) {
     V s_j[kTurns<D>];
-    spins<D>(records, i, s);
-    spins<D>(records, j, s_j);
+    spins<D>(spin, i, s);
+    spins<D>(spin, j, s_j);
     for (int k = 0; k < kTurns<D>; ++k) s[k] += s_j[k];
   }
   template <int D, bool kSpin>
   static void add_one(double* forces, const std::int32_t* i, const V* f, const V* q, double sign = 1) {
-    double* a = forces + *i / 2;
+    double* a = forces + *i;
     for (int k = 0; k < D; ++k) a[k] += sign * f[k];
     if constexpr (kSpin)
       for (int k = 0; k < kTurns<D>; ++k) a[(D == 2 ? 2 : 4) + k] += q[k];

@@ -492,7 +492,7 @@ double length(const double* v) {
 void ListKernel::refresh_pairs(System& s) {
   // Velocities from which free flight is reckoned.
   VelocityRange range;
-  const Size stride = dimension_ == 2 ? kRecord<2> : kRecord<3>, at = dimension_ == 2 ? 2 : 4;
+  const Size stride = dimension_ == 2 ? kRecord<2> : kRecord<3>, at = stride / 2;
   for (Size k = 0; k < beads_.size(); ++k) {
     const double* v = beads_.records() + stride * k + at;
     range.include(v, static_cast<int>(dimension_));
@@ -577,6 +577,7 @@ void ListKernel::add_up_motion(const System& s) {
 void ListKernel::forces(const System& s, Part& part) {
   PairArgs p{};
   p.records = beads_.records();
+  p.spins = beads_.spins();
   p.forces = beads_.forces();
   Packets& a = part.active;
   p.i = a.i.data(), p.j = a.j.data();
@@ -597,7 +598,7 @@ void ListKernel::forces(const System& s, Part& part) {
     if (near.count == 0) continue;
     const Wall& wall = s.walls[w];
     WallArgs g{};
-    g.records = p.records, g.forces = p.forces;
+    g.records = p.records, g.spins = p.spins, g.forces = p.forces;
     g.bead = near.i.data();
     g.memory = near.memory.data();
     g.constants = beads_.equal() ? wall_constants_[w].data() : near.constants.data();

@@ -48,6 +48,7 @@ class PackedBeads {
   [[nodiscard]] PairScale wall(std::size_t a) const;
 
   [[nodiscard]] double* records() { return records_.data(); }
+  [[nodiscard]] double* spins() { return spins_.data(); }
   [[nodiscard]] double* forces() { return forces_.data(); }
   /// Arguments of the integrate pass for all beads.
   [[nodiscard]] IntegrateArgs integrate_args(const System& s);
@@ -61,8 +62,8 @@ class PackedBeads {
   const Plan* plan_;
   std::size_t n_ = 0;
   bool equal_ = true;
-  Lines records_, forces_, velocities_;
-  std::vector<double> radius_, mass_, inertia_, inverse_;
+  Lines records_, forces_, spins_, velocities_, held_spins_, inv_mass_;
+  std::vector<double> radius_, mass_, inertia_, turn_;
 };
 
 /// The constant that rounds forces to a grain at which sums are exact (contact.hpp).

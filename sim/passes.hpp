@@ -12,19 +12,28 @@
 
 namespace twincell::sim {
 
-/// A bead as kernels hold it. 2D, 8 numbers in one cache line: x z vx vz | Rw 0 0 0. 3D, 16 numbers: x y z 0
-/// | vx vy vz 0 | Rwx Rwy Rwz 0 | 0 0 0 0. The velocities are those that dashpots see.
+/// A bead as kernels hold it, in as few cache lines as it takes. Record, 2D: x z vx vz; 3D: x y z 0 | vx vy
+/// vz 0. The velocities are those that dashpots see. Contact forces, 2D: fx fz q 0; 3D: fx fy fz 0 | qx qy qz
+/// 0. Spins R w, 2D: one number; 3D: x y z 0.
 template <int D>
-inline constexpr int kRecord = D == 2 ? 8 : 16;
-/// Its contact forces: 2D fx fz q 0; 3D fx fy fz 0 | qx qy qz 0.
+inline constexpr int kRecord = D == 2 ? 4 : 8;
 template <int D>
-inline constexpr int kForceRecord = kRecord<D> / 2;
+inline constexpr int kForceRecord = kRecord<D>;
+template <int D>
+inline constexpr int kSpinRecord = D == 2 ? 1 : 4;
+
+/// Where the spin of the bead stands whose record begins at number i.
+template <int D>
+constexpr std::int32_t spin_place(std::int32_t i) {
+  return i / (kRecord<D> / kSpinRecord<D>);
+}
 
 /// Contacts of listed pairs. Indices are those of the first number of a bead's record, kRecord times its
 /// place; they come in packets as wide as the vectors. `memory`, `shift` and per-pair constants are
 /// [packet][number][lane].
 struct PairArgs {
   const double* records;
+  const double* spins;
   double* forces;
   const std::int32_t* i;
   const std::int32_t* j;
@@ -42,6 +51,7 @@ struct PairArgs {
 /// Contacts of listed beads with one wall.
 struct WallArgs {
   const double* records;
+  const double* spins;
   double* forces;
   const std::int32_t* bead;
   double* memory;
@@ -64,13 +74,16 @@ struct Deviation {
 /// Half kicks, then (optionally) a drift; forces are read and set to zero if drifting.
 struct IntegrateArgs {
   double* records;
+  double* spins;
   double* forces;
-  double* velocities;  ///< [bead][kForceRecord] true half-step velocities where records hold predicted ones;
-                       ///< else null
-  const double* inertia;  ///< [bead] {1/m, R^2/I}, or one set if inertia_step is 0
-  std::ptrdiff_t inertia_step;
-  std::int64_t begin, end;  ///< beads
-  const double* reference;  ///< [bead] record rows whose velocities beads had when the list was made
+  double* velocities;  ///< [bead][4] true half-step velocities where records hold predicted ones, else null;
+                       ///< 2D: 0 0 vx vz
+  double* held_spins;  ///< [bead][kSpinRecord] the same of spins
+  const double* inv_mass;       ///< [bead][4] 1/m where a row has velocities, 0 elsewhere; or one row
+  const double* turn;           ///< [bead] R^2/I; or one
+  std::ptrdiff_t inertia_step;  ///< 1; or 0 if all beads are alike
+  std::int64_t begin, end;      ///< beads
+  const double* reference;  ///< [bead][4] velocities, as in rows of records, at the time the list was made
   double fallen[3];         ///< what gravity has added to all of them since
   int kicks;                ///< 1 or 2 half kicks
   bool drift;

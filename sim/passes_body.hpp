@@ -51,11 +51,11 @@ double pair_pass(const PairArgs& args) {
     a.overlap = nfma(r2, inv_r, reach);
     for (int m = 0; m < D; ++m) a.n[m] = d[m] * inv_r;
     if constexpr (Laws::Tangential::kActs) {
-      Lanes::template spin_sums<D>(p.records, i, j, a.s);
+      Lanes::template spin_sums<D>(p.spins, i, j, a.s);
       if constexpr (Laws::Rolling::kActs) {
         V s_i[K], s_j[K];
-        Lanes::template spins<D>(p.records, i, s_i);
-        Lanes::template spins<D>(p.records, j, s_j);
+        Lanes::template spins<D>(p.spins, i, s_i);
+        Lanes::template spins<D>(p.spins, j, s_j);
         for (int m = 0; m < K; ++m)
           a.w[m] = nfma(s_j[m], c[constant::kInvRadiusJ], s_i[m] * c[constant::kInvRadiusI]);
       }
@@ -102,7 +102,7 @@ double wall_pass(const WallArgs& args) {
     }
     if constexpr (Laws::Tangential::kActs) {
       V s[K];
-      Lanes::template spins<D>(p.records, bead, s);
+      Lanes::template spins<D>(p.spins, bead, s);
       for (int m = 0; m < K; ++m) {
         a.s[m] = s[m];
         if constexpr (Laws::Rolling::kActs) a.w[m] = s[m] * c[constant::kInvRadiusI];
@@ -134,45 +134,51 @@ Deviation integrate(const IntegrateArgs& args) {
   const Row dt_row = D == 2 ? Row::low(p.dt) : Row::all(p.dt);
   Row most = zero;
   const Row fallen = D == 2 ? Row::high(p.fallen[0], p.fallen[1]) : Row::three(p.fallen);
-  for (std::int64_t b = p.begin; b < p.end; ++b) {
+  std::int64_t b = p.begin;
+  if constexpr (D == 2 && Lanes::kBlock > 0)
+    b = Lanes::template integrate_blocks<kPredicted, kKicks, kDrift>(p, h_row, dt_row, gravity, fallen, most);
+  for (; b < p.end; ++b) {
     double* record = p.records + kRecord<D> * b;
     double* force = p.forces + kForceRecord<D> * b;
-    const double inv_m = p.inertia[p.inertia_step * b], turn = p.inertia[p.inertia_step * b + 1];
+    const Row inv_m = Row::load(p.inv_mass + p.inertia_step * 4 * b);
+    const double turn = p.turn[p.inertia_step * b];
     if constexpr (D == 2) {
-      // x z vx vz | spin: velocities are the upper half of a row, and so are accelerations.
-      const Row a = fma(Row::load(force).low_to_high(), Row::all(inv_m), gravity);
+      // Velocities are the upper half of a record, and so are accelerations.
+      const Row a = fma(Row::load(force).swapped(), inv_m, gravity);
       const double spin_kick = -h * turn * force[2];
       const Row r = Row::load(record);
-      Row v = kPredicted ? Row::load(p.velocities + 4 * b) : r;  // predicted: spin, -, vx, vz
-      double spin = kPredicted ? p.velocities[4 * b] : record[4];
+      Row v = kPredicted ? Row::load(p.velocities + 4 * b) : r;
+      double spin = kPredicted ? p.held_spins[b] : p.spins[b];
       for (int k = 0; k < kKicks; ++k) {
         v = fma(h_row, a, v);
         spin += spin_kick;
       }
       Row next = kPredicted ? r : v;
       if constexpr (kDrift) {
-        next = fma(v.high_to_low(), dt_row, next);
+        next = fma(v.swapped(), dt_row, next);
         zero.store(force);
       }
       if constexpr (kPredicted) {
-        Row::with_first(v, spin).store(p.velocities + 4 * b);
+        v.store(p.velocities + 4 * b);
+        p.held_spins[b] = spin;
         next = Row::low_high(next, kDrift ? fma(h_row, a, v) : v);
         if constexpr (kDrift) spin += spin_kick;
       }
       next.store(record);
-      if (p.spin) record[4] = spin;
+      if (p.spin) p.spins[b] = spin;
       most = max(most, abs(v - (Row::load(p.reference + 4 * b) + fallen)));
     } else {
-      const Row a = fma(Row::load(force), Row::all(inv_m), gravity);
+      const Row a = fma(Row::load(force), inv_m, gravity);
       const Row spin_kick = Row::all(-h * turn) * Row::load(force + 4);
-      double* held = kPredicted ? p.velocities + 8 * b : record + 4;
-      Row v = Row::load(held), s = Row::load(held + 4);
+      double* held = kPredicted ? p.velocities + 4 * b : record + 4;
+      double* held_spin = kPredicted ? p.held_spins + 4 * b : p.spins + 4 * b;
+      Row v = Row::load(held), s = Row::load(held_spin);
       for (int k = 0; k < kKicks; ++k) {
         v = fma(h_row, a, v);
         s = s + spin_kick;
       }
       v.store(held);
-      if (p.spin) s.store(held + 4);
+      if (p.spin) s.store(held_spin);
       if constexpr (kDrift) {
         fma(dt_row, v, Row::load(record)).store(record);
         zero.store(force);
@@ -180,7 +186,7 @@ Deviation integrate(const IntegrateArgs& args) {
       }
       if constexpr (kPredicted) {
         (kDrift ? fma(h_row, a, v) : v).store(record + 4);
-        if (p.spin) (kDrift ? s + spin_kick : s).store(record + 8);
+        if (p.spin) (kDrift ? s + spin_kick : s).store(p.spins + 4 * b);
       }
       most = max(most, abs(v - (Row::load(p.reference + 4 * b) + fallen)));
     }
