@@ -21,7 +21,7 @@ using Size = std::size_t;
 
 /// For how many steps the inner list is meant to last at most, and fewer than how many are a reason to be
 /// more generous.
-constexpr double kHorizon = 64, kShort = 24;
+constexpr double kHorizon = 64, kLongHorizon = 256, kShort = 24;
 constexpr double kWallSteps = 256;
 /// Pairs are dealt to packets in blocks of so many packets: the lanes of a packet are far enough apart that a
 /// bead seldom stands twice in it, and near enough that a block stays in the first-level cache.
@@ -39,6 +39,16 @@ struct Packets {
     const Size block = r / (kBlock * width), first = block * kBlock;
     const Size packets = std::min(kBlock, static_cast<Size>(count) - first), within = r - first * width;
     return {first + within % packets, within / packets};
+  }
+  /// Calls visit(r, packet, lane) for every place r of `length`, in order, without their divisions.
+  template <class Visit>
+  void for_each_place(Size length, Size width, Visit visit) const {
+    Size r = 0;
+    for (Size first = 0; first < static_cast<Size>(count); first += kBlock) {
+      const Size packets = std::min(kBlock, static_cast<Size>(count) - first);
+      for (Size lane = 0; lane < width; ++lane)
+        for (Size p = 0; p < packets && r < length; ++p, ++r) visit(r, first + p, lane);
+    }
   }
 };
 
@@ -98,7 +108,7 @@ class ListKernel : public Kernel {
   void make_outer(const System& s);
   void make_inner(Part& part);
   void make_walls(const System& s, Part& part);
-  [[nodiscard]] bool outer_is_stale() const;
+  [[nodiscard]] bool outer_is_stale();
   void refresh_pairs(System& s);
   void refresh_walls(const System& s);
   void drift(System& s);
@@ -130,10 +140,12 @@ class ListKernel : public Kernel {
   std::vector<ContactMemory> restored_;
 
   double skin_ = 0, largest_radius_ = 0;
+  double since_built_ = 0,
+         last_margin_ = 0;   ///< approach since the outer list was made, at most; HUGE_VAL: unknown
   std::vector<Vec3> built_;  ///< positions at the outer list's making
   // Inner list: pairs that free flight brings nearer than 2 slack within the horizon. It holds until contacts
   // have bent some bead's flight by slack, or the horizon is reached.
-  double slack_ = 1e-3, horizon_ = 0, margin_ = 0, deviated_ = 0;
+  double slack_ = 1e-3, horizon_ = 0, horizon_steps_ = kHorizon, margin_ = 0, deviated_ = 0;
   std::int64_t lasted_ = 0;
   Lines reference_;
   double least_[3] = {}, most_[3] = {}, fastest_ = 0,
@@ -238,7 +250,7 @@ std::vector<ContactMemory> ListKernel::contacts() const {
 }
 
 /// Beads have moved, against their mean, so far that an unlisted pair may be within the inner margin.
-bool ListKernel::outer_is_stale() const {
+bool ListKernel::outer_is_stale() {
   if (built_.size() != beads_.size()) return true;
   Vec3 mean = Vec3::Zero();
   for (Size k = 0; k < beads_.size(); ++k) mean += beads_.position(k) - built_[k];
@@ -254,7 +266,8 @@ bool ListKernel::outer_is_stale() const {
     }
   }
   // Negated, so that a position that is not a number makes the list stale and is found at the build.
-  return !(std::sqrt(first) + std::sqrt(second) + margin_ <= skin_);
+  since_built_ = std::sqrt(first) + std::sqrt(second);
+  return !(since_built_ + margin_ <= skin_);
 }
 
 void ListKernel::make_outer(const System& given) {
@@ -349,6 +362,7 @@ void ListKernel::make_outer(const System& given) {
   }
   built_.resize(beads_.size());
   for (Size k = 0; k < beads_.size(); ++k) built_[k] = beads_.position(k);
+  since_built_ = 0;
   wall_refresh_ = true;
   ++builds_;
 }
@@ -356,14 +370,14 @@ void ListKernel::make_outer(const System& given) {
 /// The pairs of the outer list with a gap below margin_, dealt out so that the lanes of a packet are far
 /// apart in space: then one bead seldom stands twice in a packet.
 void ListKernel::make_inner(Part& part) {
-  // What the old list remembers goes back to the pairs.
   Packets& a = part.active;
-  for (Size r = 0; r < a.source.size() && memory_ > 0; ++r) {
-    const auto [packet, lane] = a.place(r, width_);
-    for (Size m = 0; m < memory_; ++m)
-      part.memory[static_cast<Size>(a.source[r]) * memory_ + m] =
-          a.memory[(packet * memory_ + m) * width_ + lane];
-  }
+  // What the old list remembers goes back to the pairs.
+  if (memory_ > 0)
+    a.for_each_place(a.source.size(), width_, [&](Size r, Size packet, Size lane) {
+      const Size from = static_cast<Size>(a.source[r]);
+      for (Size m = 0; m < memory_; ++m)
+        part.memory[from * memory_ + m] = a.memory[(packet * memory_ + m) * width_ + lane];
+    });
   ScanArgs scan{};
   scan.records = beads_.records();
   scan.i = part.record_i.data(), scan.j = part.record_j.data();
@@ -374,9 +388,7 @@ void ListKernel::make_inner(Part& part) {
   scan.margin = 2 * slack_;
   scan.horizon = horizon_;
   scan.near = part.near.data();
-  passes_.scan(scan);
-  scan.margin = scan.horizon = 0;
-  scan.near = part.touching.data();
+  scan.touching = part.touching.data();
   passes_.scan(scan);
 
   // Those in contact first: packets of pairs that are merely near are passed over after a look at their
@@ -390,40 +402,39 @@ void ListKernel::make_inner(Part& part) {
   collect([&](Size k) -> unsigned { return part.touching[k]; });
   collect([&](Size k) -> unsigned { return part.near[k] & ~static_cast<unsigned>(part.touching[k]); });
   const Size n = a.source.size(), count = packets_of(n, width_), padded = count * width_;
+  const bool many = parts_.size() > 1, shifted = !part.shift.empty();
+  const Size constants = part.pairs == 0 ? 0 : part.constants.size() / part.pairs;
   a.count = static_cast<std::int64_t>(count);
-  const bool many = parts_.size() > 1;
   a.i.resize(padded), a.j.resize(padded);
   if (many) a.force_i.resize(padded), a.force_j.resize(padded);
   a.memory.resize(padded * memory_);
-  const Size constants = part.pairs == 0 ? 0 : part.constants.size() / part.pairs;
   a.constants.resize(padded * constants);
-  a.shift.resize(part.shift.empty() ? 0 : padded * dimension_);
+  a.shift.resize(shifted ? padded * dimension_ : 0);
   const auto own = [&](std::int32_t k) {
     return static_cast<Size>(k) >= part.begin && static_cast<Size>(k) < part.end ? k : part.dummy;
   };
-  for (Size r = 0; r < padded; ++r) {
-    const auto [packet, lane] = a.place(r, width_);
+  a.for_each_place(padded, width_, [&](Size r, Size packet, Size lane) {
     const Size at = packet * width_ + lane;
+    const auto set = [&](std::vector<double>& numbers, Size of, auto value) {
+      for (Size m = 0; m < of; ++m) numbers[(packet * of + m) * width_ + lane] = value(m);
+    };
     if (r >= n) {
       a.i[at] = a.j[at] = record(part.dummy);
       if (many) a.force_i[at] = a.force_j[at] = record(part.dummy);
-      for (Size m = 0; m < memory_; ++m) a.memory[(packet * memory_ + m) * width_ + lane] = 0;
-      for (Size m = 0; m < constants; ++m) a.constants[(packet * constants + m) * width_ + lane] = 1;
-      for (Size c = 0; c < dimension_ && !a.shift.empty(); ++c)
-        a.shift[(packet * dimension_ + c) * width_ + lane] = 0;
-      continue;
+      set(a.memory, memory_, [](Size) { return 0.0; });
+      set(a.constants, constants, [](Size) { return 1.0; });
+      if (shifted) set(a.shift, dimension_, [](Size) { return 0.0; });
+      return;
     }
     const Size from = static_cast<Size>(a.source[r]);
     a.i[at] = part.record_i[from], a.j[at] = part.record_j[from];
     if (many) a.force_i[at] = record(own(part.i[from])), a.force_j[at] = record(own(part.j[from]));
-    for (Size m = 0; m < memory_; ++m)
-      a.memory[(packet * memory_ + m) * width_ + lane] = part.memory[from * memory_ + m];
-    for (Size m = 0; m < constants; ++m)
-      a.constants[(packet * constants + m) * width_ + lane] = part.constants[from * constants + m];
-    for (Size c = 0; c < dimension_ && !a.shift.empty(); ++c)
-      a.shift[(packet * dimension_ + c) * width_ + lane] =
-          part.shift[(from / width_ * dimension_ + c) * width_ + from % width_];
-  }
+    set(a.memory, memory_, [&](Size m) { return part.memory[from * memory_ + m]; });
+    set(a.constants, constants, [&](Size m) { return part.constants[from * constants + m]; });
+    if (shifted)
+      set(a.shift, dimension_,
+          [&](Size c) { return part.shift[(from / width_ * dimension_ + c) * width_ + from % width_]; });
+  });
 }
 
 /// Beads near each wall.
@@ -507,10 +518,18 @@ void ListKernel::refresh_pairs(System& s) {
   else if (deviated_ < 0.25 * slack_)
     slack_ *= 0.5;
   slack_ = std::clamp(slack_, 1e-5 * skin_, 0.1 * skin_);
-  horizon_ = kHorizon * s.dt;
+  // A bed in flight has few pairs to look at: making the list is then the greater cost.
+  Size active = 0, listed = 0;
+  for (const Part& part : parts_) active += part.active.source.size(), listed += part.pairs;
+  horizon_steps_ = 4 * active < listed ? kLongHorizon : kHorizon;
+  horizon_ = horizon_steps_ * s.dt;
   margin_ = horizon_ * range.spread() + 2 * slack_;
-  if (rebuild_every_ > 0 && calls_ % rebuild_every_ == 0) built_.clear();
-  if (outer_is_stale()) make_outer(s);
+  // What any two beads may have approached since the outer list was made is at most what they may have in
+  // each stretch between looks; only when that no longer suffices are displacements measured.
+  since_built_ += last_margin_;
+  last_margin_ = margin_;
+  if (rebuild_every_ > 0 && calls_ % rebuild_every_ == 0) built_.clear(), since_built_ = HUGE_VAL;
+  if (!(since_built_ + margin_ <= skin_) && outer_is_stale()) make_outer(s);
   deviated_ = 0;
   lasted_ = 0;
   ++counters_.near_refreshes;
@@ -558,7 +577,7 @@ void ListKernel::add_up_motion(const System& s) {
   ++lasted_;
   const bool forced = rebuild_every_ > 0 && ++calls_ % rebuild_every_ == 0;
   // Negated comparisons: what is not a number must not pass.
-  pair_refresh_ = forced || !(deviated_ <= slack_ && lasted_ < kHorizon);
+  pair_refresh_ = forced || !(deviated_ <= slack_ && lasted_ < horizon_steps_);
   wall_refresh_ = forced;
   const double added = strayed + static_cast<double>(lasted_) * s.dt * s.gravity.norm();
   speed_bound_ = fastest_ + added;
@@ -710,6 +729,7 @@ void ListKernel::advance(System& s, std::int64_t steps) {
   wall_margin_.resize(s.walls.size(), 0), wall_approach_.resize(s.walls.size(), 0);
   plate_ = s.plate_height(), plate_velocity_ = s.plate_velocity();
   // Lists are checked at every call: the plate and the beads may have been moved by other hands.
+  since_built_ = HUGE_VAL;  // beads may have been moved by other hands
   reference_.resize(4 * s.beads.size());
   lasted_ = static_cast<std::int64_t>(kShort);
   refresh_pairs(s);

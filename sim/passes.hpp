@@ -104,6 +104,7 @@ struct ScanArgs {
   std::int64_t packets;
   double margin;
   double horizon;
+  std::uint16_t* touching;  ///< [packet] a bit per lane: in contact now
   std::uint16_t* near;  ///< [packet] a bit per lane
 };
 

@@ -222,9 +222,11 @@ void scan_pass(const ScanArgs& p) {
     for (int c = 1; c < D; ++c) r2 = fma(d[c], d[c], r2);
     V closing = d[0] * v[0];
     for (int c = 1; c < D; ++c) closing = fma(d[c], v[c], closing);
-    const V bound = Lanes::load(p.reach + p.reach_step * k) + V(p.margin);
-    p.near[k] = static_cast<std::uint16_t>(
-        Lanes::bits(fma(V(p.horizon), min(closing, V(0.0)), r2) < sqrt(r2) * bound));
+    const V reach = Lanes::load(p.reach + p.reach_step * k), r = sqrt(r2);
+    const auto touching = r < reach;
+    const auto near = fma(V(p.horizon), min(closing, V(0.0)), r2) < r * (reach + V(p.margin));
+    p.touching[k] = static_cast<std::uint16_t>(Lanes::bits(touching));
+    p.near[k] = static_cast<std::uint16_t>(Lanes::bits(near));
   }
 }
 
