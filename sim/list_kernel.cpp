@@ -82,13 +82,7 @@ class ListKernel : public Kernel {
         beads_(plan_) {
     width_ = static_cast<Size>(target.width);
     dimension_ = static_cast<Size>(plan.dimension);
-    std::visit(
-        [&](const auto& n, const auto& t, const auto& r) {
-          const Size turns = plan.dimension == 2 ? 1 : 3;
-          memory_ =
-              static_cast<Size>(n.kMemory) + (t.kHistory ? turns : 0) + (t.kActs && r.kActs ? turns : 0);
-        },
-        plan.bead.normal, plan.bead.tangential, plan.bead.rolling);
+    memory_ = static_cast<Size>(passes_.remembered);
     magic_ = grain_of_sums(plan);
   }
 
@@ -122,6 +116,12 @@ class ListKernel : public Kernel {
   }
   [[nodiscard]] double closing(const Vec3& n, const Vec3& way, double added) const;
   [[nodiscard]] std::vector<double> broadcast(const std::vector<double>& set) const;
+  /// Whether any of a contact's numbers, `stride` apart, is not 0.
+  [[nodiscard]] bool remembers(const double* numbers, Size stride) const {
+    for (Size m = 0; m < memory_; ++m)
+      if (numbers[m * stride] != 0) return true;
+    return false;
+  }
   void integrate(Part& part, int kicks, bool drift);
 
   Plan plan_;
@@ -152,7 +152,7 @@ class ListKernel : public Kernel {
          speed_bound_ = 0;  ///< velocities at the last look, and since
   std::vector<double> wall_margin_, wall_approach_;
   bool first_kick_ = true, wall_refresh_ = false, pair_refresh_ = false;
-  double plate_ = 0, plate_velocity_ = 0;
+  double plate_ = 0, plate_velocity_ = 0, plate_before_ = 0;
   IntegrateArgs integrate_args_{};
   std::int64_t builds_ = 0, rebuild_every_ = 0, calls_ = 0;
   Counters counters_;
@@ -390,6 +390,10 @@ void ListKernel::make_inner(Part& part) {
   scan.near = part.near.data();
   scan.touching = part.touching.data();
   passes_.scan(scan);
+  // A pair that has just parted may still have to settle or forget what it remembers.
+  for (Size r = 0; r < part.pairs && memory_ > 0; ++r)
+    if (remembers(part.memory.data() + r * memory_, 1))
+      part.near[r / width_] = static_cast<std::uint16_t>(part.near[r / width_] | 1U << r % width_);
 
   // Those in contact first: packets of pairs that are merely near are passed over after a look at their
   // distances.
@@ -444,9 +448,15 @@ void ListKernel::make_walls(const System& s, Part& part) {
     const double offset = offset_now(s, wall);
     Packets old = std::move(part.walls[w]);
     Packets near;
-    for (Size k = part.begin; k < part.end; ++k)
-      if (!(beads_.position(k).dot(wall.n) - offset - beads_.radius(k) >= wall_margin_[w]))
+    Size known = 0;
+    for (Size k = part.begin; k < part.end; ++k) {
+      while (known < old.source.size() && static_cast<Size>(old.source[known]) < k) ++known;
+      const bool was = known < old.source.size() && static_cast<Size>(old.source[known]) == k;
+      const auto [packet, lane] = was ? old.place(known, width_) : std::pair<Size, Size>();
+      if (!(beads_.position(k).dot(wall.n) - offset - beads_.radius(k) >= wall_margin_[w]) ||
+          (was && remembers(old.memory.data() + packet * memory_ * width_ + lane, width_)))
         near.source.push_back(static_cast<std::int32_t>(k));
+    }
     const Size n = near.source.size(), count = packets_of(n, width_), padded = count * width_;
     near.count = static_cast<std::int64_t>(count);
     near.i.assign(padded, record(part.dummy));
@@ -582,9 +592,9 @@ void ListKernel::add_up_motion(const System& s) {
   const double added = strayed + static_cast<double>(lasted_) * s.dt * s.gravity.norm();
   speed_bound_ = fastest_ + added;
   // A wall's own way is counted as it went, not by its speed at one end of the step.
-  const double before = plate_;
+  plate_before_ = plate_;
   plate_ = s.plate_height(), plate_velocity_ = s.plate_velocity();
-  const Vec3 way = ((plate_ - before) / s.dt) * Vec3::Unit(static_cast<int>(s.drive.axis));
+  const Vec3 way = ((plate_ - plate_before_) / s.dt) * Vec3::Unit(static_cast<int>(s.drive.axis));
   for (Size w = 0; w < s.walls.size(); ++w) {
     const Wall& wall = s.walls[w];
     const Vec3 v = wall.moves ? way : Vec3::Zero();
@@ -609,6 +619,7 @@ void ListKernel::forces(const System& s, Part& part) {
   p.shift = a.shift.empty() ? nullptr : a.shift.data();
   p.packets = a.count;
   p.dt = s.dt;
+  p.locate = plan_.locate;
   p.magic = magic_;
   part.overlap = a.count > 0 ? passes_.pairs(p) : 0;
   part.visits += a.count;
@@ -625,7 +636,8 @@ void ListKernel::forces(const System& s, Part& part) {
     g.packets = near.count;
     const int axis = static_cast<int>(s.drive.axis);
     Vec3 v = Vec3::Zero();
-    if (wall.moves) v[axis] = plate_velocity_;
+    if (wall.moves)
+      v[axis] = plan_.key.velocity == Velocity::full_step ? (plate_ - plate_before_) / s.dt : plate_velocity_;
     if (dimension_ == 2) {
       g.n[0] = wall.n.x(), g.n[1] = wall.n.z();
       g.velocity[0] = v.x(), g.velocity[1] = v.z();
@@ -634,6 +646,7 @@ void ListKernel::forces(const System& s, Part& part) {
     }
     g.offset = wall.moves ? wall.offset + wall.n[axis] * plate_ : wall.offset;
     g.dt = s.dt;
+    g.locate = plan_.locate;
     g.magic = magic_;
     part.overlap = std::max(part.overlap, passes_.walls(g));
     part.wall_visits += near.count;
@@ -727,7 +740,7 @@ void ListKernel::advance(System& s, std::int64_t steps) {
   prepare(s);
   integrate_args_ = beads_.integrate_args(s);
   wall_margin_.resize(s.walls.size(), 0), wall_approach_.resize(s.walls.size(), 0);
-  plate_ = s.plate_height(), plate_velocity_ = s.plate_velocity();
+  plate_ = s.plate_height(), plate_velocity_ = s.plate_velocity(), plate_before_ = s.plate_height_before();
   // Lists are checked at every call: the plate and the beads may have been moved by other hands.
   since_built_ = HUGE_VAL;  // beads may have been moved by other hands
   reference_.resize(4 * s.beads.size());
