@@ -15,126 +15,98 @@ using Wide = hn::ScalableTag<double>;
 using Four = hn::FixedTag<double, 4>;
 using Two = hn::FixedTag<double, 2>;
 
-/// Vectors worked on side by side: one contact is a long chain of dependent operations, and a second vector
-/// fills the gaps of the first. With 16 registers (AVX2) there is no room for it.
-#ifndef KSIDE
-#define KSIDE 1
-#endif
-inline constexpr int kSide = KSIDE;
-
-/// A pack of numbers with the operations of laws/real.hpp.
+/// A vector of numbers with the operations of laws/real.hpp. Two vectors side by side, to fill the gaps in
+/// one contact's long chain of dependent operations, were tried and dropped: the arithmetic units are busy as
+/// it is, and the registers run out (a fifth slower).
 struct Pack {
   using Raw = hn::Vec<Wide>;
-  Raw raw[kSide];
-  HWY_INLINE Pack() : Pack(0.0) {}
-  HWY_INLINE explicit Pack(double a) {
-    for (Raw& r : raw) r = hn::Set(Wide(), a);
-  }
-  struct Unset {};
-  HWY_INLINE explicit Pack(Unset) {}
+  Raw raw;
+  HWY_INLINE Pack() : raw(hn::Zero(Wide())) {}
+  HWY_INLINE Pack(Raw r) : raw(r) {}  // NOLINT(google-explicit-constructor)
+  HWY_INLINE explicit Pack(double a) : raw(hn::Set(Wide(), a)) {}
 };
 struct Mask {
-  hn::Mask<Wide> raw[kSide];
+  hn::Mask<Wide> raw;
 };
-template <class F>
-HWY_INLINE Pack by_side(F f) {
-  Pack p{Pack::Unset()};
-  for (int k = 0; k < kSide; ++k) p.raw[k] = f(k);
-  return p;
-}
-template <class F>
-HWY_INLINE Mask mask_by_side(F f) {
-  Mask m;
-  for (int k = 0; k < kSide; ++k) m.raw[k] = f(k);
-  return m;
-}
 
-HWY_INLINE Pack operator+(const Pack& a, const Pack& b) {
-  return by_side([&](int k) HWY_ATTR { return hn::Add(a.raw[k], b.raw[k]); });
+HWY_INLINE Pack operator+(Pack a, Pack b) {
+  return hn::Add(a.raw, b.raw);
 }
-HWY_INLINE Pack operator-(const Pack& a, const Pack& b) {
-  return by_side([&](int k) HWY_ATTR { return hn::Sub(a.raw[k], b.raw[k]); });
+HWY_INLINE Pack operator-(Pack a, Pack b) {
+  return hn::Sub(a.raw, b.raw);
 }
-HWY_INLINE Pack operator*(const Pack& a, const Pack& b) {
-  return by_side([&](int k) HWY_ATTR { return hn::Mul(a.raw[k], b.raw[k]); });
+HWY_INLINE Pack operator*(Pack a, Pack b) {
+  return hn::Mul(a.raw, b.raw);
 }
-HWY_INLINE Pack operator/(const Pack& a, const Pack& b) {
-  return by_side([&](int k) HWY_ATTR { return hn::Div(a.raw[k], b.raw[k]); });
+HWY_INLINE Pack operator/(Pack a, Pack b) {
+  return hn::Div(a.raw, b.raw);
 }
-HWY_INLINE Pack operator-(const Pack& a) {
-  return by_side([&](int k) HWY_ATTR { return hn::Neg(a.raw[k]); });
+HWY_INLINE Pack operator-(Pack a) {
+  return hn::Neg(a.raw);
 }
-HWY_INLINE Mask operator>(const Pack& a, const Pack& b) {
-  return mask_by_side([&](int k) HWY_ATTR { return hn::Gt(a.raw[k], b.raw[k]); });
+HWY_INLINE Mask operator>(Pack a, Pack b) {
+  return {hn::Gt(a.raw, b.raw)};
 }
-HWY_INLINE Mask operator<(const Pack& a, const Pack& b) {
-  return mask_by_side([&](int k) HWY_ATTR { return hn::Lt(a.raw[k], b.raw[k]); });
+HWY_INLINE Mask operator<(Pack a, Pack b) {
+  return {hn::Lt(a.raw, b.raw)};
 }
-HWY_INLINE Mask operator<=(const Pack& a, const Pack& b) {
-  return mask_by_side([&](int k) HWY_ATTR { return hn::Le(a.raw[k], b.raw[k]); });
+HWY_INLINE Mask operator<=(Pack a, Pack b) {
+  return {hn::Le(a.raw, b.raw)};
 }
-HWY_INLINE Mask operator==(const Pack& a, const Pack& b) {
-  return mask_by_side([&](int k) HWY_ATTR { return hn::Eq(a.raw[k], b.raw[k]); });
+HWY_INLINE Mask operator==(Pack a, Pack b) {
+  return {hn::Eq(a.raw, b.raw)};
 }
-HWY_INLINE Pack fma(const Pack& a, const Pack& b, const Pack& c) {
-  return by_side([&](int k) HWY_ATTR { return hn::MulAdd(a.raw[k], b.raw[k], c.raw[k]); });
+HWY_INLINE Pack fma(Pack a, Pack b, Pack c) {
+  return hn::MulAdd(a.raw, b.raw, c.raw);
 }
-HWY_INLINE Pack nfma(const Pack& a, const Pack& b, const Pack& c) {
-  return by_side([&](int k) HWY_ATTR { return hn::NegMulAdd(a.raw[k], b.raw[k], c.raw[k]); });
+HWY_INLINE Pack nfma(Pack a, Pack b, Pack c) {
+  return hn::NegMulAdd(a.raw, b.raw, c.raw);
 }
-HWY_INLINE Pack min(const Pack& a, const Pack& b) {
-  return by_side([&](int k) HWY_ATTR { return hn::Min(a.raw[k], b.raw[k]); });
+HWY_INLINE Pack min(Pack a, Pack b) {
+  return hn::Min(a.raw, b.raw);
 }
-HWY_INLINE Pack max(const Pack& a, const Pack& b) {
-  return by_side([&](int k) HWY_ATTR { return hn::Max(a.raw[k], b.raw[k]); });
+HWY_INLINE Pack max(Pack a, Pack b) {
+  return hn::Max(a.raw, b.raw);
 }
-HWY_INLINE Pack abs(const Pack& a) {
-  return by_side([&](int k) HWY_ATTR { return hn::Abs(a.raw[k]); });
+HWY_INLINE Pack abs(Pack a) {
+  return hn::Abs(a.raw);
 }
-HWY_INLINE Pack sqrt(const Pack& a) {
-  return by_side([&](int k) HWY_ATTR { return hn::Sqrt(a.raw[k]); });
+HWY_INLINE Pack sqrt(Pack a) {
+  return hn::Sqrt(a.raw);
 }
-HWY_INLINE Pack select(const Mask& where, const Pack& a, const Pack& b) {
-  return by_side([&](int k) HWY_ATTR { return hn::IfThenElse(where.raw[k], a.raw[k], b.raw[k]); });
+HWY_INLINE Pack select(Mask where, Pack a, Pack b) {
+  return hn::IfThenElse(where.raw, a.raw, b.raw);
 }
-HWY_INLINE bool any(const Mask& m) {
-  auto all = m.raw[0];
-  for (int k = 1; k < kSide; ++k) all = hn::Or(all, m.raw[k]);
-  return !hn::AllFalse(Wide(), all);
+HWY_INLINE bool any(Mask m) {
+  return !hn::AllFalse(Wide(), m.raw);
 }
-HWY_INLINE Mask both(const Mask& a, const Mask& b) {
-  return mask_by_side([&](int k) HWY_ATTR { return hn::And(a.raw[k], b.raw[k]); });
+HWY_INLINE Mask both(Mask a, Mask b) {
+  return {hn::And(a.raw, b.raw)};
 }
-HWY_INLINE Mask either(const Mask& a, const Mask& b) {
-  return mask_by_side([&](int k) HWY_ATTR { return hn::Or(a.raw[k], b.raw[k]); });
+HWY_INLINE Mask either(Mask a, Mask b) {
+  return {hn::Or(a.raw, b.raw)};
 }
-inline unsigned mask_bits(const Mask& m) {
-  unsigned all = 0;
-  for (int k = 0; k < kSide; ++k) {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(Wide(), m.raw[k], bits);
-    all |= static_cast<unsigned>(bits[0]) << (k * static_cast<int>(hn::MaxLanes(Wide())));
-  }
-  return all;
+/// A bit per lane.
+inline unsigned mask_bits(Mask m) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Wide(), m.raw, bits);
+  return bits[0];
 }
 template <class F>
-inline Pack each(const Mask& where, const Pack& x, const Pack& y, F f) {
-  constexpr int kLanes = static_cast<int>(hn::MaxLanes(Wide()));
-  HWY_ALIGN double in[kSide * kLanes], out[kSide * kLanes];
-  for (int k = 0; k < kSide; ++k) {
-    hn::Store(x.raw[k], Wide(), in + k * kLanes);
-    hn::Store(y.raw[k], Wide(), out + k * kLanes);
-  }
-  const unsigned bits = mask_bits(where);
-  for (int k = 0; k < kSide * kLanes; ++k)
-    if ((bits >> k & 1) != 0) out[k] = f(in[k]);
-  return by_side([&](int k) HWY_ATTR { return hn::Load(Wide(), out + k * kLanes); });
+inline Pack each(Mask where, Pack x, Pack y, F f) {
+  constexpr std::size_t kLanes = hn::MaxLanes(Wide());
+  HWY_ALIGN double in[kLanes], out[kLanes];
+  hn::Store(x.raw, Wide(), in);
+  hn::Store(y.raw, Wide(), out);
+  for (unsigned bits = mask_bits(where), k = 0; bits != 0; bits >>= 1, ++k)
+    if ((bits & 1) != 0) out[k] = f(in[k]);
+  return hn::Load(Wide(), out);
 }
 
 struct HighwayLanes {
   using V = Pack;
-  static constexpr int kLanes = static_cast<int>(hn::MaxLanes(Wide()));  ///< of one vector
-  static constexpr int kWidth = kSide * kLanes;
+  static constexpr int kLanes = static_cast<int>(hn::MaxLanes(Wide()));
+  static constexpr int kWidth = kLanes;
   static_assert(kLanes == 4 || kLanes == 8);
   using Raw = hn::Vec<Wide>;
   using FourRaw = hn::Vec<Four>;
@@ -235,18 +207,10 @@ struct HighwayLanes {
       return r;
   }
 
-  HWY_INLINE static V load(const double* p) {
-    return by_side([&](int k) HWY_ATTR { return hn::LoadU(Wide(), p + k * kLanes); });
-  }
-  HWY_INLINE static void store(const V& v, double* p) {
-    for (int k = 0; k < kSide; ++k) hn::StoreU(v.raw[k], Wide(), p + k * kLanes);
-  }
-  static double largest(const V& v) {
-    Raw m = v.raw[0];
-    for (int k = 1; k < kSide; ++k) m = hn::Max(m, v.raw[k]);
-    return hn::GetLane(hn::MaxOfLanes(Wide(), m));
-  }
-  static unsigned bits(const Mask& m) { return mask_bits(m); }
+  HWY_INLINE static V load(const double* p) { return hn::LoadU(Wide(), p); }
+  HWY_INLINE static void store(V v, double* p) { hn::StoreU(v.raw, Wide(), p); }
+  static double largest(V v) { return hn::GetLane(hn::MaxOfLanes(Wide(), v.raw)); }
+  static unsigned bits(Mask m) { return mask_bits(m); }
 
   /// Four vectors as the four columns they hold, by interleaving neighbours and exchanging 128-bit blocks: a
   /// transposition of 4 x 4 numbers, of two at once with AVX-512. It is its own inverse.
@@ -262,18 +226,15 @@ struct HighwayLanes {
   /// The first kCount columns of the rows of all contacts. Lane k of a column belongs to contact k.
   template <int kCount, class Get>
   HWY_INLINE static void transpose(Get row, V* const* column) {
-    for (int side = 0; side < kSide; ++side) {
-      Raw r[4], c[4];
-      for (int k = 0; k < 4; ++k) {
-        const int at = side * kLanes + k;
-        if constexpr (kLanes == 8)
-          r[k] = hn::Combine(Wide(), row(at + 4), row(at));
-        else
-          r[k] = row(at);
-      }
-      exchange(r, c);
-      for (int k = 0; k < kCount; ++k) column[k]->raw[side] = c[k];
+    Raw r[4], c[4];
+    for (int k = 0; k < 4; ++k) {
+      if constexpr (kLanes == 8)
+        r[k] = hn::Combine(Wide(), row(k + 4), row(k));
+      else
+        r[k] = row(k);
     }
+    exchange(r, c);
+    for (int k = 0; k < kCount; ++k) column[k]->raw = c[k];
   }
 
   template <int D>
@@ -335,17 +296,13 @@ struct HighwayLanes {
   template <class Get>
   HWY_INLINE static void gather(Get number, V* s) {
     const Two d2;
-    for (int side = 0; side < kSide; ++side) {
-      const auto two = [&](int k) HWY_ATTR {
-        return hn::InterleaveLower(d2, hn::Set(d2, number(side * kLanes + k)),
-                                   hn::Set(d2, number(side * kLanes + k + 1)));
-      };
-      if constexpr (kLanes == 8)
-        s[0].raw[side] =
-            hn::Combine(Wide(), hn::Combine(Four(), two(6), two(4)), hn::Combine(Four(), two(2), two(0)));
-      else
-        s[0].raw[side] = hn::Combine(Four(), two(2), two(0));
-    }
+    const auto two = [&](int k) HWY_ATTR {
+      return hn::InterleaveLower(d2, hn::Set(d2, number(k)), hn::Set(d2, number(k + 1)));
+    };
+    if constexpr (kLanes == 8)
+      s[0] = V(hn::Combine(Wide(), hn::Combine(Four(), two(6), two(4)), hn::Combine(Four(), two(2), two(0))));
+    else
+      s[0] = V(hn::Combine(Four(), two(2), two(0)));
   }
   template <class Get>
   HWY_INLINE static void spins_of(Get row, V* s) {
@@ -366,15 +323,13 @@ struct HighwayLanes {
   }
   /// Calls put(contact, row) for the rows that columns make.
   template <class Put>
-  HWY_INLINE static void rows(const V& a, const V& b, const V& c, Put put) {
-    for (int side = 0; side < kSide; ++side) {
-      const Raw column[4] = {a.raw[side], b.raw[side], c.raw[side], hn::Zero(Wide())};
-      Raw row[4];
-      exchange(column, row);
-      for (int k = 0; k < 4; ++k) {
-        put(side * kLanes + k, lower(row[k]));
-        if constexpr (kLanes == 8) put(side * kLanes + k + 4, upper(row[k]));
-      }
+  HWY_INLINE static void rows(V a, V b, V c, Put put) {
+    const Raw column[4] = {a.raw, b.raw, c.raw, hn::Zero(Wide())};
+    Raw row[4];
+    exchange(column, row);
+    for (int k = 0; k < 4; ++k) {
+      put(k, lower(row[k]));
+      if constexpr (kLanes == 8) put(k + 4, upper(row[k]));
     }
   }
   HWY_INLINE static void add_row(double* at, FourRaw f) {
