@@ -87,21 +87,22 @@ class DumpReader {
     bool step_known = false, box_known = false;
     while (read_line()) {
       begun = true;
+      line_.erase(line_.find_last_not_of(" \t\r") + 1);
       if (line_.rfind("ITEM: ", 0) != 0)
         fail(line_number_ == 1 ? "'ITEM: TIMESTEP' is missing; this is no text dump of LAMMPS."
                                : fmt::format("'ITEM:' is missing, '{}' was found.", excerpt()));
       const std::string section = line_.substr(6);
-      if (section.rfind("UNITS", 0) == 0) {
+      if (section == "UNITS") {
         need_line("the units");
-      } else if (section.rfind("TIMESTEP", 0) == 0) {
+      } else if (section == "TIMESTEP") {
         need_line("the step");
         s.line = line_number_;
         s.step = whole(only_word());
         step_known = true;
-      } else if (section.rfind("TIME", 0) == 0) {
+      } else if (section == "TIME") {
         need_line("the time");
         s.time = number(only_word());
-      } else if (section.rfind("NUMBER OF ATOMS", 0) == 0) {
+      } else if (section == "NUMBER OF ATOMS") {
         need_line("the number of atoms");
         const std::int64_t n = whole(only_word());
         if (n < 0) fail(fmt::format("{} atoms are announced.", n));
