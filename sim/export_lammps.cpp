@@ -61,6 +61,8 @@ template <class... F>
 struct Overloaded : F... {
   using F::operator()...;
 };
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
 
 [[noreturn]] void refuse(const Scene& scene, const std::string& key, const std::string& why) {
   throw ConfigError({scene.file, 0, 0, key}, why);
