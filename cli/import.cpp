@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <memory>
 
 #include "analysis/trajectory/h5md_file.hpp"
@@ -68,11 +69,16 @@ void add_import(CLI::App& program, Common& common) {
   verb.add_option("--drive-omega", l.drive.omega, "omega");
   verb.add_option("--drive-frequency", l.drive.frequency, "omega/2pi");
   verb.add_option("--drive-gamma", l.drive.gamma, "A omega^2/g");
+  verb.add_option("--drive-axis", l.drive_axis, "Which way, in our axes: x, y or z up")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Axis>{{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}))
+      ->option_text("AXIS");
   verb.add_option("--frames-per-cycle", l.phases_per_cycle, "Frames per drive cycle; 0: not phase-locked")
       ->check(CLI::Range(0, 1'000'000));
   verb.add_option("--phase-of-step-zero", l.phase_of_step_zero,
                   "Fraction of a cycle; of a wall that wiggles from step 0 on: 0.75")
       ->capture_default_str();
+  verb.add_option("--bead-mass", l.bead_mass, "m, for the column mass; absent: masses are left out");
   verb.add_option("--tracer-type", l.tracer_type, "Atom type that marks tracers");
   verb.callback([o, &common] { run(*o, common); });
 }

@@ -29,9 +29,11 @@ const char* word_of(sim::Effect::State state) {
     case sim::Effect::State::off_by_scene:
       return "off (scene)";
     case sim::Effect::State::off_by_proof:
+      return "off (proven)";
+    case sim::Effect::State::approximated:
       break;
   }
-  return "off (proven)";
+  return "approximated";
 }
 
 nlohmann::json describe(const sim::Simulation& run, const std::string& output, double seconds) {
@@ -40,8 +42,8 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, d
                n = static_cast<double>(run.system().beads.size());
   nlohmann::json d = {{"output", output},
                       {"beads", run.system().beads.size()},
-                      {"gamma", s.gravity > 0 ? nlohmann::json(s.drive.gamma(s.gravity)) : nlohmann::json()},
-                      {"k_m", s.gravity > 0 ? nlohmann::json(s.drive.k_m(s.gravity)) : nlohmann::json()},
+                      {"gamma", s.g() > 0 ? nlohmann::json(s.drive.gamma(s.g())) : nlohmann::json()},
+                      {"k_m", s.g() > 0 ? nlohmann::json(s.drive.k_m(s.g())) : nlohmann::json()},
                       {"amplitude", s.drive.amplitude},
                       {"omega", s.drive.omega},
                       {"steps_per_period", run.plan().steps_per_period},

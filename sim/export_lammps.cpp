@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <sstream>
@@ -23,7 +24,8 @@ namespace {
 /// m_eff.
 struct Hooke {
   double k_n = 0, k_t = 0, gamma_n = 0, gamma_t = 0, mu = 0;
-  bool history = false, clipped = false;
+  bool history = false, friction = false, clipped = false;
+  bool operator==(const Hooke&) const = default;
 };
 
 /// Flat walls across one axis, where they are when the plate is at its mean.
@@ -32,25 +34,27 @@ struct FlatWalls {
   Axis axis;
   std::optional<double> lower, upper;
   bool move;  ///< with the plate
+  Hooke law;
 };
 
 struct DeckBead {
   Vec3 position, velocity, spin;
+  double radius, mass;
   bool tracer;
 };
 
-/// A scene as far as LAMMPS has words for it. Nothing below `model_of` knows the simulator.
+/// A scene as far as LAMMPS has words for it. Below `beads_at_start` nothing knows the simulator.
 struct Model {
   int dimension = 2;
-  std::array<Boundary, 3> boundary{};
-  Vec3 lower, upper;  ///< corners of LAMMPS's box; the top grows where beads fly
-  Hooke bead, wall;
+  std::array<std::string, 3> boundary;  ///< per axis of ours, LAMMPS's words
+  Vec3 lower, upper;                    ///< corners of LAMMPS's box, which grows where beads fly
+  Hooke bead;
   std::vector<FlatWalls> walls;
   Vec3 gravity;
-  double radius = 0.5, mass = 1;
+  double skin = 0.2;
   bool disc = true, rotation = true;
   Drive drive;
-  double dt = 0;
+  double width = 0, dt = 0;
   std::int64_t steps_per_period = 1, discard = 0, cycles = 1, first_step = 0;
   int phases = 1;
   std::vector<DeckBead> beads;
@@ -68,65 +72,147 @@ Overloaded(F...) -> Overloaded<F...>;
   throw ConfigError({scene.file, 0, 0, key}, why);
 }
 
-Hooke hooke_of(const Plan::Contact& laws, double m_eff, const Scene& scene, const std::string& table) {
-  const auto no_word = [&](const char* key, std::string_view law) {
-    refuse(scene, table + "." + key,
+/// \param table the scene's table with what is special to this kind of contact
+Hooke hooke_of(const ContactLaws& laws, double m_eff, const Scene& scene, const std::string& table) {
+  const auto no_word = [&](const char* axis, std::string_view law) {
+    refuse(scene, std::string("contact.") + axis,
            fmt::format("LAMMPS's gran/hooke styles do not know the law '{}'.", law));
   };
   Hooke h;
   const auto spring_dashpot = [&](const LinearSpringDashpot& law) {
-    h.k_n = law.stiffness;
+    h.k_n = law.k_n;
     h.gamma_n = law.damping.eta(m_eff) / m_eff;
+  };
+  const auto slider = [&](const auto& law) {
+    h.gamma_t = law.damping.eta(m_eff) / m_eff;
+    h.mu = law.mu;
+    h.friction = true;
   };
   std::visit(Overloaded{[&](const LinearSpringDashpot& law) { spring_dashpot(law); },
                         [&](const ClippedSpringDashpot& law) {
                           spring_dashpot(law);
                           h.clipped = true;
-                        }},
+                        },
+                        [&](const auto& law) { no_word("normal", law.kName); }},
              laws.normal);
-  std::visit(Overloaded{[](const NoTangential&) {},
-                        [&](const DashpotSlider& law) {
-                          h.gamma_t = law.damping.eta(m_eff) / m_eff;
-                          h.mu = law.mu;
-                        },
+  std::visit(Overloaded{[](const NoTangential&) {}, [&](const DashpotSlider& law) { slider(law); },
                         [&](const SpringSlider& law) {
-                          h.k_t = law.stiffness;
-                          h.gamma_t = law.damping.eta(m_eff) / m_eff;
-                          h.mu = law.mu;
+                          slider(law);
+                          h.k_t = law.k_t;
                           h.history = true;
+                          if (law.k_t == 0)
+                            refuse(
+                                scene, table + ".k_t",
+                                "LAMMPS's history style divides by it; 0 is for all contacts or for none.");
                         },
-                        [&](const SpringOnlySlider& law) { no_word("slip", law.kName); }},
+                        [&](const auto& law) { no_word("tangential", law.kName); }},
              laws.tangential);
+  std::visit(Overloaded{[](const NoRolling&) {}, [&](const auto& law) { no_word("rolling", law.kName); }},
+             laws.rolling);
   constexpr double kMostFriction = 1e4;  // LAMMPS stops at a larger xmu
   if (h.mu > kMostFriction)
     refuse(scene, table + ".mu", fmt::format("{:g} is more than LAMMPS takes, {:g}.", h.mu, kMostFriction));
   return h;
 }
 
-/// Everything of a model but its beads: the only place that reads scenes and plans.
-Model model_of(const Scene& scene) {
-  const Plan plan = make_plan(scene);
+/// LAMMPS's dampings are rates, the same for all masses: constants and restitutions need equal ones.
+void refuse_unlike_masses(const Scene& scene, const Plan& plan) {
+  const auto check = [&](const auto& law) {
+    if constexpr (requires { law.damping; })
+      if (law.damping.constant != 0 || law.damping.root != 0)
+        refuse(
+            scene, "contact",
+            "beads of unlike masses need their dampings as rates, gamma_n and gamma_t: LAMMPS knows one rate "
+            "for all of them.");
+  };
+  const auto check_laws = [&](const ContactLaws& laws) {
+    std::visit(check, laws.normal);
+    std::visit(check, laws.tangential);
+  };
+  check_laws(plan.bead);
+  for (const ContactLaws& laws : plan.wall_laws) check_laws(laws);
+}
+
+/// The walls of a plan, opposite ones with the same law as one fix, which looks at each bead once.
+std::vector<FlatWalls> flat_walls(const Scene& scene, const Plan& plan) {
+  const std::map<std::string, std::string> table = {
+      {"left", "sides"}, {"right", "sides"}, {"front", "plates"}, {"back", "plates"}};
+  std::vector<FlatWalls> all;
+  for (std::size_t w = 0; w < plan.walls.size(); ++w) {
+    const Wall& wall = plan.walls[w];
+    int axis = 0;
+    wall.n.cwiseAbs().maxCoeff(&axis);
+    if (std::abs(wall.n[axis]) != 1)
+      refuse(scene, "cell.side_tilt", "LAMMPS's fix wall/gran knows walls along the axes only.");
+    const auto known = table.find(wall.name);
+    const Hooke law = hooke_of(plan.wall_laws[w], scene.mass, scene,
+                               "contact." + (known == table.end() ? wall.name : known->second));
+    const double at = wall.n[axis] * wall.offset;
+    const bool lower = wall.n[axis] > 0;
+    // A fix keeps one history per bead: in a narrow gap it would be carried from one wall to the other.
+    const auto opposite = std::find_if(all.begin(), all.end(), [&](const FlatWalls& o) {
+      return o.axis == static_cast<Axis>(axis) && o.move == wall.moves && o.law == law && !lower &&
+             !o.upper && o.lower && at - *o.lower > 4 * scene.radius;
+    });
+    if (opposite != all.end()) {
+      opposite->upper = at;
+      opposite->name += "_" + wall.name;
+    } else {
+      all.push_back({wall.name, static_cast<Axis>(axis), lower ? std::optional(at) : std::nullopt,
+                     lower ? std::nullopt : std::optional(at), wall.moves, law});
+    }
+  }
+  return all;
+}
+
+/// Everything of a model but its beads.
+Model model_of(const Scene& scene, const Plan& plan) {
+  if (scene.integrator != "verlet")
+    refuse(scene, "time.integrator",
+           fmt::format("LAMMPS integrates as \"verlet\", not as \"{}\".", scene.integrator));
+  if (!scene.envelope.points.empty()) refuse(scene, "drive", "LAMMPS's walls know no ramp and no schedule.");
+  if (scene.plate_drag > 0) refuse(scene, "cell.plate_drag", "LAMMPS has no drag against a moving cell.");
+  if (scene.spread != SizeSpread::none || scene.intruder) refuse_unlike_masses(scene, plan);
   Model m;
+  m.dimension = plan.dimension;
   m.bead = hooke_of(plan.bead, scene.mass / 2, scene, "contact");
-  m.wall = hooke_of(plan.wall, scene.mass, scene, "contact.wall");
-  m.boundary = {scene.periodic_sides ? Boundary::periodic : Boundary::wall, Boundary::open, Boundary::wall};
-  m.lower = Vec3(0, -scene.radius, -scene.drive.amplitude);
-  m.upper = Vec3(scene.width, scene.radius, 0);
-  m.walls.push_back({"plate", Axis::z, 0.0, std::nullopt, true});
-  if (!scene.periodic_sides) m.walls.push_back({"sides", Axis::x, 0.0, scene.width, scene.side_walls_move});
-  const double tilt = scene.tilt * std::numbers::pi / 180;
-  m.gravity = scene.gravity * Vec3(std::sin(tilt), 0, -std::cos(tilt));
-  m.radius = scene.radius;
-  m.mass = scene.mass;
+  m.walls = flat_walls(scene, plan);
+  m.gravity = scene.gravity;
+  m.skin = 0.4 * scene.radius;
   m.disc = scene.inertia_factor == 0.5;
   m.rotation = plan.rotation;
   m.drive = scene.drive;
+  m.width = scene.width;
   m.dt = plan.dt;
   m.steps_per_period = plan.steps_per_period;
   m.discard = scene.discard;
   m.cycles = scene.cycles;
   m.phases = scene.phases;
   m.resolved = scene.resolved;
+
+  // Where there are walls the box is fixed and reaches as far as they travel; elsewhere it grows with the
+  // bed.
+  m.lower = Vec3(0, plan.dimension == 3 ? 0 : -scene.radius, 0);
+  m.upper = Vec3(scene.width, plan.dimension == 3 ? scene.depth : scene.radius, scene.height.value_or(0));
+  const std::array<double, 3> period = scene.period();
+  for (int k = 0; k < 3; ++k) {
+    std::string& word = m.boundary[static_cast<std::size_t>(k)];
+    if (period[static_cast<std::size_t>(k)] > 0 || (k == 1 && plan.dimension == 2)) {
+      word = "p";
+      continue;
+    }
+    const auto has = [&](bool lower) {
+      return std::any_of(m.walls.begin(), m.walls.end(), [&](const FlatWalls& w) {
+        return w.axis == static_cast<Axis>(k) && (lower ? w.lower : w.upper).has_value();
+      });
+    };
+    word = std::string(has(true) ? "f" : "m") + (has(false) ? "f" : "m");
+    if (static_cast<Axis>(k) == m.drive.axis) {
+      m.lower[k] -= m.drive.amplitude;
+      m.upper[k] += m.drive.amplitude;
+    }
+  }
+
   if (m.drive.amplitude > 0 && m.steps_per_period % 4 != 0)
     refuse(
         scene, "time.phases",
@@ -141,36 +227,45 @@ Model model_of(const Scene& scene) {
   return m;
 }
 
-/// The bed as the drive finds it.
-std::vector<DeckBead> beads_at_start(const Simulation& settled) {
-  const Vec3 lift(0, 0, settled.scene().comoving ? settled.scene().drive.peak_velocity() : 0);
-  const TrajectoryInfo info = settled.trajectory_info();
-  std::vector<DeckBead> beads;
-  for (const Bead& b : settled.system().beads)
-    beads.push_back({Vec3(b.x, 0, b.z), Vec3(b.vx, 0, b.vz) + lift, Vec3(0, -b.spin, 0),
-                     info.tracer.at(beads.size()) != 0});
-  return beads;
-}
-
 std::vector<DeckBead> beads_of_frame(const Scene& scene, const TrajectoryInfo& info, const Frame& frame,
                                      bool rotation, const std::string& name) {
   if (!info.columns.velocity) refuse(scene, "", name + " has no velocities, from which a run could go on.");
   if (rotation && !info.columns.spin)
     refuse(scene, "", name + " has no spins, but in this scene friction turns beads.");
+  if (info.box.dimension != scene.dimension)
+    refuse(scene, "cell.dimension",
+           fmt::format("{}, but {} has {}.", scene.dimension, name, info.box.dimension));
+  const bool equal = scene.spread == SizeSpread::none && !scene.intruder && scene.start != StartKind::table &&
+                     scene.start != StartKind::trajectory;
+  const Vec3 corner(info.box.lower.x(), scene.dimension == 3 ? info.box.lower.y() : 0, 0);
   std::vector<DeckBead> beads;
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
     if (!frame.present(i)) continue;
-    if (!info.radius.empty() && info.radius[i] != scene.radius)
+    if (equal && !info.radius.empty() && info.radius[i] != scene.radius)
       refuse(scene, "beads.radius",
              fmt::format("{:g}, but bead {} of {} has {:g}.", scene.radius, i, name, info.radius[i]));
-    beads.push_back({frame.position[i] - Vec3(info.box.lower.x(), 0, 0), frame.velocity[i],
-                     frame.spin.empty() ? Vec3(0, 0, 0) : frame.spin[i],
-                     !info.tracer.empty() && info.tracer[i] != 0});
+    beads.push_back(
+        {frame.position[i] - corner, frame.velocity[i], frame.spin.empty() ? Vec3(0, 0, 0) : frame.spin[i],
+         info.radius.empty() ? scene.radius : info.radius[i], info.mass.empty() ? scene.mass : info.mass[i],
+         !info.tracer.empty() && info.tracer[i] != 0});
   }
-  if (scene.n_beads && *scene.n_beads != beads.size())
+  if (const std::size_t announced = scene.n_beads.value_or(0) + (scene.intruder ? 1 : 0);
+      scene.n_beads && announced != beads.size())
     refuse(scene, "beads.count",
-           fmt::format("{} beads were announced, the frame of {} holds {}.", *scene.n_beads, name,
-                       beads.size()));
+           fmt::format("{} beads were announced, the frame of {} holds {}.", announced, name, beads.size()));
+  return beads;
+}
+
+/// The bed as the drive finds it.
+std::vector<DeckBead> beads_at_start(const Simulation& settled) {
+  const Drive& drive = settled.scene().drive;
+  const Vec3 along = Vec3::Unit(static_cast<int>(drive.axis));
+  const Vec3 push = settled.scene().comoving ? Vec3(drive.peak_velocity() * along) : Vec3(0, 0, 0);
+  const TrajectoryInfo info = settled.trajectory_info();
+  std::vector<DeckBead> beads;
+  for (const Bead& b : settled.system().beads)
+    beads.push_back({Vec3(b.x, b.y, b.z), Vec3(b.vx, b.vy, b.vz) + push, Vec3(b.spin_x, -b.spin, b.spin_z),
+                     b.radius, b.mass, info.tracer.at(beads.size()) != 0});
   return beads;
 }
 
@@ -191,16 +286,17 @@ std::string triple(const Vec3& v) {
 
 std::string data_text(const Model& m) {
   const Vec3 a = to_lammps(m, m.lower), b = to_lammps(m, m.upper);
-  std::string text = fmt::format(
-      "Beads for in.twincell. Type 2 marks tracers. Masses are set there, not by these densities.\n\n"
-      "{} atoms\n2 atom types\n",
-      m.beads.size());
+  std::string text = fmt::format("Beads for {}. Type 2 marks tracers.\n\n{} atoms\n2 atom types\n",
+                                 LammpsDeck::kInputName, m.beads.size());
   for (int k = 0; k < 3; ++k)
     text += fmt::format("{} {} {}lo {}hi\n", std::min(a[k], b[k]), std::max(a[k], b[k]), "xyz"[k], "xyz"[k]);
   text += "\nAtoms # sphere\n\n";
-  for (std::size_t i = 0; i < m.beads.size(); ++i)
-    text += fmt::format("{} {} {} 1 {}\n", i + 1, m.beads[i].tracer ? 2 : 1, 2 * m.radius,
-                        triple(to_lammps(m, m.beads[i].position)));
+  for (std::size_t i = 0; i < m.beads.size(); ++i) {
+    const DeckBead& bead = m.beads[i];
+    const double density = bead.mass / (4 * std::numbers::pi / 3 * std::pow(bead.radius, 3));
+    text += fmt::format("{} {} {} {} {}\n", i + 1, bead.tracer ? 2 : 1, 2 * bead.radius, density,
+                        triple(to_lammps(m, bead.position)));
+  }
   text += "\nVelocities\n\n";
   for (std::size_t i = 0; i < m.beads.size(); ++i)
     text += fmt::format("{} {} {}\n", i + 1, triple(to_lammps(m, m.beads[i].velocity)),
@@ -208,24 +304,19 @@ std::string data_text(const Model& m) {
   return text;
 }
 
-std::string hooke_words(const Hooke& h, bool friction) {
-  return fmt::format("{} {} {} {} {} {}{}", h.k_n, h.k_t, h.gamma_n, h.gamma_t, h.mu, friction ? 1 : 0,
+std::string hooke_words(const Hooke& h) {
+  return fmt::format("{} {} {} {} {} {}{}", h.k_n, h.k_t, h.gamma_n, h.gamma_t, h.mu, h.friction ? 1 : 0,
                      h.clipped ? " limit_damping" : "");
 }
 
 std::string boundary_words(const Model& m) {
-  const auto word = [&](Axis axis) {
-    if (m.boundary[static_cast<std::size_t>(axis)] == Boundary::periodic) return "p";
-    return axis == Axis::z ? "fm" : "f";
-  };
-  return m.dimension == 2 ? fmt::format("{} {} p", word(Axis::x), word(Axis::z))
-                          : fmt::format("{} {} {}", word(Axis::x), word(Axis::y), word(Axis::z));
+  return m.dimension == 2 ? fmt::format("{} {} p", m.boundary[0], m.boundary[2])
+                          : fmt::format("{}", fmt::join(m.boundary, " "));
 }
 
 /// fix wall/gran of each pair of walls. `wiggle` displaces a wall by A - A cos(omega t) from where it is
 /// defined, so the mean of a wall that is driven along its normal lies A above that.
 std::string wall_fixes(const Model& m) {
-  const char axis_up = axis_name(m, m.drive.axis);
   std::string text;
   for (const FlatWalls& w : m.walls) {
     const bool driven = w.move && m.drive.amplitude > 0;
@@ -234,9 +325,11 @@ std::string wall_fixes(const Model& m) {
                 : "NULL";
     };
     text += fmt::format("fix             {} all wall/gran {} {} {}plane {} {}", w.name,
-                        m.bead.history ? "hooke/history" : "hooke", hooke_words(m.wall, m.rotation),
-                        axis_name(m, w.axis), place(w.lower), place(w.upper));
-    if (driven) text += fmt::format(" wiggle {} {} {}", axis_up, m.drive.amplitude, m.drive.period());
+                        w.law.history ? "hooke/history" : "hooke", hooke_words(w.law), axis_name(m, w.axis),
+                        place(w.lower), place(w.upper));
+    if (driven)
+      text +=
+          fmt::format(" wiggle {} {} {}", axis_name(m, m.drive.axis), m.drive.amplitude, m.drive.period());
     text += "\n";
   }
   return text;
@@ -244,9 +337,11 @@ std::string wall_fixes(const Model& m) {
 
 std::string import_command(const Model& m) {
   return fmt::format(
-      "twincell import dump.lammpstrj -o lammps.h5 --dimension {} --timestep {} --drive-amplitude {} "
-      "--drive-omega {} --frames-per-cycle {} --tracer-type 2",
-      m.dimension, m.dt, m.drive.amplitude, m.drive.omega, m.phases);
+      "twincell import dump.lammpstrj -o lammps.h5 --dimension {} --timestep {} --cell-width {} --drive-axis "
+      "{} "
+      "--drive-amplitude {} --drive-omega {} --frames-per-cycle {} --tracer-type 2 --bead-mass 1",
+      m.dimension, m.dt, m.width, "xyz"[static_cast<int>(m.drive.axis)], m.drive.amplitude, m.drive.omega,
+      m.phases);
 }
 
 std::string commented(const std::string& text) {
@@ -270,24 +365,25 @@ std::string input_text(const Model& m) {
       "boundary        {}\n"
       "newton          off\n"
       "comm_modify     vel yes\n"
-      "read_data       {}\n"
-      "set             group all mass {}\n\n",
-      m.dimension, boundary_words(m), LammpsDeck::kDataName, m.mass);
+      "read_data       {}\n",
+      m.dimension, boundary_words(m), LammpsDeck::kDataName);
+  // Exactly, where it can be said in one line; densities give masses to rounding.
+  const double mass = m.beads.front().mass;
+  if (std::all_of(m.beads.begin(), m.beads.end(), [&](const DeckBead& b) { return b.mass == mass; }))
+    text += fmt::format("set             group all mass {}\n", mass);
   text += fmt::format(
-      "# k_n k_t gamma_n gamma_t mu; LAMMPS multiplies the rates gamma by m_eff, which at a wall is the "
-      "bead's "
-      "mass.\n"
+      "\n# k_n k_t gamma_n gamma_t mu; LAMMPS multiplies the rates gamma by m_eff, which at a wall is the "
+      "bead's mass.\n"
       "pair_style      gran/{} {}\n"
       "pair_coeff      * *\n"
       "neighbor        {} bin\n"
       "neigh_modify    delay 0 every 1 check yes\n"
       "timestep        {}\n\n",
-      m.bead.history ? "hooke/history" : "hooke", hooke_words(m.bead, m.rotation), 0.4 * m.radius, m.dt);
+      m.bead.history ? "hooke/history" : "hooke", hooke_words(m.bead), m.skin, m.dt);
   if (m.drive.amplitude > 0)
     text += fmt::format(
         "# wiggle moves a wall by A - A cos(w t), t from the step at which its fix is defined. Defined A "
-        "lower "
-        "and three\n"
+        "lower and three\n"
         "# quarters of a period after phase 0, it is at A sin(w t), t from phase 0.\n"
         "reset_timestep  {}\n",
         3 * m.steps_per_period / 4);
@@ -301,9 +397,10 @@ std::string input_text(const Model& m) {
                                                                        : "nve/sphere");
   // Unwrapped where there are periods, so that displacements are differences.
   const bool periods =
-      m.boundary[0] == Boundary::periodic || (m.dimension == 3 && m.boundary[1] == Boundary::periodic);
+      m.boundary[0] == "p" || (m.dimension == 3 && m.boundary[1] == "p") || m.boundary[2] == "p";
   text += fmt::format(
-      "dump            frames all custom {} dump.lammpstrj id type radius {} vx vy vz omegax omegay omegaz\n"
+      "dump            frames all custom {} dump.lammpstrj id type radius mass {} vx vy vz omegax omegay "
+      "omegaz\n"
       "dump_modify     frames delay {} sort id format float %.17g\n"
       "thermo          {}\n"
       "run             {}\n\n",
@@ -312,22 +409,27 @@ std::string input_text(const Model& m) {
   return text + "# The scene:\n#\n" + commented(m.resolved);
 }
 
-LammpsDeck deck_of(Model& m, const Scene& scene) {
+LammpsDeck deck_of(Model& m, const Scene& scene, const Plan& plan) {
   if (m.beads.empty()) refuse(scene, "beads.count", "LAMMPS does not read a system without beads.");
-  for (const DeckBead& b : m.beads) m.upper.z() = std::max(m.upper.z(), b.position.z() + 2 * m.radius);
+  if (std::any_of(m.beads.begin(), m.beads.end(), [&](const DeckBead& b) { return b.mass != scene.mass; }))
+    refuse_unlike_masses(scene, plan);
+  if (m.boundary[2] != "p")
+    for (const DeckBead& b : m.beads) m.upper.z() = std::max(m.upper.z(), b.position.z() + 2 * b.radius);
   return {input_text(m), data_text(m), import_command(m)};
 }
 
 }  // namespace
 
 LammpsDeck lammps_deck(const Scene& scene, Progress& progress) {
-  Model m = model_of(scene);
+  const Plan plan = make_plan(scene);
+  Model m = model_of(scene, plan);
   m.beads = beads_at_start(Simulation(scene, progress));
-  return deck_of(m, scene);
+  return deck_of(m, scene, plan);
 }
 
 LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, std::size_t index) {
-  Model m = model_of(scene);
+  const Plan plan = make_plan(scene);
+  Model m = model_of(scene, plan);
   const TrajectoryInfo& info = trajectory.info();
   if (index >= trajectory.n_frames())
     refuse(
@@ -352,7 +454,7 @@ LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, s
            fmt::format("the plate of {} is at {:g}, this drive puts it at {:g}.", name, frame.plate_height,
                        ours));
   m.beads = beads_of_frame(scene, info, frame, m.rotation, name);
-  return deck_of(m, scene);
+  return deck_of(m, scene, plan);
 }
 
 }  // namespace twincell::sim

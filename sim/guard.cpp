@@ -5,39 +5,41 @@
 #include <cmath>
 
 #include "analysis/trajectory/error.hpp"
-#include "sim/contact.hpp"
-#include "sim/laws/side.hpp"
+#include "sim/cell_grid.hpp"
 
 namespace twincell::sim {
 
 namespace {
+
 std::string moment(const System& s) {
   return fmt::format("step {}, time {:.6g} t0", s.step, s.time());
 }
+
+double speed_of(const Bead& b) {
+  return std::sqrt(b.vx * b.vx + b.vy * b.vy + b.vz * b.vz);
+}
+
 }  // namespace
 
-void explain_overlap(const System& s, const GuardLimits& limits, double periodic_width) {
+void explain_overlap(const System& s, const GuardLimits& limits) {
   check_motion(s, limits);  // a bead that is not finite explains more than its overlap
   double deepest = 0;
   std::string who = "none found";
-  const PeriodicSides sides{periodic_width > 0 ? periodic_width : 1};
-  for (std::size_t i = 0; i < s.beads.size(); ++i) {
-    for (std::size_t j = i + 1; j < s.beads.size(); ++j) {
-      const double dx = s.beads[i].x - s.beads[j].x;
-      const double r =
-          std::hypot(periodic_width > 0 ? sides.separation(dx) : dx, s.beads[i].z - s.beads[j].z);
-      const double overlap = s.beads[i].radius + s.beads[j].radius - r;
+  for_each_near_pair(s.beads, s.dimension, s.period, 0,
+                     [&](std::int32_t i, std::int32_t j, double gap, const Vec3&) {
+                       if (-gap > deepest) {
+                         deepest = -gap;
+                         who = fmt::format("beads {} and {}", i, j);
+                       }
+                     });
+  for (const Wall& wall : s.walls) {
+    const double offset = offset_now(s, wall);
+    for (std::size_t i = 0; i < s.beads.size(); ++i) {
+      const Bead& b = s.beads[i];
+      const double overlap = b.radius - (wall.n.dot(Vec3(b.x, b.y, b.z)) - offset);
       if (overlap > deepest) {
         deepest = overlap;
-        who = fmt::format("beads {} and {}", i, j);
-      }
-    }
-    const Walls walls(s);
-    for (int w = 0; w < (periodic_width > 0 ? 1 : 3); ++w) {
-      const double overlap = walls.of[w].overlap(s.beads[i]);
-      if (overlap > deepest) {
-        deepest = overlap;
-        who = fmt::format("bead {} and the {}", i, w == Walls::kBottom ? "plate" : "side wall");
+        who = fmt::format("bead {} and the {}", i, wall.name == "bottom" ? "plate" : wall.name + " wall");
       }
     }
   }
@@ -48,10 +50,11 @@ void explain_overlap(const System& s, const GuardLimits& limits, double periodic
 }
 
 void check_motion(const System& s, const GuardLimits& limits) {
+  const double plate = s.plate_height();
   for (std::size_t i = 0; i < s.beads.size(); ++i) {
     const Bead& b = s.beads[i];
-    const double speed = std::hypot(b.vx, b.vz);
-    if (!std::isfinite(b.x + b.z + speed + b.spin))
+    const double speed = speed_of(b);
+    if (!std::isfinite(b.x + b.y + b.z + speed + b.spin + b.spin_x + b.spin_z))
       throw RunError(
           fmt::format("{}: bead {} is no longer at a finite position or speed; the step is unstable, raise "
                       "time.steps_per_contact.",
@@ -61,7 +64,7 @@ void check_motion(const System& s, const GuardLimits& limits) {
           fmt::format("{}: bead {} moves {:.3g} sigma in one step, the bound is {:g}; the step is unstable "
                       "or the drive too fast.",
                       moment(s), i, speed * s.dt, limits.travel_per_step));
-    if (limits.ceiling > 0 && b.z + b.radius > s.plate_height() + limits.ceiling)
+    if (limits.ceiling > 0 && b.z + b.radius > plate + limits.ceiling)
       throw RunError(
           fmt::format("{}: bead {} touched the lid at {:g} sigma above the plate; raise cell.height.",
                       moment(s), i, limits.ceiling));

@@ -1,9 +1,11 @@
 #pragma once
 /// \file
-/// The run-time face of the compiled kernels.
+/// The run-time face of the kernels.
 
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "sim/guard.hpp"
 #include "sim/plan.hpp"
@@ -11,7 +13,17 @@
 
 namespace twincell::sim {
 
+/// What a contact remembers: tangential displacement and whatever else its laws keep while it lasts.
+struct ContactMemory {
+  std::int32_t i = 0;  ///< bead
+  std::int32_t j = 0;  ///< bead, > i; or -1 - w for wall w
+  std::vector<double> values;
+};
+
 /// Moves a System. One virtual call per block of steps, none inside.
+///
+/// The bits of a run depend on the scene and the start alone: not on how steps are cut into calls, when lists
+/// are built, how wide the vectors are, or how many threads share the work.
 class Kernel {
  public:
   virtual ~Kernel() = default;
@@ -21,12 +33,33 @@ class Kernel {
   [[nodiscard]] virtual std::int64_t list_builds() const = 0;
   /// For tests: rebuild the list at every n-th step as well.
   virtual void rebuild_every(std::int64_t n) = 0;
+  /// All contacts that remember something, sorted by (i, j): what a checkpoint must hold besides the System.
+  [[nodiscard]] virtual std::vector<ContactMemory> contacts() const = 0;
+  /// Takes up contacts() of another kernel of the same plan; call before the first advance.
+  virtual void restore(std::vector<ContactMemory> contacts) = 0;
+  /// Instruction set, and what it costs: "AVX-512, 8 contacts at a time".
+  [[nodiscard]] virtual std::string description() const = 0;
+  /// Mean share of the listed pairs that were looked at per step, and lists of near pairs made.
+  struct Counters {
+    std::int64_t steps = 0, pair_visits = 0, wall_visits = 0, near_refreshes = 0;
+  };
+  [[nodiscard]] virtual Counters counters() const { return {}; }
 };
 
-enum class KernelKind { list, all_pairs };
+enum class KernelKind {
+  best,    ///< the widest vectors that this processor has
+  scalar,  ///< one contact at a time
+  avx2,    ///< \throws ConfigError where the processor lacks it
+  avx512,
+  all_pairs,  ///< the oracle: every pair at every step, nothing clever
+};
 
-/// The kernel of a plan: the product of its laws, compiled in kernel_2d.cpp.
+/// The kernel of a plan.
+/// \param threads for one system; 0: as many as its size is worth
 std::unique_ptr<Kernel> make_kernel(const Plan& plan, const GuardLimits& limits,
-                                    KernelKind kind = KernelKind::list);
+                                    KernelKind kind = KernelKind::best, int threads = 1);
+
+/// Whether this processor can run a kind.
+bool available(KernelKind kind);
 
 }  // namespace twincell::sim

@@ -5,128 +5,230 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/trajectory/error.hpp"
+
 namespace twincell::sim {
 
 namespace {
 
-ViscousDamping normal_damping(const ContactSpec& c, double m_eff) {
-  if (c.c_n) return {0, *c.c_n};
-  if (c.restitution) return {0, eta_of_restitution(*c.restitution, c.k_n, m_eff)};
-  return {c.gamma_n.value_or(0), 0};
+template <class Axis>
+std::string name_of(const Axis& law) {
+  return std::visit([](const auto& l) { return std::string(l.kName); }, law);
 }
 
-ViscousDamping tangential_damping(const ContactSpec& c, double m_eff) {
-  if (c.c_t) return {0, *c.c_t};
-  if (c.c_t_over_c_n) return {0, *c.c_t_over_c_n * normal_damping(c, m_eff).eta(m_eff)};
-  return {c.gamma_t.value_or(0), 0};
+double mu_of(const ContactTable& t) {
+  return t.number("mu", 0, 1e12).value_or(0.6);
+}
+double k_t_of(const ContactTable& t) {
+  return t.number("k_t", 0, 1e12).value_or(1e4);
 }
 
-Plan::Contact contact_laws(const ContactSpec& c, double m_eff, bool friction) {
-  Plan::Contact laws;
-  const LinearSpringDashpot normal{c.k_n, normal_damping(c, m_eff)};
-  if (c.tension)
-    laws.normal = normal;
-  else
-    laws.normal = ClippedSpringDashpot{normal};
-  const ViscousDamping damping = tangential_damping(c, m_eff);
-  if (!friction)
-    laws.tangential = NoTangential{};
-  else if (c.tangential == ContactSpec::Tangential::dashpot || c.k_t == 0)
-    laws.tangential = DashpotSlider{damping, c.mu};
-  else if (c.slip_rescales)
-    laws.tangential = SpringSlider{c.k_t, damping, c.mu};
-  else
-    laws.tangential = SpringOnlySlider{{c.k_t, damping, c.mu}};
-  return laws;
+/// What the scene's words come to once physics has been asked what of them can act.
+struct Chosen {
+  std::string normal, tangential, rolling;
+  bool frictional = false;  ///< mu > 0 somewhere
+  bool springy = false;     ///< k_t > 0 somewhere
+};
+
+Chosen choose(const Scene& s, const std::vector<Wall>& walls) {
+  const ContactChoice& c = s.contact;
+  Chosen chosen{c.normal, c.tangential, c.rolling};
+  std::vector<const ContactTable*> tables = {&c.bead};
+  for (const Wall& w : walls) tables.push_back(&c.wall.at(w.name));
+  for (const ContactTable* t : tables) {
+    chosen.frictional = chosen.frictional || mu_of(*t) > 0;
+    chosen.springy = chosen.springy || (mu_of(*t) > 0 && k_t_of(*t) > 0);
+  }
+  // Friction of one kind of contact keeps the machinery for all; another's mu = 0 then gives exactly no
+  // force.
+  if (!chosen.frictional) chosen.tangential = "none";
+  const bool spring = chosen.tangential == "spring" || chosen.tangential == "spring-only";
+  if (spring && !chosen.springy) chosen.tangential = "dashpot";
+  if (chosen.tangential == "none") chosen.rolling = "none";
+  return chosen;
 }
 
-void list_effects(const Scene& s, Plan& plan) {
+ContactLaws read_laws(const Chosen& chosen, const ContactTable& table) {
+  return {read_law<NormalAxis>(chosen.normal, table), read_law<TangentialAxis>(chosen.tangential, table),
+          read_law<RollingAxis>(chosen.rolling, table)};
+}
+
+void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
   using State = Effect::State;
-  auto add = [&](const char* name, State state, const std::string& reason) {
+  const auto add = [&](const std::string& name, State state, const std::string& reason) {
     plan.effects.push_back({name, state, reason});
   };
-  const bool asked = s.bead.tangential != ContactSpec::Tangential::none;
-  const bool spring = asked && s.bead.tangential == ContactSpec::Tangential::spring;
-  const bool frictional = s.bead.mu > 0 || s.wall.mu > 0;
-  add("normal force", State::on,
-      std::visit([](const auto& law) { return std::string(law.kName); }, plan.bead.normal));
-  if (!asked)
+  const ContactChoice& asked = s.contact;
+  add("dimensions", State::on, s.dimension == 2 ? "2: plane (x, z), one axis of rotation" : "3");
+  add("normal force", State::on, name_of(plan.bead.normal));
+  const bool friction = chosen.tangential != "none";
+  const bool spring_asked = asked.tangential == "spring" || asked.tangential == "spring-only";
+  if (asked.tangential == "none")
     add("friction", State::off_by_scene, "contact.tangential = \"none\"");
-  else if (!frictional)
-    add("friction", State::off_by_proof, "mu = 0: the Coulomb limit is zero");
+  else if (!friction)
+    add("friction", State::off_by_proof, "mu = 0 everywhere: the Coulomb limit is zero, dashpot included");
   else
-    add("friction", State::on, fmt::format("mu = {:g} (beads), {:g} (walls)", s.bead.mu, s.wall.mu));
-  if (plan.rotation)
-    add("rotation", State::on, "friction turns beads");
+    add("friction", State::on,
+        fmt::format("{}, mu = {:g}", name_of(plan.bead.tangential), mu_of(asked.bead)));
+  if (friction)
+    add("rotation", State::on, "friction turns beads; it may not be dropped while mu > 0");
   else
-    add("rotation", State::off_by_proof, "without friction there is no torque");
+    add("rotation", State::off_by_proof, "without friction there is no torque: spins stay what they were");
   if (plan.history)
-    add("tangential history", State::on, fmt::format("k_t = {:g}", s.bead.k_t));
-  else if (spring && frictional)
-    add("tangential history", State::off_by_proof, "k_t = 0: the force depends on the present alone");
+    add("tangential history", State::on,
+        fmt::format(
+            "k_t = {:g}; one {} per contact; it may not be dropped: a bed held by dashpots alone creeps",
+            k_t_of(asked.bead), s.dimension == 2 ? "number" : "vector in the tangent plane"));
+  else if (!spring_asked)
+    add("tangential history", State::off_by_scene, "the tangential law has no spring");
   else
-    add("tangential history", spring ? State::off_by_proof : State::off_by_scene,
-        spring ? "mu = 0" : "no tangential spring");
-  if (s.gravity > 0)
+    add("tangential history", State::off_by_proof,
+        friction ? "k_t = 0: the force depends on the present alone"
+                 : "mu = 0: there is no tangential force");
+  if (asked.rolling == "none")
+    add("rolling resistance", State::off_by_scene, "contact.rolling = \"none\"");
+  else if (!friction)
+    add("rolling resistance", State::off_by_proof, "beads do not turn");
+  else
+    add("rolling resistance", State::on, name_of(plan.bead.rolling));
+
+  if (s.spread != SizeSpread::none)
+    add("unequal beads", State::on, fmt::format("radii spread by {:g} of {:g}", s.spread_width, s.radius));
+  else if (s.intruder)
+    add("unequal beads", State::on, fmt::format("an intruder of radius {:g}", s.intruder->radius));
+  else if (s.start == StartKind::table || s.start == StartKind::trajectory)
+    add("unequal beads", State::on, "if the file says so; equal beads share one set of constants");
+  else
+    add("unequal beads", State::off_by_scene,
+        "equal beads: masses and radii are folded into one set of constants");
+
+  if (s.g() > 0)
     add("gravity", State::on,
-        s.tilt == 0 ? fmt::format("g = {:g}", s.gravity)
-                    : fmt::format("g = {:g}, cell tilted by {:g} degrees", s.gravity, s.tilt));
+        s.dimension == 2 ? fmt::format("({:g}, {:g})", s.gravity.x(), s.gravity.z())
+                         : fmt::format("({:g}, {:g}, {:g})", s.gravity.x(), s.gravity.y(), s.gravity.z()));
   else
     add("gravity", State::off_by_scene, "cell.gravity = 0");
-  if (s.periodic_sides)
-    add("side walls", State::off_by_scene, "cell.sides = \"periodic\"");
+  const auto has = [&](const char* name) {
+    return std::any_of(plan.walls.begin(), plan.walls.end(), [&](const Wall& w) { return w.name == name; });
+  };
+  const auto edge = [&](const char* name, const char* wall, Edge kind, bool moves) {
+    if (kind == Edge::periodic)
+      add(name, State::off_by_scene, "periodic");
+    else if (has(wall))
+      add(name, State::on, moves ? "hard, riding with the drive" : "hard, at rest");
+    else
+      add(name, State::off_by_scene, "absent");
+  };
+  edge("bottom", "bottom", s.bottom, s.bottom_moves);
+  edge("side walls", "left", s.sides, s.side_walls_move);
+  if (s.sides == Edge::wall && (s.left_tilt != 0 || s.right_tilt != 0))
+    add("tilt of the side walls", State::on,
+        fmt::format("{:g} and {:g} degrees outward", s.left_tilt, s.right_tilt));
+  if (s.dimension == 3) edge("front and back plates", "front", s.plates, s.plates_move);
+  if (s.plate_drag > 0)
+    add("front and back plates", State::approximated,
+        fmt::format(
+            "2D substitute: a drag of rate {:g} against the cell; the plates' Coulomb friction and the third "
+            "coordinate are missing, no bound on the error is known",
+            s.plate_drag));
+  if (s.lid)
+    add("lid", State::on,
+        fmt::format("hard at {:g}, {}", s.height.value_or(0),
+                    s.lid_moves ? "riding with the drive" : "at rest"));
   else
-    add("side walls", State::on, s.side_walls_move ? "they ride with the plate" : "at rest");
-  add("lid", State::off_by_scene, "it must not act: a run in which a bead reaches it stops and says so");
+    add("lid", State::off_by_scene,
+        s.height ? "a run in which a bead reaches cell.height stops and says so"
+                 : "open top; the height beads reach is watched");
   if (s.drive.amplitude > 0)
     add("drive", State::on,
-        fmt::format("Gamma = {:.6g}, {} start", s.drive.gamma(s.gravity > 0 ? s.gravity : 1),
-                    s.comoving ? "co-moving" : "abrupt"));
+        fmt::format("A sin(omega t) along {}, Gamma = {:.6g}, {}", "xyz"[static_cast<int>(s.drive.axis)],
+                    s.drive.gamma(s.g() > 0 ? s.g() : 1),
+                    !s.envelope.points.empty()
+                        ? fmt::format("amplitude led over {:g} cycles", s.envelope.duration())
+                    : s.comoving ? "co-moving start"
+                                 : "abrupt start: the plate hits a bed at rest"));
   else
     add("drive", State::off_by_scene, "amplitude 0");
+  if (s.steps_per_contact < 20)
+    add("coarse steps", State::approximated,
+        fmt::format("{:g} steps per contact time: single collisions scatter in e by up to {:.2g}",
+                    s.steps_per_contact,
+                    s.integrator == "split" ? 0.9 / (s.steps_per_contact * s.steps_per_contact)
+                                            : 0.19 / s.steps_per_contact));
 }
 
-void add_limits(const std::string& kind, const Plan::Contact& laws, double m_eff, double inverse_m_t,
+void add_limits(const std::string& kind, const ContactLaws& laws, const PairScale& pair, double speed,
                 std::vector<TimeLimit>& limits) {
-  limits.push_back({kind + ", normal contact",
-                    std::visit([&](const auto& law) { return law.shortest_time(m_eff); }, laws.normal)});
+  limits.push_back(
+      {kind + ", normal contact",
+       std::visit([&](const auto& law) { return law.shortest_time(pair, speed); }, laws.normal)});
   const double tangential =
-      std::visit([&](const auto& law) { return law.shortest_time(m_eff, 1 / inverse_m_t); }, laws.tangential);
+      std::visit([&](const auto& law) { return law.shortest_time(pair); }, laws.tangential);
   if (std::isfinite(tangential)) limits.push_back({kind + ", tangential contact", tangential});
+  const double rolling = std::visit([&](const auto& law) { return law.shortest_time(pair); }, laws.rolling);
+  if (std::isfinite(rolling)) limits.push_back({kind + ", rolling", rolling});
+}
+
+/// Of two equal beads, or a bead and a wall.
+PairScale pair_of(double radius, double mass, double inertia_factor) {
+  const double one = 1 / mass + 1 / (inertia_factor * mass);  // 1/m + R^2/I
+  return {mass / 2, radius / 2, 2 * one};
+}
+PairScale wall_of(double radius, double mass, double inertia_factor) {
+  return {mass, radius, 1 / mass + 1 / (inertia_factor * mass)};
+}
+
+/// The lightest bead there may be: it makes the fastest contact.
+double lightest(const Scene& s, double* radius) {
+  double r = s.radius * (1 - largest_deviation(s.spread, s.spread_width));
+  double m = s.mass_of(r);
+  if (s.intruder && s.intruder->mass < m) {
+    m = s.intruder->mass;
+    r = s.intruder->radius;
+  }
+  *radius = r;
+  return m;
 }
 
 }  // namespace
 
 std::string Plan::kernel_name() const {
-  auto name = [](const auto& law) { return std::string(law.kName); };
-  return fmt::format("2D; normal: {}; tangential: {}; {}", std::visit(name, bead.normal),
-                     std::visit(name, bead.tangential), std::visit(name, side));
+  std::string name = fmt::format("{}D; normal: {}; tangential: {}", dimension, name_of(bead.normal),
+                                 name_of(bead.tangential));
+  if (key.rolling > 0) name += "; rolling: " + name_of(bead.rolling);
+  if (predicted) name += "; predicted velocities";
+  if (key.jump == Jump::located) name += "; steps split at entry and exit";
+  return name;
 }
 
 Plan make_plan(const Scene& s) {
   Plan plan;
-  // Friction of one kind of contact keeps the machinery for both; the other's mu = 0 then gives exactly no
-  // force.
-  const bool friction =
-      s.bead.tangential != ContactSpec::Tangential::none && (s.bead.mu > 0 || s.wall.mu > 0);
-  const double m_pair = s.mass / 2, m_wall = s.mass;
-  plan.bead = contact_laws(s.bead, m_pair, friction);
-  plan.wall = contact_laws(s.wall, m_wall, friction);
-  // One k_t decides for both kinds whether there is history.
-  if (plan.bead.tangential.index() != plan.wall.tangential.index())
-    throw ConfigError({s.file, 0, 0, "contact.wall.k_t"},
-                      "k_t must be zero for beads and walls alike, or for neither.");
-  if (s.periodic_sides)
-    plan.side = PeriodicSides{s.width};
-  else
-    plan.side = SideWalls{s.width};
-  plan.rotation = std::visit([](const auto& law) { return law.kNeedsSpin; }, plan.bead.tangential);
-  plan.history = std::visit([](const auto& law) { return law.kNeedsHistory; }, plan.bead.tangential);
-  plan.largest_diameter = 2 * s.radius;
+  plan.dimension = s.dimension;
+  plan.walls = s.walls();
+  const Chosen chosen = choose(s, plan.walls);
+  plan.bead = read_laws(chosen, s.contact.bead);
+  for (const Wall& w : plan.walls) plan.wall_laws.push_back(read_laws(chosen, s.contact.wall.at(w.name)));
+  plan.key = {s.dimension, plan.bead.normal.index(), plan.bead.tangential.index(), plan.bead.rolling.index(),
+              s.integrator == "split" ? Jump::located : Jump::stepwise};
+  plan.predicted = s.integrator != "verlet";
+  plan.rotation = std::visit([](const auto& law) { return law.kActs; }, plan.bead.tangential);
+  plan.history = std::visit([](const auto& law) { return law.kHistory; }, plan.bead.tangential);
 
-  const double inverse_one = 1 / s.mass + 1 / (s.inertia_factor * s.mass);  // 1/m + R^2/I
-  add_limits("bead-bead", plan.bead, m_pair, 2 * inverse_one, plan.limits);
-  add_limits("bead-wall", plan.wall, m_wall, inverse_one, plan.limits);
+  double radius = s.radius;
+  const double mass = lightest(s, &radius);
+  const double speed = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
+  const auto limits = [&](const ContactLaws& laws, const std::string& kind, const PairScale& pair) {
+    add_limits(kind, laws, pair, speed, plan.limits);
+    plan.largest_force =
+        std::max(plan.largest_force,
+                 std::visit([](const auto& law) { return law.largest_force(kOverlapBound); }, laws.normal));
+  };
+  limits(plan.bead, "bead-bead", pair_of(radius, mass, s.inertia_factor));
+  for (std::size_t w = 0; w < plan.walls.size(); ++w) {
+    // Walls of the same table make the same limits: named once.
+    const std::string kind = "bead-" + plan.walls[w].name;
+    limits(plan.wall_laws[w], kind, wall_of(radius, mass, s.inertia_factor));
+  }
   double shortest = HUGE_VAL;
   for (const TimeLimit& limit : plan.limits) shortest = std::min(shortest, limit.time);
   constexpr double kMostSteps = 1e10, kMostTravel = 0.05;
@@ -146,8 +248,38 @@ Plan make_plan(const Scene& s) {
                       fmt::format("the plate moves {:.3g} sigma in one step, the bound is {:g}; raise "
                                   "time.steps_per_contact or contact.k_n.",
                                   travel, kMostTravel));
-  list_effects(s, plan);
+  list_effects(s, chosen, plan);
   return plan;
+}
+
+System make_system(const Scene& s, const Plan& plan) {
+  System system;
+  system.dimension = s.dimension;
+  system.period = s.period();
+  system.gravity = s.gravity;
+  system.walls = plan.walls;
+  system.plate_drag = s.plate_drag;
+  system.drive = s.drive;
+  system.steps_per_period = plan.steps_per_period;
+  system.dt = plan.dt;
+  return system;
+}
+
+std::vector<double> contact_constants(const ContactLaws& laws, const PairScale& pair, double reach,
+                                      double inv_radius_i, double inv_radius_j) {
+  std::vector<double> set = {reach, 1 / reach, inv_radius_i, inv_radius_j};
+  const auto append = [&](const auto& axis) {
+    std::visit(
+        [&](const auto& law) {
+          const auto own = law.constants(pair);
+          set.insert(set.end(), own.begin(), own.end());
+        },
+        axis);
+  };
+  append(laws.normal);
+  append(laws.tangential);
+  append(laws.rolling);
+  return set;
 }
 
 }  // namespace twincell::sim

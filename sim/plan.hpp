@@ -8,13 +8,19 @@
 #include <vector>
 
 #include "sim/laws/axes.hpp"
+#include "sim/passes.hpp"
 #include "sim/scene.hpp"
 
 namespace twincell::sim {
 
 /// One effect and why it is on or off.
 struct Effect {
-  enum class State { on, off_by_scene, off_by_proof };
+  enum class State {
+    on,            ///< the scene says so
+    off_by_scene,  ///< the scene says so
+    off_by_proof,  ///< it provably cannot act
+    approximated,  ///< asked for, with a stated error
+  };
   std::string name;
   State state;
   std::string reason;
@@ -26,15 +32,23 @@ struct TimeLimit {
   double time;  ///< t0; the step is at most this divided by steps_per_contact
 };
 
+/// The laws of one kind of contact, with their parameters.
+struct ContactLaws {
+  NormalAxis normal;
+  TangentialAxis tangential;
+  RollingAxis rolling;
+};
+
 struct Plan {
-  struct Contact {
-    NormalAxis normal;
-    TangentialAxis tangential;
-  };
-  Contact bead, wall;
-  SideAxis side;
+  int dimension = 2;
+  ContactLaws bead;
+  std::vector<Wall> walls;             ///< of the cell
+  std::vector<ContactLaws> wall_laws;  ///< of each wall
+  PassKey key{};                       ///< which kernel
+  bool predicted = false;              ///< dashpots see v predicted for the step's end, not the half-step v
   bool rotation = false, history = false;
-  double largest_diameter = 1;
+  double largest_force =
+      0;  ///< m g, that an overlap at the guard's bound makes: sets the grain of summed forces
 
   std::vector<Effect> effects;
   std::vector<TimeLimit> limits;
@@ -45,7 +59,19 @@ struct Plan {
   [[nodiscard]] std::string kernel_name() const;
 };
 
+/// Overlap, sigma, at which a run is stopped. The papers' runs stay below 0.03.
+inline constexpr double kOverlapBound = 0.1;
+
 /// Derives the plan. mu = 0 turns friction, rotation and history off, since nothing of them can then act.
+/// \throws ConfigError for parameters that a law needs or refuses, and for steps too long or too many
 Plan make_plan(const Scene& scene);
+
+/// The system of a scene, without beads: cell, walls, gravity, drive, clock.
+System make_system(const Scene& scene, const Plan& plan);
+
+/// The constants of one kind of contact, in the order of Layout (contact.hpp).
+/// \param inv_radius_j 0 at a wall
+std::vector<double> contact_constants(const ContactLaws& laws, const PairScale& pair, double reach,
+                                      double inv_radius_i, double inv_radius_j);
 
 }  // namespace twincell::sim

@@ -1,10 +1,14 @@
 #include "sim/scene.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <numbers>
 
+#include "sim/laws/axes.hpp"
 #include "sim/presets.hpp"
 
 namespace twincell::sim {
@@ -13,91 +17,243 @@ namespace {
 
 using Section = ConfigSection;
 
-// Of each group one key says it all.
-const std::vector<std::string> kNormalDamping = {"gamma_n", "c_n", "restitution"};
-const std::vector<std::string> kTangentialDamping = {"gamma_t", "c_t", "c_t_over_c_n"};
+/// Tables below [contact] and the walls that each speaks for.
+const std::vector<std::pair<std::string, std::vector<std::string>>> kWallTables = {
+    {"bottom", {"bottom"}}, {"sides", {"left", "right"}}, {"plates", {"front", "back"}}, {"lid", {"lid"}}};
 
-void at_most_one(const Section& s, const std::vector<std::string>& keys) {
-  std::vector<std::string> given;
-  for (const auto& key : keys)
-    if (s.has(key)) given.push_back(key);
-  if (given.size() > 1)
-    throw ConfigError(s.where(given[1]), fmt::format("contradicts '{}': only one of {} can be given.",
-                                                     given[0], fmt::join(keys, ", ")));
+/// Refuses keys that speak of something the scene does not have.
+void refuse(const Section& s, std::initializer_list<const char*> keys, const std::string& complaint) {
+  const char* first = nullptr;
+  for (const char* key : keys)
+    if (s.has(key) && first == nullptr) first = key;
+  if (first != nullptr) throw ConfigError(s.where(first), complaint);
 }
 
-/// A key of `contact.wall` that is absent is taken from `contact`: the papers use the same numbers for both.
-void read_contact(const Section& s, ContactSpec& c) {
-  c.k_n = s.number_in("k_n", 0, 1e12, true).value_or(c.k_n);
-  at_most_one(s, kNormalDamping);
-  if (s.has("gamma_n") || s.has("c_n") || s.has("restitution"))
-    c.gamma_n = c.c_n = c.restitution = std::nullopt;
-  if (const auto v = s.number_in("gamma_n", 0, std::nullopt)) c.gamma_n = v;
-  if (const auto v = s.number_in("c_n", 0, std::nullopt)) c.c_n = v;
-  if (const auto v = s.number_in("restitution", 0, 1.0, true)) c.restitution = v;
-  if (const auto v = s.word("tension", {"allowed", "clipped"})) c.tension = *v == "allowed";
-  if (const auto v = s.word("tangential", {"none", "dashpot", "spring"}))
-    c.tangential = *v == "none"      ? ContactSpec::Tangential::none
-                   : *v == "dashpot" ? ContactSpec::Tangential::dashpot
-                                     : ContactSpec::Tangential::spring;
-  c.k_t = s.number_in("k_t", 0, 1e12).value_or(c.k_t);
-  at_most_one(s, kTangentialDamping);
-  if (s.has("gamma_t") || s.has("c_t") || s.has("c_t_over_c_n"))
-    c.gamma_t = c.c_t = c.c_t_over_c_n = std::nullopt;
-  if (const auto v = s.number_in("gamma_t", 0, std::nullopt)) c.gamma_t = v;
-  if (const auto v = s.number_in("c_t", 0, std::nullopt)) c.c_t = v;
-  if (const auto v = s.number_in("c_t_over_c_n", 0, std::nullopt)) c.c_t_over_c_n = v;
-  c.mu = s.number_in("mu", 0, 1e12).value_or(c.mu);
-  if (const auto v = s.word("slip", {"rescale", "spring_only"})) c.slip_rescales = *v == "rescale";
+template <class Enum>
+Enum read_word(const Section& s, const std::string& key, const std::vector<std::string>& words,
+               Enum otherwise) {
+  const auto v = s.word(key, words);
+  return v ? static_cast<Enum>(std::find(words.begin(), words.end(), *v) - words.begin()) : otherwise;
 }
 
-void read_cell(const Section& s, Scene& scene) {
-  if (const auto d = s.integer("dimension"); d && *d != 2)
-    throw ConfigError(s.where("dimension"),
-                      fmt::format("{} is not simulated by this version, which knows 2.", *d));
+bool read_motion(const Section& s, const std::string& key, bool otherwise) {
+  const auto v = s.word(key, {"move", "rest"});
+  return v ? *v == "move" : otherwise;
+}
+
+constexpr double radians(double degrees) {
+  return degrees * std::numbers::pi / 180;
+}
+
+/// Returns the magnitude of g as it was stated, from which Gamma and K_m take their meaning.
+double read_gravity(const Section& s, Scene& scene) {
+  const auto tilt = s.number_in("tilt", -45, 45);
+  if (!s.is_list("gravity")) {
+    const double g = s.number_in("gravity", 0).value_or(1), lean = radians(tilt.value_or(0));
+    scene.gravity = Vec3(g * std::sin(lean), 0, -g * std::cos(lean));
+    return g;
+  }
+  if (tilt)
+    throw ConfigError(s.where("tilt"), "cell.gravity already says the direction; a tilt turns a number.");
+  if (scene.dimension == 2) {
+    const std::vector<double> g = s.numbers("gravity", 2).value();
+    scene.gravity = Vec3(g[0], 0, g[1]);
+  } else {
+    const std::vector<double> g = s.numbers("gravity", 3).value();
+    scene.gravity = Vec3(g[0], g[1], g[2]);
+  }
+  return scene.gravity.norm();
+}
+
+void read_side_tilt(const Section& s, Scene& scene) {
+  constexpr double kSteepest = 45;
+  if (!s.is_list("side_tilt")) {
+    scene.left_tilt = scene.right_tilt = s.number_in("side_tilt", -kSteepest, kSteepest).value_or(0);
+    return;
+  }
+  const std::vector<double> both = s.numbers("side_tilt", 2).value();
+  for (const double tilt : both) require_range(s.where("side_tilt"), tilt, -kSteepest, kSteepest);
+  scene.left_tilt = both[0];
+  scene.right_tilt = both[1];
+}
+
+double read_cell(const Section& s, Scene& scene) {
+  scene.dimension = static_cast<int>(s.integer_in("dimension", 2, 3).value_or(scene.dimension));
   scene.width = s.number_in("width", 0, 1e6, true).value_or(scene.width);
-  scene.height = s.number_in("height", 0, std::nullopt, true);
-  if (const auto v = s.word("sides", {"walls", "periodic"})) scene.periodic_sides = *v == "periodic";
-  if (const auto v = s.word("side_walls", {"move", "rest"})) scene.side_walls_move = *v == "move";
-  scene.gravity = s.number_in("gravity", 0, std::nullopt).value_or(scene.gravity);
-  scene.tilt = s.number_in("tilt", -45, 45).value_or(scene.tilt);
+  scene.height = s.number_in("height", 0, 1e9, true);
+  scene.sides = read_word(s, "sides", {"walls", "periodic", "absent"}, scene.sides);
+  scene.bottom = read_word(s, "bottom", {"wall", "periodic", "absent"}, scene.bottom);
+  scene.lid = read_word(s, "lid", {"absent", "wall"}, scene.lid ? 1 : 0) == 1;
+  if (scene.dimension == 2) {
+    refuse(s, {"depth", "plates", "plates_motion"}, "a 2D cell has no depth; cell.dimension = 3 does.");
+    scene.plate_drag = s.number_in("plate_drag", 0).value_or(scene.plate_drag);
+  } else {
+    refuse(s, {"plate_drag"}, "stands in for the front and back plates of a 2D cell; in 3D say cell.plates.");
+    const auto depth = s.number_in("depth", 0, 1e6, true);
+    if (!depth) throw ConfigError(s.where("depth"), "a 3D cell needs its depth.");
+    scene.depth = *depth;
+    scene.plates = read_word(s, "plates", {"walls", "periodic", "absent"}, Edge::wall);
+  }
+  scene.bottom_moves = read_motion(s, "bottom_motion", scene.bottom_moves);
+  scene.side_walls_move = read_motion(s, "side_walls", scene.side_walls_move);
+  scene.plates_move = read_motion(s, "plates_motion", scene.plates_move);
+  scene.lid_moves = read_motion(s, "lid_motion", scene.lid_moves);
+  read_side_tilt(s, scene);
+  if (scene.bottom != Edge::wall) refuse(s, {"bottom_motion"}, "the cell has no bottom wall.");
+  if (scene.sides != Edge::wall) refuse(s, {"side_walls", "side_tilt"}, "the cell has no side walls.");
+  if (scene.plates != Edge::wall) refuse(s, {"plates_motion"}, "the cell has no front and back walls.");
+  if (!scene.lid)
+    refuse(s, {"lid_motion"}, "the cell has no lid that acts; cell.lid = \"wall\" gives it one.");
+  return read_gravity(s, scene);
+}
+
+void read_intruder(const Section& s, Scene& scene) {
+  if (!s.has("radius") && !s.has("mass") && !s.has("x") && !s.has("y") && !s.has("z")) return;
+  Intruder intruder;
+  const auto radius = s.number_in("radius", 0, 1e6, true), z = s.number("z");
+  if (!radius) throw ConfigError(s.where("radius"), "an intruder needs its radius.");
+  if (!z) throw ConfigError(s.where("z"), "an intruder needs the height at which it starts.");
+  intruder.radius = *radius;
+  intruder.mass = s.number_in("mass", 0, 1e12, true).value_or(scene.mass_of(intruder.radius));
+  intruder.x = s.number("x").value_or(scene.width / 2);
+  if (scene.dimension == 2) refuse(s, {"y"}, "a 2D cell has no y.");
+  intruder.y = scene.dimension == 3 ? s.number("y").value_or(scene.depth / 2) : 0;
+  intruder.z = *z;
+  scene.intruder = intruder;
 }
 
 void read_beads(const Section& s, Scene& scene) {
-  if (s.has("count"))
-    scene.n_beads = static_cast<std::size_t>(s.integer_in("count", 0, 10'000'000).value_or(0));
+  constexpr std::int64_t kMost = 10'000'000;
   scene.radius = s.number_in("radius", 0, 1e6, true).value_or(scene.radius);
   scene.mass = s.number_in("mass", 0, 1e12, true).value_or(scene.mass);
-  if (const auto v = s.word("inertia", {"disc", "sphere"})) scene.inertia_factor = *v == "disc" ? 0.5 : 0.4;
-  if (2 * scene.radius > scene.width)
-    throw ConfigError(s.where("radius"),
-                      fmt::format("a bead of diameter {} does not fit into a cell {} wide.", 2 * scene.radius,
-                                  scene.width));
+  const auto inertia = s.word("inertia", {"disc", "sphere"});
+  if (scene.dimension == 3 && inertia && *inertia == "disc")
+    throw ConfigError(s.where("inertia"), "beads of a 3D cell are spheres.");
+  scene.inertia_factor = inertia ? (*inertia == "disc" ? 0.5 : 0.4) : scene.dimension == 3 ? 0.4 : 0.5;
+  const auto count = s.integer_in("count", 0, kMost);
+  const auto layers = s.number_in("layers", 0, 1e6);
+  if (count) scene.n_beads = static_cast<std::size_t>(*count);
+  if (layers) {
+    if (count) throw ConfigError(s.where("layers"), "contradicts 'count': only one of the two can be given.");
+    const double d = 2 * scene.radius;
+    const double beads =
+        std::round(*layers * scene.width / d * (scene.dimension == 3 ? scene.depth / d : 1.0));
+    if (!(beads <= static_cast<double>(kMost)))
+      throw ConfigError(s.where("layers"),
+                        fmt::format("{:g} layers are {:g} beads, the bound is {}.", *layers, beads, kMost));
+    scene.n_beads = static_cast<std::size_t>(beads);
+  }
+  scene.spread = read_word(s, "spread", {"none", "uniform", "normal"}, scene.spread);
+  const auto width = s.number_in("spread_width", 0, std::nullopt);
+  if (width && *width >= 0.5)
+    throw ConfigError(s.where("spread_width"),
+                      fmt::format("{} is out of range; the value must be less than 0.5.", *width));
+  if (scene.spread == SizeSpread::none)
+    refuse(s, {"spread_width"}, "says how far radii are spread, but beads.spread is \"none\".");
+  else if (!width)
+    throw ConfigError(s.where("spread"), "needs beads.spread_width.");
+  scene.spread_width = width.value_or(0);
+  read_intruder(s.section("intruder"), scene);
+}
+
+/// The older spelling of a variant of a law, as a key of its own: `word` chooses `variant` of `plain`, any
+/// other value chooses `plain`.
+void apply_variant(const Section& s, const std::string& key, const std::string& other,
+                   const std::string& word, const std::string& plain, const std::string& variant,
+                   std::string& law) {
+  const auto v = s.word(key, {other, word});
+  if (!v) return;
+  if (law != plain && law != variant)
+    throw ConfigError(s.where(key), fmt::format("has no meaning for the law \"{}\".", law));
+  if (law == variant && *v != word)
+    throw ConfigError(s.where(key), fmt::format("\"{}\" contradicts the law \"{}\".", *v, law));
+  if (*v == word) law = variant;
+}
+
+void read_contact(const Section& s, ContactChoice& c) {
+  c.normal = s.word("normal", normal_words()).value_or(c.normal);
+  c.tangential = s.word("tangential", tangential_words()).value_or(c.tangential);
+  c.rolling = s.word("rolling", rolling_words()).value_or(c.rolling);
+  apply_variant(s, "tension", "allowed", "clipped", "linear", "linear-clipped", c.normal);
+  apply_variant(s, "slip", "rescale", "spring_only", "spring", "spring-only", c.tangential);
+
+  const Section walls = s.section("wall");
+  const auto only_numbers = [](const Section& table) {
+    refuse(table, {"normal", "tangential", "rolling", "tension", "slip"},
+           "all contacts follow the same kinds of law, named in [contact]; their parameters may differ here "
+           "(mu = 0 "
+           "makes a smooth wall).");
+  };
+  only_numbers(walls);
+  c.bead = ContactTable({s});
+  for (const auto& [table, names] : kWallTables) {
+    const Section own = s.section(table);
+    only_numbers(own);
+    for (const auto& name : names) c.wall[name] = ContactTable({own, walls, s});
+    know_all_keys(c.wall[names.front()]);
+  }
+}
+
+void read_schedule(const Section& s, Envelope& envelope) {
+  const auto points = s.pairs("schedule");
+  if (!points) return;
+  const Where where = s.where("schedule");
+  for (std::size_t k = 0; k < points->size(); ++k) {
+    const auto& [cycle, factor] = (*points)[k];
+    require_range(where, cycle, 0, 1e6);
+    require_range(where, factor, 0, 1e6);
+    if (k > 0 && !(cycle > (*points)[k - 1].first))
+      throw ConfigError(
+          where, fmt::format("cycles must rise, but {:g} follows {:g}.", cycle, (*points)[k - 1].first));
+  }
+  if (points->back().second != 1)
+    throw ConfigError(where, fmt::format("the last factor is {:g}; it must be 1, the drive that is recorded.",
+                                         points->back().second));
+  envelope.points = *points;
 }
 
 DriveSpec read_drive(const Section& s, Scene& scene) {
   const DriveSpec spec = read_drive_spec(s);
-  if (const auto v = s.word("start", {"comoving", "abrupt"})) scene.comoving = *v == "comoving";
+  scene.drive.axis = read_word(s, "axis", {"x", "y", "z"}, Axis::z);
+  if (scene.dimension == 2 && scene.drive.axis == Axis::y)
+    throw ConfigError(s.where("axis"), "a 2D cell cannot be driven along y.");
+  const std::string start = s.word("start", {"comoving", "abrupt", "ramp"}).value_or("comoving");
+  scene.comoving = start != "abrupt";
+  read_schedule(s, scene.envelope);
+  const auto ramp = s.number_in("ramp_cycles", 0, 1e6, true);
+  if (start == "ramp") {
+    if (!scene.envelope.points.empty())
+      throw ConfigError(s.where("schedule"), "contradicts 'start': a ramp is a schedule of its own.");
+    scene.envelope.points = {{0, 0}, {ramp.value_or(10), 1}};
+  } else if (ramp) {
+    throw ConfigError(s.where("ramp_cycles"), "is given, but drive.start is not \"ramp\".");
+  }
   return spec;
 }
 
 void read_start(const Section& s, Scene& scene) {
-  const std::vector<std::string> words = {"crystal_a", "crystal_b", "random", "trajectory"};
-  if (const auto v = s.word("kind", words))
-    scene.start = static_cast<StartKind>(std::find(words.begin(), words.end(), *v) - words.begin());
+  scene.start =
+      read_word(s, "kind", {"crystal_a", "crystal_b", "random", "trajectory", "table"}, scene.start);
   scene.seed = static_cast<std::uint64_t>(s.integer_in("seed", 0, std::int64_t{1} << 53).value_or(1));
   if (const auto v = s.text("from")) scene.from = *v;
   scene.frame = static_cast<std::size_t>(s.integer_in("frame", 0, std::int64_t{1} << 40).value_or(0));
+  scene.perturbation = s.number_in("perturbation", 0, 0.01).value_or(scene.perturbation);
+  scene.velocity_scale = s.number_in("velocity_scale", 0, 1e6).value_or(scene.velocity_scale);
   scene.rest_energy = s.number_in("rest_energy", 0, std::nullopt, true).value_or(scene.rest_energy);
   scene.settle_limit = s.number_in("settle_limit", 0, 1e6).value_or(scene.settle_limit);
-  if (scene.start == StartKind::trajectory && scene.from.empty())
+  const bool trajectory = scene.start == StartKind::trajectory, table = scene.start == StartKind::table;
+  if (trajectory && scene.from.empty())
     throw ConfigError(s.where("from"), "a start from a trajectory needs the name of its file.");
-  if (scene.start != StartKind::trajectory && !scene.from.empty())
-    throw ConfigError(s.where("from"), "a file is named, but start.kind is not \"trajectory\".");
+  if (table && scene.from.empty())
+    throw ConfigError(s.where("from"), "a start from a table needs the name of its file.");
+  if (!trajectory && !table)
+    refuse(s, {"from"}, "a file is named, but start.kind is neither \"trajectory\" nor \"table\".");
+  if (!trajectory) refuse(s, {"frame"}, "a frame is named, but start.kind is not \"trajectory\".");
 }
 
 void read_time(const Section& s, Scene& scene) {
   scene.steps_per_contact = s.number_in("steps_per_contact", 8, 1e6).value_or(scene.steps_per_contact);
+  scene.integrator = s.word("integrator", {"verlet", "predicted", "split"}).value_or(scene.integrator);
   scene.discard = s.integer_in("discard", 0, 1'000'000).value_or(scene.discard);
   scene.cycles = s.integer_in("cycles", 1, 100'000'000).value_or(scene.cycles);
   scene.phases = static_cast<int>(s.integer_in("phases", 1, 10'000).value_or(scene.phases));
@@ -108,40 +264,138 @@ void read_scale(const Section& s, Scene& scene) {
   scene.scale.gravity_m_s2 = s.number_in("gravity_m_s2", 0, std::nullopt, true);
 }
 
+/// Extents of the cell along x, y, z where something limits it; 0: open.
+std::array<double, 3> limited_extent(const Scene& s) {
+  const bool capped = s.lid || s.bottom == Edge::periodic;
+  return {s.sides == Edge::absent ? 0 : s.width, s.dimension == 2 || s.plates == Edge::absent ? 0 : s.depth,
+          capped ? s.height.value_or(0) : 0};
+}
+
+constexpr const char* kExtentKeys[] = {"width", "depth", "height"};
+
+void check_height(const Scene& s, const Section& cell) {
+  if (s.lid && s.bottom == Edge::periodic)
+    throw ConfigError(cell.where("lid"), "contradicts cell.bottom: a cell periodic along z has no lid.");
+  if (s.lid && !s.height) throw ConfigError(cell.where("height"), "a lid needs its height.");
+  if (s.bottom == Edge::periodic && !s.height)
+    throw ConfigError(cell.where("height"), "a cell periodic along z needs its period, the height.");
+}
+
+void check_sizes(const Scene& s, const Section& cell, const Section& beads) {
+  const double largest = s.radius * (1 + largest_deviation(s.spread, s.spread_width));
+  const double intruder = s.intruder ? s.intruder->radius : 0;
+  const auto extent = limited_extent(s), period = s.period();
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (extent[a] == 0) continue;
+    // A bed that just fits, whatever the rounding.
+    const double slack = 1e-9 * extent[a];
+    if (2 * largest > extent[a] + slack)
+      throw ConfigError(
+          beads.where("radius"),
+          fmt::format("a bead of diameter {:g} does not fit into a cell {:g} {}.", 2 * largest, extent[a],
+                      a == 0   ? "wide"
+                      : a == 1 ? "deep"
+                               : "high"));
+    if (2 * intruder > extent[a] + slack)
+      throw ConfigError(beads.where("intruder.radius"),
+                        fmt::format("an intruder of diameter {:g} does not fit into a cell {:g} {}.",
+                                    2 * intruder, extent[a],
+                                    a == 0   ? "wide"
+                                    : a == 1 ? "deep"
+                                             : "high"));
+    if (period[a] == 0) continue;
+    const double reach = largest + std::max(largest, intruder) + kListReach * 2 * std::max(largest, intruder);
+    if (period[a] < 2 * reach)
+      throw ConfigError(
+          cell.where(kExtentKeys[a]),
+          fmt::format("a bead would meet two images of another: a period of {:g} is less than {:g}, twice "
+                      "the reach of the pair list.",
+                      period[a], 2 * reach));
+  }
+}
+
+void check_intruder(const Scene& s, const Section& beads) {
+  if (!s.intruder) return;
+  const Section table = beads.section("intruder");
+  if (s.start == StartKind::trajectory || s.start == StartKind::table)
+    throw ConfigError(table.where(""),
+                      "a file names all beads, the intruder among them; leave the table out.");
+  const Vec3 r(s.intruder->x, s.intruder->y, s.intruder->z);
+  for (const Wall& wall : s.walls()) {
+    const double outside = s.intruder->radius - (wall.n.dot(r) - wall.offset);
+    if (outside > 1e-9 * s.intruder->radius)
+      throw ConfigError(table.where(""),
+                        fmt::format("the intruder at ({:g}, {:g}, {:g}) reaches {:.3g} into the wall \"{}\".",
+                                    r.x(), r.y(), r.z(), outside, wall.name));
+  }
+}
+
+void check_gravity(const Scene& s, const Section& cell) {
+  const Where where = cell.where("gravity");
+  if (s.g() == 0) {
+    const char* open = s.sides == Edge::absent                        ? "sides are open"
+                       : s.dimension == 3 && s.plates == Edge::absent ? "front and back are open"
+                       : s.bottom == Edge::absent                     ? "bottom is open"
+                       : s.bottom == Edge::wall && !s.lid             ? "top is open"
+                                                                      : nullptr;
+    if (open != nullptr)
+      throw ConfigError(where, fmt::format("without gravity beads leave the cell for ever: its {}.", open));
+    return;
+  }
+  // Along a periodic axis there is no wall; what gravity presses against another wall may slide along it.
+  const auto walls = s.walls();
+  if (std::none_of(walls.begin(), walls.end(), [&](const Wall& w) { return w.n.dot(s.gravity) < 0; }))
+    throw ConfigError(where,
+                      fmt::format("no wall carries the beads, which ({:g}, {:g}, {:g}) accelerates for ever.",
+                                  s.gravity.x(), s.gravity.y(), s.gravity.z()));
+}
+
+void check_drive(const Scene& s, const Section& drive) {
+  const auto walls = s.walls();
+  if (s.drive.amplitude > 0 &&
+      std::none_of(walls.begin(), walls.end(), [](const Wall& w) { return w.moves; }))
+    throw ConfigError(drive.where(""), "moves nothing: no wall rides with the plate.");
+}
+
+void check_contact_tables(const Scene& s, const Section& contact) {
+  const auto walls = s.walls();
+  for (const auto& [table, names] : kWallTables) {
+    const auto& name = names.front();
+    if (contact.has(table) &&
+        std::none_of(walls.begin(), walls.end(), [&](const Wall& w) { return w.name == name; }))
+      throw ConfigError(contact.where(table), "the cell has no such wall.");
+  }
+}
+
 Scene interpret(const Config& config, const std::string& name) {
   Scene scene;
   scene.file = name;
   scene.resolved = config.text();
-  const Section root = config.root();
+  const Section root = config.root(), cell = root.section("cell"), beads = root.section("beads"),
+                contact = root.section("contact"), drive = root.section("drive");
   static_cast<void>(root.text("preset"));
-  read_cell(root.section("cell"), scene);
-  read_beads(root.section("beads"), scene);
-  const Section contact = root.section("contact"), wall = contact.section("wall");
-  read_contact(contact, scene.bead);
-  scene.wall = scene.bead;
-  read_contact(wall, scene.wall);
-  if (scene.wall.tangential != scene.bead.tangential || scene.wall.tension != scene.bead.tension ||
-      scene.wall.slip_rescales != scene.bead.slip_rescales)
-    throw ConfigError(wall.where(""),
-                      "beads and walls must follow the same kind of law; their parameters may differ (mu = 0 "
-                      "makes a smooth wall).");
-  const DriveSpec drive = read_drive(root.section("drive"), scene);
+  const double g = read_cell(cell, scene);
+  read_beads(beads, scene);
+  read_contact(contact, scene.contact);
+  const DriveSpec spec = read_drive(drive, scene);
   read_start(root.section("start"), scene);
   read_time(root.section("time"), scene);
   read_scale(root.section("scale"), scene);
   // A misspelt key explains more than what is missing because of it.
   config.refuse_unknown_keys();
-  scene.drive = solve_drive(drive, scene.gravity, root.section("drive").where(""), Axis::z);
-  if (!scene.n_beads && scene.start != StartKind::trajectory)
-    throw ConfigError(root.section("beads").where("count"), "the number of beads is missing.");
-  if (scene.periodic_sides && scene.width < 4 * scene.radius)
-    throw ConfigError(
-        root.section("cell").where("width"),
-        fmt::format("a bead would touch two images of another: {:g} is less than two diameters, {:g}.",
-                    scene.width, 4 * scene.radius));
-  if (scene.gravity == 0 && scene.periodic_sides)
-    throw ConfigError(root.section("cell").where("gravity"),
-                      "without gravity and without a lid the beads leave for ever.");
+  const ContactChoice& laws = scene.contact;
+  check_laws(laws.normal, laws.tangential, laws.rolling, laws.bead);
+  for (const auto& [wall, table] : laws.wall) check_laws(laws.normal, laws.tangential, laws.rolling, table);
+  scene.drive = solve_drive(spec, g, drive.where(""), scene.drive.axis);
+  const bool from_file = scene.start == StartKind::trajectory || scene.start == StartKind::table;
+  if (!scene.n_beads && !from_file)
+    throw ConfigError(beads.where("count"), "the number of beads is missing.");
+  check_height(scene, cell);
+  check_sizes(scene, cell, beads);
+  check_intruder(scene, beads);
+  check_gravity(scene, cell);
+  check_drive(scene, drive);
+  check_contact_tables(scene, contact);
   return scene;
 }
 
@@ -154,12 +408,47 @@ Scene resolve(Config config, const std::string& name, const std::vector<std::str
   const auto chosen = std::find_if(all.begin(), all.end(), [&](const auto& p) { return p.first == *preset; });
   Config base = Config::from_text(chosen->second, "preset " + *preset);
   for (const char* section : {"contact", "contact.wall"})
-    for (const auto& group : {kNormalDamping, kTangentialDamping}) base.yield_to(config, section, group);
+    for (const auto& group : {normal_damping_keys(), tangential_damping_keys()})
+      base.yield_to(config, section, group);
+  base.yield_to(config, "beads", {"count", "layers"});
   base.overlay(std::move(config));
   return interpret(base, name);
 }
 
 }  // namespace
+
+double largest_deviation(SizeSpread spread, double width) {
+  switch (spread) {
+    case SizeSpread::none:
+      return 0;
+    case SizeSpread::uniform:
+      return width;
+    case SizeSpread::normal:
+      break;
+  }
+  return std::min(3 * width, 0.9);
+}
+
+double Scene::mass_of(double bead_radius) const {
+  return mass * std::pow(bead_radius / radius, inertia_factor == 0.5 ? 2 : 3);
+}
+
+std::vector<Wall> Scene::walls() const {
+  std::vector<Wall> all;
+  if (bottom == Edge::wall) all.push_back({Vec3::UnitZ(), 0, bottom_moves, "bottom"});
+  if (sides == Edge::wall) {
+    const double left = radians(left_tilt), right = radians(right_tilt);
+    all.push_back({Vec3(std::cos(left), 0, std::sin(left)), 0, side_walls_move, "left"});
+    all.push_back(
+        {Vec3(-std::cos(right), 0, std::sin(right)), -width * std::cos(right), side_walls_move, "right"});
+  }
+  if (dimension == 3 && plates == Edge::wall) {
+    all.push_back({Vec3::UnitY(), 0, plates_move, "front"});
+    all.push_back({-Vec3::UnitY(), -depth, plates_move, "back"});
+  }
+  if (lid) all.push_back({-Vec3::UnitZ(), -height.value_or(0), lid_moves, "lid"});
+  return all;
+}
 
 std::vector<std::string> preset_names() {
   std::vector<std::string> names;

@@ -2,8 +2,11 @@
 /// \file
 /// The scene as data: what is in the cell, read from TOML and checked. Every key: docs/scene.md.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,57 +14,98 @@
 #include "analysis/trajectory/config.hpp"
 #include "analysis/trajectory/drive.hpp"
 #include "analysis/trajectory/units.hpp"
+#include "sim/laws/parameters.hpp"
+#include "sim/state.hpp"
 
 namespace twincell::sim {
 
-/// Contact parameters of one kind (bead-bead or bead-wall), reduced units.
-struct ContactSpec {
-  double k_n = 1e6;                   ///< m g/sigma
-  std::optional<double> gamma_n;      ///< 1/t0; one of gamma_n, c_n, restitution
-  std::optional<double> c_n;          ///< m/t0
-  std::optional<double> restitution;  ///< e_n in (0, 1]
-  bool tension = true;                ///< false: F_n clipped at 0
-  enum class Tangential { none, dashpot, spring } tangential = Tangential::spring;
-  double k_t = 1e4;
-  std::optional<double> gamma_t;  ///< 1/t0; one of gamma_t, c_t, c_t_over_c_n
-  std::optional<double> c_t;
-  std::optional<double> c_t_over_c_n;
-  double mu = 0.6;
-  bool slip_rescales = true;  ///< false: the limit acts on the spring alone
+/// What limits the cell on one side.
+enum class Edge { wall, periodic, absent };
+
+/// The laws that contacts follow, by the words of the scene, and where each kind of contact finds its parameters.
+struct ContactChoice {
+  std::string normal = "linear", tangential = "spring", rolling = "none";
+  ContactTable bead;                         ///< bead-bead
+  std::map<std::string, ContactTable> wall;  ///< by name of the wall: bottom, left, right, front, back, lid
 };
 
-enum class StartKind { crystal_a, crystal_b, random, trajectory };
+/// One large bead among the others.
+struct Intruder {
+  double radius = 2, mass = 1;
+  double x = 0, y = 0, z = 0;  ///< where it starts, sigma
+};
+
+/// How radii are spread about `radius`; masses follow as R^3 (spheres) or R^2 (discs).
+enum class SizeSpread { none, uniform, normal };
+/// Largest deviation from `radius`, relative to it, that a spread of this width admits: the half width of a uniform
+/// one; a normal one is cut on both sides at three standard deviations, or at 0.9 if that is nearer.
+double largest_deviation(SizeSpread spread, double width);
+
+/// Gap, in diameters of the largest bead, up to which pairs are listed: a periodic cell must be wide enough that no
+/// bead comes so near to two images of another.
+inline constexpr double kListReach = 0.25;
+
+enum class StartKind { crystal_a, crystal_b, random, trajectory, table };
 
 struct Scene {
   std::string file;      ///< for messages
   std::string resolved;  ///< TOML with preset and overrides, for provenance
 
-  double width = 20;             ///< sigma
-  std::optional<double> height;  ///< sigma; absent: high enough never to be reached
-  bool periodic_sides = false;
-  bool side_walls_move = true;
-  double gravity = 1;
-  double tilt = 0;  ///< degrees by which the cell leans, x downhill: g = (sin, -cos) of it
+  // Cell
+  int dimension = 2;
+  double width = 20;             ///< L_x, sigma
+  double depth = 1;              ///< L_y, sigma: period or gap of front and back plates; 3D only
+  std::optional<double> height;  ///< of the lid above the plate, sigma; absent: high enough never to be reached
+  Edge sides = Edge::wall;       ///< across x
+  Edge plates = Edge::absent;    ///< across y, 3D
+  Edge bottom = Edge::wall;      ///< periodic: z has period `height` (no gravity then)
+  bool lid = false;              ///< true: a hard lid at `height`; false: a bead that reaches `height` stops the run
+  bool bottom_moves = true, side_walls_move = true, plates_move = true, lid_moves = true;
+  double left_tilt = 0, right_tilt = 0;  ///< degrees by which a side wall leans outward, about its foot
+  Vec3 gravity = -Vec3::UnitZ();
+  double plate_drag = 0;  ///< 2D substitute for front and back plates, 1/t0
 
-  std::optional<std::size_t> n_beads;  ///< absent only with a trajectory start
+  // Beads
+  std::optional<std::size_t> n_beads;  ///< absent only with a trajectory or table start
   double radius = 0.5, mass = 1;
   double inertia_factor = 0.5;  ///< I = factor m R^2: disc 1/2, sphere 2/5
-  ContactSpec bead, wall;
+  SizeSpread spread = SizeSpread::none;
+  double spread_width = 0;  ///< standard deviation (normal) or half width (uniform) relative to radius
+  std::optional<Intruder> intruder;
 
+  ContactChoice contact;
+
+  // Drive
   Drive drive;
+  Envelope envelope;     ///< preparation: cycles run before `discard` begins
   bool comoving = true;  ///< false: beads at rest when the plate starts at full speed
 
+  // Start
   StartKind start = StartKind::crystal_a;
   std::uint64_t seed = 1;
-  std::filesystem::path from;  ///< trajectory start
+  std::filesystem::path from;  ///< trajectory or table start
   std::size_t frame = 0;
+  double perturbation = 0;     ///< seeded random displacement of every bead, sigma
+  double velocity_scale = 1;   ///< random start: largest speed component, sigma/t0
   double rest_energy = 1e-12;  ///< kinetic energy per bead that counts as rest, m g sigma
   double settle_limit = 100;   ///< t0
 
+  // Time
   double steps_per_contact = 50;
+  std::string integrator = "verlet";  ///< verlet | predicted | split
   std::int64_t discard = 10, cycles = 200;
   int phases = 20;
   Scale scale;
+
+  [[nodiscard]] double g() const { return gravity.norm(); }
+  /// Mass of a bead of the same material: as R^2 for discs, R^3 for spheres.
+  [[nodiscard]] double mass_of(double bead_radius) const;
+  [[nodiscard]] std::array<double, 3> period() const {
+    return {sides == Edge::periodic ? width : 0, dimension == 3 && plates == Edge::periodic ? depth : 0,
+            bottom == Edge::periodic ? height.value_or(0) : 0};
+  }
+  /// The walls that the edges ask for, in the order bottom, left, right, front, back, lid.
+  [[nodiscard]] std::vector<Wall> walls() const;
 };
 
 /// Reads a scene. A key `preset` names one of preset_names(); the file's own keys win over it.

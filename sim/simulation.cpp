@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace twincell::sim {
 
@@ -11,7 +10,8 @@ namespace {
 double kinetic_energy_per_bead(const System& s) {
   double sum = 0;
   for (const Bead& b : s.beads)
-    sum += 0.5 * (b.mass * (b.vx * b.vx + b.vz * b.vz) + b.inertia * b.spin * b.spin);
+    sum += 0.5 * (b.mass * (b.vx * b.vx + b.vy * b.vy + b.vz * b.vz) +
+                  b.inertia * (b.spin_x * b.spin_x + b.spin * b.spin + b.spin_z * b.spin_z));
   return s.beads.empty() ? 0 : sum / static_cast<double>(s.beads.size());
 }
 
@@ -23,37 +23,31 @@ double top_of(const std::vector<Bead>& beads) {
 
 }  // namespace
 
-Simulation::Simulation(Scene scene, Progress& progress, KernelKind kind)
+Simulation::Simulation(Scene scene, Progress& progress, KernelKind kind, int threads)
     : scene_(std::move(scene)), plan_(make_plan(scene_)) {
   Start start = make_start(scene_);
   require_sound(start.beads, scene_, 0.05);
   // High enough never to be reached: the bed, the plate's stroke, twice the ballistic height of the plate's
   // speed, ten diameters.
-  const double v = scene_.drive.peak_velocity();
-  const double flight = scene_.gravity > 0 ? v * v / scene_.gravity : 0;
+  const double v = scene_.drive.peak_velocity(), g = scene_.g();
+  const double flight = g > 0 ? v * v / g : 0;
   height_ =
       scene_.height.value_or(std::ceil(top_of(start.beads) + 2 * scene_.drive.amplitude + 2 * flight + 10));
 
+  system_ = make_system(scene_, plan_);
   system_.beads = std::move(start.beads);
-  system_.forces.resize(system_.beads.size());
-  system_.width = scene_.width;
-  system_.side_walls_move = scene_.side_walls_move;
-  const double tilt = scene_.tilt * std::numbers::pi / 180;
-  system_.gravity = scene_.gravity * std::cos(tilt);
-  system_.gravity_x = scene_.gravity * std::sin(tilt);
-  system_.steps_per_period = plan_.steps_per_period;
-  system_.dt = plan_.dt;
   GuardLimits limits;
-  // A lid that the scene names binds; the one we chose merely keeps the box of the file finite.
-  limits.ceiling = scene_.height.value_or(0);
-  kernel_ = make_kernel(plan_, limits, kind);
+  // A height that the scene names without a lid binds; the one we chose merely keeps the box of the file
+  // finite.
+  limits.ceiling = scene_.lid || scene_.bottom == Edge::periodic ? 0 : scene_.height.value_or(0);
+  kernel_ = make_kernel(plan_, limits, kind, threads);
   settle(progress);
   tracer_ = start.tracer.empty() ? choose_tracers(system_.beads, scene_) : std::move(start.tracer);
 }
 
 void Simulation::settle(Progress& progress) {
-  system_.drive = {Axis::z, 0, scene_.drive.omega};  // the plate rests at z = 0
-  if (system_.beads.empty() || scene_.gravity == 0 || scene_.settle_limit == 0) return;
+  system_.drive.amplitude = 0;  // the plate rests at its mean
+  if (system_.beads.empty() || scene_.g() == 0 || scene_.settle_limit == 0) return;
   // Rest must last: the energy is looked at every ten contact times.
   const auto block = static_cast<std::int64_t>(10 * scene_.steps_per_contact);
   const auto most = static_cast<std::int64_t>(scene_.settle_limit / system_.dt);
@@ -70,11 +64,17 @@ void Simulation::settle(Progress& progress) {
 
 void Simulation::start_drive() {
   system_.drive = scene_.drive;
+  system_.envelope = scene_.envelope;
   system_.step = 0;
   // At phase 0 the plate moves at A omega but does not accelerate: beads moving with it are in equilibrium.
   // Beads at rest would be hit by a plate at full speed, which by itself breaks a crystal.
-  if (scene_.comoving)
-    for (Bead& b : system_.beads) b.vz += scene_.drive.peak_velocity();
+  if (!scene_.comoving) return;
+  const double v = system_.plate_velocity();
+  for (Bead& b : system_.beads) {
+    if (scene_.drive.axis == Axis::x) b.vx += v;
+    if (scene_.drive.axis == Axis::y) b.vy += v;
+    if (scene_.drive.axis == Axis::z) b.vz += v;
+  }
 }
 
 TrajectoryInfo Simulation::trajectory_info() const {
@@ -82,11 +82,15 @@ TrajectoryInfo Simulation::trajectory_info() const {
   info.n_beads = system_.beads.size();
   info.columns = {
       .velocity = true, .spin = plan_.rotation, .identity = false, .phase = true, .plate_height = true};
-  info.box.dimension = 2;
+  const auto boundary = [](Edge e) {
+    return e == Edge::periodic ? Boundary::periodic : e == Edge::wall ? Boundary::wall : Boundary::open;
+  };
+  info.box.dimension = scene_.dimension;
   info.box.lower = Vec3(0, 0, 0);
-  info.box.upper = Vec3(scene_.width, 2 * scene_.radius, height_);
-  info.box.boundary = {scene_.periodic_sides ? Boundary::periodic : Boundary::wall, Boundary::open,
-                       Boundary::wall};
+  info.box.upper = Vec3(scene_.width, scene_.dimension == 3 ? scene_.depth : 2 * scene_.radius, height_);
+  info.box.boundary = {boundary(scene_.sides),
+                       scene_.dimension == 3 ? boundary(scene_.plates) : Boundary::open,
+                       boundary(scene_.bottom)};
   info.drive = scene_.drive;
   info.phases_per_cycle = scene_.phases;
   info.scale = scene_.scale;
@@ -107,9 +111,9 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
   frame.phase = phase;
   frame.plate_height = system_.plate_height();
   for (const Bead& b : system_.beads) {
-    frame.position.emplace_back(b.x, 0, b.z);
-    frame.velocity.emplace_back(b.vx, 0, b.vz);
-    if (plan_.rotation) frame.spin.emplace_back(0, -b.spin, 0);
+    frame.position.emplace_back(b.x, b.y, b.z);
+    frame.velocity.emplace_back(b.vx, b.vy, b.vz);
+    if (plan_.rotation) frame.spin.emplace_back(b.spin_x, -b.spin, b.spin_z);
   }
   return frame;
 }
@@ -117,9 +121,12 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
 void Simulation::run(TrajectorySink& sink, Progress& progress) {
   start_drive();
   const std::int64_t per_phase = plan_.steps_per_period / scene_.phases;
-  const std::int64_t total = (scene_.discard + scene_.cycles) * scene_.phases;
+  // A schedule of amplitudes comes before the cycles that are discarded.
+  const std::int64_t before =
+      static_cast<std::int64_t>(std::ceil(scene_.envelope.duration())) + scene_.discard;
+  const std::int64_t total = (before + scene_.cycles) * scene_.phases;
   for (std::int64_t k = 0; k < total; ++k) {
-    const std::int64_t cycle = k / scene_.phases - scene_.discard;
+    const std::int64_t cycle = k / scene_.phases - before;
     if (cycle >= 0) sink.append(snapshot(cycle, static_cast<int>(k % scene_.phases)));
     progress.update(k, total);
     // In pieces of about a tenth of a second at most, so that a signal is noticed.

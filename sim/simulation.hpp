@@ -18,7 +18,6 @@ struct Settled {
   double time = 0;             ///< t0 it took
   double energy_per_bead = 0;  ///< kinetic energy left, m g sigma
   bool reached = false;        ///< below scene.rest_energy; otherwise the time limit ended it
-  double largest_overlap_start = 0;
 };
 
 /// A scene made ready. Construction places the beads and lets them settle on the resting plate; `run` drives
@@ -26,7 +25,9 @@ struct Settled {
 class Simulation {
  public:
   /// \throws ConfigError, InputError for a scene or start that cannot be; RunError if settling goes wrong
-  explicit Simulation(Scene scene, Progress& progress = Progress::none(), KernelKind kind = KernelKind::list);
+  /// \param threads for this one system; 0: as many as its size is worth. The bits do not depend on it.
+  explicit Simulation(Scene scene, Progress& progress = Progress::none(), KernelKind kind = KernelKind::best,
+                      int threads = 1);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Plan& plan() const { return plan_; }
@@ -42,6 +43,7 @@ class Simulation {
   /// Steps done and neighbour lists built by `run`.
   [[nodiscard]] std::int64_t steps_done() const { return steps_done_; }
   [[nodiscard]] std::int64_t list_builds() const { return kernel_->list_builds(); }
+  [[nodiscard]] const Kernel& kernel() const { return *kernel_; }
 
  private:
   void settle(Progress& progress);

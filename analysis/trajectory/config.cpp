@@ -114,16 +114,41 @@ std::optional<std::string> ConfigSection::text(const std::string& key) const {
                   : std::nullopt;
 }
 
+namespace {
+/// The finite numbers of a list; nothing if it is no list or holds anything else.
+std::optional<std::vector<double>> finite_numbers(const toml::node& node) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr) return std::nullopt;
+  std::vector<double> values;
+  for (const toml::node& item : *list)
+    if (const auto value = item.value<double>(); value && std::isfinite(*value)) values.push_back(*value);
+  return values.size() == list->size() ? std::optional(values) : std::nullopt;
+}
+}  // namespace
+
 std::optional<std::vector<double>> ConfigSection::numbers(const std::string& key, std::size_t count) const {
   if (!has(key)) return std::nullopt;
-  const toml::array* list = find(shared_->table, full(key))->as_array();
-  std::vector<double> values;
-  if (list != nullptr)
-    for (const toml::node& item : *list)
-      if (const auto value = item.value<double>()) values.push_back(*value);
-  if (list == nullptr || values.size() != count || list->size() != count)
+  auto values = finite_numbers(*find(shared_->table, full(key)));
+  if (!values || values->size() != count)
     throw ConfigError(where(key), fmt::format("a list of {} numbers is needed.", count));
   return values;
+}
+
+std::optional<std::vector<std::pair<double, double>>> ConfigSection::pairs(const std::string& key) const {
+  if (!has(key)) return std::nullopt;
+  const toml::array* list = find(shared_->table, full(key))->as_array();
+  std::vector<std::pair<double, double>> values;
+  if (list != nullptr)
+    for (const toml::node& item : *list)
+      if (const auto pair = finite_numbers(item); pair && pair->size() == 2)
+        values.emplace_back(pair->front(), pair->back());
+  if (list == nullptr || list->empty() || values.size() != list->size())
+    throw ConfigError(where(key), "a list of pairs of numbers is needed, [[a, b], [c, d]].");
+  return values;
+}
+
+bool ConfigSection::is_list(const std::string& key) const {
+  return has(key) && find(shared_->table, full(key))->is_array();
 }
 
 std::optional<std::string> ConfigSection::word(const std::string& key,

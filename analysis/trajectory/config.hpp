@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/trajectory/error.hpp"
@@ -28,8 +29,12 @@ class ConfigSection {
                                                 bool open_lower = false) const;
   [[nodiscard]] std::optional<std::int64_t> integer_in(const std::string& key, std::int64_t lower,
                                                        std::int64_t upper) const;
-  /// A list of exactly `count` numbers.
+  /// A list of exactly `count` finite numbers.
   [[nodiscard]] std::optional<std::vector<double>> numbers(const std::string& key, std::size_t count) const;
+  /// A list, not empty, of pairs [a, b] of finite numbers.
+  [[nodiscard]] std::optional<std::vector<std::pair<double, double>>> pairs(const std::string& key) const;
+  /// Whether the key is there and holds a list: for keys that take one number or several.
+  [[nodiscard]] bool is_list(const std::string& key) const;
   /// One of `words`; \throws ConfigError naming them otherwise.
   [[nodiscard]] std::optional<std::string> word(const std::string& key,
                                                 const std::vector<std::string>& words) const;

@@ -30,7 +30,7 @@ struct Coordinate {
 
 struct ColumnPlaces {
   std::size_t count = 0;
-  int id = kAbsent, type = kAbsent, radius = kAbsent;
+  int id = kAbsent, type = kAbsent, radius = kAbsent, mass = kAbsent;
   bool is_diameter = false;
   std::array<Coordinate, 3> position;
   std::array<int, 3> velocity{kAbsent, kAbsent, kAbsent}, spin{kAbsent, kAbsent, kAbsent};
@@ -39,7 +39,7 @@ struct ColumnPlaces {
 struct Atom {
   std::int64_t id = 0;
   long line = 0, type = 0;
-  double radius = 0;
+  double radius = 0, mass = 0;
   Vec3 position, velocity = Vec3::Zero(), spin = Vec3::Zero();
 };
 
@@ -197,6 +197,7 @@ class DumpReader {
     columns_.id = place("id");
     if (columns_.id == kAbsent) fail("there is no column 'id', without which beads cannot be told apart.");
     columns_.type = place("type");
+    columns_.mass = place("mass");
     columns_.radius = place("radius");
     if (columns_.radius == kAbsent) {
       columns_.radius = place("diameter");
@@ -231,6 +232,10 @@ class DumpReader {
       if (columns_.radius != kAbsent) {
         a.radius = number(at(columns_.radius)) / (columns_.is_diameter ? 2 : 1);
         if (!(a.radius > 0)) fail("a bead has no size.");
+      }
+      if (columns_.mass != kAbsent) {
+        a.mass = number(at(columns_.mass));
+        if (!(a.mass > 0)) fail("a bead has no mass.");
       }
       for (std::size_t k = 0; k < 3; ++k) {
         const int axis = static_cast<int>(k);
@@ -288,6 +293,8 @@ struct LammpsDump::Impl {
     positive("--gravity", o.gravity);
     if (o.timestep) positive("--timestep", *o.timestep);
     if (o.width) positive("--cell-width", *o.width);
+    if (o.bead_mass) positive("--bead-mass", *o.bead_mass);
+    if (o.dimension == 2 && o.drive_axis == Axis::y) refuse("--drive-axis", "a plane system has no y.");
     require_range({"", 0, 0, "--phase-of-step-zero"}, o.phase_of_step_zero, 0.0, 1.0);
     t0 = std::sqrt(o.sigma / o.gravity);
     const auto scaled = [](std::optional<double> value, double unit) {
@@ -300,7 +307,7 @@ struct LammpsDump::Impl {
                             .k_m = o.drive.k_m,
                             .peak_velocity = scaled(o.drive.peak_velocity, o.sigma / t0)};
     if (spec.amplitude || spec.omega || spec.frequency || spec.gamma || spec.k_m || spec.peak_velocity)
-      info.drive = solve_drive(spec, 1, {"", 0, 0, "--drive"});
+      info.drive = solve_drive(spec, 1, {"", 0, 0, "--drive"}, o.drive_axis);
     if (o.phases_per_cycle > 0 && !info.drive)
       refuse("--frames-per-cycle", "has no meaning without the drive, whose period is then unknown.");
   }
@@ -363,6 +370,7 @@ struct LammpsDump::Impl {
     if (o.width) info.box.upper.x() = *o.width / o.sigma;
     if (o.dimension == 2) info.box.upper.y() = (first.upper.z() - first.lower.z()) / o.sigma;
     if (columns.radius == kAbsent) info.radius.clear();
+    if (columns.mass == kAbsent || !o.bead_mass) info.mass.clear();
     if (!o.tracer_type) info.tracer.clear();
     if (o.tracer_type && columns.type == kAbsent) refuse("--tracer-type", "the dump has no column 'type'.");
     if (!(info.box.upper.minCoeff() > 0))
@@ -422,7 +430,7 @@ LammpsDump::LammpsDump(const std::filesystem::path& path, const LammpsDumpOption
   d.check_options();
   DumpReader reader(path);
   struct Bead {
-    double radius;
+    double radius, mass;
     bool tracer;
   };
   std::map<std::int64_t, Bead> seen;
@@ -443,7 +451,8 @@ LammpsDump::LammpsDump(const std::filesystem::path& path, const LammpsDumpOption
       if (d.n_frames == 0) d.first_cycle = (n - (n % per_cycle + per_cycle) % per_cycle) / per_cycle;
     }
     for (const Atom& a : s.atoms)
-      seen.emplace(a.id, Bead{a.radius / d.o.sigma, d.o.tracer_type && a.type == *d.o.tracer_type});
+      seen.emplace(a.id, Bead{a.radius / d.o.sigma, a.mass / d.o.bead_mass.value_or(1),
+                              d.o.tracer_type && a.type == *d.o.tracer_type});
     fewest = std::min(fewest, s.atoms.size());
     ++d.n_frames;
     progress.update(reader.done(), reader.size());
@@ -452,6 +461,7 @@ LammpsDump::LammpsDump(const std::filesystem::path& path, const LammpsDumpOption
   for (const auto& [id, bead] : seen) {
     d.ids.push_back(id);
     d.info.radius.push_back(bead.radius);
+    d.info.mass.push_back(bead.mass);
     d.info.tracer.push_back(bead.tracer ? 1 : 0);
   }
   d.info.columns.identity = fewest < d.ids.size();

@@ -22,8 +22,10 @@ struct LammpsDumpOptions {
   Vec3 origin = Vec3::Zero();      ///< lower left inside corner of the cell, plate at its mean height
   std::optional<double> width;     ///< between the side walls; absent: up to the end of the dump's box
   DriveSpec drive;                 ///< of the plate; nothing given: unknown
+  Axis drive_axis = Axis::z;       ///< in our axes
   int phases_per_cycle = 0;       ///< N_k; 0: not phase-locked. Each frame must then be at a k/N_k of a cycle
   double phase_of_step_zero = 0;  ///< fraction of a cycle. A wall that `wiggle`s starts at the bottom: 0.75
+  std::optional<double> bead_mass;  ///< unit of the column mass, which is not read without it
   std::optional<long> tracer_type;  ///< atom type that marks tracers
 };
 
@@ -32,8 +34,8 @@ struct LammpsDumpOptions {
 ///
 /// Columns may stand in any order, ids too; a bead that a frame lacks is missing there. Needed are `id` and
 /// per axis one of xu, xsu, x, xs (s: scaled by the box, u: unwrapped); used are vx …, omegax …, radius or
-/// diameter, type, ix …. Wrapped coordinates without ix … are followed across a period by the shortest way
-/// from frame to frame. Source: LAMMPS manual, `dump` command.
+/// diameter, mass, type, ix …. Wrapped coordinates without ix … are followed across a period by the shortest
+/// way from frame to frame. Source: LAMMPS manual, `dump` command.
 class LammpsDump {
  public:
   /// \throws InputError naming file and line for anything malformed; ConfigError for options that are missing

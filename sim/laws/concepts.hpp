@@ -1,43 +1,64 @@
 #pragma once
 /// \file
-/// What a contact law declares. A law is a small value type: a name, its parameters, what it needs, the
-/// shortest time it makes the integrator resolve, and one call operator. `None` is a law too. The kernels
-/// know laws only by this.
+/// What a contact law declares. A law is a small value type: the word by which a scene asks for it, its
+/// parameters and the keys it reads them from, the shortest time it makes the integrator resolve, the
+/// constants it needs per kind of pair, and one formula. `None` is a law too. The kernels know laws only by
+/// this.
 ///
 /// Convention (docs/conventions.md): n points from j to i, overlap delta = R_i + R_j - r > 0 in contact,
 /// v_n = v_ij . n < 0 while approaching; in the plane t = (-n_z, n_x) and v_t = v_ij . t - (R_i w_i + R_j
-/// w_j). Forces are those on i. Reduced units throughout.
+/// w_j). Forces are those on i. Reduced units throughout. Formulas are templates on the type of number
+/// (real.hpp) and, for friction and rolling, on the tangent plane (tangent.hpp), so that one text serves one
+/// contact and eight, 2D and 3D.
 
 #include <concepts>
+#include <string>
 #include <string_view>
+
+#include "sim/laws/parameters.hpp"
+#include "sim/laws/tangent.hpp"
 
 namespace twincell::sim {
 
-/// Normal force along n from overlap and normal velocity.
+/// What every law has.
 template <class Law>
-concept NormalLaw = requires(const Law law, double x) {
+concept ContactLaw = requires(const Law law, const ContactTable& table, const PairScale& pair) {
+  { Law::kWord } -> std::convertible_to<std::string_view>;
   { Law::kName } -> std::convertible_to<std::string_view>;
-  { law(x, x, x) } -> std::same_as<double>;          // (overlap, v_n, m_eff)
-  { law.shortest_time(x) } -> std::same_as<double>;  // (m_eff), t0
+  { Law::kConstants } -> std::convertible_to<int>;
+  { Law::read(table) } -> std::same_as<Law>;
+  { law.constants(pair)[0] } -> std::convertible_to<double>;
+  Law::kKeys;
 };
 
-/// Tangential force along t. kNeedsSpin: the bead's rotation matters; kNeedsHistory: xi lives as long as the
-/// contact.
+/// Normal force along n from overlap and normal velocity; kMemory numbers live as long as the contact, 0 at
+/// first touch.
 template <class Law>
-concept TangentialLaw = requires(const Law law, double x, double& xi) {
-  { Law::kName } -> std::convertible_to<std::string_view>;
-  { Law::kNeedsSpin } -> std::convertible_to<bool>;
-  { Law::kNeedsHistory } -> std::convertible_to<bool>;
-  { law(x, x, x, x, xi) } -> std::same_as<double>;      // (v_t, F_n, m_eff, dt, xi)
-  { law.shortest_time(x, x) } -> std::same_as<double>;  // (m_eff, m_t), t0
+concept NormalLaw = ContactLaw<Law> &&
+    requires(const Law law, const PairScale& pair, const double* c, double x, double* m) {
+  { Law::kMemory } -> std::convertible_to<int>;
+  { Law::force(c, x, x, m) } -> std::same_as<double>;      // (constants, overlap, v_n, memory)
+  { law.shortest_time(pair, x) } -> std::same_as<double>;  // (pair, impact speed), t0
+  { law.largest_force(x) } -> std::same_as<double>;        // at an overlap: sets the grain of summed forces
 };
 
-/// How two positions are compared across the side boundary.
+/// Tangential force. kActs: beads turn; kHistory: xi lives as long as the contact.
 template <class Law>
-concept SideLaw = requires(const Law law, double x) {
-  { Law::kName } -> std::convertible_to<std::string_view>;
-  { Law::kWalls } -> std::convertible_to<bool>;
-  { law.separation(x) } -> std::same_as<double>;  // x_i - x_j -> shortest image
+concept TangentialLaw = ContactLaw<Law> &&
+    requires(const Law law, const PairScale& pair, const double* c, double x, Tangent<double, 3> t) {
+  { Law::kActs } -> std::convertible_to<bool>;
+  { Law::kHistory } -> std::convertible_to<bool>;
+  { Law::force(c, t, x, x, t) } -> std::same_as<Tangent<double, 3>>;  // (constants, v_t, F_n, dt, xi)
+  { law.shortest_time(pair) } -> std::same_as<double>;                // t0
+};
+
+/// Torque against rolling on i (the opposite on j); its angle lives as long as the contact.
+template <class Law>
+concept RollingLaw = ContactLaw<Law> &&
+    requires(const Law law, const PairScale& pair, const double* c, double x, Tangent<double, 3> t) {
+  { Law::kActs } -> std::convertible_to<bool>;
+  { Law::torque(c, t, x, x, t) } -> std::same_as<Tangent<double, 3>>;  // (constants, w, F_n, dt, theta)
+  { law.shortest_time(pair) } -> std::same_as<double>;                 // t0
 };
 
 }  // namespace twincell::sim

@@ -117,7 +117,18 @@ TEST_F(BadInput, ScenesThatLammpsHasNoWordsFor) {
     expect_refusal({"export", at("s.toml"), "--to", "lammps", "-o", at("deck"), "--set", assignment}, kUsage,
                    mentioned);
   };
-  refused("contact.slip=spring_only", {"s.toml", "contact.slip", "limit on the spring alone"});
+  refused("contact.slip=spring_only", {"s.toml", "contact.tangential", "limit on the spring alone"});
+  refused("contact.normal=falling-restitution", {"contact.normal", "do not know the law"});
+  refused("contact={rolling='spring',k_r=1.0,mu_r=0.1}", {"contact.rolling", "do not know the law"});
+  refused("contact.bottom.k_t=0.0", {"contact.bottom.k_t", "divides"});
+  refused("cell.side_tilt=5.0", {"cell.side_tilt", "along the axes"});
+  refused("cell.plate_drag=0.1", {"cell.plate_drag"});
+  refused("time.integrator=split", {"time.integrator", "split"});
+  refused("drive.start=ramp", {"drive", "no ramp"});
+  expect_refusal(
+      {"export", at("s.toml"), "--to", "lammps", "-o", at("deck"), "--set", "contact.restitution=0.9",
+       "--set", "beads.spread=uniform", "--set", "beads.spread_width=0.1"},
+      kUsage, {"contact", "unlike masses", "rates"});
   refused("contact.mu=20000", {"contact.mu", "20000", "10000"});
   refused("time.phases=3", {"time.phases", "multiple of 4"});
   refused("time.cycles=200000", {"time.cycles", "200010", "2e+09"});

@@ -52,6 +52,21 @@ cycles = 1
 phases = 40
 )";
 
+// Its gas in space: a hundred rough spheres.
+const std::string kSpace = R"(
+preset = "bhateja-2016-rough-3d"
+[drive]
+peak_velocity = 2.2
+[start]
+kind = "random"
+seed = 3
+settle_limit = 0
+[time]
+discard = 0
+cycles = 1
+phases = 40
+)";
+
 /// Largest distance between the same bead in both, per frame; frame k of `b` is frame k + skip of `a`.
 std::vector<double> differences(const fs::path& a, const fs::path& b, std::size_t skip = 0) {
   const H5mdReader first(a), second(b);
@@ -205,23 +220,23 @@ TEST_F(Lammps, FirstPaperPressedBed) {
                                {"pair_style", 4},
                                {"pair_style", 5},
                                {"pair_style", 6},
-                               {"fix plate", 7},
-                               {"fix sides", 6},
-                               {"fix sides", 9},
-                               {"fix sides", 16},
+                               {"fix bottom", 7},
+                               {"fix left_right", 6},
+                               {"fix left_right", 9},
+                               {"fix left_right", 16},
                                {"fix motion", 4, ""}});
 }
 
 TEST_F(Lammps, FirstPaperBouncingBed) {
   simulate(kPaperOne, {"drive.amplitude=2.0"});
   export_deck();
-  expect_agreement_and_notice({{"pair_style", 4}, {"fix plate", 16}});
+  expect_agreement_and_notice({{"pair_style", 4}, {"fix bottom", 16}});
 }
 
 TEST_F(Lammps, SecondPaperRough) {
   simulate(kPaperTwo, {});
   export_deck();
-  expect_agreement_and_notice({{"pair_style", 4}, {"pair_style", 5}, {"pair_style", 6}, {"fix plate", 7}});
+  expect_agreement_and_notice({{"pair_style", 4}, {"pair_style", 5}, {"pair_style", 6}, {"fix bottom", 7}});
 }
 
 TEST_F(Lammps, SecondPaperSmooth) {
@@ -236,7 +251,41 @@ TEST_F(Lammps, OtherWords) {
                        "cell.side_walls=rest", "cell.tilt=10.0"});
   export_deck();
   expect_agreement_and_notice(
-      {{"pair_style", 8, ""}, {"fix sides", 15, "wiggle y 1 2.856"}, {"fix weight", 6, "0.18"}});
+      {{"pair_style", 8, ""}, {"fix left_right", 15, "wiggle y 1 2.856"}, {"fix weight", 6, "0.18"}});
+}
+
+TEST_F(Lammps, SecondPaperInSpace) {
+  simulate(kSpace, {});
+  export_deck();
+  expect_agreement_and_notice({{"pair_style", 4}, {"pair_style", 5}, {"pair_style", 6}, {"fix bottom", 7}});
+}
+
+TEST_F(Lammps, SecondPaperInABox) {
+  simulate(kSpace, {"cell.sides=walls", "cell.plates=walls"});
+  export_deck();
+  expect_agreement_and_notice({{"fix left_right", 7}, {"fix front_back", 8}, {"fix front_back", 16}});
+}
+
+// The pressed bed again, of spheres in space: the spring is then a vector in the tangent plane.
+TEST_F(Lammps, PressedBedInSpace) {
+  simulate(kPaperOne, {"cell.dimension=3", "cell.depth=1.2", "beads.inertia=sphere"});
+  export_deck();
+  expect_agreement_and_notice({{"pair_style", 3}, {"fix left_right", 9}, {"fix left_right", 16}});
+}
+
+// Driven along x between two end walls, floor and lid at rest.
+TEST_F(Lammps, HorizontalDriveUnderALid) {
+  simulate(kSpace, {"preset=bhateja-2016-horizontal", "cell.width=6.0", "cell.depth=4.0", "cell.height=8.0",
+                    "beads.count=60", "drive.amplitude=1.0"});
+  export_deck();
+  expect_agreement_and_notice({{"pair_style", 4}, {"fix left_right", 16}, {"fix bottom_lid", 7}});
+}
+
+// One large bead among the others: masses and radii of its own.
+TEST_F(Lammps, Intruder) {
+  simulate(kPaperTwo, {"beads.intruder={radius=1.0, z=3.0}", "contact.gamma_n=90.0", "contact.gamma_t=90.0"});
+  export_deck();
+  expect_agreement_and_notice({{"pair_style", 4}, {"fix motion", 4, "disc"}});
 }
 
 TEST_F(Lammps, GoesOnFromAFrame) {

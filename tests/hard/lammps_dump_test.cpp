@@ -120,13 +120,15 @@ TEST_F(Dump, ThreeDimensionsKeepTheirAxes) {
   LammpsDumpOptions options = reduced();
   options.dimension = 3;
   options.origin = Vec3(1, -2, -0.5);
-  const auto t = read(frame_text(0, "ff pp ff", "id type x y z vx vy vz omegax omegay omegaz diameter",
-                                 {"1 1 2 3 0.25 4 5 6 7 8 9 1"}),
+  options.bead_mass = 2;
+  const auto t = read(frame_text(0, "ff pp ff", "id type x y z vx vy vz omegax omegay omegaz diameter mass",
+                                 {"1 1 2 3 0.25 4 5 6 7 8 9 1 6"}),
                       options);
   EXPECT_EQ(t.frames()[0].position[0], Vec3(1, 5, 0.75));
   EXPECT_EQ(t.frames()[0].velocity[0], Vec3(4, 5, 6));
   EXPECT_EQ(t.frames()[0].spin[0], Vec3(7, 8, 9));
   EXPECT_EQ(t.info().radius.at(0), 0.5);
+  EXPECT_EQ(t.info().mass.at(0), 3);
   EXPECT_EQ(t.info().box.boundary[1], Boundary::periodic);
   EXPECT_EQ(t.info().box.upper, Vec3(7, 12, 1));
 }
@@ -231,6 +233,9 @@ TEST_F(Dump, OptionsThatDoNotFitAreRefused) {
   EXPECT_EQ(refusal(text, options), "accepted");
   options.tracer_type = 1;
   EXPECT_EQ(refusal(text, options), "options: --tracer-type: the dump has no column 'type'.");
+  options = reduced();
+  options.drive_axis = Axis::y;
+  EXPECT_EQ(refusal(text, options), "options: --drive-axis: a plane system has no y.");
   options = reduced();
   options.sigma = 0;
   EXPECT_EQ(refusal(text, options), "options: --sigma: 0 is out of range; the value must be greater than 0.");

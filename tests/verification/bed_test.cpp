@@ -88,9 +88,10 @@ TEST(Bed, DriveReturnsToTheSameBitsEveryPeriod) {  // H14, H33
 }
 
 TEST(Bed, SmoothBeadsHaveNoSpinColumn) {
-  Scene scene = crystal(1.5, 1);
-  scene.bead.mu = scene.wall.mu = 0;
-  const Simulation run(scene);
+  const Simulation run(
+      read_scene_text("preset = \"fortini-huang-2015\"\n[beads]\ncount = 40\n[contact]\nmu = 0.0\n"
+                      "[drive]\ngamma = 1.5\n[time]\ndiscard = 0\ncycles = 1\n",
+                      "smooth"));
   EXPECT_FALSE(run.plan().rotation);
   EXPECT_FALSE(run.plan().history);
   EXPECT_FALSE(run.trajectory_info().columns.spin);

@@ -18,9 +18,8 @@ constexpr double radians(double degrees) {
 /// A bead resting on the plate of a cell tilted by `degrees`, its overlap already that of its weight.
 Bench incline(const std::string& extra, double degrees) {
   Bench b(extra);
-  b.system.gravity = std::cos(radians(degrees));
-  b.system.gravity_x = std::sin(radians(degrees));
-  b.add(5, 0.5 - b.system.gravity / b.scene.wall.k_n, 0, 0);
+  b.system.gravity = Vec3(std::sin(radians(degrees)), 0, -std::cos(radians(degrees)));
+  b.add(5, 0.5 + b.system.gravity.z() / 1e6, 0, 0);  // k_n of the preset
   return b;
 }
 
@@ -132,7 +131,7 @@ TEST(UnlikeBeads, AngularMomentumChangesOnlyByTheLeverArm) {  // V2.6: rate delt
     b.kernel->advance(b.system, 1);
     const Bead &p = b.system.beads[0], &q = b.system.beads[1];
     deepest = std::max(deepest, 1 - std::hypot(p.x - q.x, p.z - q.z));
-    strongest = std::max(strongest, 2 * std::abs(b.system.forces[0].torque));
+    strongest = std::max(strongest, std::abs(b.system.forces[0].q));
   }
   const double drift = std::abs(angular_momentum() - before), bound = deepest * strongest * 2.222831e-3;
   std::printf("angular momentum: drift %.2e, bound %.2e\n", drift, bound);

@@ -216,16 +216,18 @@ TEST(TangentialContact, MeasuredObliqueImpacts) {  // reference numbers at n = 2
 
 TEST(TangentialContact,
      CoulombLimitAtZeroNormalForce) {  // H3, H2: finite, and the spring keeps what the dashpot leaves
-  const SpringSlider spring{1e4, {100, 0}, 0.6};
-  double xi = 1e-3;
-  EXPECT_EQ(std::abs(spring(0.5, 0, 1, 1e-5, xi)), 0);
-  EXPECT_DOUBLE_EQ(xi, -100 * 0.5 / 1e4);
-  xi = 2e-5;
-  EXPECT_DOUBLE_EQ(spring(0, 10, 1, 1e-5, xi), -0.2);  // at rest the spring alone holds
-  const DashpotSlider slider{{0, 50}, 0.4};
-  double none = 0;
-  EXPECT_EQ(std::abs(slider(0, 10, 1, 1e-5, none)), 0);
-  EXPECT_EQ(slider(1e9, 10, 1, 1e-5, none), -4);
+  using Scalar = Tangent<double, 1>;
+  const PairScale wall{1, 0.5, 3};
+  const auto spring = SpringSlider{1e4, {100, 0, 0}, 0.6}.constants(wall);
+  Scalar xi{{1e-3}};
+  EXPECT_EQ(std::abs(SpringSlider::force(spring.data(), Scalar{{0.5}}, 0.0, 1e-5, xi).c[0]), 0);
+  EXPECT_DOUBLE_EQ(xi.c[0], -100 * 0.5 / 1e4);
+  xi.c[0] = 2e-5;  // at rest the spring alone holds
+  EXPECT_DOUBLE_EQ(SpringSlider::force(spring.data(), Scalar{{0}}, 10.0, 1e-5, xi).c[0], -0.2);
+  const auto slider = DashpotSlider{{0, 50, 0}, 0.4}.constants(wall);
+  Scalar none{{0}};
+  EXPECT_EQ(std::abs(DashpotSlider::force(slider.data(), Scalar{{0}}, 10.0, 1e-5, none).c[0]), 0);
+  EXPECT_EQ(DashpotSlider::force(slider.data(), Scalar{{1e9}}, 10.0, 1e-5, none).c[0], -4);
 }
 
 }  // namespace

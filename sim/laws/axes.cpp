@@ -1,0 +1,46 @@
+#include "sim/laws/axes.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+/// Calls visit(Law{}) for every law of an axis.
+template <class Visit, class... Laws>
+void for_each_law(const std::variant<Laws...>&, Visit visit) {
+  (visit(Laws{}), ...);
+}
+
+template <class Axis>
+std::vector<std::string> words() {
+  std::vector<std::string> all;
+  for_each_law(Axis{}, [&](const auto& law) { all.emplace_back(law.kWord); });
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> normal_words() {
+  return words<NormalAxis>();
+}
+std::vector<std::string> tangential_words() {
+  return words<TangentialAxis>();
+}
+std::vector<std::string> rolling_words() {
+  return words<RollingAxis>();
+}
+
+void check_laws(const std::string& normal, const std::string& tangential, const std::string& rolling,
+                const ContactTable& table) {
+  static_cast<void>(read_law<NormalAxis>(normal, table));
+  static_cast<void>(read_law<TangentialAxis>(tangential, table));
+  static_cast<void>(read_law<RollingAxis>(rolling, table));
+}
+
+void know_all_keys(const ContactTable& table) {
+  const auto know = [&](const auto& law) { table.know({std::begin(law.kKeys), std::end(law.kKeys)}); };
+  for_each_law(NormalAxis{}, know);
+  for_each_law(TangentialAxis{}, know);
+  for_each_law(RollingAxis{}, know);
+}
+
+}  // namespace twincell::sim

@@ -1,0 +1,22 @@
+#pragma once
+/// \file
+/// Linear spring and dashpot without tension: F_n = max(0, k_n delta - eta v_n) (Schwager & Poeschel 2007).
+
+#include "sim/laws/normal/linear.hpp"
+
+namespace twincell::sim {
+
+/// The pull at the end of a contact is cut off, which raises e (bead-bead of Fortini & Huang: 0.8948 ->
+/// 0.8971).
+struct ClippedSpringDashpot : LinearSpringDashpot {
+  static constexpr std::string_view kWord = "linear-clipped", kName = "linear spring-dashpot, no tension";
+
+  static ClippedSpringDashpot read(const ContactTable& t) { return {LinearSpringDashpot::read(t)}; }
+
+  template <class V>
+  static V force(const V* c, V overlap, V v_n, V* memory) {
+    return max(V(0.0), LinearSpringDashpot::force(c, overlap, v_n, memory));
+  }
+};
+
+}  // namespace twincell::sim

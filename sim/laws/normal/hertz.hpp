@@ -1,0 +1,50 @@
+#pragma once
+/// \file
+/// Hertz contact with viscoelastic damping, F_n = max(0, rho sqrt(delta) (delta - 3/2 A v_n)),
+/// rho = 2 Y sqrt(R_eff)/(3 (1 - nu^2)) (Hertz 1882; Brilliantov, Spahn, Hertzsch & Poeschel 1996).
+
+#include <cmath>
+#include <string_view>
+
+#include "sim/laws/parameters.hpp"
+#include "sim/laws/real.hpp"
+
+namespace twincell::sim {
+
+/// Beads (and walls) of one material: Young's modulus Y, Poisson's ratio nu, and the time A of its viscosity.
+/// The restitution falls with the impact speed, 1 - e ~ v^(1/5).
+struct HertzViscoelastic {
+  static constexpr std::string_view kWord = "hertz", kName = "Hertz, viscoelastic damping";
+  static constexpr const char* kKeys[] = {"youngs_modulus", "poisson_ratio", "viscous_time"};
+  static constexpr int kConstants = 2, kMemory = 0;
+
+  double youngs_modulus = 0;  ///< Y, m g/sigma^2
+  double poisson_ratio = 0;   ///< nu, 0 .. 0.5
+  double viscous_time = 0;    ///< A, t0
+
+  static HertzViscoelastic read(const ContactTable& t) {
+    return {t.required("youngs_modulus", 0, 1e15, true), t.number("poisson_ratio", 0, 0.5).value_or(0.3),
+            t.number("viscous_time", 0, 1).value_or(0)};
+  }
+  /// rho of F = rho delta^(3/2).
+  [[nodiscard]] double stiffness(double r_eff) const {
+    return 2 * youngs_modulus * std::sqrt(r_eff) / (3 * (1 - poisson_ratio * poisson_ratio));
+  }
+  /// Duration of an elastic impact at `speed`, 3.2180 (m_eff/rho)^(2/5) v^(-1/5): shorter the faster.
+  [[nodiscard]] double shortest_time(const PairScale& p, double speed) const {
+    const double swing = 3.2180 * std::pow(p.m_eff / stiffness(p.r_eff), 0.4) * std::pow(speed, -0.2);
+    return viscous_time > 0 ? std::min(swing, swing * swing / (15 * viscous_time)) : swing;
+  }
+  [[nodiscard]] double largest_force(double overlap) const { return stiffness(1) * std::pow(overlap, 1.5); }
+  [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
+    return {stiffness(p.r_eff), 1.5 * viscous_time};
+  }
+
+  template <class V>
+  static V force(const V* c, V overlap, V v_n, V* /*memory*/) {
+    const V root = sqrt(max(overlap, V(0.0)));
+    return max(V(0.0), c[0] * root * nfma(c[1], v_n, overlap));
+  }
+};
+
+}  // namespace twincell::sim

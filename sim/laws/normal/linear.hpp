@@ -1,0 +1,44 @@
+#pragma once
+/// \file
+/// Linear spring and dashpot, F_n = k_n delta - eta v_n (Fortini & Huang 2015, eq. A2; Bhateja et al. 2016,
+/// eq. A5).
+
+#include <string_view>
+
+#include "sim/laws/linear_collision.hpp"
+#include "sim/laws/real.hpp"
+
+namespace twincell::sim {
+
+/// Without a clip: near the end of a contact the dashpot outweighs the spring and pulls. Neither paper clips,
+/// and the closed forms of t_c and e_n hold only so.
+struct LinearSpringDashpot {
+  static constexpr std::string_view kWord = "linear", kName = "linear spring-dashpot";
+  static constexpr const char* kKeys[] = {"k_n", "gamma_n", "c_n", "restitution"};
+  static constexpr int kConstants = 2, kMemory = 0;
+
+  double k_n = 1e6;  ///< m g/sigma
+  ViscousDamping damping;
+
+  static LinearSpringDashpot read(const ContactTable& t) {
+    const double k = read_stiffness(t);
+    return {k, read_normal_damping(t, k)};
+  }
+  [[nodiscard]] LinearCollision collision(const PairScale& p) const {
+    return {k_n, damping.eta(p.m_eff), p.m_eff};
+  }
+  [[nodiscard]] double shortest_time(const PairScale& p, double /*speed*/) const {
+    return collision(p).shortest_time();
+  }
+  [[nodiscard]] double largest_force(double overlap) const { return k_n * overlap; }
+  [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
+    return {k_n, damping.eta(p.m_eff)};
+  }
+
+  template <class V>
+  static V force(const V* c, V overlap, V v_n, V* /*memory*/) {
+    return nfma(c[1], v_n, c[0] * overlap);
+  }
+};
+
+}  // namespace twincell::sim

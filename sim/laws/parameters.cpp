@@ -1,0 +1,69 @@
+#include "sim/laws/parameters.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace twincell::sim {
+
+const std::vector<std::string>& normal_damping_keys() {
+  static const std::vector<std::string> keys = {"gamma_n", "c_n", "restitution"};
+  return keys;
+}
+
+const std::vector<std::string>& tangential_damping_keys() {
+  static const std::vector<std::string> keys = {"gamma_t", "c_t", "c_t_over_c_n"};
+  return keys;
+}
+
+std::optional<double> ContactTable::number(const std::string& key, std::optional<double> lower,
+                                           std::optional<double> upper, bool open_lower) const {
+  std::optional<double> found;
+  for (const ConfigSection& t : tables_) {
+    const auto value = t.number_in(key, lower, upper, open_lower);  // outer tables are checked too
+    if (!found) found = value;
+  }
+  return found;
+}
+
+double ContactTable::required(const std::string& key, std::optional<double> lower,
+                              std::optional<double> upper, bool open_lower) const {
+  if (const auto value = number(key, lower, upper, open_lower)) return *value;
+  throw ConfigError(where(key), "the chosen contact law needs this key.");
+}
+
+std::optional<std::string> ContactTable::word(const std::string& key,
+                                              const std::vector<std::string>& words) const {
+  std::optional<std::string> found;
+  for (const ConfigSection& t : tables_) {
+    const auto value = t.word(key, words);
+    if (!found) found = value;
+  }
+  return found;
+}
+
+std::string ContactTable::which_of(const std::vector<std::string>& keys) const {
+  std::string found;
+  for (const ConfigSection& t : tables_) {
+    std::vector<std::string> given;
+    for (const auto& key : keys)
+      if (t.has(key)) given.push_back(key);
+    if (given.size() > 1)
+      throw ConfigError(t.where(given[1]), fmt::format("contradicts '{}': only one of {} can be given.",
+                                                       given[0], fmt::join(keys, ", ")));
+    if (found.empty() && !given.empty()) found = given[0];
+  }
+  return found;
+}
+
+Where ContactTable::where(const std::string& key) const {
+  for (const ConfigSection& t : tables_)
+    if (t.has(key)) return t.where(key);
+  return tables_.empty() ? Where{} : tables_.back().where(key);
+}
+
+void ContactTable::know(const std::vector<std::string>& keys) const {
+  for (const ConfigSection& t : tables_)
+    for (const auto& key : keys) static_cast<void>(t.has(key));
+}
+
+}  // namespace twincell::sim

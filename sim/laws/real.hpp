@@ -1,0 +1,64 @@
+#pragma once
+/// \file
+/// The operations in which laws are written, for one contact at a time (double). Vector kernels bring their
+/// own for a pack of contacts, under the same names, so a law is written once. Every operation is correctly
+/// rounded, and products that are added to are fused by name: one contact alone and eight in a vector give
+/// the same bits.
+
+#include <algorithm>
+#include <cmath>
+
+namespace twincell::sim {
+
+inline double fma(double a, double b, double c) {
+  return std::fma(a, b, c);
+}  ///< a b + c
+inline double nfma(double a, double b, double c) {
+  return std::fma(-a, b, c);
+}  ///< c - a b
+inline double min(double a, double b) {
+  return std::min(a, b);
+}
+inline double max(double a, double b) {
+  return std::max(a, b);
+}
+inline double abs(double a) {
+  return std::abs(a);
+}
+inline double sqrt(double a) {
+  return std::sqrt(a);
+}
+/// a where true, b where not. Both are reckoned.
+inline double select(bool where, double a, double b) {
+  return where ? a : b;
+}
+inline bool any(bool where) {
+  return where;
+}
+inline bool both(bool a, bool b) {
+  return a && b;
+}
+inline bool either(bool a, bool b) {
+  return a || b;
+}
+/// f(x) of a function that has no vector form, where asked; y elsewhere.
+template <class F>
+double each(bool where, double x, double y, F f) {
+  return where ? f(x) : y;
+}
+
+/// 1/sqrt(x), full precision for x in 0.8 .. 1.1, finite for every x >= 0. The sqrt and the division of the
+/// hardware are the slowest instructions of a contact, and vector units differ in their quick estimates; a
+/// polynomial and two Newton steps are fast and the same bits everywhere. Callers scale x so that touching
+/// beads have x <= 1: the overlaps that a healthy run has lie above 0.8.
+template <class V>
+inline V inverse_sqrt_near_one(V x) {
+  const V e = V(1.0) - x;
+  // (1 - e)^(-1/2), Taylor: 8e-5 at x = 0.8, which Newton squares to 1e-8 and to 2e-16.
+  V y = fma(fma(fma(fma(V(0.2734375), e, V(0.3125)), e, V(0.375)), e, V(0.5)), e, V(1.0));
+  const V half = V(0.5) * x;
+  for (int k = 0; k < 2; ++k) y = fma(y, nfma(half * y, y, V(0.5)), y);
+  return y;
+}
+
+}  // namespace twincell::sim

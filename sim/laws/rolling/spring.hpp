@@ -1,0 +1,53 @@
+#pragma once
+/// \file
+/// Rolling resistance by a torsional spring, dashpot and limit, M = -(k_r theta + c_r w), |M| <= mu_r R_eff
+/// |F_n|, theta the angle rolled since first touch, w the relative angular velocity (Ai et al., Powder
+/// Technol. 206, 269, 2011, model C).
+
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "sim/laws/parameters.hpp"
+#include "sim/laws/tangent.hpp"
+
+namespace twincell::sim {
+
+/// Beyond the limit the spring is shortened, as the tangential one is.
+struct RollingSpring {
+  static constexpr std::string_view kWord = "spring", kName = "torsional spring, dashpot, limit";
+  static constexpr const char* kKeys[] = {"k_r", "c_r", "mu_r"};
+  static constexpr int kConstants = 4;
+  static constexpr bool kActs = true;
+
+  double k_r = 0;   ///< > 0, m g sigma per radian
+  double c_r = 0;   ///< m sigma^2/t0 per radian
+  double mu_r = 0;  ///< >= 0
+
+  static RollingSpring read(const ContactTable& t) {
+    return {t.required("k_r", 0, 1e12, true), t.number("c_r", 0, 1e12).value_or(0),
+            t.required("mu_r", 0, 1e3)};
+  }
+  /// Half a swing of two equal discs about their contact; a torsional spring softer than k_t r^2 never
+  /// decides.
+  [[nodiscard]] double shortest_time(const PairScale& p) const {
+    // 1/I of the pair is at most 4 inv_m_t/R^2 <= inv_m_t/r_eff^2 for discs and spheres.
+    const double inv_inertia = p.inv_m_t / (p.r_eff * p.r_eff);
+    const double swing = std::numbers::pi / std::sqrt(k_r * inv_inertia);
+    return c_r > 0 ? std::min(swing, 2 / (c_r * inv_inertia)) : swing;
+  }
+  [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
+    return {-k_r, -c_r, mu_r * p.r_eff, -1 / k_r};
+  }
+
+  template <class V, class T>
+  static T torque(const V* c, const T& w, V f_n, V dt, T& theta) {
+    theta = fma(dt, w, theta);
+    const T dashpot = c[1] * w;
+    const auto [torque, slips] = limited(fma(c[0], theta, dashpot), c[2] * abs(f_n));
+    theta = select(slips, c[3] * (torque - dashpot), theta);
+    return torque;
+  }
+};
+
+}  // namespace twincell::sim

@@ -1,0 +1,41 @@
+#pragma once
+/// \file
+/// Dashpot with Coulomb slider, F_t = -min(c_t |v_t|, mu |F_n|) v_t/|v_t| (Bhateja et al. 2016, eq. A8).
+
+#include <cmath>
+#include <string_view>
+
+#include "sim/laws/linear_collision.hpp"
+#include "sim/laws/tangent.hpp"
+
+namespace twincell::sim {
+
+/// No history, and so no static friction: a bead on an incline creeps at m g sin(theta)/c_t. F_n is the total
+/// normal force, dashpot included.
+struct DashpotSlider {
+  static constexpr std::string_view kWord = "dashpot", kName = "dashpot with Coulomb slider";
+  static constexpr const char* kKeys[] = {"mu", "gamma_t", "c_t", "c_t_over_c_n"};
+  static constexpr int kConstants = 2;
+  static constexpr bool kActs = true, kHistory = false;
+
+  ViscousDamping damping;
+  double mu = 0.6;
+
+  static DashpotSlider read(const ContactTable& t) {
+    return {read_tangential_damping(t), t.number("mu", 0, 1e12).value_or(0.6)};
+  }
+  [[nodiscard]] double shortest_time(const PairScale& p) const {
+    const double eta = damping.eta(p.m_eff);
+    return eta > 0 ? 2 / (p.inv_m_t * eta) : HUGE_VAL;
+  }
+  [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
+    return {-damping.eta(p.m_eff), mu};
+  }
+
+  template <class V, class T>
+  static T force(const V* c, const T& v_t, V f_n, V /*dt*/, T& /*xi*/) {
+    return limited(c[0] * v_t, c[1] * abs(f_n)).value;
+  }
+};
+
+}  // namespace twincell::sim

@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// No tangential force.
+
+#include <cmath>
+#include <string_view>
+
+#include "sim/laws/parameters.hpp"
+#include "sim/laws/tangent.hpp"
+
+namespace twincell::sim {
+
+/// Smooth beads: no tangential force, hence no torque, no rotation, no history.
+struct NoTangential {
+  static constexpr std::string_view kWord = "none", kName = "none";
+  static constexpr const char* kKeys[] = {"mu"};
+  static constexpr int kConstants = 0;
+  static constexpr bool kActs = false, kHistory = false;
+
+  static NoTangential read(const ContactTable&) { return {}; }
+  [[nodiscard]] double shortest_time(const PairScale&) const { return HUGE_VAL; }
+  [[nodiscard]] std::array<double, kConstants> constants(const PairScale&) const { return {}; }
+
+  template <class V, class T>
+  static T force(const V*, const T& v_t, V, V, T&) {
+    return v_t;  // never asked for
+  }
+};
+
+}  // namespace twincell::sim

@@ -1,0 +1,142 @@
+#pragma once
+/// \file
+/// The loops that take the time, as plain functions over plain arrays: contacts of a pair list, contacts with
+/// a wall, the integration of all beads, and the search for pairs near contact. Each is compiled once per
+/// instruction set from the same text (passes_body.hpp), and found here by the laws it is for.
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "sim/contact.hpp"
+
+namespace twincell::sim {
+
+/// A bead as kernels hold it, in as few cache lines as it takes. Record, 2D: x z vx vz; 3D: x y z 0 | vx vy
+/// vz 0. The velocities are those that dashpots see. Contact forces, 2D: fx fz q 0; 3D: fx fy fz 0 | qx qy qz
+/// 0. Spins R w, 2D: one number; 3D: x y z 0.
+template <int D>
+inline constexpr int kRecord = D == 2 ? 4 : 8;
+template <int D>
+inline constexpr int kForceRecord = kRecord<D>;
+template <int D>
+inline constexpr int kSpinRecord = D == 2 ? 1 : 4;
+
+/// Where the spin of the bead stands whose record begins at number i.
+template <int D>
+constexpr std::int32_t spin_place(std::int32_t i) {
+  return i / (kRecord<D> / kSpinRecord<D>);
+}
+
+/// Contacts of listed pairs. Indices are those of the first number of a bead's record, kRecord times its
+/// place; they come in packets as wide as the vectors. `memory`, `shift` and per-pair constants are
+/// [packet][number][lane].
+struct PairArgs {
+  const double* records;
+  const double* spins;
+  double* forces;
+  const std::int32_t* i;
+  const std::int32_t* j;
+  const std::int32_t* force_i;  ///< where the force on i is added; a dummy where another thread owns the bead
+  const std::int32_t* force_j;
+  double* memory;
+  const double* constants;
+  std::ptrdiff_t constants_step;  ///< numbers per packet; 0: one set for all
+  const double* shift;            ///< added to r_i - r_j (periodic images), or null
+  std::int64_t packets;
+  double dt;
+  double magic;  ///< grain of the sums, contact.hpp rounded()
+};
+
+/// Contacts of listed beads with one wall.
+struct WallArgs {
+  const double* records;
+  const double* spins;
+  double* forces;
+  const std::int32_t* bead;
+  double* memory;
+  const double* constants;
+  std::ptrdiff_t constants_step;
+  std::int64_t packets;
+  double n[3];         ///< inward normal; 2D: (n_x, n_z)
+  double offset;       ///< n . w now
+  double velocity[3];  ///< of the wall
+  double dt;
+  double magic;
+};
+
+/// Largest |v - reference| of any bead, by component: how far beads are from flying freely since the
+/// reference was taken.
+struct Deviation {
+  double most[3];
+};
+
+/// Half kicks, then (optionally) a drift; forces are read and set to zero if drifting.
+struct IntegrateArgs {
+  double* records;
+  double* spins;
+  double* forces;
+  double* velocities;  ///< [bead][4] true half-step velocities where records hold predicted ones, else null;
+                       ///< 2D: 0 0 vx vz
+  double* held_spins;  ///< [bead][kSpinRecord] the same of spins
+  const double* inv_mass;       ///< [bead][4] 1/m where a row has velocities, 0 elsewhere; or one row
+  const double* turn;           ///< [bead] R^2/I; or one
+  std::ptrdiff_t inertia_step;  ///< 1; or 0 if all beads are alike
+  std::int64_t begin, end;      ///< beads
+  const double* reference;  ///< [bead][4] velocities, as in rows of records, at the time the list was made
+  double fallen[3];         ///< what gravity has added to all of them since
+  int kicks;                ///< 1 or 2 half kicks
+  bool drift;
+  bool spin;
+  double dt;
+  double gravity[3];  ///< 2D: (g_x, g_z)
+};
+
+/// Which listed pairs may have a gap below `margin` within the time `horizon` if both beads fly freely:
+/// |d + w t| >= |d| + t (d . w)/|d|.
+struct ScanArgs {
+  const double* records;
+  const std::int32_t* i;
+  const std::int32_t* j;
+  const double* reach;
+  std::ptrdiff_t reach_step;
+  const double* shift;
+  std::int64_t packets;
+  double margin;
+  double horizon;
+  std::uint16_t* near;  ///< [packet] a bit per lane
+};
+
+using PairPass = double (*)(const PairArgs&);  ///< returns the largest overlap
+using WallPass = double (*)(const WallArgs&);  ///< the same
+using IntegratePass = Deviation (*)(const IntegrateArgs&);
+using ScanPass = void (*)(const ScanArgs&);
+
+/// The passes of one set of laws.
+struct Passes {
+  PairPass pairs;
+  WallPass walls;
+  IntegratePass integrate;
+  ScanPass scan;
+};
+
+/// Which passes: positions in the lists of laws/axes.hpp.
+struct PassKey {
+  int dimension;
+  std::size_t normal, tangential, rolling;
+  Jump jump;
+};
+
+/// One instruction set.
+struct Target {
+  std::string_view name;
+  int width;  ///< contacts evaluated together
+  bool (*available)();
+  Passes (*find)(const PassKey&);
+};
+
+extern const Target kScalar;
+extern const Target kAvx2;
+extern const Target kAvx512;
+
+}  // namespace twincell::sim

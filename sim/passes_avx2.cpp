@@ -1,0 +1,17 @@
+// The passes with AVX2. CMake compiles this file, and no other, for processors that have it.
+
+#include "sim/lanes_highway.hpp"
+#include "sim/passes_body.hpp"
+
+static_assert(HWY_TARGET == HWY_AVX2, "compile this file for AVX2");
+
+namespace twincell::sim {
+
+const Target kAvx2 = {"AVX2", HWY_NAMESPACE::HighwayLanes::kWidth,
+                      [] { return (hwy::SupportedTargets() & HWY_AVX2) != 0; },
+                      [](const PassKey& key) {
+                        using Table = PassTable<HWY_NAMESPACE::HighwayLanes>;
+                        return key.dimension == 2 ? Table::find<2>(key) : Table::find<3>(key);
+                      }};
+
+}  // namespace twincell::sim
