@@ -75,11 +75,11 @@ class AllPairsKernel : public Kernel {
   }
   double forces(const System& s) {
     double overlap = 0;
-    constexpr std::size_t kMostMemory = 7;
+    const auto remembered = static_cast<std::size_t>(passes_.remembered);
     const auto n = static_cast<std::int32_t>(s.beads.size());
     PairArgs p{};
     p.records = beads_.records(), p.spins = beads_.spins(), p.forces = beads_.forces();
-    p.packets = 1, p.dt = s.dt, p.magic = magic_;
+    p.packets = 1, p.dt = s.dt, p.locate = plan_.locate, p.magic = magic_;
     for (std::int32_t i = 0; i < n; ++i)
       for (std::int32_t j = i + 1; j < n; ++j) {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
@@ -93,7 +93,7 @@ class AllPairsKernel : public Kernel {
           shift[c++] = period > 0 ? -period * std::round(apart[k] / period) : 0;
         }
         auto& memory = memory_[{i, j}];
-        memory.resize(kMostMemory);
+        memory.resize(remembered);
         const std::int32_t at_i = record(i), at_j = record(j);
         p.i = &at_i, p.j = &at_j, p.force_i = &at_i, p.force_j = &at_j;
         p.shift = s.period[0] > 0 || s.period[1] > 0 || s.period[2] > 0 ? shift : nullptr;
@@ -101,13 +101,16 @@ class AllPairsKernel : public Kernel {
         p.memory = memory.data();
         overlap = std::max(overlap, passes_.pairs(p));
       }
-    const double plate = s.plate_height(), plate_velocity = s.plate_velocity();
+    const double plate = s.plate_height();
+    const double plate_velocity = plan_.key.velocity == Velocity::full_step
+                                      ? (plate - s.plate_height_before()) / s.dt
+                                      : s.plate_velocity();
     const int axis = static_cast<int>(s.drive.axis);
     for (std::size_t w = 0; w < s.walls.size(); ++w) {
       const Wall& wall = s.walls[w];
       WallArgs g{};
       g.records = p.records, g.spins = p.spins, g.forces = p.forces, g.packets = 1, g.dt = s.dt,
-      g.magic = magic_;
+      g.locate = plan_.locate, g.magic = magic_;
       Vec3 v = Vec3::Zero();
       if (wall.moves) v[axis] = plate_velocity;
       g.n[0] = wall.n.x(), g.velocity[0] = v.x();
@@ -122,7 +125,7 @@ class AllPairsKernel : public Kernel {
         const auto constants =
             contact_constants(plan_.wall_laws[w], beads_.wall(a), beads_.radius(a), 1 / beads_.radius(a), 0);
         auto& memory = memory_[{i, -1 - static_cast<std::int32_t>(w)}];
-        memory.resize(kMostMemory);
+        memory.resize(remembered);
         const std::int32_t at = record(i);
         g.bead = &at, g.constants = constants.data(), g.memory = memory.data();
         overlap = std::max(overlap, passes_.walls(g));

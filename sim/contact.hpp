@@ -18,7 +18,8 @@ inline constexpr int kReach = 0;       ///< R_i + R_j; R at a wall
 inline constexpr int kInvReach = 1;    ///< 1/kReach
 inline constexpr int kInvRadiusI = 2;  ///< 1/R_i, for rolling
 inline constexpr int kInvRadiusJ = 3;  ///< 1/R_j; 0 at a wall
-inline constexpr int kLaws = 4;
+inline constexpr int kInvMass = 4;     ///< 1/m_eff
+inline constexpr int kLaws = 5;
 }  // namespace constant
 
 /// Where the laws of a set find their constants.
@@ -35,7 +36,7 @@ template <class V, int D>
 struct Approach {
   V n[D];
   V overlap;       ///< > 0 in contact
-  V v[D];          ///< v_i - v_j
+  V v[D];          ///< v_i - v_j, in the middle of the step that ends here, as s and w
   V s[kTurns<D>];  ///< R_i w_i + R_j w_j; in 2D of the counter-clockwise spins
   V w[kTurns<D>];  ///< w_i - w_j, for rolling
 };
@@ -50,13 +51,21 @@ struct Action {
   V overlap;         ///< max(0, overlap)
 };
 
-/// Order of the integrator through the jump of the force where a contact begins and ends.
-enum class Jump {
-  stepwise,  ///< the force acts from the first step that finds an overlap: first order in dt for each
-             ///< collision
-  located,   ///< the moments of entry and exit are located within their step and the impulse integrated from
-             ///< there
+/// Which velocity the laws see at the end of a step, where leapfrog knows the positions, but velocities only
+/// in the middle of steps.
+enum class Velocity {
+  half_step,  ///< that of the middle of the step: dashpots lag by dt/2, first order in dt
+  full_step,  ///< that of its end, from the last two middles: second order while a contact lasts
 };
+
+/// Numbers that a contact remembers: those of its laws; with Velocity::full_step also the normal, tangential
+/// and rolling velocity in the middle of the step before, 0 where there was no contact.
+template <class Laws, Velocity kVelocity, int D>
+inline constexpr int kRemembered = Laws::template kMemory<D> +
+                                   (kVelocity == Velocity::half_step
+                                        ? 0
+                                        : 1 + (Laws::Tangential::kActs ? kTurns<D> : 0) +
+                                              (Laws::Rolling::kActs ? kTurns<D> : 0));
 
 /// v_t = v - (v . n) n - s x n; in the plane the scalar along t = (-n_z, n_x).
 template <class V, int D>
@@ -72,13 +81,21 @@ template <class V, int D>
   return t;
 }
 
+/// A vector without its part along n (2D: nothing to do).
+template <class V, int D>
+[[gnu::always_inline]] inline void flatten(const V* n, Tangent<V, kTurns<D>>& t) {
+  if constexpr (D == 3) {
+    const V along = fma(t.c[0], n[0], fma(t.c[1], n[1], t.c[2] * n[2]));
+    for (int k = 0; k < 3; ++k) t.c[k] = nfma(along, n[k], t.c[k]);
+  }
+}
+
 /// Turns a remembered vector into the present tangent plane, keeping its length (2D: nothing to do).
 template <class V, int D>
 [[gnu::always_inline]] inline void into_tangent_plane(const V* n, Tangent<V, kTurns<D>>& xi) {
   if constexpr (D == 3) {
     const V before = norm(xi);
-    const V along = fma(xi.c[0], n[0], fma(xi.c[1], n[1], xi.c[2] * n[2]));
-    for (int k = 0; k < 3; ++k) xi.c[k] = nfma(along, n[k], xi.c[k]);
+    flatten<V, D>(n, xi);
     const V factor = before / max(norm(xi), V(1e-300));
     const auto turned = before > V(0.0);
     for (int k = 0; k < 3; ++k) xi.c[k] = select(turned, factor * xi.c[k], xi.c[k]);
@@ -94,47 +111,101 @@ template <class V>
   return (f + magic) - magic;
 }
 
+/// What of a step a contact lasted.
+template <class V>
+struct Passage {
+  decltype(V() > V()) entering, leaving;  ///< first touch, or last, was within the step
+  V fraction;  ///< of the step that lies after first touch, or before the last; 1 elsewhere
+  bool any;    ///< one of these contacts enters or leaves
+};
+
+/// The force that makes up for the jump where a contact begins or ends. At a position F acts for dt: a half
+/// for the step that ends there, a half for the next. Entering, only a fraction of the first half counts,
+/// with the mean of the force `begun` at first touch and `ended` now; leaving, the half given at the last
+/// position was too much by what lies beyond the end.
+template <class V, class F>
+[[gnu::always_inline]] inline F over_jump(const Passage<V>& p, const F& begun, const F& ended,
+                                          const F& held) {
+  const F mean = (V(0.5) * p.fraction) * (begun + ended);
+  return select(p.entering, fma(V(0.5), ended, mean), select(p.leaving, fma(V(-0.5), begun, mean), held));
+}
+
+/// x at the end of a step from its value in the middle of it and of the step before.
+template <class M, class V, class X>
+[[gnu::always_inline]] inline X at_end(const M& was, V half, const X& middle, const X& before) {
+  return select(was, fma(half, middle - before, middle), middle);
+}
+
+/// Friction or rolling: `force(v, dt, x)` is the law's, x its lasting displacement.
+/// \param v in the middle of the step \param seen at its end
+template <Velocity kVelocity, class V, class T, class Force>
+[[gnu::always_inline]] inline T lasting(const T& v, const T& seen, V dt, const Passage<V>& p, T& x,
+                                        Force force) {
+  if constexpr (kVelocity == Velocity::half_step) {
+    return force(v, dt, x);
+  } else {
+    T begun = x;
+    x = fma(p.fraction * dt, v, x);
+    const T f = force(seen, V(0.0), x);
+    if (!p.any) return f;
+    return over_jump(p, force(seen, V(0.0), begun), f, f);
+  }
+}
+
 /// Force and turning moment of one contact. Remembered numbers are updated; where bodies are apart they
-/// become 0. \param c constants, Layout<Laws>::kCount \param memory Laws::kMemory<D> numbers
-template <class Laws, Jump kJump, class V, int D>
-[[gnu::always_inline]] inline Action<V, D> act(const Approach<V, D>& a, const V* c, V dt, V magic,
-                                               V* memory) {
+/// become 0. \param c constants, Layout<Laws>::kCount \param locate with Velocity::full_step: the moments of
+/// entry and exit are located within their step and the impulse counted from there, which makes every
+/// collision second order; without, the force acts from the first step that finds an overlap to the last
+/// \param memory kRemembered numbers
+template <class Laws, Velocity kVelocity, class V, int D>
+[[gnu::always_inline]] inline Action<V, D> act(const Approach<V, D>& a, const V* c, V dt,
+                                               [[maybe_unused]] bool locate, V magic, V* memory) {
   using Normal = typename Laws::Normal;
   using Tangential = typename Laws::Tangential;
   using Rolling = typename Laws::Rolling;
+  constexpr bool kFull = kVelocity == Velocity::full_step;
   constexpr int K = kTurns<D>;
-  const V zero(0.0);
+  const V zero(0.0), half(0.5);
+  const V* c_n = c + Layout<Laws>::kNormal;
 
   V v_n = a.v[D - 1] * a.n[D - 1];
   for (int k = D - 2; k >= 0; --k) v_n = fma(a.v[k], a.n[k], v_n);
 
   const auto now = a.overlap > zero;
-  auto acting = now;
-  V overlap = a.overlap, step = dt, weight(1.0);
-  // Of the step in which a contact begins, only the fraction after first touch counts; of the one in which it
-  // ended, the fraction before. Both are known from the overlap one step ago, delta + v_n dt. The kicks on
-  // either side of a position together give 2 x dt/2, so one effective force per step can make up for both.
-  [[maybe_unused]] V fraction(1.0);
-  [[maybe_unused]] auto entering = now, leaving = now;
-  if constexpr (kJump == Jump::located) {
-    const V before = fma(v_n, dt, a.overlap);
-    const auto was = before > zero;
-    entering = both(now, before <= zero);
-    leaving = both(was, a.overlap <= zero);
-    acting = either(now, was);
-    overlap = select(now, a.overlap, before);
-    const V travel = max(abs(v_n) * dt, V(1e-300));
-    fraction = select(either(entering, leaving), min(overlap / travel, V(1.0)), V(1.0));
-    step = fraction * dt;
-    weight = select(entering, fraction + V(0.5), select(leaving, fraction - V(0.5), V(1.0)));
+  auto acting = now, was = now;
+  V overlap = a.overlap, seen = v_n;
+  Passage<V> passage{now, now, V(1.0), false};
+  V* middle = memory + Laws::template kMemory<D>;
+  if constexpr (kFull) {
+    // A pair whose v_n was exactly 0 reads as new, and gets the same force.
+    was = abs(middle[0]) > zero;
+    seen = at_end(was, half, v_n, middle[0]);
+    passage.entering = both(now, middle[0] == zero);
+    passage.leaving = both(was, a.overlap <= zero);
+    const auto passes = either(passage.entering, passage.leaving);
+    passage.any = locate && any(passes);
+    if (passage.any) {
+      acting = either(now, was);
+      overlap = select(passage.leaving, max(fma(v_n, dt, a.overlap), zero), a.overlap);
+      passage.fraction = select(passes, min(overlap / max(abs(v_n) * dt, V(1e-300)), V(1.0)), V(1.0));
+    }
   }
 
-  V f_n = Normal::force(c + Layout<Laws>::kNormal, overlap, v_n, memory);
-  const V limit_force = f_n;  // the Coulomb limit knows the force of the moment, not its mean over a step
-  if constexpr (kJump == Jump::located) {
-    const V edge = Normal::force(c + Layout<Laws>::kNormal, zero, v_n, memory);
-    const V mean = fraction * (edge + f_n);
-    f_n = select(entering, V(0.5) * (mean + f_n), select(leaving, V(0.5) * (mean - f_n), f_n));
+  V f_n = Normal::force(c_n, overlap, seen, memory);
+  V limit_force = f_n;  // the Coulomb limit knows the force of the moment, not its mean over a step
+  if constexpr (kFull) {
+    // So far the acceleration of the position before. What this contact's force has gained since is known.
+    const V gain = f_n - Normal::force(c_n, fma(seen, dt, overlap), seen, memory);
+    const V corrected = fma(half * dt * c[constant::kInvMass], select(was, gain, zero), seen);
+    const V held = Normal::force(c_n, overlap, corrected, memory);
+    if (passage.any) {
+      const V edge = Normal::force(c_n, zero, seen, memory);
+      const V first = select(passage.leaving, f_n, edge), last = select(passage.leaving, edge, f_n);
+      limit_force = select(either(passage.entering, passage.leaving), f_n, held);
+      f_n = over_jump(passage, first, last, held);
+    } else {
+      limit_force = f_n = held;
+    }
   }
 
   Action<V, D> out;
@@ -147,11 +218,21 @@ template <class Laws, Jump kJump, class V, int D>
       for (int k = 0; k < K; ++k) xi.c[k] = kept[k];
       into_tangent_plane<V, D>(a.n, xi);
     }
-    Tangent<V, K> f_t =
-        Tangential::force(c + Layout<Laws>::kTangential, tangential_velocity(a, v_n), limit_force, step, xi);
+    const Tangent<V, K> v_t = tangential_velocity(a, v_n);
+    Tangent<V, K> seen_t = v_t;
+    if constexpr (kFull) {
+      Tangent<V, K> before;
+      for (int k = 0; k < K; ++k) before.c[k] = middle[1 + k];
+      flatten<V, D>(a.n, before);
+      seen_t = at_end(was, half, v_t, before);
+      for (int k = 0; k < K; ++k) middle[1 + k] = select(now, v_t.c[k], zero);
+    }
+    const Tangent<V, K> f_t =
+        lasting<kVelocity>(v_t, seen_t, dt, passage, xi, [&](const auto& v, V step, auto& x) {
+          return Tangential::force(c + Layout<Laws>::kTangential, v, limit_force, step, x);
+        });
     if constexpr (Tangential::kHistory)
       for (int k = 0; k < K; ++k) kept[k] = select(now, xi.c[k], zero);
-    if constexpr (kJump == Jump::located) f_t = weight * f_t;
     if constexpr (D == 2) {
       out.f[0] = nfma(f_t.c[0], a.n[1], out.f[0]);
       out.f[1] = fma(f_t.c[0], a.n[0], out.f[1]);
@@ -165,13 +246,22 @@ template <class Laws, Jump kJump, class V, int D>
     }
   }
   if constexpr (Rolling::kActs) {
-    Tangent<V, K> theta, w;
+    Tangent<V, K> theta, w, seen_w;
     V* kept = memory + Normal::kMemory + (Tangential::kHistory ? K : 0);
     for (int k = 0; k < K; ++k) {
       theta.c[k] = kept[k];
-      w.c[k] = a.w[k];
+      seen_w.c[k] = w.c[k] = a.w[k];
     }
-    const Tangent<V, K> m = Rolling::torque(c + Layout<Laws>::kRolling, w, limit_force, step, theta);
+    if constexpr (kFull) {
+      Tangent<V, K> before;
+      for (int k = 0; k < K; ++k) before.c[k] = middle[1 + K + k];
+      seen_w = at_end(was, half, w, before);
+      for (int k = 0; k < K; ++k) middle[1 + K + k] = select(now, w.c[k], zero);
+    }
+    const Tangent<V, K> m =
+        lasting<kVelocity>(w, seen_w, dt, passage, theta, [&](const auto& v, V step, auto& x) {
+          return Rolling::torque(c + Layout<Laws>::kRolling, v, limit_force, step, x);
+        });
     for (int k = 0; k < K; ++k) {
       kept[k] = select(now, theta.c[k], zero);
       // q turns a bead by -R q.
@@ -179,6 +269,7 @@ template <class Laws, Jump kJump, class V, int D>
       out.q_j[k] = rounded(select(acting, m.c[k] * c[constant::kInvRadiusJ], zero), magic);
     }
   }
+  if constexpr (kFull) middle[0] = select(now, v_n, zero);
   for (int k = 0; k < Normal::kMemory; ++k) memory[k] = select(now, memory[k], zero);
   for (int k = 0; k < D; ++k) out.f[k] = rounded(select(acting, out.f[k], zero), magic);
   for (int k = 0; k < K; ++k) out.q[k] = rounded(select(acting, out.q[k], zero), magic);

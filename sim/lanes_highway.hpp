@@ -157,7 +157,6 @@ struct HighwayLanes {
     HWY_INLINE static Row load(const double* p) { return {hn::Load(Four(), p)}; }
     void store(double* p) const { hn::Store(raw, Four(), p); }
     [[nodiscard]] HWY_INLINE Row swapped() const { return {hn::SwapAdjacentBlocks(raw)}; }
-    HWY_INLINE static Row low_high(Row a, Row b) { return {hn::ConcatUpperLower(Four(), b.raw, a.raw)}; }
     HWY_INLINE friend Row operator+(Row a, Row b) { return {hn::Add(a.raw, b.raw)}; }
     HWY_INLINE friend Row operator*(Row a, Row b) { return {hn::Mul(a.raw, b.raw)}; }
     HWY_INLINE friend Row fma(Row a, Row b, Row c) { return {hn::MulAdd(a.raw, b.raw, c.raw)}; }
@@ -169,14 +168,13 @@ struct HighwayLanes {
   /// Integrates whole blocks of 2D beads, as many records to a vector as fit, and returns the first bead that
   /// is left. The same operations in the same order as one bead at a time.
   static constexpr int kBlock = kLanes;
-  template <bool kPredicted, int kKicks, bool kDrift>
+  template <int kKicks, bool kDrift>
   static std::int64_t integrate_blocks(const IntegrateArgs& p, Row h_row, Row dt_row, Row gravity_row,
                                        Row fallen_row, Row& most_row) {
     const Wide d;
     constexpr int kBeads = kLanes / 4;  // of a vector
     const Raw h = spread(h_row), dt = spread(dt_row), gravity = spread(gravity_row),
               fallen = spread(fallen_row);
-    const auto upper = hn::Ne(spread(Row::high(1, 1)), hn::Zero(d));
     const Raw alike = spread(Row{hn::Load(Four(), p.inv_mass)}),
               alike_kick = hn::Set(d, -(p.dt / 2) * p.turn[0]);
     Raw most = hn::Zero(d);
@@ -188,17 +186,12 @@ struct HighwayLanes {
         f[k] = hn::LoadU(d, p.forces + at);
         const Raw inv_m = p.inertia_step == 0 ? alike : hn::LoadU(d, p.inv_mass + at);
         const Raw a = hn::MulAdd(hn::SwapAdjacentBlocks(f[k]), inv_m, gravity);
-        const Raw r = hn::LoadU(d, p.records + at);
-        Raw v = kPredicted ? hn::LoadU(d, p.velocities + at) : r;
+        Raw v = hn::LoadU(d, p.records + at);
         for (int kick = 0; kick < kKicks; ++kick) v = hn::MulAdd(h, a, v);
-        Raw next = kPredicted ? r : v;
+        Raw next = v;
         if constexpr (kDrift) {
           next = hn::MulAdd(hn::SwapAdjacentBlocks(v), dt, next);
           hn::StoreU(hn::Zero(d), d, p.forces + at);
-        }
-        if constexpr (kPredicted) {
-          hn::StoreU(v, d, p.velocities + at);
-          next = hn::IfThenElse(upper, kDrift ? hn::MulAdd(h, a, v) : v, next);
         }
         hn::StoreU(next, d, p.records + at);
         most = hn::Max(most, hn::Abs(hn::Sub(v, hn::Add(hn::LoadU(d, p.reference + at), fallen))));
@@ -217,12 +210,8 @@ struct HighwayLanes {
       Raw kick = alike_kick;
       if (p.inertia_step != 0) kick = hn::Mul(hn::Set(d, -(p.dt / 2)), hn::LoadU(d, p.turn + b));
       kick = hn::Mul(kick, q);
-      Raw s = hn::LoadU(d, (kPredicted ? p.held_spins : p.spins) + b);
+      Raw s = hn::LoadU(d, p.spins + b);
       for (int n = 0; n < kKicks; ++n) s = hn::Add(s, kick);
-      if constexpr (kPredicted) {
-        hn::StoreU(s, d, p.held_spins + b);
-        if constexpr (kDrift) s = hn::Add(s, kick);
-      }
       hn::StoreU(s, d, p.spins + b);
     }
     most_row = max(most_row, folded(most));

@@ -24,7 +24,6 @@ struct ScalarLanes {
       for (int k = 0; k < 4; ++k) p[k] = c[k];
     }
     [[nodiscard]] Row swapped() const { return {{c[2], c[3], c[0], c[1]}}; }
-    static Row low_high(Row a, Row b) { return {{a.c[0], a.c[1], b.c[2], b.c[3]}}; }
     template <class F>
     static Row each(F f) {
       return {{f(0), f(1), f(2), f(3)}};

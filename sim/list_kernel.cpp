@@ -21,7 +21,7 @@ using Size = std::size_t;
 
 /// For how many steps the inner list is meant to last at most, and fewer than how many are a reason to be
 /// more generous.
-constexpr double kHorizon = 64, kShort = 24;
+constexpr double kHorizon = 64, kLongHorizon = 256, kShort = 24;
 constexpr double kWallSteps = 256;
 /// Pairs are dealt to packets in blocks of so many packets: the lanes of a packet are far enough apart that a
 /// bead seldom stands twice in it, and near enough that a block stays in the first-level cache.
@@ -39,6 +39,16 @@ struct Packets {
     const Size block = r / (kBlock * width), first = block * kBlock;
     const Size packets = std::min(kBlock, static_cast<Size>(count) - first), within = r - first * width;
     return {first + within % packets, within / packets};
+  }
+  /// Calls visit(r, packet, lane) for every place r of `length`, in order, without their divisions.
+  template <class Visit>
+  void for_each_place(Size length, Size width, Visit visit) const {
+    Size r = 0;
+    for (Size first = 0; first < static_cast<Size>(count); first += kBlock) {
+      const Size packets = std::min(kBlock, static_cast<Size>(count) - first);
+      for (Size lane = 0; lane < width; ++lane)
+        for (Size p = 0; p < packets && r < length; ++p, ++r) visit(r, first + p, lane);
+    }
   }
 };
 
@@ -72,13 +82,7 @@ class ListKernel : public Kernel {
         beads_(plan_) {
     width_ = static_cast<Size>(target.width);
     dimension_ = static_cast<Size>(plan.dimension);
-    std::visit(
-        [&](const auto& n, const auto& t, const auto& r) {
-          const Size turns = plan.dimension == 2 ? 1 : 3;
-          memory_ =
-              static_cast<Size>(n.kMemory) + (t.kHistory ? turns : 0) + (t.kActs && r.kActs ? turns : 0);
-        },
-        plan.bead.normal, plan.bead.tangential, plan.bead.rolling);
+    memory_ = static_cast<Size>(passes_.remembered);
     magic_ = grain_of_sums(plan);
   }
 
@@ -98,7 +102,7 @@ class ListKernel : public Kernel {
   void make_outer(const System& s);
   void make_inner(Part& part);
   void make_walls(const System& s, Part& part);
-  [[nodiscard]] bool outer_is_stale() const;
+  [[nodiscard]] bool outer_is_stale();
   void refresh_pairs(System& s);
   void refresh_walls(const System& s);
   void drift(System& s);
@@ -112,6 +116,12 @@ class ListKernel : public Kernel {
   }
   [[nodiscard]] double closing(const Vec3& n, const Vec3& way, double added) const;
   [[nodiscard]] std::vector<double> broadcast(const std::vector<double>& set) const;
+  /// Whether any of a contact's numbers, `stride` apart, is not 0.
+  [[nodiscard]] bool remembers(const double* numbers, Size stride) const {
+    for (Size m = 0; m < memory_; ++m)
+      if (numbers[m * stride] != 0) return true;
+    return false;
+  }
   void integrate(Part& part, int kicks, bool drift);
 
   Plan plan_;
@@ -130,17 +140,19 @@ class ListKernel : public Kernel {
   std::vector<ContactMemory> restored_;
 
   double skin_ = 0, largest_radius_ = 0;
+  double since_built_ = 0,
+         last_margin_ = 0;   ///< approach since the outer list was made, at most; HUGE_VAL: unknown
   std::vector<Vec3> built_;  ///< positions at the outer list's making
   // Inner list: pairs that free flight brings nearer than 2 slack within the horizon. It holds until contacts
   // have bent some bead's flight by slack, or the horizon is reached.
-  double slack_ = 1e-3, horizon_ = 0, margin_ = 0, deviated_ = 0;
+  double slack_ = 1e-3, horizon_ = 0, horizon_steps_ = kHorizon, margin_ = 0, deviated_ = 0;
   std::int64_t lasted_ = 0;
   Lines reference_;
   double least_[3] = {}, most_[3] = {}, fastest_ = 0,
          speed_bound_ = 0;  ///< velocities at the last look, and since
   std::vector<double> wall_margin_, wall_approach_;
   bool first_kick_ = true, wall_refresh_ = false, pair_refresh_ = false;
-  double plate_ = 0, plate_velocity_ = 0;
+  double plate_ = 0, plate_velocity_ = 0, plate_before_ = 0;
   IntegrateArgs integrate_args_{};
   std::int64_t builds_ = 0, rebuild_every_ = 0, calls_ = 0;
   Counters counters_;
@@ -238,7 +250,7 @@ std::vector<ContactMemory> ListKernel::contacts() const {
 }
 
 /// Beads have moved, against their mean, so far that an unlisted pair may be within the inner margin.
-bool ListKernel::outer_is_stale() const {
+bool ListKernel::outer_is_stale() {
   if (built_.size() != beads_.size()) return true;
   Vec3 mean = Vec3::Zero();
   for (Size k = 0; k < beads_.size(); ++k) mean += beads_.position(k) - built_[k];
@@ -254,7 +266,8 @@ bool ListKernel::outer_is_stale() const {
     }
   }
   // Negated, so that a position that is not a number makes the list stale and is found at the build.
-  return !(std::sqrt(first) + std::sqrt(second) + margin_ <= skin_);
+  since_built_ = std::sqrt(first) + std::sqrt(second);
+  return !(since_built_ + margin_ <= skin_);
 }
 
 void ListKernel::make_outer(const System& given) {
@@ -349,6 +362,7 @@ void ListKernel::make_outer(const System& given) {
   }
   built_.resize(beads_.size());
   for (Size k = 0; k < beads_.size(); ++k) built_[k] = beads_.position(k);
+  since_built_ = 0;
   wall_refresh_ = true;
   ++builds_;
 }
@@ -356,14 +370,14 @@ void ListKernel::make_outer(const System& given) {
 /// The pairs of the outer list with a gap below margin_, dealt out so that the lanes of a packet are far
 /// apart in space: then one bead seldom stands twice in a packet.
 void ListKernel::make_inner(Part& part) {
-  // What the old list remembers goes back to the pairs.
   Packets& a = part.active;
-  for (Size r = 0; r < a.source.size() && memory_ > 0; ++r) {
-    const auto [packet, lane] = a.place(r, width_);
-    for (Size m = 0; m < memory_; ++m)
-      part.memory[static_cast<Size>(a.source[r]) * memory_ + m] =
-          a.memory[(packet * memory_ + m) * width_ + lane];
-  }
+  // What the old list remembers goes back to the pairs.
+  if (memory_ > 0)
+    a.for_each_place(a.source.size(), width_, [&](Size r, Size packet, Size lane) {
+      const Size from = static_cast<Size>(a.source[r]);
+      for (Size m = 0; m < memory_; ++m)
+        part.memory[from * memory_ + m] = a.memory[(packet * memory_ + m) * width_ + lane];
+    });
   ScanArgs scan{};
   scan.records = beads_.records();
   scan.i = part.record_i.data(), scan.j = part.record_j.data();
@@ -374,10 +388,12 @@ void ListKernel::make_inner(Part& part) {
   scan.margin = 2 * slack_;
   scan.horizon = horizon_;
   scan.near = part.near.data();
+  scan.touching = part.touching.data();
   passes_.scan(scan);
-  scan.margin = scan.horizon = 0;
-  scan.near = part.touching.data();
-  passes_.scan(scan);
+  // A pair that has just parted may still have to settle or forget what it remembers.
+  for (Size r = 0; r < part.pairs && memory_ > 0; ++r)
+    if (remembers(part.memory.data() + r * memory_, 1))
+      part.near[r / width_] = static_cast<std::uint16_t>(part.near[r / width_] | 1U << r % width_);
 
   // Those in contact first: packets of pairs that are merely near are passed over after a look at their
   // distances.
@@ -390,40 +406,39 @@ void ListKernel::make_inner(Part& part) {
   collect([&](Size k) -> unsigned { return part.touching[k]; });
   collect([&](Size k) -> unsigned { return part.near[k] & ~static_cast<unsigned>(part.touching[k]); });
   const Size n = a.source.size(), count = packets_of(n, width_), padded = count * width_;
+  const bool many = parts_.size() > 1, shifted = !part.shift.empty();
+  const Size constants = part.pairs == 0 ? 0 : part.constants.size() / part.pairs;
   a.count = static_cast<std::int64_t>(count);
-  const bool many = parts_.size() > 1;
   a.i.resize(padded), a.j.resize(padded);
   if (many) a.force_i.resize(padded), a.force_j.resize(padded);
   a.memory.resize(padded * memory_);
-  const Size constants = part.pairs == 0 ? 0 : part.constants.size() / part.pairs;
   a.constants.resize(padded * constants);
-  a.shift.resize(part.shift.empty() ? 0 : padded * dimension_);
+  a.shift.resize(shifted ? padded * dimension_ : 0);
   const auto own = [&](std::int32_t k) {
     return static_cast<Size>(k) >= part.begin && static_cast<Size>(k) < part.end ? k : part.dummy;
   };
-  for (Size r = 0; r < padded; ++r) {
-    const auto [packet, lane] = a.place(r, width_);
+  a.for_each_place(padded, width_, [&](Size r, Size packet, Size lane) {
     const Size at = packet * width_ + lane;
+    const auto set = [&](std::vector<double>& numbers, Size of, auto value) {
+      for (Size m = 0; m < of; ++m) numbers[(packet * of + m) * width_ + lane] = value(m);
+    };
     if (r >= n) {
       a.i[at] = a.j[at] = record(part.dummy);
       if (many) a.force_i[at] = a.force_j[at] = record(part.dummy);
-      for (Size m = 0; m < memory_; ++m) a.memory[(packet * memory_ + m) * width_ + lane] = 0;
-      for (Size m = 0; m < constants; ++m) a.constants[(packet * constants + m) * width_ + lane] = 1;
-      for (Size c = 0; c < dimension_ && !a.shift.empty(); ++c)
-        a.shift[(packet * dimension_ + c) * width_ + lane] = 0;
-      continue;
+      set(a.memory, memory_, [](Size) { return 0.0; });
+      set(a.constants, constants, [](Size) { return 1.0; });
+      if (shifted) set(a.shift, dimension_, [](Size) { return 0.0; });
+      return;
     }
     const Size from = static_cast<Size>(a.source[r]);
     a.i[at] = part.record_i[from], a.j[at] = part.record_j[from];
     if (many) a.force_i[at] = record(own(part.i[from])), a.force_j[at] = record(own(part.j[from]));
-    for (Size m = 0; m < memory_; ++m)
-      a.memory[(packet * memory_ + m) * width_ + lane] = part.memory[from * memory_ + m];
-    for (Size m = 0; m < constants; ++m)
-      a.constants[(packet * constants + m) * width_ + lane] = part.constants[from * constants + m];
-    for (Size c = 0; c < dimension_ && !a.shift.empty(); ++c)
-      a.shift[(packet * dimension_ + c) * width_ + lane] =
-          part.shift[(from / width_ * dimension_ + c) * width_ + from % width_];
-  }
+    set(a.memory, memory_, [&](Size m) { return part.memory[from * memory_ + m]; });
+    set(a.constants, constants, [&](Size m) { return part.constants[from * constants + m]; });
+    if (shifted)
+      set(a.shift, dimension_,
+          [&](Size c) { return part.shift[(from / width_ * dimension_ + c) * width_ + from % width_]; });
+  });
 }
 
 /// Beads near each wall.
@@ -433,9 +448,15 @@ void ListKernel::make_walls(const System& s, Part& part) {
     const double offset = offset_now(s, wall);
     Packets old = std::move(part.walls[w]);
     Packets near;
-    for (Size k = part.begin; k < part.end; ++k)
-      if (!(beads_.position(k).dot(wall.n) - offset - beads_.radius(k) >= wall_margin_[w]))
+    Size known = 0;
+    for (Size k = part.begin; k < part.end; ++k) {
+      while (known < old.source.size() && static_cast<Size>(old.source[known]) < k) ++known;
+      const bool was = known < old.source.size() && static_cast<Size>(old.source[known]) == k;
+      const auto [packet, lane] = was ? old.place(known, width_) : std::pair<Size, Size>();
+      if (!(beads_.position(k).dot(wall.n) - offset - beads_.radius(k) >= wall_margin_[w]) ||
+          (was && remembers(old.memory.data() + packet * memory_ * width_ + lane, width_)))
         near.source.push_back(static_cast<std::int32_t>(k));
+    }
     const Size n = near.source.size(), count = packets_of(n, width_), padded = count * width_;
     near.count = static_cast<std::int64_t>(count);
     near.i.assign(padded, record(part.dummy));
@@ -507,10 +528,18 @@ void ListKernel::refresh_pairs(System& s) {
   else if (deviated_ < 0.25 * slack_)
     slack_ *= 0.5;
   slack_ = std::clamp(slack_, 1e-5 * skin_, 0.1 * skin_);
-  horizon_ = kHorizon * s.dt;
+  // A bed in flight has few pairs to look at: making the list is then the greater cost.
+  Size active = 0, listed = 0;
+  for (const Part& part : parts_) active += part.active.source.size(), listed += part.pairs;
+  horizon_steps_ = 4 * active < listed ? kLongHorizon : kHorizon;
+  horizon_ = horizon_steps_ * s.dt;
   margin_ = horizon_ * range.spread() + 2 * slack_;
-  if (rebuild_every_ > 0 && calls_ % rebuild_every_ == 0) built_.clear();
-  if (outer_is_stale()) make_outer(s);
+  // What any two beads may have approached since the outer list was made is at most what they may have in
+  // each stretch between looks; only when that no longer suffices are displacements measured.
+  since_built_ += last_margin_;
+  last_margin_ = margin_;
+  if (rebuild_every_ > 0 && calls_ % rebuild_every_ == 0) built_.clear(), since_built_ = HUGE_VAL;
+  if (!(since_built_ + margin_ <= skin_) && outer_is_stale()) make_outer(s);
   deviated_ = 0;
   lasted_ = 0;
   ++counters_.near_refreshes;
@@ -558,14 +587,14 @@ void ListKernel::add_up_motion(const System& s) {
   ++lasted_;
   const bool forced = rebuild_every_ > 0 && ++calls_ % rebuild_every_ == 0;
   // Negated comparisons: what is not a number must not pass.
-  pair_refresh_ = forced || !(deviated_ <= slack_ && lasted_ < kHorizon);
+  pair_refresh_ = forced || !(deviated_ <= slack_ && lasted_ < horizon_steps_);
   wall_refresh_ = forced;
   const double added = strayed + static_cast<double>(lasted_) * s.dt * s.gravity.norm();
   speed_bound_ = fastest_ + added;
   // A wall's own way is counted as it went, not by its speed at one end of the step.
-  const double before = plate_;
+  plate_before_ = plate_;
   plate_ = s.plate_height(), plate_velocity_ = s.plate_velocity();
-  const Vec3 way = ((plate_ - before) / s.dt) * Vec3::Unit(static_cast<int>(s.drive.axis));
+  const Vec3 way = ((plate_ - plate_before_) / s.dt) * Vec3::Unit(static_cast<int>(s.drive.axis));
   for (Size w = 0; w < s.walls.size(); ++w) {
     const Wall& wall = s.walls[w];
     const Vec3 v = wall.moves ? way : Vec3::Zero();
@@ -590,6 +619,7 @@ void ListKernel::forces(const System& s, Part& part) {
   p.shift = a.shift.empty() ? nullptr : a.shift.data();
   p.packets = a.count;
   p.dt = s.dt;
+  p.locate = plan_.locate;
   p.magic = magic_;
   part.overlap = a.count > 0 ? passes_.pairs(p) : 0;
   part.visits += a.count;
@@ -606,7 +636,8 @@ void ListKernel::forces(const System& s, Part& part) {
     g.packets = near.count;
     const int axis = static_cast<int>(s.drive.axis);
     Vec3 v = Vec3::Zero();
-    if (wall.moves) v[axis] = plate_velocity_;
+    if (wall.moves)
+      v[axis] = plan_.key.velocity == Velocity::full_step ? (plate_ - plate_before_) / s.dt : plate_velocity_;
     if (dimension_ == 2) {
       g.n[0] = wall.n.x(), g.n[1] = wall.n.z();
       g.velocity[0] = v.x(), g.velocity[1] = v.z();
@@ -615,6 +646,7 @@ void ListKernel::forces(const System& s, Part& part) {
     }
     g.offset = wall.moves ? wall.offset + wall.n[axis] * plate_ : wall.offset;
     g.dt = s.dt;
+    g.locate = plan_.locate;
     g.magic = magic_;
     part.overlap = std::max(part.overlap, passes_.walls(g));
     part.wall_visits += near.count;
@@ -708,8 +740,9 @@ void ListKernel::advance(System& s, std::int64_t steps) {
   prepare(s);
   integrate_args_ = beads_.integrate_args(s);
   wall_margin_.resize(s.walls.size(), 0), wall_approach_.resize(s.walls.size(), 0);
-  plate_ = s.plate_height(), plate_velocity_ = s.plate_velocity();
+  plate_ = s.plate_height(), plate_velocity_ = s.plate_velocity(), plate_before_ = s.plate_height_before();
   // Lists are checked at every call: the plate and the beads may have been moved by other hands.
+  since_built_ = HUGE_VAL;  // beads may have been moved by other hands
   reference_.resize(4 * s.beads.size());
   lasted_ = static_cast<std::int64_t>(kShort);
   refresh_pairs(s);

@@ -14,10 +14,6 @@ void PackedBeads::take(const System& s, const std::vector<std::int32_t>& order, 
   records_.resize((n_ + dummies) * static_cast<std::size_t>(stride));
   spins_.resize((n_ + dummies) * static_cast<std::size_t>(spin_stride));
   forces_.resize((n_ + dummies) * static_cast<std::size_t>(force_stride));
-  if (plan_->predicted) {
-    velocities_.resize(4 * n_);
-    held_spins_.resize(n_ * static_cast<std::size_t>(spin_stride));
-  }
   equal_ = true;
   for (const Bead& b : s.beads)
     equal_ = equal_ && b.radius == s.beads[0].radius && b.mass == s.beads[0].mass &&
@@ -37,21 +33,16 @@ void PackedBeads::take(const System& s, const std::vector<std::int32_t>& order, 
     double* r = records_.data() + static_cast<std::size_t>(stride) * k;
     double* spin = spins_.data() + static_cast<std::size_t>(spin_stride) * k;
     double* f = forces_.data() + static_cast<std::size_t>(force_stride) * k;
-    double* v = plan_->predicted ? velocities_.data() + 4 * k : nullptr;
-    double* held =
-        plan_->predicted ? held_spins_.data() + static_cast<std::size_t>(spin_stride) * k : nullptr;
     const Force force = s.forces_known ? s.forces[static_cast<std::size_t>(order[k])] : Force{};
     if (d == 2) {
       r[0] = b.x, r[1] = b.z, r[2] = b.vx, r[3] = b.vz, spin[0] = b.radius * b.spin;
       f[0] = force.x, f[1] = force.z, f[2] = force.q, f[3] = 0;
-      if (v != nullptr) v[0] = v[1] = 0, v[2] = b.vx, v[3] = b.vz, held[0] = spin[0];
     } else {
       r[0] = b.x, r[1] = b.y, r[2] = b.z, r[3] = 0;
       r[4] = b.vx, r[5] = b.vy, r[6] = b.vz, r[7] = 0;
       spin[0] = b.radius * b.spin_x, spin[1] = -b.radius * b.spin, spin[2] = b.radius * b.spin_z, spin[3] = 0;
       f[0] = force.x, f[1] = force.y, f[2] = force.z, f[3] = 0;
       f[4] = force.q_x, f[5] = -force.q, f[6] = force.q_z, f[7] = 0;
-      if (v != nullptr) std::copy_n(r + 4, 4, v), std::copy_n(spin, 4, held);
     }
   }
   for (std::size_t k = n_; k < n_ + dummies; ++k)
@@ -126,8 +117,6 @@ IntegrateArgs PackedBeads::integrate_args(const System& s) {
   a.records = records_.data();
   a.spins = spins_.data();
   a.forces = forces_.data();
-  a.velocities = plan_->predicted ? velocities_.data() : nullptr;
-  a.held_spins = plan_->predicted ? held_spins_.data() : nullptr;
   a.inv_mass = inv_mass_.data();
   a.turn = turn_.data();
   a.inertia_step = equal_ ? 0 : 1;

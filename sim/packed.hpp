@@ -62,7 +62,7 @@ class PackedBeads {
   const Plan* plan_;
   std::size_t n_ = 0;
   bool equal_ = true;
-  Lines records_, forces_, spins_, velocities_, held_spins_, inv_mass_;
+  Lines records_, forces_, spins_, inv_mass_;
   std::vector<double> radius_, mass_, inertia_, turn_;
 };
 

@@ -13,8 +13,8 @@
 namespace twincell::sim {
 
 /// A bead as kernels hold it, in as few cache lines as it takes. Record, 2D: x z vx vz; 3D: x y z 0 | vx vy
-/// vz 0. The velocities are those that dashpots see. Contact forces, 2D: fx fz q 0; 3D: fx fy fz 0 | qx qy qz
-/// 0. Spins R w, 2D: one number; 3D: x y z 0.
+/// vz 0. During a run velocities and spins are those of the middle of the step. Contact forces, 2D: fx fz q
+/// 0; 3D: fx fy fz 0 | qx qy qz 0. Spins R w, 2D: one number; 3D: x y z 0.
 template <int D>
 inline constexpr int kRecord = D == 2 ? 4 : 8;
 template <int D>
@@ -45,6 +45,7 @@ struct PairArgs {
   const double* shift;            ///< added to r_i - r_j (periodic images), or null
   std::int64_t packets;
   double dt;
+  bool locate;   ///< contact.hpp act()
   double magic;  ///< grain of the sums, contact.hpp rounded()
 };
 
@@ -60,8 +61,9 @@ struct WallArgs {
   std::int64_t packets;
   double n[3];         ///< inward normal; 2D: (n_x, n_z)
   double offset;       ///< n . w now
-  double velocity[3];  ///< of the wall
+  double velocity[3];  ///< of the wall: now, or with Velocity::full_step its mean over the step
   double dt;
+  bool locate;
   double magic;
 };
 
@@ -76,9 +78,6 @@ struct IntegrateArgs {
   double* records;
   double* spins;
   double* forces;
-  double* velocities;  ///< [bead][4] true half-step velocities where records hold predicted ones, else null;
-                       ///< 2D: 0 0 vx vz
-  double* held_spins;  ///< [bead][kSpinRecord] the same of spins
   const double* inv_mass;       ///< [bead][4] 1/m where a row has velocities, 0 elsewhere; or one row
   const double* turn;           ///< [bead] R^2/I; or one
   std::ptrdiff_t inertia_step;  ///< 1; or 0 if all beads are alike
@@ -104,6 +103,7 @@ struct ScanArgs {
   std::int64_t packets;
   double margin;
   double horizon;
+  std::uint16_t* touching;  ///< [packet] a bit per lane: in contact now
   std::uint16_t* near;  ///< [packet] a bit per lane
 };
 
@@ -118,13 +118,14 @@ struct Passes {
   WallPass walls;
   IntegratePass integrate;
   ScanPass scan;
+  int remembered;  ///< numbers per contact
 };
 
 /// Which passes: positions in the lists of laws/axes.hpp.
 struct PassKey {
   int dimension;
   std::size_t normal, tangential, rolling;
-  Jump jump;
+  Velocity velocity;
 };
 
 /// One instruction set.

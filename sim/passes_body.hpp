@@ -13,12 +13,12 @@
 namespace twincell::sim {
 
 /// Contacts of listed pairs.
-template <class Lanes, class Laws, int D, Jump kJump>
+template <class Lanes, class Laws, int D, Velocity kVelocity>
 double pair_pass(const PairArgs& args) {
   const PairArgs p = args;  // a copy that no store can alias
   using V = typename Lanes::V;
   constexpr int K = kTurns<D>, kCount = Layout<Laws>::kCount, W = Lanes::kWidth;
-  constexpr int kMemory = Laws::template kMemory<D>;
+  constexpr int kMemory = kRemembered<Laws, kVelocity, D>;
   const V dt(p.dt), magic(p.magic);
   V largest(0.0);
   for (std::int64_t k = 0; k < p.packets; ++k) {
@@ -35,7 +35,7 @@ double pair_pass(const PairArgs& args) {
     double* kept = p.memory + W * kMemory * k;
     // A pair that parted within this step may still have something to settle, so look a step further then.
     V edge = reach;
-    if constexpr (kJump == Jump::located) {
+    if constexpr (kVelocity == Velocity::full_step) {
       V fastest = abs(a.v[0]);
       for (int c = 1; c < D; ++c) fastest = fastest + abs(a.v[c]);
       edge = fma(dt, fastest, reach);
@@ -62,7 +62,7 @@ double pair_pass(const PairArgs& args) {
     }
     V memory[kMemory + 1];
     for (int m = 0; m < kMemory; ++m) memory[m] = Lanes::load(kept + W * m);
-    Action<V, D> act_on = act<Laws, kJump, V, D>(a, c, dt, magic, memory);
+    Action<V, D> act_on = act<Laws, kVelocity, V, D>(a, c, dt, p.locate, magic, memory);
     for (int m = 0; m < kMemory; ++m) Lanes::store(memory[m], kept + W * m);
     largest = max(largest, act_on.overlap);
     V q_i[K], q_j[K];
@@ -77,12 +77,12 @@ double pair_pass(const PairArgs& args) {
 }
 
 /// Contacts of listed beads with one wall.
-template <class Lanes, class Laws, int D, Jump kJump>
+template <class Lanes, class Laws, int D, Velocity kVelocity>
 double wall_pass(const WallArgs& args) {
   const WallArgs p = args;
   using V = typename Lanes::V;
   constexpr int K = kTurns<D>, kCount = Layout<Laws>::kCount, W = Lanes::kWidth;
-  constexpr int kMemory = Laws::template kMemory<D>;
+  constexpr int kMemory = kRemembered<Laws, kVelocity, D>;
   const V dt(p.dt), magic(p.magic), offset(p.offset);
   V largest(0.0);
   for (std::int64_t k = 0; k < p.packets; ++k) {
@@ -111,7 +111,7 @@ double wall_pass(const WallArgs& args) {
     double* kept = p.memory + W * kMemory * k;
     V memory[kMemory + 1];
     for (int m = 0; m < kMemory; ++m) memory[m] = Lanes::load(kept + W * m);
-    Action<V, D> act_on = act<Laws, kJump, V, D>(a, c, dt, magic, memory);
+    Action<V, D> act_on = act<Laws, kVelocity, V, D>(a, c, dt, p.locate, magic, memory);
     for (int m = 0; m < kMemory; ++m) Lanes::store(memory[m], kept + W * m);
     largest = max(largest, act_on.overlap);
     if constexpr (Laws::Rolling::kActs)
@@ -122,9 +122,8 @@ double wall_pass(const WallArgs& args) {
 }
 
 /// Velocity Verlet: half kicks v += (dt/2) a, drift r += dt v. Two half kicks in a row are kept apart, so
-/// that where a run is cut into pieces does not show. Records hold the velocity that dashpots will see: that
-/// of the half step, or the one predicted for its end, v + (dt/2) a.
-template <class Lanes, int D, bool kPredicted, int kKicks, bool kDrift>
+/// that where a run is cut into pieces does not show.
+template <class Lanes, int D, int kKicks, bool kDrift>
 Deviation integrate(const IntegrateArgs& args) {
   using Row = typename Lanes::Row;
   const IntegrateArgs p = args;  // a copy that no store can alias
@@ -136,7 +135,7 @@ Deviation integrate(const IntegrateArgs& args) {
   const Row fallen = D == 2 ? Row::high(p.fallen[0], p.fallen[1]) : Row::three(p.fallen);
   std::int64_t b = p.begin;
   if constexpr (D == 2 && Lanes::kBlock > 0)
-    b = Lanes::template integrate_blocks<kPredicted, kKicks, kDrift>(p, h_row, dt_row, gravity, fallen, most);
+    b = Lanes::template integrate_blocks<kKicks, kDrift>(p, h_row, dt_row, gravity, fallen, most);
   for (; b < p.end; ++b) {
     double* record = p.records + kRecord<D> * b;
     double* force = p.forces + kForceRecord<D> * b;
@@ -146,23 +145,16 @@ Deviation integrate(const IntegrateArgs& args) {
       // Velocities are the upper half of a record, and so are accelerations.
       const Row a = fma(Row::load(force).swapped(), inv_m, gravity);
       const double spin_kick = -h * turn * force[2];
-      const Row r = Row::load(record);
-      Row v = kPredicted ? Row::load(p.velocities + 4 * b) : r;
-      double spin = kPredicted ? p.held_spins[b] : p.spins[b];
+      Row v = Row::load(record);
+      double spin = p.spins[b];
       for (int k = 0; k < kKicks; ++k) {
         v = fma(h_row, a, v);
         spin += spin_kick;
       }
-      Row next = kPredicted ? r : v;
+      Row next = v;
       if constexpr (kDrift) {
         next = fma(v.swapped(), dt_row, next);
         zero.store(force);
-      }
-      if constexpr (kPredicted) {
-        v.store(p.velocities + 4 * b);
-        p.held_spins[b] = spin;
-        next = Row::low_high(next, kDrift ? fma(h_row, a, v) : v);
-        if constexpr (kDrift) spin += spin_kick;
       }
       next.store(record);
       if (p.spin) p.spins[b] = spin;
@@ -170,23 +162,18 @@ Deviation integrate(const IntegrateArgs& args) {
     } else {
       const Row a = fma(Row::load(force), inv_m, gravity);
       const Row spin_kick = Row::all(-h * turn) * Row::load(force + 4);
-      double* held = kPredicted ? p.velocities + 4 * b : record + 4;
-      double* held_spin = kPredicted ? p.held_spins + 4 * b : p.spins + 4 * b;
-      Row v = Row::load(held), s = Row::load(held_spin);
+      double* spin = p.spins + 4 * b;
+      Row v = Row::load(record + 4), s = Row::load(spin);
       for (int k = 0; k < kKicks; ++k) {
         v = fma(h_row, a, v);
         s = s + spin_kick;
       }
-      v.store(held);
-      if (p.spin) s.store(held_spin);
+      v.store(record + 4);
+      if (p.spin) s.store(spin);
       if constexpr (kDrift) {
         fma(dt_row, v, Row::load(record)).store(record);
         zero.store(force);
         zero.store(force + 4);
-      }
-      if constexpr (kPredicted) {
-        (kDrift ? fma(h_row, a, v) : v).store(record + 4);
-        if (p.spin) (kDrift ? s + spin_kick : s).store(p.spins + 4 * b);
       }
       most = max(most, abs(v - (Row::load(p.reference + 4 * b) + fallen)));
     }
@@ -199,13 +186,8 @@ Deviation integrate(const IntegrateArgs& args) {
 
 template <class Lanes, int D>
 Deviation integrate_pass(const IntegrateArgs& p) {
-  const auto by_velocities = [&]<int kKicks, bool kDrift>() {
-    return p.velocities != nullptr ? integrate<Lanes, D, true, kKicks, kDrift>(p)
-                                   : integrate<Lanes, D, false, kKicks, kDrift>(p);
-  };
-  if (!p.drift) return by_velocities.template operator()<1, false>();
-  return p.kicks == 2 ? by_velocities.template operator()<2, true>()
-                      : by_velocities.template operator()<1, true>();
+  if (!p.drift) return integrate<Lanes, D, 1, false>(p);
+  return p.kicks == 2 ? integrate<Lanes, D, 2, true>(p) : integrate<Lanes, D, 1, true>(p);
 }
 
 /// Marks listed pairs that may come near.
@@ -222,9 +204,11 @@ void scan_pass(const ScanArgs& p) {
     for (int c = 1; c < D; ++c) r2 = fma(d[c], d[c], r2);
     V closing = d[0] * v[0];
     for (int c = 1; c < D; ++c) closing = fma(d[c], v[c], closing);
-    const V bound = Lanes::load(p.reach + p.reach_step * k) + V(p.margin);
-    p.near[k] = static_cast<std::uint16_t>(
-        Lanes::bits(fma(V(p.horizon), min(closing, V(0.0)), r2) < sqrt(r2) * bound));
+    const V reach = Lanes::load(p.reach + p.reach_step * k), r = sqrt(r2);
+    const auto touching = r < reach;
+    const auto near = fma(V(p.horizon), min(closing, V(0.0)), r2) < r * (reach + V(p.margin));
+    p.touching[k] = static_cast<std::uint16_t>(Lanes::bits(touching));
+    p.near[k] = static_cast<std::uint16_t>(Lanes::bits(near));
   }
 }
 
@@ -235,27 +219,27 @@ struct PassTable {
   static constexpr std::size_t kTangentials = std::variant_size_v<TangentialAxis>;
   static constexpr std::size_t kRollings = std::variant_size_v<RollingAxis>;
 
-  template <int D, Jump kJump, std::size_t kIndex>
+  template <int D, Velocity kVelocity, std::size_t kIndex>
   static constexpr Passes entry() {
     using N = std::variant_alternative_t<kIndex / (kTangentials * kRollings), NormalAxis>;
     using T = std::variant_alternative_t<kIndex / kRollings % kTangentials, TangentialAxis>;
     using R = std::variant_alternative_t<kIndex % kRollings, RollingAxis>;
     // Beads that do not turn cannot resist rolling.
     using Laws = std::conditional_t<T::kActs, LawSet<N, T, R>, LawSet<N, T, NoRolling>>;
-    return {&pair_pass<Lanes, Laws, D, kJump>, &wall_pass<Lanes, Laws, D, kJump>, &integrate_pass<Lanes, D>,
-            &scan_pass<Lanes, D>};
+    return {&pair_pass<Lanes, Laws, D, kVelocity>, &wall_pass<Lanes, Laws, D, kVelocity>,
+            &integrate_pass<Lanes, D>, &scan_pass<Lanes, D>, kRemembered<Laws, kVelocity, D>};
   }
-  template <int D, Jump kJump, std::size_t... kIndex>
+  template <int D, Velocity kVelocity, std::size_t... kIndex>
   static Passes pick(std::size_t index, std::index_sequence<kIndex...>) {
-    static constexpr Passes kAll[] = {entry<D, kJump, kIndex>()...};
+    static constexpr Passes kAll[] = {entry<D, kVelocity, kIndex>()...};
     return kAll[index];
   }
   template <int D>
   static Passes find(const PassKey& key) {
     constexpr auto kEach = std::make_index_sequence<kNormals * kTangentials * kRollings>();
     const std::size_t index = (key.normal * kTangentials + key.tangential) * kRollings + key.rolling;
-    return key.jump == Jump::located ? pick<D, Jump::located>(index, kEach)
-                                     : pick<D, Jump::stepwise>(index, kEach);
+    return key.velocity == Velocity::full_step ? pick<D, Velocity::full_step>(index, kEach)
+                                               : pick<D, Velocity::half_step>(index, kEach);
   }
 };
 

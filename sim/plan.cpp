@@ -153,8 +153,8 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
     add("coarse steps", State::approximated,
         fmt::format("{:g} steps per contact time: single collisions scatter in e by up to {:.2g}",
                     s.steps_per_contact,
-                    s.integrator == "split" ? 0.9 / (s.steps_per_contact * s.steps_per_contact)
-                                            : 0.19 / s.steps_per_contact));
+                    s.integrator == "split" ? 0.065 / (s.steps_per_contact * s.steps_per_contact)
+                                            : 0.25 / s.steps_per_contact));
 }
 
 void add_limits(const std::string& kind, const ContactLaws& laws, const PairScale& pair, double speed,
@@ -196,8 +196,8 @@ std::string Plan::kernel_name() const {
   std::string name = fmt::format("{}D; normal: {}; tangential: {}", dimension, name_of(bead.normal),
                                  name_of(bead.tangential));
   if (key.rolling > 0) name += "; rolling: " + name_of(bead.rolling);
-  if (predicted) name += "; predicted velocities";
-  if (key.jump == Jump::located) name += "; steps split at entry and exit";
+  if (key.velocity == Velocity::full_step) name += "; predicted velocities";
+  if (locate) name += "; steps split at entry and exit";
   return name;
 }
 
@@ -209,8 +209,8 @@ Plan make_plan(const Scene& s) {
   plan.bead = read_laws(chosen, s.contact.bead);
   for (const Wall& w : plan.walls) plan.wall_laws.push_back(read_laws(chosen, s.contact.wall.at(w.name)));
   plan.key = {s.dimension, plan.bead.normal.index(), plan.bead.tangential.index(), plan.bead.rolling.index(),
-              s.integrator == "split" ? Jump::located : Jump::stepwise};
-  plan.predicted = s.integrator != "verlet";
+              s.integrator == "verlet" ? Velocity::half_step : Velocity::full_step};
+  plan.locate = s.integrator == "split";
   plan.rotation = std::visit([](const auto& law) { return law.kActs; }, plan.bead.tangential);
   plan.history = std::visit([](const auto& law) { return law.kHistory; }, plan.bead.tangential);
 
@@ -267,7 +267,7 @@ System make_system(const Scene& s, const Plan& plan) {
 
 std::vector<double> contact_constants(const ContactLaws& laws, const PairScale& pair, double reach,
                                       double inv_radius_i, double inv_radius_j) {
-  std::vector<double> set = {reach, 1 / reach, inv_radius_i, inv_radius_j};
+  std::vector<double> set = {reach, 1 / reach, inv_radius_i, inv_radius_j, 1 / pair.m_eff};
   const auto append = [&](const auto& axis) {
     std::visit(
         [&](const auto& law) {

@@ -45,7 +45,7 @@ struct Plan {
   std::vector<Wall> walls;             ///< of the cell
   std::vector<ContactLaws> wall_laws;  ///< of each wall
   PassKey key{};                       ///< which kernel
-  bool predicted = false;              ///< dashpots see v predicted for the step's end, not the half-step v
+  bool locate = false;                 ///< moments of entry and exit are located within their steps
   bool rotation = false, history = false;
   double largest_force =
       0;  ///< m g, that an overlap at the guard's bound makes: sets the grain of summed forces

@@ -4,7 +4,8 @@ namespace twincell::sim {
 
 const std::vector<std::pair<std::string, std::string>>& presets() {
   // Canonical cells of Bhateja et al., sec. II: four layers, A = d, periodic, open top; W = K_m sets omega.
-  // The paper names neither k_n nor c_t: 1e6 and c_t = c_n.
+  // The paper names neither k_n nor c_t: 1e6 and c_t = c_n. A crystal would keep its mirror planes for ever,
+  // and beads never leave them: the start is random.
   static const std::string plane_cell = R"(
 [cell]
 width = 10.0
@@ -12,6 +13,8 @@ sides = "periodic"
 [beads]
 layers = 4
 inertia = "sphere"
+[start]
+kind = "random"
 [drive]
 amplitude = 1.0
 )";
@@ -24,6 +27,8 @@ sides = "periodic"
 plates = "periodic"
 [beads]
 layers = 4
+[start]
+kind = "random"
 [drive]
 amplitude = 1.0
 )";
@@ -77,6 +82,8 @@ bottom_motion = "rest"
 lid_motion = "rest"
 [beads]
 count = 3000
+[start]
+kind = "random"
 [contact]
 k_n = 1e6
 restitution = 0.3

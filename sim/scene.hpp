@@ -22,7 +22,8 @@ namespace twincell::sim {
 /// What limits the cell on one side.
 enum class Edge { wall, periodic, absent };
 
-/// The laws that contacts follow, by the words of the scene, and where each kind of contact finds its parameters.
+/// The laws that contacts follow, by the words of the scene, and where each kind of contact finds its
+/// parameters.
 struct ContactChoice {
   std::string normal = "linear", tangential = "spring", rolling = "none";
   ContactTable bead;                         ///< bead-bead
@@ -37,12 +38,12 @@ struct Intruder {
 
 /// How radii are spread about `radius`; masses follow as R^3 (spheres) or R^2 (discs).
 enum class SizeSpread { none, uniform, normal };
-/// Largest deviation from `radius`, relative to it, that a spread of this width admits: the half width of a uniform
-/// one; a normal one is cut on both sides at three standard deviations, or at 0.9 if that is nearer.
+/// Largest deviation from `radius`, relative to it, that a spread of this width admits: the half width of a
+/// uniform one; a normal one is cut on both sides at three standard deviations, or at 0.9 if that is nearer.
 double largest_deviation(SizeSpread spread, double width);
 
-/// Gap, in diameters of the largest bead, up to which pairs are listed: a periodic cell must be wide enough that no
-/// bead comes so near to two images of another.
+/// Gap, in diameters of the largest bead, up to which pairs are listed: a periodic cell must be wide enough
+/// that no bead comes so near to two images of another.
 inline constexpr double kListReach = 0.25;
 
 enum class StartKind { crystal_a, crystal_b, random, trajectory, table };
@@ -55,11 +56,11 @@ struct Scene {
   int dimension = 2;
   double width = 20;             ///< L_x, sigma
   double depth = 1;              ///< L_y, sigma: period or gap of front and back plates; 3D only
-  std::optional<double> height;  ///< of the lid above the plate, sigma; absent: high enough never to be reached
+  std::optional<double> height;  ///< of the lid above the plate, sigma; absent: never reached
   Edge sides = Edge::wall;       ///< across x
   Edge plates = Edge::absent;    ///< across y, 3D
-  Edge bottom = Edge::wall;      ///< periodic: z has period `height` (no gravity then)
-  bool lid = false;              ///< true: a hard lid at `height`; false: a bead that reaches `height` stops the run
+  Edge bottom = Edge::wall;      ///< periodic: z has period `height` (no gravity along it)
+  bool lid = false;  ///< true: a hard lid at `height`; false: a bead that reaches `height` stops the run
   bool bottom_moves = true, side_walls_move = true, plates_move = true, lid_moves = true;
   double left_tilt = 0, right_tilt = 0;  ///< degrees by which a side wall leans outward, about its foot
   Vec3 gravity = -Vec3::UnitZ();

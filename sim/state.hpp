@@ -85,6 +85,12 @@ struct System {
     return envelope.at(cycles()) * v +
            envelope.slope(cycles()) / drive.period() * drive.displacement(phase());
   }
+  /// Displacement at the step before.
+  [[nodiscard]] double plate_height_before() const {
+    const std::int64_t n = steps_per_period;
+    const double s = drive.displacement(static_cast<double>((step + n - 1) % n) / static_cast<double>(n));
+    return envelope.points.empty() ? s : envelope.at(cycles() - 1 / static_cast<double>(n)) * s;
+  }
   [[nodiscard]] Vec3 plate_displacement() const {
     return plate_height() * Vec3::Unit(static_cast<int>(drive.axis));
   }

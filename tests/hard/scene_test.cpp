@@ -361,6 +361,13 @@ TEST(Presets, AreThePapersCells) {
   EXPECT_EQ(still.g(), 0);
   EXPECT_EQ(still.n_beads, 100U);
   for (const Wall& wall : still.walls()) EXPECT_TRUE(wall.moves) << wall.name;
+  // A crystal's mirror planes would hold its beads for ever.
+  for (const std::string& name : preset_names()) {
+    const bool still_cell = name == "bhateja-2016-zero-g";
+    const Scene s = read_scene_text("preset = \"" + name + "\"\n[beads]\ncount = 9\n", "s",
+                                    {still_cell ? "drive.omega=1" : "drive.peak_velocity=1"});
+    EXPECT_EQ(s.start, name == "fortini-huang-2015" ? StartKind::crystal_a : StartKind::random) << name;
+  }
   EXPECT_DOUBLE_EQ(
       read_scene_text("preset = \"bhateja-2016-smooth-3d\"\n[drive]\nk_m = 4.0\n", "s").drive.omega, 2);
 }

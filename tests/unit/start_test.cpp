@@ -19,7 +19,8 @@ namespace twincell::sim {
 namespace {
 
 const std::string kFlat = "preset = \"fortini-huang-2015\"\n[drive]\ngamma = 1.0\n";
-const std::string kSpace = "preset = \"bhateja-2016-rough-3d\"\n[drive]\nk_m = 5.0\n";
+const std::string kSpace =
+    "preset = \"bhateja-2016-rough-3d\"\n[start]\nkind = \"crystal_a\"\n[drive]\nk_m = 5.0\n";
 
 Scene scene(const std::string& text, const std::vector<std::string>& set = {}) {
   return read_scene_text(text, "scene.toml", set);
