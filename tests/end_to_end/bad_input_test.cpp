@@ -97,6 +97,86 @@ TEST_F(BadInput, Scenes) {
   expect_only({"key.toml", "syntax.toml", "twice.toml", "type.toml"});
 }
 
+TEST_F(BadInput, OtherProgramsDumps) {
+  expect_refusal({"import", at("no.dump"), "-o", at("o.h5")}, kInput, {"no.dump", "does not exist"});
+  write(at("text.dump"), "this is not a dump\n");
+  expect_refusal({"import", at("text.dump"), "-o", at("o.h5")}, kInput, {"text.dump:1", "ITEM: TIMESTEP"});
+  const std::string frame =
+      "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff pp\n0 8\n0 9\n-1 1\nITEM: ATOMS "
+      "id x y\n";
+  write(at("cut.dump"), frame);
+  expect_refusal({"import", at("cut.dump"), "-o", at("o.h5")}, kInput, {"cut.dump:9", "ends"});
+  write(at("whole.dump"), frame + "1 1 1\n");
+  expect_refusal({"import", at("whole.dump"), "-o", at("o.h5")}, kUsage, {"--timestep", "whole.dump"});
+  expect_only({"cut.dump", "text.dump", "whole.dump"});
+}
+
+TEST_F(BadInput, ScenesThatLammpsHasNoWordsFor) {
+  write(at("s.toml"), "preset = \"fortini-huang-2015\"\n[beads]\ncount = 10\n[drive]\ngamma = 1.5\n");
+  const auto refused = [&](const std::string& assignment, const std::vector<std::string>& mentioned) {
+    expect_refusal({"export", at("s.toml"), "--to", "lammps", "-o", at("deck"), "--set", assignment}, kUsage,
+                   mentioned);
+  };
+  refused("contact.slip=spring_only", {"s.toml", "contact.tangential", "limit on the spring alone"});
+  refused("contact.normal=falling-restitution", {"contact.normal", "do not know the law"});
+  refused("contact={rolling='spring',k_r=1.0,mu_r=0.1}", {"contact.rolling", "do not know the law"});
+  refused("contact.bottom.k_t=0.0", {"contact.bottom.k_t", "divides"});
+  refused("cell.side_tilt=5.0", {"cell.side_tilt", "along the axes"});
+  refused("cell.plate_drag=0.1", {"cell.plate_drag"});
+  refused("time.integrator=split", {"time.integrator", "split"});
+  refused("drive.start=ramp", {"drive", "no ramp"});
+  expect_refusal(
+      {"export", at("s.toml"), "--to", "lammps", "-o", at("deck"), "--set", "contact.restitution=0.9",
+       "--set", "beads.spread=uniform", "--set", "beads.spread_width=0.1"},
+      kUsage, {"contact", "unlike masses", "rates"});
+  refused("contact.mu=20000", {"contact.mu", "20000", "10000"});
+  refused("time.phases=3", {"time.phases", "multiple of 4"});
+  refused("time.cycles=200000", {"time.cycles", "200010", "2e+09"});
+  refused("beads.count=0", {"beads.count", "without beads"});
+  expect_refusal({"export", at("s.toml"), "--to", "yade", "-o", at("deck")}, kUsage, {"--to", "yade"});
+  expect_refusal({"export", at("s.toml"), "--to", "lammps", "-o", at("deck"), "--from", at("no.h5")}, kInput,
+                 {"no.h5", "does not exist"});
+  expect_only({"s.toml"});
+}
+
+// A trajectory that is not of the scene, or from which a run cannot go on.
+TEST_F(BadInput, FramesFromWhichLammpsCannotBegin) {
+  write(at("s.toml"), "preset = \"fortini-huang-2015\"\n[beads]\ncount = 1\n[drive]\ngamma = 1.5\n");
+  TrajectoryInfo info;
+  info.n_beads = 1;
+  info.phases_per_cycle = 20;
+  info.radius = {0.5};
+  const auto refused = [&](const std::vector<std::string>& more, const std::vector<std::string>& mentioned) {
+    {
+      H5mdWriter writer(at("t.h5"), info);
+      Frame frame;
+      frame.phase = info.columns.phase ? 5 : -1;
+      frame.cycle = info.columns.phase ? 0 : -1;
+      frame.plate_height = 1.5;
+      frame.position = {Vec3(3, 0, 4)};
+      if (info.columns.velocity) frame.velocity = {Vec3(0, 0, 0)};
+      if (info.columns.spin) frame.spin = {Vec3(0, 0, 0)};
+      writer.append(frame);
+      writer.finish();
+    }
+    std::vector<std::string> words{"export", at("s.toml"), "--to",   "lammps",
+                                   "-o",     at("deck"),   "--from", at("t.h5")};
+    words.insert(words.end(), more.begin(), more.end());
+    expect_refusal(words, kUsage, mentioned);
+  };
+  refused({}, {"frame 0 of", "t.h5", "no drive phase"});
+  info.columns.phase = info.columns.plate_height = true;
+  refused({}, {"no velocities"});
+  info.columns.velocity = true;
+  refused({}, {"no spins"});
+  info.columns.spin = true;
+  refused({"--frame", "1"}, {"frame 1", "has 1"});
+  refused({"--set", "drive.gamma=1.6"}, {"drive", "1.5", "1.6"});
+  refused({"--set", "beads.count=2"}, {"beads.count", "holds 1"});
+  refused({"--set", "beads.radius=0.4"}, {"beads.radius", "0.4", "0.5"});
+  expect_only({"s.toml", "t.h5"});
+}
+
 TEST_F(BadInput, UnwritableOutput) {
   const std::string scene =
       std::string(TWINCELL_SOURCE_DIR) + "/data_samples/fortini-huang-crystal/scene.toml";

@@ -1,0 +1,79 @@
+// Runs a scene and says what pieces of it cost, each when asked, so that another program can be timed on the
+// same piece in between.
+//
+// usage: period_cost SCENE.toml PERIODS FOLDER
+//
+// A piece is PERIODS whole periods of the drive, since the cost varies over one; there are
+// time.cycles/PERIODS of them. Before each: writes its first state to FOLDER/piece_K.h5, prints {"state": …,
+// "beads": …, "steps": …} and waits for a line on standard input; after it prints {"cpu_s": …}, processor
+// time of the whole program.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <ctime>
+#include <iostream>
+#include <string>
+
+#include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
+#include "sim/simulation.hpp"
+
+namespace {
+
+using namespace twincell;
+
+void say(const std::string& line) {
+  std::puts(line.c_str());
+  std::fflush(stdout);
+}
+
+class Pieces : public TrajectorySink {
+ public:
+  Pieces(const sim::Simulation& run, std::int64_t periods, std::string folder)
+      : run_(run), periods_(periods), folder_(std::move(folder)) {}
+
+  void append(const Frame& frame) override {
+    if (frame.phase != 0 || frame.cycle % periods_ != 0) return;
+    end_piece();
+    const std::string name = fmt::format("{}/piece_{}.h5", folder_, frame.cycle / periods_);
+    H5mdWriter writer(name, run_.trajectory_info());
+    writer.append(frame);
+    writer.finish();
+    say(fmt::format(R"({{"state": "{}", "beads": {}, "steps": {}}})", name, frame.position.size(),
+                    run_.plan().steps_per_period * periods_));
+    std::string line;
+    if (!std::getline(std::cin, line)) throw Interrupted(ExitCode::interrupted);
+    begun_ = std::clock();
+  }
+
+  void end_piece() {
+    if (begun_ >= 0)
+      say(fmt::format(R"({{"cpu_s": {:.6f}}})", static_cast<double>(std::clock() - begun_) / CLOCKS_PER_SEC));
+  }
+
+ private:
+  const sim::Simulation& run_;
+  std::int64_t periods_;
+  std::string folder_;
+  std::clock_t begun_ = -1;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    std::fputs("usage: period_cost SCENE.toml PERIODS FOLDER\n", stderr);
+    return 2;
+  }
+  try {
+    sim::Simulation run(sim::read_scene(argv[1]));
+    Pieces pieces(run, std::stol(argv[2]), argv[3]);
+    run.run(pieces);
+    pieces.end_piece();
+    return 0;
+  } catch (const Error& e) {
+    std::fprintf(stderr, "period_cost: %s\n", e.what());
+    return static_cast<int>(e.exit_code());
+  }
+}

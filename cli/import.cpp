@@ -1,0 +1,86 @@
+// twincell import dump.lammpstrj: another program's output as a trajectory.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <memory>
+
+#include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/lammps_dump.hpp"
+#include "cli/output.hpp"
+#include "cli/verb.hpp"
+
+namespace twincell::cli {
+
+namespace {
+
+struct ImportOptions {
+  std::string dump, output;
+  std::vector<double> origin;
+  LammpsDumpOptions lammps;
+};
+
+void run(ImportOptions& o, const Common& common) {
+  for (std::size_t k = 0; k < o.origin.size(); ++k) o.lammps.origin[static_cast<int>(k)] = o.origin[k];
+  ProgressBar reading(common, "reading");
+  const LammpsDump dump(o.dump, o.lammps, reading);
+  TrajectoryInfo info = dump.info();
+  Provenance provenance = common.provenance();
+  provenance.inputs.emplace_back(o.dump);
+  provenance.threads = 1;
+  info.provenance_json = provenance.to_json();
+  H5mdWriter writer(o.output, info);
+  ProgressBar writing(common, "writing");
+  dump.copy_to(writer, writing);
+  writer.finish();
+  if (!info.drive) note(common, "no drive was given: phases and the plate's height are absent.");
+  print_result(common,
+               {{"output", o.output},
+                {"frames", dump.n_frames()},
+                {"beads", info.n_beads},
+                {"missing_beads", info.columns.identity}},
+               fmt::format("{} frames of {} beads{}\n{}\n", dump.n_frames(), info.n_beads,
+                           info.columns.identity ? ", not all of them in each" : "", o.output));
+}
+
+}  // namespace
+
+void add_import(CLI::App& program, Common& common) {
+  auto o = std::make_shared<ImportOptions>();
+  CLI::App& verb =
+      add_verb(program, common, "import", "Another program's output as a trajectory",
+               "twincell import dump.lammpstrj -o lammps.h5 --timestep 4.4e-5 --drive-amplitude 2 "
+               "--drive-omega 1 --frames-per-cycle 20");
+  LammpsDumpOptions& l = o->lammps;
+  verb.add_option("dump", o->dump, "Text dump of LAMMPS")->required();
+  verb.add_option("-o,--output", o->output, "Trajectory (H5MD)")->required();
+  verb.add_option("--dimension", l.dimension, "2: the plane (x, y), y up; 3: z up")
+      ->check(CLI::IsMember({2, 3}))
+      ->capture_default_str();
+  verb.add_option("--timestep", l.timestep,
+                  "Length of a step; lengths and times are in the dump's own units");
+  verb.add_option("--sigma", l.sigma, "Bead diameter")->capture_default_str();
+  verb.add_option("--gravity", l.gravity, "g")->capture_default_str();
+  verb.add_option("--origin", o->origin, "Lower left inside corner of the cell, plate at its mean: x y [z]")
+      ->expected(2, 3);
+  verb.add_option("--cell-width", l.width, "Between the side walls; absent: to the end of the dump's box");
+  verb.add_option("--drive-amplitude", l.drive.amplitude, "A");
+  verb.add_option("--drive-omega", l.drive.omega, "omega");
+  verb.add_option("--drive-frequency", l.drive.frequency, "omega/2pi");
+  verb.add_option("--drive-gamma", l.drive.gamma, "A omega^2/g");
+  verb.add_option("--drive-axis", l.drive_axis, "Which way, in our axes: x, y or z up")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Axis>{{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}))
+      ->option_text("AXIS");
+  verb.add_option("--frames-per-cycle", l.phases_per_cycle, "Frames per drive cycle; 0: not phase-locked")
+      ->check(CLI::Range(0, 1'000'000));
+  verb.add_option("--phase-of-step-zero", l.phase_of_step_zero,
+                  "Fraction of a cycle; of a wall that wiggles from step 0 on: 0.75")
+      ->capture_default_str();
+  verb.add_option("--bead-mass", l.bead_mass, "m, for the column mass; absent: masses are left out");
+  verb.add_option("--tracer-type", l.tracer_type, "Atom type that marks tracers");
+  verb.callback([o, &common] { run(*o, common); });
+}
+
+}  // namespace twincell::cli
