@@ -56,16 +56,16 @@ class AllPairsKernel : public Kernel {
   void rebuild_every(std::int64_t) override {}
   [[nodiscard]] std::vector<ContactMemory> contacts() const override {
     std::vector<ContactMemory> all;
-    for (const auto& [key, values] : memory_)
-      for (const double v : values)
+    for (const auto& [key, contact] : contacts_)
+      for (const double v : contact.memory)
         if (v != 0) {
-          all.push_back({key.first, key.second, values});
+          all.push_back({key.first, key.second, contact.memory});
           break;
         }
     return all;
   }
   void restore(std::vector<ContactMemory> contacts) override {
-    for (ContactMemory& c : contacts) memory_[{c.i, c.j}] = std::move(c.values);
+    for (ContactMemory& c : contacts) contacts_[{c.i, c.j}].memory = std::move(c.values);
   }
   [[nodiscard]] std::string description() const override { return "all pairs, 1 contact at a time"; }
 
@@ -83,8 +83,6 @@ class AllPairsKernel : public Kernel {
     for (std::int32_t i = 0; i < n; ++i)
       for (std::int32_t j = i + 1; j < n; ++j) {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-        const double ra = beads_.radius(a), rb = beads_.radius(b);
-        const auto constants = contact_constants(plan_.bead, beads_.pair(a, b), ra + rb, 1 / ra, 1 / rb);
         const Vec3 apart = beads_.position(a) - beads_.position(b);
         double shift[3] = {0, 0, 0};
         for (int k = 0, c = 0; k < 3; ++k) {
@@ -92,7 +90,11 @@ class AllPairsKernel : public Kernel {
           const double period = s.period[static_cast<std::size_t>(k)];
           shift[c++] = period > 0 ? -period * std::round(apart[k] / period) : 0;
         }
-        auto& memory = memory_[{i, j}];
+        auto& [memory, constants] = contacts_[{i, j}];
+        if (constants.empty()) {
+          const double ra = beads_.radius(a), rb = beads_.radius(b);
+          constants = contact_constants(plan_.bead, beads_.pair(a, b), ra + rb, 1 / ra, 1 / rb);
+        }
         memory.resize(remembered);
         const std::int32_t at_i = record(i), at_j = record(j);
         p.i = &at_i, p.j = &at_j, p.force_i = &at_i, p.force_j = &at_j;
@@ -122,9 +124,10 @@ class AllPairsKernel : public Kernel {
       g.offset = wall.moves ? wall.offset + wall.n[axis] * plate : wall.offset;
       for (std::int32_t i = 0; i < n; ++i) {
         const auto a = static_cast<std::size_t>(i);
-        const auto constants =
-            contact_constants(plan_.wall_laws[w], beads_.wall(a), beads_.radius(a), 1 / beads_.radius(a), 0);
-        auto& memory = memory_[{i, -1 - static_cast<std::int32_t>(w)}];
+        auto& [memory, constants] = contacts_[{i, -1 - static_cast<std::int32_t>(w)}];
+        if (constants.empty())
+          constants = contact_constants(plan_.wall_laws[w], beads_.wall(a), beads_.radius(a),
+                                        1 / beads_.radius(a), 0);
         memory.resize(remembered);
         const std::int32_t at = record(i);
         g.bead = &at, g.constants = constants.data(), g.memory = memory.data();
@@ -145,7 +148,10 @@ class AllPairsKernel : public Kernel {
   double magic_;
   std::vector<std::int32_t> order_;
   Lines reference_;
-  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<double>> memory_;
+  struct Contact {
+    std::vector<double> memory, constants;
+  };
+  std::map<std::pair<std::int32_t, std::int32_t>, Contact> contacts_;
 };
 
 }  // namespace
