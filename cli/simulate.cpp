@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -99,11 +100,11 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   if (!scene.from.empty()) provenance.inputs.push_back(scene.from);
   provenance.config = scene.resolved;
   provenance.seed = scene.seed;
-  provenance.threads = 1;
+  provenance.threads = std::max(1, common.threads);
   { const AtomicPath probe(options.output); }  // an unwritable place is found before the work, not after
 
   ProgressBar settling(common, "settling");
-  sim::Simulation run(std::move(scene), settling);
+  sim::Simulation run(std::move(scene), settling, sim::KernelKind::best, common.threads);
   if (!run.settled().reached && run.scene().settle_limit > 0 && !run.system().beads.empty())
     note(common,
          fmt::format(
