@@ -145,7 +145,7 @@ class ListKernel : public Kernel {
   std::vector<Vec3> built_;  ///< positions at the outer list's making
   // Inner list: pairs that free flight brings nearer than 2 slack within the horizon. It holds until contacts
   // have bent some bead's flight by slack, or the horizon is reached.
-  double slack_ = 1e-3, horizon_ = 0, horizon_steps_ = kHorizon, margin_ = 0, deviated_ = 0;
+  double slack_ = 1e-3, horizon_ = 0, margin_ = 0, deviated_ = 0;
   std::int64_t lasted_ = 0;
   Lines reference_;
   double least_[3] = {}, most_[3] = {}, fastest_ = 0,
@@ -531,8 +531,9 @@ void ListKernel::refresh_pairs(System& s) {
   // A bed in flight has few pairs to look at: making the list is then the greater cost.
   Size active = 0, listed = 0;
   for (const Part& part : parts_) active += part.active.source.size(), listed += part.pairs;
-  horizon_steps_ = 4 * active < listed ? kLongHorizon : kHorizon;
-  horizon_ = horizon_steps_ * s.dt;
+  const double horizon_steps = 4 * active < listed ? kLongHorizon : kHorizon;
+  // Not so far ahead that beads could come in from beyond the outer list.
+  horizon_ = std::min(horizon_steps * s.dt, 0.5 * skin_ / std::max(range.spread(), 1e-300));
   margin_ = horizon_ * range.spread() + 2 * slack_;
   // What any two beads may have approached since the outer list was made is at most what they may have in
   // each stretch between looks; only when that no longer suffices are displacements measured.
@@ -587,7 +588,7 @@ void ListKernel::add_up_motion(const System& s) {
   ++lasted_;
   const bool forced = rebuild_every_ > 0 && ++calls_ % rebuild_every_ == 0;
   // Negated comparisons: what is not a number must not pass.
-  pair_refresh_ = forced || !(deviated_ <= slack_ && lasted_ < horizon_steps_);
+  pair_refresh_ = forced || !(deviated_ <= slack_ && static_cast<double>(lasted_) * s.dt < horizon_);
   wall_refresh_ = forced;
   const double added = strayed + static_cast<double>(lasted_) * s.dt * s.gravity.norm();
   speed_bound_ = fastest_ + added;

@@ -57,7 +57,8 @@ double pair_pass(const PairArgs& args) {
         Lanes::template spins<D>(p.spins, i, s_i);
         Lanes::template spins<D>(p.spins, j, s_j);
         for (int m = 0; m < K; ++m)
-          a.w[m] = nfma(s_j[m], c[constant::kInvRadiusJ], s_i[m] * c[constant::kInvRadiusI]);
+          a.w[m] =
+              s_i[m] * c[constant::kInvRadiusI] - s_j[m] * c[constant::kInvRadiusJ];  // odd under i <-> j
       }
     }
     V memory[kMemory + 1];

@@ -5,7 +5,6 @@
 /// rounded, and products that are added to are fused by name: one contact alone and eight in a vector give
 /// the same bits.
 
-#include <algorithm>
 #include <cmath>
 
 namespace twincell::sim {
@@ -16,11 +15,12 @@ inline double fma(double a, double b, double c) {
 inline double nfma(double a, double b, double c) {
   return std::fma(-a, b, c);
 }  ///< c - a b
+// Of two equal numbers the second, as vector units do: -0 and 0 are equal.
 inline double min(double a, double b) {
-  return std::min(a, b);
+  return a < b ? a : b;
 }
 inline double max(double a, double b) {
-  return std::max(a, b);
+  return a > b ? a : b;
 }
 inline double abs(double a) {
   return std::abs(a);
