@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Twincell beside LAMMPS on the same pieces of the same runs, in particle-steps per second of processor time.
 
-usage: sim_peers.py BUILD [--json] [--repetitions N]
+usage: sim_peers.py BUILD [--json] [--repetitions N] [--job NAME]
 
 BUILD is the folder that holds twincell and bench/period_cost. Every piece begins in a state that Twincell
 reached; both programs start from it and run the same whole periods of the drive, in turn. Set-up is not counted:
@@ -9,10 +9,14 @@ ours is measured between two steps, LAMMPS's is its loop time times its use of t
 over the repetitions, ratios medians of the quotients of one repetition. A row per job is appended to
 bench/results/MACHINE.csv.
 
+At equal accuracy: the same periods of a run of ours with the integrator and the fewer steps per contact that
+`twincell cost sim` finds to be no less accurate than LAMMPS's integrator with its steps, as a quotient of times.
+
 What cannot be measured is absent, with the reason under "absent".
 """
 
 import argparse
+import contextlib
 import csv
 import datetime
 import json
@@ -27,6 +31,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENE = "scene.toml"  # in the folder of a job
+CHEAPER = "cheaper.toml"  # the same, as accurate in fewer steps
 
 # The first paper's bed at Gamma = 2, loose from the start so that it has defects, after five driven periods.
 SHAKER = """
@@ -47,23 +52,29 @@ cycles = {cycles}
 phases = 4
 """
 
-# The second paper's gas of 100 rough spheres at W = 50: a period is 20 000 steps, so a piece is many of them.
+# The second paper's gas of rough spheres, at W = 50 and wider where there are more than its hundred.
 GAS = """
 preset = "bhateja-2016-rough-3d"
+[cell]
+width = {width}
+depth = {width}
 [drive]
 k_m = 50.0
+[start]
+settle_limit = 2.0
 [time]
 steps_per_contact = 50
-discard = 50
+discard = {discard}
 cycles = {cycles}
 phases = 4
 """
 
-# Name, scene, periods in a piece.
+# Name, scene, periods in a piece, whether also at equal accuracy.
 JOBS = [
-    ("shaker_1600", SHAKER.replace("{count}", "1600"), 1),
-    ("shaker_400", SHAKER.replace("{count}", "400"), 1),
-    ("gas_3d", GAS, 50),
+    ("shaker_1600", SHAKER.replace("{count}", "1600"), 1, True),
+    ("shaker_400", SHAKER.replace("{count}", "400"), 1, False),
+    ("gas_3d", GAS.replace("{width}", "5.0").replace("{discard}", "50"), 50, False),
+    ("gas_3d_1600", GAS.replace("{width}", "20.0").replace("{discard}", "20"), 3, False),
 ]
 
 
@@ -77,10 +88,12 @@ def said(stderr, code):
 
 
 class Ours:
-    """period_cost, a piece at a time."""
+    """period_cost, a piece at a time; its states are in a folder beside the scene."""
 
-    def __init__(self, build, periods, folder):
-        self.process = subprocess.Popen([build / "bench/period_cost", SCENE, str(periods), "."], cwd=folder,
+    def __init__(self, build, scene, periods, folder):
+        states = folder / scene.removesuffix(".toml")
+        states.mkdir()
+        self.process = subprocess.Popen([build / "bench/period_cost", scene, str(periods), states], cwd=folder,
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def __enter__(self):
@@ -104,6 +117,8 @@ class Ours:
 
 def lammps_cpu_seconds(build, state, steps, folder):
     """One piece in LAMMPS from the deck that we export, without its dump."""
+    if not shutil.which("lmp"):
+        raise Absent("LAMMPS is not installed (Debian: apt-get install lammps)")
     deck = folder / "deck"
     exported = subprocess.run([build / "twincell", "export", SCENE, "--to", "lammps", "-q", "-o", "deck", "--from", state,
                                "--set", "time.cycles=1", "--set", "time.discard=0"], cwd=folder, capture_output=True, text=True)
@@ -123,49 +138,61 @@ def lammps_cpu_seconds(build, state, steps, folder):
     return float(loop[1]) * float(use[1]) / 100
 
 
-def equal_accuracy_step_ratio(build):
-    """Steps LAMMPS needs for each of ours at the same largest error of the restitution over entry phases."""
-    ran = subprocess.run([build / "twincell", "cost", "sim", "--json"], capture_output=True, text=True)
+def cheaper_scene(build, scene):
+    """The scene in the fewest steps that are no less accurate than it is."""
+    ran = subprocess.run([build / "twincell", "cost", "sim", "--json", "-q"], capture_output=True, text=True)
     if ran.returncode != 0:
-        raise Absent(f"the ratio of steps at equal accuracy is unknown: {said(ran.stderr, ran.returncode)}")
-    ratio = json.loads(ran.stdout).get("equal_accuracy_step_ratio")
-    if ratio is None:
-        raise Absent("`twincell cost sim --json` has no key equal_accuracy_step_ratio")
-    return float(ratio)
+        raise Absent(f"`twincell cost sim` does not say how many steps are as accurate: {said(ran.stderr, ran.returncode)}")
+    try:
+        found = json.loads(ran.stdout)["equal_accuracy"]["split"]
+        integrator, n = found["integrator"], float(found["n"])
+    except (KeyError, TypeError, ValueError) as why:
+        raise Absent(f"`twincell cost sim --json` has no key {why}") from None
+    return re.sub(r"(?m)^steps_per_contact = .*$", f'steps_per_contact = {n}\nintegrator = "{integrator}"', scene)
 
 
-def measure(build, name, scene_text, periods, repetitions):
-    """Numbers of one job by key, and reasons of those that are absent."""
-    numbers, absent = {}, {}
-    with tempfile.TemporaryDirectory() as temporary:
+def measure(build, name, scene, periods, equal_accuracy, repetitions):
+    """Numbers of one job by key, and reasons of those that are absent. Absent if Twincell's own are."""
+    ours, lammps, cheaper = [], [], []  # seconds of the processor, a piece each
+    absent = {}
+
+    def unless_absent(key, measured):
+        if key not in absent:
+            try:
+                return measured()
+            except Absent as why:
+                absent[key] = str(why)
+        return None
+
+    with tempfile.TemporaryDirectory() as temporary, contextlib.ExitStack() as running:
         folder = Path(temporary)
-        (folder / SCENE).write_text(scene_text.replace("{cycles}", str(periods * repetitions)))
-        ours, lammps = [], []
-        try:
-            with Ours(build, periods, folder) as engine:
-                for _ in range(repetitions):
-                    piece = engine.answer()
-                    work = piece["beads"] * piece["steps"]
-                    ours.append(work / engine.run())
-                    if "lammps" in absent:
-                        continue
-                    try:
-                        if not shutil.which("lmp"):
-                            raise Absent("LAMMPS is not installed (Debian: apt-get install lammps)")
-                        lammps.append(work / lammps_cpu_seconds(build, piece["state"], piece["steps"], folder))
-                    except Absent as why:
-                        absent["lammps"] = str(why)
-        except Absent as why:
-            return {}, {name: str(why)}
-    numbers["beads"], numbers["steps"] = piece["beads"], piece["steps"]
-    numbers["twincell"] = statistics.median(ours)
+
+        def engine(file, text):
+            (folder / file).write_text(text)
+            return running.enter_context(Ours(build, file, periods, folder))
+
+        scene = scene.replace("{cycles}", str(periods * repetitions))
+        first = engine(SCENE, scene)
+        second = None
+        if equal_accuracy:
+            second = unless_absent("ratio_equal_accuracy", lambda: engine(CHEAPER, cheaper_scene(build, scene)))
+        for _ in range(repetitions):
+            piece = first.answer()
+            if second:
+                unless_absent("ratio_equal_accuracy", second.answer)
+            # Everybody waits now: what is timed runs alone.
+            ours.append(first.run())
+            lammps.append(unless_absent("lammps", lambda: lammps_cpu_seconds(build, piece["state"], piece["steps"], folder)))
+            if second:
+                cheaper.append(unless_absent("ratio_equal_accuracy", second.run))
+
+    work = piece["beads"] * piece["steps"]
+    numbers = {"beads": piece["beads"], "steps": piece["steps"], "twincell": work / statistics.median(ours)}
     if "lammps" not in absent:
-        numbers["lammps"] = statistics.median(lammps)
-        numbers["ratio_lammps"] = statistics.median(a / b for a, b in zip(ours, lammps))
-        try:
-            numbers["ratio_equal_accuracy"] = numbers["ratio_lammps"] * equal_accuracy_step_ratio(build)
-        except Absent as why:
-            absent["ratio_equal_accuracy"] = str(why)
+        numbers["lammps"] = work / statistics.median(lammps)
+        numbers["ratio_lammps"] = statistics.median(b / a for a, b in zip(ours, lammps))
+        if equal_accuracy and "ratio_equal_accuracy" not in absent:
+            numbers["ratio_equal_accuracy"] = statistics.median(b / a for a, b in zip(cheaper, lammps))
     return numbers, {f"{name}.{key}": why for key, why in absent.items()}
 
 
@@ -198,18 +225,20 @@ def main():
     arguments.add_argument("build", type=lambda path: Path(path).resolve())
     arguments.add_argument("--json", action="store_true")
     arguments.add_argument("--repetitions", type=int, default=3)
-    arguments.add_argument("--job", action="append", choices=[name for name, _, _ in JOBS], help="only this job")
+    arguments.add_argument("--job", action="append", choices=[job[0] for job in JOBS], help="only this job")
     options = arguments.parse_args()
 
     document, absent = {}, {}
-    for name, scene, periods in JOBS:
+    for name, scene, periods, equal_accuracy in JOBS:
         if options.job and name not in options.job:
             continue
         print(f"bench: {name}", file=sys.stderr)
-        numbers, reasons = measure(options.build, name, scene, periods, options.repetitions)
-        absent.update(reasons)
-        if not numbers:
+        try:
+            numbers, reasons = measure(options.build, name, scene, periods, equal_accuracy, options.repetitions)
+        except Absent as why:
+            absent[name] = str(why)
             continue
+        absent.update(reasons)
         append_row({"date": datetime.date.today().isoformat(), "commit": commit(), "job": name,
                     "repetitions": options.repetitions, **numbers})
         document.update({f"{name}.{key}": value for key, value in numbers.items()})

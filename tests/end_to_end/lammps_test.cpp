@@ -260,6 +260,12 @@ TEST_F(Lammps, SecondPaperInSpace) {
   expect_agreement_and_notice({{"pair_style", 4}, {"pair_style", 5}, {"pair_style", 6}, {"fix bottom", 7}});
 }
 
+TEST_F(Lammps, SecondPaperSmoothInSpace) {
+  simulate(kSpace, {"preset=bhateja-2016-smooth-3d"});
+  export_deck();
+  expect_agreement_and_notice({{"pair_style", 4}, {"fix bottom", 16}});
+}
+
 TEST_F(Lammps, SecondPaperInABox) {
   simulate(kSpace, {"cell.sides=walls", "cell.plates=walls"});
   export_deck();
