@@ -219,9 +219,9 @@ Plan make_plan(const Scene& s) {
   const double speed = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
   const auto limits = [&](const ContactLaws& laws, const std::string& kind, const PairScale& pair) {
     add_limits(kind, laws, pair, speed, plan.limits);
-    plan.largest_force =
-        std::max(plan.largest_force,
-                 std::visit([](const auto& law) { return law.largest_force(kOverlapBound); }, laws.normal));
+    plan.largest_force = std::max(
+        plan.largest_force,
+        std::visit([&](const auto& law) { return law.largest_force(overlap_bound(s)); }, laws.normal));
   };
   limits(plan.bead, "bead-bead", pair_of(radius, mass, s.inertia_factor));
   for (std::size_t w = 0; w < plan.walls.size(); ++w) {
@@ -231,7 +231,8 @@ Plan make_plan(const Scene& s) {
   }
   double shortest = HUGE_VAL;
   for (const TimeLimit& limit : plan.limits) shortest = std::min(shortest, limit.time);
-  constexpr double kMostSteps = 1e10, kMostTravel = 0.05;
+  constexpr double kMostSteps = 1e10;
+  const double most_travel = 0.05 * 2 * s.radius;
   const double steps = s.drive.period() / (shortest / s.steps_per_contact);
   if (!(steps <= kMostSteps))
     throw ConfigError(
@@ -243,11 +244,11 @@ Plan make_plan(const Scene& s) {
   const std::int64_t rest = plan.steps_per_period % s.phases;
   if (rest != 0) plan.steps_per_period += s.phases - rest;
   plan.dt = s.drive.period() / static_cast<double>(plan.steps_per_period);
-  if (const double travel = s.drive.peak_velocity() * plan.dt; travel > kMostTravel)
+  if (const double travel = s.drive.peak_velocity() * plan.dt; travel > most_travel)
     throw ConfigError({s.file, 0, 0, "drive"},
                       fmt::format("the plate moves {:.3g} sigma in one step, the bound is {:g}; raise "
                                   "time.steps_per_contact or contact.k_n.",
-                                  travel, kMostTravel));
+                                  travel, most_travel));
   list_effects(s, chosen, plan);
   return plan;
 }

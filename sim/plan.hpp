@@ -59,8 +59,12 @@ struct Plan {
   [[nodiscard]] std::string kernel_name() const;
 };
 
-/// Overlap, sigma, at which a run is stopped. The papers' runs stay below 0.03.
+/// Overlap, in bead diameters, at which a run is stopped. The papers' runs stay below 0.03.
 inline constexpr double kOverlapBound = 0.1;
+/// The same in the scene's unit of length: a scene may be written in any units.
+inline double overlap_bound(const Scene& s) {
+  return kOverlapBound * 2 * s.radius;
+}
 
 /// Derives the plan. mu = 0 turns friction, rotation and history off, since nothing of them can then act.
 /// \throws ConfigError for parameters that a law needs or refuses, and for steps too long or too many

@@ -37,6 +37,8 @@ Simulation::Simulation(Scene scene, Progress& progress, KernelKind kind, int thr
   system_ = make_system(scene_, plan_);
   system_.beads = std::move(start.beads);
   GuardLimits limits;
+  limits.overlap = overlap_bound(scene_);
+  limits.travel_per_step *= 2 * scene_.radius;
   // A height that the scene names without a lid binds; the one we chose merely keeps the box of the file
   // finite.
   limits.ceiling = scene_.lid || scene_.bottom == Edge::periodic ? 0 : scene_.height.value_or(0);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/validation.hpp"
+
 using namespace twincell;
 
 TEST(GranularTemperature, TranslationDropsOutAndTheFiniteSizeFactorStays) {
@@ -30,9 +32,10 @@ TEST(GranularTemperature, TranslationDropsOutAndTheFiniteSizeFactorStays) {
     }
     const double expected = temperature * (1 - 1 / static_cast<double>(n));  // d T/2 with d = 2
     const double error = expected * std::sqrt(1.0 / (static_cast<double>(n - 1) * samples));
-    std::cout << n << " beads: " << sum / samples << ", expected " << expected << " +- " << error << '\n';
-    EXPECT_NEAR(sum / samples, expected, 4 * error);
-    EXPECT_LT(worst_shift, 1e-12);
+    const std::string of = " of " + std::to_string(n) + " Maxwellian beads";
+    test::validate({"V5.3", "T_g" + of, expected, 4 * error, "closed form, with 1 - 1/N"}, sum / samples);
+    test::validate({"V5.3", "T_g" + of + ": change by a common translation", 0, 1e-12, "Galilei"},
+                   worst_shift);
   }
 }
 

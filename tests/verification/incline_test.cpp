@@ -7,9 +7,18 @@
 #include <numbers>
 
 #include "tests/support/collision.hpp"
+#include "tests/support/validation.hpp"
 
 namespace twincell::sim {
 namespace {
+
+using test::validate;
+
+std::string number(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", v);
+  return text;
+}
 
 constexpr double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
@@ -42,51 +51,58 @@ TEST(Incline, DiscRollsOrSlides) {  // V2.11
   for (const double degrees : {10.0, 30.0, 50.0}) {
     Bench b = incline("", degrees);
     const double exact = 2.0 / 3 * std::sin(radians(degrees)), a = acceleration(b);
-    std::printf("disc rolls at %g degrees: relative error %.2e\n", degrees, a / exact - 1);
-    EXPECT_NEAR(a / exact, 1, 0.01);
+    validate({"V2.11", "disc rolls down " + number(degrees) + " degrees: a over (2/3) g sin", 1, 0.01,
+              "closed form"},
+             a / exact);
     EXPECT_NEAR(b.system.beads[0].vx, -0.5 * b.system.beads[0].spin, 1e-3 * b.system.beads[0].vx);
   }
   Bench steep = incline("[contact]\nmu = 0.1\n", 30);  // tan 30 = 0.577 > 3 mu
   const double exact = std::sin(radians(30)) - 0.1 * std::cos(radians(30)), a = acceleration(steep);
-  std::printf("disc slides at 30 degrees, mu = 0.1: relative error %.2e\n", a / exact - 1);
-  EXPECT_NEAR(a / exact, 1, 0.01);
+  validate(
+      {"V2.11", "disc slides down 30 degrees, mu = 0.1: a over g (sin - mu cos)", 1, 0.01, "closed form"},
+      a / exact);
 }
 
 TEST(Incline, SphereRolls) {  // V2.11
   Bench b = incline("", 30);
   b.system.beads[0].inertia = 0.1;
-  EXPECT_NEAR(acceleration(b) / (5.0 / 7 * std::sin(radians(30))), 1, 0.01);
+  validate({"V2.11", "sphere rolls down 30 degrees: a over (5/7) g sin", 1, 0.01, "closed form"},
+           acceleration(b) / (5.0 / 7 * std::sin(radians(30))));
 }
 
 TEST(Incline, SpringHoldsABlock) {  // V2.12: displacement m g sin(theta)/k_t, no drift
   Bench gentle = block("", 10);
   gentle.advance_time(2);
-  EXPECT_NEAR(gentle.system.beads[0].x - 5, std::sin(radians(10)) / 1e4, 1e-9);
+  validate({"V2.12", "block held at 10 degrees: displacement over m g sin/k_t", 1, 1e-4, "closed form"},
+           (gentle.system.beads[0].x - 5) / (std::sin(radians(10)) / 1e4));
 
   Bench near = block("", std::atan(0.95 * 0.6) * 180 / std::numbers::pi);
   near.advance_time(10);
   const double x = near.system.beads[0].x;
   near.kernel->advance(near.system, 1'000'000);
-  std::printf("drift of a block at 0.95 of the threshold over 1e6 steps: %.2e\n", near.system.beads[0].x - x);
-  EXPECT_LT(std::abs(near.system.beads[0].x - x), 1e-9);
+  validate({"V2.12", "block held at 0.95 of the threshold: drift over 1e6 steps", 0, 1e-9, "closed form"},
+           near.system.beads[0].x - x);
 }
 
 TEST(Incline, BlockSlidesAboveTheFrictionAngle) {  // V2.12: threshold within 0.1 degree
   const double angle = std::atan(0.6) * 180 / std::numbers::pi;
   Bench below = block("", angle - 0.1), above = block("", angle + 0.1), steep = block("", 40);
   for (Bench* b : {&below, &above}) b->advance_time(10);
-  std::printf("speed 0.1 degree below the friction angle: %.2e, above: %.2e\n", below.system.beads[0].vx,
-              above.system.beads[0].vx);
-  EXPECT_LT(std::abs(below.system.beads[0].vx), 1e-9);
-  EXPECT_NEAR(acceleration(above) / (std::sin(radians(0.1)) / std::cos(radians(angle))), 1, 0.01);
-  EXPECT_NEAR(acceleration(steep) / (std::sin(radians(40)) - 0.6 * std::cos(radians(40))), 1, 0.01);
+  validate({"V2.12", "block 0.1 degree below the friction angle: speed", 0, 1e-9, "closed form"},
+           below.system.beads[0].vx);
+  validate({"V2.12", "block 0.1 degree above it: a over g (sin - mu cos)", 1, 0.01, "closed form"},
+           acceleration(above) / (std::sin(radians(0.1)) / std::cos(radians(angle))));
+  validate({"V2.12", "block at 40 degrees: a over g (sin - mu cos)", 1, 0.01, "closed form"},
+           acceleration(steep) / (std::sin(radians(40)) - 0.6 * std::cos(radians(40))));
 }
 
 TEST(Incline, DashpotLawCreeps) {  // V2.13: v = m g sin(theta)/c_t, never at rest
   for (const double degrees : {5.0, 20.0}) {
     Bench b = block("[contact]\ntangential = \"dashpot\"\nc_t = 100.0\n", degrees);
     b.advance_time(2);
-    EXPECT_NEAR(b.system.beads[0].vx / (std::sin(radians(degrees)) / 100), 1, 0.01) << degrees;
+    validate({"V2.13", "block creeps down " + number(degrees) + " degrees, second paper: v over m g sin/c_t",
+              1, 0.01, "closed form"},
+             b.system.beads[0].vx / (std::sin(radians(degrees)) / 100));
   }
 }
 
@@ -109,11 +125,9 @@ TEST(UnlikeBeads, RestitutionAndMomentum) {  // V1.7: masses 1 : 1000, radii 0.5
         return q.vx - p.vx;
       },
       exact);
-  std::printf("1 : 1000: mean error of e %.2e, largest %.2e, momentum %.1e\n", e.mean, e.largest,
-              worst_momentum);
-  EXPECT_LE(std::abs(e.mean), 3e-4);
-  EXPECT_LE(e.largest, 0.25 / 50.37 * 1.1);
-  EXPECT_LE(worst_momentum, 1e-12);
+  validate({"V1.7", "masses 1 : 1000, mean e over entry phases", exact, 3e-4, "closed form"}, exact + e.mean);
+  validate({"V1.7", "masses 1 : 1000, largest error of e", 0, 0.25 / 50.37 * 1.1, "closed form"}, e.largest);
+  validate({"V1.7", "masses 1 : 1000, momentum", 0, 1e-12, "conservation"}, worst_momentum);
 }
 
 TEST(UnlikeBeads, AngularMomentumChangesOnlyByTheLeverArm) {  // V2.6: rate delta F_t, a property of the law
@@ -134,20 +148,26 @@ TEST(UnlikeBeads, AngularMomentumChangesOnlyByTheLeverArm) {  // V2.6: rate delt
     strongest = std::max(strongest, std::abs(b.system.forces[0].q));
   }
   const double drift = std::abs(angular_momentum() - before), bound = deepest * strongest * 2.222831e-3;
-  std::printf("angular momentum: drift %.2e, bound %.2e\n", drift, bound);
   ASSERT_GT(strongest, 0);
-  EXPECT_LE(drift, bound);
+  validate({"V2.6", "angular momentum of a pair: change over delta_max F_t t_c, between 0 and 1", 0.5, 0.5,
+            "lever arms R_i, R_j"},
+           drift / bound);
   EXPECT_GT(drift, 1e-3 * bound);
 }
 
-TEST(TangentialContact, StiffSpringReversesTheSurface) {  // V2.8: k_t/k_n = m_t/m_eff, 1/3 for discs
-  Bench b(kNoGravity + "[contact]\nmu = 1e9\ngamma_n = 0.0\ngamma_t = 0.0\nk_t = 333333.3333333333\n",
-          200.37);
-  b.add(10, 0.5 + 5.3 * b.system.dt, 1, -1);
-  b.advance_time(6e-3);
-  const double ratio = -(-b.system.beads[0].vx - 0.5 * b.system.beads[0].spin);
-  std::printf("surface velocity after over before: %.5f, closed form -1\n", ratio);
-  EXPECT_NEAR(ratio, -1, 0.01);
+TEST(TangentialContact, StiffSpringReversesTheSurface) {  // V2.8: k_t/k_n = m_t/m_eff
+  for (const bool sphere : {false, true}) {
+    const double ratio = sphere ? 2.0 / 7 : 1.0 / 3;
+    Bench b(kNoGravity + "[contact]\nmu = 1e9\ngamma_n = 0.0\ngamma_t = 0.0\nk_t = " +
+                std::to_string(1e6 * ratio) + "\n",
+            200.37);
+    b.add(10, 0.5 + 5.3 * b.system.dt, 1, -1);
+    if (sphere) b.system.beads[0].inertia = 0.1;
+    b.advance_time(6e-3);
+    validate({"V2.8", std::string(sphere ? "sphere, k_t/k_n = 2/7" : "disc, k_t/k_n = 1/3") + ": v_t'/v_t",
+              -1, 0.01, "closed form"},
+             b.system.beads[0].vx + 0.5 * b.system.beads[0].spin);
+  }
 }
 
 }  // namespace

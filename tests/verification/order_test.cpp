@@ -1,5 +1,5 @@
-// q6, psi6, psi4 of exact neighbourhoods (closed forms of the planar Steinhardt parameter), and their
-// invariances.
+// V5.1, V5.2: q6, psi6, psi4 of exact neighbourhoods (closed forms of the planar Steinhardt parameter), and
+// their invariances.
 #include "analysis/order.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +8,8 @@
 #include <complex>
 #include <numbers>
 #include <random>
+
+#include "tests/support/validation.hpp"
 
 using namespace twincell;
 
@@ -68,18 +70,17 @@ TEST(BondOrder, TableOfNeighbourhoods) {
   // own witness.
   const std::vector<double> five_digits = {0.74083, 0.75291, 0.75962, 0.58630,
                                            0.31250, 0.31250, 0.31250, 1.00000};
-  double worst = 0;
   for (std::size_t c = 0; c < cases.size(); ++c) {
     // Smaller than the gap between the neighbours of 12 directions, so that only the centre's bonds matter.
     const BondOrder order = order_of(star(cases[c].angles), 1.0 + 1e-9);
     EXPECT_EQ(order.n_bonds[0], cases[c].angles.size()) << cases[c].name;
-    EXPECT_NEAR(order.q6[0], cases[c].q6, 1e-12) << cases[c].name;
+    test::validate(
+        {"V5.1", std::string("q6, ") + cases[c].name, cases[c].q6, 1e-12, "Steinhardt et al. 1983"},
+        order.q6[0]);
     EXPECT_NEAR(order.psi6[0], cases[c].psi6, 1e-12) << cases[c].name;
     EXPECT_NEAR(order.psi4[0], cases[c].psi4, 1e-12) << cases[c].name;
     EXPECT_NEAR(order.q6[0], five_digits[c], 5.1e-6) << cases[c].name;
-    worst = std::max(worst, std::abs(order.q6[0] - cases[c].q6));
   }
-  std::cout << "largest error of q6: " << worst << '\n';
 }
 
 TEST(BondOrder, FewerThanTwoNeighboursHaveNoValue) {
@@ -110,9 +111,9 @@ TEST(BondOrder, RandomDirectionsHaveTheRmsOfIndependentBonds) {
       sum += q6 * q6;
     }
     const double expected = std::sqrt(25.0 / 256 + 231.0 / 256 / n);
-    std::cout << n << " random bonds: rms q6 " << std::sqrt(sum / samples) << ", expected " << expected
-              << '\n';
-    EXPECT_NEAR(std::sqrt(sum / samples), expected, 0.004);
+    test::validate(
+        {"V5.1", "rms q6 of " + std::to_string(n) + " random bonds", expected, 0.004, "closed form"},
+        std::sqrt(sum / samples));
   }
 }
 
@@ -147,7 +148,7 @@ TEST(BondOrder, InvariantUnderRotationMirrorAndScale) {
   compare(rotated, 1.2, "rotation");
   compare(mirrored, 1.2, "mirror");
   compare(scaled, 3.7 * 1.2, "scale");
-  std::cout << "largest change of q6: " << worst << '\n';
+  test::validate({"V5.2", "largest change of q6 under rotation, mirror, scale", 0, 1e-12, "symmetry"}, worst);
 }
 
 TEST(BondOrder, StructuresOfPerfectLattices) {

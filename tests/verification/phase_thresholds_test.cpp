@@ -1,11 +1,13 @@
-// s_b of the completely inelastic rigid bed, s_c of an imposed shear: closed forms, no dynamics.
+// V4.9, V5.4: s_b of the completely inelastic rigid bed, s_c of an imposed shear: closed forms, no dynamics.
 #include "analysis/phase_thresholds.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "tests/support/rigid_bed.hpp"
+#include "tests/support/validation.hpp"
 
 using namespace twincell;
 using test::RigidBed;
@@ -31,10 +33,10 @@ TEST(BouncingThreshold, TableOfTheRigidInelasticBed) {
   for (const auto& [gamma, variance, about_rest] : table) {
     const double s_b = measured_s_b(gamma, SbForm::variance),
                  s_rest = measured_s_b(gamma, SbForm::about_rest);
-    std::cout << "Gamma " << gamma << ": s_b " << s_b << " (" << variance << "), about rest " << s_rest
-              << " (" << about_rest << ")\n";
-    EXPECT_NEAR(s_b, variance, 1e-3);
-    EXPECT_NEAR(s_rest, about_rest, 1e-3);
+    std::ostringstream at;
+    at << "rigid inelastic bed, Gamma = " << gamma << ": s_b";
+    test::validate({"V4.9", at.str(), variance, 1e-3, "closed form"}, s_b);
+    test::validate({"V4.9", at.str() + " about rest", about_rest, 1e-3, "closed form"}, s_rest);
   }
 }
 
@@ -46,9 +48,11 @@ TEST(BouncingThreshold, CriticalGamma) {
     return (low + high) / 2;
   };
   const double variance = critical(SbForm::variance), rest = critical(SbForm::about_rest);
-  std::cout << "Gamma* " << variance << " (1.1636), about rest " << rest << " (1.1542)\n";
-  EXPECT_NEAR(variance, 1.1636, 2e-4);
-  EXPECT_NEAR(rest, 1.1542, 2e-4);
+  test::validate({"V4.9", "rigid inelastic bed: Gamma at which s_b = sigma/30", 1.1636, 2e-4, "closed form"},
+                 variance);
+  test::validate(
+      {"V4.9", "rigid inelastic bed: Gamma at which s_b about rest = sigma/30", 1.1542, 2e-4, "closed form"},
+      rest);
 }
 
 TEST(BouncingThreshold, AsPrintedIsTheHeightOfTheTracers) {
@@ -73,7 +77,9 @@ TEST(ConvectionThreshold, ImposedShearHasTheVarianceOfItsLine) {
     EXPECT_NEAR(s_j.values[static_cast<std::size_t>(j)], shear * j * std::sqrt(var_x), 1e-12);
     mean_j2 += static_cast<double>(j) * j / cycles;
   }
-  EXPECT_NEAR(find_result(results, "s_c").value(), shear * std::sqrt(var_x * mean_j2), 1e-12);
+  test::validate({"V5.4", "s_c of a line that shears by 0.03 a cycle, 12 cycles",
+                  shear * std::sqrt(var_x * mean_j2), 1e-12, "closed form"},
+                 find_result(results, "s_c").value());
   // s_j first exceeds sigma at the first j > 1/(a sd(x)).
   EXPECT_EQ(find_result(results, "cycle_of_convection").value(),
             std::floor(1 / (shear * std::sqrt(var_x))) + 1);
