@@ -35,6 +35,8 @@ class AllPairsKernel : public Kernel {
     // How far beads stray from free flight is of no interest here.
     reference_.resize(8 * s.beads.size());
     args.reference = reference_.data();
+    const Run all{0, static_cast<std::int64_t>(s.beads.size())};
+    args.runs = &all, args.n_runs = 1;
     if (!known) forces(s);
     for (std::int64_t k = 0; k < steps; ++k) {
       args.kicks = k == 0 ? 1 : 2;

@@ -14,12 +14,14 @@ inline constexpr int kTurns = D == 2 ? 1 : 3;
 /// Constants of a contact, one set per kind of pair: its geometry, then those of its laws in the order of the
 /// axes.
 namespace constant {
-inline constexpr int kReach = 0;       ///< R_i + R_j; R at a wall
-inline constexpr int kInvReach = 1;    ///< 1/kReach
-inline constexpr int kInvRadiusI = 2;  ///< 1/R_i, for rolling
-inline constexpr int kInvRadiusJ = 3;  ///< 1/R_j; 0 at a wall
-inline constexpr int kInvMass = 4;     ///< 1/m_eff
-inline constexpr int kLaws = 5;
+inline constexpr int kReach = 0;            ///< R_i + R_j; R at a wall
+inline constexpr int kEdge = 1;             ///< kReach^2, and a little: nearer pairs are looked at
+inline constexpr int kInvReach = 2;         ///< 1/kReach
+inline constexpr int kInvReachSquared = 3;  ///< 1/kReach^2
+inline constexpr int kInvRadiusI = 4;       ///< 1/R_i, for rolling
+inline constexpr int kInvRadiusJ = 5;       ///< 1/R_j; 0 at a wall
+inline constexpr int kInvMass = 6;          ///< 1/m_eff
+inline constexpr int kLaws = 7;
 }  // namespace constant
 
 /// Where the laws of a set find their constants.
@@ -48,7 +50,6 @@ struct Action {
   V q[kTurns<D>];
   V q_i[kTurns<D>];  ///< rolling torque per radius, i
   V q_j[kTurns<D>];  ///< the same, j
-  V overlap;         ///< max(0, overlap)
 };
 
 /// Which velocity the laws see at the end of a step, where leapfrog knows the positions, but velocities only
@@ -273,7 +274,6 @@ template <class Laws, Velocity kVelocity, class V, int D>
   for (int k = 0; k < Normal::kMemory; ++k) memory[k] = select(now, memory[k], zero);
   for (int k = 0; k < D; ++k) out.f[k] = rounded(select(acting, out.f[k], zero), magic);
   for (int k = 0; k < K; ++k) out.q[k] = rounded(select(acting, out.q[k], zero), magic);
-  out.overlap = max(select(now, a.overlap, zero), zero);
   return out;
 }
 

@@ -7,6 +7,8 @@
 
 #include "sim/passes.hpp"
 
+#define TWINCELL_LANES HWY_ATTR
+
 namespace twincell::sim::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -14,6 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Wide = hn::ScalableTag<double>;
 using Four = hn::FixedTag<double, 4>;
 using Two = hn::FixedTag<double, 2>;
+using One = hn::FixedTag<double, 1>;
 
 /// A vector of numbers with the operations of laws/real.hpp. Two vectors side by side, to fill the gaps in
 /// one contact's long chain of dependent operations, were tried and dropped: the arithmetic units are busy as
@@ -135,65 +138,118 @@ struct HighwayLanes {
     HWY_INLINE friend Row operator-(Row a, Row b) { return {hn::Sub(a.raw, b.raw)}; }
     HWY_INLINE friend Row abs(Row a) { return {hn::Abs(a.raw)}; }
     HWY_INLINE friend Row max(Row a, Row b) { return {hn::Max(a.raw, b.raw)}; }
+    HWY_INLINE friend Row min(Row a, Row b) { return {hn::Min(a.raw, b.raw)}; }
   };
 
-  /// Integrates whole blocks of 2D beads, as many records to a vector as fit, and returns the first bead that
-  /// is left. The same operations in the same order as one bead at a time.
+  static constexpr auto kLarger = [](Row x, Row y) HWY_ATTR { return max(x, y); };
+  static constexpr auto kSmaller = [](Row x, Row y) HWY_ATTR { return min(x, y); };
+
+  /// Integrates whole blocks of 2D beads, as many records to a vector as fit. The same operations in the same
+  /// order as one bead at a time.
   static constexpr int kBlock = kLanes;
+  static_assert(kGroup % kBlock == 0);
   template <int kKicks, bool kDrift>
-  static std::int64_t integrate_blocks(const IntegrateArgs& p, Row h_row, Row dt_row, Row gravity_row,
-                                       Row fallen_row, Row& most_row) {
+  HWY_INLINE static Row integrate_blocks(const IntegrateArgs& p, Row h_row, Row dt_row, Row gravity_row,
+                                         Row fallen_row) {
     const Wide d;
     constexpr int kBeads = kLanes / 4;  // of a vector
     const Raw h = spread(h_row), dt = spread(dt_row), gravity = spread(gravity_row),
-              fallen = spread(fallen_row);
+              fallen = twice(fallen_row);
     const Raw alike = spread(Row{hn::Load(Four(), p.inv_mass)}),
               alike_kick = hn::Set(d, -(p.dt / 2) * p.turn[0]);
     Raw most = hn::Zero(d);
-    std::int64_t b = p.begin;
-    for (; b + kBlock <= p.end; b += kBlock) {
-      Raw f[4];
-      for (int k = 0; k < 4; ++k) {
-        const std::int64_t at = 4 * (b + kBeads * k);
-        f[k] = hn::LoadU(d, p.forces + at);
-        const Raw inv_m = p.inertia_step == 0 ? alike : hn::LoadU(d, p.inv_mass + at);
-        const Raw a = hn::MulAdd(hn::SwapAdjacentBlocks(f[k]), inv_m, gravity);
-        Raw v = hn::LoadU(d, p.records + at);
-        for (int kick = 0; kick < kKicks; ++kick) v = hn::MulAdd(h, a, v);
-        Raw next = v;
-        if constexpr (kDrift) {
-          next = hn::MulAdd(hn::SwapAdjacentBlocks(v), dt, next);
-          hn::StoreU(hn::Zero(d), d, p.forces + at);
+    for (std::int64_t run = 0; run < p.n_runs; ++run)
+      for (std::int64_t b = p.runs[run].begin, end = end_of_blocks(p.runs[run]); b < end; b += kBlock) {
+        Raw f[4], turned[4];
+        for (int k = 0; k < 4; ++k) {
+          const std::int64_t at = 4 * (b + kBeads * k);
+          f[k] = hn::LoadU(d, p.forces + at);
+          const Raw inv_m = p.inertia_step == 0 ? alike : hn::LoadU(d, p.inv_mass + at);
+          const Raw a = hn::MulAdd(hn::SwapAdjacentBlocks(f[k]), inv_m, gravity);
+          Raw v = hn::LoadU(d, p.records + at);
+          for (int kick = 0; kick < kKicks; ++kick) v = hn::MulAdd(h, a, v);
+          turned[k] = hn::SwapAdjacentBlocks(v);
+          Raw next = v;
+          if constexpr (kDrift) {
+            next = hn::MulAdd(turned[k], dt, next);
+            hn::StoreU(hn::Zero(d), d, p.forces + at);
+          }
+          hn::StoreU(next, d, p.records + at);
+          if (k % 2 == 1) {
+            const Raw both = hn::OddEvenBlocks(v, turned[k - 1]);
+            const Raw flown = hn::Add(hn::LoadU(d, p.reference + 2 * (b + kBeads * (k - 1))), fallen);
+            most = hn::Max(most, hn::Abs(hn::Sub(both, flown)));
+          }
         }
-        hn::StoreU(next, d, p.records + at);
-        most = hn::Max(most, hn::Abs(hn::Sub(v, hn::Add(hn::LoadU(d, p.reference + at), fallen))));
+        if (!p.spin) continue;
+        // The turning moments are the third numbers of the force rows.
+        Raw q;
+        if constexpr (kLanes == 8)
+          q = hn::ConcatOdd(d, hn::ConcatEven(d, f[3], f[2]), hn::ConcatEven(d, f[1], f[0]));
+        else
+          q = hn::ConcatUpperLower(
+              d,
+              hn::SwapAdjacentBlocks(
+                  hn::InterleaveLower(d, hn::SwapAdjacentBlocks(f[2]), hn::SwapAdjacentBlocks(f[3]))),
+              hn::InterleaveLower(d, hn::SwapAdjacentBlocks(f[0]), hn::SwapAdjacentBlocks(f[1])));
+        Raw kick = alike_kick;
+        if (p.inertia_step != 0) kick = hn::Mul(hn::Set(d, -(p.dt / 2)), hn::LoadU(d, p.turn + b));
+        kick = hn::Mul(kick, q);
+        Raw s = hn::LoadU(d, p.spins + b);
+        for (int n = 0; n < kKicks; ++n) s = hn::Add(s, kick);
+        hn::StoreU(s, d, p.spins + b);
       }
-      if (!p.spin) continue;
-      // The turning moments are the third numbers of the force rows.
-      Raw q;
-      if constexpr (kLanes == 8)
-        q = hn::ConcatOdd(d, hn::ConcatEven(d, f[3], f[2]), hn::ConcatEven(d, f[1], f[0]));
-      else
-        q = hn::ConcatUpperLower(
-            d,
-            hn::SwapAdjacentBlocks(
-                hn::InterleaveLower(d, hn::SwapAdjacentBlocks(f[2]), hn::SwapAdjacentBlocks(f[3]))),
-            hn::InterleaveLower(d, hn::SwapAdjacentBlocks(f[0]), hn::SwapAdjacentBlocks(f[1])));
-      Raw kick = alike_kick;
-      if (p.inertia_step != 0) kick = hn::Mul(hn::Set(d, -(p.dt / 2)), hn::LoadU(d, p.turn + b));
-      kick = hn::Mul(kick, q);
-      Raw s = hn::LoadU(d, p.spins + b);
-      for (int n = 0; n < kKicks; ++n) s = hn::Add(s, kick);
-      hn::StoreU(s, d, p.spins + b);
-    }
-    most_row = max(most_row, folded(most));
+    const Row most_of_two = folded(most, kLarger);  // a velocity in each half
+    return max(most_of_two, most_of_two.swapped());
+  }
+  static std::int64_t end_of_blocks(const Run& run) {
+    return run.begin + (run.end - run.begin) / kBlock * kBlock;
+  }
+  /// The steps of fly_pass for a whole group of 2D beads.
+  HWY_INLINE static void fly_group(const FlyArgs& p, Row h_row, Row dt_row, Row gravity_row, std::int64_t b) {
+    const Wide d;
+    constexpr int kVectors = 4 * kGroup / kLanes;
+    const Raw h = spread(h_row), dt = spread(dt_row), gravity = spread(gravity_row);
+    Raw v[kVectors];
+    for (int k = 0; k < kVectors; ++k) v[k] = hn::LoadU(d, p.records + 4 * b + kLanes * k);
+    for (std::int64_t step = 0; step < p.steps; ++step)
+      for (int k = 0; k < kVectors; ++k) {
+        v[k] = hn::MulAdd(h, gravity, v[k]);
+        v[k] = hn::MulAdd(h, gravity, v[k]);
+        v[k] = hn::MulAdd(hn::SwapAdjacentBlocks(v[k]), dt, v[k]);
+      }
+    for (int k = 0; k < kVectors; ++k) hn::StoreU(v[k], d, p.records + 4 * b + kLanes * k);
+  }
+  /// The velocities of the records of two vectors fill one: those of the first in its even blocks, of the
+  /// second in its odd ones.
+  static std::int64_t range_blocks(const RangeArgs& p, Row& least_row, Row& most_row) {
+    const Wide d;
+    constexpr int kBeads = kLanes / 4;
+    Raw least = hn::Set(d, HUGE_VAL), most = hn::Set(d, -HUGE_VAL);
+    std::int64_t b = p.beads.begin;
+    for (; b + kBlock <= p.beads.end; b += kBlock)
+      for (int k = 0; k < 4; k += 2) {
+        const std::int64_t at = b + kBeads * k;
+        const Raw first = hn::LoadU(d, p.records + 4 * at),
+                  second = hn::LoadU(d, p.records + 4 * (at + kBeads));
+        const Raw both = hn::OddEvenBlocks(second, hn::SwapAdjacentBlocks(first));
+        hn::StoreU(both, d, p.reference + 2 * at);
+        least = hn::Min(both, least);
+        most = hn::Max(both, most);
+      }
+    const Row low = folded(least, kSmaller);
+    least_row = min(least_row, min(low, low.swapped()));
+    const Row high = folded(most, kLarger);
+    most_row = max(most_row, max(high, high.swapped()));
     return b;
   }
-  /// The larger of a vector's rows.
-  template <class R>
-  HWY_INLINE static Row folded(R r) {
+  /// The upper half of a row, in every half of every row of a vector.
+  HWY_INLINE static Raw twice(Row r) { return spread(Row{hn::ConcatUpperUpper(Four(), r.raw, r.raw)}); }
+  /// The rows of a vector made one.
+  template <class R, class Op>
+  HWY_INLINE static Row folded(const R& r, Op op) {
     if constexpr (kLanes == 8)
-      return max(Row{hn::LowerHalf(Four(), r)}, Row{hn::UpperHalf(Four(), r)});
+      return op(Row{hn::LowerHalf(Four(), r)}, Row{hn::UpperHalf(Four(), r)});
     else
       return Row{r};
   }
@@ -273,7 +329,11 @@ struct HighwayLanes {
   template <int D>
   HWY_INLINE static void spin_sums(const double* spin, const std::int32_t* i, const std::int32_t* j, V* s) {
     if constexpr (D == 2)
-      gather([=](int k) HWY_ATTR { return *at(spin, i[k], 4) + *at(spin, j[k], 4); }, s);
+      gather(
+          [=](int k) HWY_ATTR {
+            return hn::Add(hn::Load(One(), at(spin, i[k], 4)), hn::Load(One(), at(spin, j[k], 4)));
+          },
+          s);
     else
       spins_of(
           [=](int k) HWY_ATTR {
@@ -284,7 +344,7 @@ struct HighwayLanes {
   template <int D>
   HWY_INLINE static void spins(const double* spin, const std::int32_t* i, V* s) {
     if constexpr (D == 2)
-      gather([=](int k) HWY_ATTR { return *at(spin, i[k], 4); }, s);
+      gather([=](int k) HWY_ATTR { return hn::Load(One(), at(spin, i[k], 4)); }, s);
     else
       spins_of([=](int k) HWY_ATTR { return hn::Load(Four(), at(spin, i[k], 2)); }, s);
   }
@@ -295,10 +355,7 @@ struct HighwayLanes {
   }
   template <class Get>
   HWY_INLINE static void gather(Get number, V* s) {
-    const Two d2;
-    const auto two = [&](int k) HWY_ATTR {
-      return hn::InterleaveLower(d2, hn::Set(d2, number(k)), hn::Set(d2, number(k + 1)));
-    };
+    const auto two = [&](int k) HWY_ATTR { return hn::Combine(Two(), number(k + 1), number(k)); };
     if constexpr (kLanes == 8)
       s[0] = V(hn::Combine(Wide(), hn::Combine(Four(), two(6), two(4)), hn::Combine(Four(), two(2), two(0))));
     else

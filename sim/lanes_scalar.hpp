@@ -44,7 +44,10 @@ struct ScalarLanes {
       return each([&](int k) { return std::fma(a.c[k], b.c[k], c.c[k]); });
     }
     friend Row max(Row a, Row b) {
-      return each([&](int k) { return std::max(a.c[k], b.c[k]); });
+      return each([&](int k) { return sim::max(a.c[k], b.c[k]); });
+    }
+    friend Row min(Row a, Row b) {
+      return each([&](int k) { return sim::min(a.c[k], b.c[k]); });
     }
   };
 

@@ -23,33 +23,22 @@ using Size = std::size_t;
 /// more generous.
 constexpr double kHorizon = 64, kLongHorizon = 256, kShort = 24;
 constexpr double kWallSteps = 256;
-/// Pairs are dealt to packets in blocks of so many packets: the lanes of a packet are far enough apart that a
-/// bead seldom stands twice in it, and near enough that a block stays in the first-level cache.
-constexpr std::size_t kBlock = 32;
+/// Beads are taken in chunks of whole groups, with at least so many packets of pairs (if there are): the
+/// lanes of a packet are far enough apart in space that a bead seldom stands twice in it, and what a chunk
+/// needs stays in the first-level cache from its contact forces to its next step. 16 is as good, 64 worse.
+constexpr std::size_t kChunkBeads = 8 * kGroup, kChunkPackets = 128;
 
 /// A list of contacts in packets: what a pass reads.
 struct Packets {
   std::vector<std::int32_t> i, j, force_i, force_j;
   std::vector<double> memory, constants, shift;
-  std::vector<std::int32_t> source;  ///< where each came from, in order
+  std::vector<std::int32_t> source;  ///< [packet][lane] where it came from; -1: nothing
   std::int64_t count = 0;            ///< packets
+};
 
-  /// Packet and lane of the r-th of the list: a block is filled lane by lane.
-  [[nodiscard]] std::pair<Size, Size> place(Size r, Size width) const {
-    const Size block = r / (kBlock * width), first = block * kBlock;
-    const Size packets = std::min(kBlock, static_cast<Size>(count) - first), within = r - first * width;
-    return {first + within % packets, within / packets};
-  }
-  /// Calls visit(r, packet, lane) for every place r of `length`, in order, without their divisions.
-  template <class Visit>
-  void for_each_place(Size length, Size width, Visit visit) const {
-    Size r = 0;
-    for (Size first = 0; first < static_cast<Size>(count); first += kBlock) {
-      const Size packets = std::min(kBlock, static_cast<Size>(count) - first);
-      for (Size lane = 0; lane < width; ++lane)
-        for (Size p = 0; p < packets && r < length; ++p, ++r) visit(r, first + p, lane);
-    }
-  }
+/// Up to which packet the pairs, and up to which place the beads, that are done together.
+struct Chunk {
+  Size packet_end, bead_end, awake_end;  ///< the last: in runs of awake beads
 };
 
 /// The beads of one thread, begin .. end, and every contact of theirs. A pair across two threads is reckoned
@@ -62,9 +51,19 @@ struct Part {
   std::vector<std::int32_t> i, j;
   std::vector<double> shift, reach, constants, memory;
   std::vector<std::int32_t> record_i, record_j;  ///< where their records begin
+  std::vector<Size> chunk_end;  ///< pairs of the outer list whose first bead is before the end of chunk k
   std::vector<std::uint16_t> near, touching;
   Size pairs = 0;
   Packets active;
+  std::vector<std::int32_t> remembering;  ///< pairs of the outer list, since the last inner one
+  Size evaluated = 0;                     ///< pairs in active
+  std::vector<Chunk> chunks;  ///< of active; every pair of a bead is in its chunk or an earlier one
+  std::vector<std::int32_t> dealt[2];
+  // Beads that something may touch, and those that fly freely as long as the list holds. The latter are moved
+  // when somebody wants to know where they are.
+  std::vector<Run> awake, quiet;
+  std::vector<char> is_awake;
+  std::int64_t behind = 0;  ///< steps by which the quiet ones are late
   std::vector<Packets> walls;
   double overlap = 0;
   Deviation deviation{};
@@ -99,6 +98,7 @@ class ListKernel : public Kernel {
  private:
   void prepare(const System& s);
   void sort_beads(const System& s);
+  void adapt_skin();
   void make_outer(const System& s);
   void make_inner(Part& part);
   void make_walls(const System& s, Part& part);
@@ -107,8 +107,15 @@ class ListKernel : public Kernel {
   void refresh_walls(const System& s);
   void drift(System& s);
   void add_up_motion(const System& s);
+  void wall_forces(const System& s, Part& part);
+  void pair_forces(const System& s, Part& part, Size begin, Size end);
   void forces(const System& s, Part& part);
-  void after_forces(System& s);
+  void forces_and_integrate(const System& s, Part& part);
+  void rouse(const System& s, Part& part);
+  void catch_up(Part& part);
+  [[nodiscard]] Size group() const { return dimension_ == 2 ? kGroup : 1; }
+  void check_overlap(System& s, bool drifted);
+  void check_speed(System& s);
   void run_serial(System& s, std::int64_t steps);
   void run_parallel(System& s, std::int64_t steps);
   [[nodiscard]] std::int32_t record(std::int32_t place) const {
@@ -122,7 +129,15 @@ class ListKernel : public Kernel {
       if (numbers[m * stride] != 0) return true;
     return false;
   }
-  void integrate(Part& part, int kicks, bool drift);
+  void integrate(Part& part, const Run* runs, Size n, int kicks, bool drift);
+  void integrate(Part& part, int kicks, bool drift) {
+    part.deviation = {};
+    const Run all = all_of(part);
+    integrate(part, &all, 1, kicks, drift);
+  }
+  static Run all_of(const Part& part) {
+    return {static_cast<std::int64_t>(part.begin), static_cast<std::int64_t>(part.end)};
+  }
 
   Plan plan_;
   GuardLimits limits_;
@@ -139,7 +154,8 @@ class ListKernel : public Kernel {
   std::vector<std::vector<double>> wall_constants_;  ///< the same for each wall
   std::vector<ContactMemory> restored_;
 
-  double skin_ = 0, largest_radius_ = 0;
+  double skin_ = 0, widest_skin_ = 0, largest_radius_ = 0;
+  std::int64_t looks_ = 0;  ///< inner lists made from this outer one
   double since_built_ = 0,
          last_margin_ = 0;   ///< approach since the outer list was made, at most; HUGE_VAL: unknown
   std::vector<Vec3> built_;  ///< positions at the outer list's making
@@ -151,7 +167,8 @@ class ListKernel : public Kernel {
   double least_[3] = {}, most_[3] = {}, fastest_ = 0,
          speed_bound_ = 0;  ///< velocities at the last look, and since
   std::vector<double> wall_margin_, wall_approach_;
-  bool first_kick_ = true, wall_refresh_ = false, pair_refresh_ = false;
+  std::vector<char> wall_stale_;
+  bool all_walls_ = true, wall_refresh_ = false, pair_refresh_ = false;
   double plate_ = 0, plate_velocity_ = 0, plate_before_ = 0;
   IntegrateArgs integrate_args_{};
   std::int64_t builds_ = 0, rebuild_every_ = 0, calls_ = 0;
@@ -189,9 +206,12 @@ void ListKernel::sort_beads(const System& s) {
 void ListKernel::prepare(const System& s) {
   largest_radius_ = 0;
   for (const Bead& b : s.beads) largest_radius_ = std::max(largest_radius_, b.radius);
-  // Second neighbours of a hexagonal packing sit at 1.73 sigma: a skin of a quarter diameter adds no pairs
-  // there.
-  skin_ = kListReach * 2 * largest_radius_;
+  const double base = kListReach * 2 * largest_radius_;
+  widest_skin_ = 3 * 2 * largest_radius_;
+  for (const double period : s.period)  // never two images of a bead in reach
+    if (period > 0) widest_skin_ = std::min(widest_skin_, 0.5 * period - 2 * largest_radius_);
+  widest_skin_ = std::max(widest_skin_, base);
+  if (skin_ == 0) skin_ = base;
   if (order_.size() != s.beads.size()) {
     restored_ = restored_.empty() ? contacts() : std::move(restored_);
     sort_beads(s);
@@ -220,7 +240,7 @@ void ListKernel::prepare(const System& s) {
 std::vector<ContactMemory> ListKernel::contacts() const {
   std::vector<ContactMemory> all = restored_;
   const auto keep = [&](const Packets& p, Size at, std::int32_t i, std::int32_t j) {
-    const auto [packet, lane] = p.place(at, width_);
+    const Size packet = at / width_, lane = at % width_;
     ContactMemory c{i, j, std::vector<double>(memory_)};
     bool any = false;
     for (Size m = 0; m < memory_; ++m) {
@@ -232,6 +252,7 @@ std::vector<ContactMemory> ListKernel::contacts() const {
   if (memory_ == 0) return all;
   for (const Part& part : parts_) {
     for (Size r = 0; r < part.active.source.size(); ++r) {
+      if (part.active.source[r] < 0) continue;
       const Size from = static_cast<Size>(part.active.source[r]);
       const std::int32_t i = part.i[from], j = part.j[from];
       // A pair across parts is known to both: the one that owns i says.
@@ -270,7 +291,24 @@ bool ListKernel::outer_is_stale() {
   return !(since_built_ + margin_ <= skin_);
 }
 
+/// A wide skin makes outer lists rare and long. Best is where making them costs as much as going through
+/// them, which is some hundred times cheaper per pair than the search is per bead: a dense bed keeps to its
+/// first shell, a dilute gas looks far ahead.
+void ListKernel::adapt_skin() {
+  constexpr double kSearch = 400;
+  Size listed = 0;
+  for (const Part& part : parts_) listed += part.pairs;
+  const double search = kSearch * static_cast<double>(beads_.size()),
+               looks = static_cast<double>(looks_) * static_cast<double>(listed);
+  if (looks_ == 0) return;
+  if (search > 2 * looks) skin_ *= 1.25;
+  if (looks > 2 * search) skin_ *= 0.8;
+  skin_ = std::clamp(skin_, 0.2 * largest_radius_, widest_skin_);
+}
+
 void ListKernel::make_outer(const System& given) {
+  adapt_skin();
+  looks_ = 0;
   System s = given;  // the search wants positions by bead
   beads_.give(s, order_);
   check_motion(s, limits_);
@@ -297,11 +335,19 @@ void ListKernel::make_outer(const System& given) {
       return static_cast<Size>(k) >= part.begin && static_cast<Size>(k) < part.end;
     };
     part.i.clear(), part.j.clear(), part.shift.clear(), part.reach.clear(), part.constants.clear(),
-        part.memory.clear();
+        part.memory.clear(), part.remembering.clear();
     std::vector<const Found*> own;
     for (const Found& f : found)
       if (mine(f.i) || mine(f.j)) own.push_back(&f);
     part.pairs = own.size();
+    part.chunk_end.clear();
+    Size reached = 0;
+    for (Size end = part.begin; end < part.end;) {
+      end = std::min(end + kChunkBeads, part.end);
+      const auto before = [&](const Found& f) { return static_cast<Size>(std::min(f.i, f.j)) < end; };
+      while (reached < own.size() && before(*own[reached])) ++reached;
+      part.chunk_end.push_back(reached);
+    }
     const Size packets = packets_of(own.size(), width_), padded = packets * width_;
     part.i.assign(padded, part.dummy), part.j.assign(padded, part.dummy);
     part.near.assign(packets, 0);
@@ -331,9 +377,11 @@ void ListKernel::make_outer(const System& given) {
                              [](const ContactMemory& m, const std::pair<std::int32_t, std::int32_t>& key) {
                                return m.i != key.first ? m.i < key.first : m.j < key.second;
                              });
-        if (at != remembered.end() && at->i == i && at->j == j)
+        if (at != remembered.end() && at->i == i && at->j == j) {
           std::copy(at->values.begin(), at->values.end(),
                     part.memory.begin() + static_cast<std::ptrdiff_t>(p * memory_));
+          part.remembering.push_back(static_cast<std::int32_t>(p));
+        }
       }
     }
     part.record_i.resize(padded), part.record_j.resize(padded);
@@ -354,7 +402,7 @@ void ListKernel::make_outer(const System& given) {
         const Size at = static_cast<Size>(
             std::lower_bound(kept.source.begin(), kept.source.end(), rank_[static_cast<Size>(m.i)]) -
             kept.source.begin());
-        const auto [packet, lane] = kept.place(at, width_);
+        const Size packet = at / width_, lane = at % width_;
         for (Size v = 0; v < memory_; ++v) kept.memory[(packet * memory_ + v) * width_ + lane] = m.values[v];
       }
       part.walls[w] = std::move(kept);
@@ -363,7 +411,7 @@ void ListKernel::make_outer(const System& given) {
   built_.resize(beads_.size());
   for (Size k = 0; k < beads_.size(); ++k) built_[k] = beads_.position(k);
   since_built_ = 0;
-  wall_refresh_ = true;
+  wall_refresh_ = all_walls_ = true;
   ++builds_;
 }
 
@@ -372,12 +420,14 @@ void ListKernel::make_outer(const System& given) {
 void ListKernel::make_inner(Part& part) {
   Packets& a = part.active;
   // What the old list remembers goes back to the pairs.
-  if (memory_ > 0)
-    a.for_each_place(a.source.size(), width_, [&](Size r, Size packet, Size lane) {
-      const Size from = static_cast<Size>(a.source[r]);
-      for (Size m = 0; m < memory_; ++m)
-        part.memory[from * memory_ + m] = a.memory[(packet * memory_ + m) * width_ + lane];
-    });
+  for (Size packet = 0, at = 0; memory_ > 0 && packet < static_cast<Size>(a.count); ++packet)
+    for (Size lane = 0; lane < width_; ++lane, ++at) {
+      if (a.source[at] < 0) continue;
+      const Size pair = static_cast<Size>(a.source[at]);
+      const double* from = a.memory.data() + packet * memory_ * width_ + lane;
+      for (Size m = 0; m < memory_; ++m) part.memory[pair * memory_ + m] = from[m * width_];
+      if (remembers(from, width_)) part.remembering.push_back(a.source[at]);
+    }
   ScanArgs scan{};
   scan.records = beads_.records();
   scan.i = part.record_i.data(), scan.j = part.record_j.data();
@@ -391,21 +441,50 @@ void ListKernel::make_inner(Part& part) {
   scan.touching = part.touching.data();
   passes_.scan(scan);
   // A pair that has just parted may still have to settle or forget what it remembers.
-  for (Size r = 0; r < part.pairs && memory_ > 0; ++r)
-    if (remembers(part.memory.data() + r * memory_, 1))
-      part.near[r / width_] = static_cast<std::uint16_t>(part.near[r / width_] | 1U << r % width_);
+  for (const std::int32_t pair : part.remembering) {
+    const Size r = static_cast<Size>(pair);
+    part.near[r / width_] = static_cast<std::uint16_t>(part.near[r / width_] | 1U << r % width_);
+  }
+  part.remembering.clear();
 
   // Those in contact first: packets of pairs that are merely near are passed over after a look at their
   // distances.
-  a.source.clear();
-  const auto collect = [&](auto bits_of) {
-    for (Size k = 0; k < part.near.size(); ++k)
-      for (unsigned bits = bits_of(k); bits != 0; bits &= bits - 1)
-        a.source.push_back(static_cast<std::int32_t>(k * width_ + static_cast<Size>(std::countr_zero(bits))));
+  a.source.clear(), part.chunks.clear();
+  part.evaluated = 0;
+  const auto collect = [&](Size begin, Size end, std::vector<std::int32_t>& to, auto bits_of) {
+    for (Size k = begin / width_; k * width_ < end; ++k) {
+      unsigned bits = bits_of(k);
+      if (k * width_ < begin) bits &= ~0U << (begin - k * width_);
+      if ((k + 1) * width_ > end) bits &= (1U << (end - k * width_)) - 1;
+      for (; bits != 0; bits &= bits - 1)
+        to.push_back(static_cast<std::int32_t>(k * width_ + static_cast<Size>(std::countr_zero(bits))));
+    }
   };
-  collect([&](Size k) -> unsigned { return part.touching[k]; });
-  collect([&](Size k) -> unsigned { return part.near[k] & ~static_cast<unsigned>(part.touching[k]); });
-  const Size n = a.source.size(), count = packets_of(n, width_), padded = count * width_;
+  Size from = 0, bead_end = part.begin;
+  for (Size c = 0; c < part.chunk_end.size(); ++c) {
+    const Size to = part.chunk_end[c];
+    bead_end = std::min(bead_end + kChunkBeads, part.end);
+    collect(from, to, part.dealt[0], [&](Size k) -> unsigned { return part.touching[k]; });
+    collect(from, to, part.dealt[1],
+            [&](Size k) -> unsigned { return part.near[k] & ~static_cast<unsigned>(part.touching[k]); });
+    from = to;
+    const Size n = part.dealt[0].size() + part.dealt[1].size();
+    if (n < kChunkPackets * width_ && c + 1 < part.chunk_end.size()) continue;
+    for (std::vector<std::int32_t>& dealt : part.dealt) {
+      const Size first = a.source.size();
+      a.source.resize(first + packets_of(dealt.size(), width_) * width_, -1);
+      Size at = first, lane = 0;
+      for (const std::int32_t pair : dealt) {
+        a.source[at] = pair;
+        at += width_;
+        if (at >= a.source.size()) at = first + ++lane;
+      }
+      dealt.clear();
+    }
+    part.evaluated += n;
+    part.chunks.push_back({a.source.size() / width_, bead_end, 0});
+  }
+  const Size padded = a.source.size(), count = padded / width_;
   const bool many = parts_.size() > 1, shifted = !part.shift.empty();
   const Size constants = part.pairs == 0 ? 0 : part.constants.size() / part.pairs;
   a.count = static_cast<std::int64_t>(count);
@@ -417,45 +496,53 @@ void ListKernel::make_inner(Part& part) {
   const auto own = [&](std::int32_t k) {
     return static_cast<Size>(k) >= part.begin && static_cast<Size>(k) < part.end ? k : part.dummy;
   };
-  a.for_each_place(padded, width_, [&](Size r, Size packet, Size lane) {
-    const Size at = packet * width_ + lane;
-    const auto set = [&](std::vector<double>& numbers, Size of, auto value) {
-      for (Size m = 0; m < of; ++m) numbers[(packet * of + m) * width_ + lane] = value(m);
-    };
-    if (r >= n) {
-      a.i[at] = a.j[at] = record(part.dummy);
-      if (many) a.force_i[at] = a.force_j[at] = record(part.dummy);
-      set(a.memory, memory_, [](Size) { return 0.0; });
-      set(a.constants, constants, [](Size) { return 1.0; });
-      if (shifted) set(a.shift, dimension_, [](Size) { return 0.0; });
-      return;
+  for (Size packet = 0, at = 0; packet < count; ++packet)
+    for (Size lane = 0; lane < width_; ++lane, ++at) {
+      const auto set = [&](std::vector<double>& numbers, Size of, auto value) {
+        for (Size m = 0; m < of; ++m) numbers[(packet * of + m) * width_ + lane] = value(m);
+      };
+      if (a.source[at] < 0) {
+        a.i[at] = a.j[at] = record(part.dummy);
+        if (many) a.force_i[at] = a.force_j[at] = record(part.dummy);
+        set(a.memory, memory_, [](Size) { return 0.0; });
+        set(a.constants, constants, [](Size) { return 1.0; });
+        if (shifted) set(a.shift, dimension_, [](Size) { return 0.0; });
+        continue;
+      }
+      const Size pair = static_cast<Size>(a.source[at]);
+      a.i[at] = part.record_i[pair], a.j[at] = part.record_j[pair];
+      if (many) a.force_i[at] = record(own(part.i[pair])), a.force_j[at] = record(own(part.j[pair]));
+      set(a.memory, memory_, [&](Size m) { return part.memory[pair * memory_ + m]; });
+      set(a.constants, constants, [&](Size m) { return part.constants[pair * constants + m]; });
+      if (shifted)
+        set(a.shift, dimension_,
+            [&](Size c) { return part.shift[(pair / width_ * dimension_ + c) * width_ + pair % width_]; });
     }
-    const Size from = static_cast<Size>(a.source[r]);
-    a.i[at] = part.record_i[from], a.j[at] = part.record_j[from];
-    if (many) a.force_i[at] = record(own(part.i[from])), a.force_j[at] = record(own(part.j[from]));
-    set(a.memory, memory_, [&](Size m) { return part.memory[from * memory_ + m]; });
-    set(a.constants, constants, [&](Size m) { return part.constants[from * constants + m]; });
-    if (shifted)
-      set(a.shift, dimension_,
-          [&](Size c) { return part.shift[(from / width_ * dimension_ + c) * width_ + from % width_]; });
-  });
 }
 
 /// Beads near each wall.
 void ListKernel::make_walls(const System& s, Part& part) {
   for (Size w = 0; w < part.walls.size(); ++w) {
+    if (!wall_stale_[w]) continue;
     const Wall& wall = s.walls[w];
     const double offset = offset_now(s, wall);
     Packets old = std::move(part.walls[w]);
     Packets near;
     Size known = 0;
-    for (Size k = part.begin; k < part.end; ++k) {
-      while (known < old.source.size() && static_cast<Size>(old.source[known]) < k) ++known;
-      const bool was = known < old.source.size() && static_cast<Size>(old.source[known]) == k;
-      const auto [packet, lane] = was ? old.place(known, width_) : std::pair<Size, Size>();
-      if (!(beads_.position(k).dot(wall.n) - offset - beads_.radius(k) >= wall_margin_[w]) ||
-          (was && remembers(old.memory.data() + packet * memory_ * width_ + lane, width_)))
-        near.source.push_back(static_cast<std::int32_t>(k));
+    const bool flat = dimension_ == 2;
+    const double inward[3] = {wall.n.x(), flat ? wall.n.z() : wall.n.y(), flat ? 0 : wall.n.z()};
+    const std::ptrdiff_t stride = record(1);
+    const double* at = beads_.records() + stride * static_cast<std::ptrdiff_t>(part.begin);
+    for (Size k = part.begin; k < part.end; ++k, at += stride) {
+      double height = at[0] * inward[0] + at[1] * inward[1] - offset;
+      if (!flat) height += at[2] * inward[2];
+      bool listed = !(height - beads_.radius(k) >= wall_margin_[w]);
+      if (known < old.source.size() && static_cast<Size>(old.source[known]) == k) {
+        const Size packet = known / width_, lane = known % width_;
+        listed = listed || remembers(old.memory.data() + packet * memory_ * width_ + lane, width_);
+        ++known;
+      }
+      if (listed) near.source.push_back(static_cast<std::int32_t>(k));
     }
     const Size n = near.source.size(), count = packets_of(n, width_), padded = count * width_;
     near.count = static_cast<std::int64_t>(count);
@@ -466,12 +553,12 @@ void ListKernel::make_walls(const System& s, Part& part) {
     near.constants.assign(padded * constants, 1);
     Size before = 0;
     for (Size r = 0; r < n; ++r) {
-      const auto [packet, lane] = near.place(r, width_);
+      const Size packet = r / width_, lane = r % width_;
       const Size k = static_cast<Size>(near.source[r]);
       near.i[packet * width_ + lane] = record(near.source[r]);
       while (before < old.source.size() && old.source[before] < near.source[r]) ++before;
       if (before < old.source.size() && old.source[before] == near.source[r]) {
-        const auto [old_packet, old_lane] = old.place(before, width_);
+        const Size old_packet = before / width_, old_lane = before % width_;
         for (Size m = 0; m < memory_; ++m)
           near.memory[(packet * memory_ + m) * width_ + lane] =
               old.memory[(old_packet * memory_ + m) * width_ + old_lane];
@@ -487,24 +574,17 @@ void ListKernel::make_walls(const System& s, Part& part) {
   }
 }
 
-/// Smallest and largest component of the velocities of all beads.
-struct VelocityRange {
-  double least[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, most[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  void include(const double* v, int n) {
-    for (int k = 0; k < n; ++k) least[k] = std::min(least[k], v[k]), most[k] = std::max(most[k], v[k]);
-    for (int k = n; k < 3; ++k) least[k] = most[k] = 0;
-  }
-  [[nodiscard]] double spread() const {
-    double s = 0;
-    for (int k = 0; k < 3; ++k) s += (most[k] - least[k]) * (most[k] - least[k]);
-    return std::sqrt(s);
-  }
-  [[nodiscard]] double fastest() const {
-    double s = 0;
-    for (int k = 0; k < 3; ++k) s = std::max({s, -least[k], most[k]});
-    return s;
-  }
-};
+/// Of two velocities, at most the length of their difference, and the largest component.
+double spread(const VelocityRange& range) {
+  double s = 0;
+  for (int k = 0; k < 3; ++k) s += (range.most[k] - range.least[k]) * (range.most[k] - range.least[k]);
+  return std::sqrt(s);
+}
+double fastest(const VelocityRange& range) {
+  double s = 0;
+  for (int k = 0; k < 3; ++k) s = std::max({s, -range.least[k], range.most[k]});
+  return s;
+}
 
 double length(const double* v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -512,14 +592,15 @@ double length(const double* v) {
 
 void ListKernel::refresh_pairs(System& s) {
   // Velocities from which free flight is reckoned.
-  VelocityRange range;
-  const Size stride = dimension_ == 2 ? kRecord<2> : kRecord<3>, at = stride / 2;
-  for (Size k = 0; k < beads_.size(); ++k) {
-    const double* v = beads_.records() + stride * k + at;
-    range.include(v, static_cast<int>(dimension_));
-    std::copy_n(beads_.records() + stride * k + (dimension_ == 2 ? 0 : 4), 4, reference_.data() + 4 * k);
+  VelocityRange range{};
+  for (Size p = 0; p < parts_.size(); ++p) {
+    const VelocityRange own = passes_.range({beads_.records(), reference_.data(), all_of(parts_[p])});
+    for (int k = 0; k < 3; ++k) {
+      range.least[k] = p == 0 ? own.least[k] : std::min(range.least[k], own.least[k]);
+      range.most[k] = p == 0 ? own.most[k] : std::max(range.most[k], own.most[k]);
+    }
   }
-  fastest_ = range.fastest();
+  fastest_ = fastest(range);
   for (int k = 0; k < 3; ++k) least_[k] = range.least[k], most_[k] = range.most[k];
   // A list that did not last was too strict with what contacts do to free flight; one that lasted easily too
   // generous.
@@ -530,11 +611,11 @@ void ListKernel::refresh_pairs(System& s) {
   slack_ = std::clamp(slack_, 1e-5 * skin_, 0.1 * skin_);
   // A bed in flight has few pairs to look at: making the list is then the greater cost.
   Size active = 0, listed = 0;
-  for (const Part& part : parts_) active += part.active.source.size(), listed += part.pairs;
+  for (const Part& part : parts_) active += part.evaluated, listed += part.pairs;
   const double horizon_steps = 4 * active < listed ? kLongHorizon : kHorizon;
   // Not so far ahead that beads could come in from beyond the outer list.
-  horizon_ = std::min(horizon_steps * s.dt, 0.5 * skin_ / std::max(range.spread(), 1e-300));
-  margin_ = horizon_ * range.spread() + 2 * slack_;
+  horizon_ = std::min(horizon_steps * s.dt, 0.5 * skin_ / std::max(spread(range), 1e-300));
+  margin_ = horizon_ * spread(range) + 2 * slack_;
   // What any two beads may have approached since the outer list was made is at most what they may have in
   // each stretch between looks; only when that no longer suffices are displacements measured.
   since_built_ += last_margin_;
@@ -543,6 +624,7 @@ void ListKernel::refresh_pairs(System& s) {
   if (!(since_built_ + margin_ <= skin_) && outer_is_stale()) make_outer(s);
   deviated_ = 0;
   lasted_ = 0;
+  ++looks_;
   ++counters_.near_refreshes;
 }
 
@@ -559,23 +641,78 @@ double ListKernel::closing(const Vec3& n, const Vec3& way, double added) const {
 
 void ListKernel::refresh_walls(const System& s) {
   for (Size w = 0; w < s.walls.size(); ++w) {
+    wall_stale_[w] = all_walls_ || !(wall_approach_[w] <= wall_margin_[w]);
+    if (!wall_stale_[w]) continue;
     Vec3 v = Vec3::Zero();
     if (s.walls[w].moves) v[static_cast<int>(s.drive.axis)] = plate_velocity_;
     wall_margin_[w] =
         std::clamp(kWallSteps * s.dt * (closing(s.walls[w].n, v, 0) + 0.1), 1e-5 * skin_, skin_);
     wall_approach_[w] = 0;
   }
+  all_walls_ = false;
 }
 
-void ListKernel::integrate(Part& part, int kicks, bool drift) {
+/// Which groups of beads are in a contact list.
+void ListKernel::rouse(const System& s, Part& part) {
+  const Size n = (part.end - part.begin + group() - 1) / group();
+  // Where most groups would be awake it does not pay to tell them apart; drag acts on all.
+  const bool all = s.plate_drag > 0 || 2 * part.evaluated * group() > part.end - part.begin;
+  part.is_awake.assign(n, all ? 1 : 0);
+  const auto wake = [&](std::int32_t place) {
+    const Size k = static_cast<Size>(place);
+    if (k >= part.begin && k < part.end) part.is_awake[(k - part.begin) / group()] = 1;
+  };
+  for (const std::int32_t pair : part.active.source) {
+    if (pair < 0 || all) continue;
+    wake(part.i[static_cast<Size>(pair)]);
+    wake(part.j[static_cast<Size>(pair)]);
+  }
+  for (const Packets& wall : part.walls)
+    for (const std::int32_t bead : wall.source) wake(bead);
+  part.awake.clear(), part.quiet.clear();
+  Size g = 0;
+  for (Chunk& chunk : part.chunks) {
+    const Size of_before = part.awake.size();  // runs of awake beads end with their chunk
+    for (Size begin = part.begin + g * group(); g < n && begin < chunk.bead_end; ++g, begin += group()) {
+      const bool awake = part.is_awake[g] != 0;
+      std::vector<Run>& runs = awake ? part.awake : part.quiet;
+      const auto first = static_cast<std::int64_t>(begin),
+                 end = static_cast<std::int64_t>(std::min(begin + group(), part.end));
+      if (runs.size() > (awake ? of_before : 0) && runs.back().end == first)
+        runs.back().end = end;
+      else
+        runs.push_back({first, end});
+    }
+    chunk.awake_end = part.awake.size();
+  }
+}
+
+/// Moves quiet beads to the present step.
+void ListKernel::catch_up(Part& part) {
+  if (part.behind > 0 && !part.quiet.empty()) {
+    FlyArgs a{};
+    a.records = beads_.records();
+    a.runs = part.quiet.data();
+    a.n_runs = static_cast<std::int64_t>(part.quiet.size());
+    a.steps = part.behind;
+    a.dt = integrate_args_.dt;
+    for (int k = 0; k < 3; ++k) a.gravity[k] = integrate_args_.gravity[k];
+    passes_.fly(a);
+  }
+  part.behind = 0;
+}
+
+void ListKernel::integrate(Part& part, const Run* runs, Size n, int kicks, bool drift) {
   IntegrateArgs a = integrate_args_;
-  a.begin = static_cast<std::int64_t>(part.begin), a.end = static_cast<std::int64_t>(part.end);
+  a.runs = runs;
+  a.n_runs = static_cast<std::int64_t>(n);
   a.kicks = kicks;
   a.drift = drift;
   a.reference = reference_.data();
   const double t = static_cast<double>(lasted_ + (kicks == 2 ? 1 : 0)) * a.dt;
   for (int k = 0; k < 3; ++k) a.fallen[k] = t * a.gravity[k];
-  part.deviation = passes_.integrate(a);
+  const Deviation own = passes_.integrate(a);
+  for (int k = 0; k < 3; ++k) part.deviation.most[k] = std::max(part.deviation.most[k], own.most[k]);
 }
 
 /// After a drift: what may have approached what, and whether the lists still hold.
@@ -589,7 +726,7 @@ void ListKernel::add_up_motion(const System& s) {
   const bool forced = rebuild_every_ > 0 && ++calls_ % rebuild_every_ == 0;
   // Negated comparisons: what is not a number must not pass.
   pair_refresh_ = forced || !(deviated_ <= slack_ && static_cast<double>(lasted_) * s.dt < horizon_);
-  wall_refresh_ = forced;
+  wall_refresh_ = all_walls_ = forced;
   const double added = strayed + static_cast<double>(lasted_) * s.dt * s.gravity.norm();
   speed_bound_ = fastest_ + added;
   // A wall's own way is counted as it went, not by its speed at one end of the step.
@@ -604,32 +741,41 @@ void ListKernel::add_up_motion(const System& s) {
   }
 }
 
-void ListKernel::forces(const System& s, Part& part) {
+void ListKernel::pair_forces(const System& s, Part& part, Size begin, Size end) {
+  Packets& a = part.active;
+  const Size lane = begin * width_;
   PairArgs p{};
   p.records = beads_.records();
   p.spins = beads_.spins();
   p.forces = beads_.forces();
-  Packets& a = part.active;
-  p.i = a.i.data(), p.j = a.j.data();
-  p.force_i = parts_.size() > 1 ? a.force_i.data() : p.i,
-  p.force_j = parts_.size() > 1 ? a.force_j.data() : p.j;
-  p.memory = a.memory.data();
-  p.constants = beads_.equal() ? pair_constants_.data() : a.constants.data();
-  p.constants_step =
-      beads_.equal() || a.count == 0 ? 0 : static_cast<std::ptrdiff_t>(a.constants.size()) / a.count;
-  p.shift = a.shift.empty() ? nullptr : a.shift.data();
-  p.packets = a.count;
+  p.i = a.i.data() + lane, p.j = a.j.data() + lane;
+  p.force_i = parts_.size() > 1 ? a.force_i.data() + lane : p.i,
+  p.force_j = parts_.size() > 1 ? a.force_j.data() + lane : p.j;
+  p.memory = a.memory.data() + lane * memory_;
+  if (beads_.equal()) {
+    p.constants = pair_constants_.data();
+  } else {
+    p.constants_step = static_cast<std::ptrdiff_t>(a.constants.size()) / a.count;
+    p.constants = a.constants.data() + p.constants_step * static_cast<std::ptrdiff_t>(begin);
+  }
+  p.shift = a.shift.empty() ? nullptr : a.shift.data() + lane * dimension_;
+  p.packets = static_cast<std::int64_t>(end - begin);
   p.dt = s.dt;
   p.locate = plan_.locate;
   p.magic = magic_;
-  part.overlap = a.count > 0 ? passes_.pairs(p) : 0;
-  part.visits += a.count;
+  part.overlap = std::max(part.overlap, passes_.pairs(p));
+  part.visits += p.packets;
+}
+
+/// Contacts with walls, and drag.
+void ListKernel::wall_forces(const System& s, Part& part) {
+  part.overlap = 0;
   for (Size w = 0; w < part.walls.size(); ++w) {
     Packets& near = part.walls[w];
     if (near.count == 0) continue;
     const Wall& wall = s.walls[w];
     WallArgs g{};
-    g.records = p.records, g.spins = p.spins, g.forces = p.forces;
+    g.records = beads_.records(), g.spins = beads_.spins(), g.forces = beads_.forces();
     g.bead = near.i.data();
     g.memory = near.memory.data();
     g.constants = beads_.equal() ? wall_constants_[w].data() : near.constants.data();
@@ -658,21 +804,51 @@ void ListKernel::forces(const System& s, Part& part) {
   }
 }
 
-void ListKernel::after_forces(System& s) {
+void ListKernel::forces(const System& s, Part& part) {
+  wall_forces(s, part);
+  if (part.active.count > 0) pair_forces(s, part, 0, static_cast<Size>(part.active.count));
+}
+
+/// All forces, and behind them the next step of every bead whose contacts are done: its record, force and
+/// neighbours are still in the first-level cache.
+void ListKernel::forces_and_integrate(const System& s, Part& part) {
+  wall_forces(s, part);
+  part.deviation = {};
+  Size packet = 0, awake = 0;
+  for (const Chunk& chunk : part.chunks) {
+    if (chunk.packet_end > packet) pair_forces(s, part, packet, chunk.packet_end);
+    if (chunk.awake_end > awake) integrate(part, part.awake.data() + awake, chunk.awake_end - awake, 2, true);
+    packet = chunk.packet_end, awake = chunk.awake_end;
+  }
+  ++part.behind;
+}
+
+/// \param drifted beads have since moved on by a step
+void ListKernel::check_overlap(System& s, bool drifted) {
   double overlap = 0;
   for (const Part& part : parts_) overlap = std::max(overlap, part.overlap);
-  if (overlap <= limits_.overlap && speed_bound_ * s.dt <= limits_.travel_per_step) return;
+  if (overlap <= limits_.overlap) return;
+  for (Part& part : parts_) catch_up(part);
+  if (drifted) beads_.drift(-s.dt);
   beads_.give(s, order_);
-  if (!(overlap <= limits_.overlap)) explain_overlap(s, limits_);
+  explain_overlap(s, limits_);
+}
+
+void ListKernel::check_speed(System& s) {
+  if (speed_bound_ * s.dt <= limits_.travel_per_step) return;
+  for (Part& part : parts_) catch_up(part);
+  beads_.give(s, order_);
   check_motion(s, limits_);
 }
 
 void ListKernel::run_serial(System& s, std::int64_t steps) {
   Part& part = parts_[0];
+  integrate(part, 1, true);
   for (std::int64_t k = 0; k < steps; ++k) {
-    integrate(part, k == 0 ? 1 : 2, true);
     ++s.step;
     add_up_motion(s);
+    const bool last = k + 1 == steps, refresh = pair_refresh_ || wall_refresh_;
+    if (refresh || last) catch_up(part);
     if (pair_refresh_) {
       refresh_pairs(s);
       make_inner(part);
@@ -681,8 +857,10 @@ void ListKernel::run_serial(System& s, std::int64_t steps) {
       refresh_walls(s);
       make_walls(s, part);
     }
-    forces(s, part);
-    after_forces(s);
+    if (refresh) rouse(s, part);
+    check_speed(s);
+    last ? forces(s, part) : forces_and_integrate(s, part);
+    check_overlap(s, !last);
   }
   integrate(part, 1, false);
 }
@@ -700,8 +878,9 @@ void ListKernel::run_parallel(System& s, std::int64_t steps) {
         add_up_motion(s);
         if (pair_refresh_) refresh_pairs(s);
         if (wall_refresh_) refresh_walls(s);
+        check_speed(s);
       } else {
-        after_forces(s);
+        check_overlap(s, false);
       }
       moved = !moved;
     } catch (...) {
@@ -741,6 +920,8 @@ void ListKernel::advance(System& s, std::int64_t steps) {
   prepare(s);
   integrate_args_ = beads_.integrate_args(s);
   wall_margin_.resize(s.walls.size(), 0), wall_approach_.resize(s.walls.size(), 0);
+  wall_stale_.resize(s.walls.size(), 1);
+  all_walls_ = true;
   plate_ = s.plate_height(), plate_velocity_ = s.plate_velocity(), plate_before_ = s.plate_height_before();
   // Lists are checked at every call: the plate and the beads may have been moved by other hands.
   since_built_ = HUGE_VAL;  // beads may have been moved by other hands
@@ -751,10 +932,11 @@ void ListKernel::advance(System& s, std::int64_t steps) {
   for (Part& part : parts_) {
     make_inner(part);
     make_walls(s, part);
+    rouse(s, part);
   }
   if (!known) {
     for (Part& part : parts_) forces(s, part);
-    after_forces(s);
+    check_overlap(s, false);
   }
   if (parts_.size() == 1)
     run_serial(s, steps);

@@ -120,8 +120,6 @@ IntegrateArgs PackedBeads::integrate_args(const System& s) {
   a.inv_mass = inv_mass_.data();
   a.turn = turn_.data();
   a.inertia_step = equal_ ? 0 : 1;
-  a.begin = 0;
-  a.end = static_cast<std::int64_t>(n_);
   a.spin = plan_->rotation;
   a.dt = s.dt;
   if (plan_->dimension == 2) {
@@ -130,6 +128,13 @@ IntegrateArgs PackedBeads::integrate_args(const System& s) {
     for (int k = 0; k < 3; ++k) a.gravity[k] = s.gravity[k];
   }
   return a;
+}
+
+void PackedBeads::drift(double time) {
+  const std::size_t stride = plan_->dimension == 2 ? kRecord<2> : kRecord<3>, half = stride / 2;
+  for (std::size_t k = 0; k < n_; ++k)
+    for (std::size_t c = 0; c < half; ++c)
+      records_.data()[stride * k + c] += time * records_.data()[stride * k + half + c];
 }
 
 void PackedBeads::add_plate_drag(const System& s, double velocity_x, double velocity_z, std::size_t begin,

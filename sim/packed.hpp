@@ -52,6 +52,8 @@ class PackedBeads {
   [[nodiscard]] double* forces() { return forces_.data(); }
   /// Arguments of the integrate pass for all beads.
   [[nodiscard]] IntegrateArgs integrate_args(const System& s);
+  /// Moves all beads as they fly, for a time that may be negative.
+  void drift(double time);
   /// Adds the drag of front and back plates to the forces (2D).
   void add_plate_drag(const System& s, double velocity_x, double velocity_z, std::size_t begin,
                       std::size_t end);

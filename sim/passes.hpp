@@ -73,6 +73,13 @@ struct Deviation {
   double most[3];
 };
 
+/// Beads from begin to before end. In 2D both are whole multiples of kGroup from where the beads of a thread
+/// begin, except its very end: what is moved together also keeps its reference together.
+struct Run {
+  std::int64_t begin, end;
+};
+inline constexpr int kGroup = 8;
+
 /// Half kicks, then (optionally) a drift; forces are read and set to zero if drifting.
 struct IntegrateArgs {
   double* records;
@@ -81,14 +88,37 @@ struct IntegrateArgs {
   const double* inv_mass;       ///< [bead][4] 1/m where a row has velocities, 0 elsewhere; or one row
   const double* turn;           ///< [bead] R^2/I; or one
   std::ptrdiff_t inertia_step;  ///< 1; or 0 if all beads are alike
-  std::int64_t begin, end;      ///< beads
-  const double* reference;  ///< [bead][4] velocities, as in rows of records, at the time the list was made
+  const Run* runs;              ///< beads to be moved
+  std::int64_t n_runs;
+  const double* reference;  ///< velocities at the time the list was made, as the range pass left them
   double fallen[3];         ///< what gravity has added to all of them since
   int kicks;                ///< 1 or 2 half kicks
   bool drift;
   bool spin;
   double dt;
   double gravity[3];  ///< 2D: (g_x, g_z)
+};
+
+/// Beads that nothing touches, several steps at once: what the integrate pass would do to them.
+struct FlyArgs {
+  double* records;
+  const Run* runs;
+  std::int64_t n_runs;
+  std::int64_t steps;
+  double dt;
+  double gravity[3];
+};
+
+/// Velocities from which free flight is reckoned: copied, and their range found.
+struct RangeArgs {
+  const double* records;
+  double* reference;  ///< 2D: two numbers a bead, in an order of the pass's own; 3D: four
+  Run beads;          ///< all of a thread's
+};
+
+/// Of the components of velocities.
+struct VelocityRange {
+  double least[3], most[3];
 };
 
 /// Which listed pairs may have a gap below `margin` within the time `horizon` if both beads fly freely:
@@ -104,12 +134,14 @@ struct ScanArgs {
   double margin;
   double horizon;
   std::uint16_t* touching;  ///< [packet] a bit per lane: in contact now
-  std::uint16_t* near;  ///< [packet] a bit per lane
+  std::uint16_t* near;      ///< [packet] a bit per lane
 };
 
 using PairPass = double (*)(const PairArgs&);  ///< returns the largest overlap
 using WallPass = double (*)(const WallArgs&);  ///< the same
 using IntegratePass = Deviation (*)(const IntegrateArgs&);
+using FlyPass = void (*)(const FlyArgs&);
+using RangePass = VelocityRange (*)(const RangeArgs&);
 using ScanPass = void (*)(const ScanArgs&);
 
 /// The passes of one set of laws.
@@ -117,6 +149,8 @@ struct Passes {
   PairPass pairs;
   WallPass walls;
   IntegratePass integrate;
+  FlyPass fly;
+  RangePass range;
   ScanPass scan;
   int remembered;  ///< numbers per contact
 };

@@ -5,74 +5,122 @@
 /// beads' records and V.
 
 #include <array>
+#include <cmath>
 #include <utility>
 #include <variant>
 
 #include "sim/passes.hpp"
 
+#ifndef TWINCELL_LANES
+#define TWINCELL_LANES  ///< what a lambda needs to be compiled for the lanes' instruction set
+#endif
+
 namespace twincell::sim {
 
-/// Contacts of listed pairs.
+/// Contacts of listed pairs. What a contact does is one long chain of operations, each waiting for the one
+/// before; a processor hides that by working on the next contacts meanwhile, if these are within its view of
+/// some hundred instructions. So a few packets at a time go through three short stages: collect what is known
+/// of the two beads, reckon the contact, deal out the force. (All in one loop is a third slower, two packets
+/// side by side in one loop still slower, for want of registers.)
 template <class Lanes, class Laws, int D, Velocity kVelocity>
 double pair_pass(const PairArgs& args) {
   const PairArgs p = args;  // a copy that no store can alias
   using V = typename Lanes::V;
   constexpr int K = kTurns<D>, kCount = Layout<Laws>::kCount, W = Lanes::kWidth;
   constexpr int kMemory = kRemembered<Laws, kVelocity, D>;
+  constexpr bool kTurn = Laws::Tangential::kActs, kRoll = Laws::Rolling::kActs;
+  // Numbers of a contact between stages: approach, then action in its place.
+  constexpr int kSpinAt = 2 * D, kRollAt = kSpinAt + K, kKept = kRollAt + (kRoll ? K : 0);
+  static_assert(D + (kRoll ? 2 : 1) * K <= kKept);
+  constexpr int kStage = W == 1 ? 1 : 16;  // packets
+  alignas(64) double stage[kStage * W * kKept];
+  std::int64_t live[kStage];
   const V dt(p.dt), magic(p.magic);
   V largest(0.0);
-  for (std::int64_t k = 0; k < p.packets; ++k) {
-    const std::int32_t *i = p.i + W * k, *j = p.j + W * k;
-    V d[D];
-    Approach<V, D> a;
-    Lanes::template difference<D>(p.records, i, j, d, a.v);
-    if (p.shift != nullptr)
-      for (int c = 0; c < D; ++c) d[c] = d[c] + Lanes::load(p.shift + W * (D * k + c));
-    const double* constants = p.constants + p.constants_step * k;
-    const V reach = Lanes::load(constants + W * constant::kReach);
-    V r2 = d[0] * d[0];
-    for (int c = 1; c < D; ++c) r2 = fma(d[c], d[c], r2);
-    double* kept = p.memory + W * kMemory * k;
-    // A pair that parted within this step may still have something to settle, so look a step further then.
-    V edge = reach;
-    if constexpr (kVelocity == Velocity::full_step) {
-      V fastest = abs(a.v[0]);
-      for (int c = 1; c < D; ++c) fastest = fastest + abs(a.v[c]);
-      edge = fma(dt, fastest, reach);
-    }
-    if (!any(r2 < edge * edge)) {
-      for (int m = 0; m < kMemory; ++m) Lanes::store(V(0.0), kept + W * m);
-      continue;
-    }
-    V c[kCount];
-    for (int m = 0; m < kCount; ++m) c[m] = Lanes::load(constants + W * m);
-    const V inv_reach = c[constant::kInvReach];
-    const V inv_r = inverse_sqrt_near_one(r2 * (inv_reach * inv_reach)) * inv_reach;
-    a.overlap = nfma(r2, inv_r, reach);
-    for (int m = 0; m < D; ++m) a.n[m] = d[m] * inv_r;
-    if constexpr (Laws::Tangential::kActs) {
-      Lanes::template spin_sums<D>(p.spins, i, j, a.s);
-      if constexpr (Laws::Rolling::kActs) {
+  for (std::int64_t begin = 0; begin < p.packets; begin += kStage) {
+    const std::int64_t end = begin + kStage < p.packets ? begin + kStage : p.packets;
+    int n = 0;
+    for (std::int64_t k = begin; k < end; ++k) {
+      const std::int32_t *i = p.i + W * k, *j = p.j + W * k;
+      V d[D], v[D];
+      Lanes::template difference<D>(p.records, i, j, d, v);
+      if (p.shift != nullptr)
+        for (int c = 0; c < D; ++c) d[c] = d[c] + Lanes::load(p.shift + W * (D * k + c));
+      const double* constants = p.constants + p.constants_step * k;
+      V r2 = d[0] * d[0];
+      for (int c = 1; c < D; ++c) r2 = fma(d[c], d[c], r2);
+      double* kept = p.memory + W * kMemory * k;
+      // A pair that parted within this step has yet to settle what it remembers.
+      auto of_interest = r2 < Lanes::load(constants + W * constant::kEdge);
+      if constexpr (kVelocity == Velocity::full_step)
+        of_interest = either(of_interest, abs(Lanes::load(kept + W * Laws::template kMemory<D>)) > V(0.0));
+      if (!any(of_interest)) {
+        for (int m = 0; m < kMemory; ++m) Lanes::store(V(0.0), kept + W * m);
+        continue;
+      }
+      double* to = stage + W * kKept * n;
+      for (int c = 0; c < D; ++c) {
+        Lanes::store(d[c], to + W * c);
+        Lanes::store(v[c], to + W * (D + c));
+      }
+      if constexpr (kRoll) {
         V s_i[K], s_j[K];
         Lanes::template spins<D>(p.spins, i, s_i);
         Lanes::template spins<D>(p.spins, j, s_j);
-        for (int m = 0; m < K; ++m)
-          a.w[m] =
-              s_i[m] * c[constant::kInvRadiusI] - s_j[m] * c[constant::kInvRadiusJ];  // odd under i <-> j
+        for (int m = 0; m < K; ++m)  // odd under i <-> j
+          Lanes::store(s_i[m] * Lanes::load(constants + W * constant::kInvRadiusI) -
+                           s_j[m] * Lanes::load(constants + W * constant::kInvRadiusJ),
+                       to + W * (kRollAt + m));
+      }
+      live[n++] = k;
+    }
+    for (int at = 0; at < n; ++at) {
+      const std::int64_t k = live[at];
+      double* numbers = stage + W * kKept * at;
+      const double* constants = p.constants + p.constants_step * k;
+      double* kept = p.memory + W * kMemory * k;
+      V c[kCount], d[D];
+      for (int m = 0; m < kCount; ++m) c[m] = Lanes::load(constants + W * m);
+      Approach<V, D> a;
+      for (int m = 0; m < D; ++m) {
+        d[m] = Lanes::load(numbers + W * m);
+        a.v[m] = Lanes::load(numbers + W * (D + m));
+      }
+      V r2 = d[0] * d[0];
+      for (int m = 1; m < D; ++m) r2 = fma(d[m], d[m], r2);
+      const V inv_r = inverse_sqrt_near_one(r2 * c[constant::kInvReachSquared]) * c[constant::kInvReach];
+      a.overlap = nfma(r2, inv_r, c[constant::kReach]);
+      largest = max(a.overlap, largest);  // of what is not a number and a number, the second
+      for (int m = 0; m < D; ++m) a.n[m] = d[m] * inv_r;
+      if constexpr (kTurn) Lanes::template spin_sums<D>(p.spins, p.i + W * k, p.j + W * k, a.s);
+      for (int m = 0; m < K; ++m) {
+        if constexpr (kRoll) a.w[m] = Lanes::load(numbers + W * (kRollAt + m));
+      }
+      V memory[kMemory + 1];
+      for (int m = 0; m < kMemory; ++m) memory[m] = Lanes::load(kept + W * m);
+      const Action<V, D> act_on = act<Laws, kVelocity, V, D>(a, c, dt, p.locate, magic, memory);
+      for (int m = 0; m < kMemory; ++m) Lanes::store(memory[m], kept + W * m);
+      for (int m = 0; m < D; ++m) Lanes::store(act_on.f[m], numbers + W * m);
+      for (int m = 0; m < K; ++m) {
+        if constexpr (kTurn && !kRoll) Lanes::store(act_on.q[m], numbers + W * (D + m));
+        if constexpr (kRoll) {
+          Lanes::store(act_on.q[m] + act_on.q_i[m], numbers + W * (D + m));
+          Lanes::store(act_on.q[m] + act_on.q_j[m], numbers + W * (D + K + m));
+        }
       }
     }
-    V memory[kMemory + 1];
-    for (int m = 0; m < kMemory; ++m) memory[m] = Lanes::load(kept + W * m);
-    Action<V, D> act_on = act<Laws, kVelocity, V, D>(a, c, dt, p.locate, magic, memory);
-    for (int m = 0; m < kMemory; ++m) Lanes::store(memory[m], kept + W * m);
-    largest = max(largest, act_on.overlap);
-    V q_i[K], q_j[K];
-    for (int m = 0; m < K; ++m) {
-      q_i[m] = Laws::Rolling::kActs ? act_on.q[m] + act_on.q_i[m] : act_on.q[m];
-      q_j[m] = Laws::Rolling::kActs ? act_on.q[m] + act_on.q_j[m] : act_on.q[m];
+    for (int at = 0; at < n; ++at) {
+      const std::int64_t k = live[at];
+      const double* numbers = stage + W * kKept * at;
+      V f[D], q_i[K], q_j[K];
+      for (int m = 0; m < D; ++m) f[m] = Lanes::load(numbers + W * m);
+      for (int m = 0; m < K; ++m) {
+        q_i[m] = q_j[m] = V(0.0);
+        if constexpr (kTurn) q_i[m] = q_j[m] = Lanes::load(numbers + W * (D + m));
+        if constexpr (kRoll) q_j[m] = Lanes::load(numbers + W * (D + K + m));
+      }
+      Lanes::template add<D, kTurn, kRoll>(p.forces, p.force_i + W * k, p.force_j + W * k, f, q_i, q_j);
     }
-    Lanes::template add<D, Laws::Tangential::kActs, Laws::Rolling::kActs>(
-        p.forces, p.force_i + W * k, p.force_j + W * k, act_on.f, q_i, q_j);
   }
   return Lanes::largest(largest);
 }
@@ -97,6 +145,7 @@ double wall_pass(const WallArgs& args) {
     V height = fma(r[0], V(p.n[0]), -offset);
     for (int m = 1; m < D; ++m) height = fma(r[m], V(p.n[m]), height);
     a.overlap = c[constant::kReach] - height;
+    largest = max(a.overlap, largest);
     for (int m = 0; m < D; ++m) {
       a.n[m] = V(p.n[m]);
       a.v[m] = a.v[m] - V(p.velocity[m]);
@@ -114,7 +163,6 @@ double wall_pass(const WallArgs& args) {
     for (int m = 0; m < kMemory; ++m) memory[m] = Lanes::load(kept + W * m);
     Action<V, D> act_on = act<Laws, kVelocity, V, D>(a, c, dt, p.locate, magic, memory);
     for (int m = 0; m < kMemory; ++m) Lanes::store(memory[m], kept + W * m);
-    largest = max(largest, act_on.overlap);
     if constexpr (Laws::Rolling::kActs)
       for (int m = 0; m < K; ++m) act_on.q[m] = act_on.q[m] + act_on.q_i[m];
     Lanes::template add_one<D, Laws::Tangential::kActs>(p.forces, bead, act_on.f, act_on.q);
@@ -134,10 +182,7 @@ Deviation integrate(const IntegrateArgs& args) {
   const Row dt_row = D == 2 ? Row::low(p.dt) : Row::all(p.dt);
   Row most = zero;
   const Row fallen = D == 2 ? Row::high(p.fallen[0], p.fallen[1]) : Row::three(p.fallen);
-  std::int64_t b = p.begin;
-  if constexpr (D == 2 && Lanes::kBlock > 0)
-    b = Lanes::template integrate_blocks<kKicks, kDrift>(p, h_row, dt_row, gravity, fallen, most);
-  for (; b < p.end; ++b) {
+  const auto one = [&](std::int64_t b) TWINCELL_LANES {
     double* record = p.records + kRecord<D> * b;
     double* force = p.forces + kForceRecord<D> * b;
     const Row inv_m = Row::load(p.inv_mass + p.inertia_step * 4 * b);
@@ -159,7 +204,7 @@ Deviation integrate(const IntegrateArgs& args) {
       }
       next.store(record);
       if (p.spin) p.spins[b] = spin;
-      most = max(most, abs(v - (Row::load(p.reference + 4 * b) + fallen)));
+      most = max(most, abs(v - (Row::high(p.reference[2 * b], p.reference[2 * b + 1]) + fallen)));
     } else {
       const Row a = fma(Row::load(force), inv_m, gravity);
       const Row spin_kick = Row::all(-h * turn) * Row::load(force + 4);
@@ -178,6 +223,15 @@ Deviation integrate(const IntegrateArgs& args) {
       }
       most = max(most, abs(v - (Row::load(p.reference + 4 * b) + fallen)));
     }
+  };
+  if constexpr (D == 2 && Lanes::kBlock > 0) {
+    most = max(most, Lanes::template integrate_blocks<kKicks, kDrift>(p, h_row, dt_row, gravity, fallen));
+    // What blocks leave over.
+    for (std::int64_t k = 0; k < p.n_runs; ++k)
+      for (std::int64_t b = Lanes::end_of_blocks(p.runs[k]); b < p.runs[k].end; ++b) one(b);
+  } else {
+    for (std::int64_t k = 0; k < p.n_runs; ++k)
+      for (std::int64_t b = p.runs[k].begin; b < p.runs[k].end; ++b) one(b);
   }
   alignas(64) double high[4];
   most.store(high);
@@ -189,6 +243,76 @@ template <class Lanes, int D>
 Deviation integrate_pass(const IntegrateArgs& p) {
   if (!p.drift) return integrate<Lanes, D, 1, false>(p);
   return p.kicks == 2 ? integrate<Lanes, D, 2, true>(p) : integrate<Lanes, D, 1, true>(p);
+}
+
+/// The same for beads without forces: the operations of integrate() with 0 for what contacts add.
+template <class Lanes, int D>
+void fly_pass(const FlyArgs& args) {
+  using Row = typename Lanes::Row;
+  const FlyArgs p = args;
+  const Row h = Row::all(p.dt / 2), dt = D == 2 ? Row::low(p.dt) : Row::all(p.dt);
+  const Row gravity = D == 2 ? Row::high(p.gravity[0], p.gravity[1]) : Row::three(p.gravity);
+  // Some at a time, since each step of a bead waits for the one before.
+  constexpr int kTogether = 4;
+  const auto fly = [&](double* const* record, int n) TWINCELL_LANES {
+    Row v[kTogether], r[kTogether];
+    for (int k = 0; k < kTogether; ++k) {
+      v[k] = Row::load(record[k < n ? k : 0] + (D == 2 ? 0 : 4));
+      if constexpr (D == 3) r[k] = Row::load(record[k < n ? k : 0]);
+    }
+    for (std::int64_t step = 0; step < p.steps; ++step)
+      for (int k = 0; k < kTogether; ++k) {
+        v[k] = fma(h, gravity, v[k]);
+        v[k] = fma(h, gravity, v[k]);
+        if constexpr (D == 2)
+          v[k] = fma(v[k].swapped(), dt, v[k]);
+        else
+          r[k] = fma(dt, v[k], r[k]);
+      }
+    for (int k = 0; k < n; ++k) {
+      v[k].store(record[k] + (D == 2 ? 0 : 4));
+      if constexpr (D == 3) r[k].store(record[k]);
+    }
+  };
+  double* record[kTogether];
+  int n = 0;
+  for (std::int64_t k = 0; k < p.n_runs; ++k) {
+    std::int64_t b = p.runs[k].begin;
+    if constexpr (D == 2 && Lanes::kBlock > 0)
+      for (; b + kGroup <= p.runs[k].end; b += kGroup) Lanes::fly_group(p, h, dt, gravity, b);
+    for (; b < p.runs[k].end; ++b) {
+      record[n++] = p.records + kRecord<D> * b;
+      if (n == kTogether) fly(record, n), n = 0;
+    }
+  }
+  if (n > 0) fly(record, n);
+}
+
+template <class Lanes, int D>
+VelocityRange range_pass(const RangeArgs& args) {
+  using Row = typename Lanes::Row;
+  const RangeArgs p = args;
+  Row least = Row::all(HUGE_VAL), most = Row::all(-HUGE_VAL);
+  std::int64_t b = p.beads.begin;
+  if constexpr (D == 2 && Lanes::kBlock > 0) b = Lanes::range_blocks(p, least, most);
+  for (; b < p.beads.end; ++b) {
+    const double* record = p.records + kRecord<D> * b;
+    const Row v = Row::load(record + (D == 2 ? 0 : 4));
+    // Of what is not a number and a number, the second.
+    least = min(v, least);
+    most = max(v, most);
+    if constexpr (D == 2) {
+      p.reference[2 * b] = record[2];
+      p.reference[2 * b + 1] = record[3];
+    } else {
+      v.store(p.reference + 4 * b);
+    }
+  }
+  alignas(64) double low[4], high[4];
+  least.store(low);
+  most.store(high);
+  if constexpr (D == 2) return {{low[2], low[3], 0}, {high[2], high[3], 0}};
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
 /// Marks listed pairs that may come near.
@@ -227,8 +351,13 @@ struct PassTable {
     using R = std::variant_alternative_t<kIndex % kRollings, RollingAxis>;
     // Beads that do not turn cannot resist rolling.
     using Laws = std::conditional_t<T::kActs, LawSet<N, T, R>, LawSet<N, T, NoRolling>>;
-    return {&pair_pass<Lanes, Laws, D, kVelocity>, &wall_pass<Lanes, Laws, D, kVelocity>,
-            &integrate_pass<Lanes, D>, &scan_pass<Lanes, D>, kRemembered<Laws, kVelocity, D>};
+    return {&pair_pass<Lanes, Laws, D, kVelocity>,
+            &wall_pass<Lanes, Laws, D, kVelocity>,
+            &integrate_pass<Lanes, D>,
+            &fly_pass<Lanes, D>,
+            &range_pass<Lanes, D>,
+            &scan_pass<Lanes, D>,
+            kRemembered<Laws, kVelocity, D>};
   }
   template <int D, Velocity kVelocity, std::size_t... kIndex>
   static Passes pick(std::size_t index, std::index_sequence<kIndex...>) {

@@ -268,7 +268,9 @@ System make_system(const Scene& s, const Plan& plan) {
 
 std::vector<double> contact_constants(const ContactLaws& laws, const PairScale& pair, double reach,
                                       double inv_radius_i, double inv_radius_j) {
-  std::vector<double> set = {reach, 1 / reach, inv_radius_i, inv_radius_j, 1 / pair.m_eff};
+  std::vector<double> set = {
+      reach,         reach * reach * (1 + 1e-14), 1 / reach, 1 / (reach * reach), inv_radius_i, inv_radius_j,
+      1 / pair.m_eff};
   const auto append = [&](const auto& axis) {
     std::visit(
         [&](const auto& law) {
