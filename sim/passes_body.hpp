@@ -30,8 +30,7 @@ double pair_pass(const PairArgs& args) {
   constexpr int kMemory = kRemembered<Laws, kVelocity, D>;
   constexpr bool kTurn = Laws::Tangential::kActs, kRoll = Laws::Rolling::kActs;
   // Numbers of a contact between stages: approach, then action in its place.
-  constexpr int kSpinAt = 2 * D, kRollAt = kSpinAt + K, kKept = kRollAt + (kRoll ? K : 0);
-  static_assert(D + (kRoll ? 2 : 1) * K <= kKept);
+  constexpr int kRollAt = 2 * D, kKept = std::max(2 * D + (kRoll ? K : 0), D + (kRoll ? 2 : 1) * K);
   constexpr int kStage = W == 1 ? 1 : 16;  // packets
   alignas(64) double stage[kStage * W * kKept];
   std::int64_t live[kStage];

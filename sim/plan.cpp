@@ -153,8 +153,8 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
     add("coarse steps", State::approximated,
         fmt::format("{:g} steps per contact time: single collisions scatter in e by up to {:.2g}",
                     s.steps_per_contact,
-                    s.integrator == "split" ? 0.065 / (s.steps_per_contact * s.steps_per_contact)
-                                            : 0.25 / s.steps_per_contact));
+                    s.integrator == "split" ? 0.1 / (s.steps_per_contact * s.steps_per_contact)
+                                            : 0.28 / s.steps_per_contact));
 }
 
 void add_limits(const std::string& kind, const ContactLaws& laws, const PairScale& pair, double speed,

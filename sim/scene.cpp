@@ -252,7 +252,7 @@ void read_start(const Section& s, Scene& scene) {
 }
 
 void read_time(const Section& s, Scene& scene) {
-  scene.steps_per_contact = s.number_in("steps_per_contact", 8, 1e6).value_or(scene.steps_per_contact);
+  scene.steps_per_contact = s.number_in("steps_per_contact", 6, 1e6).value_or(scene.steps_per_contact);
   scene.integrator = s.word("integrator", {"verlet", "predicted", "split"}).value_or(scene.integrator);
   scene.discard = s.integer_in("discard", 0, 1'000'000).value_or(scene.discard);
   scene.cycles = s.integer_in("cycles", 1, 100'000'000).value_or(scene.cycles);

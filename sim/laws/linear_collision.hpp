@@ -33,6 +33,16 @@ struct LinearCollision {
   }
 };
 
+/// v_t'/v_t of the surfaces of an impact that lasts t_c and does not slip, with a tangential spring and
+/// dashpot: exp(-a t_c) (cos(O t_c) - (a/O) sin(O t_c)), a = eta_t/(2 m_t), O^2 = k_t/m_t - a^2 (the damped
+/// oscillator; O imaginary: cosh and sinh).
+inline double sticking_ratio(double k_t, double eta_t, double inv_m_t, double t_c) {
+  const double a = eta_t * inv_m_t / 2, square = k_t * inv_m_t - a * a, root = std::sqrt(std::abs(square));
+  const double even = square > 0 ? std::cos(root * t_c) : std::cosh(root * t_c);
+  const double odd = root == 0 ? t_c : (square > 0 ? std::sin(root * t_c) : std::sinh(root * t_c)) / root;
+  return std::exp(-a * t_c) * (even - a * odd);
+}
+
 /// -2 ln(e)/sqrt(pi^2 + ln^2 e): times sqrt(k m_eff) it is the eta that gives restitution e in (0, 1]
 /// (Bhateja et al. 2016, eq. A9, with the sign that dissipates).
 [[gnu::always_inline]] inline double damping_of_restitution(double e) {

@@ -47,7 +47,7 @@ TEST(Scene, ComplaintsNameLineKeyValueAndBound) {
   expect_complaint(kGood + "[contact.lid]\nmuu = 0.1\n", "contact.lid.muu: there is no such key");
   expect_complaint(kGood + "[cell]\nwidth = 0.9\n", "does not fit into a cell 0.9 wide");
   expect_complaint(kGood + "[time]\nsteps_per_contact = 2\n",
-                   "time.steps_per_contact: 2 is out of range; the value must be at least 8");
+                   "time.steps_per_contact: 2 is out of range; the value must be at least 6");
   expect_complaint(kGood + "[time]\ncycles = 1.5\n", "time.cycles: a whole number is needed");
   expect_complaint(kGood + "[time]\nintegrator = \"euler\"\n",
                    "'euler' is not one of verlet, predicted, split");

@@ -1,0 +1,298 @@
+// twincell cost sim: error and time of the time steps together
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "analysis/figures.hpp"
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/error.hpp"
+#include "cli/output.hpp"
+#include "cli/verb.hpp"
+#include "sim/work_precision.hpp"
+
+namespace twincell::cli {
+
+namespace {
+
+using sim::StepSetting;
+using sim::WorkPrecision;
+
+struct CostOptions {
+  std::string what, output;
+  double accuracy = 1e-3;
+  bool quick = false;
+};
+
+/// n is never whole: then contacts of one length would all end at the same place within a step.
+constexpr std::array kLadder = {6.37, 8.37, 10.37, 14.37, 20.37, 30.37, 50.37, 70.37, 100.37, 200.37, 400.37};
+constexpr std::array kQuickLadder = {6.37, 10.37, 20.37, 50.37};
+constexpr std::array<const char*, 3> kIntegrators = {"verlet", "predicted", "split"};
+constexpr double kPaperStiffness = 1e6;
+const StepSetting kReference{};  ///< what the papers' simulations take for granted: Verlet, some 50 steps
+
+std::vector<StepSetting> settings(bool quick) {
+  std::vector<StepSetting> all;
+  const auto add = [&](double k_n, const auto& ladder) {
+    for (const char* integrator : kIntegrators)
+      for (const double n : ladder) all.push_back({.integrator = integrator, .n = n, .k_n = k_n});
+  };
+  if (quick) {
+    add(kPaperStiffness, kQuickLadder);
+  } else {
+    for (const double k_n : {1e5, kPaperStiffness, 1e7}) add(k_n, kLadder);
+  }
+  return all;
+}
+
+struct Measured {
+  std::vector<WorkPrecision> all;
+  std::vector<sim::GasTemperature> gas;
+  WorkPrecision reference, equal, equal_mean;
+  double accuracy = 0;
+  std::optional<WorkPrecision> cheapest;
+
+  [[nodiscard]] double time_ratio(const WorkPrecision& w) const {
+    return reference.cost.seconds_per_time / w.cost.seconds_per_time;
+  }
+};
+
+Measured measure(const CostOptions& options, const Common& common) {
+  Measured m;
+  m.accuracy = options.accuracy;
+  {
+    ProgressBar bar(common, "errors and times");
+    m.all = sim::work_precision(settings(options.quick), options.quick ? 1 : 3, bar);
+  }
+  m.reference = *std::find_if(m.all.begin(), m.all.end(),
+                              [](const WorkPrecision& w) { return w.setting == kReference; });
+  m.equal = sim::equal_accuracy(m.all, m.reference);
+  m.equal_mean = sim::equal_accuracy(m.all, m.reference, true);
+  m.cheapest = sim::cheapest(m.all, kPaperStiffness, m.accuracy);
+  std::vector<StepSetting> in_gas = {kReference};
+  for (const StepSetting& s : {m.equal.setting, StepSetting{.integrator = "verlet", .n = kLadder.front()}})
+    if (std::find(in_gas.begin(), in_gas.end(), s) == in_gas.end()) in_gas.push_back(s);
+  for (const StepSetting& s : in_gas) {
+    ProgressBar bar(common, fmt::format("gas, {}, n = {:g}", s.integrator, s.n));
+    m.gas.push_back(sim::gas_temperature(s, options.quick ? 50 : 1500, bar));
+  }
+  return m;
+}
+
+nlohmann::json as_json(const StepSetting& s) {
+  return {{"integrator", s.integrator}, {"n", s.n}, {"k_n", s.k_n}};
+}
+nlohmann::json as_json(const sim::PhaseSpread& s) {
+  return {{"mean", s.mean}, {"rms", s.rms}, {"max", s.largest}};
+}
+nlohmann::json as_json(const WorkPrecision& w) {
+  nlohmann::json d = as_json(w.setting);
+  d["error"] = w.collision.restitution();
+  d["restitution"] = {{"pair", as_json(w.collision.restitution_pair)},
+                      {"wall", as_json(w.collision.restitution_wall)}};
+  d["oblique"] = {{"pair", as_json(w.collision.sticking_pair)}, {"wall", as_json(w.collision.sticking_wall)}};
+  d["bed"] = {{"kinetic_energy_per_bead", w.bed.kinetic_energy},
+              {"floor_force", w.bed.floor_force},
+              {"overlap", w.bed.overlap}};
+  d["seconds_per_bead"] = {{"step", w.cost.seconds_per_time * w.cost.dt},
+                           {"contact_time", w.cost.seconds_per_time * w.cost.contact_time},
+                           {"t0", w.cost.seconds_per_time}};
+  return d;
+}
+
+nlohmann::json as_json(const Measured& m) {
+  nlohmann::json d;
+  for (const WorkPrecision& w : m.all) d["settings"].push_back(as_json(w));
+  for (const WorkPrecision& w : sim::front(m.all, kPaperStiffness)) d["front"].push_back(as_json(w));
+  for (const sim::GasTemperature& g : m.gas) {
+    nlohmann::json one = as_json(g.setting);
+    one["t_z"] = g.value;
+    one["standard_error"] = g.standard_error;
+    one["periods"] = g.periods;
+    one["seconds"] = g.seconds;
+    one["seconds_to_one_percent"] = g.seconds_to(0.01);
+    d["gas"].push_back(one);
+  }
+  const auto ratio = [&](const WorkPrecision& w) {
+    return nlohmann::json{{"verlet", as_json(m.reference)},
+                          {"split", as_json(w)},
+                          {"step_ratio", m.reference.setting.n / w.setting.n},
+                          {"time_ratio", m.time_ratio(w)}};
+  };
+  d["equal_accuracy"] = ratio(m.equal);
+  d["equal_mean_accuracy"] = ratio(m.equal_mean);
+  d["accuracy"] = m.accuracy;
+  d["cheapest"] = m.cheapest ? as_json(*m.cheapest) : nlohmann::json();
+  return d;
+}
+
+std::string table(const std::vector<WorkPrecision>& rows) {
+  std::string s =
+      fmt::format("  {:<9} {:>7} {:>5}  {:>8} {:>8}  {:>8}  {:>8} {:>8}  {:>6} {:>8} {:>7}\n", "integrator",
+                  "n", "k_n", "mean e", "max e", "oblique", "floor", "overlap", "step", "contact", "t0");
+  for (const WorkPrecision& w : rows) {
+    const auto& e = w.collision;
+    const double mean = std::abs(e.restitution_pair.mean) > std::abs(e.restitution_wall.mean)
+                            ? e.restitution_pair.mean
+                            : e.restitution_wall.mean;
+    s += fmt::format(
+        "  {:<9} {:>7g} {:>5.0e}  {:>+8.1e} {:>8.1e}  {:>8.1e}  {:>8.1e} {:>8.1e}  {:>6.1f} {:>8.3f} "
+        "{:>7.1f}\n",
+        w.setting.integrator, w.setting.n, w.setting.k_n, mean, e.restitution(), e.sticking(),
+        w.bed.floor_force, w.bed.overlap, 1e9 * w.cost.seconds_per_time * w.cost.dt,
+        1e6 * w.cost.seconds_per_time * w.cost.contact_time, 1e6 * w.cost.seconds_per_time);
+  }
+  return s;
+}
+
+std::string named(const StepSetting& s) {
+  return fmt::format("{}, n = {:g}", s.integrator, s.n);
+}
+
+std::string as_text(const Measured& m) {
+  std::string s =
+      "Errors: of e, mean and largest over entry phases (pair or plate, the larger); largest of v_t'/v_t, "
+      "oblique, no\n"
+      "slip; of the floor's force and of overlaps at rest. Time of a bead: ns a step, us a contact time, us "
+      "a t0.\n";
+  std::vector<WorkPrecision> own, others;
+  for (const WorkPrecision& w : m.all) {
+    const auto like = [&](const StepSetting& o) {
+      return w.setting.integrator == o.integrator && w.setting.n == o.n;
+    };
+    if (w.setting.k_n == kPaperStiffness)
+      own.push_back(w);
+    else if (like(m.reference.setting) || like(m.equal.setting))
+      others.push_back(w);
+  }
+  s += table(own);
+  if (!others.empty()) s += "\nOther stiffnesses\n" + table(others);
+  s += fmt::format("\nFront, k_n = {:g}: no other setting is both cheaper and better\n", kPaperStiffness) +
+       table(sim::front(m.all, kPaperStiffness));
+  s += "\nT_z of a driven gas, 40 beads, W = 20\n";
+  for (const sim::GasTemperature& g : m.gas) {
+    const sim::GasTemperature& first = m.gas.front();
+    s += fmt::format("  {:<20} {:.4f} +- {:.4f} m V_p^2 from {} periods in {:.3g} s; 1 % takes {:.3g} s",
+                     named(g.setting), g.value, g.standard_error, g.periods, g.seconds, g.seconds_to(0.01));
+    if (&g != &first)
+      s += fmt::format("; {:+.1f} standard errors from the first",
+                       (g.value - first.value) / std::hypot(g.standard_error, first.standard_error));
+    s += "\n";
+  }
+  double apart = 0;
+  for (const sim::GasTemperature& g : m.gas)
+    apart = std::max(apart, std::abs(g.value / m.gas.front().value - 1));
+  const sim::GasTemperature& first = m.gas.front();
+  s += fmt::format(
+      "  Steps as unlike as these change T_z by {:.1f} %, where a run leaves {:.1f} % to chance. A tenth of "
+      "that takes a\n"
+      "  hundred times the time; no choice of the step returns more than a factor {:.1f}.\n",
+      100 * apart, 100 * first.standard_error / first.value,
+      first.seconds / std::min_element(m.gas.begin(), m.gas.end(), [](const auto& x, const auto& y) {
+                        return x.seconds < y.seconds;
+                      })->seconds);
+  const auto equal = [&](const WorkPrecision& w) {
+    return fmt::format("{} ({:.1e}): {:.2f} times fewer steps, {:.2f} times less time\n", named(w.setting),
+                       w.collision.restitution(), m.reference.setting.n / w.setting.n, m.time_ratio(w));
+  };
+  s += fmt::format("\nNo less accurate than {} (largest error of e {:.1e}), cheapest:\n",
+                   named(m.reference.setting), m.reference.collision.restitution());
+  s += "  in every collision:        " + equal(m.equal);
+  s += "  and in the mean over many: " + equal(m.equal_mean);
+  s += m.cheapest
+           ? fmt::format("Largest error of e at most {:g}: {} ({:.1e}), {:.1f} us a bead and t0\n",
+                         m.accuracy, named(m.cheapest->setting), m.cheapest->collision.restitution(),
+                         1e6 * m.cheapest->cost.seconds_per_time)
+           : fmt::format("No setting measured has a largest error of e of at most {:g}.\n", m.accuracy);
+  return s;
+}
+
+/// Two panels over one axis of time: head-on and oblique errors, a curve per integrator; the papers' k_n
+/// bold.
+Figure figure(const Measured& m) {
+  struct Style {
+    const char* integrator;
+    const char* colour;
+    int point;
+  };
+  // Okabe and Ito's colours, as in all figures; each has a shape of its own as well.
+  constexpr std::array<Style, 3> kStyles = {
+      {{"verlet", "#0072B2", 7}, {"predicted", "#E69F00", 5}, {"split", "#D55E00", 9}}};
+  Figure f{.name = "work_precision", .title = "What accuracy costs in time", .width = 960, .height = 460};
+  std::vector<double> stiffnesses;
+  for (const WorkPrecision& w : m.all)
+    if (std::find(stiffnesses.begin(), stiffnesses.end(), w.setting.k_n) == stiffnesses.end())
+      stiffnesses.push_back(w.setting.k_n);
+  std::array<std::string, 2> clauses;
+  int index = 0;
+  for (const double k_n : stiffnesses)
+    for (const Style& style : kStyles) {
+      f.data += fmt::format("# {} k_n {:g}: us a bead and t0, largest error of e, of v_t'/v_t, n\n",
+                            style.integrator, k_n);
+      for (const WorkPrecision& w : m.all)
+        if (w.setting.k_n == k_n && w.setting.integrator == style.integrator)
+          f.data += fmt::format("{:.4g} {:.3e} {:.3e} {:g}\n", 1e6 * w.cost.seconds_per_time,
+                                w.collision.restitution(), w.collision.sticking(), w.setting.n);
+      f.data += "\n\n";
+      const bool bold = k_n == kPaperStiffness;
+      for (std::size_t panel = 0; panel < clauses.size(); ++panel)
+        clauses[panel] += fmt::format(
+            "{}'{}.dat' index {} using 1:{} with linespoints pt {} ps {} lw {} lc rgb '{}' {}",
+            clauses[panel].empty() ? "" : ", ", f.name, index, panel + 2, style.point, bold ? 0.9 : 0.4,
+            bold ? 2 : 0.7, style.colour, bold ? fmt::format("title '{}'", style.integrator) : "notitle");
+      ++index;
+    }
+  f.plot = fmt::format(
+      "set multiplot layout 1,2\nset logscale xy\nset format y '10^{{%T}}'\nset key bottom left\n"
+      "set xlabel 'processor time, µs a bead and t_0'\n"
+      "set title 'head-on: largest |e − e_{{exact}}|'\nplot {}\n"
+      "set title 'oblique: largest error of v_t^′/v_t'\nunset key\nplot {}\nunset multiplot\n",
+      clauses[0], clauses[1]);
+  return f;
+}
+
+void run(const CostOptions& options, const Common& common) {
+  require_range({.file = {}, .key = "--accuracy"}, options.accuracy, 1e-12, 1);
+  std::optional<AtomicPath> folder;  // an unwritable place is found before the work, not after
+  if (!options.output.empty()) {
+    folder.emplace(options.output, AtomicPath::Kind::folder);
+    std::filesystem::create_directories(folder->part());
+  }
+  const Measured m = measure(options, common);
+  nlohmann::json document = as_json(m);
+  document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
+  std::string text = as_text(m);
+  if (folder) {
+    draw(figure(m), folder->part());
+    write_text_file(folder->part() / "table.txt", text);
+    folder->commit();
+    document["output"] = options.output;
+    text += options.output + "\n";
+  }
+  print_result(common, document, text);
+}
+
+}  // namespace
+
+void add_cost(CLI::App& program, Common& common) {
+  auto options = std::make_shared<CostOptions>();
+  CLI::App& verb = add_verb(program, common, "cost", "What accuracy costs in time",
+                            "twincell cost sim --accuracy 1e-3 -o cost");
+  verb.add_option("what", options->what, "sim: integrators, steps per contact, stiffness")
+      ->required()
+      ->check(CLI::IsMember({"sim"}));
+  verb.add_option("-o,--output", options->output, "Folder for figure and table; replaced as a whole");
+  verb.add_option("--accuracy", options->accuracy,
+                  "Largest error of e asked for; the cheapest setting is named")
+      ->capture_default_str();
+  verb.add_flag("--quick", options->quick, "Fewer settings, each timed once: some seconds");
+  verb.callback([options, &common] { run(*options, common); });
+}
+
+}  // namespace twincell::cli

@@ -1,0 +1,67 @@
+// `cost sim` as a user runs it, on few settings.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.hpp"
+
+namespace twincell {
+namespace {
+
+TEST(Cost, SaysWhatAccuracyCosts) {
+  const TemporaryFolder folder;
+  const Ran ran =
+      run_program({"cost", "sim", "--quick", "--json", "-q", "--accuracy", "1e-3", "-o", folder / "cost"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.err, "");
+  const auto d = nlohmann::json::parse(ran.out);
+
+  const auto& equal = d["equal_accuracy"];
+  EXPECT_EQ(equal["verlet"]["integrator"], "verlet");
+  EXPECT_NEAR(equal["verlet"]["n"], 50, 1);
+  EXPECT_NEAR(equal["verlet"]["error"], 3.3e-3, 0.2e-3);  // V1's table has 3.2e-3 for two beads
+  const double n = equal["split"]["n"];
+  EXPECT_EQ(equal["split"]["integrator"], "split");
+  EXPECT_GE(n, 6);
+  EXPECT_LE(n, 11);
+  EXPECT_LE(equal["split"]["error"], equal["verlet"]["error"]);
+  EXPECT_NEAR(equal["step_ratio"], equal["verlet"]["n"].get<double>() / n, 1e-12);
+  EXPECT_GE(d["equal_mean_accuracy"]["split"]["n"], n);
+
+  double last = 0;
+  for (const auto& w : d["front"]) {
+    EXPECT_GT(w["seconds_per_bead"]["t0"], last);
+    last = w["seconds_per_bead"]["t0"];
+  }
+  EXPECT_LE(d["cheapest"]["error"], 1e-3);
+  for (const auto& w : d["settings"]) {
+    const auto& seconds = w["seconds_per_bead"];
+    EXPECT_NEAR(seconds["contact_time"].get<double>() / seconds["step"].get<double>(), w["n"], 0.03);
+    EXPECT_NEAR(seconds["contact_time"].get<double>() / seconds["t0"].get<double>(), 2.222831e-3, 1e-8);
+    EXPECT_LE(w["bed"]["floor_force"], 1e-8);
+  }
+  EXPECT_EQ(d["gas"].size(), 3U);
+
+  EXPECT_EQ(names_in(folder / "cost"),
+            (std::vector<std::string>{"table.txt", "work_precision.dat", "work_precision.gp",
+                                      "work_precision.png", "work_precision.svg"}));
+}
+
+TEST(Cost, RefusesBeforeItMeasures) {
+  const TemporaryFolder folder;
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"cost"},
+                                                {"cost", "imaging"},
+                                                {"cost", "sim", "--accuracy", "0"},
+                                                {"cost", "sim", "--accuracy", "nan"},
+                                                {"cost", "sim", "-o", folder / "no/such/place"}}) {
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, 2) << ran.err;
+    EXPECT_EQ(ran.out, "");
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+  EXPECT_TRUE(names_in(folder.path()).empty());
+}
+
+}  // namespace
+}  // namespace twincell
