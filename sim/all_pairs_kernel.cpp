@@ -7,6 +7,7 @@
 
 #include "sim/list_kernel.hpp"
 #include "sim/packed.hpp"
+#include "sim/subnormals.hpp"
 
 namespace twincell::sim {
 
@@ -26,6 +27,7 @@ class AllPairsKernel : public Kernel {
       s.step += std::max<std::int64_t>(0, steps);
       return;
     }
+    const FlushSubnormals flush;
     order_.resize(s.beads.size());
     std::iota(order_.begin(), order_.end(), 0);
     s.forces_known = s.forces_known && s.forces.size() == s.beads.size();
@@ -35,7 +37,7 @@ class AllPairsKernel : public Kernel {
     // How far beads stray from free flight is of no interest here.
     reference_.resize(8 * s.beads.size());
     args.reference = reference_.data();
-    const Run all{0, static_cast<std::int64_t>(s.beads.size())};
+    const BeadRange all{0, static_cast<std::int64_t>(s.beads.size())};
     args.runs = &all, args.n_runs = 1;
     if (!known) forces(s);
     for (std::int64_t k = 0; k < steps; ++k) {

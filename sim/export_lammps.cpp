@@ -421,10 +421,12 @@ LammpsDeck deck_of(Model& m, const Scene& scene, const Plan& plan) {
 }  // namespace
 
 LammpsDeck lammps_deck(const Scene& scene, Progress& progress) {
-  const Plan plan = make_plan(scene);
-  Model m = model_of(scene, plan);
-  m.beads = beads_at_start(Simulation(scene, progress));
-  return deck_of(m, scene, plan);
+  static_cast<void>(
+      model_of(scene, make_plan(scene)));  // what has no words is refused before the bed settles
+  const Simulation start(scene, progress);
+  Model m = model_of(scene, start.plan());
+  m.beads = beads_at_start(start);
+  return deck_of(m, scene, start.plan());
 }
 
 LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, std::size_t index) {

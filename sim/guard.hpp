@@ -2,6 +2,8 @@
 /// \file
 /// What stops a run that goes wrong, and says why.
 
+#include <cmath>
+
 #include "sim/plan.hpp"
 #include "sim/state.hpp"
 
@@ -9,10 +11,14 @@ namespace twincell::sim {
 
 /// Bounds of a healthy run.
 struct GuardLimits {
-  double overlap = kOverlapBound;  ///< sigma
-  double travel_per_step = 0.05;   ///< sigma; a bead faster than this could pass through another
-  double ceiling = 0;              ///< height above the plate that no bead may reach, sigma; 0: open
+  double overlap = kOverlapBound;         ///< sigma
+  double travel_per_step = kTravelBound;  ///< sigma; a bead faster than this could pass through another
+  double ceiling = 0;                     ///< height above the plate that no bead may reach, sigma; 0: open
+  double stable_step = HUGE_VAL;          ///< t0; longer steps shake a bed apart by themselves
 };
+
+/// Those of a plan, without a ceiling.
+GuardLimits guard_limits(const Plan& plan);
 
 /// Throws RunError for the deepest overlap, naming step, time, beads and the likely cause.
 [[noreturn]] void explain_overlap(const System& system, const GuardLimits& limits);

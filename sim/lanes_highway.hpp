@@ -202,7 +202,7 @@ struct HighwayLanes {
     const Row most_of_two = folded(most, kLarger);  // a velocity in each half
     return max(most_of_two, most_of_two.swapped());
   }
-  static std::int64_t end_of_blocks(const Run& run) {
+  static std::int64_t end_of_blocks(const BeadRange& run) {
     return run.begin + (run.end - run.begin) / kBlock * kBlock;
   }
   /// The steps of fly_pass for a whole group of 2D beads.

@@ -12,6 +12,7 @@
 
 #include "sim/cell_grid.hpp"
 #include "sim/packed.hpp"
+#include "sim/subnormals.hpp"
 
 namespace twincell::sim {
 
@@ -61,7 +62,7 @@ struct Part {
   std::vector<std::int32_t> dealt[2];
   // Beads that something may touch, and those that fly freely as long as the list holds. The latter are moved
   // when somebody wants to know where they are.
-  std::vector<Run> awake, quiet;
+  std::vector<BeadRange> awake, quiet;
   std::vector<char> is_awake;
   std::int64_t behind = 0;  ///< steps by which the quiet ones are late
   std::vector<Packets> walls;
@@ -129,13 +130,13 @@ class ListKernel : public Kernel {
       if (numbers[m * stride] != 0) return true;
     return false;
   }
-  void integrate(Part& part, const Run* runs, Size n, int kicks, bool drift);
+  void integrate(Part& part, const BeadRange* runs, Size n, int kicks, bool drift);
   void integrate(Part& part, int kicks, bool drift) {
     part.deviation = {};
-    const Run all = all_of(part);
+    const BeadRange all = all_of(part);
     integrate(part, &all, 1, kicks, drift);
   }
-  static Run all_of(const Part& part) {
+  static BeadRange all_of(const Part& part) {
     return {static_cast<std::int64_t>(part.begin), static_cast<std::int64_t>(part.end)};
   }
 
@@ -154,7 +155,7 @@ class ListKernel : public Kernel {
   std::vector<std::vector<double>> wall_constants_;  ///< the same for each wall
   std::vector<ContactMemory> restored_;
 
-  double skin_ = 0, widest_skin_ = 0, largest_radius_ = 0;
+  double skin_ = 0, widest_skin_ = 0, usual_radius_ = 0;
   std::int64_t looks_ = 0;  ///< inner lists made from this outer one
   double since_built_ = 0,
          last_margin_ = 0;   ///< approach since the outer list was made, at most; HUGE_VAL: unknown
@@ -190,7 +191,7 @@ std::vector<double> ListKernel::broadcast(const std::vector<double>& set) const 
 void ListKernel::sort_beads(const System& s) {
   order_.resize(s.beads.size());
   std::iota(order_.begin(), order_.end(), 0);
-  const double cell = 3 * largest_radius_;
+  const double cell = 3 * usual_radius_;
   std::vector<std::array<double, 3>> key(s.beads.size());
   for (Size b = 0; b < s.beads.size(); ++b) {
     const auto whole = [&](double x) { return std::abs(x) < 1e9 ? std::floor(x / cell) : 1e9; };
@@ -204,12 +205,19 @@ void ListKernel::sort_beads(const System& s) {
 }
 
 void ListKernel::prepare(const System& s) {
-  largest_radius_ = 0;
-  for (const Bead& b : s.beads) largest_radius_ = std::max(largest_radius_, b.radius);
-  const double base = kListReach * 2 * largest_radius_;
-  widest_skin_ = 3 * 2 * largest_radius_;
+  // Second neighbours of a hexagonal packing sit at 1.73 sigma: a skin of a quarter diameter adds no pairs
+  // there. The diameter is that of the usual bead: one a hundred times larger must not make the small ones'
+  // lists long.
+  std::vector<double> radii;
+  for (const Bead& b : s.beads) radii.push_back(b.radius);
+  const double largest = *std::max_element(radii.begin(), radii.end());
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  usual_radius_ = *middle;
+  const double base = kListReach * 2 * usual_radius_;
+  widest_skin_ = 3 * 2 * usual_radius_;
   for (const double period : s.period)  // never two images of a bead in reach
-    if (period > 0) widest_skin_ = std::min(widest_skin_, 0.5 * period - 2 * largest_radius_);
+    if (period > 0) widest_skin_ = std::min(widest_skin_, 0.5 * period - 2 * largest);
   widest_skin_ = std::max(widest_skin_, base);
   if (skin_ == 0) skin_ = base;
   if (order_.size() != s.beads.size()) {
@@ -303,7 +311,7 @@ void ListKernel::adapt_skin() {
   if (looks_ == 0) return;
   if (search > 2 * looks) skin_ *= 1.25;
   if (looks > 2 * search) skin_ *= 0.8;
-  skin_ = std::clamp(skin_, 0.2 * largest_radius_, widest_skin_);
+  skin_ = std::clamp(skin_, 0.2 * usual_radius_, widest_skin_);
 }
 
 void ListKernel::make_outer(const System& given) {
@@ -675,7 +683,7 @@ void ListKernel::rouse(const System& s, Part& part) {
     const Size of_before = part.awake.size();  // runs of awake beads end with their chunk
     for (Size begin = part.begin + g * group(); g < n && begin < chunk.bead_end; ++g, begin += group()) {
       const bool awake = part.is_awake[g] != 0;
-      std::vector<Run>& runs = awake ? part.awake : part.quiet;
+      std::vector<BeadRange>& runs = awake ? part.awake : part.quiet;
       const auto first = static_cast<std::int64_t>(begin),
                  end = static_cast<std::int64_t>(std::min(begin + group(), part.end));
       if (runs.size() > (awake ? of_before : 0) && runs.back().end == first)
@@ -702,7 +710,7 @@ void ListKernel::catch_up(Part& part) {
   part.behind = 0;
 }
 
-void ListKernel::integrate(Part& part, const Run* runs, Size n, int kicks, bool drift) {
+void ListKernel::integrate(Part& part, const BeadRange* runs, Size n, int kicks, bool drift) {
   IntegrateArgs a = integrate_args_;
   a.runs = runs;
   a.n_runs = static_cast<std::int64_t>(n);
@@ -890,6 +898,7 @@ void ListKernel::run_parallel(System& s, std::int64_t steps) {
   };
   std::barrier barrier(static_cast<std::ptrdiff_t>(parts_.size()), meet);
   const auto work = [&](Part& part) {
+    const FlushSubnormals flush;
     for (std::int64_t k = 0; k < steps && !stop; ++k) {
       integrate(part, k == 0 ? 1 : 2, true);
       barrier.arrive_and_wait();
@@ -915,6 +924,7 @@ void ListKernel::advance(System& s, std::int64_t steps) {
     return;
   }
   check_motion(s, limits_);
+  const FlushSubnormals flush;
   const bool known = s.forces_known && s.forces.size() == s.beads.size();
   s.forces_known = known;
   prepare(s);

@@ -75,7 +75,7 @@ struct Deviation {
 
 /// Beads from begin to before end. In 2D both are whole multiples of kGroup from where the beads of a thread
 /// begin, except its very end: what is moved together also keeps its reference together.
-struct Run {
+struct BeadRange {
   std::int64_t begin, end;
 };
 inline constexpr int kGroup = 8;
@@ -88,7 +88,7 @@ struct IntegrateArgs {
   const double* inv_mass;       ///< [bead][4] 1/m where a row has velocities, 0 elsewhere; or one row
   const double* turn;           ///< [bead] R^2/I; or one
   std::ptrdiff_t inertia_step;  ///< 1; or 0 if all beads are alike
-  const Run* runs;              ///< beads to be moved
+  const BeadRange* runs;        ///< beads to be moved
   std::int64_t n_runs;
   const double* reference;  ///< velocities at the time the list was made, as the range pass left them
   double fallen[3];         ///< what gravity has added to all of them since
@@ -102,7 +102,7 @@ struct IntegrateArgs {
 /// Beads that nothing touches, several steps at once: what the integrate pass would do to them.
 struct FlyArgs {
   double* records;
-  const Run* runs;
+  const BeadRange* runs;
   std::int64_t n_runs;
   std::int64_t steps;
   double dt;
@@ -113,7 +113,7 @@ struct FlyArgs {
 struct RangeArgs {
   const double* records;
   double* reference;  ///< 2D: two numbers a bead, in an order of the pass's own; 3D: four
-  Run beads;          ///< all of a thread's
+  BeadRange beads;    ///< all of a thread's
 };
 
 /// Of the components of velocities.

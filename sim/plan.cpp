@@ -149,7 +149,7 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
                                  : "abrupt start: the plate hits a bed at rest"));
   else
     add("drive", State::off_by_scene, "amplitude 0");
-  if (s.steps_per_contact < 20)
+  if (s.steps_per_contact < kFewSteps)
     add("coarse steps", State::approximated,
         fmt::format("{:g} steps per contact time: single collisions scatter in e by up to {:.2g}",
                     s.steps_per_contact,
@@ -157,16 +157,26 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
                                             : 0.28 / s.steps_per_contact));
 }
 
+/// Notes a limit, or keeps the shorter of two of one name.
+void keep_shorter(std::vector<TimeLimit>& limits, const TimeLimit& limit) {
+  for (TimeLimit& known : limits)
+    if (known.name == limit.name) {
+      known.time = std::min(known.time, limit.time);
+      return;
+    }
+  limits.push_back(limit);
+}
+
 void add_limits(const std::string& kind, const ContactLaws& laws, const PairScale& pair, double speed,
                 std::vector<TimeLimit>& limits) {
-  limits.push_back(
-      {kind + ", normal contact",
-       std::visit([&](const auto& law) { return law.shortest_time(pair, speed); }, laws.normal)});
+  keep_shorter(limits,
+               {kind + ", normal contact",
+                std::visit([&](const auto& law) { return law.shortest_time(pair, speed); }, laws.normal)});
   const double tangential =
       std::visit([&](const auto& law) { return law.shortest_time(pair); }, laws.tangential);
-  if (std::isfinite(tangential)) limits.push_back({kind + ", tangential contact", tangential});
+  if (std::isfinite(tangential)) keep_shorter(limits, {kind + ", tangential contact", tangential});
   const double rolling = std::visit([&](const auto& law) { return law.shortest_time(pair); }, laws.rolling);
-  if (std::isfinite(rolling)) limits.push_back({kind + ", rolling", rolling});
+  if (std::isfinite(rolling)) keep_shorter(limits, {kind + ", rolling", rolling});
 }
 
 /// Of two equal beads, or a bead and a wall.
@@ -178,16 +188,43 @@ PairScale wall_of(double radius, double mass, double inertia_factor) {
   return {mass, radius, 1 / mass + 1 / (inertia_factor * mass)};
 }
 
-/// The lightest bead there may be: it makes the fastest contact.
-double lightest(const Scene& s, double* radius) {
-  double r = s.radius * (1 - largest_deviation(s.spread, s.spread_width));
-  double m = s.mass_of(r);
-  if (s.intruder && s.intruder->mass < m) {
-    m = s.intruder->mass;
-    r = s.intruder->radius;
+struct BeadScale {
+  double radius, mass;
+};
+
+/// The beads that there may be, as far as the scene says.
+std::vector<BeadScale> announced(const Scene& s) {
+  const double smallest = s.radius * (1 - largest_deviation(s.spread, s.spread_width));
+  std::vector<BeadScale> all = {{smallest, s.mass_of(smallest)}};
+  if (s.intruder) all.push_back({s.intruder->radius, s.intruder->mass});
+  return all;
+}
+
+/// Those of them that make the fastest contacts: the lightest, and where stiffness grows with the root of the
+/// radius, as Hertz's does, the one of least m^2/R.
+std::vector<BeadScale> fastest(const std::vector<BeadScale>& all) {
+  const auto least = [&](auto of) {
+    return *std::min_element(all.begin(), all.end(),
+                             [&](const BeadScale& a, const BeadScale& b) { return of(a) < of(b); });
+  };
+  return {least([](const BeadScale& b) { return b.mass; }),
+          least([](const BeadScale& b) { return b.mass * b.mass / b.radius; })};
+}
+
+void warn(const Scene& s, Plan& plan) {
+  constexpr double kManySteps = 2e6;
+  if (s.steps_per_contact < kFewSteps)
+    plan.warnings.push_back(fmt::format(
+        "time.steps_per_contact = {:g} is below {:g}: collisions are coarse and a bed may not rest.",
+        s.steps_per_contact, kFewSteps));
+  if (static_cast<double>(plan.steps_per_period) > kManySteps) {
+    const TimeLimit& why =
+        *std::min_element(plan.limits.begin(), plan.limits.end(),
+                          [](const TimeLimit& a, const TimeLimit& b) { return a.time < b.time; });
+    plan.warnings.push_back(
+        fmt::format("a cycle takes {:.3g} steps, because of the {} ({:.3g} t0): this will take its time.",
+                    static_cast<double>(plan.steps_per_period), why.name, why.time));
   }
-  *radius = r;
-  return m;
 }
 
 }  // namespace
@@ -201,7 +238,7 @@ std::string Plan::kernel_name() const {
   return name;
 }
 
-Plan make_plan(const Scene& s) {
+Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   Plan plan;
   plan.dimension = s.dimension;
   plan.walls = s.walls();
@@ -214,25 +251,38 @@ Plan make_plan(const Scene& s) {
   plan.rotation = std::visit([](const auto& law) { return law.kActs; }, plan.bead.tangential);
   plan.history = std::visit([](const auto& law) { return law.kHistory; }, plan.bead.tangential);
 
-  double radius = s.radius;
-  const double mass = lightest(s, &radius);
-  const double speed = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
-  const auto limits = [&](const ContactLaws& laws, const std::string& kind, const PairScale& pair) {
-    add_limits(kind, laws, pair, speed, plan.limits);
-    plan.largest_force = std::max(
-        plan.largest_force,
-        std::visit([&](const auto& law) { return law.largest_force(overlap_bound(s)); }, laws.normal));
-  };
-  limits(plan.bead, "bead-bead", pair_of(radius, mass, s.inertia_factor));
-  for (std::size_t w = 0; w < plan.walls.size(); ++w) {
-    // Walls of the same table make the same limits: named once.
-    const std::string kind = "bead-" + plan.walls[w].name;
-    limits(plan.wall_laws[w], kind, wall_of(radius, mass, s.inertia_factor));
+  // Only a file's beads can differ from what the scene says.
+  const bool from_file = s.start == StartKind::table || s.start == StartKind::trajectory;
+  std::vector<BeadScale> sizes;
+  if (from_file)
+    for (const Bead& b : beads) sizes.push_back({b.radius, b.mass});
+  double usual_radius = s.radius;
+  const auto smaller = [](const BeadScale& a, const BeadScale& b) { return a.radius < b.radius; };
+  if (sizes.empty()) {
+    sizes = announced(s);
+  } else {
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end(), smaller);
+    usual_radius = middle->radius;
   }
+  plan.travel_bound = kTravelBound * 2 * std::min_element(sizes.begin(), sizes.end(), smaller)->radius;
+  plan.overlap_bound = s.overlap_bound * 2 * usual_radius;
+
+  const double speed = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
+  const auto force = [&](const auto& law) { return law.largest_force(plan.overlap_bound); };
+  plan.largest_force = std::visit(force, plan.bead.normal);
+  for (const ContactLaws& laws : plan.wall_laws)
+    plan.largest_force = std::max(plan.largest_force, std::visit(force, laws.normal));
+  for (const auto& [radius, mass] : fastest(sizes)) {
+    add_limits("bead-bead", plan.bead, pair_of(radius, mass, s.inertia_factor), speed, plan.limits);
+    for (std::size_t w = 0; w < plan.walls.size(); ++w)
+      add_limits("bead-" + plan.walls[w].name, plan.wall_laws[w], wall_of(radius, mass, s.inertia_factor),
+                 speed, plan.limits);
+  }
+  if (s.plate_drag > 0) plan.limits.push_back({"plate drag", 1 / s.plate_drag});
   double shortest = HUGE_VAL;
   for (const TimeLimit& limit : plan.limits) shortest = std::min(shortest, limit.time);
-  constexpr double kMostSteps = 1e10;
-  const double most_travel = 0.05 * 2 * s.radius;
+  constexpr double kMostSteps = 1e10, kShortestStep = 1e-12;
   const double steps = s.drive.period() / (shortest / s.steps_per_contact);
   if (!(steps <= kMostSteps))
     throw ConfigError(
@@ -244,12 +294,19 @@ Plan make_plan(const Scene& s) {
   const std::int64_t rest = plan.steps_per_period % s.phases;
   if (rest != 0) plan.steps_per_period += s.phases - rest;
   plan.dt = s.drive.period() / static_cast<double>(plan.steps_per_period);
-  if (const double travel = s.drive.peak_velocity() * plan.dt; travel > most_travel)
+  if (!(plan.dt >= kShortestStep))
+    throw ConfigError({s.file, 0, 0, "drive"},
+                      fmt::format("a cycle of {:.3g} t0 makes steps of {:.3g} t0, the bound is {:g}.",
+                                  s.drive.period(), plan.dt, kShortestStep));
+  double strongest = 1;  // of the amplitude, in the course of a schedule
+  for (const auto& [cycle, factor] : s.envelope.points) strongest = std::max(strongest, factor);
+  if (const double travel = strongest * s.drive.peak_velocity() * plan.dt; !(travel <= plan.travel_bound))
     throw ConfigError({s.file, 0, 0, "drive"},
                       fmt::format("the plate moves {:.3g} sigma in one step, the bound is {:g}; raise "
                                   "time.steps_per_contact or contact.k_n.",
-                                  travel, most_travel));
+                                  travel, plan.travel_bound));
   list_effects(s, chosen, plan);
+  warn(s, plan);
   return plan;
 }
 

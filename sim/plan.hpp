@@ -39,6 +39,13 @@ struct ContactLaws {
   RollingAxis rolling;
 };
 
+/// Overlap, in diameters of the usual (median) bead, at which a run is stopped unless the scene says
+/// otherwise. The papers' runs stay below 0.03.
+inline constexpr double kOverlapBound = 0.1;
+/// Way, in diameters of the smallest bead, that a bead or the plate may go in a step: faster ones could pass
+/// through beads.
+inline constexpr double kTravelBound = 0.05;
+
 struct Plan {
   int dimension = 2;
   ContactLaws bead;
@@ -51,24 +58,21 @@ struct Plan {
       0;  ///< m g, that an overlap at the guard's bound makes: sets the grain of summed forces
 
   std::vector<Effect> effects;
-  std::vector<TimeLimit> limits;
-  std::int64_t steps_per_period = 0;  ///< a whole number, so that frames fall exactly on phases
-  double dt = 0;                      ///< T/steps_per_period
+  std::vector<TimeLimit> limits;         ///< of the bead that makes each shortest
+  std::vector<std::string> warnings;     ///< sentences: what runs, but perhaps not as it was meant
+  std::int64_t steps_per_period = 0;     ///< a whole number, so that frames fall exactly on phases
+  double dt = 0;                         ///< T/steps_per_period
+  double overlap_bound = kOverlapBound;  ///< sigma
+  double travel_bound = kTravelBound;    ///< sigma a step
 
   /// The chosen laws in one line.
   [[nodiscard]] std::string kernel_name() const;
 };
 
-/// Overlap, in bead diameters, at which a run is stopped. The papers' runs stay below 0.03.
-inline constexpr double kOverlapBound = 0.1;
-/// The same in the scene's unit of length: a scene may be written in any units.
-inline double overlap_bound(const Scene& s) {
-  return kOverlapBound * 2 * s.radius;
-}
-
 /// Derives the plan. mu = 0 turns friction, rotation and history off, since nothing of them can then act.
-/// \throws ConfigError for parameters that a law needs or refuses, and for steps too long or too many
-Plan make_plan(const Scene& scene);
+/// \param beads whose sizes and masses set the step and the bounds; without any, those that the scene speaks
+/// of \throws ConfigError for parameters that a law needs or refuses, and for steps too long or too many
+Plan make_plan(const Scene& scene, const std::vector<Bead>& beads = {});
 
 /// The system of a scene, without beads: cell, walls, gravity, drive, clock.
 System make_system(const Scene& scene, const Plan& plan);

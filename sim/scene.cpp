@@ -170,12 +170,14 @@ void apply_variant(const Section& s, const std::string& key, const std::string& 
   if (*v == word) law = variant;
 }
 
-void read_contact(const Section& s, ContactChoice& c) {
+void read_contact(const Section& s, Scene& scene) {
+  ContactChoice& c = scene.contact;
   c.normal = s.word("normal", normal_words()).value_or(c.normal);
   c.tangential = s.word("tangential", tangential_words()).value_or(c.tangential);
   c.rolling = s.word("rolling", rolling_words()).value_or(c.rolling);
   apply_variant(s, "tension", "allowed", "clipped", "linear", "linear-clipped", c.normal);
   apply_variant(s, "slip", "rescale", "spring_only", "spring", "spring-only", c.tangential);
+  scene.overlap_bound = s.number_in("overlap_bound", 0, 0.5, true).value_or(scene.overlap_bound);
 
   const Section walls = s.section("wall");
   const auto only_numbers = [](const Section& table) {
@@ -241,6 +243,7 @@ void read_start(const Section& s, Scene& scene) {
   scene.velocity_scale = s.number_in("velocity_scale", 0, 1e6).value_or(scene.velocity_scale);
   scene.rest_energy = s.number_in("rest_energy", 0, std::nullopt, true).value_or(scene.rest_energy);
   scene.settle_limit = s.number_in("settle_limit", 0, 1e6).value_or(scene.settle_limit);
+  scene.relax = s.boolean("relax").value_or(scene.relax);
   const bool trajectory = scene.start == StartKind::trajectory, table = scene.start == StartKind::table;
   if (trajectory && scene.from.empty())
     throw ConfigError(s.where("from"), "a start from a trajectory needs the name of its file.");
@@ -252,7 +255,9 @@ void read_start(const Section& s, Scene& scene) {
 }
 
 void read_time(const Section& s, Scene& scene) {
-  scene.steps_per_contact = s.number_in("steps_per_contact", 6, 1e6).value_or(scene.steps_per_contact);
+  scene.force = s.boolean("force").value_or(scene.force);
+  scene.steps_per_contact =
+      s.number_in("steps_per_contact", scene.force ? 1 : kFewestSteps, 1e6).value_or(scene.steps_per_contact);
   scene.integrator = s.word("integrator", {"verlet", "predicted", "split"}).value_or(scene.integrator);
   scene.discard = s.integer_in("discard", 0, 1'000'000).value_or(scene.discard);
   scene.cycles = s.integer_in("cycles", 1, 100'000'000).value_or(scene.cycles);
@@ -376,7 +381,7 @@ Scene interpret(const Config& config, const std::string& name) {
   static_cast<void>(root.text("preset"));
   const double g = read_cell(cell, scene);
   read_beads(beads, scene);
-  read_contact(contact, scene.contact);
+  read_contact(contact, scene);
   const DriveSpec spec = read_drive(drive, scene);
   read_start(root.section("start"), scene);
   read_time(root.section("time"), scene);

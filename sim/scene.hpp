@@ -46,6 +46,9 @@ double largest_deviation(SizeSpread spread, double width);
 /// that no bead comes so near to two images of another.
 inline constexpr double kListReach = 0.25;
 
+/// Steps per contact below which a run is refused, unless forced, and below which it is warned.
+inline constexpr double kFewestSteps = 6, kFewSteps = 20;
+
 enum class StartKind { crystal_a, crystal_b, random, trajectory, table };
 
 struct Scene {
@@ -75,6 +78,7 @@ struct Scene {
   std::optional<Intruder> intruder;
 
   ContactChoice contact;
+  double overlap_bound = 0.1;  ///< diameters of the usual bead; a deeper overlap stops the run
 
   // Drive
   Drive drive;
@@ -90,9 +94,11 @@ struct Scene {
   double velocity_scale = 1;   ///< random start: largest speed component, sigma/t0
   double rest_energy = 1e-12;  ///< kinetic energy per bead that counts as rest, m g sigma
   double settle_limit = 100;   ///< t0
+  bool relax = false;          ///< overlaps of any depth are pushed apart first
 
   // Time
   double steps_per_contact = 50;
+  bool force = false;                 ///< fewer than kFewestSteps steps per contact are run all the same
   std::string integrator = "verlet";  ///< verlet | predicted | split
   std::int64_t discard = 10, cycles = 200;
   int phases = 20;

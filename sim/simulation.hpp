@@ -4,6 +4,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "analysis/trajectory/progress.hpp"
 #include "analysis/trajectory/trajectory.hpp"
@@ -33,6 +36,9 @@ class Simulation {
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const Settled& settled() const { return settled_; }
   [[nodiscard]] const System& system() const { return system_; }
+  /// What a user should know before the run: those of the plan, an abrupt start, a bed that did not come to
+  /// rest.
+  [[nodiscard]] std::vector<std::string> warnings() const;
   /// What the trajectory will hold, apart from provenance.
   [[nodiscard]] TrajectoryInfo trajectory_info() const;
 
@@ -43,11 +49,14 @@ class Simulation {
   /// Steps done and neighbour lists built by `run`.
   [[nodiscard]] std::int64_t steps_done() const { return steps_done_; }
   [[nodiscard]] std::int64_t list_builds() const { return kernel_->list_builds(); }
+  /// Share of beads and frames in which a bead touched another or a wall. In a dilute gas it is t_c times the
+  /// collision rate; theories of hard beads want it below 0.1.
+  [[nodiscard]] std::optional<double> contact_fraction() const;
   [[nodiscard]] const Kernel& kernel() const { return *kernel_; }
 
  private:
   void settle(Progress& progress);
-  void start_drive();
+  void start_drive(System& system) const;
   [[nodiscard]] Frame snapshot(std::int64_t cycle, int phase) const;
 
   Scene scene_;
@@ -58,6 +67,7 @@ class Simulation {
   std::unique_ptr<Kernel> kernel_;
   Settled settled_;
   std::int64_t steps_done_ = 0;
+  std::int64_t looked_at_ = 0, touching_ = 0;  ///< beads in frames, and those of them in contact
 };
 
 }  // namespace twincell::sim

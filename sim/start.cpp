@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "analysis/trajectory/error.hpp"
 #include "sim/start_parts.hpp"
 
 namespace twincell::sim {
@@ -107,6 +108,17 @@ Start make_start(const Scene& scene) {
     return from_table(scene);
   };
   Start start = place();
+  if (scene.relax) {
+    // Centres in the same place have no direction to part in, and what is beyond a wall is another cell's.
+    constexpr double kRefused = 0.99, kTolerated = 1e-6;
+    require_sound(start.beads, scene, kRefused);
+    if (const double left = relax_overlaps(start.beads, scene, kTolerated, 50000); left > kTolerated)
+      throw ConfigError(
+          {scene.file, 0, 0, "start.relax"},
+          fmt::format("the beads cannot be pushed apart, an overlap of {:.3g} sigma is left, the "
+                      "bound is {:g}; is there room for them?",
+                      left, kTolerated));
+  }
   if (scene.perturbation == 0) return start;
   std::mt19937_64 engine = engine_of(scene, Stream::perturbation);
   const auto shift = [&] { return scene.perturbation * (2 * uniform(engine) - 1); };

@@ -47,7 +47,8 @@ Start from_trajectory(const Scene& scene);
 /// missing y the middle of the gap, anything else 0. \throws InputError naming file, line and column of a bad
 /// number; ConfigError if beads.count says otherwise
 Start from_table(const Scene& scene);
-/// Whichever the scene asks for, perturbed as it asks.
+/// Whichever the scene asks for, its overlaps pushed apart and perturbed as it asks. \throws ConfigError also
+/// for overlaps that cannot be pushed apart
 Start make_start(const Scene& scene);
 
 /// Pushes overlapping beads apart, and out of walls, by at most 0.01 sigma a contact and sweep until no

@@ -113,11 +113,16 @@ void require_periods(const std::vector<Bead>& beads, const Scene& scene) {
 
 void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bound) {
   const Where where{scene.file, 0, 0, "start"};
+  constexpr double kFar = 1e9;  // as high as a cell may be
   const auto walls = scene.walls();
   for (std::size_t i = 0; i < beads.size(); ++i) {
     const Bead& b = beads[i];
     if (!std::isfinite(b.x + b.y + b.z + b.vx + b.vy + b.vz + b.spin + b.spin_x + b.spin_z))
       throw ConfigError(where, fmt::format("bead {} has no finite position or velocity.", i));
+    if (centre_of(b).cwiseAbs().maxCoeff() > kFar)
+      throw ConfigError(
+          where, fmt::format("bead {} at ({:.4g}, {:.4g}, {:.4g}) is too far away, the bound is {:g}.", i,
+                             b.x, b.y, b.z, kFar));
     if (const WallOverlap outside = deepest_wall(walls, centre_of(b), b.radius);
         outside.depth > bound * 2 * b.radius)
       throw ConfigError(
@@ -130,18 +135,21 @@ void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bo
   double deepest = 0;
   std::size_t how_many = 0;
   std::string worst;
-  for_each_near_pair(beads, scene.dimension, scene.period(), 0,
-                     [&](std::int32_t i, std::int32_t j, double gap, const Vec3&) {
-                       const double allowed = bound * 2 *
-                                              std::min(beads[static_cast<std::size_t>(i)].radius,
-                                                       beads[static_cast<std::size_t>(j)].radius);
-                       if (-gap <= allowed) return;
-                       ++how_many;
-                       if (-gap <= deepest) return;
-                       deepest = -gap;
-                       worst = fmt::format("beads {} and {} overlap by {:.3g} sigma, the bound is {:g}", i, j,
-                                           deepest, allowed);
-                     });
+  for_each_near_pair(
+      beads, scene.dimension, scene.period(), 0,
+      [&](std::int32_t i, std::int32_t j, double gap, const Vec3&) {
+        const double allowed =
+            bound * 2 *
+            std::min(beads[static_cast<std::size_t>(i)].radius, beads[static_cast<std::size_t>(j)].radius);
+        if (-gap <= allowed) return;
+        ++how_many;
+        if (-gap <= deepest) return;
+        deepest = -gap;
+        const Bead &a = beads[static_cast<std::size_t>(i)], &b = beads[static_cast<std::size_t>(j)];
+        worst =
+            fmt::format("beads {} and {} overlap by {:.3g} sigma, the bound is {:g}", i, j, deepest, allowed);
+        if (deepest == a.radius + b.radius) worst = fmt::format("beads {} and {} have the same centre", i, j);
+      });
   if (how_many > 0)
     throw ConfigError(where, how_many == 1 ? worst + "." : fmt::format("{}; {} pairs do.", worst, how_many));
 }

@@ -66,8 +66,14 @@ inline ViscousDamping read_normal_damping(const ContactTable& t, double stiffnes
   const std::string key = t.which_of(normal_damping_keys());
   if (key == "gamma_n") return {t.required(key, 0), 0, 0};
   if (key == "c_n") return {0, t.required(key, 0), 0};
-  if (key == "restitution")
+  if (key == "restitution") {
+    if (t.required(key) == 0)
+      throw ConfigError(
+          t.where(key),
+          "0 is out of range; the value must be greater than 0 and at most 1. Beads that do not "
+          "part are critically damped: c_n = 2 sqrt(k_n m_eff), or gamma_n = 2 sqrt(k_n/m_eff).");
     return {0, 0, damping_of_restitution(t.required(key, 0, 1, true)) * std::sqrt(stiffness)};
+  }
   return {};
 }
 

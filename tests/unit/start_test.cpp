@@ -367,8 +367,7 @@ TEST(Sound, NamesTheBead) {  // H1, H5, H21
     return complaint([&] { require_sound(beads, s, 0.05); });
   };
   EXPECT_EQ(said([](auto&) {}), "accepted");
-  expect_says(said([](auto& b) { b[1] = b[0]; }),
-              "scene.toml: start: beads 0 and 1 overlap by 1 sigma, the bound is 0.05.");
+  expect_says(said([](auto& b) { b[1] = b[0]; }), "scene.toml: start: beads 0 and 1 have the same centre.");
   expect_says(said([](auto& b) { b[2].x -= 0.06; }), "beads 1 and 2 overlap by 0.06 sigma");
   expect_says(said([](auto& b) { b[2].x -= 0.14, b[1].x -= 0.08; }),
               "beads 0 and 1 overlap by 0.08 sigma, the bound is 0.05; 2 pairs do");
@@ -417,8 +416,7 @@ TEST(Trajectory, ImpossibleOnesAreRefused) {  // H1, H5
     film.frame.position = positions;
     return complaint([&] { make_start(film.scene_of(more)); });
   };
-  expect_says(refusal({Vec3(2, 0, 0.5), Vec3(2, 0, 0.5)}),
-              "beads 0 and 1 overlap by 1 sigma, the bound is 0.2");
+  expect_says(refusal({Vec3(2, 0, 0.5), Vec3(2, 0, 0.5)}), "beads 0 and 1 have the same centre");
   expect_says(refusal({Vec3(2, 0, 0.5), Vec3(2.5, 0, 0.5)}), "beads 0 and 1 overlap by 0.5 sigma");
   expect_says(refusal({Vec3(9, 0, 0.5)}), "into the wall \"right\"");
   expect_says(refusal({Vec3(2, 0, 0.5)}, {"start.frame=1"}), "start.frame: frame 1 was asked for");

@@ -1,0 +1,24 @@
+#pragma once
+/// \file
+/// That something is refused, and in which words.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace twincell {
+
+/// Expects `action` to throw an E whose sentence holds all of `wanted`.
+template <class E, class Action, class... Words>
+void expect_refusal(Action action, const Words&... wanted) {
+  try {
+    action();
+    ADD_FAILURE() << "accepted, though it should say: " << (std::string() + ... + std::string(wanted));
+  } catch (const E& e) {
+    const std::string said = e.what();
+    for (const std::string& words : {std::string(wanted)...})
+      EXPECT_NE(said.find(words), std::string::npos) << "wanted: " << words << "\nsaid:   " << said;
+  }
+}
+
+}  // namespace twincell

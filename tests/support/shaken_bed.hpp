@@ -1,0 +1,39 @@
+#pragma once
+/// \file
+/// Beds driven by hand, for what must not change their bits.
+
+#include <cstring>
+
+#include "sim/kernel.hpp"
+#include "sim/start.hpp"
+
+namespace twincell::sim {
+
+inline bool same_bits(const System& a, const System& b) {
+  return a.beads.size() == b.beads.size() &&
+         std::memcmp(a.beads.data(), b.beads.data(), a.beads.size() * sizeof(Bead)) == 0;
+}
+
+/// Sixty beads of the first paper's law thrown onto a plate that shakes them, Gamma = 3, with softer springs.
+struct ShakenBed {
+  Scene scene;
+  Plan plan;
+  System system;
+  std::unique_ptr<Kernel> kernel;
+
+  explicit ShakenBed(const std::vector<std::string>& set = {}, KernelKind kind = KernelKind::best,
+                     int threads = 1)
+      : scene(read_scene_text(
+            "[beads]\ncount = 60\n[drive]\nomega = 1.0\ngamma = 3.0\n[start]\nkind = \"random\"\nseed = 5\n"
+            "[cell]\nwidth = 8.0\n[contact]\nk_n = 1e5\ngamma_n = 10.0\ngamma_t = 10.0\nk_t = 2e3\n",
+            "shaken", set)),
+        plan(make_plan(scene)),
+        system(make_system(scene, plan)),
+        kernel(make_kernel(plan, guard_limits(plan), kind, threads)) {
+    system.beads = make_start(scene).beads;
+    for (Bead& b : system.beads) b.vz -= 2, b.vx *= 2, b.spin = b.vx;
+  }
+  void advance(std::int64_t steps) { kernel->advance(system, steps); }
+};
+
+}  // namespace twincell::sim
