@@ -22,9 +22,7 @@ struct ExportOptions {
 };
 
 void run(const ExportOptions& o, const Common& common) {
-  std::vector<std::string> assignments = o.assignments;
-  if (common.seed) assignments.push_back(fmt::format("start.seed={}", *common.seed));
-  const sim::Scene scene = sim::read_scene(o.scene, assignments);
+  const sim::Scene scene = sim::read_scene(o.scene, with_seed(o.assignments, common));
   AtomicPath folder(o.output, AtomicPath::Kind::folder);
   ProgressBar settling(common, "settling");
   const sim::LammpsDeck deck = o.from.empty() ? sim::lammps_deck(scene, settling)

@@ -45,6 +45,11 @@ Provenance Common::provenance() const {
   return p;
 }
 
+std::vector<std::string> with_seed(std::vector<std::string> assignments, const Common& common) {
+  if (common.seed) assignments.push_back(fmt::format("start.seed={}", *common.seed));
+  return assignments;
+}
+
 CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, const std::string& summary,
                    const std::string& example) {
   CLI::App& verb = *program.add_subcommand(name, summary);
@@ -81,12 +86,14 @@ ProgressBar::~ProgressBar() {
 void ProgressBar::update(std::int64_t done, std::int64_t total) {
   if (const int signal = caught_signal.load()) throw Interrupted(static_cast<ExitCode>(128 + signal));
   if (quiet_ || total <= 0) return;
+  if (first_ < 0) first_ = done;  // a run that is taken up begins in the middle
   const int percent = static_cast<int>(100 * done / total);
   const int step = terminal_ ? 1 : 10;
   if (last_percent_ >= 0 && percent / step == last_percent_ / step) return;
   last_percent_ = percent;
   const double elapsed = 1e-9 * static_cast<double>(now_ns() - start_ns_);
-  const double left = done > 0 ? elapsed * static_cast<double>(total - done) / static_cast<double>(done) : 0;
+  const double left =
+      done > first_ ? elapsed * static_cast<double>(total - done) / static_cast<double>(done - first_) : 0;
   if (!terminal_) {
     if (percent > 0) std::fprintf(stderr, "%s: %d %%\n", label_.c_str(), percent);
     return;
@@ -103,7 +110,9 @@ void watch_signals() {
   action.sa_handler = remember_signal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe becomes a failed write, which is reported
+  // A closed pipe, or a file beyond its limit, becomes a failed write, which is reported.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 }  // namespace twincell::cli

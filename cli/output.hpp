@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analysis/trajectory/progress.hpp"
 #include "analysis/trajectory/provenance.hpp"
@@ -30,6 +31,9 @@ struct Common {
   [[nodiscard]] Provenance provenance() const;
 };
 
+/// The --set of a scene, and --seed as one of them.
+std::vector<std::string> with_seed(std::vector<std::string> assignments, const Common& common);
+
 /// Makes a subcommand with the common options and an example in its help.
 CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, const std::string& summary,
                    const std::string& example);
@@ -52,6 +56,7 @@ class ProgressBar : public Progress {
   bool quiet_;
   bool terminal_;
   int last_percent_ = -1;
+  std::int64_t first_ = -1;  ///< done at the first update
   std::int64_t start_ns_;
 };
 

@@ -6,13 +6,15 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "cli/output.hpp"
+#include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
-#include "sim/simulation.hpp"
+#include "sim/checkpoint_folder.hpp"
 
 namespace twincell::cli {
 
@@ -25,21 +27,39 @@ struct SimulateOptions {
   std::string scene, output;
   bool relax = false;
   std::vector<std::string> assignments;
+  std::optional<double> checkpoint_every;  ///< s; 0: at signals only
+  bool resume = false;
 };
 
-const char* word_of(sim::Effect::State state) {
-  switch (state) {
-    case sim::Effect::State::on:
-      return "on";
-    case sim::Effect::State::off_by_scene:
-      return "off (scene)";
-    case sim::Effect::State::off_by_proof:
-      return "off (proven)";
-    case sim::Effect::State::approximated:
-      break;
+/// Draws the bar; saves the run when it is time, and before a signal ends the program.
+class SavingProgress : public Progress {
+ public:
+  SavingProgress(const Common& common, const std::string& label, const sim::Simulation& run,
+                 sim::CheckpointFolder* folder, double seconds)
+      : bar_(common, label), run_(run), folder_(folder), every_(seconds) {}
+
+  void update(std::int64_t done, std::int64_t total) override {
+    if (folder_ == nullptr) return bar_.update(done, total);
+    try {
+      bar_.update(done, total);
+    } catch (const Interrupted& e) {
+      folder_->save(run_.state());
+      throw Interrupted(e.exit_code(), "Stopped by a signal; the same command with --resume continues from " +
+                                           folder_->path().string() + ".");
+    }
+    if (!(every_.count() > 0 && Clock::now() - saved_ >= every_)) return;
+    folder_->save(run_.state());
+    saved_ = Clock::now();
   }
-  return "approximated";
-}
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  ProgressBar bar_;
+  const sim::Simulation& run_;
+  sim::CheckpointFolder* folder_;
+  std::chrono::duration<double> every_;
+  Clock::time_point saved_ = Clock::now();
+};
 
 /// What the bed grew from: near a transition the same drive keeps different beds for hundreds of cycles.
 nlohmann::json start_of(const sim::Scene& s) {
@@ -54,7 +74,8 @@ nlohmann::json start_of(const sim::Scene& s) {
   return start;
 }
 
-nlohmann::json describe(const sim::Simulation& run, const std::string& output, double seconds) {
+nlohmann::json describe(const sim::Simulation& run, const std::string& output, std::int64_t begun_at,
+                        double seconds) {
   const sim::Scene& s = run.scene();
   const double steps = static_cast<double>(run.steps_done()),
                n = static_cast<double>(run.system().beads.size());
@@ -64,11 +85,9 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, d
                       {"k_m", s.g() > 0 ? nlohmann::json(s.drive.k_m(s.g())) : nlohmann::json()},
                       {"amplitude", s.drive.amplitude},
                       {"omega", s.drive.omega},
-                      {"steps_per_period", run.plan().steps_per_period},
-                      {"dt", run.plan().dt},
                       {"cycles", s.cycles},
                       {"discarded", s.discard},
-                      {"kernel", run.plan().kernel_name()},
+                      {"continued_from_step", begun_at > 0 ? nlohmann::json(begun_at) : nlohmann::json()},
                       {"settled",
                        {{"time", run.settled().time},
                         {"energy_per_bead", run.settled().energy_per_bead},
@@ -77,11 +96,8 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, d
                       {"list_builds", run.list_builds()},
                       {"seconds", seconds},
                       {"particle_steps_per_second", seconds > 0 ? steps * n / seconds : 0}};
-  for (const sim::Effect& e : run.plan().effects)
-    d["effects"].push_back({{"name", e.name}, {"state", word_of(e.state)}, {"reason", e.reason}});
+  d.update(as_json(run.plan()));
   if (const auto fraction = run.contact_fraction()) d["contact_fraction"] = *fraction;
-  for (const sim::TimeLimit& l : run.plan().limits)
-    d["time_limits"].push_back({{"name", l.name}, {"time", l.time}});
   return d;
 }
 
@@ -110,6 +126,8 @@ std::string as_text(const nlohmann::json& d) {
       fmt::format("{} cycles after {} discarded, {:.3g} s, {:.3g} million particle-steps/s, {} lists built\n",
                   d["cycles"].get<long>(), d["discarded"].get<long>(), d["seconds"].get<double>(),
                   1e-6 * d["particle_steps_per_second"].get<double>(), d["list_builds"].get<long>());
+  if (d["continued_from_step"].is_number())
+    s += fmt::format("continued from step {} of a checkpoint\n", d["continued_from_step"].get<long>());
   return s + d["output"].get<std::string>() + "\n";
 }
 
@@ -118,41 +136,110 @@ std::string failed_name(const std::string& output) {
   return path.replace_extension(".failed" + path.extension().string()).string();
 }
 
-void run_simulate(const SimulateOptions& options, const Common& common) {
-  std::vector<std::string> assignments = options.assignments;
-  if (options.relax) assignments.push_back("start.relax=true");
-  if (common.seed) assignments.push_back(fmt::format("start.seed={}", *common.seed));
-  sim::Scene scene = sim::read_scene(options.scene, assignments);
+std::string provenance_of(const sim::Scene& scene, const SimulateOptions& options, const Common& common) {
   Provenance provenance = common.provenance();
   provenance.inputs = {options.scene};
   if (!scene.from.empty()) provenance.inputs.push_back(scene.from);
   provenance.config = scene.resolved;
+  // A file's beads may set another step than the scene's.
+  const auto beads = scene.from.empty() ? std::vector<sim::Bead>() : sim::placed(scene).beads;
+  provenance.plan = as_json(sim::make_plan(scene, beads)).dump();
   provenance.seed = scene.seed;
-  provenance.threads = std::max(1, common.threads);
+  provenance.threads = sim::threads_for(scene.n_beads.value_or(0), common.threads);
+  return provenance.to_json();
+}
+
+/// Whether a run that is to be resumed had come to its end.
+/// \throws ConfigError if the output is there, but of another scene
+bool is_finished(const sim::Scene& scene, const SimulateOptions& options) {
+  if (!options.resume || sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output)) ||
+      !std::filesystem::exists(options.output))
+    return false;
+  const auto provenance =
+      nlohmann::json::parse(H5mdReader(options.output).info().provenance_json, nullptr, false);
+  if (!provenance.is_object() || provenance.value("config", "") != scene.resolved)
+    throw ConfigError({options.output, 0, 0, "--resume"},
+                      "the output is of another scene, and there is no checkpoint beside it to resume from.");
+  return true;
+}
+
+/// The folder to save into, if the command line asks for one.
+std::optional<sim::CheckpointFolder> folder_for(const sim::Scene& scene, const SimulateOptions& options,
+                                                const Common& common) {
+  const auto place = sim::CheckpointFolder::of(options.output);
+  if (!options.resume && sim::CheckpointFolder::holds_a_run(place))
+    throw ConfigError({place.string(), 0, 0, ""},
+                      "holds an unfinished run; --resume continues it, removing the folder begins anew.");
+  if (!options.resume && !options.checkpoint_every) return std::nullopt;
+  if (options.resume && !sim::CheckpointFolder::holds_a_run(place))
+    note(common, "there is no checkpoint in " + place.string() + ", the run begins at its start.");
+  return std::optional<sim::CheckpointFolder>(std::in_place, place, scene,
+                                              [&] { return provenance_of(scene, options, common); });
+}
+
+/// Runs into the file, or by way of a folder of checkpoints.
+void run_into(H5mdWriter& writer, sim::Simulation& run, Progress& progress, sim::CheckpointFolder* folder,
+              const std::string& output) {
+  TrajectorySink& sink = folder != nullptr ? static_cast<TrajectorySink&>(*folder) : writer;
+  try {
+    run.run(sink, progress);
+  } catch (const RunError& e) {
+    const std::string kept = failed_name(output);
+    if (folder != nullptr)
+      folder->gather(writer, [&] { writer.finish_as(kept); });
+    else
+      writer.finish_as(kept);
+    throw RunError(std::string(e.what()) + " The frames up to there are in " + kept + ".");
+  }
+  if (folder == nullptr) return writer.finish();
+  folder->save(run.state());  // gathering long runs takes a while: from here on nothing is computed again
+  folder->gather(writer, [&] { writer.finish(); });
+}
+
+void run_simulate(const SimulateOptions& options, const Common& common) {
+  std::vector<std::string> assignments = with_seed(options.assignments, common);
+  if (options.relax) assignments.emplace_back("start.relax=true");
+  sim::Scene scene = sim::read_scene(options.scene, assignments);
   { const AtomicPath probe(options.output); }  // an unwritable place is found before the work, not after
 
+  if (is_finished(scene, options)) {
+    note(common, options.output + " is finished, nothing is left to resume.");
+    return;
+  }
+  auto checkpoints = folder_for(scene, options, common);
+  sim::CheckpointFolder* folder = checkpoints ? &*checkpoints : nullptr;
+  const bool goes_on = folder != nullptr && folder->found();
+  const std::string provenance =
+      folder != nullptr ? folder->checkpoint().provenance : provenance_of(scene, options, common);
   const std::vector<std::string> told = sim::make_plan(scene).warnings;  // settling may take long
   for (const std::string& warning : told) note(common, warning);
-  ProgressBar settling(common, "settling");
-  sim::Simulation run(std::move(scene), settling, sim::KernelKind::best, common.threads);
+  sim::RunState state = goes_on ? folder->checkpoint().state : sim::placed(scene);
+  const std::int64_t begun_at = state.driven ? state.step : 0;
+  sim::Simulation run(std::move(scene), std::move(state), sim::KernelKind::best, common.threads);
+
+  constexpr double kTenMinutes = 600;
+  const double every = options.checkpoint_every.value_or(kTenMinutes);
+  {
+    SavingProgress settling(common, "settling", run, folder, every);
+    try {
+      run.settle(settling);
+    } catch (const RunError&) {
+      if (folder != nullptr) folder->remove();
+      throw;
+    }
+  }
   const std::vector<std::string> warnings = run.warnings();
   for (const std::string& warning : warnings)
     if (std::find(told.begin(), told.end(), warning) == told.end()) note(common, warning);
   TrajectoryInfo info = run.trajectory_info();
-  info.provenance_json = provenance.to_json();
+  info.provenance_json = provenance;
+  if (folder != nullptr) folder->announce(info);
   H5mdWriter writer(options.output, std::move(info));
-  ProgressBar bar(common, "simulating");
+  SavingProgress simulating(common, "simulating", run, folder, every);
   const auto begin = std::chrono::steady_clock::now();
-  try {
-    run.run(writer, bar);
-  } catch (const RunError& e) {
-    const std::string kept = failed_name(options.output);
-    writer.finish_as(kept);
-    throw RunError(std::string(e.what()) + " The frames up to there are in " + kept + ".");
-  }
+  run_into(writer, run, simulating, folder, options.output);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  writer.finish();
-  nlohmann::json document = describe(run, options.output, seconds);
+  nlohmann::json document = describe(run, options.output, begun_at, seconds);
   document["warnings"] = warnings;
   print_result(common, document, as_text(document));
 }
@@ -169,6 +256,12 @@ void add_simulate(CLI::App& program, Common& common) {
   verb.add_option("--set", options->assignments, "section.key=value, over the scene's own; may be repeated")
       ->take_all();
   verb.add_flag("--relax", options->relax, "Push beads of the start apart, however deep they overlap");
+  verb.add_option("--checkpoint-every", options->checkpoint_every,
+                  "Seconds between checkpoints in OUTPUT.checkpoint/; 0: at SIGINT and SIGTERM alone")
+      ->check(CLI::NonNegativeNumber);
+  verb.add_flag(
+      "--resume", options->resume,
+      "Continue from OUTPUT.checkpoint/, if it holds a run; saves every 600 s unless told otherwise");
   verb.callback([options, &common] { run_simulate(*options, common); });
 }
 

@@ -17,6 +17,7 @@ using AddVerb = void (*)(CLI::App& program, Common& common);
 void add_analyze(CLI::App& program, Common& common);
 void add_compare(CLI::App& program, Common& common);
 void add_cost(CLI::App& program, Common& common);
+void add_explain(CLI::App& program, Common& common);
 void add_export(CLI::App& program, Common& common);
 void add_import(CLI::App& program, Common& common);
 void add_info(CLI::App& program, Common& common);

@@ -2,6 +2,7 @@
 /// \file
 /// The run-time face of the kernels.
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -44,7 +45,16 @@ class Kernel {
     std::int64_t steps = 0, pair_visits = 0, wall_visits = 0, near_refreshes = 0;
   };
   [[nodiscard]] virtual Counters counters() const { return {}; }
+  /// Bytes held now for beads and for listed pairs and wall contacts, and how many of the latter.
+  struct Footprint {
+    std::size_t beads = 0, pairs = 0, listed = 0;
+  };
+  [[nodiscard]] virtual Footprint footprint() const { return {}; }
 };
+
+/// Threads worth using on so many beads: `asked`, but not more than beads; 0: as many as the processor has,
+/// each with enough beads to repay its waiting.
+int threads_for(std::size_t beads, int asked);
 
 enum class KernelKind {
   best,    ///< the widest vectors that this processor has

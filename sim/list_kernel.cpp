@@ -95,6 +95,7 @@ class ListKernel : public Kernel {
     return fmt::format("{}, {} contact{} at a time", target_.name, width_, width_ == 1 ? "" : "s");
   }
   [[nodiscard]] Counters counters() const override { return counters_; }
+  [[nodiscard]] Footprint footprint() const override;
 
  private:
   void prepare(const System& s);
@@ -223,11 +224,7 @@ void ListKernel::prepare(const System& s) {
   if (order_.size() != s.beads.size()) {
     restored_ = restored_.empty() ? contacts() : std::move(restored_);
     sort_beads(s);
-    // A thread is worth its barriers from some ten thousand beads on.
-    const Size most = std::max<Size>(1, s.beads.size() / 8192);
-    const Size wanted =
-        threads_ > 0 ? static_cast<Size>(threads_) : std::max(1U, std::thread::hardware_concurrency());
-    parts_.assign(std::clamp<Size>(wanted, 1, threads_ > 0 ? std::max<Size>(1, s.beads.size()) : most), {});
+    parts_.assign(static_cast<Size>(threads_for(s.beads.size(), threads_)), {});
     for (Size p = 0; p < parts_.size(); ++p) {
       parts_[p].begin = s.beads.size() * p / parts_.size();
       parts_[p].end = s.beads.size() * (p + 1) / parts_.size();
@@ -276,6 +273,26 @@ std::vector<ContactMemory> ListKernel::contacts() const {
     return a.i != b.i ? a.i < b.i : a.j < b.j;
   });
   return all;
+}
+
+Kernel::Footprint ListKernel::footprint() const {
+  const auto bytes = [](const auto&... v) { return ((v.capacity() * sizeof(v[0])) + ...); };
+  const auto held = [&](const Packets& p) {
+    return bytes(p.i, p.j, p.force_i, p.force_j, p.memory, p.constants, p.shift, p.source);
+  };
+  Footprint f;
+  f.beads = beads_.bytes() + bytes(order_, rank_, built_) + reference_.bytes();
+  for (const Part& part : parts_) {
+    f.listed += part.pairs;
+    f.pairs += bytes(part.i, part.j, part.shift, part.reach, part.constants, part.memory, part.record_i,
+                     part.record_j, part.near, part.touching, part.remembering, part.chunk_end, part.chunks) +
+               held(part.active);
+    for (const Packets& wall : part.walls) {
+      f.listed += wall.source.size();
+      f.pairs += held(wall);
+    }
+  }
+  return f;
 }
 
 /// Beads have moved, against their mean, so far that an unlisted pair may be within the inner margin.

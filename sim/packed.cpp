@@ -6,6 +6,19 @@
 
 namespace twincell::sim {
 
+namespace {
+
+/// R w of a bead; the one that the system remembers if it says the same.
+Vec3 rim_speed_of(const System& s, std::size_t bead) {
+  const Bead& b = s.beads[bead];
+  const Vec3 spin(b.spin_x, -b.spin, b.spin_z);
+  if (s.rim_speeds.size() == s.beads.size() && s.rim_speeds[bead] / b.radius == spin)
+    return s.rim_speeds[bead];
+  return b.radius * spin;
+}
+
+}  // namespace
+
 void PackedBeads::take(const System& s, const std::vector<std::int32_t>& order, std::size_t dummies) {
   const int d = plan_->dimension, stride = d == 2 ? kRecord<2> : kRecord<3>,
             force_stride = d == 2 ? kForceRecord<2> : kForceRecord<3>,
@@ -34,13 +47,14 @@ void PackedBeads::take(const System& s, const std::vector<std::int32_t>& order, 
     double* spin = spins_.data() + static_cast<std::size_t>(spin_stride) * k;
     double* f = forces_.data() + static_cast<std::size_t>(force_stride) * k;
     const Force force = s.forces_known ? s.forces[static_cast<std::size_t>(order[k])] : Force{};
+    const Vec3 rim = rim_speed_of(s, static_cast<std::size_t>(order[k]));
     if (d == 2) {
-      r[0] = b.x, r[1] = b.z, r[2] = b.vx, r[3] = b.vz, spin[0] = b.radius * b.spin;
+      r[0] = b.x, r[1] = b.z, r[2] = b.vx, r[3] = b.vz, spin[0] = -rim.y();
       f[0] = force.x, f[1] = force.z, f[2] = force.q, f[3] = 0;
     } else {
       r[0] = b.x, r[1] = b.y, r[2] = b.z, r[3] = 0;
       r[4] = b.vx, r[5] = b.vy, r[6] = b.vz, r[7] = 0;
-      spin[0] = b.radius * b.spin_x, spin[1] = -b.radius * b.spin, spin[2] = b.radius * b.spin_z, spin[3] = 0;
+      spin[0] = rim.x(), spin[1] = rim.y(), spin[2] = rim.z(), spin[3] = 0;
       f[0] = force.x, f[1] = force.y, f[2] = force.z, f[3] = 0;
       f[4] = force.q_x, f[5] = -force.q, f[6] = force.q_z, f[7] = 0;
     }
@@ -69,11 +83,19 @@ void PackedBeads::give_one(std::size_t k, Bead& b, Force& force) const {
   }
 }
 
+Vec3 PackedBeads::rim_speed(std::size_t k) const {
+  if (plan_->dimension == 2) return {0, -spins_.data()[k], 0};
+  const double* w = spins_.data() + kSpinRecord<3> * k;
+  return {w[0], w[1], w[2]};
+}
+
 void PackedBeads::give(System& s, const std::vector<std::int32_t>& order) const {
   s.forces.resize(s.beads.size());
+  s.rim_speeds.resize(plan_->rotation ? s.beads.size() : 0);
   for (std::size_t k = 0; k < n_; ++k) {
     const auto b = static_cast<std::size_t>(order[k]);
     give_one(k, s.beads[b], s.forces[b]);
+    if (plan_->rotation) s.rim_speeds[b] = rim_speed(k);
   }
   s.forces_known = true;
 }

@@ -15,6 +15,7 @@ class Lines {
   void resize(std::size_t numbers) { lines_.resize((numbers + 7) / 8); }
   [[nodiscard]] double* data() { return lines_.empty() ? nullptr : lines_[0].c; }
   [[nodiscard]] const double* data() const { return lines_.empty() ? nullptr : lines_[0].c; }
+  [[nodiscard]] std::size_t bytes() const { return lines_.capacity() * sizeof(Line); }
 
  private:
   struct alignas(64) Line {
@@ -29,16 +30,20 @@ class PackedBeads {
  public:
   explicit PackedBeads(const Plan& plan) : plan_(&plan) {}
 
-  /// Takes positions and velocities; `order[k]` is the bead in place k. The forces too if the system knows
-  /// them.
+  /// Takes positions and velocities; `order[k]` is the bead in place k. The forces and rim speeds too if the
+  /// system knows them.
   void take(const System& s, const std::vector<std::int32_t>& order, std::size_t dummies);
   /// Gives them back.
   void give(System& s, const std::vector<std::int32_t>& order) const;
-  /// Whether give() would change nothing: then what is here is what was given, and nothing need be taken (a
-  /// spin is held as R w, which does not survive the way there and back to the last bit).
+  /// Whether give() would change nothing: then what is here is what was given, and nothing need be taken.
   [[nodiscard]] bool agrees(const System& s, const std::vector<std::int32_t>& order) const;
 
   [[nodiscard]] std::size_t size() const { return n_; }
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const {
+    return records_.bytes() + forces_.bytes() + spins_.bytes() + inv_mass_.bytes() +
+           sizeof(double) * (radius_.capacity() + mass_.capacity() + inertia_.capacity() + turn_.capacity());
+  }
   [[nodiscard]] bool equal() const { return equal_; }
   [[nodiscard]] Vec3 position(std::size_t k) const;
   [[nodiscard]] double radius(std::size_t k) const { return radius_[equal_ ? 0 : k]; }
@@ -60,6 +65,7 @@ class PackedBeads {
 
  private:
   void give_one(std::size_t k, Bead& bead, Force& force) const;
+  [[nodiscard]] Vec3 rim_speed(std::size_t k) const;
 
   const Plan* plan_;
   std::size_t n_ = 0;

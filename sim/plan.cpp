@@ -53,6 +53,15 @@ ContactLaws read_laws(const Chosen& chosen, const ContactTable& table) {
           read_law<RollingAxis>(chosen.rolling, table)};
 }
 
+/// Of two equal beads, or a bead and a wall.
+PairScale pair_of(double radius, double mass, double inertia_factor) {
+  const double one = 1 / mass + 1 / (inertia_factor * mass);  // 1/m + R^2/I
+  return {mass / 2, radius / 2, 2 * one};
+}
+PairScale wall_of(double radius, double mass, double inertia_factor) {
+  return {mass, radius, 1 / mass + 1 / (inertia_factor * mass)};
+}
+
 void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
   using State = Effect::State;
   const auto add = [&](const std::string& name, State state, const std::string& reason) {
@@ -61,6 +70,14 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
   const ContactChoice& asked = s.contact;
   add("dimensions", State::on, s.dimension == 2 ? "2: plane (x, z), one axis of rotation" : "3");
   add("normal force", State::on, name_of(plan.bead.normal));
+  if (const auto* clipped = std::get_if<ClippedSpringDashpot>(&plan.bead.normal)) {
+    const PairScale pair = pair_of(s.radius, s.mass, s.inertia_factor);
+    add("tension", State::off_by_scene,
+        fmt::format("contact.normal = \"{}\": a contact ends where its force is zero; two beads part with "
+                    "e = {:.4g}, with tension e = {:.4g}",
+                    clipped->kWord, clipped->collision(pair).restitution,
+                    clipped->oscillator(pair).with_pull().restitution));
+  }
   const bool friction = chosen.tangential != "none";
   const bool spring_asked = asked.tangential == "spring" || asked.tangential == "spring-only";
   if (asked.tangential == "none")
@@ -70,21 +87,27 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
   else
     add("friction", State::on,
         fmt::format("{}, mu = {:g}", name_of(plan.bead.tangential), mu_of(asked.bead)));
+  const auto unasked = [](bool wanted, const char* key) {
+    return wanted ? "" : fmt::format("; effects.{} = false drops nothing", key);
+  };
   if (friction)
     add("rotation", State::on, "friction turns beads; it may not be dropped while mu > 0");
   else
-    add("rotation", State::off_by_proof, "without friction there is no torque: spins stay what they were");
+    add("rotation", State::off_by_proof,
+        "without friction there is no torque: spins stay what they were" + unasked(s.rotation, "rotation"));
   if (plan.history)
     add("tangential history", State::on,
         fmt::format(
             "k_t = {:g}; one {} per contact; it may not be dropped: a bed held by dashpots alone creeps",
             k_t_of(asked.bead), s.dimension == 2 ? "number" : "vector in the tangent plane"));
   else if (!spring_asked)
-    add("tangential history", State::off_by_scene, "the tangential law has no spring");
+    add("tangential history", State::off_by_scene,
+        "the tangential law has no spring" + unasked(s.history, "history"));
   else
     add("tangential history", State::off_by_proof,
-        friction ? "k_t = 0: the force depends on the present alone"
-                 : "mu = 0: there is no tangential force");
+        (friction ? "k_t = 0: the force depends on the present alone"
+                  : "mu = 0: there is no tangential force") +
+            unasked(s.history, "history"));
   if (asked.rolling == "none")
     add("rolling resistance", State::off_by_scene, "contact.rolling = \"none\"");
   else if (!friction)
@@ -149,12 +172,47 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
                                  : "abrupt start: the plate hits a bed at rest"));
   else
     add("drive", State::off_by_scene, "amplitude 0");
-  if (s.steps_per_contact < kFewSteps)
-    add("coarse steps", State::approximated,
-        fmt::format("{:g} steps per contact time: single collisions scatter in e by up to {:.2g}",
-                    s.steps_per_contact,
-                    s.integrator == "split" ? 0.1 / (s.steps_per_contact * s.steps_per_contact)
-                                            : 0.28 / s.steps_per_contact));
+  if (s.g() == 0)
+    add("settling", State::off_by_proof, "without gravity there is no rest to come to");
+  else if (s.settle_limit > 0)
+    add("settling", State::on,
+        fmt::format("on the resting plate to {:g} m g sigma a bead, for {:g} t0 at most", s.rest_energy,
+                    s.settle_limit));
+  else
+    add("settling", State::off_by_scene, "start.settle_limit = 0");
+  const double n = s.steps_per_contact;
+  // Largest over entry phases, bead-bead: tests/verification/one_contact_test.cpp, `cost sim`.
+  add("time integration", State::approximated,
+      s.integrator == "split"
+          ? fmt::format(
+                "{:g} steps per contact, split at entry and exit: e of single collisions errs by up to "
+                "{:.2g} at e = 0.9",
+                n, 0.1 / (n * n))
+          : fmt::format(
+                "{:g} steps per contact{}: e of single collisions scatters by up to {:.2g} at e = 0.9, "
+                "{:.2g} at e = 0.5",
+                n,
+                s.integrator == "predicted" ? ", velocities predicted for a step's end"
+                                            : ", dashpots half a step late",
+                0.28 / n, 0.79 / n));
+}
+
+/// What acts may not be dropped.
+void refuse_to_drop(const Scene& s, const Plan& plan) {
+  const double mu = mu_of(s.contact.bead);
+  if (!s.rotation && plan.rotation)
+    throw ConfigError(
+        {s.file, 0, 0, "effects.rotation"},
+        fmt::format(
+            "is false, but friction turns beads (contact.tangential = \"{}\", mu = {:g}); set mu = 0 at "
+            "all contacts or contact.tangential = \"none\" to be rid of both.",
+            s.contact.tangential, mu));
+  if (!s.history && plan.history)
+    throw ConfigError(
+        {s.file, 0, 0, "effects.history"},
+        fmt::format("is false, but contact.tangential = \"{}\" with k_t = {:g} is a spring that remembers; "
+                    "choose \"dashpot\" for a law without history.",
+                    s.contact.tangential, k_t_of(s.contact.bead)));
 }
 
 /// Notes a limit, or keeps the shorter of two of one name.
@@ -177,15 +235,6 @@ void add_limits(const std::string& kind, const ContactLaws& laws, const PairScal
   if (std::isfinite(tangential)) keep_shorter(limits, {kind + ", tangential contact", tangential});
   const double rolling = std::visit([&](const auto& law) { return law.shortest_time(pair); }, laws.rolling);
   if (std::isfinite(rolling)) keep_shorter(limits, {kind + ", rolling", rolling});
-}
-
-/// Of two equal beads, or a bead and a wall.
-PairScale pair_of(double radius, double mass, double inertia_factor) {
-  const double one = 1 / mass + 1 / (inertia_factor * mass);  // 1/m + R^2/I
-  return {mass / 2, radius / 2, 2 * one};
-}
-PairScale wall_of(double radius, double mass, double inertia_factor) {
-  return {mass, radius, 1 / mass + 1 / (inertia_factor * mass)};
 }
 
 struct BeadScale {
@@ -229,6 +278,25 @@ void warn(const Scene& s, Plan& plan) {
 
 }  // namespace
 
+std::string word_of(Effect::State state) {
+  switch (state) {
+    case Effect::State::on:
+      return "on";
+    case Effect::State::off_by_scene:
+      return "off (scene)";
+    case Effect::State::off_by_proof:
+      return "off (proven)";
+    case Effect::State::approximated:
+      break;
+  }
+  return "approximated";
+}
+
+const TimeLimit& Plan::shortest() const {
+  return *std::min_element(limits.begin(), limits.end(),
+                           [](const TimeLimit& a, const TimeLimit& b) { return a.time < b.time; });
+}
+
 std::string Plan::kernel_name() const {
   std::string name = fmt::format("{}D; normal: {}; tangential: {}", dimension, name_of(bead.normal),
                                  name_of(bead.tangential));
@@ -250,6 +318,8 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   plan.locate = s.integrator == "split";
   plan.rotation = std::visit([](const auto& law) { return law.kActs; }, plan.bead.tangential);
   plan.history = std::visit([](const auto& law) { return law.kHistory; }, plan.bead.tangential);
+
+  refuse_to_drop(s, plan);
 
   // Only a file's beads can differ from what the scene says.
   const bool from_file = s.start == StartKind::table || s.start == StartKind::trajectory;
@@ -280,10 +350,8 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
                  speed, plan.limits);
   }
   if (s.plate_drag > 0) plan.limits.push_back({"plate drag", 1 / s.plate_drag});
-  double shortest = HUGE_VAL;
-  for (const TimeLimit& limit : plan.limits) shortest = std::min(shortest, limit.time);
   constexpr double kMostSteps = 1e10, kShortestStep = 1e-12;
-  const double steps = s.drive.period() / (shortest / s.steps_per_contact);
+  const double steps = s.drive.period() / (plan.shortest().time / s.steps_per_contact);
   if (!(steps <= kMostSteps))
     throw ConfigError(
         {s.file, 0, 0, "drive"},
@@ -305,6 +373,9 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
                       fmt::format("the plate moves {:.3g} sigma in one step, the bound is {:g}; raise "
                                   "time.steps_per_contact or contact.k_n.",
                                   travel, plan.travel_bound));
+  // A schedule of amplitudes comes before the cycles that are discarded.
+  plan.cycles_before = static_cast<std::int64_t>(std::ceil(s.envelope.duration())) + s.discard;
+  plan.steps = (plan.cycles_before + s.cycles) * plan.steps_per_period;
   list_effects(s, chosen, plan);
   warn(s, plan);
   return plan;

@@ -25,6 +25,8 @@ struct Effect {
   State state;
   std::string reason;
 };
+/// "on", "off (scene)", "off (proven)", "approximated".
+std::string word_of(Effect::State state);
 
 /// One limit of the time step.
 struct TimeLimit {
@@ -62,16 +64,21 @@ struct Plan {
   std::vector<std::string> warnings;     ///< sentences: what runs, but perhaps not as it was meant
   std::int64_t steps_per_period = 0;     ///< a whole number, so that frames fall exactly on phases
   double dt = 0;                         ///< T/steps_per_period
+  std::int64_t cycles_before = 0;        ///< run before recording: ramp or schedule, then what is discarded
+  std::int64_t steps = 0;                ///< of the drive, recorded or not
   double overlap_bound = kOverlapBound;  ///< sigma
   double travel_bound = kTravelBound;    ///< sigma a step
 
   /// The chosen laws in one line.
   [[nodiscard]] std::string kernel_name() const;
+  /// The limit that sets the step.
+  [[nodiscard]] const TimeLimit& shortest() const;
 };
 
 /// Derives the plan. mu = 0 turns friction, rotation and history off, since nothing of them can then act.
 /// \param beads whose sizes and masses set the step and the bounds; without any, those that the scene speaks
-/// of \throws ConfigError for parameters that a law needs or refuses, and for steps too long or too many
+/// of \throws ConfigError for parameters that a law needs or refuses, for steps too long or too many, and for
+/// an effect that the scene would drop although it acts
 Plan make_plan(const Scene& scene, const std::vector<Bead>& beads = {});
 
 /// The system of a scene, without beads: cell, walls, gravity, drive, clock.

@@ -264,6 +264,11 @@ void read_time(const Section& s, Scene& scene) {
   scene.phases = static_cast<int>(s.integer_in("phases", 1, 10'000).value_or(scene.phases));
 }
 
+void read_effects(const Section& s, Scene& scene) {
+  scene.rotation = s.boolean("rotation").value_or(true);
+  scene.history = s.boolean("history").value_or(true);
+}
+
 void read_scale(const Section& s, Scene& scene) {
   scene.scale.sigma_m = s.number_in("sigma_m", 0, std::nullopt, true);
   scene.scale.gravity_m_s2 = s.number_in("gravity_m_s2", 0, std::nullopt, true);
@@ -386,6 +391,7 @@ Scene interpret(const Config& config, const std::string& name) {
   read_start(root.section("start"), scene);
   read_time(root.section("time"), scene);
   read_scale(root.section("scale"), scene);
+  read_effects(root.section("effects"), scene);
   // A misspelt key explains more than what is missing because of it.
   config.refuse_unknown_keys();
   const ContactChoice& laws = scene.contact;

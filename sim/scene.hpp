@@ -104,6 +104,9 @@ struct Scene {
   int phases = 20;
   Scale scale;
 
+  // What need not be reckoned, says the user; the plan refuses what would change the answer.
+  bool rotation = true, history = true;
+
   [[nodiscard]] double g() const { return gravity.norm(); }
   /// Mass of a bead of the same material: as R^2 for discs, R^3 for spheres.
   [[nodiscard]] double mass_of(double bead_radius) const;

@@ -20,6 +20,11 @@ double kinetic_energy_per_bead(const System& s) {
   return s.beads.empty() ? 0 : sum / static_cast<double>(s.beads.size());
 }
 
+/// Steps of about a tenth of a second at most, so that a signal is noticed.
+std::int64_t unnoticed_steps(const System& s) {
+  return 1 + 2'000'000 / (1 + static_cast<std::int64_t>(s.beads.size()));
+}
+
 double top_of(const std::vector<Bead>& beads) {
   double top = 0;
   for (const Bead& b : beads) top = std::max(top, b.z + b.radius);
@@ -54,49 +59,94 @@ double largest_kick(const System& s) {
 
 }  // namespace
 
-Simulation::Simulation(Scene scene, Progress& progress, KernelKind kind, int threads)
-    : scene_(std::move(scene)), plan_(make_plan(scene_)) {
-  Start start = make_start(scene_);
-  require_sound(start.beads, scene_, 0.05);
-  plan_ = make_plan(scene_, start.beads);  // a file's beads may be lighter than the scene's
+RunState placed(const Scene& scene) {
+  static_cast<void>(make_plan(scene));  // what cannot run is refused before ten million beads are placed
+  Start start = make_start(scene);
+  require_sound(start.beads, scene, 0.05);
+  RunState state;
   // High enough never to be reached: the bed, the plate's stroke, twice the ballistic height of the plate's
   // speed, ten diameters.
-  const double v = scene_.drive.peak_velocity(), g = scene_.g();
+  const double v = scene.drive.peak_velocity(), g = scene.g();
   const double flight = g > 0 ? v * v / g : 0;
-  height_ =
-      scene_.height.value_or(std::ceil(top_of(start.beads) + 2 * scene_.drive.amplitude + 2 * flight + 10));
+  state.height =
+      scene.height.value_or(std::ceil(top_of(start.beads) + 2 * scene.drive.amplitude + 2 * flight + 10));
+  state.beads = std::move(start.beads);
+  state.tracer = std::move(start.tracer);
+  return state;
+}
 
-  system_ = make_system(scene_, plan_);
-  system_.beads = std::move(start.beads);
+void begin_drive(const Scene& scene, System& system) {
+  system.drive = scene.drive;
+  system.envelope = scene.envelope;
+  system.step = 0;
+  // At phase 0 the plate moves at A omega but does not accelerate: beads moving with it are in equilibrium.
+  // Beads at rest would be hit by a plate at full speed, which by itself breaks a crystal.
+  if (!scene.comoving) return;
+  const double v = system.plate_velocity();
+  for (Bead& b : system.beads) {
+    if (scene.drive.axis == Axis::x) b.vx += v;
+    if (scene.drive.axis == Axis::y) b.vy += v;
+    if (scene.drive.axis == Axis::z) b.vz += v;
+  }
+}
+
+Simulation::Simulation(Scene scene, RunState state, KernelKind kind, int threads)
+    : scene_(std::move(scene)),
+      plan_(make_plan(scene_, state.beads)),  // a file's beads may be lighter than the scene's
+      system_(make_system(scene_, plan_)),
+      tracer_(std::move(state.tracer)),
+      height_(state.height),
+      driven_(state.driven),
+      quiet_(state.quiet),
+      settled_(state.settled),
+      looked_at_(state.looked_at),
+      touching_(state.touching) {
   GuardLimits limits = guard_limits(plan_);
   // A height that the scene names without a lid binds; the one we chose merely keeps the box of the file
   // finite.
   limits.ceiling = scene_.lid || scene_.bottom == Edge::periodic ? 0 : scene_.height.value_or(0);
   kernel_ = make_kernel(plan_, limits, kind, threads);
+  kernel_->restore(std::move(state.contacts));
+  if (driven_)
+    system_.envelope = scene_.envelope;
+  else
+    system_.drive.amplitude = 0;  // the plate rests at its mean
+  system_.step = state.step;
+  system_.beads = std::move(state.beads);
+  system_.forces_known = !state.forces.empty();
+  system_.forces = std::move(state.forces);
+  system_.rim_speeds = std::move(state.rim_speeds);
+  if (driven_ || system_.step > 0) return;
   try {
     check_motion(system_, limits);
   } catch (const RunError& e) {  // before the first step it is the start that is wrong
     throw ConfigError({scene_.file, 0, 0, "start"}, e.what());
   }
+}
+
+Simulation::Simulation(Scene scene, Progress& progress, KernelKind kind, int threads)
+    : Simulation(scene, placed(scene), kind, threads) {
   settle(progress);
-  tracer_ = start.tracer.empty() ? choose_tracers(system_.beads, scene_) : std::move(start.tracer);
 }
 
 void Simulation::settle(Progress& progress) try {
-  system_.drive.amplitude = 0;  // the plate rests at its mean
-  if (system_.beads.empty() || scene_.g() == 0 || scene_.settle_limit == 0) return;
+  if (driven_) return;
   // Rest must last: the energy is looked at every ten contact times.
+  constexpr int kLooks = 2;
   const auto block = static_cast<std::int64_t>(10 * scene_.steps_per_contact);
-  const auto most = static_cast<std::int64_t>(scene_.settle_limit / system_.dt);
-  int quiet = 0;
-  while (system_.step < most && quiet < 2) {
-    kernel_->advance(system_, block);
-    settled_.energy_per_bead = kinetic_energy_per_bead(system_);
-    quiet = settled_.energy_per_bead < scene_.rest_energy ? quiet + 1 : 0;
+  const bool falls = !system_.beads.empty() && scene_.g() > 0;
+  const auto most = falls ? static_cast<std::int64_t>(scene_.settle_limit / system_.dt) : 0;
+  while (system_.step / block * block < most && quiet_ < kLooks) {
+    kernel_->advance(system_, std::min(block - system_.step % block, unnoticed_steps(system_)));
+    if (system_.step % block == 0) {
+      settled_.energy_per_bead = kinetic_energy_per_bead(system_);
+      quiet_ = settled_.energy_per_bead < scene_.rest_energy ? quiet_ + 1 : 0;
+      settled_.time = system_.time();
+      settled_.reached = quiet_ >= kLooks;
+    }
     progress.update(std::min(system_.step, most), most);
   }
-  settled_.time = system_.time();
-  settled_.reached = quiet >= 2;
+  if (tracer_.empty()) tracer_ = choose_tracers(system_.beads, scene_);
 } catch (const RunError& e) {
   throw RunError(std::string("While the bed settled, ") + e.what());
 }
@@ -108,9 +158,9 @@ std::vector<std::string> Simulation::warnings() const {
         fmt::format("the bed still moved at {:.3g} m g sigma a bead when start.settle_limit = {:g} ended its "
                     "settling.",
                     settled_.energy_per_bead, scene_.settle_limit));
-  if (steps_done_ > 0) return all;
+  if (driven_) return all;
   System at_start = system_;
-  start_drive(at_start);
+  begin_drive(scene_, at_start);
   constexpr double kGentle = 0.01;
   if (const double kick = largest_kick(at_start); kick > kGentle)
     all.push_back(
@@ -120,19 +170,21 @@ std::vector<std::string> Simulation::warnings() const {
   return all;
 }
 
-void Simulation::start_drive(System& system) const {
-  system.drive = scene_.drive;
-  system.envelope = scene_.envelope;
-  system.step = 0;
-  // At phase 0 the plate moves at A omega but does not accelerate: beads moving with it are in equilibrium.
-  // Beads at rest would be hit by a plate at full speed, which by itself breaks a crystal.
-  if (!scene_.comoving) return;
-  const double v = system.plate_velocity();
-  for (Bead& b : system.beads) {
-    if (scene_.drive.axis == Axis::x) b.vx += v;
-    if (scene_.drive.axis == Axis::y) b.vy += v;
-    if (scene_.drive.axis == Axis::z) b.vz += v;
-  }
+RunState Simulation::state() const {
+  RunState state;
+  state.driven = driven_;
+  state.step = system_.step;
+  state.quiet = quiet_;
+  state.settled = settled_;
+  state.height = height_;
+  state.beads = system_.beads;
+  if (system_.forces_known) state.forces = system_.forces;
+  state.rim_speeds = system_.rim_speeds;
+  state.contacts = kernel_->contacts();
+  state.tracer = tracer_;
+  state.looked_at = looked_at_;
+  state.touching = touching_;
+  return state;
 }
 
 std::optional<double> Simulation::contact_fraction() const {
@@ -182,31 +234,24 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
 }
 
 void Simulation::run(TrajectorySink& sink, Progress& progress) {
-  start_drive(system_);
+  settle(progress);
+  if (!driven_) begin_drive(scene_, system_);
+  driven_ = true;
   const std::int64_t per_phase = plan_.steps_per_period / scene_.phases;
-  // A schedule of amplitudes comes before the cycles that are discarded.
-  const std::int64_t before =
-      static_cast<std::int64_t>(std::ceil(scene_.envelope.duration())) + scene_.discard;
-  const std::int64_t total = (before + scene_.cycles) * scene_.phases;
-  for (std::int64_t k = 0; k < total; ++k) {
-    const std::int64_t cycle = k / scene_.phases - before;
-    if (cycle >= 0) {
-      sink.append(snapshot(cycle, static_cast<int>(k % scene_.phases)));
+  const std::int64_t last = plan_.steps;
+  while (system_.step < last) {
+    const std::int64_t frame = system_.step / per_phase, into = system_.step % per_phase;
+    const std::int64_t cycle = frame / scene_.phases - plan_.cycles_before;
+    if (into == 0 && cycle >= 0) {
+      sink.append(snapshot(cycle, static_cast<int>(frame % scene_.phases)));
       touching_ += beads_in_contact(system_);
       looked_at_ += static_cast<std::int64_t>(system_.beads.size());
     }
-    progress.update(k, total);
-    // In pieces of about a tenth of a second at most, so that a signal is noticed.
-    for (std::int64_t done = 0; done < per_phase;) {
-      const std::int64_t piece = std::min<std::int64_t>(
-          per_phase - done, 1 + 2'000'000 / (1 + static_cast<std::int64_t>(system_.beads.size())));
-      kernel_->advance(system_, piece);
-      done += piece;
-      steps_done_ += piece;
-      progress.update(k, total);
-    }
+    const std::int64_t piece = std::min(per_phase - into, unnoticed_steps(system_));
+    kernel_->advance(system_, piece);
+    steps_done_ += piece;
+    progress.update(system_.step, last);
   }
-  progress.update(total, total);
 }
 
 }  // namespace twincell::sim

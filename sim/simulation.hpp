@@ -23,30 +23,60 @@ struct Settled {
   bool reached = false;        ///< below scene.rest_energy; otherwise the time limit ended it
 };
 
-/// A scene made ready. Construction places the beads and lets them settle on the resting plate; `run` drives
-/// them.
+/// All that the rest of a run depends on, besides its scene. A run taken up from it goes on bit for bit.
+struct RunState {
+  bool driven = false;    ///< false: still settling on the resting plate
+  std::int64_t step = 0;  ///< since settling began, or since phase 0 of the drive
+  int quiet = 0;          ///< looks in a row at which the settling bed was at rest
+  Settled settled;
+  double height = 0;  ///< of the trajectory's box, sigma
+  std::vector<Bead> beads;
+  std::vector<Force> forces;     ///< at the present positions, or empty
+  std::vector<Vec3> rim_speeds;  ///< as in System
+  std::vector<ContactMemory> contacts;
+  std::vector<std::uint8_t> tracer;          ///< empty: not chosen yet
+  std::int64_t looked_at = 0, touching = 0;  ///< beads in frames so far, and those of them in contact
+};
+
+/// The state in which a scene begins: beads placed, nothing moved.
+/// \throws ConfigError, InputError for a start that cannot be
+RunState placed(const Scene& scene);
+
+/// Sets the plate of a settled system going, at phase 0.
+void begin_drive(const Scene& scene, System& system);
+
+/// A scene made ready and run: the bed settles on the resting plate, then the plate drives it.
 class Simulation {
  public:
+  /// Places the beads and lets them settle.
   /// \throws ConfigError, InputError for a scene or start that cannot be; RunError if settling goes wrong
   /// \param threads for this one system; 0: as many as its size is worth. The bits do not depend on it.
   explicit Simulation(Scene scene, Progress& progress = Progress::none(), KernelKind kind = KernelKind::best,
                       int threads = 1);
+  /// Goes on from a state of the same scene, nothing moved yet.
+  Simulation(Scene scene, RunState state, KernelKind kind = KernelKind::best, int threads = 1);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const Settled& settled() const { return settled_; }
   [[nodiscard]] const System& system() const { return system_; }
-  /// What a user should know before the run: those of the plan, an abrupt start, a bed that did not come to
-  /// rest.
+  /// What a user should know: those of the plan, a bed that did not come to rest, and before the drive an
+  /// abrupt start.
   [[nodiscard]] std::vector<std::string> warnings() const;
-  /// What the trajectory will hold, apart from provenance.
+  /// What the trajectory will hold, apart from provenance. Tracers are chosen when the bed has settled.
   [[nodiscard]] TrajectoryInfo trajectory_info() const;
 
+  /// Settles what is left to settle.
+  /// \throws RunError, Interrupted
+  void settle(Progress& progress = Progress::none());
   /// Runs discard + cycles periods and hands over the frames of the latter, `phases` a cycle, cycle 0 first.
   /// \throws RunError when the run goes wrong (frames up to there have been handed over), Interrupted
   void run(TrajectorySink& sink, Progress& progress = Progress::none());
+  /// The state now. Whenever settle() and run() call progress.update it is whole: frames of all steps before
+  /// state().step have been handed over, and no others.
+  [[nodiscard]] RunState state() const;
 
-  /// Steps done and neighbour lists built by `run`.
+  /// Steps of the drive done by this object.
   [[nodiscard]] std::int64_t steps_done() const { return steps_done_; }
   [[nodiscard]] std::int64_t list_builds() const { return kernel_->list_builds(); }
   /// Share of beads and frames in which a bead touched another or a wall. In a dilute gas it is t_c times the
@@ -55,8 +85,6 @@ class Simulation {
   [[nodiscard]] const Kernel& kernel() const { return *kernel_; }
 
  private:
-  void settle(Progress& progress);
-  void start_drive(System& system) const;
   [[nodiscard]] Frame snapshot(std::int64_t cycle, int phase) const;
 
   Scene scene_;
@@ -65,6 +93,8 @@ class Simulation {
   std::vector<std::uint8_t> tracer_;
   double height_ = 0;
   std::unique_ptr<Kernel> kernel_;
+  bool driven_ = false;
+  int quiet_ = 0;
   Settled settled_;
   std::int64_t steps_done_ = 0;
   std::int64_t looked_at_ = 0, touching_ = 0;  ///< beads in frames, and those of them in contact

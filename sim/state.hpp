@@ -56,6 +56,9 @@ struct System {
   std::vector<Bead> beads;
   std::vector<Force> forces;  ///< at the present positions; same length as beads, meaningful if forces_known
   bool forces_known = false;  ///< a kernel reckons them anew if not
+  /// Radius times angular velocity, as kernels hold it; empty, or as long as beads. A spin is this over the
+  /// radius, which loses its last bit: where the two agree this is what counts.
+  std::vector<Vec3> rim_speeds;
   int dimension = 2;
   std::array<double, 3> period = {0, 0, 0};  ///< x, y, z; 0: not periodic
   Vec3 gravity = -Vec3::UnitZ();
@@ -69,30 +72,35 @@ struct System {
   double dt = 0;
 
   /// Fraction of the period at the present step, the same bits in every period.
-  [[nodiscard]] double phase() const {
-    return static_cast<double>(step % steps_per_period) / static_cast<double>(steps_per_period);
-  }
-  [[nodiscard]] double cycles() const { return static_cast<double>(step / steps_per_period) + phase(); }
+  [[nodiscard]] double phase() const { return phase_at(step); }
+  [[nodiscard]] double cycles() const { return cycles_at(step); }
   [[nodiscard]] double time() const { return static_cast<double>(step) * dt; }
   /// Displacement of the plate along drive.axis, f A sin(omega t).
-  [[nodiscard]] double plate_height() const {
-    const double s = drive.displacement(phase());
-    return envelope.points.empty() ? s : envelope.at(cycles()) * s;
-  }
+  [[nodiscard]] double plate_height() const { return plate_height_at(step); }
   [[nodiscard]] double plate_velocity() const {
     const double v = drive.velocity(phase());
     if (envelope.points.empty()) return v;
     return envelope.at(cycles()) * v +
            envelope.slope(cycles()) / drive.period() * drive.displacement(phase());
   }
-  /// Displacement at the step before.
-  [[nodiscard]] double plate_height_before() const {
-    const std::int64_t n = steps_per_period;
-    const double s = drive.displacement(static_cast<double>((step + n - 1) % n) / static_cast<double>(n));
-    return envelope.points.empty() ? s : envelope.at(cycles() - 1 / static_cast<double>(n)) * s;
-  }
+  /// Displacement at the step before, the bits that it had then.
+  [[nodiscard]] double plate_height_before() const { return plate_height_at(step - 1); }
   [[nodiscard]] Vec3 plate_displacement() const {
     return plate_height() * Vec3::Unit(static_cast<int>(drive.axis));
+  }
+
+ private:
+  [[nodiscard]] double phase_at(std::int64_t k) const {
+    const std::int64_t n = steps_per_period;
+    return static_cast<double>((k + n) % n) / static_cast<double>(n);  // k >= -1
+  }
+  [[nodiscard]] double cycles_at(std::int64_t k) const {
+    const std::int64_t n = steps_per_period;
+    return static_cast<double>((k + n) / n - 1) + phase_at(k);
+  }
+  [[nodiscard]] double plate_height_at(std::int64_t k) const {
+    const double s = drive.displacement(phase_at(k));
+    return envelope.points.empty() ? s : envelope.at(cycles_at(k)) * s;
   }
 };
 

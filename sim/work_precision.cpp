@@ -80,7 +80,7 @@ struct ImpactSpread {
 ImpactSpread compare(const std::vector<double>& e, const std::vector<double>& sticking,
                      const ContactLaws& laws, double m_eff, double inv_m_t) {
   const LinearCollision exact =
-      std::get<LinearSpringDashpot>(laws.normal).collision({.m_eff = m_eff, .r_eff = 0, .inv_m_t = inv_m_t});
+      std::get<LinearSpringDashpot>(laws.normal).oscillator({.m_eff = m_eff, .r_eff = 0, .inv_m_t = inv_m_t});
   const auto& friction = std::get<SpringSlider>(laws.tangential);
   return {spread_of(e, exact.restitution()),
           spread_of(sticking, sticking_ratio(friction.k_t, friction.damping.eta(m_eff), inv_m_t,
@@ -148,7 +148,7 @@ constexpr double kSettling = 2250;  ///< contact times
 /// Of two beads.
 double contact_time(const Plan& plan) {
   return std::get<LinearSpringDashpot>(plan.bead.normal)
-      .collision({.m_eff = 0.5, .r_eff = 0, .inv_m_t = 0})
+      .oscillator({.m_eff = 0.5, .r_eff = 0, .inv_m_t = 0})
       .contact_time();
 }
 

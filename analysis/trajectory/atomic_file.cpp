@@ -1,5 +1,6 @@
 #include "analysis/trajectory/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -14,6 +15,20 @@
 namespace twincell {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Waits until a file, or the names in a folder, are on the disk; false if the disk refused. What cannot be
+/// waited for (some network file systems) counts as done.
+bool sync_to_disk(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return true;
+  const bool refused = ::fsync(file) != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT);
+  ::close(file);
+  return !refused;
+}
+
+}  // namespace
 
 AtomicPath::AtomicPath(fs::path final_path, Kind kind) : final_(std::move(final_path)) {
   while (!final_.empty() && !final_.has_filename())
@@ -54,12 +69,16 @@ void AtomicPath::commit() {
 
 void AtomicPath::commit_as(const fs::path& other_name) {
   std::error_code ec;
-  if (fs::is_directory(part_, ec)) fs::remove_all(other_name, ec);
+  if (fs::is_directory(part_, ec))
+    fs::remove_all(other_name, ec);
+  else if (!sync_to_disk(part_))
+    throw RunError(part_.string() + ": the disk did not take it (" + std::strerror(errno) + ").");
   fs::rename(part_, other_name, ec);
   if (ec)
     throw RunError(other_name.string() + ": the finished output cannot be given its name (" + ec.message() +
                    ").");
   open_ = false;
+  sync_to_disk(other_name.has_parent_path() ? other_name.parent_path() : fs::path("."));
 }
 
 void write_text_file(const fs::path& path, const std::string& text) {

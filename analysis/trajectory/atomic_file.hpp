@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Outputs that exist whole or not at all: write beside the final name, rename at the end.
+/// Outputs that exist whole or not at all: write beside the final name, rename at the end. A file is on the
+/// disk before it gets its name, so that this holds for a machine that loses its power too.
 
 #include <filesystem>
 #include <string>

@@ -63,8 +63,9 @@ class RunError : public Error {
 /// The user or the system asked the program to stop: exit code 130 or 143.
 class Interrupted : public Error {
  public:
-  explicit Interrupted(ExitCode code)
-      : Error(code, "Stopped by a signal; no unfinished file was left behind.") {}
+  explicit Interrupted(
+      ExitCode code, const std::string& sentence = "Stopped by a signal; no unfinished file was left behind.")
+      : Error(code, sentence) {}
 };
 
 /// Throws ConfigError unless lower <= value <= upper (either bound may be absent; `open_lower` excludes the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <string_view>
 
 #include "analysis/trajectory/error.hpp"
 
@@ -19,6 +20,12 @@ std::string reason() {
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, visit, &text);  // ends at the innermost
   H5Eclear2(H5E_DEFAULT);
+  // What the system said of a failed write stands between clocks, descriptors and addresses.
+  constexpr std::string_view kBefore = "error message = '";
+  if (const std::size_t at = text.find(kBefore); at != std::string::npos) {
+    const std::size_t begin = at + kBefore.size();
+    text = text.substr(begin, text.find('\'', begin) - begin);
+  }
   return text.empty() ? "no reason given by HDF5" : text;
 }
 
@@ -91,6 +98,8 @@ void check(herr_t status, const std::string& what) {
 }
 
 void quiet() {
+  // A file that the disk would not take stays half open in the library, which stumbles over it at the exit.
+  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 

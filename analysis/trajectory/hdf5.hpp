@@ -35,7 +35,8 @@ class Handle {
 Handle own(hid_t id, const std::string& what);
 /// \throws RunError likewise if `status` is negative
 void check(herr_t status, const std::string& what);
-/// Turns off HDF5's own printing; the reason goes into our sentences. Called by whoever opens a file.
+/// Turns off HDF5's own printing; the reason goes into our sentences. And its own tidying at the exit, if
+/// called before anything else of HDF5. Called by whoever opens a file.
 void quiet();
 
 /// Native memory type of T: double, int, std::int64_t, std::uint8_t, std::int8_t.

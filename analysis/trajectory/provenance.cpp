@@ -2,17 +2,15 @@
 
 #include <fmt/format.h>
 #include <hdf5.h>
-#include <openssl/evp.h>
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <ctime>
 #include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/sha256.hpp"
 #include "twincell_version.hpp"
 
 namespace twincell {
@@ -55,36 +53,11 @@ nlohmann::json version_object() {
       {"processor", processor()}};
 }
 
-/// Feeds a file to a digest piece by piece.
-class Sha256 {
- public:
-  Sha256() { EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr); }
-  void add(const char* data, std::size_t size) { EVP_DigestUpdate(context_.get(), data, size); }
-  std::string hex() {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-    unsigned size = 0;
-    EVP_DigestFinal_ex(context_.get(), digest.data(), &size);
-    std::string text;
-    for (unsigned i = 0; i < size; ++i) text += fmt::format("{:02x}", digest[i]);
-    return text;
-  }
-
- private:
-  std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_{EVP_MD_CTX_new(), EVP_MD_CTX_free};
-};
-
-std::vector<fs::path> files_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file()) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 std::uintmax_t size_of(const fs::path& path) {
   if (!fs::is_directory(path)) return fs::file_size(path);
   std::uintmax_t total = 0;
-  for (const auto& file : files_in(path)) total += fs::file_size(file);
+  for (const auto& entry : fs::directory_iterator(path))
+    if (entry.is_regular_file()) total += entry.file_size();
   return total;
 }
 
@@ -98,23 +71,6 @@ std::string version_json() {
   return version_object().dump(2);
 }
 
-std::string sha256_of(const fs::path& path) {
-  Sha256 digest;
-  if (fs::is_directory(path)) {
-    for (const auto& file : files_in(path)) {
-      const std::string line = file.filename().string() + "\n" + sha256_of(file) + "\n";
-      digest.add(line.data(), line.size());
-    }
-    return digest.hex();
-  }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError({path.string(), 0, 0, ""}, "the file cannot be read.");
-  std::vector<char> buffer(1 << 16);
-  while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || stream.gcount() > 0)
-    digest.add(buffer.data(), static_cast<std::size_t>(stream.gcount()));
-  return digest.hex();
-}
-
 std::string Provenance::to_json() const {
   nlohmann::json out = version_object();
   out["utc"] = utc_now();
@@ -122,6 +78,7 @@ std::string Provenance::to_json() const {
   out["threads"] = threads;
   if (seed) out["seed"] = *seed;
   if (!config.empty()) out["config"] = config;
+  if (!plan.empty()) out["plan"] = nlohmann::json::parse(plan);
   out["inputs"] = nlohmann::json::array();
   for (const auto& input : inputs)
     out["inputs"].push_back(

@@ -20,6 +20,7 @@ std::string version_json();
 struct Provenance {
   std::string command_line;
   std::string config;  ///< resolved scene or cell text; empty if none
+  std::string plan;    ///< what a simulation reckons and why, JSON; empty if none
   std::optional<std::uint64_t> seed;
   int threads = 1;
   std::vector<std::filesystem::path> inputs;  ///< size and SHA-256 of each are recorded
@@ -27,8 +28,5 @@ struct Provenance {
   /// \throws InputError if an input cannot be read
   [[nodiscard]] std::string to_json() const;
 };
-
-/// SHA-256 of a file's content as 64 hex digits; of a folder: of the names and digests of its files in order.
-std::string sha256_of(const std::filesystem::path& path);
 
 }  // namespace twincell

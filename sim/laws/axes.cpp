@@ -36,11 +36,27 @@ void check_laws(const std::string& normal, const std::string& tangential, const 
   static_cast<void>(read_law<RollingAxis>(rolling, table));
 }
 
+std::vector<std::string> keys_of(const std::string& normal, const std::string& tangential,
+                                 const std::string& rolling) {
+  std::vector<std::string> keys;
+  const auto collect = [&](const std::string& word) {
+    return [&](const auto& law) {
+      if (word.empty() || word == law.kWord)
+        keys.insert(keys.end(), std::begin(law.kKeys), std::end(law.kKeys));
+    };
+  };
+  for_each_law(NormalAxis{}, collect(normal));
+  for_each_law(TangentialAxis{}, collect(tangential));
+  for_each_law(RollingAxis{}, collect(rolling));
+  return keys;
+}
+
+std::vector<std::string> all_law_keys() {
+  return keys_of("", "", "");
+}
+
 void know_all_keys(const ContactTable& table) {
-  const auto know = [&](const auto& law) { table.know({std::begin(law.kKeys), std::end(law.kKeys)}); };
-  for_each_law(NormalAxis{}, know);
-  for_each_law(TangentialAxis{}, know);
-  for_each_law(RollingAxis{}, know);
+  table.know(all_law_keys());
 }
 
 }  // namespace twincell::sim

@@ -58,6 +58,11 @@ void check_laws(const std::string& normal, const std::string& tangential, const 
 std::vector<std::string> normal_words();
 std::vector<std::string> tangential_words();
 std::vector<std::string> rolling_words();
+/// The keys that the named laws read.
+std::vector<std::string> keys_of(const std::string& normal, const std::string& tangential,
+                                 const std::string& rolling);
+/// The keys of all laws.
+std::vector<std::string> all_law_keys();
 /// Marks the keys of all laws as known in a table.
 void know_all_keys(const ContactTable& table);
 

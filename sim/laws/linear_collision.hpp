@@ -10,6 +10,13 @@
 
 namespace twincell::sim {
 
+/// What one head-on collision comes to.
+struct Collision {
+  double duration;       ///< t0; infinite if the spring never drives the beads apart
+  double restitution;    ///< e_n
+  double damping_ratio;  ///< zeta; from 1 on overdamped
+};
+
 /// The closed forms of one collision of the linear law (w0 = sqrt(k/m_eff), beta = eta/(2 m_eff)).
 struct LinearCollision {
   double w0, beta;
@@ -24,6 +31,17 @@ struct LinearCollision {
   /// e_n = exp(-beta t_c); 0 if overdamped.
   [[nodiscard]] double restitution() const {
     return damping_ratio() < 1 ? std::exp(-beta * contact_time()) : 0;
+  }
+  [[nodiscard]] Collision with_pull() const { return {contact_time(), restitution(), damping_ratio()}; }
+  /// The same where the force never pulls: the contact ends when it is zero (Schwager & Poeschel 2007,
+  /// eqs. 20-22). Overdamped beads part too.
+  [[nodiscard]] Collision without_pull() const {
+    const double square = w0 * w0 - beta * beta;
+    const double w = std::sqrt(std::abs(square));
+    if (w < 1e-6 * w0) return {2 / w0, std::exp(-2), damping_ratio()};
+    const double t = square > 0 ? (std::numbers::pi - std::atan2(2 * beta * w, w * w - beta * beta)) / w
+                                : std::log((beta + w) / (beta - w)) / w;
+    return {t, std::exp(-beta * t), damping_ratio()};
   }
   /// What a step must resolve: t_c; where damping is strong the shorter of half an undamped period and the
   /// decay time of the dashpot.

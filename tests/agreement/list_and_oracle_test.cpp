@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <random>
 
 #include "sim/simulation.hpp"
 #include "sim/start.hpp"
@@ -62,6 +63,46 @@ TEST(ListKernel, RebuildHabitsChangeNothing) {  // V2.14, H22, H24: history is n
     const System seldom = shaken(law, KernelKind::best, 0);
     EXPECT_TRUE(same_bits(seldom, shaken(law, KernelKind::best, 1))) << law;
     EXPECT_TRUE(same_bits(seldom, shaken(law, KernelKind::best, 7))) << law;
+  }
+}
+
+/// A dilute gas over a plate: most beads fly freely for as long as a list holds, and are then moved many
+/// steps at once.
+System dilute(const std::string& dimension, KernelKind kind, std::int64_t rebuild_every, int calls) {
+  const Scene scene = read_scene_text(
+      "[cell]\nwidth = 60.0\n" + dimension +
+          "[beads]\ncount = 1\n[contact]\nk_n = 1e3\nrestitution = 0.9\ntangential = "
+          "\"dashpot\"\nc_t_over_c_n = "
+          "1.0\nmu = 0.4\n[drive]\nomega = 1.0\ngamma = 1.5\n[time]\nsteps_per_contact = 12\n",
+      "gas");
+  const Plan plan = make_plan(scene);
+  System s = make_system(scene, plan);
+  std::mt19937_64 engine(4);
+  std::uniform_real_distribution<double> place(0, 1), speed(-3, 3);
+  for (int i = 0; i < 61; ++i) {  // a number that no group of beads divides
+    Bead b;
+    b.x = 0.5 + 0.97 * i, b.z = 0.6 + 12 * place(engine);
+    if (scene.dimension == 3) b.y = 0.5 + 2.9 * place(engine);
+    b.vx = speed(engine), b.vz = speed(engine), b.spin = speed(engine);
+    s.beads.push_back(b);
+  }
+  const auto kernel = make_kernel(plan, {.overlap = 0.4, .travel_per_step = 1}, kind);
+  kernel->rebuild_every(rebuild_every);
+  for (int k = 0; k < calls; ++k) kernel->advance(s, 4200 / calls);
+  return s;
+}
+
+TEST(ListKernel, BeadsThatNothingTouchesFlyTheSame) {
+  for (const std::string dimension :
+       {"", "sides = \"periodic\"\n", "dimension = 3\ndepth = 4.0\n",
+        "dimension = 3\ndepth = 4.0\nsides = \"periodic\"\nplates = \"periodic\"\n"}) {
+    const System exact = dilute(dimension, KernelKind::all_pairs, 0, 1);
+    EXPECT_TRUE(same_bits(exact, dilute(dimension, KernelKind::best, 0, 1))) << dimension;
+    EXPECT_TRUE(same_bits(exact, dilute(dimension, KernelKind::best, 7, 1))) << dimension;
+    EXPECT_TRUE(same_bits(exact, dilute(dimension, KernelKind::scalar, 0, 20))) << dimension;
+    if (available(KernelKind::avx2)) {
+      EXPECT_TRUE(same_bits(exact, dilute(dimension, KernelKind::avx2, 0, 3))) << dimension;
+    }
   }
 }
 

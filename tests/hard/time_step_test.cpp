@@ -85,7 +85,7 @@ TEST(TimeStep, H9_StiffSpringsKeepTheirRestitution) {
   const std::string stiff = "[contact]\nk_n = 1e9\n";
   const Bench bench(kNoGravity + stiff);
   const double asked = std::get<LinearSpringDashpot>(bench.plan.bead.normal)
-                           .collision({.m_eff = 0.5, .r_eff = 0.25, .inv_m_t = 6})
+                           .oscillator({.m_eff = 0.5, .r_eff = 0.25, .inv_m_t = 6})
                            .restitution();
   const PhaseErrors errors = over_entry_phases(
       [&](double phase) { return pair_restitution(stiff, 50.37, 1, phase); }, asked, 20);
@@ -100,7 +100,7 @@ TEST(TimeStep, H10_OverdampedContactsHaveAFiniteStep) {
     const Plan plan = plan_of({std::string("contact.gamma_n=") + gamma});
     EXPECT_TRUE(std::isfinite(plan.dt) && plan.dt > 0) << gamma;
     const auto collision =
-        std::get<LinearSpringDashpot>(plan.bead.normal).collision({.m_eff = 0.5, .r_eff = 0.25, .inv_m_t = 6});
+        std::get<LinearSpringDashpot>(plan.bead.normal).oscillator({.m_eff = 0.5, .r_eff = 0.25, .inv_m_t = 6});
     EXPECT_EQ(collision.restitution() == 0, collision.damping_ratio() >= 1) << gamma;
     const double e = pair_restitution(std::string("[contact]\ngamma_n = ") + gamma + "\n", 50.37, 1, 0.3);
     EXPECT_LT(std::abs(e), 0.02) << gamma;

@@ -157,11 +157,12 @@ TEST(Bed, SmoothBedWeighsOnItsFloorAlone) {  // V4.3
 
 /// Force on the floor over the weight, of a bed poured into a cell five diameters wide whose floor then sinks
 /// a little between resting walls, so that friction there carries all it can.
-double carried_by_the_floor(int layers) {
+double carried_by_the_floor(int layers, int seed) {
   const Scene scene = read_scene_text(
       "[cell]\nwidth = 5.3\nside_walls = \"rest\"\n[beads]\ncount = " + std::to_string(5 * layers) +
           "\n[contact]\nk_n = 1e5\nk_t = 3e4\nrestitution = 0.5\ngamma_t = 50.0\nmu = 0.6\n[drive]\nomega = "
-          "0.2\namplitude = 0.1\n[start]\nkind = \"random\"\n[time]\nsteps_per_contact = 20\n",
+          "0.2\namplitude = 0.1\n[start]\nkind = \"random\"\nseed = " +
+          std::to_string(seed) + "\n[time]\nsteps_per_contact = 20\n",
       "silo");
   const Plan plan = make_plan(scene);
   System s = make_system(scene, plan);
@@ -182,9 +183,11 @@ double carried_by_the_floor(int layers) {
 }
 
 TEST(Bed, WallsCarryTallBeds) {  // V4.4, Janssen: the floor's force saturates with height
+  constexpr int kPackings = 6;
   double force = 0, share = 1;
   for (const int layers : {10, 20, 40, 80}) {
-    const double now = carried_by_the_floor(layers);
+    double now = 0;  // a packing's arches differ from the next one's by a tenth of the weight
+    for (int seed = 1; seed <= kPackings; ++seed) now += carried_by_the_floor(layers, seed) / kPackings;
     const std::string what = "mu = 0.6, " + std::to_string(layers) + " layers in a cell 5 wide, floor force ";
     // Qualitative and monotone: each bound is "between nothing and the value before".
     validate(
@@ -198,7 +201,7 @@ TEST(Bed, WallsCarryTallBeds) {  // V4.4, Janssen: the floor's force saturates w
 }
 
 TEST(Bed, ColumnOfGasIsBarometric) {  // V3.9: density ~ exp(-m g z/T), after a start far from it
-  constexpr int kBeads = 300, kLooks = 200;
+  constexpr int kBeads = 300, kLooks = 1000;
   constexpr double kWidth = 7800;
   const Scene scene = read_scene_text(
       "[cell]\nwidth = 7800.0\nsides = \"periodic\"\n[beads]\ncount = 1\n[contact]\ntangential = "
@@ -223,7 +226,7 @@ TEST(Bed, ColumnOfGasIsBarometric) {  // V3.9: density ~ exp(-m g z/T), after a 
   double heat = 0;
   std::vector<double> heights;
   for (int look = 0; look < kLooks; ++look) {
-    run(3);
+    run(6);
     for (const Bead& b : s.beads) {
       heat += 0.5 * (b.vx * b.vx + b.vz * b.vz) / (kBeads * kLooks);
       if (b.z > 0.5) heights.push_back(b.z - 0.5);

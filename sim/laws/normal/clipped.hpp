@@ -12,6 +12,7 @@ struct ClippedSpringDashpot : LinearSpringDashpot {
   static constexpr std::string_view kWord = "linear-clipped", kName = "linear spring-dashpot, no tension";
 
   static ClippedSpringDashpot read(const ContactTable& t) { return {LinearSpringDashpot::read(t)}; }
+  [[nodiscard]] Collision collision(const PairScale& p) const { return oscillator(p).without_pull(); }
 
   template <class V>
   static V force(const V* c, V overlap, V v_n, V* memory) {

@@ -24,11 +24,12 @@ struct LinearSpringDashpot {
     const double k = read_stiffness(t);
     return {k, read_normal_damping(t, k)};
   }
-  [[nodiscard]] LinearCollision collision(const PairScale& p) const {
+  [[nodiscard]] LinearCollision oscillator(const PairScale& p) const {
     return {k_n, damping.eta(p.m_eff), p.m_eff};
   }
+  [[nodiscard]] Collision collision(const PairScale& p) const { return oscillator(p).with_pull(); }
   [[nodiscard]] double shortest_time(const PairScale& p, double /*speed*/) const {
-    return collision(p).shortest_time();
+    return oscillator(p).shortest_time();
   }
   [[nodiscard]] double largest_force(double overlap) const { return k_n * overlap; }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {

@@ -1,0 +1,101 @@
+// twincell explain SCENE.toml
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/output.hpp"
+#include "cli/plan_text.hpp"
+#include "cli/verb.hpp"
+#include "sim/cost.hpp"
+
+namespace twincell::cli {
+
+namespace {
+
+struct ExplainOptions {
+  std::string scene;
+  std::vector<std::string> assignments;
+};
+
+constexpr double kMeasuredSeconds = 0.3;
+
+std::string list_of(const sim::Plan& plan, sim::Effect::State state, const std::string& heading) {
+  std::string s;
+  for (const sim::Effect& e : plan.effects)
+    if (e.state == state) s += fmt::format("  {:<22} {}\n", e.name, e.reason);
+  return heading + "\n" + (s.empty() ? "  nothing\n" : s);
+}
+
+std::string duration(double seconds) {
+  if (seconds < 120) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 7200) return fmt::format("{:.2g} min", seconds / 60);
+  if (seconds < 172'800) return fmt::format("{:.2g} h", seconds / 3600);
+  return fmt::format("{:.3g} d", seconds / 86'400);
+}
+
+std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::Cost& cost) {
+  using State = sim::Effect::State;
+  std::string s = list_of(plan, State::on, "On, because the scene says so") +
+                  list_of(plan, State::off_by_scene, "Off, because the scene says so") +
+                  list_of(plan, State::off_by_proof, "Off, because it provably cannot act") +
+                  list_of(plan, State::approximated, "Approximated, with the error that is known");
+  if (!plan.warnings.empty()) s += "Warnings\n";
+  for (const std::string& warning : plan.warnings) s += "  " + warning + "\n";
+  s += fmt::format("Kernel\n  {}; {}\n", plan.kernel_name(), cost.kernel);
+  s += fmt::format("  {:.0f} bytes a bead", cost.bytes_per_bead);
+  if (cost.bytes_per_pair > 0)
+    s += fmt::format(", {:.0f} a listed pair, of which there are {:.3g} a bead", cost.bytes_per_pair,
+                     cost.pairs_per_bead);
+  s += fmt::format("\nSteps\n  {} a period, dt = {:.6e} t0, set by {}: {:.4e} t0 over {:g}\n",
+                   plan.steps_per_period, plan.dt, plan.shortest().name, plan.shortest().time,
+                   scene.steps_per_contact);
+  const double steps = static_cast<double>(plan.steps), beads = static_cast<double>(cost.beads);
+  s += fmt::format("  {} beads x {} periods = {:.3g} particle-steps, settling not counted\n", cost.beads,
+                   plan.steps / plan.steps_per_period, steps * beads);
+  if (!cost.stopped.empty())
+    return s + "Time\n  unknown: a short piece of the run was stopped: " + cost.stopped + "\n";
+  s += fmt::format(
+      "Time\n  {}, at {:.3g} million particle-steps/s; measured on this machine over {} steps of "
+      "this scene after {:.3g} t0 of settling; a bed that flies costs less than one that lies\n",
+      duration(steps * cost.seconds_per_step), 1e-6 * beads / cost.seconds_per_step, cost.measured_steps,
+      cost.settled_for);
+  return s;
+}
+
+void run(const ExplainOptions& o, const Common& common) {
+  const sim::Scene scene = sim::read_scene(o.scene, with_seed(o.assignments, common));
+  const sim::Cost cost = sim::measure_cost(scene, kMeasuredSeconds, common.threads);
+  const sim::Plan& plan = cost.plan;
+  nlohmann::json d = as_json(plan);
+  const double beads = static_cast<double>(cost.beads);
+  d["beads"] = cost.beads;
+  d["vectors"] = cost.kernel;
+  d["bytes_per_bead"] = cost.bytes_per_bead;
+  d["bytes_per_pair"] = cost.bytes_per_pair > 0 ? nlohmann::json(cost.bytes_per_pair) : nlohmann::json();
+  d["pairs_per_bead"] = cost.pairs_per_bead;
+  d["particle_steps"] = beads * static_cast<double>(plan.steps);
+  if (cost.stopped.empty()) {
+    d["expected_seconds"] = cost.seconds_per_step * static_cast<double>(plan.steps);
+    d["particle_steps_per_second"] = beads / cost.seconds_per_step;
+    d["measured_steps"] = cost.measured_steps;
+  } else {
+    d["stopped"] = cost.stopped;
+  }
+  print_result(common, d, as_text(plan, scene, cost));
+}
+
+}  // namespace
+
+void add_explain(CLI::App& program, Common& common) {
+  auto o = std::make_shared<ExplainOptions>();
+  CLI::App& verb = add_verb(program, common, "explain", "What a scene calls for, and what it costs",
+                            "twincell explain scene.toml --set contact.mu=0.0");
+  verb.add_option("scene", o->scene, "Scene (TOML, docs/scene.md)")->required();
+  verb.add_option("--set", o->assignments, "section.key=value, over the scene's own; may be repeated")
+      ->take_all();
+  verb.callback([o, &common] { run(*o, common); });
+}
+
+}  // namespace twincell::cli

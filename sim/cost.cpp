@@ -1,0 +1,60 @@
+#include "sim/cost.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "analysis/trajectory/error.hpp"
+#include "sim/simulation.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+/// Advances in small pieces until the time is up or `most` steps are done; returns the seconds it took.
+double advance_for(double seconds, std::int64_t most, Kernel& kernel, System& system) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const std::int64_t piece = 1 + 200'000 / (1 + static_cast<std::int64_t>(system.beads.size()));
+  for (std::int64_t done = 0; done < most && elapsed() < seconds; done += piece)
+    kernel.advance(system, std::min(piece, most - done));
+  return elapsed();
+}
+
+}  // namespace
+
+Cost measure_cost(const Scene& scene, double seconds, int threads) {
+  constexpr double kSettling = 0.1;
+  std::vector<Bead> beads = placed(scene).beads;
+  Cost cost;
+  cost.plan = make_plan(scene, beads);
+  const Plan& plan = cost.plan;
+  System system = make_system(scene, plan);
+  system.drive.amplitude = 0;
+  system.beads = std::move(beads);
+  const auto kernel = make_kernel(plan, guard_limits(plan), KernelKind::best, threads);
+  cost.beads = system.beads.size();
+  cost.kernel = kernel->description();
+  try {
+    const bool falls = scene.g() > 0;
+    advance_for(falls ? kSettling : 0, falls ? static_cast<std::int64_t>(scene.settle_limit / plan.dt) : 0,
+                *kernel, system);
+    cost.settled_for = system.time();
+    begin_drive(scene, system);
+    const double took = advance_for(seconds, plan.steps, *kernel, system);
+    cost.measured_steps = system.step;
+    cost.seconds_per_step = took / static_cast<double>(system.step);
+  } catch (const RunError& e) {
+    cost.stopped = e.what();
+  }
+  const Kernel::Footprint held = kernel->footprint();
+  if (cost.beads > 0) {
+    cost.bytes_per_bead = static_cast<double>(held.beads) / static_cast<double>(cost.beads);
+    cost.pairs_per_bead = static_cast<double>(held.listed) / static_cast<double>(cost.beads);
+  }
+  if (held.listed > 0)
+    cost.bytes_per_pair = static_cast<double>(held.pairs) / static_cast<double>(held.listed);
+  return cost;
+}
+
+}  // namespace twincell::sim

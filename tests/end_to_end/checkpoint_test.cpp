@@ -1,0 +1,231 @@
+// Runs that are stopped, killed or damaged, as a user meets them: what is resumed ends in the same datasets.
+
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <sys/resource.h>
+
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <random>
+
+#include "analysis/trajectory/hdf5.hpp"
+#include "tests/support/program.hpp"
+
+namespace twincell {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+constexpr int kDone = 0, kUsage = 2, kInput = 3, kPartial = 5;
+
+/// The bytes of every dataset of numbers in a file, by path.
+std::map<std::string, std::string> datasets_of(const std::string& path) {
+  std::map<std::string, std::string> all;
+  const h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  EXPECT_TRUE(file) << path;
+  if (!file) return all;
+  H5Lvisit(
+      file.get(), H5_INDEX_NAME, H5_ITER_INC,
+      [](hid_t group, const char* name, const H5L_info_t* /*link*/, void* out) -> herr_t {
+        const h5::Handle set(H5Oopen(group, name, H5P_DEFAULT));
+        if (H5Iget_type(set.get()) != H5I_DATASET) return 0;
+        const h5::Handle type(H5Dget_type(set.get())), space(H5Dget_space(set.get()));
+        if (H5Tget_class(type.get()) == H5T_STRING) return 0;
+        std::string bytes(
+            static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get())) * H5Tget_size(type.get()), 0);
+        H5Dread(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
+        (*static_cast<std::map<std::string, std::string>*>(out))[name] = bytes;
+        return 0;
+      },
+      &all);
+  return all;
+}
+
+class Checkpoints : public ::testing::Test {
+ protected:
+  Checkpoints() {
+    std::ofstream(scene_) << "preset = \"fortini-huang-2015\"\n[beads]\ncount = 60\n[cell]\nwidth = 8.0\n"
+                             "[drive]\ngamma = 2.0\n[start]\nkind = \"random\"\n[time]\nsteps_per_contact = "
+                             "10\ncycles = 30\ndiscard = 1\n";
+  }
+
+  [[nodiscard]] std::vector<std::string> words(const std::vector<std::string>& more) const {
+    std::vector<std::string> all{"simulate", scene_, "-o", output_, "-q"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  /// What a run without interruption makes.
+  [[nodiscard]] std::map<std::string, std::string> uninterrupted() const {
+    const std::string path = folder_ / "whole.h5";
+    const Ran ran = run_program({"simulate", scene_, "-o", path, "-q"});
+    EXPECT_EQ(ran.code, kDone) << ran.err;
+    auto all = datasets_of(path);
+    fs::remove(path);
+    EXPECT_GT(all.size(), 10U);
+    return all;
+  }
+  void expect_refusal(const std::vector<std::string>& more, int code,
+                      const std::vector<std::string>& mentioned) const {
+    const Ran ran = run_program(words(more));
+    EXPECT_EQ(ran.code, code) << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    for (const auto& word : mentioned) EXPECT_NE(ran.err.find(word), std::string::npos) << ran.err;
+  }
+  /// Starts a run and stops it once it has saved something with frames in it.
+  [[nodiscard]] Ran stopped_in_the_middle(int signal) const {
+    RunningProgram program(words({"--checkpoint-every", "0.02"}));
+    for (int k = 0; k < 1000 && !fs::exists(place_ / "segment-0002.h5"); ++k)
+      std::this_thread::sleep_for(milliseconds(5));
+    program.signal(signal);
+    return program.wait();
+  }
+
+  TemporaryFolder folder_;
+  std::string scene_ = folder_ / "scene.toml", output_ = folder_ / "o.h5";
+  fs::path place_ = folder_ / "o.h5.checkpoint";
+};
+
+TEST_F(Checkpoints, KilledAgainAndAgainTheRunEndsAsIfNothingHadHappened) {
+  const auto whole = uninterrupted();
+  std::mt19937 random(20150101);
+  int killed = 0, ended = 0;
+  for (int k = 0; k < 60 && ended == 0; ++k) {
+    // A save at every update: most kills fall into a save.
+    RunningProgram program(words({"--resume", "--checkpoint-every", "1e-9"}));
+    std::this_thread::sleep_for(milliseconds(30 + random() % 300));
+    program.signal(SIGKILL);
+    const Ran ran = program.wait();
+    if (ran.code == 128 + SIGKILL) {
+      ++killed;
+      continue;
+    }
+    ++ended;
+    EXPECT_EQ(ran.code, kDone) << ran.err;
+  }
+  EXPECT_GE(killed, 3);
+  const Ran last = run_program(words({"--resume"}));
+  EXPECT_EQ(last.code, kDone) << last.err;
+  EXPECT_EQ(datasets_of(output_), whole);
+  EXPECT_EQ(names_in(folder_.path()), (std::vector<std::string>{"o.h5", "scene.toml"}));
+}
+
+TEST_F(Checkpoints, SignalsSaveAndSayHowToGoOn) {
+  const auto whole = uninterrupted();
+  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, {SIGTERM, 143}}) {
+    const Ran ran = stopped_in_the_middle(signal);
+    ASSERT_EQ(ran.code, code) << ran.err;
+    EXPECT_NE(ran.err.find("--resume"), std::string::npos) << ran.err;
+    EXPECT_FALSE(fs::exists(output_));
+    expect_refusal({}, kUsage, {"o.h5.checkpoint", "unfinished run", "--resume"});
+    const Ran rest = run_program(words({"--resume"}));
+    EXPECT_EQ(rest.code, kDone) << rest.err;
+    EXPECT_EQ(datasets_of(output_), whole);
+    EXPECT_EQ(names_in(folder_.path()), (std::vector<std::string>{"o.h5", "scene.toml"}));
+    // A script that asks once more is not punished.
+    EXPECT_EQ(run_program(words({"--resume"})).code, kDone);
+    fs::remove(output_);
+  }
+}
+
+TEST_F(Checkpoints, AnotherSceneIsRefusedByTheKeyThatDiffers) {
+  ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
+  expect_refusal({"--resume", "--set", "drive.gamma=2.1"}, kUsage, {"drive.gamma", "2.1", "2.0"});
+  expect_refusal({"--resume", "--set", "time.cycles=31"}, kUsage, {"time.cycles", "31", "30"});
+  expect_refusal({"--resume", "--seed", "4"}, kUsage, {"start.seed", "4", "absent"});
+  EXPECT_TRUE(fs::exists(place_ / "state.h5"));
+}
+
+TEST_F(Checkpoints, WhatAnotherVersionWroteIsRefused) {
+  ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
+  {
+    const h5::Handle file(H5Fopen((place_ / "state.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    const h5::Handle version(H5Aopen(file.get(), "checkpoint_version", H5P_DEFAULT));
+    const int other = 99;
+    ASSERT_GE(H5Awrite(version.get(), H5T_NATIVE_INT, &other), 0);
+  }
+  expect_refusal({"--resume"}, kInput, {"state.h5", "checkpoint_version", "99"});
+}
+
+// Single bits, cut files, a missing piece: refused with the name of the file, never a run from damaged
+// numbers.
+TEST_F(Checkpoints, DamageIsFound) {
+  const auto whole = uninterrupted();
+  ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
+  const fs::path kept = folder_ / "kept";
+  fs::copy(place_, kept, fs::copy_options::recursive);
+  const auto restore = [&] {
+    fs::remove_all(place_);
+    fs::copy(kept, place_, fs::copy_options::recursive);
+    fs::remove(output_);
+  };
+  std::mt19937 random(1);
+  int refused = 0;
+  for (int k = 0; k < 24; ++k) {
+    const fs::path file = place_ / (k % 3 == 0 ? "segment-0001.h5" : "state.h5");
+    const auto size = fs::file_size(file);
+    if (k % 4 == 3) {
+      fs::resize_file(file, random() % size);
+    } else {
+      std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
+      const auto at = static_cast<std::streamoff>(random() % size);
+      stream.seekg(at);
+      const char flipped = static_cast<char>(stream.get() ^ (1 << random() % 8));
+      stream.seekp(at);
+      stream.put(flipped);
+    }
+    const Ran ran = run_program(words({"--resume"}));
+    if (ran.code == kDone) {  // a byte that nobody reads
+      EXPECT_EQ(datasets_of(output_), whole);
+    } else {
+      ++refused;
+      EXPECT_EQ(ran.code, kInput) << ran.err;
+      EXPECT_NE(ran.err.find(file.filename()), std::string::npos) << ran.err;
+    }
+    restore();
+  }
+  EXPECT_GE(refused, 14);  // all of the segments' and the cut ones at least
+  fs::remove(place_ / "segment-0001.h5");
+  expect_refusal({"--resume"}, kInput, {"segment-0001.h5", "missing"});
+}
+
+TEST_F(Checkpoints, AFullDiskStopsTheRunWhichGoesOnWhenThereIsRoom) {
+  const auto whole = uninterrupted();
+  // A limit on the size of files stands for the full disk; the program inherits it.
+  struct rlimit usual {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &usual), 0);
+  const auto under_limit = [&](rlim_t bytes, const std::vector<std::string>& more) {
+    const rlimit limit{bytes, usual.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    const Ran ran = run_program(words(more));
+    ::setrlimit(RLIMIT_FSIZE, &usual);
+    return ran;
+  };
+  const Ran none = under_limit(4096, {"--checkpoint-every", "1e-9"});
+  EXPECT_EQ(none.code, 1) << none.err;
+  EXPECT_EQ(std::count(none.err.begin(), none.err.end(), '\n'), 1) << none.err;
+  EXPECT_EQ(names_in(folder_.path()), std::vector<std::string>{"scene.toml"});
+  // Room for each checkpoint, but not for all frames in one file.
+  const Ran late = under_limit(150'000, {"--checkpoint-every", "0.02"});
+  EXPECT_EQ(late.code, kPartial) << late.err;
+  EXPECT_NE(late.err.find("--resume"), std::string::npos) << late.err;
+  EXPECT_FALSE(fs::exists(output_));
+  EXPECT_EQ(run_program(words({"--resume"})).code, kDone);
+  EXPECT_EQ(datasets_of(output_), whole);
+}
+
+TEST_F(Checkpoints, AFolderThatCannotBeIsRefusedAtOnce) {
+  std::ofstream(place_) << "a file";
+  expect_refusal({"--checkpoint-every", "1"}, kUsage, {"o.h5.checkpoint", "cannot be made"});
+  fs::remove(place_);
+  RunningProgram first(words({"--checkpoint-every", "0.02"}));
+  for (int k = 0; k < 1000 && !fs::exists(place_ / "state.h5"); ++k)
+    std::this_thread::sleep_for(milliseconds(5));
+  expect_refusal({"--resume"}, kUsage, {"another process"});
+  first.signal(SIGKILL);
+  static_cast<void>(first.wait());
+}
+
+}  // namespace
+}  // namespace twincell
