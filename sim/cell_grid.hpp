@@ -21,7 +21,8 @@ inline Vec3 centre_of(const Bead& b) {
 inline Vec3 nearest_shift(const Vec3& r, const std::array<double, 3>& period) {
   Vec3 shift = Vec3::Zero();
   for (int a = 0; a < 3; ++a)
-    if (const double p = period[static_cast<std::size_t>(a)]; p > 0) shift[a] = -p * std::round(r[a] / p);
+    if (const double p = period[static_cast<std::size_t>(a)]; p > 0 && 2 * std::abs(r[a]) >= p)
+      shift[a] = -p * std::round(r[a] / p);
   return shift;
 }
 
@@ -187,7 +188,9 @@ void for_each_near_pair(const std::vector<Bead>& beads, int dimension, const std
       const std::int32_t i = std::min(k, other), j = std::max(k, other);
       const Bead &p = beads[static_cast<std::size_t>(i)], &q = beads[static_cast<std::size_t>(j)];
       const Vec3 apart = centre_of(p) - centre_of(q), shift = nearest_shift(apart, period);
-      const double gap = (apart + shift).norm() - (p.radius + q.radius);
+      const double square = (apart + shift).squaredNorm(), reach = p.radius + q.radius, far = reach + margin;
+      if (square > far * far) return;
+      const double gap = std::sqrt(square) - reach;
       if (gap < margin) visit(i, j, gap, shift);
     });
     grid.insert(k, centre_of(b), b.radius);

@@ -316,6 +316,22 @@ bool ListKernel::outer_is_stale() {
   return !(since_built_ + margin_ <= skin_);
 }
 
+/// Sorted by two keys, of which the first is below n: dealt to places by the first, the few of one place by
+/// the second.
+template <class T, class First, class Second>
+std::vector<T> in_order_of(std::vector<T> given, Size n, First first, Second second) {
+  std::vector<Size> end(n + 1, 0);
+  for (const T& t : given) ++end[static_cast<Size>(first(t)) + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<T> sorted(given.size());
+  for (T& t : given) sorted[end[static_cast<Size>(first(t))]++] = std::move(t);
+  for (Size k = 0, begin = 0; k < n; begin = end[k++])
+    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
+              sorted.begin() + static_cast<std::ptrdiff_t>(end[k]),
+              [&](const T& a, const T& b) { return second(a) < second(b); });
+  return sorted;
+}
+
 /// A wide skin makes outer lists rare and long. Best is where making them costs as much as going through
 /// them, which is some hundred times cheaper per pair than the search is per bead: a dense bed keeps to its
 /// first shell, a dilute gas looks far ahead.
@@ -350,10 +366,13 @@ void ListKernel::make_outer(const System& given) {
                        // keeps its sign.
                        found.push_back({rank_[static_cast<Size>(a)], rank_[static_cast<Size>(b)], shift});
                      });
-  std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
-    const auto lo = std::min(a.i, a.j), mo = std::min(b.i, b.j);
-    return lo != mo ? lo < mo : std::max(a.i, a.j) < std::max(b.i, b.j);
-  });
+  found = in_order_of(
+      std::move(found), beads_.size(), [](const Found& f) { return std::min(f.i, f.j); },
+      [](const Found& f) { return std::max(f.i, f.j); });
+  // Where the contacts of bead i begin among those remembered.
+  std::vector<std::size_t> first(s.beads.size() + 1, 0);
+  for (const ContactMemory& m : remembered) ++first[static_cast<Size>(m.i) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
   const bool periodic = s.period[0] > 0 || s.period[1] > 0 || s.period[2] > 0;
   for (Part& part : parts_) {
     const auto mine = [&](std::int32_t k) {
@@ -397,12 +416,10 @@ void ListKernel::make_outer(const System& given) {
       }
       if (memory_ > 0 && !remembered.empty()) {
         const std::int32_t i = order_[a], j = order_[b];
-        const auto at =
-            std::lower_bound(remembered.begin(), remembered.end(), std::pair(i, j),
-                             [](const ContactMemory& m, const std::pair<std::int32_t, std::int32_t>& key) {
-                               return m.i != key.first ? m.i < key.first : m.j < key.second;
-                             });
-        if (at != remembered.end() && at->i == i && at->j == j) {
+        const auto of_i = remembered.begin() + static_cast<std::ptrdiff_t>(first[static_cast<Size>(i)]),
+                   end = remembered.begin() + static_cast<std::ptrdiff_t>(first[static_cast<Size>(i) + 1]);
+        const auto at = std::find_if(of_i, end, [&](const ContactMemory& m) { return m.j == j; });
+        if (at != end) {
           std::copy(at->values.begin(), at->values.end(),
                     part.memory.begin() + static_cast<std::ptrdiff_t>(p * memory_));
           part.remembering.push_back(static_cast<std::int32_t>(p));
