@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <barrier>
 #include <bit>
 #include <cmath>
@@ -59,7 +60,7 @@ struct Part {
   std::vector<std::int32_t> remembering;  ///< pairs of the outer list, since the last inner one
   Size evaluated = 0;                     ///< pairs in active
   std::vector<Chunk> chunks;  ///< of active; every pair of a bead is in its chunk or an earlier one
-  std::vector<std::int32_t> dealt[2];
+  std::array<std::vector<std::int32_t>, 2> dealt;
   // Beads that something may touch, and those that fly freely as long as the list holds. The latter are moved
   // when somebody wants to know where they are.
   std::vector<BeadRange> awake, quiet;

@@ -108,7 +108,10 @@ bool PackedBeads::agrees(const System& s, const std::vector<std::int32_t>& order
     held.radius = radius(k), held.mass = mass(k), held.inertia = inertia(k);
     Force force;
     give_one(k, held, force);
+    // Bits, not values: -0 is not 0. There is no padding between doubles.
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
     if (std::memcmp(&held, &given, sizeof(Bead)) != 0 ||
+        // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
         std::memcmp(&force, &s.forces[static_cast<std::size_t>(order[k])], sizeof(Force)) != 0)
       return false;
   }

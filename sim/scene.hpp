@@ -51,7 +51,7 @@ inline constexpr double kFewestSteps = 6, kFewSteps = 20;
 
 enum class StartKind { crystal_a, crystal_b, random, trajectory, table };
 
-struct Scene {
+struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in the order of a scene's tables
   std::string file;      ///< for messages
   std::string resolved;  ///< TOML with preset and overrides, for provenance
 

@@ -124,7 +124,7 @@ Simulation::Simulation(Scene scene, RunState state, KernelKind kind, int threads
   }
 }
 
-Simulation::Simulation(Scene scene, Progress& progress, KernelKind kind, int threads)
+Simulation::Simulation(const Scene& scene, Progress& progress, KernelKind kind, int threads)
     : Simulation(scene, placed(scene), kind, threads) {
   settle(progress);
 }

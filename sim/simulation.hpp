@@ -51,8 +51,8 @@ class Simulation {
   /// Places the beads and lets them settle.
   /// \throws ConfigError, InputError for a scene or start that cannot be; RunError if settling goes wrong
   /// \param threads for this one system; 0: as many as its size is worth. The bits do not depend on it.
-  explicit Simulation(Scene scene, Progress& progress = Progress::none(), KernelKind kind = KernelKind::best,
-                      int threads = 1);
+  explicit Simulation(const Scene& scene, Progress& progress = Progress::none(),
+                      KernelKind kind = KernelKind::best, int threads = 1);
   /// Goes on from a state of the same scene, nothing moved yet.
   Simulation(Scene scene, RunState state, KernelKind kind = KernelKind::best, int threads = 1);
 

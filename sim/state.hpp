@@ -96,7 +96,8 @@ struct System {
   }
   [[nodiscard]] double cycles_at(std::int64_t k) const {
     const std::int64_t n = steps_per_period;
-    return static_cast<double>((k + n) / n - 1) + phase_at(k);
+    const std::int64_t whole = (k + n) / n - 1;
+    return static_cast<double>(whole) + phase_at(k);
   }
   [[nodiscard]] double plate_height_at(std::int64_t k) const {
     const double s = drive.displacement(phase_at(k));

@@ -113,7 +113,8 @@ ImpactSpread pair_impacts(const StepSetting& setting, int phases) {
   Run run(make_scene(setting, impact_cell(kApart * side, kApart * (side + 1), setting.k_n)));
   const double v = kImpactSpeed;
   for (int k = 0; k < phases; ++k) {
-    const double x = kApart * (0.5 + k % side), z = kApart * (1 + k / side);
+    const int column = k % side, row = k / side;
+    const double x = kApart * (0.5 + column), z = kApart * (1 + row);
     const double half = run.scene.radius + entry_gap(k, phases) * v * run.system.dt / 2;
     run.add(x - half, z, v / 2, v / 2);
     run.add(x + half, z, -v / 2, -v / 2);

@@ -38,9 +38,10 @@ void expect_same_frames(const std::vector<Frame>& a, const std::vector<Frame>& b
 /// The program's frames of a bed in motion.
 std::vector<Frame> program(const std::vector<std::string>& more) {
   const TemporaryFolder folder;
-  std::ofstream(folder / "scene.toml") << "preset = \"fortini-huang-2015\"\n[beads]\ncount = 90\n[cell]\nwidth = "
-                                          "10.0\n[drive]\ngamma = 2.5\n[start]\nkind = \"random\"\nsettle_limit = "
-                                          "2\n[time]\nsteps_per_contact = 10\ndiscard = 0\ncycles = 1\n";
+  std::ofstream(folder / "scene.toml")
+      << "preset = \"fortini-huang-2015\"\n[beads]\ncount = 90\n[cell]\nwidth = "
+         "10.0\n[drive]\ngamma = 2.5\n[start]\nkind = \"random\"\nsettle_limit = "
+         "2\n[time]\nsteps_per_contact = 10\ndiscard = 0\ncycles = 1\n";
   std::vector<std::string> words = {"simulate", (folder / "scene.toml").string(), "-q", "-o",
                                     (folder / "out.h5").string()};
   words.insert(words.end(), more.begin(), more.end());
@@ -55,7 +56,8 @@ TEST(Bits, H12_TheSameSceneTwiceIsTheSameRun) {
 
 TEST(Bits, H12_OnlyASeededPerturbationMakesEnsembles) {
   const std::string little = "start.perturbation=1e-9";
-  const auto one = program({"--set", little, "--seed", "4"}), again = program({"--set", little, "--seed", "4"}),
+  const auto one = program({"--set", little, "--seed", "4"}),
+             again = program({"--set", little, "--seed", "4"}),
              other = program({"--set", little, "--seed", "5"});
   expect_same_frames(one, again);
   EXPECT_NE(one[0].position, other[0].position);

@@ -1,5 +1,5 @@
-// Contacts in which a formula could divide by zero, forget or remember too much (VERIFICATION H1-H4, H15, H17,
-// H24, H31).
+// Contacts in which a formula could divide by zero, forget or remember too much (VERIFICATION H1-H4, H15,
+// H17, H24, H31).
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,8 @@ TEST(Contact, H1_CoincidentCentresStopByTheOverlapBound) {
         b.kernel->advance(b.system, 10);
         FAIL() << "two beads in one place were accepted";
       } catch (const RunError& e) {
-        EXPECT_NE(std::string(e.what()).find("beads 0 and 1 overlap by 1 sigma"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("beads 0 and 1 overlap by 1 sigma"), std::string::npos)
+            << e.what();
       }
       EXPECT_TRUE(finite(b.system));
     }
@@ -139,8 +140,9 @@ TEST(Contact, H4_EveryContactBeginsAnew) {  // a bead that bounces along a rough
 /// \param image what is added to the second one's x: a whole period changes nothing
 System drifting_collision(double x, double image, std::int64_t rebuild_every) {
   // Soft springs make little of the last bit of a position.
-  Bench b("[cell]\ngravity = 0.0\nsides = \"periodic\"\nwidth = 4.0\nheight = 64.0\nlid = \"wall\"\n"
-          "[contact]\nk_n = 1e4\nk_t = 1e2\n");
+  Bench b(
+      "[cell]\ngravity = 0.0\nsides = \"periodic\"\nwidth = 4.0\nheight = 64.0\nlid = \"wall\"\n"
+      "[contact]\nk_n = 1e4\nk_t = 1e2\n");
   b.kernel->rebuild_every(rebuild_every);
   b.add(x, 32, 1.25, 0.5), b.add(x + 0.25 + image, 33, 0.75, -0.5);
   b.advance_time(0.2);
@@ -160,8 +162,7 @@ TEST(Contact, H15_HistoryCrossesThePeriodicBoundary) {
       for (std::size_t i = 0; i < 2; ++i) {
         const Bead &a = inside.beads[i], &b = across.beads[i];
         EXPECT_GT(b.x, 4);
-        for (const double d :
-             {a.x + 2 - b.x, a.z - b.z, a.vx - b.vx, a.vz - b.vz, 0.5 * (a.spin - b.spin)})
+        for (const double d : {a.x + 2 - b.x, a.z - b.z, a.vx - b.vx, a.vz - b.vz, 0.5 * (a.spin - b.spin)})
           worst = std::max(worst, std::abs(d));
       }
       std::printf("largest difference %.1e\n", worst);
@@ -171,7 +172,8 @@ TEST(Contact, H15_HistoryCrossesThePeriodicBoundary) {
 
 TEST(Contact, H17_ABeadInACornerIsInBalance) {
   // Soft springs: at k_n = 1e6 the last bit of a position is a force of 1e-10.
-  Bench b("[cell]\ngravity = [-0.6, -0.8]\n[contact]\nk_n = 1e3\ngamma_n = 20.0\ngamma_t = 20.0\nk_t = 300.0\n");
+  Bench b(
+      "[cell]\ngravity = [-0.6, -0.8]\n[contact]\nk_n = 1e3\ngamma_n = 20.0\ngamma_t = 20.0\nk_t = 300.0\n");
   b.add(0.5, 0.5, 0, 0), b.add(1.5, 0.5, 0, 0), b.add(0.5, 1.5, 0, 0);
   b.advance_time(60);
   double worst = 0;

@@ -1,4 +1,5 @@
-// Starts that overlap, unlike sizes, tall boxes, numbers that are none (VERIFICATION H5, H8, H21, H23, H30, H32).
+// Starts that overlap, unlike sizes, tall boxes, numbers that are none (VERIFICATION H5, H8, H21, H23, H30,
+// H32).
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -39,11 +40,12 @@ TEST(Overlaps, H1_H5_AreRefusedAtTheStartByName) {
   expect_refusal<ConfigError>(start("x,z\n5,3\n5,3\n", {"start.relax=true"}), "have the same centre");
   expect_refusal<ConfigError>(start("x,z\n5,3\n5.94,3\n9,3\n9.93,3\n"),
                               "beads 2 and 3 overlap by 0.07 sigma, the bound is 0.05; 2 pairs do");
-  expect_refusal<ConfigError>(start("x,z\n5,0.44\n"), "bead 0 at (5, 0, 0.44) reaches 0.06 sigma into the wall");
+  expect_refusal<ConfigError>(start("x,z\n5,0.44\n"),
+                              "bead 0 at (5, 0, 0.44) reaches 0.06 sigma into the wall");
   expect_refusal<ConfigError>(start("x,z\n25,3\n", {"start.relax=true"}), "into the wall \"right\"");
-  expect_refusal<ConfigError>(
-      start("x,z\n0.5,0.5\n1.3,0.5\n", {"start.relax=true", "cell.width=1.8", "cell.lid=wall", "cell.height=1"}),
-      "start.relax: the beads cannot be pushed apart");
+  expect_refusal<ConfigError>(start("x,z\n0.5,0.5\n1.3,0.5\n",
+                                    {"start.relax=true", "cell.width=1.8", "cell.lid=wall", "cell.height=1"}),
+                              "start.relax: the beads cannot be pushed apart");
 }
 
 TEST(Overlaps, H5_RelaxedBeadsAreNotLaunched) {
@@ -106,15 +108,17 @@ TEST(Sizes, H8_UnlikeBeadsAgreeWithTheOracle) {
 
 TEST(Sizes, H8_TheLightestBeadSetsTheStepAndTheUsualOneTheBound) {
   const auto plan_of = [](const std::vector<std::string>& set) {
-    return make_plan(read_scene_text("preset = \"fortini-huang-2015\"\n[beads]\ncount = 9\n[drive]\ngamma = 1\n",
-                                     "s", set));
+    return make_plan(read_scene_text(
+        "preset = \"fortini-huang-2015\"\n[beads]\ncount = 9\n[drive]\ngamma = 1\n", "s", set));
   };
   const Plan equal = plan_of({});
-  const Plan light = plan_of({"beads.intruder.radius=0.005", "beads.intruder.mass=1e-6", "beads.intruder.z=40"});
+  const Plan light =
+      plan_of({"beads.intruder.radius=0.005", "beads.intruder.mass=1e-6", "beads.intruder.z=40"});
   EXPECT_NEAR(light.dt, 1e-3 * equal.dt, 0.02e-3 * equal.dt);  // t_c goes as the root of the mass
   EXPECT_DOUBLE_EQ(light.overlap_bound, 0.1);
   EXPECT_DOUBLE_EQ(light.travel_bound, 0.05 * 0.01);
-  EXPECT_EQ(plan_of({"beads.intruder.radius=5", "beads.intruder.mass=1e6", "beads.intruder.z=40"}).dt, equal.dt);
+  EXPECT_EQ(plan_of({"beads.intruder.radius=5", "beads.intruder.mass=1e6", "beads.intruder.z=40"}).dt,
+            equal.dt);
   // A file's beads are not the scene's.
   Table t;
   const Scene scene = t.scene("x,z,mass\n5,3,1\n9,3,0.01\n", {"start.settle_limit=0"});
@@ -147,8 +151,9 @@ TEST(Input, H21_BadBeadsAreRefusedByName) {
       const std::string name = column;
       const bool place = name == "x" || name == "z";
       const std::string header = place ? "x,z" : "x,z," + name;
-      const std::string row = name == "x" ? std::string(value) + ",3" : name == "z" ? std::string("5,") + value
-                                                                       : std::string("5,3,") + value;
+      const std::string row = name == "x"   ? std::string(value) + ",3"
+                              : name == "z" ? std::string("5,") + value
+                                            : std::string("5,3,") + value;
       expect_refusal<InputError>([&] { Simulation(t.scene(header + "\n" + row + "\n")); },
                                  "beads.csv:2:", name + ": a finite number is needed");
     }
@@ -157,11 +162,12 @@ TEST(Input, H21_BadBeadsAreRefusedByName) {
       expect_refusal<InputError>(
           [&] { Simulation(t.scene(std::string("x,z,") + column + "\n5,3," + value + "\n")); },
           std::string(column) + ": ", "must be greater than 0");
-  expect_refusal<InputError>([&] { Simulation(t.scene("x,z,id\n5,3,1\n7,3,1\n")); }, "id: there is no such column");
+  expect_refusal<InputError>([&] { Simulation(t.scene("x,z,id\n5,3,1\n7,3,1\n")); },
+                             "id: there is no such column");
   expect_refusal<InputError>([&] { Simulation(t.scene("")); }, "the table is empty");
   expect_refusal<ConfigError>([&] { Simulation(t.scene("x,z\n5,1e300\n")); }, "bead 0", "is too far away");
-  expect_refusal<ConfigError>([&] { Simulation(t.scene("x,z,vx\n5,3,1e5\n")); }, "scene.toml: start: ",
-                              "bead 0 moves", "sigma in one step");
+  expect_refusal<ConfigError>([&] { Simulation(t.scene("x,z,vx\n5,3,1e5\n")); },
+                              "scene.toml: start: ", "bead 0 moves", "sigma in one step");
   expect_refusal<ConfigError>([&] { Simulation(t.scene("x,z\n5,3\n", {"cell.height=2"})); },
                               "bead 0 touched the lid");
   EXPECT_EQ(Simulation(t.scene("x,z\n", {"drive.amplitude=0.5"})).system().beads.size(), 0U);
@@ -169,9 +175,10 @@ TEST(Input, H21_BadBeadsAreRefusedByName) {
 
 TEST(Lists, H23_ABedThatRidesOnItsPlateKeepsItsList) {
   const auto lists_per_cycle = [](const char* gamma) {
-    Simulation run(read_scene_text("preset = \"fortini-huang-2015\"\n[beads]\ncount = 400\n[time]\n"
-                                   "steps_per_contact = 20\ndiscard = 0\ncycles = 4\n",
-                                   "s", {std::string("drive.gamma=") + gamma}));
+    Simulation run(
+        read_scene_text("preset = \"fortini-huang-2015\"\n[beads]\ncount = 400\n[time]\n"
+                        "steps_per_contact = 20\ndiscard = 0\ncycles = 4\n",
+                        "s", {std::string("drive.gamma=") + gamma}));
     const std::int64_t before = run.list_builds();
     MemoryTrajectory out(run.trajectory_info());
     run.run(out);
@@ -181,8 +188,8 @@ TEST(Lists, H23_ABedThatRidesOnItsPlateKeepsItsList) {
   };
   // In the laboratory two beads of a bed that rides along use up the skin of 1/4 in 1/8 of the way 4 A.
   EXPECT_LT(lists_per_cycle("0.9"), 0.1 * 4 * 0.9 / 0.125);
-  // At Gamma = 2 a reference whose displacements were the laboratory's built 20,000 in 6.4e6 steps, 45 cycles.
-  // There the fastest two beads at the surface set the pace.
+  // At Gamma = 2 a reference whose displacements were the laboratory's built 20,000 in 6.4e6 steps, 45
+  // cycles. There the fastest two beads at the surface set the pace.
   EXPECT_LT(lists_per_cycle("2"), 0.5 * 20000 / 45);
 }
 
@@ -201,9 +208,10 @@ TEST(TallBoxes, H30_EmptySpaceCostsNothing) {
 
 TEST(Drive, H32_APlateAtRestOrBelowGammaOneIsFine) {
   for (const char* gamma : {"0", "0.5", "0.99"}) {
-    Simulation run(read_scene_text("preset = \"fortini-huang-2015\"\n[beads]\ncount = 40\n[time]\n"
-                                   "steps_per_contact = 20\ndiscard = 0\ncycles = 2\n",
-                                   "s", {std::string("drive.gamma=") + gamma}));
+    Simulation run(
+        read_scene_text("preset = \"fortini-huang-2015\"\n[beads]\ncount = 40\n[time]\n"
+                        "steps_per_contact = 20\ndiscard = 0\ncycles = 2\n",
+                        "s", {std::string("drive.gamma=") + gamma}));
     MemoryTrajectory out(run.trajectory_info());
     run.run(out);
     const double lift = out.frames().back().position[0].z() - out.frames().back().plate_height;

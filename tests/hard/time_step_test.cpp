@@ -87,8 +87,8 @@ TEST(TimeStep, H9_StiffSpringsKeepTheirRestitution) {
   const double asked = std::get<LinearSpringDashpot>(bench.plan.bead.normal)
                            .oscillator({.m_eff = 0.5, .r_eff = 0.25, .inv_m_t = 6})
                            .restitution();
-  const PhaseErrors errors = over_entry_phases(
-      [&](double phase) { return pair_restitution(stiff, 50.37, 1, phase); }, asked, 20);
+  const PhaseErrors errors =
+      over_entry_phases([&](double phase) { return pair_restitution(stiff, 50.37, 1, phase); }, asked, 20);
   std::printf("e = %.6f, error %.1e on average, %.1e at most\n", asked, errors.mean, errors.largest);
   EXPECT_LE(std::abs(errors.mean), 1e-3);
   EXPECT_LE(errors.largest, 5e-3);
@@ -99,8 +99,8 @@ TEST(TimeStep, H10_OverdampedContactsHaveAFiniteStep) {
   for (const char* gamma : {"2828.0", "2830.0", "1e5"}) {
     const Plan plan = plan_of({std::string("contact.gamma_n=") + gamma});
     EXPECT_TRUE(std::isfinite(plan.dt) && plan.dt > 0) << gamma;
-    const auto collision =
-        std::get<LinearSpringDashpot>(plan.bead.normal).oscillator({.m_eff = 0.5, .r_eff = 0.25, .inv_m_t = 6});
+    const auto collision = std::get<LinearSpringDashpot>(plan.bead.normal)
+                               .oscillator({.m_eff = 0.5, .r_eff = 0.25, .inv_m_t = 6});
     EXPECT_EQ(collision.restitution() == 0, collision.damping_ratio() >= 1) << gamma;
     const double e = pair_restitution(std::string("[contact]\ngamma_n = ") + gamma + "\n", 50.37, 1, 0.3);
     EXPECT_LT(std::abs(e), 0.02) << gamma;
@@ -108,12 +108,13 @@ TEST(TimeStep, H10_OverdampedContactsHaveAFiniteStep) {
 }
 
 TEST(TimeStep, H10_NoRestitutionIsRefusedAndCriticalDampingSuggested) {
-  expect_refusal<ConfigError>([] { plan_of({"contact.restitution=0"}); }, "contact.restitution: 0 is out of range",
-                              "gamma_n = 2 sqrt(k_n/m_eff)");
+  expect_refusal<ConfigError>([] { plan_of({"contact.restitution=0"}); },
+                              "contact.restitution: 0 is out of range", "gamma_n = 2 sqrt(k_n/m_eff)");
 }
 
 TEST(TimeStep, H11_RestitutionOneAndBeyond) {
-  EXPECT_EQ(std::get<LinearSpringDashpot>(plan_of({"contact.restitution=1"}).bead.normal).damping.eta(0.5), 0);
+  EXPECT_EQ(std::get<LinearSpringDashpot>(plan_of({"contact.restitution=1"}).bead.normal).damping.eta(0.5),
+            0);
   for (const char* e : {"1.0000001", "-0.5", "nan", "inf"})
     expect_refusal<ConfigError>([&] { plan_of({std::string("contact.restitution=") + e}); },
                                 "contact.restitution: ");
@@ -137,7 +138,8 @@ TEST(TimeStep, H14_TimeIsAStepCount) {
 
 TEST(TimeStep, H14_EnergyHasNoDriftIn1e8Steps) {  // an elastic bead between floor and lid
   Bench b(
-      "[cell]\ngravity = 0.0\nheight = 1.02\nlid = \"wall\"\n[contact]\ngamma_n = 0.0\ntangential = \"none\"\n",
+      "[cell]\ngravity = 0.0\nheight = 1.02\nlid = \"wall\"\n[contact]\ngamma_n = 0.0\ntangential = "
+      "\"none\"\n",
       50.37);
   b.add(10, 0.51, 0, 1);
   const auto energy = [&] {
@@ -165,7 +167,8 @@ TEST(TimeStep, H18_APlateTooFastForTheStepIsRefused) {
                               "sigma in one step, the bound is 0.05");
   expect_refusal<ConfigError>([] { plan_of({"drive.omega=1e-9"}); },
                               "scene.toml: drive: a cycle of 6.28e+09 t0 takes");
-  expect_refusal<ConfigError>([] { plan_of({"drive.omega=1e300"}); }, "makes steps of 3.1", "the bound is 1e-12");
+  expect_refusal<ConfigError>([] { plan_of({"drive.omega=1e300"}); }, "makes steps of 3.1",
+                              "the bound is 1e-12");
   expect_refusal<ConfigError>([] { plan_of({"drive.schedule=[[0,1e5],[1,1]]"}); }, "the plate moves 6.6");
 }
 
@@ -210,8 +213,8 @@ TEST(TimeStep, H19_ABeadDoesNotPassThroughAnother) {
 TEST(TimeStep, H33_FramesFallOnPhases) {
   for (const char* phases : {"1", "7", "20", "23"})
     for (const char* n : {"50", "50.37", "8"}) {
-      const Plan plan = plan_of(
-          {std::string("time.phases=") + phases, std::string("time.steps_per_contact=") + n, "drive.omega=1.234"});
+      const Plan plan = plan_of({std::string("time.phases=") + phases,
+                                 std::string("time.steps_per_contact=") + n, "drive.omega=1.234"});
       EXPECT_EQ(plan.steps_per_period % std::stoi(phases), 0);
       EXPECT_EQ(plan.dt, 2 * std::numbers::pi / 1.234 / static_cast<double>(plan.steps_per_period));
     }
@@ -222,8 +225,8 @@ TEST(TimeStep, H33_FramesFallOnPhases) {
   for (std::size_t f = 0; f < 14; ++f) {
     EXPECT_EQ(out.frames()[f].step, static_cast<std::int64_t>(f) * run.plan().steps_per_period / 7);
     EXPECT_EQ(out.frames()[f].plate_height, out.frames()[f % 7].plate_height);
-    EXPECT_NEAR(out.frames()[f].plate_height, 1.5 * std::sin(2 * std::numbers::pi * static_cast<double>(f) / 7),
-                1e-12);
+    EXPECT_NEAR(out.frames()[f].plate_height,
+                1.5 * std::sin(2 * std::numbers::pi * static_cast<double>(f) / 7), 1e-12);
   }
 }
 
