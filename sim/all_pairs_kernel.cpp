@@ -35,7 +35,7 @@ class AllPairsKernel : public Kernel {
     if (!beads_.agrees(s, order_)) beads_.take(s, order_, 0);
     IntegrateArgs args = beads_.integrate_args(s);
     // How far beads stray from free flight is of no interest here.
-    reference_.resize(8 * s.beads.size());
+    reference_.resize(static_cast<std::size_t>(record(1)) / 2 * s.beads.size());
     args.reference = reference_.data();
     const BeadRange all{0, static_cast<std::int64_t>(s.beads.size())};
     args.runs = &all, args.n_runs = 1;

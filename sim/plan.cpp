@@ -267,9 +267,7 @@ void warn(const Scene& s, Plan& plan) {
         "time.steps_per_contact = {:g} is below {:g}: collisions are coarse and a bed may not rest.",
         s.steps_per_contact, kFewSteps));
   if (static_cast<double>(plan.steps_per_period) > kManySteps) {
-    const TimeLimit& why =
-        *std::min_element(plan.limits.begin(), plan.limits.end(),
-                          [](const TimeLimit& a, const TimeLimit& b) { return a.time < b.time; });
+    const TimeLimit& why = plan.shortest();
     plan.warnings.push_back(
         fmt::format("a cycle takes {:.3g} steps, because of the {} ({:.3g} t0): this will take its time.",
                     static_cast<double>(plan.steps_per_period), why.name, why.time));

@@ -12,14 +12,6 @@ namespace twincell::sim {
 
 namespace {
 
-double kinetic_energy_per_bead(const System& s) {
-  double sum = 0;
-  for (const Bead& b : s.beads)
-    sum += 0.5 * (b.mass * (b.vx * b.vx + b.vy * b.vy + b.vz * b.vz) +
-                  b.inertia * (b.spin_x * b.spin_x + b.spin * b.spin + b.spin_z * b.spin_z));
-  return s.beads.empty() ? 0 : sum / static_cast<double>(s.beads.size());
-}
-
 /// Steps of about a tenth of a second at most, so that a signal is noticed.
 std::int64_t unnoticed_steps(const System& s) {
   return 1 + 2'000'000 / (1 + static_cast<std::int64_t>(s.beads.size()));
@@ -58,6 +50,14 @@ double largest_kick(const System& s) {
 }
 
 }  // namespace
+
+double kinetic_energy_per_bead(const System& s) {
+  double sum = 0;
+  for (const Bead& b : s.beads)
+    sum += 0.5 * (b.mass * (b.vx * b.vx + b.vy * b.vy + b.vz * b.vz) +
+                  b.inertia * (b.spin_x * b.spin_x + b.spin * b.spin + b.spin_z * b.spin_z));
+  return s.beads.empty() ? 0 : sum / static_cast<double>(s.beads.size());
+}
 
 RunState placed(const Scene& scene) {
   static_cast<void>(make_plan(scene));  // what cannot run is refused before ten million beads are placed

@@ -42,6 +42,9 @@ struct RunState {
 /// \throws ConfigError, InputError for a start that cannot be
 RunState placed(const Scene& scene);
 
+/// m v^2/2 + I omega^2/2, their mean over beads; 0 without beads.
+double kinetic_energy_per_bead(const System& s);
+
 /// Sets the plate of a settled system going, at phase 0.
 void begin_drive(const Scene& scene, System& system);
 

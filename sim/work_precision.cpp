@@ -153,13 +153,6 @@ double contact_time(const Plan& plan) {
       .contact_time();
 }
 
-double kinetic_energy_per_bead(const System& s) {
-  double sum = 0;
-  for (const Bead& b : s.beads)
-    sum += 0.5 * (b.mass * (b.vx * b.vx + b.vz * b.vz) + b.inertia * b.spin * b.spin);
-  return sum / static_cast<double>(s.beads.size());
-}
-
 double processor_seconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
