@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -136,13 +137,13 @@ std::string failed_name(const std::string& output) {
   return path.replace_extension(".failed" + path.extension().string()).string();
 }
 
-std::string provenance_of(const sim::Scene& scene, const SimulateOptions& options, const Common& common) {
+/// \param beads as placed: a file's may set another step than the scene's
+std::string provenance_of(const sim::Scene& scene, const std::vector<sim::Bead>& beads,
+                          const SimulateOptions& options, const Common& common) {
   Provenance provenance = common.provenance();
   provenance.inputs = {options.scene};
   if (!scene.from.empty()) provenance.inputs.push_back(scene.from);
   provenance.config = scene.resolved;
-  // A file's beads may set another step than the scene's.
-  const auto beads = scene.from.empty() ? std::vector<sim::Bead>() : sim::placed(scene).beads;
   provenance.plan = as_json(sim::make_plan(scene, beads)).dump();
   provenance.seed = scene.seed;
   provenance.threads = sim::threads_for(scene.n_beads.value_or(0), common.threads);
@@ -165,6 +166,7 @@ bool is_finished(const sim::Scene& scene, const SimulateOptions& options) {
 
 /// The folder to save into, if the command line asks for one.
 std::optional<sim::CheckpointFolder> folder_for(const sim::Scene& scene, const SimulateOptions& options,
+                                                const std::function<std::string()>& provenance,
                                                 const Common& common) {
   const auto place = sim::CheckpointFolder::of(options.output);
   if (!options.resume && sim::CheckpointFolder::holds_a_run(place))
@@ -173,8 +175,7 @@ std::optional<sim::CheckpointFolder> folder_for(const sim::Scene& scene, const S
   if (!options.resume && !options.checkpoint_every) return std::nullopt;
   if (options.resume && !sim::CheckpointFolder::holds_a_run(place))
     note(common, "there is no checkpoint in " + place.string() + ", the run begins at its start.");
-  return std::optional<sim::CheckpointFolder>(std::in_place, place, scene,
-                                              [&] { return provenance_of(scene, options, common); });
+  return std::optional<sim::CheckpointFolder>(std::in_place, place, scene, provenance);
 }
 
 /// Runs into the file, or by way of a folder of checkpoints.
@@ -206,14 +207,22 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
     note(common, options.output + " is finished, nothing is left to resume.");
     return;
   }
-  auto checkpoints = folder_for(scene, options, common);
+  // Placed once, before a folder is made: a start that cannot be leaves none behind.
+  std::optional<sim::RunState> start;
+  if (!sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output)))
+    start = sim::placed(scene);
+  const auto make_provenance = [&] {
+    if (!start) start = sim::placed(scene);
+    return provenance_of(scene, start->beads, options, common);
+  };
+  auto checkpoints = folder_for(scene, options, make_provenance, common);
   sim::CheckpointFolder* folder = checkpoints ? &*checkpoints : nullptr;
   const bool goes_on = folder != nullptr && folder->found();
-  const std::string provenance =
-      folder != nullptr ? folder->checkpoint().provenance : provenance_of(scene, options, common);
-  const std::vector<std::string> told = sim::make_plan(scene).warnings;  // settling may take long
+  const std::string provenance = folder != nullptr ? folder->checkpoint().provenance : make_provenance();
+  sim::RunState state = goes_on ? folder->checkpoint().state : std::move(*start);
+  const std::vector<std::string> told =
+      sim::make_plan(scene, state.beads).warnings;  // settling may take long
   for (const std::string& warning : told) note(common, warning);
-  sim::RunState state = goes_on ? folder->checkpoint().state : sim::placed(scene);
   const std::int64_t begun_at = state.driven ? state.step : 0;
   sim::Simulation run(std::move(scene), std::move(state), sim::KernelKind::best, common.threads);
 
