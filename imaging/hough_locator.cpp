@@ -9,7 +9,7 @@ std::vector<Proposal> HoughFinder::find(const Prepared& image, const FindOptions
   constexpr int enlarge = 3;
   cv::Mat1b grey;
   cv::Mat1f light = 1 - image.darkness;
-  light.setTo(0, image.opaque);
+  if (!image.opaque.empty()) light.setTo(0, image.opaque);
   light.convertTo(grey, CV_8U, 220);
   cv::resize(grey, grey, cv::Size(), enlarge, enlarge, cv::INTER_CUBIC);
   cv::GaussianBlur(grey, grey, cv::Size(), 1.0);

@@ -1,31 +1,54 @@
 #include "imaging/judge.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+
+#include "imaging/coupled_step.hpp"
 
 namespace twincell {
 
 namespace {
 
-bool is_disc(const Detection& b, double radius_px, const JudgeOptions& o) {
-  return std::isfinite(b.x) && std::isfinite(b.y) &&
-         std::abs(b.radius - radius_px) <= o.radius_tolerance * radius_px && b.interior >= o.min_interior &&
-         b.score >= o.min_score;
+Verdict verdict_on(const Detection& b, double radius_px, int width, int height, const JudgeOptions& o) {
+  if (!std::isfinite(b.x) || !std::isfinite(b.y)) return Verdict::unexplained;
+  if (std::abs(b.radius - radius_px) > o.radius_tolerance * radius_px) return Verdict::wrong_radius;
+  if (b.interior < o.min_interior) return Verdict::bright_inside;
+  if (b.score < o.min_score) return Verdict::unexplained;
+  if (b.x < -0.5 || b.y < -0.5 || b.x >= width - 0.5 || b.y >= height - 0.5) return Verdict::outside;
+  return Verdict::bead;
 }
 
 // Two opaque discs cannot overlap: of a pair that does, the better explained one stays.
-std::vector<Detection> without_overlaps(std::vector<Detection> beads, double max_overlap) {
-  std::stable_sort(beads.begin(), beads.end(),
-                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
-  std::vector<Detection> kept;
-  for (const Detection& b : beads) {
-    const bool overlaps = std::any_of(kept.begin(), kept.end(), [&](const Detection& k) {
-      const double touch = b.radius + k.radius, r = std::min(b.radius, k.radius);
-      return std::abs(b.x - k.x) < touch && std::hypot(b.x - k.x, b.y - k.y) < touch - max_overlap * r;
-    });
-    if (!overlaps) kept.push_back(b);
+void forbid_overlaps(std::vector<Detection>& beads, double max_overlap) {
+  std::vector<Disc> discs;
+  discs.reserve(beads.size());
+  for (const Detection& b : beads) discs.push_back({b.x, b.y, b.radius, 1});
+  struct Clash {
+    std::size_t better, lesser;
+  };
+  std::vector<Clash> clashes;
+  for (const auto& [i, j] : near_pairs(discs, 0)) {
+    auto better = static_cast<std::size_t>(i), lesser = static_cast<std::size_t>(j);
+    const Detection &a = beads[better], &b = beads[lesser];
+    const double touch = a.radius + b.radius;
+    if (std::hypot(a.x - b.x, a.y - b.y) >= touch - max_overlap * std::min(a.radius, b.radius)) continue;
+    if (b.score > a.score) std::swap(better, lesser);
+    clashes.push_back({better, lesser});
   }
-  return kept;
+  // The best first: what has been dropped itself drops nobody.
+  std::sort(clashes.begin(), clashes.end(), [&](const Clash& a, const Clash& b) {
+    return std::pair(-beads[a.better].score, a.lesser) < std::pair(-beads[b.better].score, b.lesser);
+  });
+  for (const Clash& c : clashes)
+    if (beads[c.better].verdict == Verdict::bead) beads[c.lesser].verdict = Verdict::overlaps;
+}
+
+double median_of(std::vector<double> v) {
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
 }
 
 void flag_tracers(std::vector<Detection>& beads, double below) {
@@ -33,27 +56,43 @@ void flag_tracers(std::vector<Detection>& beads, double below) {
   std::vector<double> interior;
   interior.reserve(beads.size());
   for (const Detection& b : beads) interior.push_back(b.interior);
-  const auto middle = interior.begin() + static_cast<std::ptrdiff_t>(interior.size() / 2);
-  std::nth_element(interior.begin(), middle, interior.end());
-  for (Detection& b : beads) b.tracer = b.interior < below * *middle;
+  const double typical = median_of(interior), limit = below * typical;
+  for (double& v : interior) v = std::abs(v - typical);
+  constexpr double kLeastScatter = 0.005;
+  const double scatter = std::max(kLeastScatter, 1.4826 * median_of(std::move(interior)));
+  for (Detection& b : beads) {
+    b.tracer = b.interior < limit;
+    b.tracer_margin = std::abs(b.interior - limit) / scatter;
+  }
 }
 
 }  // namespace
 
-std::vector<Detection> judge(std::vector<Detection> beads, double radius_px, int width, int height,
-                             const JudgeOptions& options) {
-  std::erase_if(beads, [&](const Detection& b) { return !is_disc(b, radius_px, options); });
-  beads = without_overlaps(std::move(beads), options.max_overlap);
-  std::erase_if(beads, [&](const Detection& b) {
-    return b.x < -0.5 || b.y < -0.5 || b.x >= width - 0.5 || b.y >= height - 0.5;
-  });
-  for (Detection& b : beads)
+std::string_view word_of(Verdict verdict) {
+  constexpr std::array<std::string_view, 9> kWords = {"bead",        "in a wall", "bright inside",
+                                                      "pale",        "unseen",    "wrong radius",
+                                                      "unexplained", "overlaps",  "outside"};
+  return kWords[static_cast<std::size_t>(verdict)];
+}
+
+Judged judge(std::vector<Detection> candidates, double radius_px, int width, int height,
+             const JudgeOptions& options) {
+  Judged judged;
+  for (Detection& b : candidates) b.verdict = verdict_on(b, radius_px, width, height, options);
+  std::vector<Detection> possible;
+  for (const Detection& b : candidates)
+    if (b.verdict == Verdict::bead)
+      possible.push_back(b);
+    else
+      judged.dropped.push_back(b);
+  forbid_overlaps(possible, options.max_overlap);
+  for (Detection& b : possible) {
     b.edge = b.x - b.radius < -0.5 || b.y - b.radius < -0.5 || b.x + b.radius > width - 0.5 ||
              b.y + b.radius > height - 0.5;
-  flag_tracers(beads, options.tracer_below);
-  std::sort(beads.begin(), beads.end(),
-            [](const Detection& a, const Detection& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
-  return beads;
+    (b.verdict == Verdict::bead ? judged.beads : judged.dropped).push_back(b);
+  }
+  flag_tracers(judged.beads, options.tracer_below);
+  return judged;
 }
 
 }  // namespace twincell

@@ -2,10 +2,9 @@
 /// \file
 /// Which fitted discs are beads.
 
-#include <cstddef>
 #include <vector>
 
-#include "imaging/refine.hpp"
+#include "imaging/detection.hpp"
 
 namespace twincell {
 
@@ -18,10 +17,16 @@ struct JudgeOptions {
   double tracer_below = 0.8;      ///< interior below this share of the frame's median: a tracer
 };
 
+/// What became of the candidates.
+struct Judged {
+  std::vector<Detection> beads;
+  std::vector<Detection> dropped;  ///< each with its verdict
+};
+
 /// Drops what cannot be an opaque disc (wrong radius, bright inside, unexplained ring, overlap with a better
-/// one), and centres outside the frame; flags tracers; orders by y, then x. Pure. \param width, height of the
-/// frame, px
-std::vector<Detection> judge(std::vector<Detection> beads, double radius_px, int width, int height,
-                             const JudgeOptions& options);
+/// one), and centres outside the frame; flags tracers, and discs that the frame cuts. Pure.
+/// \param width, height of the frame, px
+Judged judge(std::vector<Detection> candidates, double radius_px, int width, int height,
+             const JudgeOptions& options);
 
 }  // namespace twincell

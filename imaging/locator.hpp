@@ -57,8 +57,9 @@ struct StageReport {
 
 /// One frame located.
 struct Located {
-  std::vector<Detection> beads;  ///< ordered by y, then x
-  double blur_px = 0;            ///< standard deviation of the edge found by the fit
+  std::vector<Detection> beads;    ///< ordered by y, then x
+  std::vector<Detection> dropped;  ///< candidates that are none, each with its verdict
+  double blur_px = 0;              ///< standard deviation of the edge found by the fit
   std::vector<StageReport> stages;
 };
 

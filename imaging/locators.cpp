@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "analysis/trajectory/error.hpp"
 #include "imaging/hough_locator.hpp"
 #include "imaging/locator.hpp"
+#include "imaging/orientation.hpp"
 #include "imaging/vote_locator.hpp"
 
 namespace twincell {
@@ -28,6 +31,19 @@ std::vector<Proposal> find(const std::string& finder, const Prepared& image, con
     if (F::name == finder) found = F::find(image, options);
   });
   return found;
+}
+
+/// By y, then x.
+void sort_by_place(std::vector<Detection>& detections) {
+  std::vector<std::pair<std::pair<double, double>, std::size_t>> order;
+  order.reserve(detections.size());
+  for (std::size_t k = 0; k < detections.size(); ++k)
+    order.push_back({{detections[k].y, detections[k].x}, k});
+  std::sort(order.begin(), order.end());
+  std::vector<Detection> sorted;
+  sorted.reserve(order.size());
+  for (const auto& entry : order) sorted.push_back(detections[entry.second]);
+  detections = std::move(sorted);
 }
 
 class Stopwatch {
@@ -72,11 +88,13 @@ void LocatorOptions::check() const {
                     fmt::format("there is no locator '{}'; there are: {}.", finder, names));
 }
 
-Located locate(const cv::Mat& grey, const LocatorOptions& options) {
+Located locate(const cv::Mat& picture, const LocatorOptions& options) {
   options.check();
   const double radius = options.diameter_px / 2;
   Located result;
   Stopwatch watch;
+  const Orientation way = canonical_orientation(picture);
+  const cv::Mat grey = way.turned(picture);
   const Prepared image = prepare(grey, options.preprocess, radius);
   result.stages.push_back({"prepare", watch.lap(), 0});
   FindOptions wanted = options.find;
@@ -86,7 +104,14 @@ Located locate(const cv::Mat& grey, const LocatorOptions& options) {
   Refined refined = refine(image, proposals, radius, options.refine);
   result.blur_px = refined.blur_px;
   result.stages.push_back({"refine", watch.lap(), refined.beads.size()});
-  result.beads = judge(std::move(refined.beads), radius, grey.cols, grey.rows, options.judge);
+  Judged judged = judge(std::move(refined.beads), radius, grey.cols, grey.rows, options.judge);
+  result.beads = std::move(judged.beads);
+  result.dropped = std::move(refined.dropped);
+  result.dropped.insert(result.dropped.end(), judged.dropped.begin(), judged.dropped.end());
+  for (std::vector<Detection>* list : {&result.beads, &result.dropped}) {
+    for (Detection& d : *list) d = way.back(d, picture.size());
+    sort_by_place(*list);
+  }
   result.stages.push_back({"judge", watch.lap(), result.beads.size()});
   return result;
 }

@@ -10,14 +10,6 @@ namespace twincell {
 
 namespace {
 
-using Surface = Eigen::Matrix<double, 6, 1>;
-
-Surface basis(double u, double v) {
-  Surface b;
-  b << 1, u, v, u * u, u * v, v * v;
-  return b;
-}
-
 double scaled(int i, int n) {
   return n > 1 ? 2.0 * i / (n - 1) - 1.0 : 0.0;
 }
@@ -31,8 +23,9 @@ float quantile(std::vector<float> values, double q) {
 // The light is seen only through the gaps. Starting from a bright quantile, a quadratic is fitted again and
 // again to the pixels that come near it; pixels above count three times as much as those below, which are
 // often gap edges.
-cv::Mat1f bright_envelope(const cv::Mat1f& image) {
-  const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(image.total()) / 20000.0)));
+Surface bright_envelope(const cv::Mat1f& image) {
+  constexpr double kSamples = 5000;
+  const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(image.total()) / kSamples)));
   std::vector<float> sample;
   for (int y = 0; y < image.rows; y += stride)
     for (int x = 0; x < image.cols; x += stride) sample.push_back(image(y, x));
@@ -44,7 +37,7 @@ cv::Mat1f bright_envelope(const cv::Mat1f& image) {
     int used = 0;
     for (int y = 0; y < image.rows; y += stride)
       for (int x = 0; x < image.cols; x += stride) {
-        const Surface b = basis(scaled(x, image.cols), scaled(y, image.rows));
+        const Surface b = surface_basis(x, y, image.size());
         const double value = static_cast<double>(image(y, x)), level = c.dot(b);
         if (value < near * level) continue;
         const double w = value > level ? 3 : 1;
@@ -56,49 +49,114 @@ cv::Mat1f bright_envelope(const cv::Mat1f& image) {
     a.diagonal().tail<5>().array() += 1e-3 * used;
     c = a.ldlt().solve(rhs);
   }
-  cv::Mat1f surface(image.size());
-  for (int y = 0; y < image.rows; ++y)
-    for (int x = 0; x < image.cols; ++x)
-      surface(y, x) = static_cast<float>(c.dot(basis(scaled(x, image.cols), scaled(y, image.rows))));
-  return surface;
+  return c;
 }
 
-// Morphological opening of the dark region by a disc, through two exact distance maps. The frame is continued
-// beyond its border, so that a thin strip of plate at the bottom of a frame is as thick as the plate is.
+// Morphological opening of the dark region by a disc, through two distance maps, at a fraction of the
+// resolution: the opening reaches a few pixels too far or not far enough, but only over what is dark itself.
+// The frame is continued beyond its border, so that a thin strip of plate at the bottom of a frame is as
+// thick as the plate is. Empty if there is nothing.
 cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double disc_radius_px) {
-  const int pad = cvCeil(2 * disc_radius_px);
-  cv::Mat1b dark = darkness > 0.75f;
+  constexpr double kCoarse = 6;  // pixels of the coarse picture across the disc's radius
+  constexpr float kDark = 0.75F;
+  const int shrink = std::max(1, static_cast<int>(disc_radius_px / kCoarse));
+  const cv::Size size((darkness.cols + shrink - 1) / shrink, (darkness.rows + shrink - 1) / shrink);
+  const double reach = disc_radius_px / shrink;
+  // A block is dark if all of it is: the gaps between beads are narrow.
+  cv::Mat1b dark(size, uchar{255});
+  for (int y = 0; y < darkness.rows; ++y) {
+    const float* row = darkness[y];
+    uchar* block = dark[y / shrink];
+    int x = 0;
+    for (int b = 0; b < size.width; ++b)
+      for (const int end = std::min(darkness.cols, (b + 1) * shrink); x < end; ++x)
+        block[b] = row[x] > kDark ? block[b] : uchar{0};
+  }
+  const int pad = cvCeil(2 * reach);
   cv::copyMakeBorder(dark, dark, pad, pad, pad, pad, cv::BORDER_REPLICATE);
-  if (cv::countNonZero(dark) == static_cast<int>(dark.total())) return cv::Mat1b::zeros(darkness.size());
+  if (cv::countNonZero(dark) == static_cast<int>(dark.total())) return {};
   cv::Mat1f inside;
-  cv::distanceTransform(dark, inside, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  const cv::Mat1b core = inside > disc_radius_px;
-  if (cv::countNonZero(core) == 0) return cv::Mat1b::zeros(darkness.size());
+  cv::distanceTransform(dark, inside, cv::DIST_L2, cv::DIST_MASK_5);
+  const cv::Mat1b core = inside > reach;
+  if (cv::countNonZero(core) == 0) return {};
   cv::Mat1f to_core;
-  cv::distanceTransform(~core, to_core, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  const cv::Mat1b regions = to_core < disc_radius_px;
-  return regions(cv::Rect(pad, pad, darkness.cols, darkness.rows)).clone();
+  cv::distanceTransform(~core, to_core, cv::DIST_L2, cv::DIST_MASK_5);
+  const cv::Mat1b coarse =
+      to_core(cv::Rect(pad, pad, size.width, size.height)) < reach + (shrink > 1 ? 1 : 0);
+  cv::Mat1b regions;
+  cv::resize(coarse, regions, cv::Size(), shrink, shrink, cv::INTER_NEAREST);
+  regions = regions(cv::Rect(0, 0, darkness.cols, darkness.rows)) & (darkness > kDark);
+  cv::dilate(regions, regions, cv::Mat(), cv::Point(-1, -1), 2);  // their blurred edge
+  return regions;
 }
 
 }  // namespace
 
+Noise noise_of(const cv::Mat1f& darkness) {
+  constexpr float kLight = 0.15F, kDark = 0.85F;
+  constexpr std::size_t kEnough = 50;
+  constexpr double kSamples = 60000, kLeast = 1e-6, kLeastShare = 0.1;
+  std::vector<float> light, dark;
+  const int stride = std::max(1, static_cast<int>(static_cast<double>(darkness.total()) / kSamples));
+  for (int y = stride / 2; y < darkness.rows; y += stride) {
+    const float* d = darkness[y];
+    for (int x = 1; x + 1 < darkness.cols; ++x) {
+      const float low = std::min({d[x - 1], d[x], d[x + 1]}), high = std::max({d[x - 1], d[x], d[x + 1]});
+      if (high < kLight) light.push_back(std::abs(d[x - 1] - 2 * d[x] + d[x + 1]));
+      if (low > kDark) dark.push_back(std::abs(d[x - 1] - 2 * d[x] + d[x + 1]));
+    }
+  }
+  const auto variance = [&](std::vector<float>& v) {
+    constexpr double kFromMedian = 1 / (0.6745 * 0.6745 * 6);  // of 1, -2, 1 times the noise
+    const auto middle = static_cast<double>(quantile(std::move(v), 0.5));
+    return middle * middle * kFromMedian;
+  };
+  if (light.size() < kEnough) return {};
+  const double lit = std::max(kLeast, variance(light));
+  const double black = dark.size() < kEnough ? lit : variance(dark);
+  Noise n;
+  n.dark = std::max({kLeast, kLeastShare * lit, black});
+  n.light = std::max(0.0, lit - n.dark);
+  return n;
+}
+
+SurfaceRow surface_row(const Surface& c, int y, cv::Size size) {
+  const double v = surface_basis(0, y, size)[2];
+  // u = step x + first
+  const double first = surface_basis(0, y, size)[1], step = size.width > 1 ? 2.0 / (size.width - 1) : 0;
+  const double flat = c[0] + c[2] * v + c[5] * v * v, slope = c[1] + c[4] * v, curve = c[3];
+  return {flat + slope * first + curve * first * first, step * (slope + 2 * curve * first),
+          step * step * curve};
+}
+
+Surface surface_basis(int x, int y, cv::Size size) {
+  const double u = scaled(x, size.width), v = scaled(y, size.height);
+  Surface b;
+  b << 1, u, v, u * u, u * v, v * v;
+  return b;
+}
+
 Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double radius_px) {
   cv::Mat1f image;
   grey.convertTo(image, CV_32F);
-  cv::patchNaNs(image, 0);
+  if (grey.depth() == CV_32F) cv::patchNaNs(image, 0);
   if (options.bright) {
     double top = 0;
     cv::minMaxLoc(image, nullptr, &top);
     image = top - image;
   }
   Prepared p;
-  p.background = bright_envelope(image);
+  p.light = bright_envelope(image);
   p.darkness.create(image.size());
-  for (int y = 0; y < image.rows; ++y)
+  for (int y = 0; y < image.rows; ++y) {
+    const SurfaceRow light = surface_row(p.light, y, image.size());
+    const float* i = image[y];
+    float* d = p.darkness[y];
     for (int x = 0; x < image.cols; ++x) {
-      const float b = p.background(y, x);
-      p.darkness(y, x) = b > 0 ? std::clamp(1 - image(y, x) / b, -1.0f, 2.0f) : 0.0f;
+      const float b = light.at(x), value = 1 - i[x] / (b > 0 ? b : 1.0F);
+      d[x] = b > 0 ? std::min(2.0F, std::max(-1.0F, value)) : 0.0F;
     }
+  }
   p.opaque = large_dark_regions(p.darkness, options.opaque_radii * radius_px);
   return p;
 }

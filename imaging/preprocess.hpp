@@ -2,6 +2,7 @@
 /// \file
 /// From grey levels to darkness: flat field, sign, and the regions that are neither light nor bead.
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 namespace twincell {
@@ -12,12 +13,35 @@ struct PreprocessOptions {
   double opaque_radii = 2.5;  ///< dark regions that hold a disc of this many bead radii are walls, > 1
 };
 
+/// Coefficients of 1, u, v, u^2, u v, v^2; u and v run from -1 to 1 across a frame.
+using Surface = Eigen::Matrix<double, 6, 1>;
+/// The six functions at a pixel.
+Surface surface_basis(int x, int y, cv::Size size);
+/// A surface along a row of pixels.
+struct SurfaceRow {
+  double flat, slope, curve;
+  [[nodiscard]] float at(int x) const { return static_cast<float>(flat + (slope + curve * x) * x); }
+};
+SurfaceRow surface_row(const Surface& surface, int y, cv::Size size);
+
 /// A frame ready for finding and fitting.
 struct Prepared {
-  cv::Mat1f darkness;    ///< d = 1 - I/B: 0 where the light shines, about 1 in an opaque disc
-  cv::Mat1f background;  ///< B, grey levels: quadratic surface through the light that reaches the camera
-  cv::Mat1b opaque;      ///< 255 on walls, plate and other dark regions too large to be beads
+  Surface light =
+      Surface::Zero();  ///< B, grey levels: quadratic surface through the light that reaches the camera
+  cv::Mat1f darkness;   ///< d = 1 - I/B: 0 where the light shines, about 1 in an opaque disc
+  cv::Mat1b opaque;     ///< 255 on walls, plate and other dark regions too large to be beads and within two
+                        ///< pixels of them; empty if there are none
 };
+
+/// Variance of the camera's noise in darkness: v = dark + light (1 - d).
+struct Noise {
+  double dark = 1e-3, light = 0;
+};
+
+/// From second differences of neighbouring pixels, in the dark and in the light, by medians: what is not
+/// noise (glare, clear beads, dust) does not count. Black clipped at zero shows no noise at all, but the edge
+/// beside it is known no better for that: dark is at least a tenth of what full light has.
+Noise noise_of(const cv::Mat1f& darkness);
 
 /// Pure: grey frame (CV_8U, CV_16U or CV_32F, one channel) -> darkness.
 /// \param radius_px bead radius

@@ -6,266 +6,498 @@
 #include <limits>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+
+#include "imaging/coupled_step.hpp"
+#include "imaging/disc_sums.hpp"
 
 namespace twincell {
 
 namespace {
 
-using Normal = Eigen::Matrix<double, 5, 5>;  // x, y, R, a, l
-using Step = Eigen::Matrix<double, 5, 1>;
+enum Fitted : std::uint8_t { kX, kY, kR, kA };
 
-constexpr double kHuber =
-    0.1;  // darkness; the noise of a usable frame is below it, rims of clear beads above
 constexpr double kMinInterior = 0.3;  // median darkness inside R/2 that a proposal must show
-constexpr double kMissedDarkness =
-    0.35;                     // mean residual of a disc that nobody proposed; half that of the palest tracer
-constexpr double kReach = 4;  // beyond this many pixels from the rim P is 0 or 1
-constexpr double kTypicalNoise = 0.03;  // darkness: weight of the priors against the data
+constexpr double kMinDarkness = 0.4;  // a fitted disc paler than that is none
+// Mean residual of a disc that nobody proposed; half that of the palest tracer.
+constexpr double kMissedDarkness = 0.35;
+// After so many sweeps some few may wander on: they are no beads.
+constexpr int kPatient = 12;
+constexpr double kRestless = 0.05;  // of a step, px or darkness
+// Added to the diagonal, relative: more only while steps make the fit worse.
+constexpr double kDamping = 0.002;
 
-struct Edge {
-  double p;  // P
-  double g;  // -dP/dr
-};
-
-Edge edge(double r, double radius, double s) {
-  const double u = r - radius + 0.5 * s * s / radius;
-  return {0.5 * std::erfc(u / (std::numbers::sqrt2 * s)),
-          std::exp(-0.5 * u * u / (s * s)) / (std::sqrt(2 * std::numbers::pi) * s)};
+Normal normal_of(const RingSums& s) {
+  Normal a;
+  std::size_t at = 0;
+  for (int m = 0; m < kFitted; ++m)
+    for (int k = 0; k <= m; ++k, ++at) a(m, k) = a(k, m) = s.jj[at];
+  return a;
+}
+Step right_side(const RingSums& s) {
+  Step g;
+  for (int m = 0; m < kFitted; ++m) g[m] = s.jr[static_cast<std::size_t>(m)];
+  return g;
 }
 
-// A bead's own contribution a P on its window, kept so that it can be taken out of the sum.
-struct Patch {
-  cv::Rect window;
-  std::vector<float> values;
+double median_of(std::vector<double> v) {
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+/// What is believed of R or a before the ring is looked at: a Gaussian with wide shoulders, so that a bead
+/// that clearly differs is free to.
+struct Belief {
+  double mean, spread;
+  [[nodiscard]] double precision(double value) const {
+    const double off = (value - mean) / (4 * spread);
+    return 1 / (spread * spread * (1 + off * off));
+  }
 };
 
 class PictureFit {
  public:
   PictureFit(const Prepared& image, double radius, const RefineOptions& options)
-      : d_(image.darkness),
-        background_(image.background),
+      : image_(image),
         radius_(radius),
         options_(options),
-        blur_(options.blur_px > 0 ? options.blur_px : 0.8),
-        model_(cv::Mat1f::zeros(image.darkness.size())) {
-    cv::dilate(image.opaque, excluded_, cv::Mat(), cv::Point(-1, -1), 2);
+        size_(image.darkness.size()),
+        noise_(noise_of(image.darkness)),
+        beliefs_{Belief{radius, options.radius_spread * radius}, Belief{1, 0.3}} {
+    const double s = options.blur_px > 0 ? options.blur_px : 0.8;
+    blur_.variance = s * s;
+    picture_.create(size_.height, size_.width + kSpareColumns);
+    for (int y = 0; y < size_.height; ++y) {
+      std::copy_n(image.darkness[y], size_.width, picture_[y]);
+      std::fill_n(picture_[y] + size_.width, kSpareColumns, kUnseen);
+    }
+    if (!image.opaque.empty()) picture_.colRange(0, size_.width).setTo(kUnseen, image.opaque);
   }
 
-  // A proposal that is bright inside is a void or a clear bead, one with its centre in a wall is the wall's
-  // edge; fitted along, they would spoil their neighbours.
   void add(const Proposal& p) {
     Detection b;
     b.x = p.x;
     b.y = p.y;
-    b.radius = radius_;
-    b.darkness = 1;
-    if (interior(b) < kMinInterior || in_wall(b)) return;
-    beads_.push_back(b);
-    patches_.push_back(draw(b));
-    apply(patches_.back(), 1);
+    b.radius = beliefs_[0].mean;
+    b.darkness = beliefs_[1].mean;
+    // A proposal that is bright inside is a void or a clear bead, one with its centre in a wall is the wall's
+    // edge; fitted along, they would spoil their neighbours.
+    if (in_wall(b))
+      drop(b, Verdict::in_wall);
+    else if (middle(b) < kMinInterior)
+      drop(b, Verdict::bright_inside);
+    else
+      beads_.push_back(b);
   }
 
-  int sweep_until_still(int most) {
-    for (int sweep = 1; sweep <= most; ++sweep) {
-      const double moved = sweep_once();
-      if (moved < options_.tolerance_px) return sweep;
+  struct Moved {
+    double most, rms, sigma;  ///< px; sigma: what a typical bead's place is uncertain by
+    bool short_step;          ///< says nothing of how far there is to go
+  };
+
+  /// One Gauss-Newton step of all discs, and of the blur. The order of the beads does not matter. A step that
+  /// made the fit worse is taken back, and taken again shorter.
+  Moved sweep(BlurFit fit) {
+    RingArgs args = ring_args();
+    if (sweeps_ == 0) args.row_step = 2;  // half the pixels do while the places are rough
+    evaluate(args, fit);
+    double squares = 0, pixels = 1;
+    for (const RingSums& s : sums_) squares += s.residual_squares, pixels += s.pixels;
+    const double misfit = squares / pixels;
+    if (last_ && misfit > 1.1 * last_->misfit + 1e-7) {
+      beads_ = last_->beads;
+      sums_ = last_->sums;
+      blur_ = last_->blur;
+      damping_ *= 20;
+      couplings_.clear();
+    } else {
+      last_ = State{beads_, sums_, blur_, misfit};
+      damping_ = std::max(kDamping, damping_ / 4);
+      if (sweeps_ >= 2) prune();
     }
-    return most;
+    ++sweeps_;
+    return step(args, fit);
   }
 
-  // A disc that nobody proposed leaves a dark disc in the residual picture.
+  /// After a first sweep by which every disc stands alone: most are alike.
+  void expect_alike() {
+    if (beads_.empty()) return;
+    std::vector<double> radius, darkness;
+    for (const Detection& b : beads_) radius.push_back(b.radius), darkness.push_back(b.darkness);
+    beliefs_ = {Belief{median_of(std::move(radius)), options_.radius_spread / 3 * radius_},
+                Belief{median_of(std::move(darkness)), 0.02}};
+  }
+
+  /// How much R and a differ from bead to bead, from the beads themselves: the scatter less what the fit
+  /// alone would scatter.
+  void learn_beliefs() {
+    constexpr std::size_t kEnough = 20;
+    const std::array<double, 2> least = {0.002 * radius_, 0.003};
+    std::array<std::vector<double>, 2> values, variances;
+    for (std::size_t k = 0; k < beads_.size(); ++k) {
+      const Detection& b = beads_[k];
+      if (sums_[k].pixels < 0.8 * full_ring()) continue;
+      const std::array<double, 2> v = {b.radius, b.darkness};
+      for (std::size_t q = 0; q < 2; ++q) values[q].push_back(v[q]);
+      if (variances[0].size() > 200) continue;
+      const Normal covariance = normal_of(sums_[k]).inverse();
+      for (int q = 0; q < 2; ++q)
+        variances[static_cast<std::size_t>(q)].push_back(covariance(kR + q, kR + q));
+    }
+    if (values[0].size() < kEnough) return;
+    for (std::size_t q = 0; q < 2; ++q) {
+      const double middle = median_of(values[q]);
+      for (double& v : values[q]) v = std::abs(v - middle);
+      const double scatter = 1.4826 * median_of(values[q]);
+      const double own = scatter * scatter - median_of(variances[q]);
+      beliefs_[q] = {middle, std::max(least[q], std::sqrt(std::max(0.0, own)))};
+    }
+  }
+
+  /// Divides the light by a quadratic surface, so that what is left in the gaps between the discs vanishes.
+  void level() {
+    constexpr double kSamples = 10000;
+    constexpr int kEnough = 200;
+    if (stale_) render();
+    Eigen::Matrix<double, 6, 6> a = Eigen::Matrix<double, 6, 6>::Zero();
+    Surface right = Surface::Zero();
+    const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size_.area()) / kSamples)));
+    const double far = ring_args().huber;
+    int n = 0;
+    for (int y = 0; y < size_.height; y += stride)
+      for (int x = y / stride % 2; x < size_.width; x += stride) {
+        const double t = static_cast<double>(model_(y, x)), left = static_cast<double>(picture_(y, x)) - t;
+        if (t > 0.7 || std::abs(left) > far) continue;
+        const Surface f = (1 - t) * surface_basis(x, y, size_);
+        a += f * f.transpose();
+        right += left * f;
+        ++n;
+      }
+    if (n < kEnough) return;
+    a.diagonal().tail<5>().array() += 1e-3 * n;
+    const Surface q = a.ldlt().solve(right);
+    for (int y = 0; y < size_.height; ++y) {
+      float* d = picture_[y];
+      const SurfaceRow row = surface_row(q, y, size_);
+      for (int x = 0; x < size_.width; ++x) {
+        const float levelled = 1 - (1 - d[x]) / (1 - row.at(x));
+        d[x] = d[x] < kUnseen ? levelled : d[x];
+      }
+    }
+    last_.reset();
+  }
+
+  /// A disc that nobody proposed leaves a dark disc in the residual picture: blocks of pixels, three by three
+  /// of them about as wide as a disc, are looked through for it. \returns how many were added
   std::size_t add_missed() {
-    cv::Mat1f residual = d_ - model_;
-    residual.setTo(0, excluded_);
-    const int n = 2 * cvFloor(0.8 * radius_) + 1;
-    cv::Mat1f disc = cv::Mat1f::zeros(n, n);
-    cv::circle(disc, {n / 2, n / 2}, n / 2, 1, cv::FILLED);
-    disc /= cv::sum(disc)[0];
-    cv::Mat1f filled;
-    cv::filter2D(residual, filled, CV_32F, disc, {-1, -1}, 0, cv::BORDER_REPLICATE);
-    // Opaque discs do not overlap: a centre within 1.3 R of a known one is that one's own misfit.
-    for (const Detection& b : beads_)
-      cv::circle(filled, cv::Point(cvRound(b.x), cvRound(b.y)), cvRound(1.3 * radius_), 0, cv::FILLED);
-    std::size_t added = 0;
-    while (added < beads_.size() + 100) {
-      double top = 0;
-      cv::Point at;
-      cv::minMaxLoc(filled, nullptr, &top, nullptr, &at);
-      if (top < kMissedDarkness) break;
-      cv::circle(filled, at, cvCeil(radius_), 0, cv::FILLED);
-      add({static_cast<double>(at.x), static_cast<double>(at.y), 0});
-      ++added;
+    if (stale_) render();
+    const int side = std::max(1, cvRound(0.4 * radius_));
+    cv::Mat1f blocks = cv::Mat1f::zeros(size_.height / side, size_.width / side);
+    for (int y = 0; y < blocks.rows * side; ++y) {
+      const float *d = picture_[y], *t = model_[y];
+      float* block = blocks[y / side];
+      for (int x = 0; x < blocks.cols; ++x)
+        for (int k = x * side; k < (x + 1) * side; ++k)
+          if (d[k] < kUnseen) block[x] += d[k] - t[k];
     }
-    return added;
+    if (blocks.empty()) return 0;
+    cv::boxFilter(blocks, blocks, CV_32F, {3, 3}, {-1, -1}, false, cv::BORDER_CONSTANT);
+    std::vector<Proposal> missed;
+    for (int y = 0; y < blocks.rows; ++y)
+      for (int x = 0; x < blocks.cols; ++x)
+        if (const double mean = static_cast<double>(blocks(y, x)) / (9 * side * side);
+            mean >= kMissedDarkness)
+          missed.push_back({side * (x + 0.5) - 0.5, side * (y + 0.5) - 0.5, mean});
+    std::stable_sort(missed.begin(), missed.end(),
+                     [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
+    const std::size_t before = beads_.size();
+    for (const Proposal& p : missed) {
+      // Opaque discs do not overlap: a centre within 1.3 R of a known one is that one's own misfit.
+      const bool known = std::any_of(beads_.begin(), beads_.end(), [&](const Detection& b) {
+        return std::hypot(b.x - p.x, b.y - p.y) < 1.3 * radius_;
+      });
+      if (!known) add(p);
+    }
+    if (beads_.size() > before) stale_ = true, last_.reset(), couplings_.clear();
+    return beads_.size() - before;
   }
 
-  std::vector<Detection> result() {
-    for (std::size_t k = 0; k < beads_.size(); ++k) measure(k);
-    return beads_;
+  /// The beads, with what is known of each. To be called once, last.
+  Refined result() {
+    for (std::size_t k = 0; k < beads_.size(); ++k) measure(beads_[k], sums_[k]);
+    return {std::move(beads_), std::move(dropped_), std::sqrt(blur_.variance), sweeps_};
   }
-  [[nodiscard]] double blur() const { return blur_; }
 
  private:
-  [[nodiscard]] cv::Rect window_of(const Detection& b) const {
-    const double reach = b.radius + kReach;
-    const cv::Rect r(cvFloor(b.x - reach), cvFloor(b.y - reach), 2 * cvCeil(reach) + 1,
-                     2 * cvCeil(reach) + 1);
-    return r & cv::Rect(0, 0, d_.cols, d_.rows);
-  }
-  [[nodiscard]] Patch draw(const Detection& b) const {
-    Patch patch{window_of(b), {}};
-    patch.values.reserve(static_cast<std::size_t>(patch.window.area()));
-    for (int y = patch.window.y; y < patch.window.br().y; ++y)
-      for (int x = patch.window.x; x < patch.window.br().x; ++x) {
-        const double r = std::hypot(x - b.x, y - b.y);
-        const double p = r < b.radius - kReach ? 1 : r > b.radius + kReach ? 0 : edge(r, b.radius, blur_).p;
-        patch.values.push_back(static_cast<float>(b.darkness * p));
+  /// The step of the blur, which all discs share, given that each disc's four follow it.
+  class BlurStep {
+   public:
+    explicit BlurStep(BlurFit fit) : n_(fit == BlurFit::none ? 0 : fit == BlurFit::round ? 1 : 3) {}
+    void learn(const RingSums& s, const Normal& block, const Step& right) {
+      if (n_ == 0) return;
+      Eigen::Matrix<double, kFitted, 3> c;
+      for (int m = 0; m < kFitted; ++m)
+        for (int q = 0; q < 3; ++q) c(m, q) = s.jb[static_cast<std::size_t>(RingSums::kBlurs * m + q)];
+      Eigen::Matrix<double, kFitted, 3> followed = Eigen::Matrix<double, kFitted, 3>::Zero();
+      const Eigen::LLT<Normal> solver(block);
+      for (int q = 0; q < n_; ++q) followed.col(q) = solver.solve(c.col(q));
+      std::size_t at = 0;
+      for (int m = 0; m < n_; ++m) {
+        for (int q = 0; q <= m; ++q, ++at) normal_(m, q) += s.bb[at] - c.col(m).dot(followed.col(q));
+        right_[m] += s.br[static_cast<std::size_t>(m)] - followed.col(m).dot(right);
       }
-    return patch;
-  }
-  void apply(const Patch& patch, float sign) {
-    std::size_t i = 0;
-    for (int y = patch.window.y; y < patch.window.br().y; ++y)
-      for (int x = patch.window.x; x < patch.window.br().x; ++x) model_(y, x) += sign * patch.values[i++];
-  }
-
-  // Runs `use(residual, jacobian, dP/ds term, weight)` over the free pixels of bead k's ring; its own patch
-  // must have been taken out of the model. Returns the share of the ring that was free.
-  template <class Use>
-  double over_ring(const Detection& b, Use&& use) const {
-    const cv::Rect window = window_of(b);
-    int free = 0;
-    for (int y = window.y; y < window.br().y; ++y)
-      for (int x = window.x; x < window.br().x; ++x) {
-        const double dx = x - b.x, dy = y - b.y, r = std::hypot(dx, dy);
-        if (std::abs(r - b.radius) > options_.ring_px || r == 0) continue;
-        const double others = static_cast<double>(model_(y, x));
-        if (excluded_(y, x) != 0 || others > 0.9) continue;  // hidden: tells nothing of this bead
-        ++free;
-        const Edge e = edge(r, b.radius, blur_);
-        const double residual = static_cast<double>(d_(y, x)) - others - b.light - b.darkness * e.p;
-        const double weight = std::abs(residual) <= kHuber ? 1 : kHuber / std::abs(residual);
-        Step j;
-        j << b.darkness * e.g * dx / r, b.darkness * e.g * dy / r, b.darkness * e.g, e.p, 1;
-        use(residual, j, b.darkness * e.g * (r - b.radius) / blur_, weight);
-      }
-    return free / (2 * std::numbers::pi * b.radius * 2 * options_.ring_px);
-  }
-
-  [[nodiscard]] Normal prior() const {
-    auto precision = [](double spread) { return std::pow(kTypicalNoise / spread, 2); };
-    Step p;
-    p << precision(2), precision(2), precision(options_.radius_spread * radius_), precision(0.3),
-        precision(0.05);
-    return p.asDiagonal();
-  }
-
-  double sweep_once() {
-    double moved = 0, blur_gradient = 0, blur_curvature = 1e-9;
-    for (std::size_t k = 0; k < beads_.size(); ++k) {
-      Detection& b = beads_[k];
-      apply(patches_[k], -1);
-      Normal a = prior();
-      Step g = Step::Zero();
-      g[2] = a(2, 2) * (radius_ - b.radius);
-      g[3] = a(3, 3) * (1 - b.darkness);
-      g[4] = -a(4, 4) * b.light;
-      over_ring(b, [&](double residual, const Step& j, double js, double w) {
-        a.noalias() += w * j * j.transpose();
-        g.noalias() += w * residual * j;
-        blur_gradient += w * js * residual;
-        blur_curvature += w * js * js;
-      });
-      const Step step = a.ldlt().solve(g);
-      const double dx = std::clamp(step[0], -1.0, 1.0), dy = std::clamp(step[1], -1.0, 1.0);
-      b.x += dx;
-      b.y += dy;
-      b.radius = std::clamp(b.radius + std::clamp(step[2], -0.5, 0.5), 0.6 * radius_, 1.4 * radius_);
-      b.darkness = std::clamp(b.darkness + step[3], 0.0, 1.5);
-      b.light = std::clamp(b.light + step[4], -0.5, 0.5);
-      moved = std::max({moved, std::abs(dx), std::abs(dy)});
-      patches_[k] = draw(b);
-      apply(patches_[k], 1);
     }
-    if (options_.blur_px <= 0 && !beads_.empty())
-      blur_ = std::clamp(blur_ + std::clamp(blur_gradient / blur_curvature, -0.2, 0.2), 0.3, 3.0);
+    void apply(EdgeBlur& blur) const {
+      constexpr double kLeast = 0.09, kMost = 9;
+      if (n_ != 1 || normal_(0, 0) <= 0) return;
+      const double old = blur.variance, step = right_[0] / normal_(0, 0);
+      blur.variance = std::clamp(old + std::clamp(step, -0.5 * old, old), kLeast, kMost);
+    }
+
+   private:
+    int n_;
+    Eigen::Matrix3d normal_ = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
+  };
+
+  /// Drops what has turned out to be no disc, or to lie outside. Left in, it would spoil its neighbours.
+  void prune() {
+    std::size_t kept = 0;
+    const double out = 0.9 * radius_;
+    for (std::size_t k = 0; k < beads_.size(); ++k) {
+      const Detection& b = beads_[k];
+      if (b.darkness < kMinDarkness) {
+        drop(b, Verdict::pale);
+      } else if (sums_[k].pixels < 0.05 * full_ring()) {
+        drop(b, Verdict::unseen);
+      } else if (b.x < -out || b.y < -out || b.x > size_.width - 1 + out || b.y > size_.height - 1 + out) {
+        drop(b, Verdict::outside);
+      } else {
+        beads_[kept] = b;
+        sums_[kept++] = sums_[k];
+      }
+    }
+    if (kept == beads_.size()) return;
+    stale_ = true;
+    last_.reset();
+    couplings_.clear();
+    beads_.resize(kept);
+    sums_.resize(kept);
+  }
+
+  void evaluate(const RingArgs& args, BlurFit fit) {
+    if (stale_) render();
+    sums_.resize(beads_.size());
+    for (std::size_t k = 0; k < beads_.size(); ++k) sums_[k] = ring_sums(args, disc_of(beads_[k]), fit);
+  }
+
+  Moved step(const RingArgs& args, BlurFit fit) {
+    const std::size_t n = beads_.size();
+    std::vector<Disc> discs(n);
+    std::vector<Normal> blocks(n);
+    std::vector<Step> right(n);
+    BlurStep blur(fit);
+    for (std::size_t k = 0; k < n; ++k) {
+      discs[k] = disc_of(beads_[k]);
+      blocks[k] = normal_of(sums_[k]);
+      right[k] = right_side(sums_[k]);
+      believe(beads_[k], blocks[k], right[k]);
+      blur.learn(sums_[k], blocks[k], right[k]);
+      blocks[k].diagonal() *= 1 + damping_;
+    }
+    std::vector<Step> steps(n);
+    if (sweeps_ > 1) {
+      // Once discs hardly move any more, what couples them stays what it was.
+      if (restless_ || couplings_.empty()) couplings_ = couplings_of(args, discs);
+      steps = coupled_step(blocks, couplings_, right);
+    } else {
+      // R and a are not known well enough yet to say what neighbours do to each other.
+      for (std::size_t k = 0; k < n; ++k) {
+        steps[k] = blocks[k].llt().solve(right[k]);
+        steps[k].tail<2>() *= 0.6;  // neighbours do the same: together they would overshoot
+      }
+    }
+    std::vector<double> far(n), sigma(n);
+    restless_ = false;
+    Moved moved{0, 0, 0, damping_ > 0.1};
+    for (std::size_t k = 0; k < n; ++k) {
+      far[k] = apply(beads_[k], steps[k]);
+      restless_ = restless_ || far[k] > kRestless || std::abs(steps[k][kA]) > kRestless;
+      sigma[k] = std::sqrt(excess(sums_[k]) / blocks[k](kX, kX));
+    }
+    if (n > 0) {
+      std::sort(far.begin(), far.end());
+      const std::size_t most = sweeps_ > kPatient ? n - 1 - n / 50 : n - 1;
+      for (std::size_t k = 0; k <= most; ++k) moved.rms += far[k] * far[k];
+      moved.most = far[most];
+      moved.rms = std::sqrt(moved.rms / static_cast<double>(2 * (most + 1)));
+      moved.sigma = median_of(std::move(sigma));
+    }
+    blur.apply(blur_);
+    stale_ = true;
     return moved;
   }
 
-  // Uncertainty, score and interior of bead k.
-  void measure(std::size_t k) {
-    Detection& b = beads_[k];
-    apply(patches_[k], -1);
-    Normal a = prior();
-    double squares = 0, weights = 0, mean = 0, mean_square = 0;
-    int n = 0;
-    b.ring_share = over_ring(b, [&](double residual, const Step& j, double, double w) {
-      a.noalias() += w * j * j.transpose();
-      squares += w * residual * residual;
-      weights += w;
-      const double seen = residual + b.darkness * j[3];
-      mean += seen;
-      mean_square += seen * seen;
-      ++n;
-    });
-    const double variance = n > 5 ? squares / (n - 5) : std::numeric_limits<double>::infinity();
-    const Normal covariance = variance * a.inverse();
-    b.sigma_x = std::sqrt(covariance(0, 0));
-    b.sigma_y = std::sqrt(covariance(1, 1));
-    b.sigma_radius = std::sqrt(covariance(2, 2));
-    b.residual = n > 0 ? std::sqrt(squares / weights) : std::numeric_limits<double>::infinity();
-    const double total = n > 0 ? mean_square - mean * mean / n : 0;
-    b.score = total > 0 ? std::clamp(1 - squares / total, 0.0, 1.0) : 0;
+  void drop(const Detection& b, Verdict why) {
+    dropped_.push_back(b);
+    dropped_.back().verdict = why;
+  }
+  [[nodiscard]] static Disc disc_of(const Detection& b) { return {b.x, b.y, b.radius, b.darkness}; }
+  [[nodiscard]] double full_ring() const { return 4 * std::numbers::pi * radius_ * options_.ring_px; }
+  void render() {
+    model_.create(picture_.size());
+    model_.setTo(0);
+    for (const Detection& b : beads_) add_disc(model_, disc_of(b), blur_);
+    stale_ = false;
+  }
+  [[nodiscard]] RingArgs ring_args() const {
+    RingArgs args;
+    args.picture = &picture_;
+    args.model = &model_;
+    args.blur = blur_;
+    args.ring = options_.ring_px;
+    args.dark_variance = noise_.dark;
+    args.light_variance = noise_.light;
+    // The noise of a usable frame is below, rims of clear beads are above.
+    args.huber = std::max(0.1, 4 * std::sqrt(noise_.dark + noise_.light));
+    return args;
+  }
+  /// Adds what is believed to the normal equations of a bead.
+  void believe(const Detection& b, Normal& a, Step& g) const {
+    const std::array<double, 2> v = {b.radius, b.darkness};
+    for (std::size_t q = 0; q < 2; ++q) {
+      const double p = beliefs_[q].precision(v[q]);
+      const int at = kR + static_cast<int>(q);
+      a(at, at) += p;
+      g[at] += p * (beliefs_[q].mean - v[q]);
+    }
+    a(kX, kX) += 0.25, a(kY, kY) += 0.25;  // a proposal is good to 2 px
+  }
+  /// \returns how far the centre moved, px
+  double apply(Detection& b, const Step& step) const {
+    const double dx = std::clamp(step[kX], -1.0, 1.0), dy = std::clamp(step[kY], -1.0, 1.0);
+    b.x += dx;
+    b.y += dy;
+    b.radius = std::clamp(b.radius + std::clamp(step[kR], -0.5, 0.5), 0.6 * radius_, 1.4 * radius_);
+    b.darkness = std::clamp(b.darkness + step[kA], 0.0, 1.5);
+    return std::hypot(dx, dy);
+  }
+
+  /// Where the fit leaves more than the noise, the scatter is larger by as much: variance over that of the
+  /// noise.
+  [[nodiscard]] static double excess(const RingSums& s) {
+    return s.pixels > kFitted ? std::max(1.0, s.squares / (s.pixels - kFitted)) : HUGE_VAL;
+  }
+
+  /// Uncertainty, score, interior and moments of a bead.
+  void measure(Detection& b, const RingSums& s) const {
+    Normal a = normal_of(s);
+    Step g = Step::Zero();
+    believe(b, a, g);
+    const double n = s.pixels;
+    const Normal covariance = excess(s) * a.inverse();
+    b.sigma_x = std::sqrt(covariance(kX, kX));
+    b.sigma_y = std::sqrt(covariance(kY, kY));
+    b.sigma_radius = std::sqrt(covariance(kR, kR));
+    b.residual = n > 0 ? std::sqrt(s.residual_squares / n) : std::numeric_limits<double>::infinity();
+    const double total = n > 0 ? s.seen_squares - s.seen * s.seen / n : 0;
+    b.score = total > 0 ? std::clamp(1 - s.residual_squares / total, 0.0, 1.0) : 0;
+    b.ring_share = n / (4 * std::numbers::pi * b.radius * options_.ring_px);
     b.interior = interior(b);
     take_moments(b);
-    apply(patches_[k], 1);
   }
-  // Brightness and shape as trackpy's users know them, over the disc about its fitted centre.
+  /// Brightness and shape as trackpy's users know them, over the disc about its fitted centre.
   void take_moments(Detection& b) const {
-    double xx = 0, xy = 0, yy = 0;
-    const cv::Rect window = window_of(b);
-    for (int y = window.y; y < window.br().y; ++y)
-      for (int x = window.x; x < window.br().x; ++x) {
-        const double dx = x - b.x, dy = y - b.y;
-        if (dx * dx + dy * dy > b.radius * b.radius) continue;
-        const double d = std::max(0.0, static_cast<double>(d_(y, x) - model_(y, x)));
-        b.mass += d;
-        b.raw_mass += d * static_cast<double>(background_(y, x));
-        b.signal = std::max(b.signal, d);
-        xx += d * dx * dx;
-        xy += d * dx * dy;
-        yy += d * dy * dy;
+    double xx = 0, xy = 0, yy = 0, mass = 0, raw = 0, signal = 0;
+    over_disc(b, b.radius, [&](int y, int first, int last) {
+      const float* d = image_.darkness[y];
+      const SurfaceRow light = surface_row(image_.light, y, size_);
+      const double dy = y - b.y;
+      for (int x = first; x <= last; ++x) {
+        const double dx = x - b.x, v = std::max(0.0, static_cast<double>(d[x]));
+        mass += v;
+        raw += v * static_cast<double>(light.at(x));
+        signal = std::max(signal, v);
+        xx += v * dx * dx;
+        xy += v * dx * dy;
+        yy += v * dy * dy;
       }
-    if (b.mass <= 0) return;
-    b.size = std::sqrt((xx + yy) / b.mass);
+    });
+    b.mass = mass;
+    b.raw_mass = raw;
+    b.signal = signal;
+    if (mass <= 0) return;
+    b.size = std::sqrt((xx + yy) / mass);
     const double spread = std::hypot(xx - yy, 2 * xy), sum = xx + yy;
     b.ecc = sum + spread > 0 ? std::sqrt(2 * spread / (sum + spread)) : 0;
   }
+  /// Median darkness inside R/2.
+  [[nodiscard]] double interior(const Detection& b) const {
+    inside_.clear();
+    over_disc(b, std::max(0.5 * b.radius, 1.0), [&](int y, int first, int last) {
+      inside_.insert(inside_.end(), image_.darkness[y] + first, image_.darkness[y] + last + 1);
+    });
+    if (inside_.empty()) return b.darkness;  // centre outside the frame: the rim speaks for it
+    const auto half = inside_.begin() + static_cast<std::ptrdiff_t>(inside_.size() / 2);
+    std::nth_element(inside_.begin(), half, inside_.end());
+    return static_cast<double>(*half);
+  }
+  /// Calls use(row, first, last) for the pixels of the frame nearer than `reach` to the centre.
+  template <class Use>
+  void over_disc(const Detection& b, double reach, Use&& use) const {
+    const int last_row = std::min(size_.height - 1, cvFloor(b.y + reach));
+    for (int y = std::max(0, cvCeil(b.y - reach)); y <= last_row; ++y) {
+      const double half = std::sqrt(std::max(0.0, reach * reach - (y - b.y) * (y - b.y)));
+      const int first = std::max(0, cvCeil(b.x - half)),
+                last = std::min(size_.width - 1, cvFloor(b.x + half));
+      if (first <= last) use(y, first, last);
+    }
+  }
+  /// Median of nine pixels inside R/2.
+  [[nodiscard]] double middle(const Detection& b) const {
+    std::array<float, 9> v{};
+    std::ptrdiff_t n = 0;
+    const int away = std::max(1, cvFloor(0.4 * b.radius));
+    for (int dy = -away; dy <= away; dy += away)
+      for (int dx = -away; dx <= away; dx += away) {
+        const int x = cvRound(b.x) + dx, y = cvRound(b.y) + dy;
+        if (x >= 0 && y >= 0 && x < size_.width && y < size_.height)
+          v[static_cast<std::size_t>(n++)] = image_.darkness(y, x);
+      }
+    if (n == 0) return b.darkness;  // outside the frame: the rim will speak for it
+    std::nth_element(v.begin(), v.begin() + n / 2, v.begin() + n);
+    return static_cast<double>(v[static_cast<std::size_t>(n / 2)]);
+  }
   [[nodiscard]] bool in_wall(const Detection& b) const {
     const cv::Point at(cvRound(b.x), cvRound(b.y));
-    return cv::Rect(0, 0, d_.cols, d_.rows).contains(at) && excluded_(at) != 0;
-  }
-  [[nodiscard]] double interior(const Detection& b) const {
-    std::vector<float> inside;
-    const cv::Rect window = window_of(b);
-    for (int y = window.y; y < window.br().y; ++y)
-      for (int x = window.x; x < window.br().x; ++x)
-        if (std::hypot(x - b.x, y - b.y) <= std::max(0.5 * b.radius, 1.0)) inside.push_back(d_(y, x));
-    if (inside.empty()) return b.darkness;  // centre outside the frame: the rim speaks for it
-    const auto middle = inside.begin() + static_cast<std::ptrdiff_t>(inside.size() / 2);
-    std::nth_element(inside.begin(), middle, inside.end());
-    return static_cast<double>(*middle);
+    const cv::Mat1b& walls = image_.opaque;
+    return cv::Rect(0, 0, walls.cols, walls.rows).contains(at) && walls(at) != 0;
   }
 
-  cv::Mat1f d_;
-  cv::Mat1f background_;
+  const Prepared& image_;
   double radius_;
   RefineOptions options_;
-  double blur_;
-  cv::Mat1f model_;  // sum of all a P
-  cv::Mat1b excluded_;
-  std::vector<Detection> beads_;
-  std::vector<Patch> patches_;
+  cv::Size size_;
+  Noise noise_;
+  EdgeBlur blur_;
+  std::array<Belief, 2> beliefs_;  // R, a
+  cv::Mat1f picture_, model_;      // with spare columns; darkness, sum of all a P
+  bool stale_ = true;              // the model is not that of the beads
+  std::vector<Detection> beads_, dropped_;
+  std::vector<RingSums> sums_;  // of the last sweep
+  struct State {
+    std::vector<Detection> beads;
+    std::vector<RingSums> sums;
+    EdgeBlur blur;
+    double misfit;  // mean square of what is left, darkness^2
+  };
+  std::optional<State> last_;  // before the last step; none after the picture or the set of beads was changed
+  double damping_ = kDamping;
+  bool restless_ = true;  // the last step was a large one
+  int sweeps_ = 0;
+  std::vector<Coupling> couplings_;  // empty after the set of beads was changed
+  mutable std::vector<float> inside_;
 };
 
 }  // namespace
@@ -274,10 +506,25 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
                const RefineOptions& options) {
   PictureFit fit(image, radius_px, options);
   for (const Proposal& p : proposals) fit.add(p);
-  int sweeps = fit.sweep_until_still(std::min(4, options.sweeps));
-  fit.add_missed();
-  sweeps += fit.sweep_until_still(std::max(0, options.sweeps - sweeps));
-  return {fit.result(), fit.blur(), sweeps};
+  const BlurFit blur = options.blur_px > 0 ? BlurFit::none : BlurFit::round;
+  constexpr int kLeast = 3;
+  constexpr double kEnough =
+      0.25;  // of what a place is uncertain by: the next sweep would move a third of that
+  int sweeps = 0;
+  while (sweeps < options.sweeps) {
+    const auto moved = fit.sweep(sweeps < 4 ? blur : BlurFit::none);
+    ++sweeps;
+    if (sweeps == 1) {
+      fit.expect_alike();
+    }
+    if (sweeps <= 2) fit.level();
+    if (sweeps == 2) fit.add_missed();
+    if (sweeps == 3) fit.learn_beliefs();
+    if (sweeps >= kLeast && !moved.short_step && moved.rms < kEnough * moved.sigma &&
+        moved.most < std::max(options.tolerance_px, 3 * moved.sigma))
+      break;
+  }
+  return fit.result();
 }
 
 }  // namespace twincell

@@ -25,21 +25,27 @@ cv::Mat1f votes(const cv::Mat1f& d, const cv::Mat1b& ignore, double radius, int 
   cv::Mat1f gx, gy;
   gradient(d, gx, gy);
   cv::Mat1f sum = cv::Mat1f::zeros(d.rows + 2 * pad, d.cols + 2 * pad);
-  for (int y = 0; y < d.rows; ++y)
+  std::vector<float> strength(static_cast<std::size_t>(d.cols));
+  for (int y = 0; y < d.rows; ++y) {
+    const float *gx_row = gx[y], *gy_row = gy[y];
+    for (int x = 0; x < d.cols; ++x)
+      strength[static_cast<std::size_t>(x)] = gx_row[x] * gx_row[x] + gy_row[x] * gy_row[x];
     for (int x = 0; x < d.cols; ++x) {
-      const float g = std::hypot(gx(y, x), gy(y, x));
-      if (g < kMinGradient || (!ignore.empty() && ignore(y, x) != 0)) continue;
-      const float r = static_cast<float>(radius) / g;
-      const float vx = static_cast<float>(x + pad) + r * gx(y, x),
-                  vy = static_cast<float>(y + pad) + r * gy(y, x);
-      const int ix = cvFloor(vx), iy = cvFloor(vy);
-      if (ix < 0 || iy < 0 || ix + 1 >= sum.cols || iy + 1 >= sum.rows) continue;
+      const float g2 = strength[static_cast<std::size_t>(x)];
+      if (g2 < kMinGradient * kMinGradient || (!ignore.empty() && ignore(y, x) != 0)) continue;
+      const float g = std::sqrt(g2), r = static_cast<float>(radius) / g;
+      const float vx = static_cast<float>(x + pad) + r * gx_row[x],
+                  vy = static_cast<float>(y + pad) + r * gy_row[x];
+      const int ix = static_cast<int>(vx), iy = static_cast<int>(vy);  // positive within the border
+      if (vx < 0 || vy < 0 || ix + 1 >= sum.cols || iy + 1 >= sum.rows) continue;
       const float fx = vx - static_cast<float>(ix), fy = vy - static_cast<float>(iy);
-      sum(iy, ix) += g * (1 - fx) * (1 - fy);
-      sum(iy, ix + 1) += g * fx * (1 - fy);
-      sum(iy + 1, ix) += g * (1 - fx) * fy;
-      sum(iy + 1, ix + 1) += g * fx * fy;
+      float *upper = sum[iy] + ix, *lower = sum[iy + 1] + ix;
+      upper[0] += g * (1 - fx) * (1 - fy);
+      upper[1] += g * fx * (1 - fy);
+      lower[0] += g * (1 - fx) * fy;
+      lower[1] += g * fx * fy;
     }
+  }
   cv::GaussianBlur(sum, sum, cv::Size(), kSmoothing_px, kSmoothing_px, cv::BORDER_CONSTANT);
   return sum;
 }
@@ -53,10 +59,11 @@ double parabola_top(float left, float middle, float right) {
 
 std::vector<Proposal> peaks(const cv::Mat1f& sum, int pad, double full_circle, double min_score) {
   std::vector<Proposal> found;
+  const auto least = static_cast<float>(min_score * full_circle);
   for (int y = 1; y + 1 < sum.rows; ++y)
     for (int x = 1; x + 1 < sum.cols; ++x) {
       const float v = sum(y, x);
-      if (static_cast<double>(v) < min_score * full_circle) continue;
+      if (v < least) continue;
       if (v <= sum(y - 1, x - 1) || v <= sum(y - 1, x) || v <= sum(y - 1, x + 1) || v <= sum(y, x - 1) ||
           v < sum(y, x + 1) || v < sum(y + 1, x - 1) || v < sum(y + 1, x) || v < sum(y + 1, x + 1))
         continue;
@@ -85,9 +92,7 @@ std::vector<Proposal> suppress_near(const std::vector<Proposal>& sorted, double 
 std::vector<Proposal> VoteFinder::find(const Prepared& image, const FindOptions& options) {
   const double r = options.radius_px;
   const int pad = static_cast<int>(std::ceil(r)) + 2;
-  cv::Mat1b ignore;
-  cv::dilate(image.opaque, ignore, cv::Mat(), cv::Point(-1, -1), 2);
-  const cv::Mat1f sum = votes(image.darkness, ignore, r, pad);
+  const cv::Mat1f sum = votes(image.darkness, image.opaque, r, pad);
   // 2 pi R pixels of edge, each of integral 1, meet in a spot of the smoothing plus about a pixel of scatter.
   const double full_circle =
       2 * std::numbers::pi * r / (2 * std::numbers::pi * (kSmoothing_px * kSmoothing_px + 1));
