@@ -97,7 +97,7 @@ template <class V, int D>
   if constexpr (D == 3) {
     const V before = norm(xi);
     flatten<V, D>(n, xi);
-    const V factor = before / max(norm(xi), V(1e-300));
+    const V factor = before / max(norm(xi), V(kTiny<V>));
     const auto turned = before > V(0.0);
     for (int k = 0; k < 3; ++k) xi.c[k] = select(turned, factor * xi.c[k], xi.c[k]);
   }
@@ -139,13 +139,13 @@ template <class M, class V, class X>
 
 /// Friction or rolling: `force(v, dt, x)` is the law's, x its lasting displacement.
 /// \param v in the middle of the step \param seen at its end
-template <Velocity kVelocity, class V, class T, class Force>
-[[gnu::always_inline]] inline T lasting(const T& v, const T& seen, V dt, const Passage<V>& p, T& x,
+template <Velocity kVelocity, class V, class T, class X, class Force>
+[[gnu::always_inline]] inline T lasting(const T& v, const T& seen, V dt, const Passage<V>& p, X& x,
                                         Force force) {
   if constexpr (kVelocity == Velocity::half_step) {
     return force(v, dt, x);
   } else {
-    T begun = x;
+    X begun = x;
     x = fma(p.fraction * dt, v, x);
     const T f = force(seen, V(0.0), x);
     if (!p.any) return f;
@@ -157,17 +157,21 @@ template <Velocity kVelocity, class V, class T, class Force>
 /// become 0. \param c constants, Layout<Laws>::kCount \param locate with Velocity::full_step: the moments of
 /// entry and exit are located within their step and the impulse counted from there, which makes every
 /// collision second order; without, the force acts from the first step that finds an overlap to the last
-/// \param memory kRemembered numbers
+/// \param memory kRemembered numbers, of double precision: in single, steps of a slow creep would be lost in
+/// the grain of a spring's length
 template <class Laws, Velocity kVelocity, class V, int D>
 [[gnu::always_inline]] inline Action<V, D> act(const Approach<V, D>& a, const V* c, V dt,
-                                               [[maybe_unused]] bool locate, V magic, V* memory) {
+                                               [[maybe_unused]] bool locate, Doubles<V>* memory) {
   using Normal = typename Laws::Normal;
   using Tangential = typename Laws::Tangential;
   using Rolling = typename Laws::Rolling;
   constexpr bool kFull = kVelocity == Velocity::full_step;
   constexpr int K = kTurns<D>;
   const V zero(0.0), half(0.5);
+  const Doubles<V> forgotten(0.0);
   const V* c_n = c + Layout<Laws>::kNormal;
+  V own[Normal::kMemory + 1];  // what the normal law remembers
+  for (int k = 0; k < Normal::kMemory; ++k) own[k] = V(memory[k]);
 
   V v_n = a.v[D - 1] * a.n[D - 1];
   for (int k = D - 2; k >= 0; --k) v_n = fma(a.v[k], a.n[k], v_n);
@@ -176,31 +180,32 @@ template <class Laws, Velocity kVelocity, class V, int D>
   auto acting = now, was = now;
   V overlap = a.overlap, seen = v_n;
   Passage<V> passage{now, now, V(1.0), false};
-  V* middle = memory + Laws::template kMemory<D>;
+  Doubles<V>* middle = memory + Laws::template kMemory<D>;
   if constexpr (kFull) {
     // A pair whose v_n was exactly 0 reads as new, and gets the same force.
-    was = abs(middle[0]) > zero;
-    seen = at_end(was, half, v_n, middle[0]);
-    passage.entering = both(now, middle[0] == zero);
+    const V before = V(middle[0]);
+    was = abs(before) > zero;
+    seen = at_end(was, half, v_n, before);
+    passage.entering = both(now, before == zero);
     passage.leaving = both(was, a.overlap <= zero);
     const auto passes = either(passage.entering, passage.leaving);
     passage.any = locate && any(passes);
     if (passage.any) {
       acting = either(now, was);
       overlap = select(passage.leaving, max(fma(v_n, dt, a.overlap), zero), a.overlap);
-      passage.fraction = select(passes, min(overlap / max(abs(v_n) * dt, V(1e-300)), V(1.0)), V(1.0));
+      passage.fraction = select(passes, min(overlap / max(abs(v_n) * dt, V(kTiny<V>)), V(1.0)), V(1.0));
     }
   }
 
-  V f_n = Normal::force(c_n, overlap, seen, memory);
+  V f_n = Normal::force(c_n, overlap, seen, own);
   V limit_force = f_n;  // the Coulomb limit knows the force of the moment, not its mean over a step
   if constexpr (kFull) {
     // So far the acceleration of the position before. What this contact's force has gained since is known.
-    const V gain = f_n - Normal::force(c_n, fma(seen, dt, overlap), seen, memory);
+    const V gain = f_n - Normal::force(c_n, fma(seen, dt, overlap), seen, own);
     const V corrected = fma(half * dt * c[constant::kInvMass], select(was, gain, zero), seen);
-    const V held = Normal::force(c_n, overlap, corrected, memory);
+    const V held = Normal::force(c_n, overlap, corrected, own);
     if (passage.any) {
-      const V edge = Normal::force(c_n, zero, seen, memory);
+      const V edge = Normal::force(c_n, zero, seen, own);
       const V first = select(passage.leaving, f_n, edge), last = select(passage.leaving, edge, f_n);
       limit_force = select(either(passage.entering, passage.leaving), f_n, held);
       f_n = over_jump(passage, first, last, held);
@@ -213,27 +218,29 @@ template <class Laws, Velocity kVelocity, class V, int D>
   for (int k = 0; k < D; ++k) out.f[k] = f_n * a.n[k];
   for (int k = 0; k < K; ++k) out.q[k] = out.q_i[k] = out.q_j[k] = zero;
   if constexpr (Tangential::kActs) {
-    Tangent<V, K> xi{};
-    V* kept = memory + Normal::kMemory;
+    Tangent<Doubles<V>, K> xi{};
+    Doubles<V>* kept = memory + Normal::kMemory;
     if constexpr (Tangential::kHistory) {
       for (int k = 0; k < K; ++k) xi.c[k] = kept[k];
-      into_tangent_plane<V, D>(a.n, xi);
+      Doubles<V> n[D];
+      for (int k = 0; k < D; ++k) n[k] = Doubles<V>(a.n[k]);
+      into_tangent_plane<Doubles<V>, D>(n, xi);
     }
     const Tangent<V, K> v_t = tangential_velocity(a, v_n);
     Tangent<V, K> seen_t = v_t;
     if constexpr (kFull) {
       Tangent<V, K> before;
-      for (int k = 0; k < K; ++k) before.c[k] = middle[1 + k];
+      for (int k = 0; k < K; ++k) before.c[k] = V(middle[1 + k]);
       flatten<V, D>(a.n, before);
       seen_t = at_end(was, half, v_t, before);
-      for (int k = 0; k < K; ++k) middle[1 + k] = select(now, v_t.c[k], zero);
+      for (int k = 0; k < K; ++k) middle[1 + k] = select(now, Doubles<V>(v_t.c[k]), forgotten);
     }
     const Tangent<V, K> f_t =
         lasting<kVelocity>(v_t, seen_t, dt, passage, xi, [&](const auto& v, V step, auto& x) {
           return Tangential::force(c + Layout<Laws>::kTangential, v, limit_force, step, x);
         });
     if constexpr (Tangential::kHistory)
-      for (int k = 0; k < K; ++k) kept[k] = select(now, xi.c[k], zero);
+      for (int k = 0; k < K; ++k) kept[k] = select(now, xi.c[k], forgotten);
     if constexpr (D == 2) {
       out.f[0] = nfma(f_t.c[0], a.n[1], out.f[0]);
       out.f[1] = fma(f_t.c[0], a.n[0], out.f[1]);
@@ -247,33 +254,34 @@ template <class Laws, Velocity kVelocity, class V, int D>
     }
   }
   if constexpr (Rolling::kActs) {
-    Tangent<V, K> theta, w, seen_w;
-    V* kept = memory + Normal::kMemory + (Tangential::kHistory ? K : 0);
+    Tangent<Doubles<V>, K> theta;
+    Tangent<V, K> w, seen_w;
+    Doubles<V>* kept = memory + Normal::kMemory + (Tangential::kHistory ? K : 0);
     for (int k = 0; k < K; ++k) {
       theta.c[k] = kept[k];
       seen_w.c[k] = w.c[k] = a.w[k];
     }
     if constexpr (kFull) {
       Tangent<V, K> before;
-      for (int k = 0; k < K; ++k) before.c[k] = middle[1 + K + k];
+      for (int k = 0; k < K; ++k) before.c[k] = V(middle[1 + K + k]);
       seen_w = at_end(was, half, w, before);
-      for (int k = 0; k < K; ++k) middle[1 + K + k] = select(now, w.c[k], zero);
+      for (int k = 0; k < K; ++k) middle[1 + K + k] = select(now, Doubles<V>(w.c[k]), forgotten);
     }
     const Tangent<V, K> m =
         lasting<kVelocity>(w, seen_w, dt, passage, theta, [&](const auto& v, V step, auto& x) {
           return Rolling::torque(c + Layout<Laws>::kRolling, v, limit_force, step, x);
         });
     for (int k = 0; k < K; ++k) {
-      kept[k] = select(now, theta.c[k], zero);
+      kept[k] = select(now, theta.c[k], forgotten);
       // q turns a bead by -R q.
-      out.q_i[k] = rounded(select(acting, -(m.c[k] * c[constant::kInvRadiusI]), zero), magic);
-      out.q_j[k] = rounded(select(acting, m.c[k] * c[constant::kInvRadiusJ], zero), magic);
+      out.q_i[k] = select(acting, -(m.c[k] * c[constant::kInvRadiusI]), zero);
+      out.q_j[k] = select(acting, m.c[k] * c[constant::kInvRadiusJ], zero);
     }
   }
-  if constexpr (kFull) middle[0] = select(now, v_n, zero);
-  for (int k = 0; k < Normal::kMemory; ++k) memory[k] = select(now, memory[k], zero);
-  for (int k = 0; k < D; ++k) out.f[k] = rounded(select(acting, out.f[k], zero), magic);
-  for (int k = 0; k < K; ++k) out.q[k] = rounded(select(acting, out.q[k], zero), magic);
+  if constexpr (kFull) middle[0] = select(now, Doubles<V>(v_n), forgotten);
+  for (int k = 0; k < Normal::kMemory; ++k) memory[k] = select(now, Doubles<V>(own[k]), forgotten);
+  for (int k = 0; k < D; ++k) out.f[k] = select(acting, out.f[k], zero);
+  for (int k = 0; k < K; ++k) out.q[k] = select(acting, out.q[k], zero);
   return out;
 }
 

@@ -160,12 +160,13 @@ struct PassKey {
   int dimension;
   std::size_t normal, tangential, rolling;
   Velocity velocity;
+  bool single = false;  ///< contacts of pairs are reckoned in single precision
 };
 
 /// One instruction set.
 struct Target {
   std::string_view name;
-  int width;  ///< contacts evaluated together
+  int width;  ///< contacts to a packet
   bool (*available)();
   Passes (*find)(const PassKey&);
 };

@@ -10,8 +10,8 @@ namespace twincell::sim {
 const Target kAvx512 = {"AVX-512", HWY_NAMESPACE::HighwayLanes::kWidth,
                         [] { return (hwy::SupportedTargets() & HWY_AVX3) != 0; },
                         [](const PassKey& key) {
-                          using Table = PassTable<HWY_NAMESPACE::HighwayLanes>;
-                          return key.dimension == 2 ? Table::find<2>(key) : Table::find<3>(key);
+                          return key.single ? PassTable<HWY_NAMESPACE::SingleLanes>::find(key)
+                                            : PassTable<HWY_NAMESPACE::HighwayLanes>::find(key);
                         }};
 
 }  // namespace twincell::sim

@@ -1,11 +1,13 @@
 #pragma once
 /// \file
-/// The text of the passes, for any kind of lanes. Lanes (lanes_scalar.hpp, lanes_highway.hpp) bring a type V
-/// of so many numbers with the operations of laws/real.hpp, a Row of four numbers, and the moves between
-/// beads' records and V.
+/// The text of the passes, for any kind of lanes. Lanes (lanes_scalar.hpp, lanes_highway.hpp) bring a type
+/// Wide of so many doubles with the operations of laws/real.hpp, the type V in which contacts are reckoned
+/// (the same, or as many floats as fit), a Row of four numbers, and the moves between beads' records and
+/// Wide.
 
 #include <array>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -22,101 +24,161 @@ namespace twincell::sim {
 /// some hundred instructions. So a few packets at a time go through three short stages: collect what is known
 /// of the two beads, reckon the contact, deal out the force. (All in one loop is a third slower, two packets
 /// side by side in one loop still slower, for want of registers.)
+///
+/// In single precision it is the second stage that is so, on as many packets joined as make a vector. Beads
+/// and sums stay as they are: places in single precision would be 6e-8 apart, and overlaps at rest are 1e-6.
+/// For the same reason the overlap is no difference of lengths there, but (reach^2 - r^2)/(reach + r), the
+/// numerator taken in double.
 template <class Lanes, class Laws, int D, Velocity kVelocity>
 double pair_pass(const PairArgs& args) {
   const PairArgs p = args;  // a copy that no store can alias
+  using Wide = typename Lanes::Wide;
   using V = typename Lanes::V;
-  constexpr int K = kTurns<D>, kCount = Layout<Laws>::kCount, W = Lanes::kWidth;
+  using Number = typename Lanes::Number;
+  constexpr bool kSingle = !std::is_same_v<Number, double>;
+  constexpr int K = kTurns<D>, kCount = Layout<Laws>::kCount, W = Lanes::kWidth, kJoined = Lanes::kJoined;
   constexpr int kMemory = kRemembered<Laws, kVelocity, D>;
   constexpr bool kTurn = Laws::Tangential::kActs, kRoll = Laws::Rolling::kActs;
   // Numbers of a contact between stages: approach, then action in its place.
-  constexpr int kRollAt = 2 * D, kKept = std::max(2 * D + (kRoll ? K : 0), D + (kRoll ? 2 : 1) * K);
+  constexpr int kRollAt = 2 * D, kSpinAt = kRollAt + (kRoll ? K : 0), kEdgeAt = kSpinAt + (kTurn ? K : 0),
+                kKept = std::max(kSingle ? kEdgeAt + 1 : kSpinAt, D + (kRoll ? 2 : 1) * K);
   constexpr int kStage = W == 1 ? 1 : 16;  // packets
-  alignas(64) double stage[kStage * W * kKept];
+  constexpr int kStride = W * kJoined;     // from one number of a packet to the next
+  alignas(64) Number stage[kStage * W * kKept];
+  const auto numbers_of = [&](int n) TWINCELL_LANES {
+    return stage + n / kJoined * kStride * kKept + n % kJoined * W;
+  };
   std::int64_t live[kStage];
-  const V dt(p.dt), magic(p.magic);
+  alignas(64) Number in_single[kSingle ? kCount * kStride : 1] = {};  // constants
+  const auto narrow = [&](const double* constants, Number* to) TWINCELL_LANES {
+    for (int m = 0; m < kCount; ++m) Lanes::put(Lanes::load(constants + W * m), to + kStride * m);
+  };
+  if constexpr (kSingle)
+    if (p.constants_step == 0 && p.packets > 0)
+      for (int h = 0; h < kJoined; ++h) narrow(p.constants, in_single + W * h);
+  alignas(64) double forgotten[W * (kMemory + 1)];  // what a packet remembers that is none
+  const V dt(p.dt);
+  const Wide magic(p.magic);
   V largest(0.0);
   for (std::int64_t begin = 0; begin < p.packets; begin += kStage) {
     const std::int64_t end = begin + kStage < p.packets ? begin + kStage : p.packets;
     int n = 0;
     for (std::int64_t k = begin; k < end; ++k) {
       const std::int32_t *i = p.i + W * k, *j = p.j + W * k;
-      V d[D], v[D];
+      Wide d[D], v[D];
       Lanes::template difference<D>(p.records, i, j, d, v);
       if (p.shift != nullptr)
         for (int c = 0; c < D; ++c) d[c] = d[c] + Lanes::load(p.shift + W * (D * k + c));
       const double* constants = p.constants + p.constants_step * k;
-      V r2 = d[0] * d[0];
+      Wide r2 = d[0] * d[0];
       for (int c = 1; c < D; ++c) r2 = fma(d[c], d[c], r2);
       double* kept = p.memory + W * kMemory * k;
       // A pair that parted within this step has yet to settle what it remembers.
       auto of_interest = r2 < Lanes::load(constants + W * constant::kEdge);
       if constexpr (kVelocity == Velocity::full_step)
-        of_interest = either(of_interest, abs(Lanes::load(kept + W * Laws::template kMemory<D>)) > V(0.0));
+        of_interest = either(of_interest, abs(Lanes::load(kept + W * Laws::template kMemory<D>)) > Wide(0.0));
       if (!any(of_interest)) {
-        for (int m = 0; m < kMemory; ++m) Lanes::store(V(0.0), kept + W * m);
+        for (int m = 0; m < kMemory; ++m) Lanes::store(Wide(0.0), kept + W * m);
         continue;
       }
-      double* to = stage + W * kKept * n;
+      Number* to = numbers_of(n);
       for (int c = 0; c < D; ++c) {
-        Lanes::store(d[c], to + W * c);
-        Lanes::store(v[c], to + W * (D + c));
+        Lanes::put(d[c], to + kStride * c);
+        Lanes::put(v[c], to + kStride * (D + c));
       }
       if constexpr (kRoll) {
-        V s_i[K], s_j[K];
+        Wide s_i[K], s_j[K];
         Lanes::template spins<D>(p.spins, i, s_i);
         Lanes::template spins<D>(p.spins, j, s_j);
         for (int m = 0; m < K; ++m)  // odd under i <-> j
-          Lanes::store(s_i[m] * Lanes::load(constants + W * constant::kInvRadiusI) -
-                           s_j[m] * Lanes::load(constants + W * constant::kInvRadiusJ),
-                       to + W * (kRollAt + m));
+          Lanes::put(s_i[m] * Lanes::load(constants + W * constant::kInvRadiusI) -
+                         s_j[m] * Lanes::load(constants + W * constant::kInvRadiusJ),
+                     to + kStride * (kRollAt + m));
+      }
+      if constexpr (kSingle) {
+        const Wide reach = Lanes::load(constants + W * constant::kReach);
+        Lanes::put(fma(reach, reach, -r2), to + kStride * kEdgeAt);
+        if constexpr (kTurn) {
+          Wide s[K];
+          Lanes::template spin_sums<D>(p.spins, i, j, s);
+          for (int m = 0; m < K; ++m) Lanes::put(s[m], to + kStride * (kSpinAt + m));
+        }
       }
       live[n++] = k;
     }
-    for (int at = 0; at < n; ++at) {
-      const std::int64_t k = live[at];
-      double* numbers = stage + W * kKept * at;
-      const double* constants = p.constants + p.constants_step * k;
-      double* kept = p.memory + W * kMemory * k;
+    for (int at = n; at % kJoined != 0; ++at)  // beads that just do not touch
+      for (int m = 0; m < kKept; ++m) Lanes::put(Wide(0.0), numbers_of(at) + kStride * m);
+    for (int at = 0; at < n; at += kJoined) {
+      Number* numbers = numbers_of(at);
+      const double* constants_of[kJoined];
+      double* kept[kJoined];
+      for (int h = 0; h < kJoined; ++h) {
+        const bool some = h == 0 || at + h < n;
+        const std::int64_t k = live[some ? at + h : at];
+        constants_of[h] = p.constants + p.constants_step * k;
+        kept[h] = some ? p.memory + W * kMemory * k : forgotten;
+      }
+      if constexpr (kJoined > 1)
+        if (at + 1 == n)
+          for (int m = 0; m < kMemory; ++m) Lanes::store(Wide(0.0), forgotten + W * m);
       V c[kCount], d[D];
-      for (int m = 0; m < kCount; ++m) c[m] = Lanes::load(constants + W * m);
+      if constexpr (kSingle) {
+        if (p.constants_step != 0)
+          for (int h = 0; h < kJoined; ++h) narrow(constants_of[h], in_single + W * h);
+        for (int m = 0; m < kCount; ++m) c[m] = Lanes::load_joined(in_single + kStride * m);
+      } else {
+        for (int m = 0; m < kCount; ++m) c[m] = Lanes::load(constants_of[0] + W * m);
+      }
       Approach<V, D> a;
       for (int m = 0; m < D; ++m) {
-        d[m] = Lanes::load(numbers + W * m);
-        a.v[m] = Lanes::load(numbers + W * (D + m));
+        d[m] = Lanes::load_joined(numbers + kStride * m);
+        a.v[m] = Lanes::load_joined(numbers + kStride * (D + m));
       }
-      V r2 = d[0] * d[0];
-      for (int m = 1; m < D; ++m) r2 = fma(d[m], d[m], r2);
-      const V inv_r = inverse_sqrt_near_one(r2 * c[constant::kInvReachSquared]) * c[constant::kInvReach];
-      a.overlap = nfma(r2, inv_r, c[constant::kReach]);
+      V inv_r;
+      if constexpr (kSingle) {
+        const V edge = Lanes::load_joined(numbers + kStride * kEdgeAt);
+        const NearReach<V> near = near_reach(edge * c[constant::kInvReachSquared]);
+        inv_r = near.inverse * c[constant::kInvReach];
+        a.overlap = edge * c[constant::kInvReach] * near.overlap_over_u;
+      } else {
+        V r2 = d[0] * d[0];
+        for (int m = 1; m < D; ++m) r2 = fma(d[m], d[m], r2);
+        inv_r = inverse_sqrt_near_one(r2 * c[constant::kInvReachSquared]) * c[constant::kInvReach];
+        a.overlap = nfma(r2, inv_r, c[constant::kReach]);
+      }
       largest = max(a.overlap, largest);  // of what is not a number and a number, the second
       for (int m = 0; m < D; ++m) a.n[m] = d[m] * inv_r;
-      if constexpr (kTurn) Lanes::template spin_sums<D>(p.spins, p.i + W * k, p.j + W * k, a.s);
+      if constexpr (kTurn && kSingle)
+        for (int m = 0; m < K; ++m) a.s[m] = Lanes::load_joined(numbers + kStride * (kSpinAt + m));
+      if constexpr (kTurn && !kSingle)
+        Lanes::template spin_sums<D>(p.spins, p.i + W * live[at], p.j + W * live[at], a.s);
       for (int m = 0; m < K; ++m) {
-        if constexpr (kRoll) a.w[m] = Lanes::load(numbers + W * (kRollAt + m));
+        if constexpr (kRoll) a.w[m] = Lanes::load_joined(numbers + kStride * (kRollAt + m));
       }
-      V memory[kMemory + 1];
-      for (int m = 0; m < kMemory; ++m) memory[m] = Lanes::load(kept + W * m);
-      const Action<V, D> act_on = act<Laws, kVelocity, V, D>(a, c, dt, p.locate, magic, memory);
-      for (int m = 0; m < kMemory; ++m) Lanes::store(memory[m], kept + W * m);
-      for (int m = 0; m < D; ++m) Lanes::store(act_on.f[m], numbers + W * m);
+      Doubles<V> memory[kMemory + 1];
+      for (int m = 0; m < kMemory; ++m) memory[m] = Lanes::load_from(kept, W * m);
+      const Action<V, D> act_on = act<Laws, kVelocity, V, D>(a, c, dt, p.locate, memory);
+      for (int m = 0; m < kMemory; ++m) Lanes::store_to(memory[m], kept, W * m);
+      for (int m = 0; m < D; ++m) Lanes::store_joined(act_on.f[m], numbers + kStride * m);
       for (int m = 0; m < K; ++m) {
-        if constexpr (kTurn && !kRoll) Lanes::store(act_on.q[m], numbers + W * (D + m));
+        if constexpr (kTurn && !kRoll) Lanes::store_joined(act_on.q[m], numbers + kStride * (D + m));
         if constexpr (kRoll) {
-          Lanes::store(act_on.q[m] + act_on.q_i[m], numbers + W * (D + m));
-          Lanes::store(act_on.q[m] + act_on.q_j[m], numbers + W * (D + K + m));
+          Lanes::store_joined(act_on.q[m] + act_on.q_i[m], numbers + kStride * (D + m));
+          Lanes::store_joined(act_on.q[m] + act_on.q_j[m], numbers + kStride * (D + K + m));
         }
       }
     }
     for (int at = 0; at < n; ++at) {
       const std::int64_t k = live[at];
-      const double* numbers = stage + W * kKept * at;
-      V f[D], q_i[K], q_j[K];
-      for (int m = 0; m < D; ++m) f[m] = Lanes::load(numbers + W * m);
+      const Number* numbers = numbers_of(at);
+      const auto share = [&](int m)
+                             TWINCELL_LANES { return rounded(Lanes::get(numbers + kStride * m), magic); };
+      Wide f[D], q_i[K], q_j[K];
+      for (int m = 0; m < D; ++m) f[m] = share(m);
       for (int m = 0; m < K; ++m) {
-        q_i[m] = q_j[m] = V(0.0);
-        if constexpr (kTurn) q_i[m] = q_j[m] = Lanes::load(numbers + W * (D + m));
-        if constexpr (kRoll) q_j[m] = Lanes::load(numbers + W * (D + K + m));
+        q_i[m] = q_j[m] = Wide(0.0);
+        if constexpr (kTurn) q_i[m] = q_j[m] = share(D + m);
+        if constexpr (kRoll) q_j[m] = share(D + K + m);
       }
       Lanes::template add<D, kTurn, kRoll>(p.forces, p.force_i + W * k, p.force_j + W * k, f, q_i, q_j);
     }
@@ -124,7 +186,7 @@ double pair_pass(const PairArgs& args) {
   return Lanes::largest(largest);
 }
 
-/// Contacts of listed beads with one wall.
+/// Contacts of listed beads with one wall, in double precision: they are few.
 template <class Lanes, class Laws, int D, Velocity kVelocity>
 double wall_pass(const WallArgs& args) {
   const WallArgs p = args;
@@ -160,10 +222,12 @@ double wall_pass(const WallArgs& args) {
     double* kept = p.memory + W * kMemory * k;
     V memory[kMemory + 1];
     for (int m = 0; m < kMemory; ++m) memory[m] = Lanes::load(kept + W * m);
-    Action<V, D> act_on = act<Laws, kVelocity, V, D>(a, c, dt, p.locate, magic, memory);
+    Action<V, D> act_on = act<Laws, kVelocity, V, D>(a, c, dt, p.locate, memory);
     for (int m = 0; m < kMemory; ++m) Lanes::store(memory[m], kept + W * m);
     if constexpr (Laws::Rolling::kActs)
       for (int m = 0; m < K; ++m) act_on.q[m] = act_on.q[m] + act_on.q_i[m];
+    for (V& f : act_on.f) f = rounded(f, magic);
+    for (V& q : act_on.q) q = rounded(q, magic);
     Lanes::template add_one<D, Laws::Tangential::kActs>(p.forces, bead, act_on.f, act_on.q);
   }
   return Lanes::largest(largest);
@@ -342,6 +406,7 @@ struct PassTable {
   static constexpr std::size_t kNormals = std::variant_size_v<NormalAxis>;
   static constexpr std::size_t kTangentials = std::variant_size_v<TangentialAxis>;
   static constexpr std::size_t kRollings = std::variant_size_v<RollingAxis>;
+  using InDouble = typename Lanes::InDouble;
 
   template <int D, Velocity kVelocity, std::size_t kIndex>
   static constexpr Passes entry() {
@@ -351,11 +416,11 @@ struct PassTable {
     // Beads that do not turn cannot resist rolling.
     using Laws = std::conditional_t<T::kActs, LawSet<N, T, R>, LawSet<N, T, NoRolling>>;
     return {&pair_pass<Lanes, Laws, D, kVelocity>,
-            &wall_pass<Lanes, Laws, D, kVelocity>,
-            &integrate_pass<Lanes, D>,
-            &fly_pass<Lanes, D>,
-            &range_pass<Lanes, D>,
-            &scan_pass<Lanes, D>,
+            &wall_pass<InDouble, Laws, D, kVelocity>,
+            &integrate_pass<InDouble, D>,
+            &fly_pass<InDouble, D>,
+            &range_pass<InDouble, D>,
+            &scan_pass<InDouble, D>,
             kRemembered<Laws, kVelocity, D>};
   }
   template <int D, Velocity kVelocity, std::size_t... kIndex>
@@ -363,8 +428,9 @@ struct PassTable {
     static constexpr Passes kAll[] = {entry<D, kVelocity, kIndex>()...};
     return kAll[index];
   }
+  static Passes find(const PassKey& key) { return key.dimension == 2 ? find_in<2>(key) : find_in<3>(key); }
   template <int D>
-  static Passes find(const PassKey& key) {
+  static Passes find_in(const PassKey& key) {
     constexpr auto kEach = std::make_index_sequence<kNormals * kTangentials * kRollings>();
     const std::size_t index = (key.normal * kTangentials + key.tangential) * kRollings + key.rolling;
     return key.velocity == Velocity::full_step ? pick<D, Velocity::full_step>(index, kEach)

@@ -5,10 +5,10 @@
 
 namespace twincell::sim {
 
-const Target kScalar = {"scalar", ScalarLanes::kWidth, [] { return true; },
+const Target kScalar = {"scalar", 1, [] { return true; },
                         [](const PassKey& key) {
-                          return key.dimension == 2 ? PassTable<ScalarLanes>::find<2>(key)
-                                                    : PassTable<ScalarLanes>::find<3>(key);
+                          return key.single ? PassTable<ScalarLanes<float>>::find(key)
+                                            : PassTable<ScalarLanes<double>>::find(key);
                         }};
 
 }  // namespace twincell::sim

@@ -180,6 +180,14 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
                     s.settle_limit));
   else
     add("settling", State::off_by_scene, "start.settle_limit = 0");
+  // tests/hard/precision_test.cpp, `cost sim`.
+  if (s.single)
+    add("single precision", State::approximated,
+        "contacts between beads are reckoned to 24 bits, places, speeds and sums to 53: e of single "
+        "collisions "
+        "is changed by up to 1e-7, overlaps of a bed at rest by 3e-7 of each");
+  else
+    add("single precision", State::off_by_scene, "time.precision = \"double\"");
   const double n = s.steps_per_contact;
   // Largest over entry phases, bead-bead: tests/verification/one_contact_test.cpp, `cost sim`.
   add("time integration", State::approximated,
@@ -213,6 +221,22 @@ void refuse_to_drop(const Scene& s, const Plan& plan) {
         fmt::format("is false, but contact.tangential = \"{}\" with k_t = {:g} is a spring that remembers; "
                     "choose \"dashpot\" for a law without history.",
                     s.contact.tangential, k_t_of(s.contact.bead)));
+}
+
+/// Single precision has its bounds: polynomials that hold for overlaps of a tenth (laws/real.hpp), and
+/// numbers that neither vanish nor overflow.
+void refuse_single(const Scene& s, double smallest_radius, double smallest_mass) {
+  constexpr double kDeepest = 0.1, kLeast = 1e-6;
+  const Where where{s.file, 0, 0, "time.precision"};
+  if (s.overlap_bound > kDeepest)
+    throw ConfigError(where, fmt::format("\"single\" is good for overlaps of up to {:g} of a diameter, but "
+                                         "contact.overlap_bound = {:g}; lower it, or choose \"double\".",
+                                         kDeepest, s.overlap_bound));
+  if (smallest_radius < kLeast || smallest_mass < kLeast)
+    throw ConfigError(where,
+                      fmt::format("\"single\" loses the contacts of a bead of radius {:g} and mass {:g}, "
+                                  "the bound of either is {:g}; choose other units, or \"double\".",
+                                  smallest_radius, smallest_mass, kLeast));
 }
 
 /// Notes a limit, or keeps the shorter of two of one name.
@@ -311,8 +335,12 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   const Chosen chosen = choose(s, plan.walls);
   plan.bead = read_laws(chosen, s.contact.bead);
   for (const Wall& w : plan.walls) plan.wall_laws.push_back(read_laws(chosen, s.contact.wall.at(w.name)));
-  plan.key = {s.dimension, plan.bead.normal.index(), plan.bead.tangential.index(), plan.bead.rolling.index(),
-              s.integrator == "verlet" ? Velocity::half_step : Velocity::full_step};
+  plan.key = {s.dimension,
+              plan.bead.normal.index(),
+              plan.bead.tangential.index(),
+              plan.bead.rolling.index(),
+              s.integrator == "verlet" ? Velocity::half_step : Velocity::full_step,
+              s.single};
   plan.locate = s.integrator == "split";
   plan.rotation = std::visit([](const auto& law) { return law.kActs; }, plan.bead.tangential);
   plan.history = std::visit([](const auto& law) { return law.kHistory; }, plan.bead.tangential);
@@ -335,6 +363,11 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   }
   plan.travel_bound = kTravelBound * 2 * std::min_element(sizes.begin(), sizes.end(), smaller)->radius;
   plan.overlap_bound = s.overlap_bound * 2 * usual_radius;
+  if (s.single)
+    refuse_single(s, std::min_element(sizes.begin(), sizes.end(), smaller)->radius,
+                  std::min_element(sizes.begin(), sizes.end(), [](const BeadScale& a, const BeadScale& b) {
+                    return a.mass < b.mass;
+                  })->mass);
 
   const double speed = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
   const auto force = [&](const auto& law) { return law.largest_force(plan.overlap_bound); };

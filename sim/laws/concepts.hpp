@@ -9,7 +9,8 @@
 /// v_n = v_ij . n < 0 while approaching; in the plane t = (-n_z, n_x) and v_t = v_ij . t - (R_i w_i + R_j
 /// w_j). Forces are those on i. Reduced units throughout. Formulas are templates on the type of number
 /// (real.hpp) and, for friction and rolling, on the tangent plane (tangent.hpp), so that one text serves one
-/// contact and eight, 2D and 3D.
+/// contact and sixteen, 2D and 3D, double and single precision. What lasts, xi and theta, is of double
+/// precision in either.
 
 #include <concepts>
 #include <string>
@@ -35,30 +36,30 @@ concept ContactLaw = requires(const Law law, const ContactTable& table, const Pa
 /// first touch.
 template <class Law>
 concept NormalLaw = ContactLaw<Law> &&
-    requires(const Law law, const PairScale& pair, const double* c, double x, double* m) {
+    requires(const Law law, const PairScale& pair, const float* c, float x, float* m) {
   { Law::kMemory } -> std::convertible_to<int>;
-  { Law::force(c, x, x, m) } -> std::same_as<double>;      // (constants, overlap, v_n, memory)
+  { Law::force(c, x, x, m) } -> std::same_as<float>;       // (constants, overlap, v_n, memory)
   { law.shortest_time(pair, x) } -> std::same_as<double>;  // (pair, impact speed), t0
   { law.largest_force(x) } -> std::same_as<double>;        // at an overlap: sets the grain of summed forces
 };
 
 /// Tangential force. kActs: beads turn; kHistory: xi lives as long as the contact.
 template <class Law>
-concept TangentialLaw = ContactLaw<Law> &&
-    requires(const Law law, const PairScale& pair, const double* c, double x, Tangent<double, 3> t) {
+concept TangentialLaw = ContactLaw<Law> && requires(const Law law, const PairScale& pair, const float* c,
+                                                    float x, Tangent<float, 3> t, Tangent<double, 3> kept) {
   { Law::kActs } -> std::convertible_to<bool>;
   { Law::kHistory } -> std::convertible_to<bool>;
-  { Law::force(c, t, x, x, t) } -> std::same_as<Tangent<double, 3>>;  // (constants, v_t, F_n, dt, xi)
-  { law.shortest_time(pair) } -> std::same_as<double>;                // t0
+  { Law::force(c, t, x, x, kept) } -> std::same_as<Tangent<float, 3>>;  // (constants, v_t, F_n, dt, xi)
+  { law.shortest_time(pair) } -> std::same_as<double>;                  // t0
 };
 
 /// Torque against rolling on i (the opposite on j); its angle lives as long as the contact.
 template <class Law>
-concept RollingLaw = ContactLaw<Law> &&
-    requires(const Law law, const PairScale& pair, const double* c, double x, Tangent<double, 3> t) {
+concept RollingLaw = ContactLaw<Law> && requires(const Law law, const PairScale& pair, const float* c,
+                                                 float x, Tangent<float, 3> t, Tangent<double, 3> kept) {
   { Law::kActs } -> std::convertible_to<bool>;
-  { Law::torque(c, t, x, x, t) } -> std::same_as<Tangent<double, 3>>;  // (constants, w, F_n, dt, theta)
-  { law.shortest_time(pair) } -> std::same_as<double>;                 // t0
+  { Law::torque(c, t, x, x, kept) } -> std::same_as<Tangent<float, 3>>;  // (constants, w, F_n, dt, theta)
+  { law.shortest_time(pair) } -> std::same_as<double>;                   // t0
 };
 
 }  // namespace twincell::sim

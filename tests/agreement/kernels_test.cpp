@@ -1,6 +1,6 @@
-// Every combination of laws, dimension, integrator, sizes and edges: all kernels give the same bits, and so
-// do all habits that must not show - when lists are built, who shares the work, how beads are numbered, where
-// a run is cut.
+// Every combination of laws, dimension, integrator, precision, sizes and edges: all kernels give the same
+// bits, and so do all habits that must not show - when lists are built, who shares the work, how beads are
+// numbered, where a run is cut.
 
 #include <gtest/gtest.h>
 
@@ -31,10 +31,11 @@ struct Case {
   std::string integrator;
   bool unequal;  ///< radii spread, and an intruder
   bool periodic;
+  bool single;
 };
 void PrintTo(const Case& c, std::ostream* out) {
   *out << c.dimension << "D " << c.integrator << (c.unequal ? " unequal" : " equal")
-       << (c.periodic ? " periodic" : " walls");
+       << (c.periodic ? " periodic" : " walls") << (c.single ? " single" : "");
 }
 
 /// A small bed, dense and fast enough that contacts begin, slide, stick, roll and end from the first steps
@@ -48,7 +49,7 @@ Scene scene_of(const Case& c, const Laws& laws) {
   if (c.unequal)
     text += "spread = \"uniform\"\nspread_width = 0.2\n[beads.intruder]\nradius = 0.83\nz = 2.5\n";
   text += "[drive]\nomega = 7.0\ngamma = 4.0\n[time]\nsteps_per_contact = 12\nintegrator = \"" +
-          c.integrator + "\"\n";
+          c.integrator + "\"\nprecision = \"" + (c.single ? "single" : "double") + "\"\n";
   text += "[contact]\nnormal = \"" + laws.normal + "\"\ntangential = \"" + laws.tangential +
           "\"\nrolling = \"" + laws.rolling + "\"\nk_n = 1e4\nmu = 0.4\nk_t = 3e3\n";
   text += laws.normal == "hertz"                 ? "youngs_modulus = 3e4\nviscous_time = 1e-3\nc_t = 5.0\n"
@@ -187,14 +188,15 @@ INSTANTIATE_TEST_SUITE_P(All, Kernels, testing::ValuesIn([] {
                              for (const char* integrator : {"verlet", "predicted", "split"})
                                for (const bool unequal : {false, true})
                                  for (const bool periodic : {false, true})
-                                   all.push_back({dimension, integrator, unequal, periodic});
+                                   for (const bool single : {false, true})
+                                     all.push_back({dimension, integrator, unequal, periodic, single});
                            return all;
                          }()),
                          [](const auto& of) {
                            const Case& c = of.param;
                            return std::string(c.dimension == 2 ? "Plane" : "Space") + "_" + c.integrator +
                                   "_" + (c.unequal ? "unequal" : "equal") + "_" +
-                                  (c.periodic ? "periodic" : "walls");
+                                  (c.periodic ? "periodic" : "walls") + (c.single ? "_single" : "");
                          });
 
 }  // namespace

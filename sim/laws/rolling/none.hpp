@@ -20,8 +20,8 @@ struct NoRolling {
   [[nodiscard]] double shortest_time(const PairScale&) const { return HUGE_VAL; }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale&) const { return {}; }
 
-  template <class V, class T>
-  static T torque(const V*, const T& w, V, V, T&) {
+  template <class V, class T, class X>
+  static T torque(const V*, const T& w, V, V, X&) {
     return w;  // never asked for
   }
 };

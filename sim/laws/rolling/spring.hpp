@@ -40,8 +40,8 @@ struct RollingSpring {
     return {-k_r, -c_r, mu_r * p.r_eff, -1 / k_r};
   }
 
-  template <class V, class T>
-  static T torque(const V* c, const T& w, V f_n, V dt, T& theta) {
+  template <class V, class T, class X>
+  static T torque(const V* c, const T& w, V f_n, V dt, X& theta) {
     theta = fma(dt, w, theta);
     const T dashpot = c[1] * w;
     const auto [torque, slips] = limited(fma(c[0], theta, dashpot), c[2] * abs(f_n));

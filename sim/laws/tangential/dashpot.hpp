@@ -32,8 +32,8 @@ struct DashpotSlider {
     return {-damping.eta(p.m_eff), mu};
   }
 
-  template <class V, class T>
-  static T force(const V* c, const T& v_t, V f_n, V /*dt*/, T& /*xi*/) {
+  template <class V, class T, class X>
+  static T force(const V* c, const T& v_t, V f_n, V /*dt*/, X& /*xi*/) {
     return limited(c[0] * v_t, c[1] * abs(f_n)).value;
   }
 };

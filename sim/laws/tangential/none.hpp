@@ -21,8 +21,8 @@ struct NoTangential {
   [[nodiscard]] double shortest_time(const PairScale&) const { return HUGE_VAL; }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale&) const { return {}; }
 
-  template <class V, class T>
-  static T force(const V*, const T& v_t, V, V, T&) {
+  template <class V, class T, class X>
+  static T force(const V*, const T& v_t, V, V, X&) {
     return v_t;  // never asked for
   }
 };

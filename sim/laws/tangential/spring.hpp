@@ -37,8 +37,8 @@ struct SpringSlider {
     return {-k_t, -damping.eta(p.m_eff), mu, k_t > 0 ? -1 / k_t : 0};  // signs as the formula wants them
   }
 
-  template <class V, class T>
-  static T force(const V* c, const T& v_t, V f_n, V dt, T& xi) {
+  template <class V, class T, class X>
+  static T force(const V* c, const T& v_t, V f_n, V dt, X& xi) {
     xi = fma(dt, v_t, xi);
     const T dashpot = c[1] * v_t;
     const auto [force, slips] = limited(fma(c[0], xi, dashpot), c[2] * abs(f_n));

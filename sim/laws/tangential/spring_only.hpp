@@ -14,8 +14,8 @@ struct SpringOnlySlider : SpringSlider {
 
   static SpringOnlySlider read(const ContactTable& t) { return {SpringSlider::read(t)}; }
 
-  template <class V, class T>
-  static T force(const V* c, const T& v_t, V f_n, V dt, T& xi) {
+  template <class V, class T, class X>
+  static T force(const V* c, const T& v_t, V f_n, V dt, X& xi) {
     xi = fma(dt, v_t, xi);
     const V limit = c[2] * abs(f_n);
     const auto [spring, slips] = limited(c[0] * xi, limit);
