@@ -1,4 +1,4 @@
-// twincell info FILE: what a trajectory holds.
+// twincell info FILE: what a trajectory or a stack of frames holds.
 
 #include <fmt/format.h>
 
@@ -6,7 +6,9 @@
 #include <memory>
 
 #include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/hdf5.hpp"
 #include "cli/output.hpp"
+#include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 
 namespace twincell::cli {
@@ -101,16 +103,34 @@ std::string as_text(const nlohmann::json& d) {
   return s;
 }
 
+// A trajectory is an HDF5 file with a group h5md. What is named .h5 and is no HDF5 is refused as a
+// trajectory.
+bool is_trajectory(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return false;
+  h5::quiet();
+  const h5::Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  return opened ? h5::exists(opened.get(), "h5md") : file.extension() == ".h5";
+}
+
 }  // namespace
 
 void add_info(CLI::App& program, Common& common) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App& verb = add_verb(program, common, "info", "What a trajectory file holds", "twincell info sim.h5");
-  verb.add_option("file", options->file, "Trajectory (H5MD)")->required();
+  CLI::App& verb = add_verb(program, common, "info", "What a trajectory or a stack of frames holds",
+                            "twincell info sim.h5; twincell info run.cine");
+  verb.add_option("file", options->file,
+                  "Trajectory (H5MD); folder of pictures, TIFF, camera file, HDF5 stack or video")
+      ->required();
   verb.callback([options, &common] {
-    const H5mdReader file(options->file);
-    const nlohmann::json document = describe(file);
-    print_result(common, document, as_text(document));
+    if (is_trajectory(options->file)) {
+      const H5mdReader file(options->file);
+      const nlohmann::json document = describe(file);
+      print_result(common, document, as_text(document));
+    } else {
+      const nlohmann::json document = describe_stack(options->file);
+      print_result(common, document, stack_as_text(document));
+    }
   });
 }
 

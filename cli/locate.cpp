@@ -13,6 +13,7 @@
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "cli/output.hpp"
+#include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "imaging/overlay.hpp"
 #include "imaging/pipeline.hpp"
@@ -54,7 +55,7 @@ void run(LocateOptions& o, const Common& common) {
   if (o.scored_rows.size() == 2) rows = {o.scored_rows[0], o.scored_rows[1]};
   Scorer scorer(rows);
 
-  const auto frames = open_frames(o.stack);
+  const auto frames = open_stack(o.stack, common);
   const auto announced = static_cast<std::int64_t>(frames->announced());
   if (!o.overlay.empty() && announced > 0 && o.overlay_frame >= announced)
     throw ConfigError(Where{.file = {}, .key = "--overlay-frame"},
@@ -120,7 +121,9 @@ void add_locate(CLI::App& program, Common& common) {
   auto o = std::make_shared<LocateOptions>();
   CLI::App& verb = add_verb(program, common, "locate", "Beads in every frame of a stack",
                             "twincell locate frames/ -o beads.csv --diameter 15 --overlay first.png");
-  verb.add_option("stack", o->stack, "Folder of pictures, picture, multi-page TIFF or video")->required();
+  verb.add_option("stack", o->stack,
+                  "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
+      ->required();
   verb.add_option("-o,--output", o->output, "Bead table (CSV, trackpy's columns)")->required();
   verb.add_option("--overlay", o->overlay, "PNG of a frame with its beads marked");
   verb.add_option("--overlay-frame", o->overlay_frame, "Which frame, from 0")->check(CLI::NonNegativeNumber);

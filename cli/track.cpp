@@ -10,6 +10,7 @@
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "cli/output.hpp"
+#include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "imaging/pipeline.hpp"
 #include "imaging/score.hpp"
@@ -74,7 +75,7 @@ void run(TrackOptions& o, const Common& common) {
   (void)cell.drive();  // a drive that contradicts itself is refused before the work, not after
   o.locator.preprocess.bright |= cell.bright;
   if (o.locator.diameter_px <= 0) o.locator.diameter_px = cell.pixels_per_sigma.value_or(0);
-  const auto frames = open_frames(o.stack);
+  const auto frames = open_stack(o.stack, common);
   TrackedStack stack;
   {
     ProgressBar bar(common, "track");
@@ -83,7 +84,7 @@ void run(TrackOptions& o, const Common& common) {
   TrackPlan plan = plan_trajectory(stack, cell, o.locator.diameter_px, o.shortest);
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
-  provenance.inputs.emplace_back(o.stack);
+  provenance.inputs.push_back(file_of_stack(o.stack));
   plan.info.provenance_json = provenance.to_json();
   H5mdWriter writer(o.output, plan.info);
   write_trajectory(stack, plan, cell, writer);
@@ -128,7 +129,9 @@ void add_track(CLI::App& program, Common& common) {
   auto o = std::make_shared<TrackOptions>();
   CLI::App& verb = add_verb(program, common, "track", "Locate and link: from a stack to a trajectory",
                             "twincell track frames/ -o exp.h5 --cell CELL.toml");
-  verb.add_option("stack", o->stack, "Folder of pictures, multi-page TIFF or video")->required();
+  verb.add_option("stack", o->stack,
+                  "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
+      ->required();
   verb.add_option("-o,--output", o->output, "Trajectory (H5MD)")->required();
   verb.add_option("--cell", o->cell_file, "CELL.toml: scale, origin, size, drive of the cell");
   verb.add_option("--pixels-per-sigma", o->pixels_per_sigma, "Camera pixels per bead diameter")

@@ -9,9 +9,9 @@
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "analysis/trajectory/error.hpp"
+#include "tests/support/frames.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace twincell;
@@ -28,46 +28,6 @@ cv::Mat pattern(int width, int height, int offset = 0) {
     for (int x = 0; x < width; ++x)
       m(y, x) = static_cast<Pixel>((offset + 7 * x + 131 * y) * (sizeof(Pixel) == 2 ? 37 : 1));
   return m;
-}
-
-bool equal(const cv::Mat& a, const cv::Mat& b) {
-  return a.type() == b.type() && a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
-}
-
-void write(const fs::path& file, const cv::Mat& picture) {
-  ASSERT_TRUE(cv::imwrite(file.string(), picture)) << file;
-}
-
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-void put(const fs::path& file, const std::string& bytes) {
-  std::ofstream(file, std::ios::binary) << bytes;
-}
-
-/// All frames of a stack.
-std::vector<cv::Mat> read_all(const fs::path& stack) {
-  const auto source = open_frames(stack);
-  std::vector<cv::Mat> frames;
-  for (cv::Mat frame; source->next(frame); frame = cv::Mat()) frames.push_back(frame);
-  return frames;
-}
-
-/// The sentence with which a stack is refused; empty if it is not.
-std::string refusal(const fs::path& stack) {
-  try {
-    read_all(stack);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return {};
-}
-
-void expect_words(const std::string& sentence, const std::vector<std::string>& words) {
-  for (const std::string& word : words)
-    EXPECT_NE(sentence.find(word), std::string::npos) << "'" << word << "' is not in: " << sentence;
 }
 
 }  // namespace
@@ -153,25 +113,6 @@ TEST(FrameSource, APictureOfOnePixel) {
   }
 }
 
-TEST(FrameSource, Video) {
-  const TemporaryFolder folder;
-  const std::string file = (folder / "film.avi").string();
-  cv::VideoWriter writer(file, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25, cv::Size(64, 48), true);
-  if (!writer.isOpened()) GTEST_SKIP() << "OpenCV has no MJPG writer here.";
-  for (int i = 0; i < 7; ++i) writer.write(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(30 * i)));
-  writer.release();
-  const auto frames = read_all(file);
-  ASSERT_EQ(frames.size(), 7U);
-  for (int i = 0; i < 7; ++i) {
-    const cv::Mat& frame = frames[static_cast<std::size_t>(i)];
-    ASSERT_EQ(frame.type(), CV_8UC1);
-    EXPECT_EQ(frame.size(), cv::Size(64, 48));
-    EXPECT_NEAR(cv::mean(frame)[0], 30 * i, 3);
-  }
-  put(folder / "text.avi", "not a film");
-  expect_words(refusal(folder / "text.avi"), {"text.avi", "cannot be decoded as a video"});
-}
-
 TEST(SpoiltFrames, NothingToRead) {
   const TemporaryFolder folder;
   expect_words(refusal(folder / "nowhere"), {"nowhere", "does not exist"});
@@ -195,10 +136,11 @@ TEST(SpoiltFrames, MixedSizesAreNamedWithTheirFiles) {
 
 TEST(SpoiltFrames, TextThatCallsItselfAPicture) {
   const TemporaryFolder folder;
-  for (const char* name : {"t.png", "t.tif", "t.jpg", "t.bmp", "t.pgm"}) {
+  for (const char* name :
+       {"t.png", "t.tif", "t.jpg", "t.bmp", "t.pgm", "t.cine", "t.seq", "t.mrf", "t.h5", "t.avi"}) {
     put(folder / name, "This is not a picture at all, whatever its name says.\n");
     const std::string sentence = refusal(folder / name);
-    expect_words(sentence, {name});
+    expect_words(sentence, {name, "is not what its name says", fs::path(name).extension().string()});
     EXPECT_EQ(std::count(sentence.begin(), sentence.end(), '\n'), 0) << sentence;
   }
 }
@@ -246,4 +188,92 @@ TEST(SpoiltFrames, ASpoiltFrameInTheMiddleIsNamed) {
   for (int i = 0; i < 3; ++i) write(folder / fmt::format("f{}.png", i), pattern<uchar>(16, 16, i));
   put(folder / "f1.png", contents(folder / "f1.png").substr(0, 60));
   expect_words(refusal(folder.path()), {"f1.png", "truncated"});
+}
+
+TEST(FrameSource, ContentDecidesNotTheName) {
+  const TemporaryFolder folder;
+  write(folder / "a.tif", pattern<ushort>(9, 7));
+  fs::rename(folder / "a.tif", folder / "a.png");
+  write(folder / "b.png", pattern<ushort>(9, 7, 1));
+  fs::rename(folder / "b.png", folder / "b.cine");
+  EXPECT_TRUE(equal(read_all(folder / "a.png").at(0), pattern<ushort>(9, 7)));
+  EXPECT_TRUE(equal(read_all(folder / "b.cine").at(0), pattern<ushort>(9, 7, 1)));
+  EXPECT_TRUE(equal(read_all(folder.path()).at(0), pattern<ushort>(9, 7)));  // in a folder, too
+}
+
+TEST(FrameSource, AFolderSaysWhatItPassesOver) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 3; ++i) write(folder / fmt::format("f{}.PNG", i), pattern<uchar>(8, 6, i));
+  put(folder / "truth.csv", "id\n");
+  put(folder / "notes.txt", "hello");
+  put(folder / "._f0.PNG", "what another system leaves behind");
+  fs::create_directory(folder / "sub.png");
+  const auto source = open_frames(folder.path());
+  EXPECT_EQ(source->announced(), 3U);
+  EXPECT_EQ(source->info().other_files, 2U);
+  EXPECT_EQ(read_all(folder.path()).size(), 3U);
+}
+
+TEST(FrameSource, AFolderOfStacksIsOneStack) {
+  const TemporaryFolder folder;
+  for (int part = 0; part < 3; ++part) {
+    std::vector<cv::Mat> pages;
+    for (int i = 0; i < 4 - part; ++i) pages.push_back(pattern<ushort>(12, 10, 10 * part + i));
+    ASSERT_TRUE(cv::imwritemulti((folder / fmt::format("run_{}.tif", part)).string(), pages));
+  }
+  EXPECT_EQ(open_frames(folder.path())->announced(), 9U);
+  const auto frames = read_all(folder.path());
+  ASSERT_EQ(frames.size(), 9U);
+  for (const auto& [at, offset] : {std::pair{0, 0}, {3, 3}, {4, 10}, {7, 20}, {8, 21}})
+    EXPECT_TRUE(equal(frames[static_cast<std::size_t>(at)], pattern<ushort>(12, 10, offset))) << at;
+}
+
+TEST(FrameSource, TheDepthAPgmStatesIsKept) {
+  const TemporaryFolder folder;
+  put(folder / "a.pgm", "P5\n# twelve bits\n2 1\n4095\n\x0f\xff\x01\x02");
+  const auto source = open_frames(folder / "a.pgm");
+  EXPECT_EQ(source->info().bits, 12);
+  cv::Mat frame;
+  ASSERT_TRUE(source->next(frame));
+  ASSERT_EQ(frame.type(), CV_16UC1);
+  EXPECT_EQ(frame.at<ushort>(0, 0), 4095);
+  EXPECT_EQ(frame.at<ushort>(0, 1), 258);
+}
+
+TEST(SpoiltFrames, WhatIsNoFile) {
+  const TemporaryFolder folder;
+  expect_words(refusal("/dev/zero"), {"/dev/zero", "not a regular file"});
+  fs::create_symlink(folder / "nowhere", folder / "dangling.png");
+  expect_words(refusal(folder / "dangling.png"), {"dangling.png", "does not exist"});
+  fs::remove(folder / "dangling.png");
+  put(folder / "run.cine", "CI");
+  expect_words(refusal(folder.path()), {"holds no PNG", "it holds run.cine: name that file"});
+}
+
+TEST(SpoiltFrames, AFileThatMayNotBeRead) {
+  const TemporaryFolder folder;
+  write(folder / "locked.png", pattern<uchar>(8, 6));
+  fs::permissions(folder / "locked.png", fs::perms::none);
+  if (std::ifstream(folder / "locked.png")) GTEST_SKIP() << "This user may read everything.";
+  expect_words(refusal(folder / "locked.png"), {"locked.png", "cannot be opened for reading"});
+}
+
+TEST(SpoiltFrames, AHeaderThatPromisesMoreThanAFileCanHold) {
+  const TemporaryFolder folder;
+  put(folder / "a.pgm", "P5 1048576 256 255\n");
+  expect_words(refusal(folder / "a.pgm"), {"a.pgm", "1048576 x 256", "cannot hold"});
+  put(folder / "b.pgm", "P5 4000000000 1 255\n");
+  expect_words(refusal(folder / "b.pgm"), {"4000000000 x 1", "sides"});
+  write(folder / "c.png", pattern<uchar>(8, 6));
+  std::string bytes = contents(folder / "c.png");
+  bytes[16] = bytes[20] = 1;  // 2^24 more pixels each way
+  put(folder / "c.png", bytes);
+  expect_words(refusal(folder / "c.png"), {"c.png", "pixels"});
+  write(folder / "d.jpg", pattern<uchar>(8, 6));
+  bytes = contents(folder / "d.jpg");
+  const std::size_t frame = bytes.find("\xff\xc0");
+  ASSERT_NE(frame, std::string::npos);
+  for (std::size_t i = 5; i < 9; ++i) bytes[frame + i] = '\xff';
+  put(folder / "d.jpg", bytes);
+  expect_words(refusal(folder / "d.jpg"), {"d.jpg", "65535 x 65535"});
 }

@@ -1,0 +1,32 @@
+#pragma once
+/// \file
+/// Videos through the program ffmpeg, which keeps more than 8 bits; where it is installed.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "imaging/frame_source.hpp"
+
+namespace twincell::frames {
+
+/// What ffprobe says of the first video stream of a file.
+struct VideoFacts {
+  int width = 0, height = 0;
+  std::string pixels;  ///< ffmpeg's name of the pixel format: "gray16le"
+  int bits = 8;        ///< per sample
+  double frame_rate_hz = 0;
+  std::size_t frames = 0;  ///< 0: not stated
+};
+
+/// True if ffmpeg and ffprobe can be run.
+bool ffmpeg_is_installed();
+
+/// Absent if ffprobe finds no video in the file.
+std::optional<VideoFacts> probe_video(const std::filesystem::path& file);
+
+/// All frames, grey, at the depth of the file. A file that ffmpeg finds damaged is refused.
+std::unique_ptr<FrameSource> open_ffmpeg(const std::filesystem::path& file, const VideoFacts& facts);
+
+}  // namespace twincell::frames

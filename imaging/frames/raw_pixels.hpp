@@ -1,0 +1,38 @@
+#pragma once
+/// \file
+/// Pixels as cameras write them: 8 or 16 bits, packed bits, bottom row first.
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core.hpp>
+
+namespace twincell::frames {
+
+/// How one uncompressed frame lies in a file.
+struct RawLayout {
+  int width = 0, height = 0;
+  int stored_bits = 8;  ///< 8; 16; 9 .. 15 (packed without gaps, most significant bit first); 24 or 48 (BGR)
+  int shift = 0;        ///< 16 bit: the value lies this many bits up
+  bool big_first = false;  ///< 16 and 48 bit: most significant byte first
+  bool bottom_up = false;  ///< first row in the file is the lowest
+  bool mirrored = false;   ///< first pixel of a row is the rightmost
+
+  /// Bytes of one frame.
+  [[nodiscard]] std::uint64_t bytes() const {
+    return (static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
+                static_cast<std::uint64_t>(stored_bits) +
+            7) /
+           8;
+  }
+};
+
+/// Frame of type CV_8U or CV_16U from layout.bytes() bytes.
+cv::Mat unpack(const std::uint8_t* raw, const RawLayout& layout);
+
+/// `n` values of `bits` <= 16 bits each, packed most significant bit first.
+void unpack_bits(const std::uint8_t* from, int bits, std::size_t n, std::uint16_t* to);
+
+/// One grey channel of type CV_8U, CV_16U or CV_32F, the depth kept; colour is taken as BGR (BT.601).
+cv::Mat grey(const cv::Mat& picture, const std::filesystem::path& file);
+
+}  // namespace twincell::frames

@@ -1,0 +1,59 @@
+#pragma once
+/// \file
+/// Stacks written, read whole, and refused.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+#include "analysis/trajectory/error.hpp"
+#include "imaging/frame_source.hpp"
+
+namespace twincell {
+
+inline bool equal(const cv::Mat& a, const cv::Mat& b) {
+  return a.type() == b.type() && a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
+}
+
+inline void write(const std::filesystem::path& file, const cv::Mat& picture) {
+  ASSERT_TRUE(cv::imwrite(file.string(), picture)) << file;
+}
+
+inline std::string contents(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+inline void put(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+/// All frames of a stack. A frame that is handed out stays as it is when the next one is read.
+inline std::vector<cv::Mat> read_all(const std::filesystem::path& stack) {
+  const auto source = open_frames(stack);
+  std::vector<cv::Mat> frames;
+  for (cv::Mat frame; source->next(frame);) frames.push_back(frame);
+  return frames;
+}
+
+/// The sentence with which a stack is refused; empty if it is not.
+inline std::string refusal(const std::filesystem::path& stack) {
+  try {
+    read_all(stack);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+inline void expect_words(const std::string& sentence, const std::vector<std::string>& words) {
+  for (const std::string& word : words)
+    EXPECT_NE(sentence.find(word), std::string::npos) << "'" << word << "' is not in: " << sentence;
+}
+
+}  // namespace twincell
