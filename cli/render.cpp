@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
@@ -15,41 +16,74 @@ namespace twincell::cli {
 namespace {
 
 struct RenderOptions {
-  std::string trajectory, output;
-  CameraOptions camera;
+  std::string trajectory, camera_file;
+  RenderJob job;
+  CameraOptions flags;                                            ///< what the command line says
+  std::vector<std::pair<const CLI::Option*, std::size_t>> given;  ///< options and their places in the list
 };
 
+// The file's camera, with what the command line says laid over it.
+CameraOptions camera_of(RenderOptions& o, const Common& common) {
+  CameraOptions camera = o.camera_file.empty() ? CameraOptions{} : read_camera(o.camera_file);
+  const auto said = camera_option_list(o.flags), kept = camera_option_list(camera);
+  for (const auto& [option, i] : o.given)
+    if (option->count() > 0)
+      std::visit([&](auto* value) { *value = *std::get<decltype(value)>(said[i].value); }, kept[i].value);
+  if (common.seed) camera.seed = *common.seed;
+  return camera;
+}
+
 void run(RenderOptions& o, const Common& common) {
-  if (common.seed) o.camera.seed = *common.seed;
+  if (o.job.folder.empty() && o.job.movie.empty())
+    throw ConfigError(Where{.file = {}, .key = "--output"},
+                      "is missing, and so is --movie: one of them says where the frames go.");
+  const CameraOptions camera = camera_of(o, common);
+  o.job.threads = common.n_threads();
   const H5mdReader trajectory(o.trajectory);
-  std::size_t n = 0;
+  Rendered done;
   {
     ProgressBar bar(common, "render");
-    n = render(trajectory, o.camera, o.output, bar);
+    done = render(trajectory, camera, o.job, bar);
   }
-  print_result(common, {{"frames", n}, {"output", o.output}, {"seed", o.camera.seed}},
-               fmt::format("{} frames, truth.csv and CELL.toml in {}\n", n, o.output));
+  nlohmann::json document = {
+      {"frames", done.frames}, {"dropped", done.dropped}, {"doubled", done.doubled}, {"seed", camera.seed}};
+  std::string text = fmt::format("{} frames", done.frames);
+  if (!o.job.folder.empty()) {
+    document["output"] = o.job.folder.string();
+    text += fmt::format(", truth.csv, frames.csv, CELL.toml and CAMERA.toml in {}", o.job.folder.string());
+  }
+  if (!o.job.movie.empty()) {
+    document["movie"] = o.job.movie.string();
+    text += fmt::format("{}film in {}", o.job.folder.empty() ? ", " : "; ", o.job.movie.string());
+  }
+  if (done.dropped + done.doubled > 0)
+    text += fmt::format("; {} dropped, {} doubled", done.dropped, done.doubled);
+  print_result(common, document, text + "\n");
 }
 
 }  // namespace
 
 void add_render(CLI::App& program, Common& common) {
   auto o = std::make_shared<RenderOptions>();
-  CLI::App& verb = add_verb(program, common, "render", "Synthetic camera: frames with known truth",
-                            "twincell render sim.h5 -o frames/");
+  CLI::App& verb = add_verb(program, common, "render", "Synthetic camera: frames with known truth, or a film",
+                            "twincell render sim.h5 -o frames/ --exposure 0.05 --movie film.mp4");
   verb.add_option("trajectory", o->trajectory, "Trajectory (H5MD)")->required();
-  verb.add_option("-o,--output", o->output, "Folder for frames, truth.csv and CELL.toml")->required();
-  CameraOptions& c = o->camera;
-  verb.add_option("--pixels-per-sigma", c.pixels_per_sigma, "Camera pixels per bead diameter");
-  verb.add_option("--margin", c.margin_px, "Wall shown around the cell, px");
-  verb.add_option("--blur", c.blur_px, "Blur of the optics, standard deviation, px");
-  verb.add_option("--backlight", c.backlight, "Grey levels of the light");
-  verb.add_option("--vignetting", c.vignetting, "Relative loss of light in the corners");
-  verb.add_option("--electrons-per-level", c.electrons_per_level, "Shot noise: variance = I / this; 0: none");
-  verb.add_option("--read-noise", c.read_noise, "Grey levels");
-  verb.add_option("--tracer-darkness", c.tracer_darkness, "Darkness of tracers, 0.4 .. 1");
-  verb.add_option("--exposure", c.exposure, "Motion blur: exposure in t0 (needs velocities)");
-  verb.add_option("--max-height", c.max_height, "Height shown, sigma; 0: as high as beads get");
+  verb.add_option("-o,--output", o->job.folder,
+                  "Folder for frames, truth.csv, frames.csv, CELL.toml, CAMERA.toml");
+  verb.add_option("--movie", o->job.movie, "Film (.mp4 or .avi), 8 bit");
+  verb.add_option("--fps", o->job.frames_per_second, "Frames per second of the film");
+  verb.add_option("--camera", o->camera_file, "CAMERA.toml: any of the options below; the command line wins");
+  const auto list = camera_option_list(o->flags);
+  for (std::size_t i = 0; i < list.size(); ++i)
+    std::visit(
+        [&](auto* value) {
+          const std::string name = "--" + list[i].key;
+          if constexpr (std::is_same_v<decltype(value), bool*>)
+            o->given.emplace_back(verb.add_flag(name, *value, list[i].help), i);
+          else
+            o->given.emplace_back(verb.add_option(name, *value, list[i].help)->capture_default_str(), i);
+        },
+        list[i].value);
   verb.callback([o, &common] { run(*o, common); });
 }
 

@@ -3,82 +3,78 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
-#include <random>
-#include <vector>
+#include <numeric>
 
-#include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "imaging/camera/dirt.hpp"
+#include "imaging/camera/disc_image.hpp"
+#include "imaging/camera/random.hpp"
+#include "imaging/camera/sensor.hpp"
 
 namespace twincell {
 
 namespace {
 
-constexpr double kTableStep_px = 1.0 / 64;
+// Gauss-Legendre on (-1/2, 1/2).
+constexpr std::array<std::pair<double, double>, 3> kNodes{
+    {{-0.387298334620741689, 5.0 / 18}, {0, 8.0 / 18}, {0.387298334620741689, 5.0 / 18}}};
 
-// Disc * Gaussian as a function of the distance from the centre: across the line of sight the Gaussian
-// integrates to an error function, along it the midpoint rule converges exponentially.
-class DiscProfile {
- public:
-  DiscProfile(double radius, double s) {
-    const double end = radius + 5 * s;
-    const int n = 400;
-    const int steps = static_cast<int>(end / kTableStep_px);
-    for (int k = 0; k <= steps; ++k) {
-      const double r = k * kTableStep_px;
-      double sum = 0;
-      for (int i = 0; i < n; ++i) {
-        const double angle = std::numbers::pi * (i + 0.5) / n, u = -radius * std::cos(angle);
-        const double du = std::numbers::pi / n * radius * std::sin(angle);
-        sum += du * std::exp(-0.5 * (u - r) * (u - r) / (s * s)) / (std::sqrt(2 * std::numbers::pi) * s) *
-               std::erf(radius * std::sin(angle) / (std::numbers::sqrt2 * s));
-      }
-      values_.push_back(sum);
-    }
-  }
-  [[nodiscard]] double at(double r) const {
-    const double t = r / kTableStep_px;
-    const auto i = static_cast<std::size_t>(t);
-    if (i + 1 >= values_.size()) return 0;
-    const double f = t - static_cast<double>(i);
-    return (1 - f) * values_[i] + f * values_[i + 1];
-  }
+// Share of light beside a straight edge; `distance` > 0 in the dark.
+float edge(double distance, double s) {
+  return static_cast<float>(0.5 * std::erfc(distance / (std::numbers::sqrt2 * s)));
+}
 
- private:
-  std::vector<double> values_;
-};
-
-double smooth_step(double distance, double s) {
-  return 0.5 * std::erfc(distance / (std::numbers::sqrt2 * s));
+// Moments of the exposure and their weights: pieces short enough that nothing moves further than about a
+// pixel in one.
+std::vector<std::pair<double, double>> moments(double exposure, double length_px) {
+  if (exposure == 0 || length_px < 1e-3) return {{0, 1}};
+  const int pieces = std::clamp(cvCeil(length_px / 1.5), 1, 64);
+  std::vector<std::pair<double, double>> nodes;
+  for (int i = 0; i < pieces; ++i)
+    for (const auto& [at, weight] : kNodes)
+      nodes.emplace_back(exposure * ((i + 0.5 + at) / pieces - 0.5), weight / pieces);
+  return nodes;
 }
 
 }  // namespace
 
-void CameraOptions::check() const {
-  auto range = [](const char* key, double v, double a, double b) {
-    require_range(Where{.file = {}, .key = key}, v, a, b);
+// Disc images for all radii that occur, in steps of 1/50 px; a radius between two is a shift of the nearest.
+class SyntheticCamera::Discs {
+ public:
+  static constexpr double kPerPixel = 50;
+  Discs(const std::vector<double>& radii_px, double least_magnification, double most_magnification,
+        double blur_px) {
+    for (const double r : radii_px)
+      for (auto k = std::lround(r * least_magnification * kPerPixel);
+           k <= std::lround(r * most_magnification * kPerPixel); ++k)
+        images_.try_emplace(std::max(k, 1L), std::max(k, 1L) / kPerPixel, blur_px);
+  }
+  struct Sized {
+    const DiscImage* image;
+    double shift;
+    [[nodiscard]] double reach() const { return image->reach() + shift; }
+    [[nodiscard]] float at(double dx, double dy, double r) const { return image->at(dx, dy, r - shift); }
   };
-  range("pixels-per-sigma", pixels_per_sigma, 3, 400);
-  range("margin", margin_px, 0, 1000);
-  range("blur", blur_px, 0.2, 5);
-  range("backlight", backlight, 1, 255);
-  range("vignetting", vignetting, 0, 0.9);
-  range("electrons-per-level", electrons_per_level, 0, 1e9);
-  range("read-noise", read_noise, 0, 50);
-  range("tracer-darkness", tracer_darkness, 0.4, 1);
-  range("exposure", exposure, 0, 1e6);
-  range("max-height", max_height, 0, 1e6);
-}
+  [[nodiscard]] Sized of(double radius_px) const {
+    auto found = images_.lower_bound(std::lround(radius_px * kPerPixel));
+    if (found == images_.end()) --found;
+    return {&found->second, radius_px - static_cast<double>(found->first) / kPerPixel};
+  }
+
+ private:
+  std::map<long, DiscImage> images_;
+};
 
 SyntheticCamera::SyntheticCamera(const CameraOptions& options, const TrajectoryInfo& info)
-    : options_(options), info_(info) {
+    : options_(options), info_(info), shutter_(info) {
   options.check();
-  if (options.exposure > 0 && !info.columns.velocity)
-    throw ConfigError(Where{.file = {}, .key = "exposure"},
-                      "is above 0, but the trajectory has no velocities.");
+  if (options.exposure > 0) Shutter::require_paths(info, "exposure");
+  if (options.trigger_jitter > 0) Shutter::require_paths(info, "trigger-jitter");
+  if (options.trigger_offset != 0) Shutter::require_paths(info, "trigger-offset");
   const double height = options.max_height > 0 ? options.max_height : info.box.size().z();
   const double amplitude = info.drive ? info.drive->amplitude : 0;
   const double w = info.box.size().x() * options.pixels_per_sigma + 2 * options.margin_px;
@@ -91,124 +87,207 @@ SyntheticCamera::SyntheticCamera(const CameraOptions& options, const TrajectoryI
   map_.pixels_per_sigma = options.pixels_per_sigma;
   map_.origin = {options.margin_px - info.box.lower.x() * options.pixels_per_sigma,
                  size_.height - 1 - options.margin_px - amplitude * options.pixels_per_sigma};
+  lens_ = std::make_shared<Lens>(size_, options.rotation_deg, options.distortion);
+
+  std::vector<double> radii;
+  for (std::size_t k = 0; k < (info.radius.empty() ? 1 : info.n_beads); ++k) radii.push_back(radius_px(k));
+  const double corner = lens_->magnification({-0.5, -0.5});
+  discs_ = std::make_shared<Discs>(radii, std::min(1.0, corner), std::max(1.0, corner), options.blur_px);
+
+  const double s = std::hypot(options.blur_px, std::sqrt(1.0 / 12));
+  const bool walls = info.box.boundary[0] == Boundary::wall;
+  const double left = map_.pixel_from_cell(info.box.lower).x_px,
+               right = map_.pixel_from_cell(info.box.upper).x_px;
+  backlight_ = glass(size_, options);
+  if (walls) walls_.create(size_);
+  if (!lens_->identity()) ideal_.create(size_);
+  for (int y = 0; y < size_.height; ++y)
+    for (int x = 0; x < size_.width; ++x) {
+      const double u = (2.0 * x + 1) / size_.width - 1, v = (2.0 * y + 1) / size_.height - 1;
+      backlight_(y, x) *=
+          static_cast<float>(options.backlight * (1 - options.vignetting * 0.5 * (u * u + v * v)));
+      const PixelPoint p = lens_->identity() ? PixelPoint{double(x), double(y)}
+                                             : lens_->ideal_from_picture({double(x), double(y)});
+      if (walls) walls_(y, x) = edge(left - p.x_px, s) * edge(p.x_px - right, s);
+      if (!ideal_.empty()) ideal_(y, x) = {p.x_px, p.y_px};
+    }
 }
 
 double SyntheticCamera::radius_px(std::size_t slot) const {
   return (info_.radius.empty() ? 0.5 : info_.radius[slot]) * options_.pixels_per_sigma;
 }
 
-cv::Mat1b SyntheticCamera::expose(const Frame& frame) const {
-  const double s = std::sqrt(options_.blur_px * options_.blur_px + 1.0 / 12);
-  cv::Mat1d dark = cv::Mat1d::zeros(size_);
-  std::map<double, DiscProfile> profiles;
+Vec3 SyntheticCamera::place(const Moment& moment, std::size_t slot, double tau) const {
+  Vec3 r = shutter_.position(moment, slot, moment.late + tau);
+  if (info_.box.periodic(Axis::x)) r.x() = info_.box.wrap(r).x();
+  return r;
+}
+
+void SyntheticCamera::draw_plate(const Moment& moment, cv::Mat1f& share) const {
+  const double s = std::hypot(options_.blur_px, std::sqrt(1.0 / 12));
+  auto floor_at = [&](double tau) {
+    return map_.pixel_from_cell(Vec3(0, 0, shutter_.plate(moment, moment.late + tau))).y_px;
+  };
+  const double e = options_.exposure;
+  std::vector<std::pair<double, double>> floors;  // row and weight
+  for (const auto& [tau, weight] :
+       moments(e, std::abs(floor_at(0.5 * e) - floor_at(0)) + std::abs(floor_at(-0.5 * e) - floor_at(0))))
+    floors.emplace_back(floor_at(tau), weight);
+  auto light = [&](double y) {
+    float sum = 0;
+    for (const auto& [floor, weight] : floors) sum += static_cast<float>(weight) * edge(y - floor, s);
+    return sum;
+  };
+  const auto [low, high] = std::minmax_element(floors.begin(), floors.end());
+  const double above = low->first - 6 * s, below = high->first + 6 * s;
+  for (int y = 0; y < share.rows; ++y) {
+    auto* row = share.ptr<float>(y);
+    if (ideal_.empty()) {
+      if (y < above) continue;
+      const float left = y > below ? 0 : light(y);
+      for (int x = 0; x < share.cols; ++x) row[x] *= left;
+    } else {
+      const auto* at = ideal_.ptr<cv::Vec2d>(y);
+      for (int x = 0; x < share.cols; ++x)
+        if (at[x][1] > above) row[x] *= at[x][1] > below ? 0 : light(at[x][1]);
+    }
+  }
+}
+
+cv::Mat1f SyntheticCamera::light(const Moment& moment) const {
+  const Frame& frame = *moment.now;
+  cv::Mat1f share(size_, 1.0F), glow;
+  if (options_.glare > 0) glow = cv::Mat1f::zeros(size_);
+  const double e = options_.exposure;
+  const bool bent = options_.distortion != 0;
+  std::vector<float> stamp;
   for (std::size_t k = 0; k < info_.n_beads; ++k) {
     if (!frame.present(k) || !std::isfinite(frame.position[k].x())) continue;
     const double radius = radius_px(k);
-    const DiscProfile& profile = profiles.try_emplace(radius, radius, s).first->second;
-    const double depth = !info_.tracer.empty() && info_.tracer[k] != 0 ? options_.tracer_darkness : 1;
-    const Vec3 path =
-        options_.exposure > 0 ? Vec3(frame.velocity[k] * options_.exposure) : Vec3(Vec3::Zero());
-    const int exposures = 1 + std::clamp(cvCeil(4 * path.norm() * options_.pixels_per_sigma), 0, 64);
-    for (int e = 0; e < exposures; ++e) {
-      const PixelPoint c = map_.pixel_from_cell(frame.position[k] + ((e + 0.5) / exposures - 0.5) * path);
-      const double reach = radius + 5 * s;
-      for (int y = std::max(0, cvFloor(c.y_px - reach));
-           y <= std::min(size_.height - 1, cvCeil(c.y_px + reach)); ++y)
-        for (int x = std::max(0, cvFloor(c.x_px - reach));
-             x <= std::min(size_.width - 1, cvCeil(c.x_px + reach)); ++x)
-          dark(y, x) += depth / exposures * profile.at(std::hypot(x - c.x_px, y - c.y_px));
+    const auto depth =
+        static_cast<float>(!info_.tracer.empty() && info_.tracer[k] != 0 ? options_.tracer_darkness : 1);
+    const Vec3 here = place(moment, k, 0);
+    double length = 0;
+    if (e > 0)
+      length =
+          options_.pixels_per_sigma *
+          ((shutter_.position(moment, k, moment.late + 0.5 * e) - shutter_.position(moment, k, moment.late))
+               .norm() +
+           (shutter_.position(moment, k, moment.late - 0.5 * e) - shutter_.position(moment, k, moment.late))
+               .norm());
+    const auto nodes = moments(e, length);
+    const double magnification = lens_->magnification(map_.pixel_from_cell(here));
+    const Discs::Sized disc = discs_->of(radius * magnification);
+    const PixelPoint middle = lens_->picture_from_ideal(map_.pixel_from_cell(here));
+    const double reach = disc.reach() * (bent ? 1.1 : 1) + 1 + length;
+    const cv::Rect window =
+        cv::Rect(cv::Point(cvFloor(middle.x_px - reach), cvFloor(middle.y_px - reach)),
+                 cv::Point(cvCeil(middle.x_px + reach) + 1, cvCeil(middle.y_px + reach) + 1)) &
+        cv::Rect({}, size_);
+    if (window.empty()) continue;
+    stamp.assign(static_cast<std::size_t>(window.area()), 0);
+    const bool shines = options_.glare > 0 &&
+                        RandomStream(options_.seed, Chance::glare, static_cast<std::int64_t>(k)).uniform() <
+                            options_.glare_share;
+    const bool reflected = options_.glare_kind == "reflected";
+    const double off = reflected ? -0.35 * radius : 0, spot = (reflected ? 0.13 : 0.25) * radius,
+                 spot_reach = 4 * spot;
+    for (const auto& [tau, weight] : nodes) {
+      Vec3 at = shutter_.position(moment, k, moment.late + tau);
+      at.x() +=
+          here.x() - shutter_.position(moment, k, moment.late).x();  // the same image of a periodic cell
+      const PixelPoint ideal = map_.pixel_from_cell(at), c = lens_->picture_from_ideal(ideal);
+      const auto w = static_cast<float>(weight);
+      std::size_t i = 0;
+      for (int y = window.y; y < window.y + window.height; ++y)
+        for (int x = window.x; x < window.x + window.width; ++x, ++i) {
+          const double dx = x - c.x_px, dy = y - c.y_px;
+          double r = 0;
+          if (bent) {
+            const cv::Vec2d& q = ideal_(y, x);
+            r = magnification * std::sqrt((q[0] - ideal.x_px) * (q[0] - ideal.x_px) +
+                                          (q[1] - ideal.y_px) * (q[1] - ideal.y_px));
+          } else {
+            r = std::sqrt(dx * dx + dy * dy);
+          }
+          stamp[i] += w * disc.at(dx, dy, r);
+          if (shines && std::abs(dx - off) < spot_reach && std::abs(dy - off) < spot_reach)
+            glow(y, x) +=
+                w * static_cast<float>(
+                        options_.glare *
+                        std::exp(-0.5 * ((dx - off) * (dx - off) + (dy - off) * (dy - off)) / (spot * spot)));
+        }
+    }
+    std::size_t i = 0;
+    const bool flat = info_.box.dimension == 2;
+    for (int y = window.y; y < window.y + window.height; ++y) {
+      auto* row = share.ptr<float>(y);
+      for (int x = window.x; x < window.x + window.width; ++x, ++i)
+        row[x] = flat ? row[x] - depth * stamp[i] : row[x] * (1 - depth * stamp[i]);
     }
   }
-  const double plate = std::isfinite(frame.plate_height) ? frame.plate_height : 0;
-  const bool walls = info_.box.boundary[0] == Boundary::wall;
-  const double left = map_.pixel_from_cell(info_.box.lower).x_px,
-               right = map_.pixel_from_cell(info_.box.upper).x_px;
-  const double floor = map_.pixel_from_cell(Vec3(0, 0, plate)).y_px;
-  std::mt19937_64 bits(options_.seed * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(frame.step));
-  auto uniform = [&] { return (static_cast<double>(bits() >> 11) + 0.5) * 0x1p-53; };
-  cv::Mat1b picture(size_);
+  share = cv::max(share, 0.0F);
+  draw_plate(moment, share);
+  const auto lamp = static_cast<float>(moment.lamp);
   for (int y = 0; y < size_.height; ++y)
     for (int x = 0; x < size_.width; ++x) {
-      double light = std::max(0.0, 1 - dark(y, x)) * smooth_step(y - floor, s);
-      if (walls) light *= smooth_step(left - x, s) * smooth_step(x - right, s);
-      const double u = 2.0 * x / size_.width - 1, v = 2.0 * y / size_.height - 1;
-      const double level = options_.backlight * (1 - options_.vignetting * 0.5 * (u * u + v * v)) * light;
-      const double shot = options_.electrons_per_level > 0 ? level / options_.electrons_per_level : 0;
-      // Box-Muller, spelt out: the library's own normal distribution differs between implementations.
-      const double normal = std::sqrt(-2 * std::log(uniform())) * std::cos(2 * std::numbers::pi * uniform());
-      picture(y, x) = cv::saturate_cast<std::uint8_t>(
-          level + std::sqrt(shot + options_.read_noise * options_.read_noise) * normal);
+      float left = share(y, x);
+      if (!walls_.empty()) left *= walls_(y, x);
+      if (options_.bright) left = 1 - left;
+      if (!glow.empty()) left += glow(y, x);
+      share(y, x) = lamp * backlight_(y, x) * left;
     }
-  return picture;
+  return share;
 }
 
-namespace {
-
-// The box of a simulation is tall enough never to be touched, so most of it would be a picture of nothing.
-double height_of_beads(const TrajectorySource& trajectory, Progress& progress) {
-  constexpr double kHeadroom = 2;
-  double top = 0;
-  Frame frame;
-  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
-    trajectory.read(f, frame);
-    for (std::size_t k = 0; k < frame.position.size(); ++k)
-      if (frame.present(k) && std::isfinite(frame.position[k].z()))
-        top = std::max(top, frame.position[k].z());
-    progress.update(0, static_cast<std::int64_t>(trajectory.n_frames()));
-  }
-  return std::min(trajectory.info().box.size().z(), top + kHeadroom);
+cv::Mat SyntheticCamera::expose(const Moment& moment) const {
+  return read_out(light(moment), options_, moment.now->step);
 }
 
-}  // namespace
-
-std::size_t render(const TrajectorySource& trajectory, const CameraOptions& options,
-                   const std::filesystem::path& folder, Progress& progress) {
-  const TrajectoryInfo& info = trajectory.info();
-  CameraOptions fitted = options;
-  if (fitted.max_height == 0) fitted.max_height = height_of_beads(trajectory, progress);
-  const SyntheticCamera camera(fitted, info);
-  AtomicPath place(folder, AtomicPath::Kind::folder);
-  std::string truth = "frame,id,x_px,y_px,r_px,tracer,phase,cycle\n";
-  Frame frame;
-  int first_phase = 0;
-  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
-    trajectory.read(f, frame);
-    if (f == 0) first_phase = std::max(0, static_cast<int>(frame.phase));
-    const auto file = place.part() / fmt::format("frame_{:05}.png", f);
-    if (!cv::imwrite(file.string(), camera.expose(frame), {cv::IMWRITE_PNG_COMPRESSION, 9}))
-      throw RunError(file.string() + ": cannot be written.");
-    for (std::size_t k = 0; k < info.n_beads; ++k) {
-      if (!frame.present(k) || !std::isfinite(frame.position[k].x())) continue;
-      const PixelPoint p = camera.pixel_frame().pixel_from_cell(frame.position[k]);
-      // The truth is of what can be seen: a bead that flies out of the picture is not in it.
-      if (p.x_px < -0.5 || p.y_px < -0.5 || p.x_px > camera.size().width - 0.5 ||
-          p.y_px > camera.size().height - 0.5)
-        continue;
-      truth += fmt::format("{},{},{:.5f},{:.5f},{:.5f},{},{},{}\n", f, k, p.x_px, p.y_px, camera.radius_px(k),
-                           info.tracer.empty() ? 0 : int{info.tracer[k]}, frame.phase, frame.cycle);
-    }
-    progress.update(static_cast<std::int64_t>(f + 1), static_cast<std::int64_t>(trajectory.n_frames()));
+std::vector<TrueBead> SyntheticCamera::truth(const Moment& moment) const {
+  constexpr int kRim = 64;
+  std::vector<TrueBead> beads;
+  for (std::size_t k = 0; k < info_.n_beads; ++k) {
+    if (!moment.now->present(k) || !std::isfinite(moment.now->position[k].x())) continue;
+    const PixelPoint ideal = map_.pixel_from_cell(place(moment, k, 0)), p = lens_->picture_from_ideal(ideal);
+    beads.push_back({k, p.x_px, p.y_px, radius_px(k) * lens_->magnification(ideal), 1,
+                     !info_.tracer.empty() && info_.tracer[k] != 0});
   }
-  const PixelFrame& map = camera.pixel_frame();
-  std::string cell = fmt::format(
-      "[camera]\npixels_per_sigma = {:.17g}\norigin_px = [{:.17g}, {:.17g}]\nframes_per_cycle = "
-      "{}\nfirst_phase = {}\n\n"
-      "[cell]\nwidth = {:.17g}\nheight = {:.17g}\nsides = \"{}\"\n",
-      map.pixels_per_sigma, map.origin.x_px + info.box.lower.x() * map.pixels_per_sigma, map.origin.y_px,
-      info.phases_per_cycle, first_phase, info.box.size().x(), info.box.size().z(),
-      info.box.boundary[0] == Boundary::wall ? "walls"
-      : info.box.periodic(Axis::x)           ? "periodic"
-                                             : "open");
-  if (info.drive)
-    cell += fmt::format("\n[drive]\namplitude = {:.17g}\nomega = {:.17g}\n", info.drive->amplitude,
-                        info.drive->omega);
-  if (info.scale.sigma_m || info.scale.gravity_m_s2) cell += "\n[scale]\n";
-  if (info.scale.sigma_m) cell += fmt::format("sigma_m = {:.17g}\n", *info.scale.sigma_m);
-  if (info.scale.gravity_m_s2) cell += fmt::format("gravity_m_s2 = {:.17g}\n", *info.scale.gravity_m_s2);
-  write_text_file(place.part() / "truth.csv", truth);
-  write_text_file(place.part() / "CELL.toml", cell);
-  place.commit();
-  return trajectory.n_frames();
+  auto inside = [&](double x, double y) {
+    return x >= -0.5 && y >= -0.5 && x <= size_.width - 0.5 && y <= size_.height - 0.5;
+  };
+  // In order of x, so that discs in front are sought nearby only.
+  std::vector<std::size_t> order(beads.size());
+  std::iota(order.begin(), order.end(), 0);
+  double largest = 0;
+  if (info_.box.dimension == 3) {
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return beads[a].x < beads[b].x; });
+    for (const TrueBead& b : beads) largest = std::max(largest, b.radius);
+  }
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    TrueBead& bead = beads[order[n]];
+    int seen = 0;
+    for (int a = 0; a < kRim; ++a) {
+      const double angle = 2 * std::numbers::pi * (a + 0.5) / kRim;
+      const double x = bead.x + bead.radius * std::cos(angle), y = bead.y + bead.radius * std::sin(angle);
+      bool free = inside(x, y);
+      auto covered = [&](const TrueBead& other) {
+        return std::hypot(x - other.x, y - other.y) < other.radius * (1 - 1e-6);
+      };
+      if (info_.box.dimension == 3) {
+        for (std::size_t m = n + 1; free && m < order.size() && beads[order[m]].x < x + largest; ++m)
+          free = !covered(beads[order[m]]);
+        for (std::size_t m = n; free && m-- > 0 && beads[order[m]].x > x - largest;)
+          free = !covered(beads[order[m]]);
+      }
+      seen += free ? 1 : 0;
+    }
+    bead.visible = static_cast<double>(seen) / kRim;
+  }
+  // The truth is of what can be seen: a bead that flies out of the picture is not in it.
+  std::erase_if(beads, [&](const TrueBead& b) { return !inside(b.x, b.y); });
+  return beads;
 }
 
 }  // namespace twincell

@@ -34,7 +34,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kLibraryHomes =
     {"opencv2/", {"imaging", "tests", "bench"}},
     {"ceres/", {"calibration", "tests"}},
     {"toml++/", {"trajectory"}},
-    {"CLI/", {"cli"}},
+    {"CLI/", {"cli", "bench"}},
     {"hdf5.h", {"trajectory", "tests"}},
 };
 

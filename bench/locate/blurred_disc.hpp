@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// A disc seen through Gaussian optics: exact value and exact derivatives.
+///
+/// P(r; R, s) = disc of radius R convolved with a Gaussian of standard deviation s, at distance r from the
+/// centre. By Gauss's theorem its derivatives are integrals of the Gaussian along the rim,
+///     dP/dr = -(R/s^2) exp(-(r^2 + R^2)/2s^2) I1(rR/s^2),   dP/dR = (R/s^2) exp(-(r^2 + R^2)/2s^2)
+///     I0(rR/s^2),
+/// with the modified Bessel functions, and P(0) = 1 - exp(-R^2/2s^2). No edge is taken as straight.
+
+#include <vector>
+
+namespace twincell::bench {
+
+class BlurredDisc {
+ public:
+  BlurredDisc(double radius, double blur);
+  /// Half width of the rim outside which P is 1 or 0 to 1e-12.
+  [[nodiscard]] double rim() const { return rim_; }
+  [[nodiscard]] double radius() const { return radius_; }
+  [[nodiscard]] double value(double r) const;        ///< P
+  [[nodiscard]] double by_distance(double r) const;  ///< dP/dr
+  [[nodiscard]] double by_radius(double r) const;    ///< dP/dR
+
+ private:
+  double radius_, blur_, rim_, first_;
+  std::vector<double> value_, slope_, by_radius_;  // on a grid from first_, step kStep: cubic Hermite between
+};
+
+}  // namespace twincell::bench

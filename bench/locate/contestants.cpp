@@ -1,0 +1,95 @@
+#include "bench/locate/contestants.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "imaging/locator.hpp"
+
+namespace twincell::bench {
+
+namespace {
+
+// The only place that knows how this library is called.
+std::vector<cv::Point2d> ours(const cv::Mat1b& frame, LocatorOptions options, double diameter) {
+  options.diameter_px = diameter;
+  std::vector<cv::Point2d> centres;
+  for (const Detection& bead : locate(frame, options).beads) centres.emplace_back(bead.x, bead.y);
+  return centres;
+}
+
+// True where the options know ways of refining by name.
+template <class Options>
+constexpr bool kNamesRefinements = requires(Options o) {
+  o.method = std::string();
+};
+
+template <class Options>
+void refine_by(Options& options, const std::string& method) {
+  if constexpr (kNamesRefinements<Options>) options.method = method;
+}
+
+}  // namespace
+
+std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, double diameter, const HoughSettings& s) {
+  cv::Mat picture = frame;
+  if (s.smooth > 0) cv::GaussianBlur(frame, picture = cv::Mat(), {}, s.smooth);
+  if (s.enlarge != 1) cv::resize(picture, picture, {}, s.enlarge, s.enlarge, cv::INTER_CUBIC);
+  const double d = diameter * s.enlarge;
+  std::vector<cv::Vec3f> circles;
+  cv::HoughCircles(picture, circles, s.mode, s.mode == cv::HOUGH_GRADIENT ? 1 : 1.5, s.apart * d, s.edge,
+                   s.votes, cvFloor(0.5 * d * (1 - s.radius_slack)), cvCeil(0.5 * d * (1 + s.radius_slack)));
+  std::vector<cv::Point2d> centres;
+  for (const cv::Vec3f& c : circles)
+    centres.emplace_back((double{c[0]} + 0.5) / s.enlarge - 0.5, (double{c[1]} + 0.5) / s.enlarge - 0.5);
+  return centres;
+}
+
+std::vector<std::pair<std::string, HoughSettings>> hough_grid() {
+  std::vector<std::pair<std::string, HoughSettings>> grid;
+  for (const double enlarge : {1.0, 2.0, 3.0})
+    for (const double smooth : {0.0, 0.7})
+      for (const double edge : {30.0, 60.0, 120.0, 200.0})
+        for (const double apart : {0.6, 0.8}) {
+          for (const double votes : {3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 13.0})
+            grid.emplace_back(fmt::format("gradient x{} smooth {} edge {} votes {} apart {}", enlarge, smooth,
+                                          edge, votes, apart),
+                              HoughSettings{cv::HOUGH_GRADIENT, enlarge, smooth, edge, votes, apart, 0.15});
+          for (const double votes : {0.3, 0.5, 0.7, 0.8, 0.9})
+            grid.emplace_back(
+                fmt::format("alt x{} smooth {} edge {} votes {} apart {}", enlarge, smooth, edge, votes,
+                            apart),
+                HoughSettings{cv::HOUGH_GRADIENT_ALT, enlarge, smooth, edge, votes, apart, 0.15});
+        }
+  return grid;
+}
+
+std::vector<Contestant> contestants() {
+  std::vector<Contestant> all;
+  std::vector<std::string> methods{""};
+  if (kNamesRefinements<RefineOptions>) methods = {"exact", "fast"};
+  for (const std::string& finder : finder_names())
+    for (const std::string& method : methods) {
+      LocatorOptions options;
+      options.finder = finder;
+      refine_by(options.refine, method);
+      all.push_back(
+          {fmt::format("twincell {}{}{}", finder, method.empty() ? "" : " ", method),
+           [options](const cv::Mat1b& frame, double diameter) { return ours(frame, options, diameter); }});
+    }
+  auto hough = [&](const char* name, const HoughSettings& settings) {
+    all.push_back({name, [settings](const cv::Mat1b& frame, double diameter) {
+                     return opencv_hough(frame, diameter, settings);
+                   }});
+  };
+  // Without an enlarged frame: the best of `locate_truth --tune`. Enlarged: tried by hand on the random
+  // packing.
+  hough("opencv gradient", {cv::HOUGH_GRADIENT, 1, 0, 120, 4, 0.7, 0.15});
+  hough("opencv gradient, enlarged", {cv::HOUGH_GRADIENT, 3, 0, 60, 10, 0.8, 0.15});
+  hough("opencv alt", {cv::HOUGH_GRADIENT_ALT, 1, 0, 60, 0.5, 0.8, 0.15});
+  hough("opencv alt, enlarged", {cv::HOUGH_GRADIENT_ALT, 3, 0, 60, 0.5, 0.8, 0.15});
+  return all;
+}
+
+}  // namespace twincell::bench

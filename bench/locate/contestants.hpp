@@ -1,0 +1,35 @@
+#pragma once
+/// \file
+/// Who finds circles: this library with each finder and refinement, OpenCV's two Hough transforms.
+
+#include <functional>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+namespace twincell::bench {
+
+struct Contestant {
+  std::string name;
+  /// Centres in an 8-bit frame, told the nominal diameter (px).
+  std::function<std::vector<cv::Point2d>(const cv::Mat1b&, double diameter)> find;
+};
+
+std::vector<Contestant> contestants();
+
+/// The settings of one of OpenCV's transforms.
+struct HoughSettings {
+  int mode = 3;                ///< cv::HOUGH_GRADIENT or cv::HOUGH_GRADIENT_ALT
+  double enlarge = 1;          ///< the frame is enlarged by this first (cubic)
+  double smooth = 0;           ///< Gaussian blur before, px of the original frame
+  double edge = 100;           ///< param1
+  double votes = 100;          ///< param2
+  double apart = 0.8;          ///< minDist, in diameters
+  double radius_slack = 0.15;  ///< minRadius, maxRadius = radius (1 -+ this)
+};
+std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, double diameter, const HoughSettings& settings);
+
+/// The grid on which OpenCV's settings are searched, by name.
+std::vector<std::pair<std::string, HoughSettings>> hough_grid();
+
+}  // namespace twincell::bench

@@ -1,0 +1,16 @@
+#pragma once
+/// \file
+/// Specks and scratches on the glass: the same in every frame.
+
+#include <opencv2/core.hpp>
+
+#include "imaging/camera/options.hpp"
+
+namespace twincell {
+
+/// Share of the light that the glass lets through, [height, width], 0 .. 1. Specks: discs of 0.5 to 4 px, 20
+/// to 80 % dark. Scratches: straight lines of 30 px to half the picture, 0.5 to 1.5 px wide, 10 to 50 % dark.
+/// All blurred.
+cv::Mat1f glass(cv::Size size, const CameraOptions& options);
+
+}  // namespace twincell

@@ -1,0 +1,63 @@
+#include "imaging/camera/movie.hpp"
+
+#include <fmt/format.h>
+
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "analysis/trajectory/error.hpp"
+
+namespace twincell {
+
+struct Movie::Writer {
+  cv::VideoWriter video;
+};
+
+Movie::Movie(const std::filesystem::path& file, cv::Size size, double rate)
+    : place_(file),
+      draft_(file),
+      writer_(std::make_unique<Writer>()),
+      size_((size.width + 1) / 2 * 2, (size.height + 1) / 2 * 2) {
+  require_range(Where{.file = {}, .key = "fps"}, rate, 0.01, 1000);
+  const std::string kind = file.extension().string();
+  if (kind != ".mp4" && kind != ".avi")
+    throw ConfigError(Where{.file = {}, .key = "movie"},
+                      fmt::format("is '{}'; films are written as .mp4 or .avi.", file.string()));
+  draft_.replace_extension(".part" + kind);  // the encoder goes by the extension
+  using cv::VideoWriter;
+  const std::vector<int> codecs = kind == ".avi" ? std::vector{VideoWriter::fourcc('M', 'J', 'P', 'G')}
+                                                 : std::vector{VideoWriter::fourcc('a', 'v', 'c', '1'),
+                                                               VideoWriter::fourcc('m', 'p', '4', 'v')};
+  for (const int codec : codecs)
+    if (writer_->video.open(draft_.string(), codec, rate, size_, true)) return;
+  std::error_code ignored;
+  std::filesystem::remove(draft_, ignored);
+  throw RunError(file.string() + ": this OpenCV cannot write such a film.");
+}
+
+Movie::~Movie() {
+  writer_->video.release();
+  std::error_code ignored;
+  std::filesystem::remove(draft_, ignored);
+}
+
+void Movie::add(const cv::Mat& frame, int bits) {
+  cv::Mat grey = frame, colour;
+  if (bits > 8) frame.convertTo(grey, CV_8U, std::ldexp(1.0, 8 - bits));
+  if (grey.size() != size_)
+    cv::copyMakeBorder(grey, grey, 0, size_.height - grey.rows, 0, size_.width - grey.cols,
+                       cv::BORDER_REPLICATE);
+  cv::cvtColor(grey, colour, cv::COLOR_GRAY2BGR);
+  writer_->video.write(colour);
+}
+
+void Movie::commit() {
+  writer_->video.release();
+  std::error_code error;
+  if (std::filesystem::file_size(draft_, error) == 0 || error)
+    throw RunError(place_.final().string() + ": cannot be written.");
+  std::filesystem::rename(draft_, place_.part());
+  place_.commit();
+}
+
+}  // namespace twincell

@@ -1,0 +1,254 @@
+// A trajectory filmed: which frames are stored, what is written about them.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+#include <thread>
+
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/error.hpp"
+#include "imaging/camera/movie.hpp"
+#include "imaging/camera/random.hpp"
+#include "imaging/synthetic_camera.hpp"
+
+namespace twincell {
+
+namespace {
+
+// The box of a simulation is tall enough never to be touched, so most of it would be a picture of nothing.
+double height_of_beads(const TrajectorySource& trajectory, Progress& progress) {
+  constexpr double kHeadroom = 2;
+  double top = 0;
+  Frame frame;
+  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
+    trajectory.read(f, frame);
+    for (std::size_t k = 0; k < frame.position.size(); ++k)
+      if (frame.present(k) && std::isfinite(frame.position[k].z()))
+        top = std::max(top, frame.position[k].z());
+    progress.update(0, static_cast<std::int64_t>(trajectory.n_frames()));
+  }
+  return std::min(trajectory.info().box.size().z(), top + kHeadroom);
+}
+
+// Frames that come in the wrong order are no film.
+void check_trigger(const TrajectorySource& trajectory, const CameraOptions& options) {
+  const double most = std::abs(options.trigger_offset) + 4 * options.trigger_jitter;
+  if (most == 0 || trajectory.n_frames() < 2) return;
+  Frame first, second;
+  trajectory.read(0, first);
+  trajectory.read(1, second);
+  if (most > second.time - first.time)
+    throw ConfigError(
+        Where{.file = {}, .key = options.trigger_jitter > 0 ? "trigger-jitter" : "trigger-offset"},
+        fmt::format(
+            "moves pictures by up to {:.4g} t0 (four standard deviations); the frames are {:.4g} t0 apart.",
+            most, second.time - first.time));
+}
+
+std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info, const CameraOptions& options,
+                      int first_phase) {
+  const PixelFrame& map = camera.pixel_frame();
+  std::string text = fmt::format(
+      "[camera]\npixels_per_sigma = {:.17g}\norigin_px = [{:.17g}, {:.17g}]\nframes_per_cycle = "
+      "{}\nfirst_phase = {}\n",
+      map.pixels_per_sigma, map.origin.x_px + info.box.lower.x() * map.pixels_per_sigma, map.origin.y_px,
+      info.phases_per_cycle, first_phase);
+  if (options.bright) text += "bright = true\n";
+  if (!camera.lens().identity())
+    text += fmt::format(
+        "# The picture is turned by {} degrees and distorted by {}; origin_px is that of the ideal "
+        "picture.\n",
+        options.rotation_deg, options.distortion);
+  text += fmt::format("\n[cell]\nwidth = {:.17g}\nheight = {:.17g}\nsides = \"{}\"\n", info.box.size().x(),
+                      info.box.size().z(),
+                      info.box.boundary[0] == Boundary::wall ? "walls"
+                      : info.box.periodic(Axis::x)           ? "periodic"
+                                                             : "open");
+  if (info.drive)
+    text += fmt::format("\n[drive]\namplitude = {:.17g}\nomega = {:.17g}\n", info.drive->amplitude,
+                        info.drive->omega);
+  if (info.scale.sigma_m || info.scale.gravity_m_s2) text += "\n[scale]\n";
+  if (info.scale.sigma_m) text += fmt::format("sigma_m = {:.17g}\n", *info.scale.sigma_m);
+  if (info.scale.gravity_m_s2) text += fmt::format("gravity_m_s2 = {:.17g}\n", *info.scale.gravity_m_s2);
+  return text;
+}
+
+// A frame of the trajectory on its way to the disk.
+struct Take {
+  std::size_t index = 0;   // in the trajectory
+  std::size_t number = 0;  // of its first copy among the stored ones
+  int copies = 1;          // 0: dropped
+  int phase = -1;          // of the frame
+  Moment moment;
+  cv::Mat picture;     // kept for the film
+  std::string truth;   // rows of truth.csv
+  std::string record;  // rows of frames.csv
+};
+
+class Filming {
+ public:
+  Filming(const TrajectorySource& trajectory, const CameraOptions& options)
+      : trajectory_(trajectory),
+        options_(options),
+        camera_(options, trajectory.info()),
+        moves_(options.exposure > 0 || options.trigger_jitter > 0 || options.trigger_offset != 0) {}
+  [[nodiscard]] const SyntheticCamera& camera() const { return camera_; }
+
+  // Fills one take: light and trigger, picture, texts. Touches nothing but the take and its files.
+  void shoot(Take& take, const std::filesystem::path& folder, bool keep) const {
+    const Frame& frame = *take.moment.now;
+    const double n = static_cast<double>(trajectory_.n_frames());
+    take.moment.late =
+        options_.trigger_offset +
+        options_.trigger_jitter * RandomStream(options_.seed, Chance::trigger, frame.step).normal();
+    take.moment.lamp = std::max(
+        0.0,
+        (1 + options_.lamp_drift * (n > 1 ? static_cast<double>(take.index) / (n - 1) : 0)) *
+            (1 + options_.lamp_flicker * RandomStream(options_.seed, Chance::lamp, frame.step).normal()));
+    take.phase = frame.phase;
+    if (take.copies == 0) return;
+    const cv::Mat picture = camera_.expose(take.moment);
+    const std::vector<TrueBead> beads = camera_.truth(take.moment);
+    const TrajectoryInfo& info = trajectory_.info();
+    const double period = info.drive ? info.drive->period() : 0;
+    for (int copy = 0; copy < take.copies; ++copy) {
+      const std::size_t number = take.number + static_cast<std::size_t>(copy);
+      if (!folder.empty()) {
+        const auto file = folder / fmt::format("frame_{:05}.png", number);
+        // Noise does not compress: the first level is a tenth larger and five times faster than the last.
+        if (!cv::imwrite(file.string(), picture, {cv::IMWRITE_PNG_COMPRESSION, 1}))
+          throw RunError(file.string() + ": cannot be written.");
+      }
+      for (const TrueBead& b : beads)
+        fmt::format_to(std::back_inserter(take.truth), "{},{},{:.5f},{:.5f},{:.5f},{},{},{},{:.3f}\n", number,
+                       b.slot, b.x, b.y, b.radius, int{b.tracer}, frame.phase, frame.cycle, b.visible);
+      take.record +=
+          fmt::format("{},{},{},{:.9g},{:.9g},{},{},{},{:.9g},{:.6f},{}\n", number, take.index, frame.step,
+                      frame.time + take.moment.late, take.moment.late, frame.phase, frame.cycle,
+                      phase_text(frame, take.moment.late, period),
+                      camera_.shutter().plate(take.moment, take.moment.late), take.moment.lamp, copy);
+    }
+    if (keep) take.picture = picture;
+  }
+
+  // Reads frames [from, to) and the neighbours that their paths need; shoots them with `threads` threads.
+  void shoot(std::vector<Take>& takes, int threads, const std::filesystem::path& folder, bool keep) const {
+    const std::size_t from = takes.front().index, to = takes.back().index + 1;
+    const std::size_t first = moves_ && from > 0 ? from - 1 : from,
+                      last = moves_ && to < trajectory_.n_frames() ? to + 1 : to;
+    std::vector<Frame> frames(last - first);
+    for (std::size_t f = first; f < last; ++f) trajectory_.read(f, frames[f - first]);
+    for (Take& take : takes) {
+      const std::size_t i = take.index - first;
+      take.moment.now = &frames[i];
+      if (moves_ && i > 0) take.moment.before = &frames[i - 1];
+      if (moves_ && i + 1 < frames.size()) take.moment.after = &frames[i + 1];
+    }
+    std::vector<std::exception_ptr> failures(takes.size());
+    std::atomic<std::size_t> next{0};
+    auto work = [&] {
+      for (std::size_t i = next++; i < takes.size(); i = next++) try {
+          shoot(takes[i], folder, keep);
+        } catch (...) {
+          failures[i] = std::current_exception();
+        }
+    };
+    {
+      std::vector<std::jthread> others;
+      for (std::size_t t = 1; t < std::min(static_cast<std::size_t>(std::max(threads, 1)), takes.size()); ++t)
+        others.emplace_back(work);
+      work();
+    }
+    for (const std::exception_ptr& failure : failures)
+      if (failure) std::rethrow_exception(failure);
+  }
+
+ private:
+  // Fraction of the period at which the picture was really taken; nothing where that is unknown.
+  [[nodiscard]] std::string phase_text(const Frame& frame, double late, double period) const {
+    if (frame.phase < 0 || trajectory_.info().phases_per_cycle <= 0) return {};
+    const double nominal = static_cast<double>(frame.phase) / trajectory_.info().phases_per_cycle;
+    const double fraction = nominal + (period > 0 ? late / period : 0);
+    return fmt::format("{:.9f}", fraction - std::floor(fraction));
+  }
+
+  const TrajectorySource& trajectory_;
+  const CameraOptions& options_;
+  SyntheticCamera camera_;
+  bool moves_;
+};
+
+}  // namespace
+
+Rendered render(const TrajectorySource& trajectory, const CameraOptions& options, const RenderJob& job,
+                Progress& progress) {
+  cv::setNumThreads(1);  // one pool only: ours
+  const TrajectoryInfo& info = trajectory.info();
+  CameraOptions fitted = options;
+  fitted.check();
+  check_trigger(trajectory, fitted);
+  if (fitted.max_height == 0) fitted.max_height = height_of_beads(trajectory, progress);
+  const Filming filming(trajectory, fitted);
+
+  std::optional<AtomicPath> place;
+  std::optional<Movie> movie;
+  std::filesystem::path folder;
+  std::ofstream truth, record;
+  if (!job.folder.empty()) {
+    place.emplace(job.folder, AtomicPath::Kind::folder);
+    folder = place->part();
+    truth.open(folder / "truth.csv");
+    truth << "frame,id,x_px,y_px,r_px,tracer,phase,cycle,visible\n";
+    record.open(folder / "frames.csv");
+    record << "frame,source,step,time,late,phase,cycle,true_fraction,plate_height,lamp,copy\n";
+  }
+  if (!job.movie.empty()) movie.emplace(job.movie, filming.camera().size(), job.frames_per_second);
+
+  Rendered done;
+  int first_phase = -1;
+  const std::size_t n = trajectory.n_frames(), batch = 4 * static_cast<std::size_t>(std::max(job.threads, 1));
+  for (std::size_t from = 0; from < n; from += batch) {
+    std::vector<Take> takes;
+    for (std::size_t f = from; f < std::min(n, from + batch); ++f) {
+      RandomStream chance(fitted.seed, Chance::storage, static_cast<std::int64_t>(f));
+      const bool lost = chance.uniform() < fitted.drop, twice = chance.uniform() < fitted.doubled;
+      takes.push_back({.index = f, .number = done.frames, .copies = lost ? 0 : twice ? 2 : 1});
+      done.frames += static_cast<std::size_t>(takes.back().copies);
+      done.dropped += lost ? 1 : 0;
+      done.doubled += takes.back().copies == 2 ? 1 : 0;
+    }
+    filming.shoot(takes, job.threads, folder, movie.has_value());
+    for (const Take& take : takes) {
+      if (take.copies > 0 && first_phase < 0) first_phase = std::max(0, take.phase);
+      truth << take.truth;
+      record << take.record;
+      for (int copy = 0; movie && copy < take.copies; ++copy) movie->add(take.picture, fitted.bits);
+    }
+    progress.update(static_cast<std::int64_t>(std::min(n, from + batch)), static_cast<std::int64_t>(n));
+  }
+  if (done.frames == 0) throw RunError("every frame was dropped: nothing is left to write.");
+  if (place) {
+    truth.close();
+    record.close();
+    if (!truth || !record) throw RunError(job.folder.string() + ": cannot be written.");
+    write_text_file(folder / "CELL.toml",
+                    cell_text(filming.camera(), info, fitted, std::max(0, first_phase)));
+    write_text_file(folder / "CAMERA.toml", camera_text(fitted));
+  }
+  if (movie) movie->commit();
+  if (place) place->commit();
+  return done;
+}
+
+std::size_t render(const TrajectorySource& trajectory, const CameraOptions& options,
+                   const std::filesystem::path& folder, Progress& progress) {
+  return render(trajectory, options, RenderJob{.folder = folder}, progress).frames;
+}
+
+}  // namespace twincell

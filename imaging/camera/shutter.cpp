@@ -1,0 +1,82 @@
+#include "imaging/camera/shutter.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "analysis/trajectory/error.hpp"
+
+namespace twincell {
+
+namespace {
+
+// Without velocities, frames further apart than this share of a period cannot be joined: a stroboscopic stack
+// of one frame per cycle would stand still.
+constexpr int kFewestPhases = 8;
+
+bool has(const Frame* frame, std::size_t slot) {
+  return frame != nullptr && frame->present(slot) && std::isfinite(frame->position[slot].x());
+}
+
+template <class T>
+T parabola(const T& before, double t_before, const T& now, const T& after, double t_after, double tau) {
+  const T slope_before = (now - before) / -t_before, slope_after = (after - now) / t_after;
+  const T curvature = (slope_after - slope_before) / (t_after - t_before);
+  return now + tau * (slope_before + curvature * (tau - t_before));
+}
+
+}  // namespace
+
+Shutter::Shutter(const TrajectoryInfo& info)
+    : velocities_(info.columns.velocity),
+      drive_(info.drive),
+      phases_per_cycle_(info.phases_per_cycle),
+      longest_gap_(info.drive ? info.drive->period() / kFewestPhases * 1.000001
+                              : std::numeric_limits<double>::infinity()) {}
+
+void Shutter::require_paths(const TrajectoryInfo& info, const char* option) {
+  if (!info.columns.velocity && info.phases_per_cycle > 0 && info.phases_per_cycle < kFewestPhases)
+    throw ConfigError(
+        Where{.file = {}, .key = option},
+        fmt::format("needs paths, but the trajectory has no velocities and {} frames per cycle; {} frames "
+                    "can be joined.",
+                    info.phases_per_cycle, kFewestPhases));
+}
+
+Vec3 Shutter::position(const Moment& m, std::size_t slot, double tau) const {
+  const Vec3& x = m.now->position[slot];
+  if (tau == 0) return x;
+  const Frame* neighbour = tau > 0 ? m.after : m.before;
+  const double gap = has(neighbour, slot) ? neighbour->time - m.now->time : 0;
+  const bool near = gap != 0 && std::abs(gap) <= longest_gap_;
+  if (velocities_) {
+    const Vec3& v = m.now->velocity[slot];
+    if (!near) return x + tau * v;
+    const double u = tau / gap;
+    const Vec3 d = neighbour->position[slot] - x, p = gap * v, q = gap * neighbour->velocity[slot];
+    return x + u * p + u * u * ((3 * d - 2 * p - q) + u * (p + q - 2 * d));
+  }
+  const bool before = has(m.before, slot), after = has(m.after, slot);
+  if (before && after)
+    return parabola<Vec3>(m.before->position[slot], m.before->time - m.now->time, x, m.after->position[slot],
+                          m.after->time - m.now->time, tau);
+  const Frame* one = after ? m.after : before ? m.before : nullptr;
+  return one == nullptr ? x : Vec3(x + tau / (one->time - m.now->time) * (one->position[slot] - x));
+}
+
+double Shutter::plate(const Moment& m, double tau) const {
+  if (drive_ && phases_per_cycle_ > 0 && m.now->phase >= 0) {
+    const double fraction = static_cast<double>(m.now->phase) / phases_per_cycle_ + tau / drive_->period();
+    return drive_->displacement(fraction - std::floor(fraction));
+  }
+  const double z = m.now->plate_height;
+  if (!std::isfinite(z)) return 0;
+  const bool before = m.before != nullptr && std::isfinite(m.before->plate_height),
+             after = m.after != nullptr && std::isfinite(m.after->plate_height);
+  if (tau == 0 || !before || !after) return z;
+  return parabola(m.before->plate_height, m.before->time - m.now->time, z, m.after->plate_height,
+                  m.after->time - m.now->time, tau);
+}
+
+}  // namespace twincell
