@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -22,12 +24,40 @@ namespace {
 struct TrackOptions {
   std::string stack, output, cell_file, csv, truth;
   std::vector<double> scored_rows, origin;
+  std::string phase_lock;
+  std::optional<double> drive_hz;
   std::optional<double> pixels_per_sigma, gamma, amplitude, width, height;
   std::optional<int> frames_per_cycle, first_phase;
   int shortest = 1;
   LocatorOptions locator;
   LinkOptions link;
 };
+
+// --phase-lock N, found, or a list of triggers.
+PhaseWay phase_way(const TrackOptions& o, CellDescription& cell) {
+  PhaseWay way{.find = false, .triggers = {}, .drive_hz = o.drive_hz};
+  if (o.phase_lock.empty()) return way;
+  int n = 0;
+  const char* end = o.phase_lock.data() + o.phase_lock.size();
+  if (const auto [last, error] = std::from_chars(o.phase_lock.data(), end, n);
+      error == std::errc() && last == end) {
+    cell.phase_lock.frames_per_cycle = n;
+    if (cell.phase_lock.first_phase >= n) cell.phase_lock.first_phase = 0;
+    cell.phase_lock.check(Where{.file = {}, .key = "phase-lock"});
+  } else if (o.phase_lock == "found") {
+    way.find = true;
+  } else if (o.phase_lock == "none") {
+    cell.phase_lock = {};
+  } else if (o.phase_lock.ends_with(".csv")) {
+    way.triggers = o.phase_lock;
+  } else {
+    throw ConfigError(Where{.file = {}, .key = "phase-lock"},
+                      "'" + o.phase_lock +
+                          "' is neither a number of frames per cycle, nor 'found', 'none', nor a list of "
+                          "triggers (*.csv).");
+  }
+  return way;
+}
 
 // Flags override the file.
 CellDescription resolve_cell(const TrackOptions& o) {
@@ -49,14 +79,21 @@ CellDescription resolve_cell(const TrackOptions& o) {
   return cell;
 }
 
-void write_csv(const std::string& path, const TrackedStack& stack, const PhaseLock& lock) {
-  std::string text = "y,x,frame,particle,radius,tracer,phase,cycle\n";
-  for (std::size_t f = 0; f < stack.frames.size(); ++f)
-    for (const TrackedBead& b : stack.frames[f])
-      text += fmt::format("{:.4f},{:.4f},{},{},{:.4f},{},{},{}\n", b.y_px, b.x_px, f, b.track, b.radius_px,
-                          b.tracer ? 1 : 0, lock.phase(static_cast<std::int64_t>(f)),
-                          lock.cycle(static_cast<std::int64_t>(f)));
-  write_text_file(path, text);
+void write_csv(const std::string& path, const TrackedStack& stack) {
+  AtomicPath file(path);
+  {
+    std::ofstream out(file.part());
+    out << "y,x,frame,particle,radius,tracer,phase,cycle,sigma_y,sigma_x,ambiguous\n";
+    for (std::size_t f = 0; f < stack.frames.size(); ++f) {
+      const FramePhase at = stack.phases.at(static_cast<std::int64_t>(f));
+      for (const TrackedBead& b : stack.frames[f])
+        out << fmt::format("{:.4f},{:.4f},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{}\n", b.y_px, b.x_px, f,
+                           b.track, b.radius_px, b.tracer ? 1 : 0, at.phase, at.cycle, b.sigma_y_px,
+                           b.sigma_x_px, b.ambiguous ? 1 : 0);
+    }
+    if (!out.flush()) throw RunError(path + ": writing the table failed.");
+  }
+  file.commit();
 }
 
 Score score_against(const TrackOptions& o, const TrackedStack& stack) {
@@ -70,17 +107,59 @@ Score score_against(const TrackOptions& o, const TrackedStack& stack) {
   return scorer.score();
 }
 
+// One line on the phases, one on the links.
+std::string describe(const TrackedStack& stack) {
+  const PhaseTable& p = stack.phases;
+  std::string text;
+  if (p.way == "none") {
+    text = "phase lock: none\n";
+  } else {
+    text = fmt::format("phase lock: {}, {} frames per cycle", p.way, p.frames_per_cycle);
+    if (p.period_frames) text += fmt::format(", period {:.4f} frames", *p.period_frames);
+    if (p.jitter)
+      text += fmt::format(", jitter {}{:.3f} frames", p.way == "found" ? "at most " : "", *p.jitter);
+    if (!p.frames.empty()) text += fmt::format(", {} frames dropped, {} taken twice", p.dropped, p.doubled);
+    if (p.agreement)
+      text += fmt::format("; phase 0 placed by the drive, correlation {:.3f}", *p.agreement);
+    else if (p.way == "found")
+      text += "; phase 0 is where the bed passes its mean height upwards";
+    text += '\n';
+  }
+  const LinkReport& l = stack.links;
+  text += fmt::format(
+      "links: {} made, {} bridge a gap, {} ambiguous; {} births, {} losses; largest sub-network {}\n",
+      l.links, l.bridged, l.ambiguous, l.births, l.losses, l.largest_network);
+  if (l.unsolved > 0)
+    text += fmt::format(
+        "frames too crowded to be solved exactly: {} beads took their nearest free detection\n", l.unsolved);
+  std::int64_t tracers = 0;
+  for (const TrackSummary& t : stack.tracks) tracers += t.is_tracer() ? 1 : 0;
+  if (tracers > 0) {
+    const auto broken = stack.broken_tracers();
+    text += fmt::format("tracers: {} tracks, {} of them not from the first frame to the last", tracers,
+                        broken.size());
+    for (std::size_t i = 0; i < std::min<std::size_t>(broken.size(), 5); ++i) {
+      const TrackSummary& t = stack.tracks[static_cast<std::size_t>(broken[i])];
+      text += fmt::format("{} {} (frames {} to {})", i == 0 ? ": track" : ",", broken[i], t.first, t.last);
+    }
+    text += broken.size() > 5 ? ", ...\n" : "\n";
+  }
+  return text;
+}
+
 void run(TrackOptions& o, const Common& common) {
-  const CellDescription cell = resolve_cell(o);
+  CellDescription cell = resolve_cell(o);
+  const PhaseWay way = phase_way(o, cell);
   (void)cell.drive();  // a drive that contradicts itself is refused before the work, not after
   o.locator.preprocess.bright |= cell.bright;
   if (o.locator.diameter_px <= 0) o.locator.diameter_px = cell.pixels_per_sigma.value_or(0);
   const auto frames = open_stack(o.stack, common);
-  TrackedStack stack;
-  {
-    ProgressBar bar(common, "track");
-    stack = track_stack(*frames, o.locator, o.link, cell, common.n_threads(), bar);
-  }
+  const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
+  const std::filesystem::path folder = parent.empty() ? "." : parent;
+  { const AtomicPath writable(o.output); }  // an output that cannot be written is refused before the work
+  ProgressBar bar(common, "track");
+  const TrackedStack stack =
+      track_stack(*frames, o.locator, o.link, cell, common.n_threads(), bar, way, folder);
   TrackPlan plan = plan_trajectory(stack, cell, o.locator.diameter_px, o.shortest);
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
@@ -89,7 +168,7 @@ void run(TrackOptions& o, const Common& common) {
   H5mdWriter writer(o.output, plan.info);
   write_trajectory(stack, plan, cell, writer);
   writer.finish();
-  if (!o.csv.empty()) write_csv(o.csv, stack, cell.phase_lock);
+  if (!o.csv.empty()) write_csv(o.csv, stack);
 
   if (!cell.pixels_per_sigma)
     note(common,
@@ -97,8 +176,8 @@ void run(TrackOptions& o, const Common& common) {
   if (!plan.info.columns.plate_height)
     note(common,
          "drive or frames per cycle unknown: time is the frame number, and the plate's height is absent.");
-  std::size_t beads = 0;
-  for (const auto& frame : stack.frames) beads += frame.size();
+  std::int64_t beads = 0;
+  for (const TrackSummary& t : stack.tracks) beads += t.seen;
   nlohmann::json document = {{"stack", o.stack},
                              {"output", o.output},
                              {"frames", stack.frames.size()},
@@ -106,9 +185,11 @@ void run(TrackOptions& o, const Common& common) {
                              {"tracks", stack.n_tracks},
                              {"slots", plan.info.n_beads},
                              {"outside_cell", stack.outside_cell}};
+  document.update(nlohmann::json::parse(plan.info.tracking_json));
   std::string text = fmt::format(
       "{} frames, {} beads located, {} tracks ({} written), {} detections outside the cell left out\n",
       stack.frames.size(), beads, stack.n_tracks, plan.info.n_beads, stack.outside_cell);
+  text += describe(stack);
   if (!o.truth.empty()) {
     const Score s = score_against(o, stack);
     document["truth"] = {{"recall", s.recall()},
@@ -141,6 +222,11 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--cell-height", o->height, "sigma")->check(CLI::PositiveNumber);
   verb.add_option("--frames-per-cycle", o->frames_per_cycle, "Frames per drive cycle; 0: not phase-locked")
       ->check(CLI::NonNegativeNumber);
+  verb.add_option(
+      "--phase-lock", o->phase_lock,
+      "Frames per drive cycle, 'found' (from the bed's motion), 'none', or a list of triggers (*.csv)");
+  verb.add_option("--drive-hz", o->drive_hz, "Frequency of the drive, for a list of triggers in seconds")
+      ->check(CLI::PositiveNumber);
   verb.add_option("--first-phase", o->first_phase, "Phase of the first frame")->check(CLI::NonNegativeNumber);
   verb.add_option("--drive-gamma", o->gamma, "A omega^2/g (with --drive-amplitude)");
   verb.add_option("--drive-amplitude", o->amplitude, "A, sigma");
@@ -152,7 +238,7 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--memory", o->link.memory, "Frames for which a bead may be missing");
   verb.add_option("--shortest", o->shortest, "Tracks seen in fewer frames are left out")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--csv", o->csv, "Table of tracks (trackpy's columns)");
+  verb.add_option("--csv", o->csv, "Table of tracks (trackpy's columns and more)");
   verb.add_option("--truth", o->truth, "Score against truth.csv or a folder of truth_NN.csv");
   verb.add_option("--scored-rows", o->scored_rows, "First and last row that is scored, px")->expected(2);
   verb.callback([o, &common] { run(*o, common); });

@@ -1,272 +1,713 @@
 #include "imaging/link.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <unordered_map>
 
 #include "analysis/trajectory/error.hpp"
+#include "imaging/assignment.hpp"
 
 namespace twincell {
 
 namespace {
 
-constexpr double kSafe = 0.3;           // diameters
-constexpr double kVelocityTrust = 0.8;  // share of the last own step that the next is expected to repeat
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFar = 1e9;  // px; no camera reaches there
 
-/// Points in square bins, for the question "who is within reach".
-class Bins {
- public:
-  Bins(const std::vector<PixelPoint>& points, double size) : points_(points), size_(size) {
-    for (std::size_t i = 0; i < points.size(); ++i)
-      bins_[key(bin(points[i].x_px), bin(points[i].y_px))].push_back(i);
-  }
-  template <class Visit>
-  void within(PixelPoint p, double reach, Visit&& visit) const {
-    const std::int64_t n = static_cast<std::int64_t>(std::ceil(reach / size_));
-    const std::int64_t bx = bin(p.x_px), by = bin(p.y_px);
-    for (std::int64_t j = by - n; j <= by + n; ++j)
-      for (std::int64_t i = bx - n; i <= bx + n; ++i) {
-        const auto found = bins_.find(key(i, j));
-        if (found == bins_.end()) continue;
-        for (const std::size_t k : found->second) {
-          const double dx = points_[k].x_px - p.x_px, dy = points_[k].y_px - p.y_px;
-          if (dx * dx + dy * dy <= reach * reach) visit(k, dx, dy);
-        }
-      }
-  }
+// All in diameters.
+constexpr double kSafe = 0.25;       // discs do not overlap: whoever is this near has no rival
+constexpr double kLook = 0.5;        // how far one look reaches
+constexpr double kRival = 2;         // a second this many times farther is no rival
+constexpr double kNeighbours = 2.1;  // whose steps a bead's step is compared with
+constexpr double kWell = 0.95;       // fit above which no other rule is tried
+constexpr double kRough = 0.03;      // share of tracks left open above which settled ones are looked at again
+constexpr double kAlike = 0.3;       // between neighbours' steps that agree
+constexpr double kSame = 0.1;        // between predictions that say the same
+constexpr double kSlack = 0.05;      // by which a detection must be nearer to be the better one
+constexpr double kThrough = 0.6;  // between centres on their way: nearer, one disc passed through the other
+constexpr double kBeside = 0.8;   // farther, it did not
+constexpr double kPassing = 8;    // dearest exchange for the sake of not passing through
+constexpr double kLikely = 0.5;   // how near the centre of mass leads to the common way
+constexpr double kWidth = 0.12;   // of the core of the density of misses, see `cost`
+constexpr std::size_t kSample = 200;    // tracks on which the rules are tried
+constexpr std::size_t kMostEdges = 16;  // detections that one track may choose from
+constexpr int kRounds = 12;             // of learning from neighbours
 
- private:
-  [[nodiscard]] std::int64_t bin(double v) const { return static_cast<std::int64_t>(std::floor(v / size_)); }
-  static std::int64_t key(std::int64_t i, std::int64_t j) { return j * 1'000'003 + i; }
-  const std::vector<PixelPoint>& points_;
-  double size_;
-  std::unordered_map<std::int64_t, std::vector<std::size_t>> bins_;
-};
-
-// Peak of the histogram of all pair shifts within reach, counted in cells of d/8 and over 3 x 3 of them; of
-// equal peaks the shortest shift. Then the median of the shifts that fall there.
-PixelPoint common_motion(const std::vector<PixelPoint>& from, const Bins& to, double d, double reach) {
-  const double cell = d / 8;
-  const int half = static_cast<int>(std::ceil(reach / cell)) + 1;
-  const auto n = static_cast<std::size_t>(2 * half + 1);
-  std::vector<int> count(n * n);
-  auto index = [&](int i, int j) {
-    return static_cast<std::size_t>(j + half) * n + static_cast<std::size_t>(i + half);
-  };
-  auto cell_of = [&](double v) { return static_cast<int>(std::lround(v / cell)); };
-  for (const PixelPoint& p : from)
-    to.within(p, reach, [&](std::size_t, double dx, double dy) { ++count[index(cell_of(dx), cell_of(dy))]; });
-  int best = 0, best_i = 0, best_j = 0;
-  for (int j = 1 - half; j < half; ++j)
-    for (int i = 1 - half; i < half; ++i) {
-      int sum = 0;
-      for (int b = -1; b <= 1; ++b)
-        for (int a = -1; a <= 1; ++a) sum += count[index(i + a, j + b)];
-      if (sum > best || (sum == best && i * i + j * j < best_i * best_i + best_j * best_j)) {
-        best = sum;
-        best_i = i;
-        best_j = j;
-      }
-    }
-  if (best < 3) return {};
-  std::vector<double> dxs, dys;
-  for (const PixelPoint& p : from)
-    to.within(p, reach, [&](std::size_t, double dx, double dy) {
-      if (std::abs(cell_of(dx) - best_i) > 1 || std::abs(cell_of(dy) - best_j) > 1) return;
-      dxs.push_back(dx);
-      dys.push_back(dy);
-    });
-  auto median = [](std::vector<double>& v) {
-    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-    std::nth_element(v.begin(), middle, v.end());
-    return *middle;
-  };
-  return {median(dxs), median(dys)};
+PixelPoint operator+(PixelPoint a, PixelPoint b) {
+  return {a.x_px + b.x_px, a.y_px + b.y_px};
+}
+PixelPoint operator-(PixelPoint a, PixelPoint b) {
+  return {a.x_px - b.x_px, a.y_px - b.y_px};
+}
+PixelPoint operator*(double f, PixelPoint a) {
+  return {f * a.x_px, f * a.y_px};
+}
+double square(PixelPoint a) {
+  return a.x_px * a.x_px + a.y_px * a.y_px;
 }
 
-struct Candidate {
-  std::size_t track, detection;
-  double cost;  // squared distance less the price of leaving both alone; negative: worth having
-};
-
-std::size_t root(std::vector<std::size_t>& parent, std::size_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
+/// Median by coordinate; reorders. 0 of nothing.
+PixelPoint median(std::vector<PixelPoint>& points) {
+  if (points.empty()) return {};
+  const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
+  std::nth_element(points.begin(), middle, points.end(),
+                   [](PixelPoint a, PixelPoint b) { return a.x_px < b.x_px; });
+  const double x = middle->x_px;
+  std::nth_element(points.begin(), middle, points.end(),
+                   [](PixelPoint a, PixelPoint b) { return a.y_px < b.y_px; });
+  return {x, middle->y_px};
 }
 
-// Groups of tracks and detections joined by candidates; each solved as a dense problem in which every track
-// may also stay alone at cost 0.
-void solve_groups(const std::vector<Candidate>& candidates, std::size_t n_tracks, std::size_t n_detections,
-                  std::vector<std::int64_t>& track_of) {
-  std::vector<std::size_t> parent(n_tracks + n_detections);
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  for (const Candidate& c : candidates) parent[root(parent, c.track)] = root(parent, n_tracks + c.detection);
-  std::unordered_map<std::size_t, std::vector<Candidate>> groups;
-  std::vector<std::size_t> order;
-  for (const Candidate& c : candidates) {
-    const std::size_t r = root(parent, c.track);
-    if (groups[r].empty()) order.push_back(r);
-    groups[r].push_back(c);
-  }
-  for (const std::size_t r : order) {
-    const std::vector<Candidate>& group = groups[r];
-    std::vector<std::size_t> tracks, detections;
-    for (const Candidate& c : group) {
-      tracks.push_back(c.track);
-      detections.push_back(c.detection);
-    }
-    auto unique = [](std::vector<std::size_t>& v) {
-      std::sort(v.begin(), v.end());
-      v.erase(std::unique(v.begin(), v.end()), v.end());
-    };
-    unique(tracks);
-    unique(detections);
-    const std::size_t n = tracks.size(), m = detections.size() + n;
-    const double forbidden = 1e12;
-    std::vector<double> cost(n * m, forbidden);
-    auto place = [](const std::vector<std::size_t>& v, std::size_t x) {
-      return static_cast<std::size_t>(std::lower_bound(v.begin(), v.end(), x) - v.begin());
-    };
-    for (const Candidate& c : group)
-      cost[place(tracks, c.track) * m + place(detections, c.detection)] = c.cost;
-    for (std::size_t i = 0; i < n; ++i) cost[i * m + detections.size() + i] = 0;
-    const std::vector<std::size_t> column = assign(cost, n, m);
-    for (std::size_t i = 0; i < n; ++i)
-      if (column[i] < detections.size())
-        track_of[detections[column[i]]] = static_cast<std::int64_t>(tracks[i]);
-  }
+/// The misses of a prediction have a narrow core and, from collisions between two frames, a long tail: a
+/// density (1 + r^2/w^2)^(-3/2) / w^2 in the plane. Its negative logarithm is the cost of a link, so that
+/// differences of costs are logarithms of odds. With squared distances, the usual cost, one far miss
+/// outweighs many near ones.
+double cost(double r2, double width) {
+  return 1.5 * std::log1p(r2 / (width * width)) + 2 * std::log(width);
 }
 
 }  // namespace
 
-std::vector<std::size_t> assign(const std::vector<double>& cost, std::size_t n, std::size_t m) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  std::vector<double> u(n + 1), v(m + 1);
-  std::vector<std::size_t> row_of(m + 1, 0), way(m + 1, 0);  // rows and columns from 1; 0 is nobody
-  for (std::size_t i = 1; i <= n; ++i) {
-    row_of[0] = i;
-    std::size_t j0 = 0;
-    std::vector<double> least(m + 1, infinity);
-    std::vector<bool> used(m + 1, false);
-    do {
-      used[j0] = true;
-      const std::size_t i0 = row_of[j0];
-      double delta = infinity;
-      std::size_t j1 = 0;
-      for (std::size_t j = 1; j <= m; ++j) {
-        if (used[j]) continue;
-        const double reduced = cost[(i0 - 1) * m + j - 1] - u[i0] - v[j];
-        if (reduced < least[j]) {
-          least[j] = reduced;
-          way[j] = j0;
-        }
-        if (least[j] < delta) {
-          delta = least[j];
-          j1 = j;
-        }
-      }
-      for (std::size_t j = 0; j <= m; ++j) {
-        if (used[j]) {
-          u[row_of[j]] += delta;
-          v[j] -= delta;
-        } else {
-          least[j] -= delta;
-        }
-      }
-      j0 = j1;
-    } while (row_of[j0] != 0);
-    do {
-      const std::size_t j1 = way[j0];
-      row_of[j0] = row_of[j1];
-      j0 = j1;
-    } while (j0 != 0);
+/// Points ordered by square cells, for the questions "who is nearest" and "who is within reach".
+class Linker::Grid {
+ public:
+  Grid(std::span<const PixelPoint> points, double cell) : size_(cell) {
+    const std::size_t n = points.size();
+    double x1 = 0, y1 = 0;
+    if (n > 0) {
+      x0_ = x1 = points[0].x_px;
+      y0_ = y1 = points[0].y_px;
+    }
+    for (const PixelPoint p : points) {
+      x0_ = std::min(x0_, p.x_px);
+      x1 = std::max(x1, p.x_px);
+      y0_ = std::min(y0_, p.y_px);
+      y1 = std::max(y1, p.y_px);
+    }
+    // A few strays far away must not cost memory.
+    const double most = 4.0 * static_cast<double>(n) + 1024;
+    while (((x1 - x0_) / size_ + 1) * ((y1 - y0_) / size_ + 1) > most) size_ *= 1.5;
+    inverse_ = 1 / size_;
+    nx_ = static_cast<int>((x1 - x0_) * inverse_) + 1;
+    ny_ = static_cast<int>((y1 - y0_) * inverse_) + 1;
+    first_.assign(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_) + 1, 0);
+    std::vector<std::int32_t> cell_of(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      cell_of[i] = row(points[i].y_px) * nx_ + column(points[i].x_px);
+      ++first_[static_cast<std::size_t>(cell_of[i]) + 1];
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
+    points_.resize(n);
+    original_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(next[static_cast<std::size_t>(cell_of[i])]++);
+      points_[k] = points[i];
+      original_[k] = static_cast<std::int32_t>(i);
+    }
   }
-  std::vector<std::size_t> column(n);
-  for (std::size_t j = 1; j <= m; ++j)
-    if (row_of[j] != 0) column[row_of[j] - 1] = j - 1;
-  return column;
+  [[nodiscard]] std::size_t size() const { return points_.size(); }
+  [[nodiscard]] PixelPoint operator[](std::size_t k) const { return points_[k]; }
+  [[nodiscard]] std::size_t original(std::size_t k) const { return static_cast<std::size_t>(original_[k]); }
+
+  /// visit(k, squared distance) for all points within reach.
+  template <class Visit>
+  void within(PixelPoint p, double reach, Visit&& visit) const {
+    if (points_.empty()) return;
+    const int i0 = column(p.x_px - reach), i1 = column(p.x_px + reach);
+    const int j1 = row(p.y_px + reach);
+    const double most = reach * reach;
+    for (int j = row(p.y_px - reach); j <= j1; ++j) {
+      const auto end = first_[static_cast<std::size_t>(j * nx_ + i1) + 1];
+      for (auto k = first_[static_cast<std::size_t>(j * nx_ + i0)]; k < end; ++k) {
+        const double r2 = square(points_[static_cast<std::size_t>(k)] - p);
+        if (r2 <= most) visit(static_cast<std::size_t>(k), r2);
+      }
+    }
+  }
+
+ private:
+  // Clamped, so that looking outside finds the rim.
+  [[nodiscard]] int column(double x) const {
+    return static_cast<int>(std::clamp((x - x0_) * inverse_, 0.0, static_cast<double>(nx_ - 1)));
+  }
+  [[nodiscard]] int row(double y) const {
+    return static_cast<int>(std::clamp((y - y0_) * inverse_, 0.0, static_cast<double>(ny_ - 1)));
+  }
+  double size_, inverse_ = 0, x0_ = 0, y0_ = 0;
+  int nx_ = 1, ny_ = 1;
+  std::vector<std::int32_t> first_, original_;
+  std::vector<PixelPoint> points_;
+};
+
+void LinkReport::add(const LinkReport& f) {
+  frames += f.frames;
+  links += f.links;
+  settled += f.settled;
+  bridged += f.bridged;
+  ambiguous += f.ambiguous;
+  births += f.births;
+  losses += f.losses;
+  networks += f.networks;
+  largest_network = std::max(largest_network, f.largest_network);
+  unsolved += f.unsolved;
+  unclear_shifts += f.unclear_shifts;
 }
 
-Linker::Linker(const LinkOptions& options) : options_(options) {
+Linker::Linker(const LinkOptions& options, int phases_per_cycle)
+    : options_(options), phases_(phases_per_cycle > kMostPhases ? 0 : phases_per_cycle) {
   auto at = [](const char* key) { return Where{.file = {}, .key = key}; };
   require_range(at("diameter"), options.diameter_px, 0, std::nullopt, true);
   require_range(at("range"), options.range_diameters, 0, 10, true);
   require_range(at("memory"), options.memory, 0, 1000);
   require_range(at("max-shift"), options.max_shift_diameters, 0, 10);
+  require_range(at("ambiguous-odds"), options.ambiguous_odds, 1, std::nullopt);
+  cycle_of_phase_.assign(static_cast<std::size_t>(phases_), -2);
 }
 
-std::vector<std::int64_t> Linker::next(const std::vector<PixelPoint>& detections) {
-  const double d = options_.diameter_px;
-  const Bins bins(detections, d);
-  std::vector<PixelPoint> places;
-  for (const Track& t : tracks_)
-    if (t.missed == 0) places.push_back(t.place);
-  shift_ = options_.max_shift_diameters > 0 ? common_motion(places, bins, d, options_.max_shift_diameters * d)
-                                            : PixelPoint{};
+PixelPoint Linker::predict(std::size_t t, Rule rule, const FrameMoment& moment) const {
+  const Track& track = tracks_[t];
+  switch (rule) {
+    case Rule::still:
+      break;
+    case Rule::step:
+      return track.place + moment.interval * track.step;
+    case Rule::cycle: {
+      const PixelPoint p =
+          cycle_places_[t * static_cast<std::size_t>(phases_) + static_cast<std::size_t>(moment.phase)];
+      const PixelPoint there = p + track.drift;
+      if (std::isfinite(there.x_px)) return there;
+      return track.place + moment.interval * track.step;
+    }
+  }
+  return track.place;
+}
 
-  // Candidates of each track about its predicted place.
-  std::vector<Candidate> candidates;
-  std::vector<PixelPoint> predicted;
-  std::vector<double> nearest(detections.size(), std::numeric_limits<double>::infinity());
+namespace {
+
+/// How well predictions moved by a shift meet the detections: mean over the tracks of 1 - (r / 0.25 d)^2, 0
+/// beyond.
+template <class Grid>
+double fit(const std::vector<PixelPoint>& expected, PixelPoint shift, const Grid& grid, double d) {
+  if (expected.empty()) return 0;
+  const double reach = kSafe * d;
+  double sum = 0;
+  for (const PixelPoint p : expected) {
+    double least = reach * reach;
+    grid.within(p + shift, reach, [&](std::size_t, double r2) { least = std::min(least, r2); });
+    sum += 1 - least / (reach * reach);
+  }
+  return sum / static_cast<double>(expected.size());
+}
+
+/// Median way from the predictions to the detections nearest to them, twice: about them, then about where the
+/// first has led.
+template <class Grid>
+PixelPoint median_way(const std::vector<PixelPoint>& expected, const Grid& grid, double d, PixelPoint shift,
+                      int times) {
+  std::vector<PixelPoint> ways;
+  for (; times > 0; --times) {
+    ways.clear();
+    for (const PixelPoint p : expected) {
+      double least = std::numeric_limits<double>::infinity();
+      std::size_t nearest = 0;
+      grid.within(p + shift, kLook * d, [&](std::size_t k, double r2) {
+        if (r2 < least) {
+          least = r2;
+          nearest = k;
+        }
+      });
+      if (std::isfinite(least)) ways.push_back(grid[nearest] - p);
+    }
+    if (ways.empty()) return shift;
+    shift = median(ways);
+  }
+  return shift;
+}
+
+struct Shift {
+  PixelPoint px;
+  bool unclear = false;  // another one is nearly as good
+};
+
+/// Peak of the histogram of all ways from predictions to detections within reach, counted in cells of d/8 and
+/// over 3 x 3 of them. A crystal looks the same a lattice vector on, but for its rim: of peaks nearly as high
+/// the one nearest to `likely` is taken.
+template <class Grid>
+Shift commonest_way(const std::vector<PixelPoint>& expected, const Grid& grid, double d, double reach,
+                    PixelPoint likely) {
+  const double cell = d / 8;
+  const int half = static_cast<int>(std::ceil(reach / cell)) + 1;
+  const auto n = static_cast<std::size_t>(2 * half + 1);
+  std::vector<int> count(n * n);
+  auto at = [&](int i, int j) {
+    return static_cast<std::size_t>(j + half) * n + static_cast<std::size_t>(i + half);
+  };
+  auto cell_of = [&](double v) { return static_cast<int>(std::lround(v / cell)); };
+  for (const PixelPoint p : expected)
+    grid.within(p, reach, [&](std::size_t k, double) {
+      const PixelPoint way = grid[k] - p;
+      ++count[at(cell_of(way.x_px), cell_of(way.y_px))];
+    });
+  std::vector<double> sums(n * n);
+  double best = 0;
+  int best_i = 0, best_j = 0;
+  for (int j = 1 - half; j < half; ++j)
+    for (int i = 1 - half; i < half; ++i) {
+      double sum = 0;
+      for (int b = -1; b <= 1; ++b)
+        for (int a = -1; a <= 1; ++a) sum += count[at(i + a, j + b)];
+      sum *= std::exp(-0.5 * square(PixelPoint{i * cell, j * cell} - likely) / (kLikely * kLikely * d * d));
+      sums[at(i, j)] = sum;
+      if (sum > best) {
+        best = sum;
+        best_i = i;
+        best_j = j;
+      }
+    }
+  if (best <= 0) return {};
+  double rival = 0;
+  for (int j = 1 - half; j < half; ++j)
+    for (int i = 1 - half; i < half; ++i)
+      if (std::max(std::abs(i - best_i), std::abs(j - best_j)) > 4) rival = std::max(rival, sums[at(i, j)]);
+  return {median_way(expected, grid, d, {best_i * cell, best_j * cell}, 1), rival > 0.98 * best};
+}
+
+}  // namespace
+
+// The rule that fits best, and with it the common departure from it.
+void Linker::predict_all(const Grid& grid, const FrameMoment& moment) {
+  const double d = options_.diameter_px;
+  std::vector<std::size_t> alive;
+  for (std::size_t t = 0; t < tracks_.size(); ++t)
+    if (tracks_[t].missed == 0) alive.push_back(t);
+  const std::size_t stride = std::max<std::size_t>(1, alive.size() / kSample);
+  std::vector<Rule> rules = {Rule::still, Rule::step};
+  const bool remembers = moment.phase >= 0 && moment.phase < phases_ && moment.cycle > 0 &&
+                         cycle_of_phase_[static_cast<std::size_t>(moment.phase)] == moment.cycle - 1;
+  if (remembers) rules.push_back(Rule::cycle);
+  PixelPoint centre;
+  for (std::size_t k = 0; k < grid.size(); ++k) centre = centre + grid[k];
+  const bool moves = options_.max_shift_diameters > 0 && !alive.empty() && grid.size() > 0;
+  if (moves) centre = (1.0 / static_cast<double>(grid.size())) * centre;
+  Rule best_rule = Rule::step;
+  PixelPoint best_shift;
+  double best_fit = -1;
+  for (const Rule rule : rules) {
+    std::vector<PixelPoint> sample;
+    PixelPoint mean;
+    for (std::size_t a = 0; a < alive.size(); ++a) {
+      const PixelPoint p = predict(alive[a], rule, moment);
+      mean = mean + p;
+      if (a % stride == 0) sample.push_back(p);
+    }
+    PixelPoint shift;
+    if (moves) {
+      // The centre of mass knows no lattice: it moves with the whole, whatever looks alike.
+      shift = centre - (1.0 / static_cast<double>(alive.size())) * mean;
+      if (square(shift) > options_.max_shift_diameters * options_.max_shift_diameters * d * d) shift = {};
+      shift = median_way(sample, grid, d, shift, 2);
+    }
+    const double f = fit(sample, shift, grid, d);
+    if (f > best_fit + 0.03) {
+      best_fit = f;
+      best_rule = rule;
+      best_shift = shift;
+    }
+    if (best_fit > kWell) break;
+  }
+  if (moves && best_fit < 0.5) {
+    std::vector<PixelPoint> expected;
+    PixelPoint mean;
+    for (const std::size_t t : alive) {
+      expected.push_back(predict(t, best_rule, moment));
+      mean = mean + expected.back();
+    }
+    mean = centre - (1.0 / static_cast<double>(alive.size())) * mean;
+    const Shift other = commonest_way(expected, grid, d, options_.max_shift_diameters * d, mean);
+    if (fit(expected, other.px, grid, d) > fit(expected, best_shift, grid, d)) best_shift = other.px;
+    last_.unclear_shifts += other.unclear ? 1 : 0;
+  }
+  // Nothing is lower than what lies lowest: a bed that lands is stopped by the plate, and its lowest row
+  // leads the others.
+  double floor = -kFar;
+  for (std::size_t k = 0; k < grid.size(); ++k) floor = std::max(floor, grid[k].y_px);
+  auto above_floor = [&](PixelPoint p) { return PixelPoint{p.x_px, std::min(p.y_px, floor)}; };
+  flying_.resize(tracks_.size());
+  expected_.resize(tracks_.size());
+  falling_.resize(tracks_.size());
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    const Track& track = tracks_[t];
-    predicted.push_back({track.place.x_px + shift_.x_px + kVelocityTrust * track.own_step.x_px,
-                         track.place.y_px + shift_.y_px + kVelocityTrust * track.own_step.y_px});
-    const double reach = options_.range_diameters * d * (1 + 0.5 * track.missed);
-    bins.within(predicted[t], reach, [&](std::size_t k, double dx, double dy) {
-      candidates.push_back({t, k, dx * dx + dy * dy - reach * reach});
-      nearest[k] = std::min(nearest[k], dx * dx + dy * dy);
+    flying_[t] = above_floor(in_flight(t, moment));
+    const PixelPoint p =
+        tracks_[t].missed == 0 ? predict(t, best_rule, moment) : tracks_[t].place + moment.interval * step_;
+    falling_[t] = p + best_shift;
+    expected_[t] = above_floor(falling_[t]);
+  }
+}
+
+// In free flight a step repeats itself, and grows by the fall.
+PixelPoint Linker::in_flight(std::size_t t, const FrameMoment& moment) const {
+  return tracks_[t].place + moment.interval * tracks_[t].step +
+         PixelPoint{0, options_.fall_px * moment.interval * moment.interval};
+}
+
+// Detections within 0.25 d of the track that expects them there, neither having a rival. A bead that would be
+// met better somewhere else if it were in free flight is left to the assignment.
+void Linker::settle(const Grid& grid, std::span<const std::uint8_t> tracers) {
+  const double d = options_.diameter_px, infinity = std::numeric_limits<double>::infinity();
+  struct Suitor {
+    double r2 = std::numeric_limits<double>::infinity(), second = std::numeric_limits<double>::infinity();
+    std::int32_t track = -1;
+  };
+  std::vector<Suitor> suitors(grid.size());
+  struct Choice {
+    double r2, second;
+    std::int32_t detection;
+  };
+  std::vector<Choice> choices(tracks_.size());
+  disputed_.assign(tracks_.size(), infinity);
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    Choice c{infinity, infinity, -1};
+    grid.within(expected_[t], kLook * d, [&](std::size_t k, double r2) {
+      if (r2 < c.r2) {
+        c.second = c.r2;
+        c.r2 = r2;
+        c.detection = static_cast<std::int32_t>(k);
+      } else {
+        c.second = std::min(c.second, r2);
+      }
+    });
+    choices[t] = c;
+    if (c.detection < 0 || tracks_[t].missed > 0) continue;
+    Suitor& s = suitors[static_cast<std::size_t>(c.detection)];
+    if (c.r2 < s.r2) {
+      s.second = s.r2;
+      s.r2 = c.r2;
+      s.track = static_cast<std::int32_t>(t);
+    } else {
+      s.second = std::min(s.second, c.r2);
+    }
+    if (square(flying_[t] - expected_[t]) < kSame * kSame * d * d) continue;
+    const double reach = std::min(std::sqrt(c.r2) + kSlack * d, kSafe * d);
+    grid.within(flying_[t], reach, [&](std::size_t k, double r2) {
+      if (static_cast<std::int32_t>(k) != c.detection) disputed_[t] = std::min(disputed_[t], std::sqrt(r2));
     });
   }
-
-  // Settled at once: detections within 0.3 d of the prediction of a track that nobody else is nearer to.
-  std::vector<std::int64_t> track_of(detections.size(), -1);
-  std::vector<bool> settled(tracks_.size(), false);
-  for (const Candidate& c : candidates) {
-    const double dx = detections[c.detection].x_px - predicted[c.track].x_px,
-                 dy = detections[c.detection].y_px - predicted[c.track].y_px, square = dx * dx + dy * dy;
-    if (square > nearest[c.detection] || square > kSafe * kSafe * d * d || track_of[c.detection] >= 0)
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    const Choice& c = choices[t];
+    if (c.detection < 0 || c.r2 > kSafe * kSafe * d * d || tracks_[t].missed > 0 || disputed_[t] < infinity)
       continue;
-    if (settled[c.track]) continue;
-    settled[c.track] = true;
-    track_of[c.detection] = static_cast<std::int64_t>(c.track);
+    const auto k = static_cast<std::size_t>(c.detection);
+    const Suitor& s = suitors[k];
+    if (s.track != static_cast<std::int32_t>(t)) continue;
+    if (kRival * kRival * c.r2 >= std::min(c.second, s.second)) continue;
+    if (!tracers.empty() && tracers[grid.original(k)] != tracks_[t].tracer) continue;
+    detection_of_[t] = c.detection;
+    track_of_[k] = static_cast<std::int32_t>(t);
+    ++last_.settled;
   }
-  std::erase_if(candidates,
-                [&](const Candidate& c) { return settled[c.track] || track_of[c.detection] >= 0; });
-  solve_groups(candidates, tracks_.size(), detections.size(), track_of);
+}
 
-  // Survivors, the missing within memory, and the newly born, in order of identity.
-  std::vector<std::int64_t> ids(detections.size());
-  std::vector<bool> seen(tracks_.size(), false);
-  std::vector<Track> alive;
-  for (std::size_t k = 0; k < detections.size(); ++k) {
-    const PixelPoint p = detections[k];
-    if (track_of[k] < 0) {
-      ids[k] = n_tracks_++;
-      alive.push_back({ids[k], p, {}, 0});
+// What settled neighbours had in common, the others may have too; and who has nothing in common with them was
+// settled by chance. Pushing predictions apart where discs would overlap, from the plate upwards, was tried
+// instead: fewer links went wrong in beds that convect (by 7 in 100), more in beds that bounce, a quarter
+// slower.
+void Linker::follow_neighbours(const Grid& grid) {
+  const double d = options_.diameter_px;
+  local_.assign(tracks_.size(), {kNaN, kNaN});
+  std::vector<std::int32_t> open;
+  for (std::size_t t = 0; t < tracks_.size(); ++t)
+    if (detection_of_[t] < 0) open.push_back(static_cast<std::int32_t>(t));
+  if (open.empty() || open.size() == tracks_.size()) return;
+  std::vector<PixelPoint> places;
+  for (const Track& t : tracks_) places.push_back(t.place);
+  const Grid neighbours(places, 1.1 * d);
+  std::vector<PixelPoint> ways;
+  auto gather = [&](std::size_t t) {
+    ways.clear();
+    neighbours.within(tracks_[t].place, kNeighbours * d, [&](std::size_t k, double) {
+      const std::size_t other = neighbours.original(k);
+      if (const std::int32_t with = detection_of_[other]; with >= 0 && other != t)
+        ways.push_back(grid[static_cast<std::size_t>(with)] - falling_[other]);
+    });
+  };
+  if (static_cast<double>(open.size()) > kRough * static_cast<double>(tracks_.size())) {
+    std::vector<std::int32_t> odd;
+    for (std::size_t t = 0; t < tracks_.size(); ++t) {
+      if (detection_of_[t] < 0) continue;
+      gather(t);
+      const PixelPoint way = grid[static_cast<std::size_t>(detection_of_[t])] - falling_[t];
+      std::size_t alike = 0;
+      for (const PixelPoint w : ways) alike += square(w - way) < kAlike * kAlike * d * d ? 1 : 0;
+      if (ways.size() >= 3 && 3 * alike < 1 * ways.size()) odd.push_back(static_cast<std::int32_t>(t));
+    }
+    for (const std::int32_t t : odd) {
+      std::int32_t& k = detection_of_[static_cast<std::size_t>(t)];
+      track_of_[static_cast<std::size_t>(k)] = -1;
+      k = -1;
+      open.push_back(t);
+      --last_.settled;
+    }
+  }
+  std::vector<std::pair<double, std::int32_t>> suitor(grid.size());
+  for (int round = 0; round < kRounds && !open.empty(); ++round) {
+    std::vector<std::pair<std::int32_t, std::int32_t>> wishes;
+    std::fill(suitor.begin(), suitor.end(), std::pair{std::numeric_limits<double>::infinity(), -1});
+    for (const std::int32_t open_track : open) {
+      const auto t = static_cast<std::size_t>(open_track);
+      gather(t);
+      if (ways.size() < 3) continue;
+      local_[t] = median(ways);
+      const PixelPoint p = falling_[t] + local_[t];
+      const double reach = std::min(kSafe * d, disputed_[t] - kSlack * d);
+      if (reach <= 0) continue;
+      double least = reach * reach;
+      std::int32_t nearest = -1;
+      grid.within(p, reach, [&](std::size_t k, double r2) {
+        if (track_of_[k] >= 0 || r2 >= least) return;
+        least = r2;
+        nearest = static_cast<std::int32_t>(k);
+      });
+      if (nearest < 0) continue;
+      wishes.emplace_back(open_track, nearest);
+      auto& s = suitor[static_cast<std::size_t>(nearest)];
+      s = std::min(s, std::pair{least, open_track});
+    }
+    bool any = false;
+    for (const auto& [t, k] : wishes) {
+      if (suitor[static_cast<std::size_t>(k)].second != t) continue;
+      detection_of_[static_cast<std::size_t>(t)] = k;
+      track_of_[static_cast<std::size_t>(k)] = t;
+      any = true;
+    }
+    if (!any) break;
+    std::erase_if(open, [&](std::int32_t t) { return detection_of_[static_cast<std::size_t>(t)] >= 0; });
+  }
+}
+
+namespace {
+
+/// Least distance of two beads that move straight and evenly.
+double closest(PixelPoint from_a, PixelPoint to_a, PixelPoint from_b, PixelPoint to_b) {
+  const PixelPoint before = from_a - from_b, change = to_a - to_b - before;
+  const double c2 = square(change), dot = before.x_px * change.x_px + before.y_px * change.y_px;
+  return std::sqrt(square(before + (c2 > 0 ? std::clamp(-dot / c2, 0.0, 1.0) : 0) * change));
+}
+
+/// Discs of one layer cannot pass through each other, which a sum of costs does not know. Two links that
+/// would need it are exchanged, if that is allowed and not too dear.
+void exchange_passers(Assignment& best, const std::vector<Edge>& edges, const std::vector<PixelPoint>& from,
+                      const std::vector<PixelPoint>& to, double d) {
+  auto edges_of = [&](std::size_t row) {
+    return std::equal_range(edges.begin(), edges.end(), Edge{static_cast<std::uint32_t>(row), 0, 0},
+                            [](const Edge& a, const Edge& b) { return a.row < b.row; });
+  };
+  auto cost_of = [&](std::size_t row, std::int64_t column) {
+    const auto [begin, end] = edges_of(row);
+    const auto e = std::find_if(begin, end, [&](const Edge& a) { return a.column == column; });
+    return e == end ? std::numeric_limits<double>::infinity() : e->cost;
+  };
+  std::vector<std::int64_t> row_of(to.size(), Assignment::kAlone);
+  for (std::size_t i = 0; i < from.size(); ++i)
+    if (best.column_of_row[i] >= 0)
+      row_of[static_cast<std::size_t>(best.column_of_row[i])] = static_cast<std::int64_t>(i);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::int64_t& mine = best.column_of_row[i];
+    if (mine < 0) continue;
+    const auto [begin, end] = edges_of(i);
+    for (auto e = begin; e != end; ++e) {
+      if (row_of[e->column] < 0 || e->column == mine) continue;
+      const auto j = static_cast<std::size_t>(row_of[e->column]);
+      std::int64_t& theirs = best.column_of_row[j];
+      const PixelPoint a = to[static_cast<std::size_t>(mine)], b = to[static_cast<std::size_t>(theirs)];
+      if (closest(from[i], a, from[j], b) > kThrough * d || closest(from[i], b, from[j], a) < kBeside * d)
+        continue;
+      if (e->cost + cost_of(j, mine) - cost_of(i, mine) - cost_of(j, theirs) > kPassing) continue;
+      std::swap(mine, theirs);
+      std::swap(row_of[static_cast<std::size_t>(mine)], row_of[static_cast<std::size_t>(theirs)]);
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+void Linker::assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment) {
+  const double d = options_.diameter_px;
+  const double alone = cost(options_.range_diameters * options_.range_diameters, kWidth);
+  std::vector<std::int32_t> rows;
+  std::vector<Edge> edges, own;
+  std::vector<std::int32_t> column_of(grid.size(), -1), columns;
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    if (detection_of_[t] >= 0) continue;
+    const Track& track = tracks_[t];
+    const double width = kWidth * (1 + track.missed);
+    const double range = options_.range_diameters * (1 + 0.5 * track.missed) * d;
+    // Where it may be, and the price of having to believe so.
+    std::vector<std::pair<PixelPoint, double>> guesses = {{expected_[t], 0}};
+    if (std::isfinite(local_[t].x_px)) {
+      guesses.front().second = 0.7;
+      guesses.emplace_back(falling_[t] + local_[t], 0);
+    }
+    if (track.missed == 0) {
+      guesses.emplace_back(track.place + moment.interval * step_, 0.7);
+      guesses.emplace_back(flying_[t], 0);
+    }
+    own.clear();
+    grid.within(expected_[t], range, [&](std::size_t k, double) {
+      if (track_of_[k] >= 0) return;
+      double least = std::numeric_limits<double>::infinity();
+      for (const auto& [guess, price] : guesses)
+        least = std::min(least, cost(square(grid[k] - guess) / (d * d), width) + price);
+      if (!tracers.empty() && tracers[grid.original(k)] != track.tracer) least += 3;
+      if (least >= alone) return;
+      own.push_back({static_cast<std::uint32_t>(rows.size()), static_cast<std::uint32_t>(k), least - alone});
+    });
+    if (own.empty()) continue;
+    if (own.size() > kMostEdges) {
+      std::nth_element(own.begin(), own.begin() + kMostEdges, own.end(), [](const Edge& a, const Edge& b) {
+        return a.cost < b.cost || (a.cost == b.cost && a.column < b.column);
+      });
+      own.resize(kMostEdges);
+    }
+    for (Edge& e : own) {
+      std::int32_t& column = column_of[e.column];
+      if (column < 0) {
+        column = static_cast<std::int32_t>(columns.size());
+        columns.push_back(static_cast<std::int32_t>(e.column));
+      }
+      e.column = static_cast<std::uint32_t>(column);
+      edges.push_back(e);
+    }
+    rows.push_back(static_cast<std::int32_t>(t));
+  }
+  if (rows.empty()) return;
+  Assignment best = assign(rows.size(), columns.size(), edges);
+  last_.networks = static_cast<std::int64_t>(best.networks);
+  last_.largest_network = static_cast<std::int64_t>(best.largest_network);
+  last_.unsolved = static_cast<std::int64_t>(best.unsolved);
+  const double least_margin = std::log(options_.ambiguous_odds);
+  std::vector<PixelPoint> from, to;
+  for (const std::int32_t t : rows) from.push_back(tracks_[static_cast<std::size_t>(t)].place);
+  for (const std::int32_t k : columns) to.push_back(grid[static_cast<std::size_t>(k)]);
+  exchange_passers(best, edges, from, to, d);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (best.column_of_row[i] < 0) continue;
+    const std::int32_t k = columns[static_cast<std::size_t>(best.column_of_row[i])];
+    detection_of_[static_cast<std::size_t>(rows[i])] = k;
+    track_of_[static_cast<std::size_t>(k)] = rows[i];
+    if (best.margin[i] >= least_margin) continue;
+    ambiguous_[grid.original(static_cast<std::size_t>(k))] = 1;
+    ++last_.ambiguous;
+  }
+}
+
+// Survivors, the missing within memory, and the newly born.
+void Linker::update(std::span<const PixelPoint> detections, std::span<const std::uint8_t> tracers,
+                    const FrameMoment& moment, std::vector<std::int64_t>& ids) {
+  const auto phases = static_cast<std::size_t>(phases_);
+  const bool in_cycle = phases > 0 && moment.phase >= 0 && moment.phase < phases_;
+  const auto phase = static_cast<std::size_t>(in_cycle ? moment.phase : 0);
+  const bool remembers = in_cycle && cycle_of_phase_[phase] == moment.cycle - 1;
+
+  std::vector<PixelPoint> steps;
+  for (std::size_t t = 0; t < tracks_.size(); ++t)
+    if (detection_of_[t] >= 0 && tracks_[t].missed == 0)
+      steps.push_back(detections[static_cast<std::size_t>(detection_of_[t])] - tracks_[t].place);
+  const double per_interval = moment.interval > 0 ? 1 / moment.interval : 0;
+  mean_step_ = {};
+  for (const PixelPoint step : steps) mean_step_ = mean_step_ + step;
+  if (!steps.empty()) mean_step_ = (1.0 / static_cast<double>(steps.size())) * mean_step_;
+  const std::size_t stride = std::max<std::size_t>(1, steps.size() / (2 * kSample));
+  for (std::size_t i = 1; i * stride < steps.size(); ++i) steps[i] = steps[i * stride];
+  steps.resize((steps.size() + stride - 1) / stride);
+  const PixelPoint moved = median(steps);  // in this frame
+  if (moment.interval > 0) step_ = per_interval * moved;
+
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    Track& track = tracks_[t];
+    PixelPoint* ring = phases > 0 ? &cycle_places_[t * phases] : nullptr;
+    if (detection_of_[t] < 0) {
+      ++track.missed;
+      track.place = track.place + moved;
+      if (in_cycle) ring[phase] = {kNaN, kNaN};
       continue;
     }
-    const auto t = static_cast<std::size_t>(track_of[k]);
-    const Track& old = tracks_[t];
-    seen[t] = true;
-    ids[k] = old.id;
-    const double frames = old.missed + 1;
-    alive.push_back(
-        {old.id,
-         p,
-         {(p.x_px - old.place.x_px - shift_.x_px) / frames, (p.y_px - old.place.y_px - shift_.y_px) / frames},
-         0});
+    const auto k = static_cast<std::size_t>(detection_of_[t]);
+    const PixelPoint p = detections[k];
+    ids[k] = track.id;
+    ++last_.links;
+    last_.bridged += track.missed > 0 ? 1 : 0;
+    if (track.missed > 0)
+      track.step = (1.0 / (track.missed + 1)) * (p - track.place - moved) + step_;
+    else if (moment.interval > 0)
+      track.step = per_interval * (p - track.place);
+    track.place = p;
+    track.missed = 0;
+    if (!tracers.empty()) track.tracer = tracers[k];
+    if (in_cycle) {
+      const PixelPoint old = ring[phase];
+      const PixelPoint drift = p - old;
+      track.drift = remembers && std::isfinite(drift.x_px) ? drift : PixelPoint{};
+      ring[phase] = p;
+    }
   }
-  for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    Track track = tracks_[t];
-    if (seen[t] || ++track.missed > options_.memory) continue;
-    track.place = {track.place.x_px + shift_.x_px, track.place.y_px + shift_.y_px};
-    alive.push_back(track);
+
+  // The dead make room for the last.
+  for (std::size_t t = 0; t < tracks_.size();) {
+    if (tracks_[t].missed <= options_.memory) {
+      ++t;
+      continue;
+    }
+    ++last_.losses;
+    const std::size_t end = tracks_.size() - 1;
+    if (t != end) {
+      tracks_[t] = tracks_[end];
+      std::copy_n(cycle_places_.begin() + static_cast<std::ptrdiff_t>(end * phases), phases,
+                  cycle_places_.begin() + static_cast<std::ptrdiff_t>(t * phases));
+    }
+    tracks_.pop_back();
+    cycle_places_.resize(tracks_.size() * phases);
   }
-  std::sort(alive.begin(), alive.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
-  tracks_ = std::move(alive);
+  for (std::size_t k = 0; k < detections.size(); ++k) {
+    if (ids[k] >= 0) continue;
+    ids[k] = n_tracks_++;
+    ++last_.births;
+    tracks_.push_back({.id = ids[k],
+                       .place = detections[k],
+                       .step = step_,
+                       .drift = {},
+                       .missed = 0,
+                       .tracer = tracers.empty() ? std::uint8_t{0} : tracers[k]});
+    cycle_places_.resize(tracks_.size() * phases, {kNaN, kNaN});
+    if (in_cycle) cycle_places_[(tracks_.size() - 1) * phases + phase] = detections[k];
+  }
+  if (in_cycle) cycle_of_phase_[phase] = moment.cycle;
+}
+
+std::vector<std::int64_t> Linker::next(std::span<const PixelPoint> detections, const FrameMoment& moment,
+                                       std::span<const std::uint8_t> tracers) {
+  for (std::size_t k = 0; k < detections.size(); ++k)
+    if (!(std::abs(detections[k].x_px) < kFar && std::abs(detections[k].y_px) < kFar))
+      throw RunError(fmt::format("frame {}, detection {}: ({}, {}) is no place in a picture.", total_.frames,
+                                 k, detections[k].x_px, detections[k].y_px));
+  last_ = {.frames = 1};
+  ambiguous_.assign(detections.size(), 0);
+  const Grid grid(detections, 1.1 * options_.diameter_px);
+  detection_of_.assign(tracks_.size(), -1);
+  track_of_.assign(detections.size(), -1);
+  predict_all(grid, moment);
+  settle(grid, tracers);
+  follow_neighbours(grid);
+  assign_rest(grid, tracers, moment);
+  for (std::int32_t& k : detection_of_)
+    if (k >= 0) k = static_cast<std::int32_t>(grid.original(static_cast<std::size_t>(k)));
+  std::vector<std::int64_t> ids(detections.size(), -1);
+  update(detections, tracers, moment, ids);
+  total_.add(last_);
   return ids;
 }
 

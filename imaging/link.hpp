@@ -1,15 +1,20 @@
 #pragma once
 /// \file
-/// Identities through the frames.
+/// Identities through the frames of a shaken cell.
 ///
-/// First the motion common to all beads is removed: the shift that brings most beads onto their old places (a
-/// histogram of all pair shifts, so that a crystal moved by up to about a diameter is told from its
-/// neighbours by its rim). Then tracks and detections are assigned so that the sum of squared distances from
-/// the predicted places is least, a track without detection or a detection without track costing range^2 / 2
-/// each. Since discs cannot overlap, a detection within 0.3 d of a prediction has no rival there; the rest
-/// falls into small groups that are solved exactly.
+/// Each track says where its bead should be now. Three rules are tried on every frame: where the bead was;
+/// there plus its last step; where it was a cycle ago plus what it has drifted since. The first, which
+/// remembers no error, is taken unless another fits the frame better. What the prediction lacks is learnt
+/// from the frame itself, first for all beads together (a bed that flies or rides on the plate moves as one),
+/// then from neighbours that are already settled (a bed that lands is stopped from below). A detection within
+/// 0.25 d of where it is expected has no rival, since discs do not overlap; most beads are settled by this
+/// one look. The rest is assigned so that the summed cost is least (assignment.hpp), and the cost by which
+/// the next best assignment is dearer says which links are ambiguous.
+///
+/// Pictures have gravity downwards: y grows in a fall, and nothing is expected below the lowest detection.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "imaging/pixel_frame.hpp"
@@ -18,40 +23,101 @@ namespace twincell {
 
 /// How identities are kept.
 struct LinkOptions {
-  double diameter_px = 0;      ///< bead diameter, > 0
-  double range_diameters = 1;  ///< longest step from the predicted place, diameters
-  int memory = 3;  ///< frames for which a bead may be missing, >= 0; the range grows by half per frame
-  double max_shift_diameters = 1.5;  ///< largest common motion per frame sought, diameters, >= 0; 0: none
+  double diameter_px = 0;            ///< bead diameter, > 0
+  double range_diameters = 2;        ///< longest step from the predicted place, diameters, > 0, <= 10
+  int memory = 3;                    ///< frames for which a bead may be missing, 0 .. 1000
+  double max_shift_diameters = 1.5;  ///< largest common departure from the prediction sought, diameters,
+                                     ///< 0 .. 10; 0: none
+  double fall_px = 0;  ///< by which a step downwards grows per frame interval in free flight: g dt^2; >= 0
+  double ambiguous_odds = 20;  ///< a link is ambiguous below these odds against the next best, >= 1
 };
 
-/// Links frame after frame; memory is one entry per living track.
+/// What is known of a frame besides its beads.
+struct FrameMoment {
+  double interval = 1;      ///< frame intervals since the frame before; 2: one was dropped, 0: taken twice
+  std::int32_t phase = -1;  ///< phase of the drive, -1: not phase-locked
+  std::int64_t cycle = -1;  ///< cycle of the drive
+};
+
+/// What the linker did, in one frame or summed over frames.
+struct LinkReport {
+  std::int64_t frames = 0;
+  std::int64_t links = 0;            ///< detections that continue a track
+  std::int64_t settled = 0;          ///< of them, those settled by one look
+  std::int64_t bridged = 0;          ///< of them, those whose track was missing in between
+  std::int64_t ambiguous = 0;        ///< of them, those whose odds against the next best are below the bound
+  std::int64_t births = 0;           ///< detections that begin a track
+  std::int64_t losses = 0;           ///< tracks given up
+  std::int64_t networks = 0;         ///< sub-networks assigned
+  std::int64_t largest_network = 0;  ///< tracks in the largest
+  std::int64_t unsolved = 0;         ///< tracks left to the fallback because a frame was too crowded
+  std::int64_t unclear_shifts = 0;   ///< frames whose common shift had a rival nearly as good
+  void add(const LinkReport& frame);
+};
+
+/// Links frame after frame; memory is one entry per living track (and 16 bytes per phase of the cycle).
 class Linker {
  public:
+  /// Cycles of more phases are not remembered.
+  static constexpr int kMostPhases = 512;
   /// \throws ConfigError if an option is out of range
-  explicit Linker(const LinkOptions& options);
+  explicit Linker(const LinkOptions& options, int phases_per_cycle = 0);
   /// Gives each detection of the next frame its track: old numbers go on, new ones are counted from 0.
-  std::vector<std::int64_t> next(const std::vector<PixelPoint>& detections);
+  /// \param tracers 1 for a tracer bead, or empty; a track prefers detections of its own kind
+  /// \throws RunError if a place is not finite or lies 10^9 px away
+  std::vector<std::int64_t> next(std::span<const PixelPoint> detections, const FrameMoment& moment = {},
+                                 std::span<const std::uint8_t> tracers = {});
+  /// Of the last frame, per detection: 1 if its link is ambiguous.
+  [[nodiscard]] const std::vector<std::uint8_t>& ambiguous() const { return ambiguous_; }
   /// Tracks so far.
   [[nodiscard]] std::int64_t n_tracks() const { return n_tracks_; }
-  /// Common motion found in the last step, px.
-  [[nodiscard]] PixelPoint common_shift() const { return shift_; }
+  /// Median step of the beads linked in the last frame, px.
+  [[nodiscard]] PixelPoint common_step() const { return step_; }
+  /// Mean step of the beads linked in the last frame, px.
+  [[nodiscard]] PixelPoint mean_step() const { return mean_step_; }
+  /// Of the last frame, and of all.
+  [[nodiscard]] const LinkReport& last() const { return last_; }
+  [[nodiscard]] const LinkReport& total() const { return total_; }
 
  private:
   struct Track {
-    std::int64_t id;
-    PixelPoint place;     // last seen, moved along with the common motion since
-    PixelPoint own_step;  // last step less the common motion
-    int missed;
+    std::int64_t id = 0;
+    PixelPoint place;  // last seen; moved along with the common step while missing
+    PixelPoint step;   // per frame interval
+    PixelPoint drift;  // against the same phase of the cycle before; 0 where that is unknown
+    std::int32_t missed = 0;
+    std::uint8_t tracer = 0;
   };
-  LinkOptions options_;
-  std::vector<Track> tracks_;
-  std::int64_t n_tracks_ = 0;
-  PixelPoint shift_;
-};
+  enum class Rule { still, step, cycle };
+  class Grid;
 
-/// Minimum-cost assignment (Kuhn-Munkres by shortest augmenting paths, O(n^2 m)).
-/// \param cost n x m, n <= m, row by row; finite
-/// \returns the column of each row
-std::vector<std::size_t> assign(const std::vector<double>& cost, std::size_t n, std::size_t m);
+  [[nodiscard]] PixelPoint predict(std::size_t track, Rule rule, const FrameMoment& moment) const;
+  [[nodiscard]] PixelPoint in_flight(std::size_t track, const FrameMoment& moment) const;
+  void predict_all(const Grid& grid, const FrameMoment& moment);
+  void settle(const Grid& grid, std::span<const std::uint8_t> tracers);
+  void follow_neighbours(const Grid& grid);
+  void assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment);
+  void update(std::span<const PixelPoint> detections, std::span<const std::uint8_t> tracers,
+              const FrameMoment& moment, std::vector<std::int64_t>& ids);
+
+  LinkOptions options_;
+  int phases_;
+  std::vector<Track> tracks_;
+  std::vector<PixelPoint> cycle_places_;      // [track][phase]: place at that phase, last time
+  std::vector<std::int64_t> cycle_of_phase_;  // when that was
+  std::int64_t n_tracks_ = 0;
+  PixelPoint step_, mean_step_;
+  std::vector<std::uint8_t> ambiguous_;
+  LinkReport last_, total_;
+
+  // Of the frame at hand.
+  std::vector<PixelPoint> expected_;        // per track
+  std::vector<PixelPoint> falling_;         // per track, the same as if there were no floor
+  std::vector<PixelPoint> flying_;          // per track, where free flight leads
+  std::vector<double> disputed_;            // per track, px from where free flight leads to another detection
+  std::vector<PixelPoint> local_;           // per track, the correction learnt from settled neighbours
+  std::vector<std::int32_t> detection_of_;  // per track, -1: none yet
+  std::vector<std::int32_t> track_of_;      // per detection, -1: none yet
+};
 
 }  // namespace twincell

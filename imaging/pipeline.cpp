@@ -5,13 +5,18 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "analysis/trajectory/error.hpp"
+#include "imaging/found_phase.hpp"
+#include "imaging/trigger_list.hpp"
 
 namespace twincell {
 
 namespace {
+
+constexpr std::size_t kMostNamed = 1000;  // dropped or doubled frames that are listed one by one
 
 // Each frame is a unit of work of its own, so that results do not depend on who computes them.
 std::vector<Located> locate_batch(const std::vector<cv::Mat>& batch, const LocatorOptions& options,
@@ -70,35 +75,137 @@ std::int64_t locate_stack(FrameSource& frames, LocatorOptions& options, int thre
   return done;
 }
 
+namespace {
+
+PixelPoint place_of(const TrackedBead& b) {
+  return {b.x_px, b.y_px};
+}
+
+// The bed's height without knowing phases: steps common to all beads, added up.
+std::vector<double> bed_heights(const BeadSpool& located, const LinkOptions& link, double unit_px) {
+  Linker linker(link);
+  std::vector<double> heights;
+  std::vector<PixelPoint> places;
+  std::vector<std::uint8_t> tracers;
+  for (std::size_t f = 0; f < located.size(); ++f) {
+    places.clear();
+    tracers.clear();
+    for (const TrackedBead& b : located[f]) {
+      places.push_back(place_of(b));
+      tracers.push_back(b.tracer ? 1 : 0);
+    }
+    linker.next(places, {}, tracers);
+    heights.push_back((heights.empty() ? 0 : heights.back()) - linker.mean_step().y_px / unit_px);
+  }
+  return heights;
+}
+
+PhaseTable learn_phases(const BeadSpool& located, const LinkOptions& link, const CellDescription& cell,
+                        const PhaseWay& way) {
+  if (way.triggers) {
+    PhaseTable table = read_triggers(*way.triggers, way.drive_hz, cell.phase_lock.frames_per_cycle);
+    if (table.frames.size() != located.size())
+      throw InputError(Where{.file = way.triggers->string(), .key = {}},
+                       "has " + std::to_string(table.frames.size()) + " lines for " +
+                           std::to_string(located.size()) +
+                           " frames; every frame of the stack needs its line.");
+    return table;
+  }
+  if (!way.find) return fixed_phases(cell.phase_lock);
+  FoundPhaseOptions options{
+      .frames_per_cycle = cell.phase_lock.frames_per_cycle, .gamma = {}, .amplitude = {}};
+  if (const auto drive = cell.drive()) options.gamma = drive->gamma();
+  return find_phases(bed_heights(located, link, cell.pixels_per_sigma.value_or(link.diameter_px)), options);
+}
+
+}  // namespace
+
+std::vector<std::int64_t> TrackedStack::broken_tracers() const {
+  std::vector<std::int64_t> broken;
+  const auto end = static_cast<std::int64_t>(frames.size()) - 1;
+  for (std::size_t t = 0; t < tracks.size(); ++t)
+    if (tracks[t].is_tracer() && (tracks[t].first > 0 || tracks[t].last < end))
+      broken.push_back(static_cast<std::int64_t>(t));
+  return broken;
+}
+
+TrackedStack link_spool(const BeadSpool& located, LinkOptions link, const CellDescription& cell,
+                        const PhaseWay& way, const std::filesystem::path& spool_folder, Progress& progress) {
+  TrackedStack stack{.frames = BeadSpool(spool_folder), .tracks = {}, .phases = {}, .links = {}};
+  stack.phases = learn_phases(located, link, cell, way);
+  if (const auto drive = cell.drive(); drive && stack.phases.locked() && cell.pixels_per_sigma) {
+    const double dt = drive->period() / stack.phases.frames_per_cycle;
+    link.fall_px = dt * dt * *cell.pixels_per_sigma;
+  }
+  Linker linker(link, stack.phases.frames_per_cycle);
+  std::vector<PixelPoint> places;
+  std::vector<std::uint8_t> tracers;
+  for (std::size_t f = 0; f < located.size(); ++f) {
+    std::vector<TrackedBead> beads = located[f];
+    places.clear();
+    tracers.clear();
+    for (const TrackedBead& b : beads) {
+      places.push_back(place_of(b));
+      tracers.push_back(b.tracer ? 1 : 0);
+    }
+    const FramePhase at = stack.phases.at(static_cast<std::int64_t>(f));
+    const std::vector<std::int64_t> ids =
+        linker.next(places, {.interval = at.interval, .phase = at.phase, .cycle = at.cycle}, tracers);
+    stack.tracks.resize(static_cast<std::size_t>(linker.n_tracks()));
+    for (std::size_t k = 0; k < beads.size(); ++k) {
+      beads[k].track = ids[k];
+      beads[k].ambiguous = linker.ambiguous()[k] != 0;
+      TrackSummary& track = stack.tracks[static_cast<std::size_t>(ids[k])];
+      if (track.seen == 0) track.first = static_cast<std::int64_t>(f);
+      track.last = static_cast<std::int64_t>(f);
+      ++track.seen;
+      track.tracer += beads[k].tracer ? 1 : 0;
+      track.ambiguous += beads[k].ambiguous ? 1 : 0;
+      track.radius_px += (beads[k].radius_px - track.radius_px) / static_cast<double>(track.seen);
+    }
+    stack.frames.append(beads);
+    if (f % 64 == 0) progress.update(static_cast<std::int64_t>(f), static_cast<std::int64_t>(located.size()));
+  }
+  stack.n_tracks = linker.n_tracks();
+  stack.links = linker.total();
+  return stack;
+}
+
 TrackedStack track_stack(FrameSource& frames, LocatorOptions& locator, LinkOptions link,
-                         const CellDescription& cell, int threads, Progress& progress) {
-  TrackedStack stack;
-  std::optional<Linker> linker;
+                         const CellDescription& cell, int threads, Progress& progress, const PhaseWay& way,
+                         const std::filesystem::path& spool_folder) {
+  // A list that cannot be read is refused before the work, not after.
+  if (way.triggers) (void)read_triggers(*way.triggers, way.drive_hz, cell.phase_lock.frames_per_cycle);
+  BeadSpool located(spool_folder);
+  int width = 0, height = 0;
+  std::size_t outside_cell = 0;
+  std::vector<TrackedBead> beads;
   locate_stack(
       frames, locator, threads,
-      [&](std::int64_t, const cv::Mat& grey, const Located& located) {
-        if (!linker) {
-          link.diameter_px = locator.diameter_px;
-          linker.emplace(link);
-        }
-        stack.width_px = grey.cols;
-        stack.height_px = grey.rows;
-        std::vector<PixelPoint> places;
-        std::vector<TrackedBead> beads;
-        for (const Detection& b : located.beads) {
+      [&](std::int64_t, const cv::Mat& grey, const Located& found) {
+        width = grey.cols;
+        height = grey.rows;
+        beads.clear();
+        for (const Detection& b : found.beads) {
           if (outside(cell, b)) {
-            ++stack.outside_cell;
+            ++outside_cell;
             continue;
           }
-          places.push_back({b.x, b.y});
-          beads.push_back({b.x, b.y, b.radius, -1, b.tracer});
+          beads.push_back({.x_px = b.x,
+                           .y_px = b.y,
+                           .radius_px = b.radius,
+                           .tracer = b.tracer,
+                           .sigma_x_px = b.sigma_x,
+                           .sigma_y_px = b.sigma_y});
         }
-        const std::vector<std::int64_t> ids = linker->next(places);
-        for (std::size_t k = 0; k < beads.size(); ++k) beads[k].track = ids[k];
-        stack.frames.push_back(std::move(beads));
+        located.append(beads);
       },
       progress);
-  stack.n_tracks = linker->n_tracks();
+  link.diameter_px = locator.diameter_px;
+  TrackedStack stack = link_spool(located, link, cell, way, spool_folder);
+  stack.width_px = width;
+  stack.height_px = height;
+  stack.outside_cell = outside_cell;
   return stack;
 }
 
@@ -107,30 +214,21 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
   TrackPlan plan;
   const double scale = cell.pixels_per_sigma.value_or(diameter_px);
   plan.pixel_frame = {scale, cell.origin.value_or(PixelPoint{-0.5, stack.height_px - 0.5})};
-
-  const auto n = static_cast<std::size_t>(stack.n_tracks);
-  std::vector<int> seen(n), tracer(n);
-  std::vector<double> radius(n);
-  for (const auto& frame : stack.frames)
-    for (const TrackedBead& b : frame) {
-      const auto t = static_cast<std::size_t>(b.track);
-      ++seen[t];
-      tracer[t] += b.tracer ? 1 : 0;
-      radius[t] += b.radius_px;
-    }
   TrajectoryInfo& info = plan.info;
-  plan.slot_of_track.assign(n, -1);
-  for (std::size_t t = 0; t < n; ++t) {
-    if (seen[t] < shortest) continue;
+  plan.slot_of_track.assign(stack.tracks.size(), -1);
+  for (std::size_t t = 0; t < stack.tracks.size(); ++t) {
+    const TrackSummary& track = stack.tracks[t];
+    if (track.seen < shortest) continue;
     plan.slot_of_track[t] = static_cast<std::int64_t>(info.n_beads++);
-    info.radius.push_back(radius[t] / seen[t] / scale);
-    info.tracer.push_back(2 * tracer[t] > seen[t] ? 1 : 0);
+    info.radius.push_back(track.radius_px / scale);
+    info.tracer.push_back(track.is_tracer() ? 1 : 0);
   }
   info.drive = cell.drive();
   info.columns.identity = true;
-  info.columns.phase = cell.phase_lock.locked();
-  info.columns.plate_height = info.drive && cell.phase_lock.locked();
-  info.phases_per_cycle = cell.phase_lock.frames_per_cycle;
+  info.columns.position_sigma = true;
+  info.columns.phase = stack.phases.locked();
+  info.columns.plate_height = info.drive && stack.phases.locked();
+  info.phases_per_cycle = stack.phases.frames_per_cycle;
   info.box.lower = Vec3(0, -0.5, 0);
   info.box.upper =
       Vec3(cell.width.value_or(stack.width_px / scale), 0.5, cell.height.value_or(stack.height_px / scale));
@@ -139,32 +237,83 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
   info.scale = cell.scale;
   info.scale.pixels_per_sigma = scale;
   info.source = "experiment";
+  info.tracking_json = tracking_json(stack, plan);
   return plan;
+}
+
+std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan) {
+  const PhaseTable& phases = stack.phases;
+  nlohmann::json lock = {{"way", phases.way}};
+  if (phases.locked()) lock["frames_per_cycle"] = phases.frames_per_cycle;
+  if (phases.locked()) lock["first_phase"] = phases.first_phase;
+  if (phases.period_frames) lock["period_frames"] = *phases.period_frames;
+  if (phases.jitter) lock["jitter_frames"] = *phases.jitter;
+  if (phases.agreement) lock["agreement"] = *phases.agreement;
+  if (!phases.frames.empty()) {
+    lock["dropped"] = phases.dropped;
+    lock["doubled"] = phases.doubled;
+    for (std::size_t f = 1; f < phases.frames.size(); ++f) {
+      const double interval = phases.frames[f].interval;
+      if (interval > 1 && lock["dropped_before"].size() < kMostNamed) lock["dropped_before"].push_back(f);
+      if (interval == 0 && lock["doubled_frames"].size() < kMostNamed) lock["doubled_frames"].push_back(f);
+    }
+  }
+  const LinkReport& l = stack.links;
+  nlohmann::json tracers = {{"count", 0}, {"broken", nlohmann::json::array()}};
+  std::int64_t count = 0;
+  for (std::size_t t = 0; t < stack.tracks.size(); ++t)
+    if (stack.tracks[t].is_tracer() && plan.slot_of_track[t] >= 0) ++count;
+  tracers["count"] = count;
+  for (const std::int64_t t : stack.broken_tracers())
+    if (const std::int64_t slot = plan.slot_of_track[static_cast<std::size_t>(t)]; slot >= 0)
+      tracers["broken"].push_back({{"slot", slot},
+                                   {"first", stack.tracks[static_cast<std::size_t>(t)].first},
+                                   {"last", stack.tracks[static_cast<std::size_t>(t)].last}});
+  const nlohmann::json document = {{"phase_lock", lock},
+                                   {"links",
+                                    {{"made", l.links},
+                                     {"settled", l.settled},
+                                     {"bridged", l.bridged},
+                                     {"ambiguous", l.ambiguous},
+                                     {"births", l.births},
+                                     {"losses", l.losses},
+                                     {"networks", l.networks},
+                                     {"largest_network", l.largest_network},
+                                     {"unsolved", l.unsolved},
+                                     {"unclear_shifts", l.unclear_shifts}}},
+                                   {"tracers", tracers}};
+  return document.dump();
 }
 
 void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell,
                       TrajectorySink& sink) {
+  (void)cell;
   const TrajectoryInfo& info = plan.info;
-  const PhaseLock& lock = cell.phase_lock;
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = std::numeric_limits<double>::quiet_NaN(), scale = plan.pixel_frame.pixels_per_sigma;
+  Frame frame;
   for (std::size_t f = 0; f < stack.frames.size(); ++f) {
     const auto number = static_cast<std::int64_t>(f);
-    Frame frame;
+    const FramePhase at = stack.phases.at(number);
+    if (f > 0 && at.interval == 0) continue;
     frame.step = number;
-    frame.phase = lock.phase(number);
-    frame.cycle = lock.cycle(number);
+    frame.phase = at.phase;
+    frame.cycle = at.cycle;
     frame.time = static_cast<double>(f);
-    if (info.drive && lock.locked()) {
-      frame.time = (static_cast<double>(frame.cycle) + lock.fraction(number)) * info.drive->period();
-      frame.plate_height = info.drive->displacement(lock.fraction(number));
+    if (info.drive && stack.phases.locked()) {
+      const double fraction = static_cast<double>(at.phase) / stack.phases.frames_per_cycle;
+      frame.time = (static_cast<double>(at.cycle) + fraction) * info.drive->period();
+      frame.plate_height = info.drive->displacement(fraction);
     }
     frame.position.assign(info.n_beads, Vec3(nan, nan, nan));
+    frame.position_sigma.assign(info.n_beads, Vec3(nan, nan, nan));
     frame.id.assign(info.n_beads, -1);
     for (const TrackedBead& b : stack.frames[f]) {
       const std::int64_t slot = plan.slot_of_track[static_cast<std::size_t>(b.track)];
       if (slot < 0) continue;
-      frame.id[static_cast<std::size_t>(slot)] = slot;
-      frame.position[static_cast<std::size_t>(slot)] = plan.pixel_frame.cell_from_pixel({b.x_px, b.y_px});
+      const auto i = static_cast<std::size_t>(slot);
+      frame.id[i] = slot;
+      frame.position[i] = plan.pixel_frame.cell_from_pixel({b.x_px, b.y_px});
+      frame.position_sigma[i] = Vec3(b.sigma_x_px / scale, nan, b.sigma_y_px / scale);
     }
     sink.append(frame);
   }

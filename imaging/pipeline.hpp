@@ -3,16 +3,20 @@
 /// Stack -> bead table, stack -> trajectory.
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/trajectory/progress.hpp"
 #include "analysis/trajectory/trajectory.hpp"
+#include "imaging/bead_spool.hpp"
 #include "imaging/cell.hpp"
 #include "imaging/frame_source.hpp"
 #include "imaging/link.hpp"
 #include "imaging/locator.hpp"
+#include "imaging/phase_lock.hpp"
 
 namespace twincell {
 
@@ -27,25 +31,54 @@ using LocatedSink = std::function<void(std::int64_t frame, const cv::Mat& grey, 
 std::int64_t locate_stack(FrameSource& frames, LocatorOptions& options, int threads, const LocatedSink& sink,
                           Progress& progress = Progress::none());
 
-/// One bead of one frame on its way to a trajectory.
-struct TrackedBead {
-  double x_px = 0, y_px = 0, radius_px = 0;
-  std::int64_t track = -1;
-  bool tracer = false;
+/// How a stack's phases are learnt. With neither: from the cell's frames per cycle.
+struct PhaseWay {
+  bool find = false;                              ///< from the bed's own motion (found_phase.hpp)
+  std::optional<std::filesystem::path> triggers;  ///< from a list (trigger_list.hpp)
+  std::optional<double> drive_hz;                 ///< frequency of the drive, for a list in seconds
 };
 
-/// A stack located and linked; the pictures are gone, about 40 bytes per bead and frame remain.
+/// What is known of a track when the stack ends.
+struct TrackSummary {
+  std::int64_t first = 0, last = 0;  ///< frames in which it was seen
+  std::int64_t seen = 0;             ///< number of frames
+  std::int64_t tracer = 0;           ///< of them, those in which the bead looked like a tracer
+  std::int64_t ambiguous = 0;        ///< of its links, those that are
+  double radius_px = 0;              ///< mean
+  [[nodiscard]] bool is_tracer() const { return 2 * tracer > seen; }
+};
+
+/// A stack located and linked. The beads are on disk; in memory are about 50 bytes per track and 24 per
+/// frame.
 struct TrackedStack {
-  std::vector<std::vector<TrackedBead>> frames;
+  BeadSpool frames;  ///< frames[f]: the beads of frame f
+  std::vector<TrackSummary> tracks;
   std::int64_t n_tracks = 0;
   int width_px = 0, height_px = 0;
   std::size_t outside_cell = 0;  ///< detections left out because the cell does not reach there
+  PhaseTable phases;
+  LinkReport links;
+
+  /// Tracers (by majority) that are not seen from the first frame to the last: their identity was lost, or
+  /// they came or went.
+  [[nodiscard]] std::vector<std::int64_t> broken_tracers() const;
 };
 
-/// Locates and links. \param cell detections more than half a bead outside its walls are counted and left
-/// out; needs origin, scale and size for that, otherwise all stay
+/// Locates, finds phases, links; the stack is read once. Frames taken twice are linked without a step.
+/// \param cell detections more than half a bead outside its walls are counted and left out, which needs
+///     origin, scale and size, otherwise all stay; drive, frames per cycle and scale tell the linker how fast
+///     beads fall
+/// \param spool_folder where the beads wait on disk, about 64 bytes per bead and frame
+/// \throws InputError if a list of triggers does not have a line for each frame
 TrackedStack track_stack(FrameSource& frames, LocatorOptions& locator, LinkOptions link,
-                         const CellDescription& cell, int threads, Progress& progress = Progress::none());
+                         const CellDescription& cell, int threads, Progress& progress = Progress::none(),
+                         const PhaseWay& way = {},
+                         const std::filesystem::path& spool_folder = std::filesystem::temp_directory_path());
+
+/// The part of `track_stack` behind the locator: phases and identities for the beads of a spool.
+TrackedStack link_spool(const BeadSpool& located, LinkOptions link, const CellDescription& cell,
+                        const PhaseWay& way, const std::filesystem::path& spool_folder,
+                        Progress& progress = Progress::none());
 
 /// What a trajectory made from a stack will say of itself. Lengths are in sigma with sigma =
 /// cell.pixels_per_sigma or, where that is unknown, the located diameter; the origin is the cell's or, where
@@ -59,8 +92,13 @@ struct TrackPlan {
 TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell, double diameter_px,
                           int shortest);
 
-/// Writes the frames. Time is in t0 where the drive and N_k are known (a period per N_k frames), else the
-/// frame number. Velocity is absent; the plate height is there where the drive is known.
+/// What the tracking says of itself, as JSON: way and quality of the phases, links, ambiguous links, tracers.
+/// It is stored in the trajectory (docs/h5md.md). Slots, not tracks, are named.
+std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan);
+
+/// Writes the frames, one at a time. Time is in t0 where the drive and N_k are known (a period per N_k
+/// frames), else the frame number. Velocity is absent; the plate height is there where the drive is known. A
+/// frame that was taken twice is written once.
 void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell,
                       TrajectorySink& sink);
 

@@ -48,7 +48,7 @@ struct H5mdWriter::Impl {
   AtomicPath path;
   TrajectoryInfo info;
   h5::Handle file;
-  h5::Series step, time, position, edges, velocity, spin, id, plate_height, phase, cycle;
+  h5::Series step, time, position, position_sigma, edges, velocity, spin, id, plate_height, phase, cycle;
   std::int64_t last_step = 0;
 
   Impl(const fs::path& final_path, TrajectoryInfo i) : path(final_path), info(std::move(i)) {}
@@ -99,6 +99,8 @@ void H5mdWriter::Impl::create_particles() {
     return h5::Series(g.get(), "value", type, std::move(record), per_chunk, fill);
   };
   edges = element(box.get(), "edges", H5T_IEEE_F64LE, {3, 3});
+  if (info.columns.position_sigma)
+    position_sigma = element(group.get(), "position_sigma", H5T_IEEE_F64LE, {n, 3});
   if (info.columns.velocity) velocity = element(group.get(), "velocity", H5T_IEEE_F64LE, {n, 3});
   if (info.columns.spin) spin = element(group.get(), "angular_velocity", H5T_IEEE_F64LE, {n, 3});
   if (info.columns.identity) id = element(group.get(), "id", H5T_STD_I64LE, {n}, &kEmptySlot);
@@ -145,6 +147,7 @@ void H5mdWriter::Impl::create_parameters() {
   const h5::Handle ours = h5::create_group(file.get(), "twincell");
   h5::write_attribute(ours.get(), "schema_version", kSchemaVersion);
   h5::write_attribute(ours.get(), "source", info.source);
+  if (!info.tracking_json.empty()) h5::write_text(ours.get(), "tracking", info.tracking_json);
   const h5::Handle cell = h5::create_group(ours.get(), "cell");
   h5::write_attribute(cell.get(), "dimension", info.box.dimension);
   std::vector<std::string> words;
@@ -155,8 +158,8 @@ void H5mdWriter::Impl::create_parameters() {
 }
 
 void H5mdWriter::Impl::close() {
-  for (h5::Series* s :
-       {&step, &time, &position, &edges, &velocity, &spin, &id, &plate_height, &phase, &cycle})
+  for (h5::Series* s : {&step, &time, &position, &position_sigma, &edges, &velocity, &spin, &id,
+                        &plate_height, &phase, &cycle})
     *s = h5::Series();
   h5::check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path.final().string() + ": writing to disk");
   file.reset();
@@ -178,6 +181,7 @@ void H5mdWriter::append(const Frame& frame) {
                                  w.path.final().string(), w.step.size(), length, column, wanted ? n : 0));
   };
   need(true, frame.position.size(), "position");
+  need(w.info.columns.position_sigma, frame.position_sigma.size(), "position_sigma");
   need(w.info.columns.velocity, frame.velocity.size(), "velocity");
   need(w.info.columns.spin, frame.spin.size(), "spin");
   need(w.info.columns.identity, frame.id.size(), "id");
@@ -192,6 +196,7 @@ void H5mdWriter::append(const Frame& frame) {
   w.time.append(h5::native<double>(), &frame.time);
   w.edges.append(h5::native<double>(), edges);
   w.position.append(h5::native<double>(), frame.position.data());
+  if (w.position_sigma) w.position_sigma.append(h5::native<double>(), frame.position_sigma.data());
   if (w.velocity) w.velocity.append(h5::native<double>(), frame.velocity.data());
   if (w.spin) w.spin.append(h5::native<double>(), frame.spin.data());
   if (w.id) w.id.append(h5::native<std::int64_t>(), frame.id.data());
@@ -221,7 +226,7 @@ struct H5mdReader::Impl {
   fs::path path;
   TrajectoryInfo info;
   h5::Handle file;
-  h5::Series step, time, position, velocity, spin, id, plate_height, phase, cycle;
+  h5::Series step, time, position, position_sigma, velocity, spin, id, plate_height, phase, cycle;
 
   [[noreturn]] void refuse(const std::string& key, const std::string& complaint) const {
     throw InputError({path.string(), 0, 0, key}, complaint);
@@ -300,6 +305,7 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
       refuse(group + "/" + name, "its shape does not match that of position.");
     return s;
   };
+  position_sigma = column("position_sigma", {info.n_beads, 3});
   velocity = column("velocity", {info.n_beads, 3});
   spin = column("angular_velocity", {info.n_beads, 3});
   id = column("id", {info.n_beads});
@@ -313,8 +319,9 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
   plate_height = observable("plate_height");
   phase = observable("drive_phase");
   cycle = observable("cycle");
-  info.columns = {static_cast<bool>(velocity), static_cast<bool>(spin), static_cast<bool>(id), phase && cycle,
-                  static_cast<bool>(plate_height)};
+  info.columns = {static_cast<bool>(velocity),     static_cast<bool>(spin),
+                  static_cast<bool>(id),           phase && cycle,
+                  static_cast<bool>(plate_height), static_cast<bool>(position_sigma)};
 
   auto per_bead = [&]<class T>(const char* name, std::vector<T>& out) {
     out = h5::read_dataset<T>(g.get(), name);
@@ -365,6 +372,7 @@ void H5mdReader::Impl::read_parameters() {
              fmt::format("{} is newer than this program's {}.", schema[0], kSchemaVersion));
     const auto source = h5::read_text_attribute(ours.get(), "source");
     if (!source.empty()) info.source = source.front();
+    h5::read_text(ours.get(), "tracking", info.tracking_json);
   }
   if (h5::exists(file.get(), "parameters/drive")) {
     const h5::Handle group = open_object(file.get(), "parameters/drive");
@@ -429,6 +437,7 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
       if (s) s.read(index, type, out.data());
     };
     column(r.position, h5::native<double>(), frame.position);
+    column(r.position_sigma, h5::native<double>(), frame.position_sigma);
     column(r.velocity, h5::native<double>(), frame.velocity);
     column(r.spin, h5::native<double>(), frame.spin);
     column(r.id, h5::native<std::int64_t>(), frame.id);

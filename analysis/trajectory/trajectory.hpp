@@ -22,11 +22,12 @@ namespace twincell {
 
 /// Which per-frame columns a trajectory has. Position is always there.
 struct Columns {
-  bool velocity = false;      ///< Frame::velocity
-  bool spin = false;          ///< Frame::spin
-  bool identity = false;      ///< Frame::id; without it every slot is filled in every frame
-  bool phase = false;         ///< Frame::phase and Frame::cycle
-  bool plate_height = false;  ///< Frame::plate_height
+  bool velocity = false;        ///< Frame::velocity
+  bool spin = false;            ///< Frame::spin
+  bool identity = false;        ///< Frame::id; without it every slot is filled in every frame
+  bool phase = false;           ///< Frame::phase and Frame::cycle
+  bool plate_height = false;    ///< Frame::plate_height
+  bool position_sigma = false;  ///< Frame::position_sigma
 };
 
 /// What is the same for all frames.
@@ -42,19 +43,22 @@ struct TrajectoryInfo {
   std::vector<double> mass;          ///< per slot, m; empty if absent
   std::vector<std::uint8_t> tracer;  ///< per slot, 1 for a tracer bead; empty if absent
   std::string provenance_json;       ///< provenance.hpp; empty if absent
+  std::string tracking_json;         ///< what the tracking of an experiment says of itself; empty if absent
 };
 
 /// One moment.
 struct Frame {
   static constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
 
-  std::int64_t step = 0;            ///< simulation step or camera frame number; strictly increasing
-  double time = 0;                  ///< t0
-  std::int32_t phase = -1;          ///< k in 0 .. N_k-1: at k/N_k of a cycle; -1 unknown
-  std::int64_t cycle = -1;          ///< j, from 0; -1 unknown
-  double plate_height = kNoHeight;  ///< z_b, sigma; NaN unknown
-  std::vector<Vec3> position;       ///< [n_beads], sigma; NaN where empty; not wrapped across periods
-  std::vector<Vec3> velocity;       ///< [n_beads] or empty, sigma/t0
+  std::int64_t step = 0;             ///< simulation step or camera frame number; strictly increasing
+  double time = 0;                   ///< t0
+  std::int32_t phase = -1;           ///< k in 0 .. N_k-1: at k/N_k of a cycle; -1 unknown
+  std::int64_t cycle = -1;           ///< j, from 0; -1 unknown
+  double plate_height = kNoHeight;   ///< z_b, sigma; NaN unknown
+  std::vector<Vec3> position;        ///< [n_beads], sigma; NaN where empty; not wrapped across periods
+  std::vector<Vec3> position_sigma;  ///< [n_beads] or empty, standard uncertainty of each coordinate, sigma;
+                                     ///< NaN where empty or not measured
+  std::vector<Vec3> velocity;  ///< [n_beads] or empty, sigma/t0
   std::vector<Vec3> spin;  ///< [n_beads] or empty, angular velocity, 1/t0. A disc's counter-clockwise spin
                            ///< omega in the (x right, z up) drawing is the vector (0, -omega, 0)
   std::vector<std::int64_t> id;  ///< [n_beads] or empty; slot number where filled, -1 where empty

@@ -1,0 +1,92 @@
+// link_cost TABLE DIAMETER PHASES [FALL] [MEMORY] [REPETITIONS] -> identities on TABLE.ids, one line of JSON.
+//
+// TABLE, little-endian: int64 frames; per frame int64 beads, then x, y as float64 for each. PHASES 0: the
+// linker is not told the phase of a frame. What link_peers.py drives beside other linkers.
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdint>
+#include <ctime>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "imaging/link.hpp"
+
+using namespace twincell;
+
+namespace {
+
+template <class T>
+T get(std::ifstream& in) {
+  T value{};
+  in.read(reinterpret_cast<char*>(&value), sizeof value);
+  return value;
+}
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 4) {
+    fmt::print(stderr, "usage: link_cost TABLE DIAMETER PHASES [FALL] [MEMORY] [REPETITIONS]\n");
+    return 2;
+  }
+  const std::string path = argv[1];
+  std::ifstream in(path, std::ios::binary);
+  std::vector<std::vector<PixelPoint>> frames(static_cast<std::size_t>(get<std::int64_t>(in)));
+  for (auto& frame : frames) {
+    frame.resize(static_cast<std::size_t>(get<std::int64_t>(in)));
+    for (PixelPoint& p : frame) {
+      p.x_px = get<double>(in);
+      p.y_px = get<double>(in);
+    }
+  }
+  if (!in) {
+    fmt::print(stderr, "link_cost: {} is missing or too short.\n", path);
+    return 3;
+  }
+  LinkOptions options{.diameter_px = std::stod(argv[2])};
+  const int phases = std::stoi(argv[3]);
+  if (argc > 4) options.fall_px = std::stod(argv[4]);
+  if (argc > 5) options.memory = std::stoi(argv[5]);
+  const int repetitions = argc > 6 ? std::stoi(argv[6]) : 1;
+
+  double best = 1e300;
+  LinkReport report;
+  for (int r = 0; r < repetitions; ++r) {
+    std::ofstream out;
+    if (r == 0) out.open(path + ".ids", std::ios::binary);
+    Linker linker(options, phases);
+    double seconds = 0;
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      FrameMoment moment;
+      if (phases > 0) {
+        moment.phase = static_cast<std::int32_t>(f % static_cast<std::size_t>(phases));
+        moment.cycle = static_cast<std::int64_t>(f / static_cast<std::size_t>(phases));
+      }
+      const double start = cpu_seconds();
+      const std::vector<std::int64_t> ids = linker.next(frames[f], moment);
+      seconds += cpu_seconds() - start;
+      if (r > 0) continue;
+      for (std::size_t k = 0; k < ids.size(); ++k) {
+        const std::int64_t record[2] = {ids[k], linker.ambiguous()[k]};
+        out.write(reinterpret_cast<const char*>(record), sizeof record);
+      }
+    }
+    best = std::min(best, seconds);
+    report = linker.total();
+  }
+  fmt::print(
+      R"({{"seconds": {}, "links": {}, "settled": {}, "bridged": {}, "ambiguous": {}, "births": {}, "losses": {}, )"
+      R"("networks": {}, "largest_network": {}, "unsolved": {}, "unclear_shifts": {}}})"
+      "\n",
+      best, report.links, report.settled, report.bridged, report.ambiguous, report.births, report.losses,
+      report.networks, report.largest_network, report.unsolved, report.unclear_shifts);
+}

@@ -1,0 +1,64 @@
+// A bouncing and a rearranging cell: simulated, filmed, tracked, as a user would; the truth is the
+// simulation's.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "analysis/trajectory/h5md_file.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace twincell;
+
+namespace {
+
+void write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path) << text;
+}
+
+std::string scene(const std::string& start, double gamma) {
+  return "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 10.0\n[beads]\ncount = 100\n[drive]\ngamma = " +
+         std::to_string(gamma) + "\n[start]\nkind = \"" + start +
+         "\"\nsettle_limit = 20.0\n[time]\nsteps_per_contact = 20\ndiscard = 1\ncycles = 3\nphases = 20\n";
+}
+
+}  // namespace
+
+TEST(Track, NoLinkIsWrongAtTwentyPhasesPerCycle) {
+  for (const auto& [start, gamma] : {std::pair{"crystal_a", 1.5}, {"random", 1.8}}) {
+    const TemporaryFolder folder;
+    write(folder / "scene.toml", scene(start, gamma));
+    ASSERT_EQ(run_program({"simulate", folder / "scene.toml", "-o", folder / "sim.h5", "-q"}).code, 0);
+    ASSERT_EQ(run_program({"render", folder / "sim.h5", "-o", folder / "frames", "-q"}).code, 0);
+    for (const std::string way : {"20", "found"}) {
+      const Ran ran = run_program({"track", folder / "frames", "-o", folder / "exp.h5", "--cell",
+                                   folder / "frames/CELL.toml", "--truth", folder / "frames/truth.csv",
+                                   "--phase-lock", way, "--json", "-q"});
+      ASSERT_EQ(ran.code, 0) << ran.err;
+      const auto said = nlohmann::json::parse(ran.out);
+      std::cout << start << ", Gamma " << gamma << ", phase lock " << way << ": " << said["truth"] << ' '
+                << said["phase_lock"] << ' ' << said["links"] << '\n';
+      EXPECT_GT(said["truth"]["links"], 5500);
+      EXPECT_EQ(said["truth"]["wrong_links"], 0);
+      EXPECT_EQ(said["phase_lock"]["frames_per_cycle"], 20);
+      EXPECT_EQ(said["phase_lock"]["first_phase"], 0) << "found, it is placed by the drive";
+      if (way != "found") continue;
+      EXPECT_EQ(said["phase_lock"]["dropped"], 0);
+      EXPECT_EQ(said["phase_lock"]["doubled"], 0);
+    }
+    EXPECT_TRUE(validate_h5md(folder / "exp.h5").empty());
+  }
+}
+
+TEST(Track, RefusesBadPhaseLocks) {
+  const TemporaryFolder folder;
+  const std::string stack = TWINCELL_SOURCE_DIR "/data_samples/demo/gamma-0.9";
+  for (const auto& [way, code] :
+       {std::pair<std::string, int>{"sometimes", 2}, {"-3", 2}, {folder / "none.csv", 3}}) {
+    const Ran ran = run_program({"track", stack, "-o", folder / "x.h5", "--phase-lock=" + way, "-q"});
+    EXPECT_EQ(ran.code, code) << way << ": " << ran.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.h5"));
+  }
+}
