@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
+#include "imaging/debug_pictures.hpp"
 #include "imaging/overlay.hpp"
 #include "imaging/pipeline.hpp"
 #include "imaging/score.hpp"
@@ -24,9 +26,10 @@ namespace twincell::cli {
 namespace {
 
 struct LocateOptions {
-  std::string stack, output, overlay, truth;
+  std::string stack, output, overlay, truth, candidates, debug_folder;
   std::vector<double> scored_rows;
   std::int64_t overlay_frame = 0;
+  bool dark = false;
   LocatorOptions locator;
 };
 
@@ -48,7 +51,44 @@ nlohmann::json as_json(const Score& s) {
           {"false_finds", s.false_finds}};
 }
 
+std::string candidate_row(const Detection& b, std::int64_t frame) {
+  return fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", frame, b.x, b.y, b.radius,
+                     b.darkness, b.interior, b.score, b.ring_share, word_of(b.verdict));
+}
+
+/// A table that appears whole or not at all; without a name, none.
+class TableFile {
+ public:
+  TableFile(const std::string& name, const char* heading) : name_(name) {
+    if (name.empty()) return;
+    path_.emplace(name);
+    out_.open(path_->part());
+    out_ << heading;
+  }
+  TableFile& operator<<(const std::string& text) {
+    if (path_) out_ << text;
+    return *this;
+  }
+  void commit() {
+    if (!path_) return;
+    out_.close();
+    if (!out_) throw RunError(name_ + ": cannot be written.");
+    path_->commit();
+  }
+
+ private:
+  std::string name_;
+  std::optional<AtomicPath> path_;
+  std::ofstream out_;
+};
+
 void run(LocateOptions& o, const Common& common) {
+  // Of one that a folder's name ends with a slash, the folder.
+  if (o.output.empty()) {
+    std::filesystem::path stack(o.stack);
+    if (stack.filename().empty()) stack = stack.parent_path();
+    o.output = stack.stem().string() + ".beads.csv";
+  }
   std::optional<std::vector<std::vector<TruthBead>>> truth;
   if (!o.truth.empty()) truth = read_truth(o.truth);
   ScoredRows rows;
@@ -61,27 +101,34 @@ void run(LocateOptions& o, const Common& common) {
     throw ConfigError(Where{.file = {}, .key = "--overlay-frame"},
                       fmt::format("{} was asked for, the stack has {} frames, counted from 0.",
                                   o.overlay_frame, announced));
-  AtomicPath table(o.output);
-  std::ofstream out(table.part());
-  out << kHeading;
+  TableFile table(o.output, kHeading);
+  TableFile candidates(o.candidates, "frame,x,y,radius,darkness,interior,score,ring_share,verdict\n");
   nlohmann::json document = {{"stack", o.stack}, {"output", o.output}, {"frames", nlohmann::json::array()}};
   std::string text;
   bool drawn = false;
   ProgressBar bar(common, "locate");
-  const bool estimated = o.locator.diameter_px <= 0;
+  const bool find_diameter = o.locator.diameter_px <= 0;
+  const bool find_polarity = !o.dark && !o.locator.preprocess.bright;
+  o.locator.polarity_known = !find_polarity;
+  constexpr std::int64_t kShown = 20;  // frames with a line of their own
   const std::int64_t n = locate_stack(
       *frames, o.locator, common.n_threads(),
       [&](std::int64_t frame, const cv::Mat& grey, const Located& located) {
-        for (const Detection& b : located.beads) out << row(b, frame);
+        for (const Detection& b : located.beads) table << row(b, frame);
+        for (const std::vector<Detection>* list : {&located.beads, &located.dropped})
+          for (const Detection& b : *list) candidates << candidate_row(b, frame);
         nlohmann::json f = {{"frame", frame}, {"beads", located.beads.size()}, {"blur_px", located.blur_px}};
-        text += fmt::format("frame {}: {} beads, edge blur {:.2f} px;", frame, located.beads.size(),
-                            located.blur_px);
+        std::string line = fmt::format("frame {}: {} beads, edge blur {:.2f} px;", frame,
+                                       located.beads.size(), located.blur_px);
         for (const StageReport& stage : located.stages) {
           f["stages"][stage.stage] = {{"ms", 1000 * stage.seconds}, {"beads", stage.beads}};
-          text += fmt::format(" {} {:.1f} ms", stage.stage, 1000 * stage.seconds);
-          if (stage.stage != "prepare") text += fmt::format(" ({})", stage.beads);
+          line += fmt::format(" {} {:.1f} ms", stage.stage, 1000 * stage.seconds);
+          if (stage.stage != "prepare") line += fmt::format(" ({})", stage.beads);
         }
-        text += "\n";
+        if (frame < kShown) text += line + "\n";
+        std::map<std::string, std::size_t> reasons;
+        for (const Detection& b : located.dropped) ++reasons[std::string(word_of(b.verdict))];
+        f["dropped"] = reasons;
         document["frames"].push_back(f);
         if (truth && static_cast<std::size_t>(frame) < truth->size()) {
           std::vector<FoundBead> found;
@@ -92,18 +139,27 @@ void run(LocateOptions& o, const Common& common) {
           write_overlay(o.overlay, grey, located.beads);
           drawn = true;
         }
+        if (!o.debug_folder.empty() && frame == o.overlay_frame)
+          write_debug_pictures(o.debug_folder, grey, o.locator);
       },
       bar);
-  out.close();
-  if (!out) throw RunError(o.output + ": cannot be written.");
   if (!o.overlay.empty() && !drawn)
     throw ConfigError(
         Where{.file = {}, .key = "--overlay-frame"},
         fmt::format("{} was asked for, the stack has {} frames, counted from 0.", o.overlay_frame, n));
   table.commit();
+  candidates.commit();
   document["diameter_px"] = o.locator.diameter_px;
-  if (estimated)
-    text += fmt::format("bead diameter estimated from the first frame: {:.2f} px\n", o.locator.diameter_px);
+  document["bright"] = o.locator.preprocess.bright;
+  if (n > kShown) text += fmt::format("... {} more frames\n", n - kShown);
+  if (find_diameter)
+    text += fmt::format("bead diameter found from the first frame: {:.2f} px (--diameter)\n",
+                        o.locator.diameter_px);
+  if (find_polarity)
+    text +=
+        fmt::format("beads are {} than what lies behind them, as the first frame shows (--dark, --bright)\n",
+                    o.locator.preprocess.bright ? "brighter" : "darker");
+  text += o.output + "\n";
   if (truth) {
     const Score s = scorer.score();
     document["truth"] = as_json(s);
@@ -120,20 +176,29 @@ void run(LocateOptions& o, const Common& common) {
 void add_locate(CLI::App& program, Common& common) {
   auto o = std::make_shared<LocateOptions>();
   CLI::App& verb = add_verb(program, common, "locate", "Beads in every frame of a stack",
-                            "twincell locate frames/ -o beads.csv --diameter 15 --overlay first.png");
+                            "twincell locate frames/ -o beads.csv --overlay first.png");
   verb.add_option("stack", o->stack,
                   "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
       ->required();
-  verb.add_option("-o,--output", o->output, "Bead table (CSV, trackpy's columns)")->required();
+  verb.add_option("-o,--output", o->output, "Bead table (CSV, trackpy's columns); absent: STACK.beads.csv");
+  verb.add_option("--candidates", o->candidates,
+                  "Every candidate of every frame, with why it was dropped (CSV)");
+  verb.add_option("--debug-dir", o->debug_folder,
+                  "Folder for pictures of what each stage made of --overlay-frame");
   verb.add_option("--overlay", o->overlay, "PNG of a frame with its beads marked");
   verb.add_option("--overlay-frame", o->overlay_frame, "Which frame, from 0")->check(CLI::NonNegativeNumber);
   verb.add_option("--diameter", o->locator.diameter_px,
-                  "Bead diameter, px; absent: estimated from the first frame")
+                  "Bead diameter, px; absent: found from the first frame")
       ->check(CLI::Range(3.0, 400.0));
   verb.add_option("--locator", o->locator.finder, "Finder")->check(CLI::IsMember(finder_names()));
   verb.add_option("--min-score", o->locator.find.min_score,
                   "Share of a circle's edge that must be seen, 0 .. 1");
-  verb.add_flag("--bright", o->locator.preprocess.bright, "Beads are brighter than what lies behind them");
+  verb.add_option("--refine", o->locator.refine.method, "exact: fit of the picture; fast: fit of the edges")
+      ->check(CLI::IsMember({"exact", "fast"}));
+  CLI::Option* bright = verb.add_flag("--bright", o->locator.preprocess.bright,
+                                      "Beads are brighter than what lies behind them");
+  verb.add_flag("--dark", o->dark, "Beads are darker; with neither, found from the first frame")
+      ->excludes(bright);
   verb.add_option("--truth", o->truth, "Score against truth.csv or a folder of truth_NN.csv");
   verb.add_option("--scored-rows", o->scored_rows, "First and last row that is scored, px")->expected(2);
   verb.callback([o, &common] { run(*o, common); });

@@ -10,6 +10,7 @@
 
 #include <concepts>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,7 +40,8 @@ concept CircleFinder = requires(const Prepared& image, const FindOptions& option
 /// How beads are located.
 struct LocatorOptions {
   std::string finder = "vote";  ///< one of finder_names()
-  double diameter_px = 0;       ///< bead diameter, 3 .. 400; 0: estimated from the first frame
+  double diameter_px = 0;       ///< bead diameter, 3 .. 400; 0: found from the first frame
+  bool polarity_known = true;   ///< preprocess.bright was said, not to be found from the first frame
   PreprocessOptions preprocess;
   FindOptions find;  ///< its radius is set from the diameter
   RefineOptions refine;
@@ -66,11 +68,33 @@ struct Located {
 /// Names that LocatorOptions::finder may take, the default first.
 std::vector<std::string> finder_names();
 
-/// Locates the beads in one grey frame. Pure; needs diameter_px > 0. \throws ConfigError as `check`
+/// What each stage made of a frame, as it is held.
+struct LocatorStages {
+  Prepared image;
+  std::vector<Proposal> proposals;
+  Refined refined;
+  Judged judged;
+  std::vector<StageReport> reports;
+};
+LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options);
+
+/// Locates the beads in one grey frame, turned as orientation.hpp says. Pure; needs diameter_px > 0. \throws
+/// ConfigError as `check`
 Located locate(const cv::Mat& grey, const LocatorOptions& options);
 
 /// Bead diameter (px) at which the gradient votes of a frame meet most sharply, sought between 6 and 80 px.
 /// Good to a few per cent for beads of one size. Returns 0 if nothing round stands out.
 double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options);
+
+/// What a frame says of how to locate its beads.
+struct FoundSettings {
+  double diameter_px = 0;
+  bool bright = false;   ///< beads are brighter than what lies behind them
+  double explained = 0;  ///< area of well explained discs over pi, px^2
+};
+
+/// Finds what `given` leaves open: the diameter, first from the votes, then as the median of the fitted beads
+/// until it stands; the polarity that explains more discs. None if nothing round stands out.
+std::optional<FoundSettings> find_settings(const cv::Mat& grey, const LocatorOptions& given);
 
 }  // namespace twincell

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "analysis/trajectory/error.hpp"
+#include "imaging/edge_fit.hpp"
 #include "imaging/hough_locator.hpp"
 #include "imaging/locator.hpp"
 #include "imaging/orientation.hpp"
@@ -73,6 +75,9 @@ void LocatorOptions::check() const {
   };
   range("diameter", diameter_px, 3, 400);
   range("min-score", find.min_score, 0.01, 1);
+  if (refine.method != "exact" && refine.method != "fast")
+    throw ConfigError(Where{.file = {}, .key = "refine"},
+                      fmt::format("is '{}'; it is \"exact\" or \"fast\".", refine.method));
   range("sweeps", refine.sweeps, 1, 100);
   range("tolerance", refine.tolerance_px, 1e-9, 1);
   range("ring", refine.ring_px, 1, 50);
@@ -88,31 +93,39 @@ void LocatorOptions::check() const {
                     fmt::format("there is no locator '{}'; there are: {}.", finder, names));
 }
 
-Located locate(const cv::Mat& picture, const LocatorOptions& options) {
+LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) {
   options.check();
   const double radius = options.diameter_px / 2;
-  Located result;
+  LocatorStages result;
   Stopwatch watch;
-  const Orientation way = canonical_orientation(picture);
-  const cv::Mat grey = way.turned(picture);
-  const Prepared image = prepare(grey, options.preprocess, radius);
-  result.stages.push_back({"prepare", watch.lap(), 0});
+  result.image = prepare(grey, options.preprocess, radius);
+  result.reports.push_back({"prepare", watch.lap(), 0});
   FindOptions wanted = options.find;
   wanted.radius_px = radius;
-  const std::vector<Proposal> proposals = find(options.finder, image, wanted);
-  result.stages.push_back({"find", watch.lap(), proposals.size()});
-  Refined refined = refine(image, proposals, radius, options.refine);
-  result.blur_px = refined.blur_px;
-  result.stages.push_back({"refine", watch.lap(), refined.beads.size()});
-  Judged judged = judge(std::move(refined.beads), radius, grey.cols, grey.rows, options.judge);
-  result.beads = std::move(judged.beads);
-  result.dropped = std::move(refined.dropped);
-  result.dropped.insert(result.dropped.end(), judged.dropped.begin(), judged.dropped.end());
+  result.proposals = find(options.finder, result.image, wanted);
+  result.reports.push_back({"find", watch.lap(), result.proposals.size()});
+  result.refined = options.refine.method == "fast"
+                       ? refine_by_edges(result.image, result.proposals, radius)
+                       : refine(result.image, result.proposals, radius, options.refine);
+  result.reports.push_back({"refine", watch.lap(), result.refined.beads.size()});
+  result.judged = judge(result.refined.beads, radius, grey.cols, grey.rows, options.judge);
+  result.reports.push_back({"judge", watch.lap(), result.judged.beads.size()});
+  return result;
+}
+
+Located locate(const cv::Mat& picture, const LocatorOptions& options) {
+  const Orientation way = canonical_orientation(picture);
+  LocatorStages stages = locate_stages(way.turned(picture), options);
+  Located result;
+  result.blur_px = stages.refined.blur_px;
+  result.beads = std::move(stages.judged.beads);
+  result.dropped = std::move(stages.refined.dropped);
+  result.dropped.insert(result.dropped.end(), stages.judged.dropped.begin(), stages.judged.dropped.end());
   for (std::vector<Detection>* list : {&result.beads, &result.dropped}) {
     for (Detection& d : *list) d = way.back(d, picture.size());
     sort_by_place(*list);
   }
-  result.stages.push_back({"judge", watch.lap(), result.beads.size()});
+  result.stages = std::move(stages.reports);
   return result;
 }
 
@@ -131,6 +144,40 @@ double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options) 
     }
   }
   return 2 * best_radius;
+}
+
+std::optional<FoundSettings> find_settings(const cv::Mat& grey, const LocatorOptions& given) {
+  constexpr int kRounds = 4;
+  constexpr double kClose = 0.01;  // relative change of the diameter at which it stands
+  constexpr double kGood = 0.8;    // score of a bead that tells of its size
+  constexpr std::size_t kEnough = 3;
+  std::optional<FoundSettings> best;
+  for (const bool bright : {false, true}) {
+    if (given.polarity_known && bright != given.preprocess.bright) continue;
+    LocatorOptions options = given;
+    options.preprocess.bright = bright;
+    options.diameter_px =
+        given.diameter_px > 0 ? given.diameter_px : estimate_diameter(grey, options.preprocess);
+    if (options.diameter_px < 3) continue;
+    double explained = 0;
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<double> radii;
+      explained = 0;
+      for (const Detection& b : locate(grey, options).beads) {
+        if (b.score < kGood) continue;
+        explained += b.score * b.radius * b.radius;
+        if (!b.edge) radii.push_back(b.radius);
+      }
+      if (given.diameter_px > 0 || radii.size() < kEnough) break;
+      const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+      std::nth_element(radii.begin(), middle, radii.end());
+      const double found = std::clamp(2 * *middle, 3.0, 400.0), change = found / options.diameter_px - 1;
+      options.diameter_px = found;
+      if (std::abs(change) < kClose) break;
+    }
+    if (!best || explained > best->explained) best = FoundSettings{options.diameter_px, bright, explained};
+  }
+  return best;
 }
 
 }  // namespace twincell

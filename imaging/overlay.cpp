@@ -32,18 +32,21 @@ cv::Mat3b draw_overlay(const cv::Mat& grey, const std::vector<Detection>& beads,
   return picture;
 }
 
-void write_overlay(const std::filesystem::path& png, const cv::Mat& grey,
-                   const std::vector<Detection>& beads) {
-  const int enlarge = std::clamp(1600 / std::max(grey.cols, 1), 1, 4);
+void write_png(const std::filesystem::path& png, const cv::Mat& picture) {
   std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", draw_overlay(grey, beads, enlarge), bytes))
-    throw RunError(png.string() + ": the overlay cannot be encoded as PNG.");
+  if (!cv::imencode(".png", picture, bytes))
+    throw RunError(png.string() + ": the picture cannot be encoded as PNG.");
   AtomicPath path(png);
   std::ofstream out(path.part(), std::ios::binary);
   out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   out.close();
   if (!out) throw RunError(png.string() + ": cannot be written.");
   path.commit();
+}
+
+void write_overlay(const std::filesystem::path& png, const cv::Mat& grey,
+                   const std::vector<Detection>& beads) {
+  write_png(png, draw_overlay(grey, beads, std::clamp(1600 / std::max(grey.cols, 1), 1, 4)));
 }
 
 }  // namespace twincell

@@ -60,12 +60,17 @@ std::int64_t locate_stack(FrameSource& frames, LocatorOptions& options, int thre
     for (cv::Mat frame; batch.size() < batch_size && (more = frames.next(frame)); frame = cv::Mat())
       batch.push_back(frame);
     if (batch.empty()) break;
-    if (options.diameter_px <= 0) {
-      options.diameter_px = estimate_diameter(batch.front(), options.preprocess);
-      if (options.diameter_px <= 0)
+    if (done == 0 && (options.diameter_px <= 0 || !options.polarity_known)) {
+      const auto found = find_settings(batch.front(), options);
+      if (!found && options.diameter_px <= 0)
         throw InputError(
             Where{.file = frames.current(), .key = {}},
             "shows no discs from which a bead diameter could be estimated; give it with --diameter.");
+      if (found) {
+        options.diameter_px = found->diameter_px;
+        options.preprocess.bright = found->bright;
+      }
+      options.polarity_known = true;
     }
     const std::vector<Located> results = locate_batch(batch, options, threads);
     for (std::size_t i = 0; i < batch.size(); ++i) sink(done++, batch[i], results[i]);

@@ -24,10 +24,10 @@ namespace twincell {
 using LocatedSink = std::function<void(std::int64_t frame, const cv::Mat& grey, const Located& located)>;
 
 /// Locates every frame of a stack, `threads` frames at a time; the sink is called in the order of the frames,
-/// by the calling thread, and sees the same whatever the number of threads. If options.diameter_px is 0 it is
-/// estimated from the first frame and written there. Memory: a few frames. \returns the number of frames
-/// \throws InputError if the stack holds no frame, cannot be read, or shows no discs to estimate a diameter
-/// from
+/// by the calling thread, and sees the same whatever the number of threads. What options leave open
+/// (diameter, polarity) is found from the first frame and written there. Memory: a few frames. \returns the
+/// number of frames \throws InputError if the stack holds no frame, cannot be read, or shows no discs to
+/// estimate a diameter from
 std::int64_t locate_stack(FrameSource& frames, LocatorOptions& options, int threads, const LocatedSink& sink,
                           Progress& progress = Progress::none());
 

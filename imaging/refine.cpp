@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "imaging/coupled_step.hpp"
+#include "imaging/disc_measures.hpp"
 #include "imaging/disc_sums.hpp"
 
 namespace twincell {
@@ -83,9 +84,9 @@ class PictureFit {
     b.darkness = beliefs_[1].mean;
     // A proposal that is bright inside is a void or a clear bead, one with its centre in a wall is the wall's
     // edge; fitted along, they would spoil their neighbours.
-    if (in_wall(b))
+    if (in_wall(image_, b))
       drop(b, Verdict::in_wall);
-    else if (middle(b) < kMinInterior)
+    else if (rough_interior(image_, b) < kMinInterior)
       drop(b, Verdict::bright_inside);
     else
       beads_.push_back(b);
@@ -404,75 +405,7 @@ class PictureFit {
     const double total = n > 0 ? s.seen_squares - s.seen * s.seen / n : 0;
     b.score = total > 0 ? std::clamp(1 - s.residual_squares / total, 0.0, 1.0) : 0;
     b.ring_share = n / (4 * std::numbers::pi * b.radius * options_.ring_px);
-    b.interior = interior(b);
-    take_moments(b);
-  }
-  /// Brightness and shape as trackpy's users know them, over the disc about its fitted centre.
-  void take_moments(Detection& b) const {
-    double xx = 0, xy = 0, yy = 0, mass = 0, raw = 0, signal = 0;
-    over_disc(b, b.radius, [&](int y, int first, int last) {
-      const float* d = image_.darkness[y];
-      const SurfaceRow light = surface_row(image_.light, y, size_);
-      const double dy = y - b.y;
-      for (int x = first; x <= last; ++x) {
-        const double dx = x - b.x, v = std::max(0.0, static_cast<double>(d[x]));
-        mass += v;
-        raw += v * static_cast<double>(light.at(x));
-        signal = std::max(signal, v);
-        xx += v * dx * dx;
-        xy += v * dx * dy;
-        yy += v * dy * dy;
-      }
-    });
-    b.mass = mass;
-    b.raw_mass = raw;
-    b.signal = signal;
-    if (mass <= 0) return;
-    b.size = std::sqrt((xx + yy) / mass);
-    const double spread = std::hypot(xx - yy, 2 * xy), sum = xx + yy;
-    b.ecc = sum + spread > 0 ? std::sqrt(2 * spread / (sum + spread)) : 0;
-  }
-  /// Median darkness inside R/2.
-  [[nodiscard]] double interior(const Detection& b) const {
-    inside_.clear();
-    over_disc(b, std::max(0.5 * b.radius, 1.0), [&](int y, int first, int last) {
-      inside_.insert(inside_.end(), image_.darkness[y] + first, image_.darkness[y] + last + 1);
-    });
-    if (inside_.empty()) return b.darkness;  // centre outside the frame: the rim speaks for it
-    const auto half = inside_.begin() + static_cast<std::ptrdiff_t>(inside_.size() / 2);
-    std::nth_element(inside_.begin(), half, inside_.end());
-    return static_cast<double>(*half);
-  }
-  /// Calls use(row, first, last) for the pixels of the frame nearer than `reach` to the centre.
-  template <class Use>
-  void over_disc(const Detection& b, double reach, Use&& use) const {
-    const int last_row = std::min(size_.height - 1, cvFloor(b.y + reach));
-    for (int y = std::max(0, cvCeil(b.y - reach)); y <= last_row; ++y) {
-      const double half = std::sqrt(std::max(0.0, reach * reach - (y - b.y) * (y - b.y)));
-      const int first = std::max(0, cvCeil(b.x - half)),
-                last = std::min(size_.width - 1, cvFloor(b.x + half));
-      if (first <= last) use(y, first, last);
-    }
-  }
-  /// Median of nine pixels inside R/2.
-  [[nodiscard]] double middle(const Detection& b) const {
-    std::array<float, 9> v{};
-    std::ptrdiff_t n = 0;
-    const int away = std::max(1, cvFloor(0.4 * b.radius));
-    for (int dy = -away; dy <= away; dy += away)
-      for (int dx = -away; dx <= away; dx += away) {
-        const int x = cvRound(b.x) + dx, y = cvRound(b.y) + dy;
-        if (x >= 0 && y >= 0 && x < size_.width && y < size_.height)
-          v[static_cast<std::size_t>(n++)] = image_.darkness(y, x);
-      }
-    if (n == 0) return b.darkness;  // outside the frame: the rim will speak for it
-    std::nth_element(v.begin(), v.begin() + n / 2, v.begin() + n);
-    return static_cast<double>(v[static_cast<std::size_t>(n / 2)]);
-  }
-  [[nodiscard]] bool in_wall(const Detection& b) const {
-    const cv::Point at(cvRound(b.x), cvRound(b.y));
-    const cv::Mat1b& walls = image_.opaque;
-    return cv::Rect(0, 0, walls.cols, walls.rows).contains(at) && walls(at) != 0;
+    measure_disc(image_, b);
   }
 
   const Prepared& image_;
@@ -497,7 +430,6 @@ class PictureFit {
   bool restless_ = true;  // the last step was a large one
   int sweeps_ = 0;
   std::vector<Coupling> couplings_;  // empty after the set of beads was changed
-  mutable std::vector<float> inside_;
 };
 
 }  // namespace

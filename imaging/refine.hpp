@@ -14,6 +14,7 @@
 /// When not to use: translucent discs with bright cores, or discs that overlap in projection.
 
 #include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
 #include "imaging/detection.hpp"
@@ -23,11 +24,12 @@ namespace twincell {
 
 /// How the fit is done.
 struct RefineOptions {
-  int sweeps = 30;              ///< at most, 1 .. 1000
-  double tolerance_px = 2e-3;   ///< a sweep that moves no bead further is the last, > 0
-  double ring_px = 3;           ///< half width of the ring, > 1
-  double blur_px = 0;           ///< edge blur s; 0: fitted
-  double radius_spread = 0.06;  ///< prior: relative scatter of the radii about the given one, > 0
+  std::string method = "exact";  ///< "exact": this fit; "fast": edge_fit.hpp
+  int sweeps = 30;               ///< at most, 1 .. 1000
+  double tolerance_px = 2e-3;    ///< a sweep that moves no bead further is the last, > 0
+  double ring_px = 3;            ///< half width of the ring, > 1
+  double blur_px = 0;            ///< edge blur s; 0: fitted
+  double radius_spread = 0.06;   ///< prior: relative scatter of the radii about the given one, > 0
 };
 
 /// Result of a refinement.
