@@ -254,7 +254,8 @@ struct Sums {
     for (int m = 0; m < kSome; ++m) s.br[static_cast<std::size_t>(m)] += total(br[m]);
     for (int m = 0; m < kF; ++m)
       for (int c = 0; c < kSome; ++c)
-        s.jb[static_cast<std::size_t>(RingSums::kBlurs * m + c)] += total(jb[kSome * m + c]);
+        s.jb[std::size_t{RingSums::kBlurs} * static_cast<std::size_t>(m) + static_cast<std::size_t>(c)] +=
+            total(jb[kSome * m + c]);
   }
 
   static HWY_INLINE double total(V v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(Tag(), v))); }

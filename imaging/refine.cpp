@@ -95,6 +95,7 @@ class PictureFit {
   struct Moved {
     double most, rms, sigma;  ///< px; sigma: what a typical bead's place is uncertain by
     bool short_step;          ///< says nothing of how far there is to go
+    double blur = 0;          ///< share by which s^2 changed
   };
 
   /// One Gauss-Newton step of all discs, and of the blur. The order of the beads does not matter. A step that
@@ -156,7 +157,9 @@ class PictureFit {
     }
   }
 
-  /// Divides the light by a quadratic surface, so that what is left in the gaps between the discs vanishes.
+  /// Divides the light by a quadratic surface, so that what is left in the gaps between the discs vanishes. A
+  /// rim that is not yet in its place leaves something too: taken for light, it moved touching beads by 0.004
+  /// px, so pixels count by the sixteenth power of the light that the model leaves them.
   void level() {
     constexpr double kSamples = 10000;
     constexpr int kEnough = 200;
@@ -166,17 +169,21 @@ class PictureFit {
     const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size_.area()) / kSamples)));
     const double far = ring_args().huber;
     int n = 0;
+    double weights = 0;
     for (int y = 0; y < size_.height; y += stride)
       for (int x = y / stride % 2; x < size_.width; x += stride) {
         const double t = static_cast<double>(model_(y, x)), left = static_cast<double>(picture_(y, x)) - t;
         if (t > 0.7 || std::abs(left) > far) continue;
-        const Surface f = (1 - t) * surface_basis(x, y, size_);
-        a += f * f.transpose();
-        right += left * f;
+        const double light = std::max(0.0, 1 - t), light4 = light * light * light * light;
+        const double weight = light4 * light4 * light4 * light4;
+        const Surface f = light * surface_basis(x, y, size_);
+        a += weight * f * f.transpose();
+        right += weight * left * f;
+        weights += weight;
         ++n;
       }
     if (n < kEnough) return;
-    a.diagonal().tail<5>().array() += 1e-3 * n;
+    a.diagonal().tail<5>().array() += 1e-3 * weights;
     const Surface q = a.ldlt().solve(right);
     for (int y = 0; y < size_.height; ++y) {
       float* d = picture_[y];
@@ -239,7 +246,9 @@ class PictureFit {
       if (n_ == 0) return;
       Eigen::Matrix<double, kFitted, 3> c;
       for (int m = 0; m < kFitted; ++m)
-        for (int q = 0; q < 3; ++q) c(m, q) = s.jb[static_cast<std::size_t>(RingSums::kBlurs * m + q)];
+        for (int q = 0; q < 3; ++q)
+          c(m, q) =
+              s.jb[std::size_t{RingSums::kBlurs} * static_cast<std::size_t>(m) + static_cast<std::size_t>(q)];
       Eigen::Matrix<double, kFitted, 3> followed = Eigen::Matrix<double, kFitted, 3>::Zero();
       const Eigen::LLT<Normal> solver(block);
       for (int q = 0; q < n_; ++q) followed.col(q) = solver.solve(c.col(q));
@@ -249,11 +258,13 @@ class PictureFit {
         right_[m] += s.br[static_cast<std::size_t>(m)] - followed.col(m).dot(right);
       }
     }
-    void apply(EdgeBlur& blur) const {
+    /// \returns by what share s^2 changed
+    double apply(EdgeBlur& blur) const {
       constexpr double kLeast = 0.09, kMost = 9;
-      if (n_ != 1 || normal_(0, 0) <= 0) return;
+      if (n_ != 1 || normal_(0, 0) <= 0) return 0;
       const double old = blur.variance, step = right_[0] / normal_(0, 0);
       blur.variance = std::clamp(old + std::clamp(step, -0.5 * old, old), kLeast, kMost);
+      return std::abs(blur.variance / old - 1);
     }
 
    private:
@@ -335,7 +346,7 @@ class PictureFit {
       moved.rms = std::sqrt(moved.rms / static_cast<double>(2 * (most + 1)));
       moved.sigma = median_of(std::move(sigma));
     }
-    blur.apply(blur_);
+    moved.blur = blur.apply(blur_);
     stale_ = true;
     return moved;
   }
@@ -442,18 +453,21 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
   constexpr int kLeast = 3;
   constexpr double kEnough =
       0.25;  // of what a place is uncertain by: the next sweep would move a third of that
+  constexpr double kBlurSettled = 0.03;  // of s^2: moves no touching bead by more than its error
   int sweeps = 0;
+  bool blurred = false;
   while (sweeps < options.sweeps) {
-    const auto moved = fit.sweep(sweeps < 4 ? blur : BlurFit::none);
+    const auto moved = fit.sweep(blurred ? BlurFit::none : blur);
     ++sweeps;
+    blurred = blurred || (sweeps >= 4 && !moved.short_step && moved.blur < kBlurSettled);
     if (sweeps == 1) {
       fit.expect_alike();
     }
-    if (sweeps <= 2) fit.level();
+    if (sweeps <= 3) fit.level();
     if (sweeps == 2) fit.add_missed();
     if (sweeps == 3) fit.learn_beliefs();
-    if (sweeps >= kLeast && !moved.short_step && moved.rms < kEnough * moved.sigma &&
-        moved.most < std::max(options.tolerance_px, 3 * moved.sigma))
+    if (sweeps >= kLeast && !moved.short_step && moved.blur < kBlurSettled &&
+        moved.rms < kEnough * moved.sigma && moved.most < std::max(options.tolerance_px, 3 * moved.sigma))
       break;
   }
   return fit.result();

@@ -58,7 +58,7 @@ struct Frame {
   std::vector<Vec3> position;        ///< [n_beads], sigma; NaN where empty; not wrapped across periods
   std::vector<Vec3> position_sigma;  ///< [n_beads] or empty, standard uncertainty of each coordinate, sigma;
                                      ///< NaN where empty or not measured
-  std::vector<Vec3> velocity;  ///< [n_beads] or empty, sigma/t0
+  std::vector<Vec3> velocity;        ///< [n_beads] or empty, sigma/t0
   std::vector<Vec3> spin;  ///< [n_beads] or empty, angular velocity, 1/t0. A disc's counter-clockwise spin
                            ///< omega in the (x right, z up) drawing is the vector (0, -omega, 0)
   std::vector<std::int64_t> id;  ///< [n_beads] or empty; slot number where filled, -1 where empty

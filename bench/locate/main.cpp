@@ -23,11 +23,12 @@
 #include <set>
 #include <sstream>
 
-#include "bench/locate/cases.hpp"
 #include "bench/locate/contestants.hpp"
-#include "bench/locate/marks.hpp"
+#include "imaging/rendered/cases.hpp"
+#include "imaging/rendered/marks.hpp"
 
 using namespace twincell::bench;
+using namespace twincell::rendered;
 namespace fs = std::filesystem;
 
 namespace {

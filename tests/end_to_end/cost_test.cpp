@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/program.hpp"
@@ -54,11 +55,45 @@ TEST(Cost, SaysWhatAccuracyCosts) {
                                       "work_precision.png", "work_precision.svg"}));
 }
 
+TEST(Cost, SaysWhatLocatingCosts) {
+  const TemporaryFolder folder;
+  const Ran ran =
+      run_program({"cost", "locate", "--quick", "--json", "-q", "--accuracy", "0.02", "-o", folder / "cost"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.err, "");
+  const auto d = nlohmann::json::parse(ran.out);
+  double last = 0, worst = 1e9;
+  ASSERT_GE(d["front"].size(), 2U);
+  for (const auto& p : d["front"]) {
+    EXPECT_GT(p["ms_per_frame"], last);
+    EXPECT_LT(p["rms_px"], worst);
+    last = p["ms_per_frame"];
+    worst = p["rms_px"];
+  }
+  for (const auto& p : d["settings"]) {
+    const double rms = p["rms_px"], diameter = p["diameter_px"];
+    EXPECT_NEAR(p["s_b_noise"]["one_tracer"], rms / diameter * std::sqrt(0.95), 1e-12);
+    if (p["sweeps"] == 30 && p["refine"] == "exact" && p["finder"] == "vote") {
+      EXPECT_EQ(p["recall"], 1);
+      EXPECT_EQ(p["precision"], 1);
+      EXPECT_GE(p["rms_over_bound"], 0.8);  // 200 beads: 3.5 % of scatter
+      EXPECT_LE(p["rms_over_bound"], 1.3);
+    }
+  }
+  ASSERT_EQ(d["cheapest"].size(), 2U);
+  for (const auto& c : d["cheapest"]) EXPECT_LE(c["setting"]["rms_px"], 0.02);
+  EXPECT_EQ(
+      names_in(folder / "cost"),
+      (std::vector<std::string>{"locating.dat", "locating.gp", "locating.png", "locating.svg", "table.txt"}));
+}
+
 TEST(Cost, RefusesBeforeItMeasures) {
   const TemporaryFolder folder;
   for (const std::vector<std::string>& words : {std::vector<std::string>{"cost"},
                                                 {"cost", "imaging"},
                                                 {"cost", "sim", "--accuracy", "0"},
+                                                {"cost", "locate", "--accuracy", "-0.01"},
+                                                {"cost", "locate", "--accuracy", "1e9"},
                                                 {"cost", "sim", "--accuracy", "nan"},
                                                 {"cost", "sim", "-o", folder / "no/such/place"}}) {
     const Ran ran = run_program(words);

@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "bench/locate/picture.hpp"
+#include "imaging/rendered/picture.hpp"
 
-namespace twincell::bench {
+namespace twincell::rendered {
 
 /// One disc per radius, nearest neighbours at least two px apart: a square grid over the whole room, each
 /// disc moved at random by what is free.
@@ -23,4 +23,4 @@ std::vector<Disc> hexagonal(std::size_t count, double radius, cv::Rect2d room, s
 /// overlaps.
 std::vector<Disc> deposited(const std::vector<double>& radii, cv::Rect2d room, std::mt19937_64& random);
 
-}  // namespace twincell::bench
+}  // namespace twincell::rendered

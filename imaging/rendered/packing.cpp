@@ -1,4 +1,4 @@
-#include "bench/locate/packing.hpp"
+#include "imaging/rendered/packing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-namespace twincell::bench {
+namespace twincell::rendered {
 
 namespace {
 
@@ -158,4 +158,4 @@ std::vector<Disc> deposited(const std::vector<double>& radii, cv::Rect2d room, s
   return discs;
 }
 
-}  // namespace twincell::bench
+}  // namespace twincell::rendered

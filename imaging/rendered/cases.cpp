@@ -1,12 +1,12 @@
-#include "bench/locate/cases.hpp"
+#include "imaging/rendered/cases.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "bench/locate/packing.hpp"
+#include "imaging/rendered/packing.hpp"
 
-namespace twincell::bench {
+namespace twincell::rendered {
 
 namespace {
 
@@ -177,4 +177,4 @@ const std::vector<Case>& cases() {
   return kCases;
 }
 
-}  // namespace twincell::bench
+}  // namespace twincell::rendered

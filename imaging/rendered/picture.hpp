@@ -14,7 +14,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace twincell::bench {
+namespace twincell::rendered {
 
 constexpr double kReadShare =
     0.25;  ///< of the variance of the back-light: read noise; the rest is shot noise
@@ -51,4 +51,4 @@ cv::Mat1b expose(const cv::Mat1d& expected, const Picture& picture, double snr, 
 /// rim. The rest (their neighbours, blur, light, path, glare) is taken as known.
 std::vector<double> cramer_rao_bound(const cv::Mat1d& expected, const Picture& picture, double snr);
 
-}  // namespace twincell::bench
+}  // namespace twincell::rendered

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/locate/picture.hpp"
+#include "imaging/rendered/picture.hpp"
 
-namespace twincell::bench {
+namespace twincell::rendered {
 
 /// Gathers the frames of one case, noise level and method.
 class Marks {
@@ -44,4 +44,4 @@ class Marks {
   double bounds_ = 0;  // sum of squares
 };
 
-}  // namespace twincell::bench
+}  // namespace twincell::rendered

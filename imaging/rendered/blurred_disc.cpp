@@ -1,10 +1,10 @@
-#include "bench/locate/blurred_disc.hpp"
+#include "imaging/rendered/blurred_disc.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace twincell::bench {
+namespace twincell::rendered {
 
 namespace {
 
@@ -74,4 +74,4 @@ double BlurredDisc::by_radius(double r) const {
   return (1 - f) * by_radius_[i] + f * by_radius_[i + 1];
 }
 
-}  // namespace twincell::bench
+}  // namespace twincell::rendered

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/locate/picture.hpp"
+#include "imaging/rendered/picture.hpp"
 
-namespace twincell::bench {
+namespace twincell::rendered {
 
 struct Case {
   std::string name;
@@ -21,4 +21,4 @@ struct Case {
 /// To add a case: one entry in the list in cases.cpp.
 const std::vector<Case>& cases();
 
-}  // namespace twincell::bench
+}  // namespace twincell::rendered

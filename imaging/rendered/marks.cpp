@@ -1,11 +1,11 @@
-#include "bench/locate/marks.hpp"
+#include "imaging/rendered/marks.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
-namespace twincell::bench {
+namespace twincell::rendered {
 
 void Marks::add(const Picture& picture, const std::vector<cv::Point2d>& found,
                 const std::vector<double>& bound) {
@@ -79,4 +79,4 @@ Marks::Summary Marks::summary() const {
   return s;
 }
 
-}  // namespace twincell::bench
+}  // namespace twincell::rendered

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-namespace twincell::bench {
+namespace twincell::rendered {
 
 class BlurredDisc {
  public:
@@ -27,4 +27,4 @@ class BlurredDisc {
   std::vector<double> value_, slope_, by_radius_;  // on a grid from first_, step kStep: cubic Hermite between
 };
 
-}  // namespace twincell::bench
+}  // namespace twincell::rendered

@@ -1,4 +1,4 @@
-#include "bench/locate/picture.hpp"
+#include "imaging/rendered/picture.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -9,9 +9,9 @@
 #include <numbers>
 #include <random>
 
-#include "bench/locate/blurred_disc.hpp"
+#include "imaging/rendered/blurred_disc.hpp"
 
-namespace twincell::bench {
+namespace twincell::rendered {
 
 namespace {
 
@@ -218,4 +218,4 @@ std::vector<double> cramer_rao_bound(const cv::Mat1d& expected, const Picture& p
   return bound;
 }
 
-}  // namespace twincell::bench
+}  // namespace twincell::rendered

@@ -1,0 +1,285 @@
+#include "cli/cost_locate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "imaging/locating_cost.hpp"
+
+namespace twincell::cli {
+
+namespace {
+
+constexpr std::array kSweeps = {0, 1, 2, 3, 4, 6, 30};
+constexpr std::array kQuickSweeps = {0, 2, 30};
+constexpr std::array kRings = {1.5, 2.0, 4.0, 5.0};
+constexpr std::array kDiameters = {6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0};
+constexpr std::array kQuickDiameters = {8.0, 15.0};
+constexpr std::array kNoise = {164.0, 51.0, 18.5, 8.5};
+constexpr std::array kQuickNoise = {51.0, 18.5};
+const LocateSetting kUsual{};
+constexpr int kTracers = 20, kPhases = 20;  // a line of them, Fortini & Huang 2015; least phases a cycle
+
+struct Measured {
+  std::vector<LocatePrecision> all;
+  LocateScene scene;
+  double accuracy;
+
+  template <class Takes>
+  [[nodiscard]] std::vector<LocatePrecision> those(const Takes& takes) const {
+    std::vector<LocatePrecision> some;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(some),
+                 [&](const LocatePrecision& p) { return takes(p.setting); });
+    return some;
+  }
+  [[nodiscard]] std::vector<double> noise() const {
+    std::vector<double> levels;
+    for (const LocatePrecision& p : all)
+      if (std::find(levels.begin(), levels.end(), p.setting.snr) == levels.end())
+        levels.push_back(p.setting.snr);
+    return levels;
+  }
+};
+
+bool is_usual_picture(const LocateSetting& s) {
+  return s.diameter_px == kUsual.diameter_px && s.snr == kUsual.snr;
+}
+bool is_usual_way(const LocateSetting& s) {
+  return s.finder == kUsual.finder && s.ring_px == kUsual.ring_px && s.method == kUsual.method;
+}
+
+std::vector<LocateSetting> settings(bool quick) {
+  std::vector<LocateSetting> all;
+  const auto add = [&](const LocateSetting& s) {
+    if (std::find(all.begin(), all.end(), s) == all.end()) all.push_back(s);
+  };
+  const auto ladder = [&](LocateSetting s, const auto& sweeps) {
+    for (const int n : sweeps) {
+      s.sweeps = n;
+      add(s);
+    }
+  };
+  const auto grid = [&](const auto& sweeps, const auto& noise, const auto& diameters) {
+    ladder(kUsual, sweeps);
+    for (const double snr : noise) ladder({.snr = snr}, sweeps);
+    for (const double d : diameters) ladder({.diameter_px = d}, sweeps);
+  };
+  if (quick)
+    grid(kQuickSweeps, kQuickNoise, kQuickDiameters);
+  else
+    grid(kSweeps, kNoise, kDiameters);
+  for (const LocateSetting& s : std::vector(all))
+    add({.method = "fast", .diameter_px = s.diameter_px, .snr = s.snr});
+  for (const int n : {0, 30}) add({.finder = "hough", .sweeps = n});
+  if (!quick)
+    for (const double ring : kRings) add({.ring_px = ring});
+  return all;
+}
+
+std::string way(const LocateSetting& s) {
+  if (s.sweeps == 0) return s.finder + " alone";
+  if (s.method == "fast") return s.finder + ", fast";
+  std::string w = fmt::format(
+      "{}, {}", s.finder,
+      s.sweeps == kUsual.sweeps ? "fit" : fmt::format("{} sweep{}", s.sweeps, s.sweeps == 1 ? "" : "s"));
+  if (s.ring_px != kUsual.ring_px) w += fmt::format(", ring {:g}", s.ring_px);
+  return w;
+}
+
+nlohmann::json as_json(const LocatePrecision& p) {
+  const LocateSetting& s = p.setting;
+  return {{"finder", s.finder},
+          {"refine", s.sweeps == 0 ? "none" : s.method},
+          {"sweeps", s.sweeps},
+          {"ring_px", s.ring_px},
+          {"diameter_px", s.diameter_px},
+          {"snr", s.snr},
+          {"recall", p.recall},
+          {"precision", p.precision},
+          {"rms_px", p.rms},
+          {"bound_px", p.bound},
+          {"rms_over_bound", p.rms / p.bound},
+          {"bias_px", {p.bias_x, p.bias_y}},
+          {"locking_px", p.locking},
+          {"locking_by_chance_px", p.locking_by_chance},
+          {"ms_per_frame", 1e3 * p.seconds},
+          {"s_b_noise",
+           {{"one_tracer", bed_displacement_noise(p.relative(), 1, 1, kPhases)},
+            {"tracers", bed_displacement_noise(p.relative(), kTracers, 1, kPhases)}}}};
+}
+
+nlohmann::json as_json(const Measured& m) {
+  nlohmann::json d = {{"what", "locate"},
+                      {"scene",
+                       {{"beads", m.scene.beads},
+                        {"width_beads", m.scene.width},
+                        {"height_beads", m.scene.height},
+                        {"frames", m.scene.frames}}},
+                      {"accuracy_px", m.accuracy},
+                      {"s_b_threshold", 1.0 / 30},
+                      {"tracers", kTracers},
+                      {"phases", kPhases}};
+  for (const LocatePrecision& p : m.all) d["settings"].push_back(as_json(p));
+  d["front"] = nlohmann::json::array();
+  for (const LocatePrecision& p : front(m.all, kUsual.diameter_px, kUsual.snr))
+    d["front"].push_back(as_json(p));
+  for (const double snr : m.noise()) {
+    const auto best = cheapest(m.all, kUsual.diameter_px, snr, m.accuracy);
+    d["cheapest"].push_back({{"snr", snr}, {"setting", best ? as_json(*best) : nlohmann::json()}});
+  }
+  return d;
+}
+
+std::string table(const std::vector<LocatePrecision>& rows) {
+  std::string s =
+      fmt::format("  {:<22} {:>4} {:>5}  {:>7} {:>9}  {:>8} {:>8} {:>6}  {:>17}  {:>8}  {:>8}\n", "way", "px",
+                  "SNR", "recall", "precision", "rms", "bound", "ratio", "bias", "locking", "ms");
+  for (const LocatePrecision& p : rows)
+    s += fmt::format(
+        "  {:<22} {:>4g} {:>5g}  {:>7.4f} {:>9.4f}  {:>8.5f} {:>8.5f} {:>6.2f}  {:>+8.5f} {:>+8.5f}  "
+        "{:>8.5f}  {:>8.1f}\n",
+        way(p.setting), p.setting.diameter_px, p.setting.snr, p.recall, p.precision, p.rms, p.bound,
+        p.rms / p.bound, p.bias_x, p.bias_y, p.locking, 1e3 * p.seconds);
+  return s;
+}
+
+std::string as_text(const Measured& m) {
+  std::string s = fmt::format(
+      "What accuracy costs in time. {} touching beads in a frame {} x {} beads; {} such frames.\n"
+      "rms: error per coordinate, px; bound: Cramér-Rao, px; bias in x and y, px; locking to pixels, px; "
+      "processor ms a frame,\none thread. \"fit\" sweeps until nothing moves.\n\n",
+      m.scene.beads, m.scene.width, m.scene.height, m.scene.frames);
+  s += table(m.those(is_usual_picture));
+  s += "\nOther noise\n" + table(m.those([](const LocateSetting& o) {
+         return o.diameter_px == kUsual.diameter_px && o.snr != kUsual.snr;
+       }));
+  s += "\nOther pixels per bead\n" +
+       table(m.those([](const LocateSetting& o) { return o.diameter_px != kUsual.diameter_px; }));
+  s += fmt::format(
+           "\nFront, {:g} px, SNR {:g}: of those that find every bead, no other is both cheaper and better\n",
+           kUsual.diameter_px, kUsual.snr) +
+       table(front(m.all, kUsual.diameter_px, kUsual.snr));
+  s += fmt::format("\nCheapest with an rms of at most {:g} px, {:g} px per bead\n", m.accuracy,
+                   kUsual.diameter_px);
+  for (const double snr : m.noise()) {
+    const auto best = cheapest(m.all, kUsual.diameter_px, snr, m.accuracy);
+    s += best ? fmt::format("  SNR {:>5g}: {} ({:.4f} px), {:.1f} ms a frame\n", snr, way(best->setting),
+                            best->rms, 1e3 * best->seconds)
+              : fmt::format("  SNR {:>5g}: none of those measured\n", snr);
+  }
+  s += fmt::format(
+      "\nWhat is left of s_b for a bed at rest, in percent of sigma/30, one cycle of {} phases\n"
+      "  {:>4} {:>5}  {:<12} {:>12} {:>12}\n",
+      kPhases, "px", "SNR", "way", "one tracer", fmt::format("{} tracers", kTracers));
+  for (const LocatePrecision& p : m.all) {
+    const LocateSetting& o = p.setting;
+    if (!is_usual_way(o) || (o.sweeps != 0 && o.sweeps != kUsual.sweeps)) continue;
+    s += fmt::format("  {:>4g} {:>5g}  {:<12} {:>12.2f} {:>12.2f}\n", o.diameter_px, o.snr, way(o),
+                     3000 * bed_displacement_noise(p.relative(), 1, 1, kPhases),
+                     3000 * bed_displacement_noise(p.relative(), kTracers, 1, kPhases));
+  }
+  return s;
+}
+
+/// Three panels: ways of locating, noise, pixels per bead; a level line of a curve's colour is its bound.
+class Panels {
+ public:
+  explicit Panels(std::string name) : name_(std::move(name)) {}
+  void next() { clauses_.emplace_back(); }
+  void curve(const std::vector<LocatePrecision>& points, const std::string& title, const char* colour,
+             int shape, bool relative, bool line = true) {
+    if (points.empty()) return;
+    data_ += fmt::format("# {}: ms a frame, rms, bound, sweeps\n", title);
+    for (const LocatePrecision& p : points) {
+      const double unit = relative ? p.setting.diameter_px : 1;
+      data_ += fmt::format("{:.4g} {:.4e} {:.4e} {}\n", 1e3 * p.seconds, p.rms / unit, p.bound / unit,
+                           p.setting.sweeps);
+    }
+    data_ += "\n\n";
+    add(fmt::format("'{}.dat' index {} using 1:2 with {} pt {} ps 0.9 lw 2 lc rgb '{}' title '{}'", name_,
+                    index_, line ? "linespoints" : "points", shape, colour, title));
+    if (line)
+      add(fmt::format("'{}.dat' index {} using 1:3 with lines lw 1 dt 2 lc rgb '{}' notitle", name_, index_,
+                      colour));
+    ++index_;
+  }
+  [[nodiscard]] const std::string& data() const { return data_; }
+  [[nodiscard]] const std::string& clauses(std::size_t panel) const { return clauses_[panel]; }
+
+ private:
+  void add(const std::string& clause) { clauses_.back() += (clauses_.back().empty() ? "" : ", ") + clause; }
+  std::string name_, data_;
+  std::vector<std::string> clauses_;
+  int index_ = 0;
+};
+
+Figure figure(const Measured& m) {
+  // Okabe and Ito's colours, as in all figures; each has a shape of its own as well.
+  constexpr std::array<const char*, 7> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                   "#E69F00", "#56B4E9", "#000000"};
+  constexpr std::array<int, 7> kShapes = {7, 9, 5, 11, 13, 6, 4};
+  Figure f{.name = "locating", .title = "What accuracy costs in time", .width = 1260, .height = 440};
+  Panels panels(f.name);
+  panels.next();
+  panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && is_usual_way(s); }),
+               "vote, then 0, 1, 2 … sweeps", kColours[0], kShapes[0], false);
+  panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && s.finder == "hough"; }),
+               "hough, alone and fitted", kColours[1], kShapes[1], false, false);
+  panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && s.method == "fast"; }),
+               "vote, fast", kColours[3], kShapes[3], false, false);
+  panels.curve(m.those([](const LocateSetting& s) {
+    return is_usual_picture(s) && s.finder == kUsual.finder && s.ring_px != kUsual.ring_px;
+  }),
+               "rings of 1.5 to 5 px", kColours[2], kShapes[2], false, false);
+  panels.next();
+  std::size_t k = 0;
+  for (const double snr : m.noise()) {
+    panels.curve(m.those([&](const LocateSetting& s) {
+      return s.diameter_px == kUsual.diameter_px && s.snr == snr && is_usual_way(s);
+    }),
+                 fmt::format("SNR {:g}", snr), kColours[k % 7], kShapes[k % 7], false);
+    ++k;
+  }
+  panels.next();
+  k = 0;
+  std::vector<double> diameters;
+  for (const LocatePrecision& p : m.all)
+    if (std::find(diameters.begin(), diameters.end(), p.setting.diameter_px) == diameters.end())
+      diameters.push_back(p.setting.diameter_px);
+  std::sort(diameters.begin(), diameters.end());
+  for (const double d : diameters) {
+    panels.curve(m.those([&](const LocateSetting& s) {
+      return s.diameter_px == d && s.snr == kUsual.snr && is_usual_way(s);
+    }),
+                 fmt::format("{:g} px", d), kColours[k % 7], kShapes[k % 7], true);
+    ++k;
+  }
+  f.data = panels.data();
+  f.plot = fmt::format(
+      "set multiplot layout 1,3\nset logscale xy\nset format y '10^{{%T}}'\nset key top right\nset yrange "
+      "[1e-3:5]\n"
+      "set xlabel 'processor time, ms a frame of {} beads'\nset ylabel 'rms error per coordinate, px'\n"
+      "set title '15 px, SNR 51; dashed: Cramér–Rao bound'\nplot {}\n"
+      "set title 'noise, 15 px'\nplot {}\n"
+      "set title 'pixels per bead, SNR 51'\nset yrange [*:*]\nset key outside right\nset ylabel 'rms error "
+      "per coordinate, σ'\nplot {}, 1./30 with "
+      "lines lc rgb "
+      "'#999999' title 'σ/30'\nunset multiplot\n",
+      m.scene.beads, panels.clauses(0), panels.clauses(1), panels.clauses(2));
+  return f;
+}
+
+}  // namespace
+
+CostReport cost_of_locating(double accuracy_px, bool quick, const Common& common) {
+  Measured m;
+  m.accuracy = accuracy_px;
+  if (quick) m.scene = {.beads = 200, .width = 20, .height = 20, .frames = 1};
+  ProgressBar bar(common, "errors and times");
+  m.all = locate_precision(settings(quick), m.scene, quick ? 1 : 5, bar);
+  return {as_json(m), as_text(m), figure(m)};
+}
+
+}  // namespace twincell::cli
