@@ -95,6 +95,7 @@ void LocatorOptions::check() const {
 
 LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) {
   options.check();
+  if (grey.empty()) return {};
   const double radius = options.diameter_px / 2;
   LocatorStages result;
   Stopwatch watch;
@@ -114,6 +115,8 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
 }
 
 Located locate(const cv::Mat& picture, const LocatorOptions& options) {
+  options.check();
+  if (picture.empty()) return {};
   const Orientation way = canonical_orientation(picture);
   LocatorStages stages = locate_stages(way.turned(picture), options);
   Located result;

@@ -233,8 +233,20 @@ class PictureFit {
 
   /// The beads, with what is known of each. To be called once, last.
   Refined result() {
-    for (std::size_t k = 0; k < beads_.size(); ++k) measure(beads_[k], sums_[k]);
+    const std::vector<Normal> covariance = covariances();
+    for (std::size_t k = 0; k < beads_.size(); ++k) measure(beads_[k], sums_[k], covariance[k]);
     return {std::move(beads_), std::move(dropped_), std::sqrt(blur_.variance), sweeps_};
+  }
+
+  /// Whether blur differs clearly between directions. If not, what there is of it is taken back.
+  bool moves() {
+    constexpr double kClear = 0.1;  // of s^2
+    const auto [xx, xy, yy] = blur_.motion;
+    const double spread = std::hypot(xx - yy, 2 * xy);
+    if (spread > kClear * blur_.variance) return true;
+    blur_.variance += 0.5 * (xx + yy);
+    blur_.motion = {};
+    return false;
   }
 
  private:
@@ -258,13 +270,27 @@ class PictureFit {
         right_[m] += s.br[static_cast<std::size_t>(m)] - followed.col(m).dot(right);
       }
     }
-    /// \returns by what share s^2 changed
+    /// \returns by what share of s^2 it changed
     double apply(EdgeBlur& blur) const {
       constexpr double kLeast = 0.09, kMost = 9;
-      if (n_ != 1 || normal_(0, 0) <= 0) return 0;
-      const double old = blur.variance, step = right_[0] / normal_(0, 0);
-      blur.variance = std::clamp(old + std::clamp(step, -0.5 * old, old), kLeast, kMost);
-      return std::abs(blur.variance / old - 1);
+      const double old = blur.variance;
+      if (n_ == 1 && normal_(0, 0) > 0) {
+        const double step = right_[0] / normal_(0, 0);
+        blur.variance = std::clamp(old + std::clamp(step, -0.5 * old, old), kLeast, kMost);
+        return std::abs(blur.variance / old - 1);
+      }
+      if (n_ != 3) return 0;
+      Eigen::Matrix3d normal = normal_;
+      normal(0, 1) = normal(1, 0), normal(0, 2) = normal(2, 0), normal(1, 2) = normal(2, 1);
+      const Eigen::Vector3d step = normal.ldlt().solve(right_);
+      if (!step.allFinite()) return 0;
+      double most = 0;
+      for (int q = 0; q < 3; ++q) {
+        const double bounded = std::clamp(step[q], -0.5 * old, 2 * old);
+        blur.motion[static_cast<std::size_t>(q)] += bounded;
+        most = std::max(most, std::abs(bounded) / old);
+      }
+      return most;
     }
 
    private:
@@ -351,6 +377,25 @@ class PictureFit {
     return moved;
   }
 
+  /// Of each disc's x, y, R, a by the noise, with what its neighbours' uncertainty adds: of the inverse of
+  /// blocks A and couplings C, the first terms A^-1 + sum_j A^-1 C_ij A_j^-1 C_ji A^-1.
+  [[nodiscard]] std::vector<Normal> covariances() const {
+    std::vector<Normal> alone;
+    for (std::size_t k = 0; k < beads_.size(); ++k) {
+      Normal a = normal_of(sums_[k]);
+      Step g = Step::Zero();
+      believe(beads_[k], a, g);
+      alone.emplace_back(a.inverse());
+    }
+    std::vector<Normal> all = alone;
+    for (const Coupling& c : couplings_) {
+      const auto i = static_cast<std::size_t>(c.i), j = static_cast<std::size_t>(c.j);
+      all[i] += alone[i] * c.sums * alone[j] * c.sums.transpose() * alone[i];
+      all[j] += alone[j] * c.sums.transpose() * alone[i] * c.sums * alone[j];
+    }
+    return all;
+  }
+
   void drop(const Detection& b, Verdict why) {
     dropped_.push_back(b);
     dropped_.back().verdict = why;
@@ -403,12 +448,9 @@ class PictureFit {
   }
 
   /// Uncertainty, score, interior and moments of a bead.
-  void measure(Detection& b, const RingSums& s) const {
-    Normal a = normal_of(s);
-    Step g = Step::Zero();
-    believe(b, a, g);
+  void measure(Detection& b, const RingSums& s, const Normal& by_noise) const {
     const double n = s.pixels;
-    const Normal covariance = excess(s) * a.inverse();
+    const Normal covariance = excess(s) * by_noise;
     b.sigma_x = std::sqrt(covariance(kX, kX));
     b.sigma_y = std::sqrt(covariance(kY, kY));
     b.sigma_radius = std::sqrt(covariance(kR, kR));
@@ -454,12 +496,15 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
   constexpr double kEnough =
       0.25;  // of what a place is uncertain by: the next sweep would move a third of that
   constexpr double kBlurSettled = 0.03;  // of s^2: moves no touching bead by more than its error
+  // Whether the bed moved during the exposure shows once the discs are in place.
+  BlurFit moving = blur == BlurFit::none ? BlurFit::none : BlurFit::motion;
   int sweeps = 0;
   bool blurred = false;
   while (sweeps < options.sweeps) {
-    const auto moved = fit.sweep(blurred ? BlurFit::none : blur);
+    const auto moved = fit.sweep(blurred ? BlurFit::none : sweeps < 3 ? blur : moving);
     ++sweeps;
     blurred = blurred || (sweeps >= 4 && !moved.short_step && moved.blur < kBlurSettled);
+    if (sweeps == 4 && moving == BlurFit::motion && !fit.moves()) moving = BlurFit::round;
     if (sweeps == 1) {
       fit.expect_alike();
     }

@@ -166,7 +166,7 @@ TEST_F(LocatedCase, DefocusGlareTracersAndMotion) {
   // Every bead is found, but edges that motion blurs unevenly are fitted as evenly blurred: in a packing four
   // times the bound.
   expect_complete("motion_3px", 51);
-  expect_near_bound("motion_3px", 51, 0.9, 5);
+  expect_near_bound("motion_3px", 51, 0.9, 3.5);
 }
 
 // What lies just outside the frame, unseen but for its blur, moves the beads that the frame cuts.

@@ -136,7 +136,7 @@ TEST(Locator, FramesWithoutBeads) {
   cv::Mat1b noisy(200, 300);
   for (auto& v : noisy) v = static_cast<uchar>(noise(generator));
   for (const cv::Mat1b& frame : {cv::Mat1b(200, 300, uchar{0}), cv::Mat1b(200, 300, uchar{255}), noisy,
-                                 cv::Mat1b(1, 1, uchar{9}), cv::Mat1b(1, 300, uchar{200})})
+                                 cv::Mat1b(1, 1, uchar{9}), cv::Mat1b(1, 300, uchar{200}), cv::Mat1b()})
     EXPECT_EQ(locate(frame, locator).beads.size(), 0U) << frame.size();
 }
 
