@@ -83,7 +83,7 @@ class TableFile {
 };
 
 void run(LocateOptions& o, const Common& common) {
-  // Of one that a folder's name ends with a slash, the folder.
+  // A folder's name may end with a slash.
   if (o.output.empty()) {
     std::filesystem::path stack(o.stack);
     if (stack.filename().empty()) stack = stack.parent_path();

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "analysis/trajectory/median.hpp"
 
 namespace twincell {
 
@@ -26,9 +29,7 @@ double interior(const Prepared& image, const Detection& b) {
     inside.insert(inside.end(), image.darkness[y] + first, image.darkness[y] + last + 1);
   });
   if (inside.empty()) return b.darkness;  // centre outside the frame: the rim speaks for it
-  const auto half = inside.begin() + static_cast<std::ptrdiff_t>(inside.size() / 2);
-  std::nth_element(inside.begin(), half, inside.end());
-  return static_cast<double>(*half);
+  return static_cast<double>(upper_median(std::move(inside)));
 }
 
 }  // namespace

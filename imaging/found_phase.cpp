@@ -9,6 +9,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "analysis/trajectory/median.hpp"
+
 namespace twincell {
 
 namespace {
@@ -218,10 +220,8 @@ PhaseTable find_phases(std::span<const double> heights, const FoundPhaseOptions&
     learn_wave(h, ticks, wave);
     for (std::size_t f = 0; f < h.size(); ++f)
       misses.push_back(std::abs(h[f] - wave[static_cast<std::size_t>(ticks[f]) % n]));
-    const auto middle = misses.begin() + static_cast<std::ptrdiff_t>(misses.size() / 2);
-    std::nth_element(misses.begin(), middle, misses.end());
     const auto [lowest, highest] = std::minmax_element(wave.begin(), wave.end());
-    sigma = std::max(1.48 * *middle, 0.02 * (*highest - *lowest));
+    sigma = std::max(1.48 * upper_median(std::move(misses)), 0.02 * (*highest - *lowest));
   }
 
   // Where phase 0 lies.

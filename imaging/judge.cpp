@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/trajectory/median.hpp"
 #include "imaging/coupled_step.hpp"
 
 namespace twincell {
@@ -45,21 +46,15 @@ void forbid_overlaps(std::vector<Detection>& beads, double max_overlap) {
     if (beads[c.better].verdict == Verdict::bead) beads[c.lesser].verdict = Verdict::overlaps;
 }
 
-double median_of(std::vector<double> v) {
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
 void flag_tracers(std::vector<Detection>& beads, double below) {
   if (beads.empty()) return;
   std::vector<double> interior;
   interior.reserve(beads.size());
   for (const Detection& b : beads) interior.push_back(b.interior);
-  const double typical = median_of(interior), limit = below * typical;
+  const double typical = upper_median(interior), limit = below * typical;
   for (double& v : interior) v = std::abs(v - typical);
   constexpr double kLeastScatter = 0.005;
-  const double scatter = std::max(kLeastScatter, 1.4826 * median_of(std::move(interior)));
+  const double scatter = std::max(kLeastScatter, 1.4826 * upper_median(std::move(interior)));
   for (Detection& b : beads) {
     b.tracer = b.interior < limit;
     b.tracer_margin = std::abs(b.interior - limit) / scatter;

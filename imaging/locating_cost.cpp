@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <numbers>
 #include <opencv2/core/utility.hpp>
 #include <random>
 #include <utility>
 
-#include "imaging/hough_locator.hpp"
+#include "analysis/trajectory/processor_time.hpp"
 #include "imaging/locator.hpp"
 #include "imaging/rendered/marks.hpp"
 #include "imaging/rendered/packing.hpp"
 #include "imaging/rendered/picture.hpp"
-#include "imaging/vote_locator.hpp"
 
 namespace twincell {
 
@@ -22,12 +20,6 @@ namespace {
 
 using rendered::Marks;
 using rendered::Picture;
-
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// OpenCV's own threads would hide a part of the time.
 class OneThread {
@@ -60,16 +52,12 @@ struct Exposure {
   std::vector<double> bound;
 };
 
-/// Finders without a fit are called here by name; all else goes through locate().
 std::vector<cv::Point2d> found(const cv::Mat1b& frame, const LocateSetting& s) {
   std::vector<cv::Point2d> centres;
   if (s.sweeps == 0) {
-    const double radius = 0.5 * s.diameter_px;
-    const Prepared image = prepare(frame, {}, radius);
     FindOptions options;
-    options.radius_px = radius;
-    for (const Proposal& p :
-         s.finder == HoughFinder::name ? HoughFinder::find(image, options) : VoteFinder::find(image, options))
+    options.radius_px = 0.5 * s.diameter_px;
+    for (const Proposal& p : propose(s.finder, prepare(frame, {}, options.radius_px), options))
       centres.emplace_back(p.x, p.y);
     return centres;
   }

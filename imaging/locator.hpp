@@ -68,6 +68,9 @@ struct Located {
 /// Names that LocatorOptions::finder may take, the default first.
 std::vector<std::string> finder_names();
 
+/// What the finder of that name, one of finder_names(), proposes; none by another name. Pure.
+std::vector<Proposal> propose(const std::string& finder, const Prepared& image, const FindOptions& options);
+
 /// What each stage made of a frame, as it is held.
 struct LocatorStages {
   Prepared image;

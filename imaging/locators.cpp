@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/median.hpp"
 #include "imaging/edge_fit.hpp"
 #include "imaging/hough_locator.hpp"
 #include "imaging/locator.hpp"
@@ -25,14 +26,6 @@ template <class Visit>
 void for_each_finder(Visit&& visit) {
   std::apply(
       [&]<CircleFinder... F>(const F&...) { (visit.template operator()<F>(), ...); }, Finders{});
-}
-
-std::vector<Proposal> find(const std::string& finder, const Prepared& image, const FindOptions& options) {
-  std::vector<Proposal> found;
-  for_each_finder([&]<class F>() {
-    if (F::name == finder) found = F::find(image, options);
-  });
-  return found;
 }
 
 /// By y, then x.
@@ -62,6 +55,14 @@ class Stopwatch {
 };
 
 }  // namespace
+
+std::vector<Proposal> propose(const std::string& finder, const Prepared& image, const FindOptions& options) {
+  std::vector<Proposal> found;
+  for_each_finder([&]<class F>() {
+    if (F::name == finder) found = F::find(image, options);
+  });
+  return found;
+}
 
 std::vector<std::string> finder_names() {
   std::vector<std::string> names;
@@ -103,7 +104,7 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   result.reports.push_back({"prepare", watch.lap(), 0});
   FindOptions wanted = options.find;
   wanted.radius_px = radius;
-  result.proposals = find(options.finder, result.image, wanted);
+  result.proposals = propose(options.finder, result.image, wanted);
   result.reports.push_back({"find", watch.lap(), result.proposals.size()});
   result.refined = options.refine.method == "fast"
                        ? refine_by_edges(result.image, result.proposals, radius)
@@ -115,8 +116,6 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
 }
 
 Located locate(const cv::Mat& picture, const LocatorOptions& options) {
-  options.check();
-  if (picture.empty()) return {};
   const Orientation way = canonical_orientation(picture);
   LocatorStages stages = locate_stages(way.turned(picture), options);
   Located result;
@@ -172,9 +171,8 @@ std::optional<FoundSettings> find_settings(const cv::Mat& grey, const LocatorOpt
         if (!b.edge) radii.push_back(b.radius);
       }
       if (given.diameter_px > 0 || radii.size() < kEnough) break;
-      const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-      std::nth_element(radii.begin(), middle, radii.end());
-      const double found = std::clamp(2 * *middle, 3.0, 400.0), change = found / options.diameter_px - 1;
+      const double found = std::clamp(2 * upper_median(std::move(radii)), 3.0, 400.0),
+                   change = found / options.diameter_px - 1;
       options.diameter_px = found;
       if (std::abs(change) < kClose) break;
     }

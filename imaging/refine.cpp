@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "analysis/trajectory/median.hpp"
 #include "imaging/coupled_step.hpp"
 #include "imaging/disc_measures.hpp"
 #include "imaging/disc_sums.hpp"
@@ -39,12 +40,6 @@ Step right_side(const RingSums& s) {
   Step g;
   for (int m = 0; m < kFitted; ++m) g[m] = s.jr[static_cast<std::size_t>(m)];
   return g;
-}
-
-double median_of(std::vector<double> v) {
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
 }
 
 /// What is believed of R or a before the ring is looked at: a Gaussian with wide shoulders, so that a bead
@@ -127,8 +122,8 @@ class PictureFit {
     if (beads_.empty()) return;
     std::vector<double> radius, darkness;
     for (const Detection& b : beads_) radius.push_back(b.radius), darkness.push_back(b.darkness);
-    beliefs_ = {Belief{median_of(std::move(radius)), options_.radius_spread / 3 * radius_},
-                Belief{median_of(std::move(darkness)), 0.02}};
+    beliefs_ = {Belief{upper_median(std::move(radius)), options_.radius_spread / 3 * radius_},
+                Belief{upper_median(std::move(darkness)), 0.02}};
   }
 
   /// How much R and a differ from bead to bead, from the beads themselves: the scatter less what the fit
@@ -149,10 +144,10 @@ class PictureFit {
     }
     if (values[0].size() < kEnough) return;
     for (std::size_t q = 0; q < 2; ++q) {
-      const double middle = median_of(values[q]);
+      const double middle = upper_median(values[q]);
       for (double& v : values[q]) v = std::abs(v - middle);
-      const double scatter = 1.4826 * median_of(values[q]);
-      const double own = scatter * scatter - median_of(variances[q]);
+      const double scatter = 1.4826 * upper_median(values[q]);
+      const double own = scatter * scatter - upper_median(variances[q]);
       beliefs_[q] = {middle, std::max(least[q], std::sqrt(std::max(0.0, own)))};
     }
   }
@@ -370,7 +365,7 @@ class PictureFit {
       for (std::size_t k = 0; k <= most; ++k) moved.rms += far[k] * far[k];
       moved.most = far[most];
       moved.rms = std::sqrt(moved.rms / static_cast<double>(2 * (most + 1)));
-      moved.sigma = median_of(std::move(sigma));
+      moved.sigma = upper_median(std::move(sigma));
     }
     moved.blur = blur.apply(blur_);
     stale_ = true;
@@ -505,11 +500,10 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
     ++sweeps;
     blurred = blurred || (sweeps >= 4 && !moved.short_step && moved.blur < kBlurSettled);
     if (sweeps == 4 && moving == BlurFit::motion && !fit.moves()) moving = BlurFit::round;
-    if (sweeps == 1) {
-      fit.expect_alike();
-    }
+    if (sweeps == 1) fit.expect_alike();
     if (sweeps <= 3) fit.level();
-    if (sweeps == 2) fit.add_missed();
+    // Those found now need a sweep of their own.
+    if (sweeps == 2 && sweeps < options.sweeps) fit.add_missed();
     if (sweeps == 3) fit.learn_beliefs();
     if (sweeps >= kLeast && !moved.short_step && moved.blur < kBlurSettled &&
         moved.rms < kEnough * moved.sigma && moved.most < std::max(options.tolerance_px, 3 * moved.sigma))

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/median.hpp"
 
 namespace twincell {
 
@@ -89,12 +90,7 @@ PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double
   table.way = "triggers";
   std::vector<double> steps;
   for (std::size_t f = 1; f < cycles.size(); ++f) steps.push_back(cycles[f] - cycles[f - 1]);
-  double step = 0;
-  if (!steps.empty()) {
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    step = *middle;
-  }
+  const double step = steps.empty() ? 0 : upper_median(std::move(steps));
   if (frames_per_cycle <= 0) {
     if (!(step > 0) || 1 / step > kMostPhases)
       throw InputError(

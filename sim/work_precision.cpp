@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/median.hpp"
+#include "analysis/trajectory/processor_time.hpp"
 #include "sim/kernel.hpp"
 #include "sim/simulation.hpp"
 #include "sim/start.hpp"
@@ -152,18 +154,6 @@ double contact_time(const Plan& plan) {
   return std::get<LinearSpringDashpot>(plan.bead.normal)
       .oscillator({.m_eff = 0.5, .r_eff = 0, .inv_m_t = 0})
       .contact_time();
-}
-
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Sums m <(v_z - v_z,cm)^2> over frames, period by period.
@@ -355,7 +345,7 @@ std::vector<StepCost> step_costs(const std::vector<StepSetting>& settings, int r
   std::vector<StepCost> costs;
   for (std::size_t k = 0; k < settings.size(); ++k) {
     const Run& run = timed[k].run;
-    costs.push_back({median(seconds[k]) / static_cast<double>(run.system.beads.size()), run.system.dt,
+    costs.push_back({upper_median(seconds[k]) / static_cast<double>(run.system.beads.size()), run.system.dt,
                      contact_time(run.plan)});
   }
   return costs;

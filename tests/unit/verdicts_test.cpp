@@ -122,6 +122,20 @@ TEST(Refine, WhatIsNoBeadIsDroppedWithItsReason) {
   EXPECT_EQ(refined(wall, p, {100, 105, 1}), Verdict::in_wall);
 }
 
+// A bead that nobody proposed is looked for after the second sweep, if there is another to fit it by.
+TEST(Refine, ABeadFoundLateNeedsASweepOfItsOwn) {
+  const rendered::Picture p = row_of_beads();
+  std::vector<Proposal> all_but_one;
+  for (std::size_t k = 1; k < p.discs.size(); ++k) all_but_one.push_back({p.discs[k].x, p.discs[k].y, 1});
+  const Prepared image = prepare(exposed(p), {}, 7.5);
+  for (const int sweeps : {1, 2, 3, 30}) {
+    RefineOptions options;
+    options.sweeps = sweeps;
+    const Refined r = refine(image, all_but_one, 7.5, options);
+    EXPECT_EQ(r.beads.size(), sweeps > 2 ? 8U : 7U) << sweeps;
+  }
+}
+
 TEST(Verdict, EachHasAWord) {
   std::set<std::string> words;
   for (int k = 0; k <= static_cast<int>(Verdict::outside); ++k)
