@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array kSweeps = {0, 1, 2, 3, 4, 6, 30};
 constexpr std::array kQuickSweeps = {0, 2, 30};
-constexpr std::array kRings = {1.5, 2.0, 4.0, 5.0};
+constexpr std::array kRings = {1.5, 2.0, 3.0, 4.0, 5.0};
 constexpr std::array kDiameters = {6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0};
 constexpr std::array kQuickDiameters = {8.0, 15.0};
 constexpr std::array kNoise = {164.0, 51.0, 18.5, 8.5};
@@ -71,7 +71,7 @@ std::vector<LocateSetting> settings(bool quick) {
   else
     grid(kSweeps, kNoise, kDiameters);
   for (const LocateSetting& s : std::vector(all))
-    add({.method = "fast", .diameter_px = s.diameter_px, .snr = s.snr});
+    add({.method = "edges", .diameter_px = s.diameter_px, .snr = s.snr});
   for (const int n : {0, 30}) add({.finder = "hough", .sweeps = n});
   if (!quick)
     for (const double ring : kRings) add({.ring_px = ring});
@@ -80,7 +80,7 @@ std::vector<LocateSetting> settings(bool quick) {
 
 std::string way(const LocateSetting& s) {
   if (s.sweeps == 0) return s.finder + " alone";
-  if (s.method == "fast") return s.finder + ", fast";
+  if (s.method == "edges") return s.finder + ", edges";
   std::string w = fmt::format(
       "{}, {}", s.finder,
       s.sweeps == kUsual.sweeps ? "fit" : fmt::format("{} sweep{}", s.sweeps, s.sweeps == 1 ? "" : "s"));
@@ -227,8 +227,8 @@ Figure figure(const Measured& m) {
                "vote, then 0, 1, 2 … sweeps", kColours[0], kShapes[0], false);
   panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && s.finder == "hough"; }),
                "hough, alone and fitted", kColours[1], kShapes[1], false, false);
-  panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && s.method == "fast"; }),
-               "vote, fast", kColours[3], kShapes[3], false, false);
+  panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && s.method == "edges"; }),
+               "vote, edges", kColours[3], kShapes[3], false, false);
   panels.curve(m.those([](const LocateSetting& s) {
     return is_usual_picture(s) && s.finder == kUsual.finder && s.ring_px != kUsual.ring_px;
   }),

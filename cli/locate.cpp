@@ -193,8 +193,9 @@ void add_locate(CLI::App& program, Common& common) {
   verb.add_option("--locator", o->locator.finder, "Finder")->check(CLI::IsMember(finder_names()));
   verb.add_option("--min-score", o->locator.find.min_score,
                   "Share of a circle's edge that must be seen, 0 .. 1");
-  verb.add_option("--refine", o->locator.refine.method, "exact: fit of the picture; fast: fit of the edges")
-      ->check(CLI::IsMember({"exact", "fast"}));
+  verb.add_option("--refine", o->locator.refine.method,
+                  "exact: fit of the picture; fast: its first step; edges: circles through the edges")
+      ->check(CLI::IsMember({"exact", "fast", "edges"}));
   CLI::Option* bright = verb.add_flag("--bright", o->locator.preprocess.bright,
                                       "Beads are brighter than what lies behind them");
   verb.add_flag("--dark", o->dark, "Beads are darker; with neither, found from the first frame")

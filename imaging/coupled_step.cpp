@@ -1,6 +1,6 @@
 #include "imaging/coupled_step.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -49,15 +49,25 @@ std::vector<std::array<std::int32_t, 2>> near_pairs(const std::vector<Disc>& dis
   return pairs;
 }
 
+void renew(Coupling& c, const RingArgs& args, const std::vector<Disc>& discs) {
+  // Where one of the two edges is further away than this, its slope is nothing; leaving out of a coupling
+  // what pixels say there leaves the whole as positive as it was, since they still count in both blocks.
+  constexpr double kFar = 3;
+  RingArgs narrow = args;
+  narrow.ring = std::min(args.ring, kFar * std::sqrt(args.blur.variance));
+  const PairSums sums =
+      pair_sums(narrow, discs[static_cast<std::size_t>(c.i)], discs[static_cast<std::size_t>(c.j)]);
+  c.sums = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(sums.data());
+}
+
 std::vector<Coupling> couplings_of(const RingArgs& args, const std::vector<Disc>& discs) {
   constexpr double kFar = 4;  // edges so many widths of blur apart share next to nothing
   const auto pairs = near_pairs(discs, std::min(2 * args.ring, kFar * std::sqrt(args.blur.variance)));
   std::vector<Coupling> couplings;
   couplings.reserve(pairs.size());
   for (const auto& [i, j] : pairs) {
-    const PairSums sums =
-        pair_sums(args, discs[static_cast<std::size_t>(i)], discs[static_cast<std::size_t>(j)]);
-    couplings.push_back({i, j, Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(sums.data())});
+    couplings.push_back({i, j, Normal::Zero()});
+    renew(couplings.back(), args, discs);
   }
   return couplings;
 }
@@ -65,14 +75,14 @@ std::vector<Coupling> couplings_of(const RingArgs& args, const std::vector<Disc>
 std::vector<Step> coupled_step(const std::vector<Normal>& blocks, const std::vector<Coupling>& couplings,
                                const std::vector<Step>& right) {
   const std::size_t n = blocks.size();
-  std::vector<Eigen::LLT<Normal>> alone;
+  std::vector<Normal> alone;
   alone.reserve(n);
-  for (const Normal& a : blocks) alone.emplace_back(a);
+  for (const Normal& a : blocks) alone.emplace_back(a.inverse());
 
   std::vector<Step> x(n, Step::Zero()), r = right, z(n), p(n), ap(n);
   double rz = 0;
   for (std::size_t k = 0; k < n; ++k) {
-    z[k] = p[k] = alone[k].solve(r[k]);
+    z[k] = p[k] = alone[k] * r[k];
     rz += r[k].dot(z[k]);
   }
   const double enough = kRelative * kRelative * rz;
@@ -91,7 +101,7 @@ std::vector<Step> coupled_step(const std::vector<Normal>& blocks, const std::vec
     for (std::size_t k = 0; k < n; ++k) {
       x[k] += alpha * p[k];
       r[k] -= alpha * ap[k];
-      z[k] = alone[k].solve(r[k]);
+      z[k] = alone[k] * r[k];
       rz_new += r[k].dot(z[k]);
     }
     for (std::size_t k = 0; k < n; ++k) p[k] = z[k] + rz_new / rz * p[k];

@@ -31,6 +31,8 @@ struct Coupling {
   Normal sums;  ///< rows: x, y, R, a of i; columns: of j
 };
 std::vector<Coupling> couplings_of(const RingArgs& args, const std::vector<Disc>& discs);
+/// The same for one pair, after its discs have moved.
+void renew(Coupling& coupling, const RingArgs& args, const std::vector<Disc>& discs);
 
 /// Solves (blocks + couplings) step = right for all discs. \param blocks positive definite
 std::vector<Step> coupled_step(const std::vector<Normal>& blocks, const std::vector<Coupling>& couplings,

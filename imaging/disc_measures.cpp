@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/trajectory/median.hpp"
+#include "imaging/disc_sums.hpp"
 
 namespace twincell {
 
@@ -25,6 +26,7 @@ void over_disc(cv::Size size, const Detection& b, double reach, Use&& use) {
 
 double interior(const Prepared& image, const Detection& b) {
   std::vector<float> inside;
+  inside.reserve(static_cast<std::size_t>(b.radius * b.radius) + 16);
   over_disc(image.darkness.size(), b, std::max(0.5 * b.radius, 1.0), [&](int y, int first, int last) {
     inside.insert(inside.end(), image.darkness[y] + first, image.darkness[y] + last + 1);
   });
@@ -32,32 +34,29 @@ double interior(const Prepared& image, const Detection& b) {
   return static_cast<double>(upper_median(std::move(inside)));
 }
 
+/// Sum of v B: B is a quadratic surface, so that its values around the centre and the moments say it exactly.
+double light_taken(const Surface& light, cv::Size size, const Detection& b, const DiscMoments& m) {
+  const Surface at = surface_basis(b.x, b.y, size);
+  const double u = at[1], v = at[2];
+  const double du = size.width > 1 ? 2.0 / (size.width - 1) : 0,
+               dv = size.height > 1 ? 2.0 / (size.height - 1) : 0;
+  return light.dot(at) * m.mass + (light[1] + 2 * light[3] * u + light[4] * v) * du * m.x +
+         (light[2] + light[4] * u + 2 * light[5] * v) * dv * m.y + light[3] * du * du * m.xx +
+         light[4] * du * dv * m.xy + light[5] * dv * dv * m.yy;
+}
+
 }  // namespace
 
 void measure_disc(const Prepared& image, Detection& b) {
   b.interior = interior(image, b);
   const cv::Size size = image.darkness.size();
-  double xx = 0, xy = 0, yy = 0, mass = 0, raw = 0, signal = 0;
-  over_disc(size, b, b.radius, [&](int y, int first, int last) {
-    const float* d = image.darkness[y];
-    const SurfaceRow light = surface_row(image.light, y, size);
-    const double dy = y - b.y;
-    for (int x = first; x <= last; ++x) {
-      const double dx = x - b.x, v = std::max(0.0, static_cast<double>(d[x]));
-      mass += v;
-      raw += v * static_cast<double>(light.at(x));
-      signal = std::max(signal, v);
-      xx += v * dx * dx;
-      xy += v * dx * dy;
-      yy += v * dy * dy;
-    }
-  });
-  b.mass = mass;
-  b.raw_mass = raw;
-  b.signal = signal;
-  if (mass <= 0) return;
-  b.size = std::sqrt((xx + yy) / mass);
-  const double spread = std::hypot(xx - yy, 2 * xy), sum = xx + yy;
+  const DiscMoments m = disc_moments(image.darkness, size, {b.x, b.y, b.radius, b.darkness});
+  b.mass = m.mass;
+  b.raw_mass = light_taken(image.light, size, b, m);
+  b.signal = m.most;
+  if (m.mass <= 0) return;
+  const double sum = m.xx + m.yy, spread = std::sqrt((m.xx - m.yy) * (m.xx - m.yy) + 4 * m.xy * m.xy);
+  b.size = std::sqrt(sum / m.mass);
   b.ecc = sum + spread > 0 ? std::sqrt(2 * spread / (sum + spread)) : 0;
 }
 

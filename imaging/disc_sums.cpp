@@ -68,12 +68,18 @@ HWY_INLINE Edge edge_at(V z) {
   return {hn::IfThenElse(hn::Lt(z, hn::Zero(Tag())), hn::Sub(set(1), tail), tail), density};
 }
 
+/// Without the spare columns.
+HWY_INLINE cv::Size frame_of(const cv::Mat1f& picture) {
+  return {picture.cols - kSpareColumns, picture.rows};
+}
+
 /// A disc in the coordinates of the bordered picture, with what the pixels of a ring need.
 struct Ring {
   int base_x, base_y;
   float x, y;  // centre from the base pixel
   double radius;
   V radius_v, variance, qxx, qxy, qyy, half_over_radius;
+  V round_inv_s, round_shift;  // 1/s and s^2/2R where nothing moved
   bool moved;
 
   Ring(const Disc& disc, const EdgeBlur& blur)
@@ -88,6 +94,8 @@ struct Ring {
         qxy(set(2 * blur.motion[1])),
         qyy(set(blur.motion[2])),
         half_over_radius(set(0.5 / disc.radius)),
+        round_inv_s(set(1 / std::sqrt(blur.variance))),
+        round_shift(set(0.5 * blur.variance / disc.radius - disc.radius)),
         moved(blur.motion != std::array<double, 3>{}) {}
 
   struct Point {
@@ -100,12 +108,14 @@ struct Ring {
     q.r = hn::Mul(r2, inv_r);
     q.nx = hn::Mul(dx, inv_r);
     q.ny = hn::Mul(dy, inv_r);
-    V s2 = variance;
-    if (moved) {
-      const V across = hn::MulAdd(hn::Mul(qxx, q.nx), q.nx,
-                                  hn::MulAdd(hn::Mul(qyy, q.ny), q.ny, hn::Mul(hn::Mul(qxy, q.nx), q.ny)));
-      s2 = hn::Max(hn::Add(s2, across), set(0.02));
+    if (!moved) {
+      q.inv_s = round_inv_s;
+      q.z = hn::Mul(hn::Add(q.r, round_shift), round_inv_s);
+      return q;
     }
+    const V across = hn::MulAdd(hn::Mul(qxx, q.nx), q.nx,
+                                hn::MulAdd(hn::Mul(qyy, q.ny), q.ny, hn::Mul(hn::Mul(qxy, q.nx), q.ny)));
+    const V s2 = hn::Max(hn::Add(variance, across), set(0.02));
     q.inv_s = inverse_sqrt(s2);
     q.z = hn::Mul(hn::MulAdd(s2, half_over_radius, hn::Sub(q.r, radius_v)), q.inv_s);
     return q;
@@ -114,7 +124,7 @@ struct Ring {
   /// Calls use(row, column, dx, dy^2 or dy, inside) for runs of pixels that touch low < r < high; inside: all
   /// of them are nearer than low, and passed over unless kFill.
   template <bool kFill, class Use>
-  HWY_INLINE void over(const cv::Mat1f& picture, double low, double high, int row_step, Use&& use) const {
+  HWY_INLINE void over(cv::Size frame, double low, double high, int row_step, Use&& use) const {
     constexpr int n = static_cast<int>(hn::MaxLanes(Tag()));
     const Tag tag;
     const auto far = static_cast<float>(high), near = static_cast<float>(low);
@@ -122,8 +132,8 @@ struct Ring {
     constexpr int kShift = 1 << 12;
     const auto floor_of = [](float a) { return static_cast<int>(a + kShift) - kShift; };
     const int first_row = std::max(-base_y, floor_of(y - far) + 1);
-    const int last_row = std::min(picture.rows - 1 - base_y, floor_of(y + far));
-    const int last_column = picture.cols - kSpareColumns - 1 - base_x;
+    const int last_row = std::min(frame.height - 1 - base_y, floor_of(y + far));
+    const int last_column = frame.width - 1 - base_x;
     const V from_centre = hn::Sub(hn::Iota(tag, 0.0F), hn::Set(tag, x));
     for (int row = first_row; row <= last_row; row += row_step) {
       const float dy = static_cast<float>(row) - y, half = std::sqrt(std::max(0.0F, far * far - dy * dy));
@@ -277,7 +287,8 @@ struct Sums {
     const double low = std::max(0.0, disc.radius - args.ring), high = disc.radius + args.ring;
     const V low2 = set(low * low), high2 = set(high * high), unseen = set(static_cast<double>(kUnseen));
     ring.over<false>(
-        *args.picture, low, high, args.row_step, [&](int row, int column, V dx, V dy, bool) HWY_ATTR {
+        frame_of(*args.picture), low, high, args.row_step,
+        [&](int row, int column, V dx, V dy, bool) HWY_ATTR {
           const V r2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
           const V d = hn::LoadU(tag, args.picture->ptr<float>(ring.base_y + row) + ring.base_x + column);
           const V t = hn::LoadU(tag, args.model->ptr<float>(ring.base_y + row) + ring.base_x + column);
@@ -323,14 +334,18 @@ PairSums pair(const RingArgs& args, const Disc& a, const Disc& b) {
       const V d = hn::LoadU(tag, picture.ptr<float>(y) + x),
               t = hn::LoadU(tag, args.model->ptr<float>(y) + x);
       Mask counts = hn::Lt(d, set(static_cast<double>(kUnseen)));
-      V j[2][4];
+      V dx[2], dy[2];
       for (std::size_t q = 0; q < 2; ++q) {
         const Ring& ring = rings[q];
-        const V dx = hn::Sub(hn::Iota(tag, static_cast<float>(x - ring.base_x)), hn::Set(tag, ring.x));
-        const V dy = hn::Set(tag, static_cast<float>(y - ring.base_y) - ring.y);
-        const V r2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
+        dx[q] = hn::Sub(hn::Iota(tag, static_cast<float>(x - ring.base_x)), hn::Set(tag, ring.x));
+        dy[q] = hn::Set(tag, static_cast<float>(y - ring.base_y) - ring.y);
+        const V r2 = hn::MulAdd(dx[q], dx[q], hn::Mul(dy[q], dy[q]));
         counts = hn::And(counts, hn::And(hn::Gt(r2, low2[q]), hn::Lt(r2, high2[q])));
-        const Ring::Point at = ring.at(dx, dy);
+      }
+      if (hn::AllFalse(tag, counts)) continue;
+      V j[2][4];
+      for (std::size_t q = 0; q < 2; ++q) {
+        const Ring::Point at = rings[q].at(dx[q], dy[q]);
         const Edge e = edge_at(at.z);
         const V slope = hn::Mul(hn::Mul(scale[q], e.density), at.inv_s);
         j[q][0] = hn::Mul(slope, at.nx);
@@ -370,7 +385,7 @@ void add(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, double factor
   const Tag tag;
   const double s = std::sqrt(blur.variance + std::max(0.0, blur.motion[0] + blur.motion[2]));
   const V a = set(factor * disc.darkness);
-  ring.over<true>(model, disc.radius - kFar * s, disc.radius + kFar * s, 1,
+  ring.over<true>(frame_of(model), disc.radius - kFar * s, disc.radius + kFar * s, 1,
                   [&](int row, int column, V dx, V dy, bool inside) HWY_ATTR {
                     float* at = model.ptr<float>(ring.base_y + row) + ring.base_x + column;
                     const V old = hn::LoadU(tag, at);
@@ -380,6 +395,35 @@ void add(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, double factor
                       hn::StoreU(hn::MulAdd(a, edge_at(ring.at(dx, dy).z).p, old), tag, at);
                     }
                   });
+}
+
+DiscMoments moments(const cv::Mat1f& picture, cv::Size size, const Disc& disc) {
+  const Ring ring(disc, EdgeBlur{});
+  const Tag tag;
+  const V reach2 = set(disc.radius * disc.radius), zero = hn::Zero(tag);
+  V mass = zero, x = zero, y = zero, xx = zero, xy = zero, yy = zero, most = zero;
+  ring.over<true>(size, 0, disc.radius, 1, [&](int row, int column, V dx, V dy, bool) HWY_ATTR {
+    const V d = hn::LoadU(tag, picture.ptr<float>(ring.base_y + row) + ring.base_x + column);
+    // The last run of a row may reach beyond the frame.
+    const Mask counts = hn::And(hn::Lt(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), reach2),
+                                hn::FirstN(tag, static_cast<std::size_t>(size.width - ring.base_x - column)));
+    const V v = hn::IfThenElseZero(counts, hn::Max(d, zero)), vx = hn::Mul(v, dx), vy = hn::Mul(v, dy);
+    mass = hn::Add(mass, v);
+    x = hn::Add(x, vx);
+    y = hn::Add(y, vy);
+    xx = hn::MulAdd(vx, dx, xx);
+    xy = hn::MulAdd(vx, dy, xy);
+    yy = hn::MulAdd(vy, dy, yy);
+    most = hn::Max(most, v);
+  });
+  const auto total = [&](V v) HWY_ATTR { return static_cast<double>(hn::GetLane(hn::SumOfLanes(tag, v))); };
+  return {total(mass),
+          total(x),
+          total(y),
+          total(xx),
+          total(xy),
+          total(yy),
+          static_cast<double>(hn::GetLane(hn::MaxOfLanes(tag, most)))};
 }
 
 }  // namespace twincell::HWY_NAMESPACE
@@ -393,6 +437,7 @@ HWY_EXPORT(round_blur);
 HWY_EXPORT(motion_blur);
 HWY_EXPORT(pair);
 HWY_EXPORT(add);
+HWY_EXPORT(moments);
 
 RingSums ring_sums(const RingArgs& args, const Disc& disc, BlurFit fit) {
   if (fit == BlurFit::none) return HWY_DYNAMIC_DISPATCH(fixed_blur)(args, disc);
@@ -406,6 +451,10 @@ PairSums pair_sums(const RingArgs& args, const Disc& i, const Disc& j) {
 
 void add_disc(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, double factor) {
   HWY_DYNAMIC_DISPATCH(add)(model, disc, blur, factor);
+}
+
+DiscMoments disc_moments(const cv::Mat1f& picture, cv::Size size, const Disc& disc) {
+  return HWY_DYNAMIC_DISPATCH(moments)(picture, size, disc);
 }
 
 }  // namespace twincell

@@ -73,4 +73,13 @@ PairSums pair_sums(const RingArgs& args, const Disc& i, const Disc& j);
 /// Adds factor a P to the model, out to where P vanishes.
 void add_disc(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, double factor = 1);
 
+/// Sums over the pixels nearer than R to a disc's centre of v = max(d, 0), with dx and dy from the centre.
+struct DiscMoments {
+  double mass = 0, x = 0, y = 0;  ///< v, v dx, v dy
+  double xx = 0, xy = 0, yy = 0;  ///< v dx^2, v dx dy, v dy^2
+  double most = 0;                ///< the largest v
+};
+/// \param size  of the frame; behind each of its rows in the picture kSpareColumns more floats may be read
+DiscMoments disc_moments(const cv::Mat1f& picture, cv::Size size, const Disc& disc);
+
 }  // namespace twincell

@@ -14,9 +14,9 @@ namespace twincell {
 /// How beads are located, and in what picture.
 struct LocateSetting {
   std::string finder = "vote";   ///< one of finder_names()
-  std::string method = "exact";  ///< "exact" or "fast" (RefineOptions)
+  std::string method = "exact";  ///< "exact", "fast" or "edges" (RefineOptions)
   int sweeps = 30;               ///< of the exact fit, at most; 0: the finder's proposals as they are
-  double ring_px = 3;            ///< RefineOptions
+  double ring_px = 0;            ///< RefineOptions
   double diameter_px = 15;       ///< pixels per bead
   double snr = 51;               ///< of the back-light (rendered/picture.hpp)
 

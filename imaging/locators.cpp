@@ -76,12 +76,12 @@ void LocatorOptions::check() const {
   };
   range("diameter", diameter_px, 3, 400);
   range("min-score", find.min_score, 0.01, 1);
-  if (refine.method != "exact" && refine.method != "fast")
+  if (refine.method != "exact" && refine.method != "fast" && refine.method != "edges")
     throw ConfigError(Where{.file = {}, .key = "refine"},
-                      fmt::format("is '{}'; it is \"exact\" or \"fast\".", refine.method));
+                      fmt::format("is '{}'; it is \"exact\", \"fast\" or \"edges\".", refine.method));
   range("sweeps", refine.sweeps, 1, 100);
   range("tolerance", refine.tolerance_px, 1e-9, 1);
-  range("ring", refine.ring_px, 1, 50);
+  if (refine.ring_px != 0) range("ring", refine.ring_px, 1, 50);
   range("blur", refine.blur_px, 0, 10);
   range("radius-spread", refine.radius_spread, 1e-6, 1);
   range("radius-tolerance", judge.radius_tolerance, 0, 1);
@@ -106,7 +106,7 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   wanted.radius_px = radius;
   result.proposals = propose(options.finder, result.image, wanted);
   result.reports.push_back({"find", watch.lap(), result.proposals.size()});
-  result.refined = options.refine.method == "fast"
+  result.refined = options.refine.method == "edges"
                        ? refine_by_edges(result.image, result.proposals, radius)
                        : refine(result.image, result.proposals, radius, options.refine);
   result.reports.push_back({"refine", watch.lap(), result.refined.beads.size()});
@@ -135,17 +135,18 @@ double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options) 
   const double smallest = 3, largest = std::min(40.0, 0.5 * std::min(grey.cols, grey.rows));
   if (largest < smallest) return 0;
   const Prepared image = prepare(grey, options, largest);
-  double best = 0, best_radius = 0;
-  const int steps = static_cast<int>(std::log(largest / smallest) / std::log(1.03));
-  for (int k = 0; k <= steps; ++k) {
-    const double r = smallest * std::pow(1.03, k);
-    const double sharpness = vote_sharpness(image.darkness, r);
-    if (sharpness > best) {
-      best = sharpness;
-      best_radius = r;
-    }
+  constexpr double kRatio = 1.03;
+  std::vector<double> sharpness;
+  for (double r = smallest; r <= largest; r *= kRatio) sharpness.push_back(vote_sharpness(image.darkness, r));
+  const auto peak = std::max_element(sharpness.begin(), sharpness.end());
+  if (*peak <= 0) return 0;
+  // The top of the parabola through the best and its neighbours.
+  double k = static_cast<double>(peak - sharpness.begin());
+  if (peak != sharpness.begin() && peak + 1 != sharpness.end()) {
+    const double curvature = peak[-1] - 2 * peak[0] + peak[1];
+    if (curvature < 0) k += 0.5 * (peak[-1] - peak[1]) / curvature;
   }
-  return 2 * best_radius;
+  return 2 * smallest * std::pow(kRatio, k);
 }
 
 std::optional<FoundSettings> find_settings(const cv::Mat& grey, const LocatorOptions& given) {

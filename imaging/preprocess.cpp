@@ -6,11 +6,13 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "imaging/disc_sums.hpp"
+
 namespace twincell {
 
 namespace {
 
-double scaled(int i, int n) {
+double scaled(double i, int n) {
   return n > 1 ? 2.0 * i / (n - 1) - 1.0 : 0.0;
 }
 
@@ -26,25 +28,32 @@ float quantile(std::vector<float> values, double q) {
 Surface bright_envelope(const cv::Mat1f& image) {
   constexpr double kSamples = 5000;
   const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(image.total()) / kSamples)));
-  std::vector<float> sample;
+  struct Sample {
+    float value;
+    Surface basis;
+  };
+  std::vector<Sample> samples;
+  std::vector<float> values;
   for (int y = 0; y < image.rows; y += stride)
-    for (int x = 0; x < image.cols; x += stride) sample.push_back(image(y, x));
+    for (int x = 0; x < image.cols; x += stride) {
+      values.push_back(image(y, x));
+      samples.push_back({image(y, x), surface_basis(x, y, image.size())});
+    }
   Surface c = Surface::Zero();
-  c[0] = static_cast<double>(quantile(sample, 0.99));
+  c[0] = static_cast<double>(quantile(std::move(values), 0.99));
   for (const double near : {0.7, 0.8, 0.85, 0.9, 0.9, 0.9}) {
     Eigen::Matrix<double, 6, 6> a = Eigen::Matrix<double, 6, 6>::Zero();
     Surface rhs = Surface::Zero();
     int used = 0;
-    for (int y = 0; y < image.rows; y += stride)
-      for (int x = 0; x < image.cols; x += stride) {
-        const Surface b = surface_basis(x, y, image.size());
-        const double value = static_cast<double>(image(y, x)), level = c.dot(b);
-        if (value < near * level) continue;
-        const double w = value > level ? 3 : 1;
-        a += w * b * b.transpose();
-        rhs += w * value * b;
-        ++used;
-      }
+    for (const Sample& s : samples) {
+      const double value = static_cast<double>(s.value), level = c.dot(s.basis);
+      if (value < near * level) continue;
+      const double w = value > level ? 3 : 1;
+      const Surface weighted = w * s.basis;
+      a.noalias() += weighted * s.basis.transpose();
+      rhs += value * weighted;
+      ++used;
+    }
     if (used < 60) break;  // too little light to see a slope: the level stands
     a.diagonal().tail<5>().array() += 1e-3 * used;
     c = a.ldlt().solve(rhs);
@@ -125,11 +134,11 @@ SurfaceRow surface_row(const Surface& c, int y, cv::Size size) {
   // u = step x + first
   const double first = surface_basis(0, y, size)[1], step = size.width > 1 ? 2.0 / (size.width - 1) : 0;
   const double flat = c[0] + c[2] * v + c[5] * v * v, slope = c[1] + c[4] * v, curve = c[3];
-  return {flat + slope * first + curve * first * first, step * (slope + 2 * curve * first),
-          step * step * curve};
+  return {static_cast<float>(flat + slope * first + curve * first * first),
+          static_cast<float>(step * (slope + 2 * curve * first)), static_cast<float>(step * step * curve)};
 }
 
-Surface surface_basis(int x, int y, cv::Size size) {
+Surface surface_basis(double x, double y, cv::Size size) {
   const double u = scaled(x, size.width), v = scaled(y, size.height);
   Surface b;
   b << 1, u, v, u * u, u * v, v * v;
@@ -147,7 +156,7 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
   }
   Prepared p;
   p.light = bright_envelope(image);
-  p.darkness.create(image.size());
+  p.darkness = cv::Mat1f(image.rows, image.cols + kSpareColumns, 0.0F).colRange(0, image.cols);
   for (int y = 0; y < image.rows; ++y) {
     const SurfaceRow light = surface_row(p.light, y, image.size());
     const float* i = image[y];

@@ -16,11 +16,14 @@ struct PreprocessOptions {
 /// Coefficients of 1, u, v, u^2, u v, v^2; u and v run from -1 to 1 across a frame.
 using Surface = Eigen::Matrix<double, 6, 1>;
 /// The six functions at a pixel.
-Surface surface_basis(int x, int y, cv::Size size);
+Surface surface_basis(double x, double y, cv::Size size);
 /// A surface along a row of pixels.
 struct SurfaceRow {
-  double flat, slope, curve;
-  [[nodiscard]] float at(int x) const { return static_cast<float>(flat + (slope + curve * x) * x); }
+  float flat, slope, curve;
+  [[nodiscard]] float at(int x) const {
+    const auto f = static_cast<float>(x);
+    return flat + (slope + curve * f) * f;
+  }
 };
 SurfaceRow surface_row(const Surface& surface, int y, cv::Size size);
 
@@ -28,7 +31,8 @@ SurfaceRow surface_row(const Surface& surface, int y, cv::Size size);
 struct Prepared {
   Surface light =
       Surface::Zero();  ///< B, grey levels: quadratic surface through the light that reaches the camera
-  cv::Mat1f darkness;   ///< d = 1 - I/B: 0 where the light shines, about 1 in an opaque disc
+  cv::Mat1f darkness;   ///< d = 1 - I/B: 0 where the light shines, about 1 in an opaque disc; behind each row
+                        ///< kSpareColumns more floats may be read
   cv::Mat1b opaque;     ///< 255 on walls, plate and other dark regions too large to be beads and within two
                         ///< pixels of them; empty if there are none
 };

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <tuple>
 
 #include "analysis/trajectory/median.hpp"
 #include "imaging/coupled_step.hpp"
@@ -25,7 +26,10 @@ constexpr double kMinDarkness = 0.4;  // a fitted disc paler than that is none
 constexpr double kMissedDarkness = 0.35;
 // After so many sweeps some few may wander on: they are no beads.
 constexpr int kPatient = 12;
-constexpr double kRestless = 0.05;  // of a step, px or darkness
+// So far a disc may wander, px or darkness, before what couples it to its neighbours is found anew.
+constexpr double kRestless = 0.1;
+// Of the first step, by which discs take no heed of each other: so much is left to go, in a packing.
+constexpr double kLeftByFirst = 0.5;
 // Added to the diagonal, relative: more only while steps make the fit worse.
 constexpr double kDamping = 0.002;
 
@@ -98,21 +102,27 @@ class PictureFit {
   Moved sweep(BlurFit fit) {
     RingArgs args = ring_args();
     if (sweeps_ == 0) args.row_step = 2;  // half the pixels do while the places are rough
+    std::swap(sums_, sums_before_);
     evaluate(args, fit);
     double squares = 0, pixels = 1;
     for (const RingSums& s : sums_) squares += s.residual_squares, pixels += s.pixels;
     const double misfit = squares / pixels;
-    if (last_ && misfit > 1.1 * last_->misfit + 1e-7) {
-      beads_ = last_->beads;
-      sums_ = last_->sums;
-      blur_ = last_->blur;
+    if (before_ && misfit > 1.1 * before_->misfit + 1e-7) {
+      for (std::size_t k = 0; k < beads_.size(); ++k) put(beads_[k], before_->discs[k]);
+      std::swap(sums_, sums_before_);
+      blur_ = before_->blur;
       damping_ *= 20;
       couplings_.clear();
     } else {
-      last_ = State{beads_, sums_, blur_, misfit};
+      if (!before_) before_.emplace();
+      before_->discs.clear();
+      for (const Detection& b : beads_) before_->discs.push_back(disc_of(b));
+      before_->blur = blur_;
+      before_->misfit = misfit;
       damping_ = std::max(kDamping, damping_ / 4);
       if (sweeps_ >= 2) prune();
     }
+    if (sweeps_ == 2 || sweeps_ == 3) learn_beliefs();
     ++sweeps_;
     return step(args, fit);
   }
@@ -124,32 +134,6 @@ class PictureFit {
     for (const Detection& b : beads_) radius.push_back(b.radius), darkness.push_back(b.darkness);
     beliefs_ = {Belief{upper_median(std::move(radius)), options_.radius_spread / 3 * radius_},
                 Belief{upper_median(std::move(darkness)), 0.02}};
-  }
-
-  /// How much R and a differ from bead to bead, from the beads themselves: the scatter less what the fit
-  /// alone would scatter.
-  void learn_beliefs() {
-    constexpr std::size_t kEnough = 20;
-    const std::array<double, 2> least = {0.002 * radius_, 0.003};
-    std::array<std::vector<double>, 2> values, variances;
-    for (std::size_t k = 0; k < beads_.size(); ++k) {
-      const Detection& b = beads_[k];
-      if (sums_[k].pixels < 0.8 * full_ring()) continue;
-      const std::array<double, 2> v = {b.radius, b.darkness};
-      for (std::size_t q = 0; q < 2; ++q) values[q].push_back(v[q]);
-      if (variances[0].size() > 200) continue;
-      const Normal covariance = normal_of(sums_[k]).inverse();
-      for (int q = 0; q < 2; ++q)
-        variances[static_cast<std::size_t>(q)].push_back(covariance(kR + q, kR + q));
-    }
-    if (values[0].size() < kEnough) return;
-    for (std::size_t q = 0; q < 2; ++q) {
-      const double middle = upper_median(values[q]);
-      for (double& v : values[q]) v = std::abs(v - middle);
-      const double scatter = 1.4826 * upper_median(values[q]);
-      const double own = scatter * scatter - upper_median(variances[q]);
-      beliefs_[q] = {middle, std::max(least[q], std::sqrt(std::max(0.0, own)))};
-    }
   }
 
   /// Divides the light by a quadratic surface, so that what is left in the gaps between the discs vanishes. A
@@ -180,15 +164,15 @@ class PictureFit {
     if (n < kEnough) return;
     a.diagonal().tail<5>().array() += 1e-3 * weights;
     const Surface q = a.ldlt().solve(right);
+    std::vector<float> levelled(static_cast<std::size_t>(size_.width));
     for (int y = 0; y < size_.height; ++y) {
-      float* d = picture_[y];
+      float *d = picture_[y], *level = levelled.data();
       const SurfaceRow row = surface_row(q, y, size_);
-      for (int x = 0; x < size_.width; ++x) {
-        const float levelled = 1 - (1 - d[x]) / (1 - row.at(x));
-        d[x] = d[x] < kUnseen ? levelled : d[x];
-      }
+      // In two steps, for the compiler makes vectors of neither a division nor a choice where both are one.
+      for (int x = 0; x < size_.width; ++x) level[x] = 1 - (1 - d[x]) / (1 - row.at(x));
+      for (int x = 0; x < size_.width; ++x) d[x] = d[x] < kUnseen ? level[x] : kUnseen;
     }
-    last_.reset();
+    before_.reset();
   }
 
   /// A disc that nobody proposed leaves a dark disc in the residual picture: blocks of pixels, three by three
@@ -197,12 +181,14 @@ class PictureFit {
     if (stale_) render();
     const int side = std::max(1, cvRound(0.4 * radius_));
     cv::Mat1f blocks = cv::Mat1f::zeros(size_.height / side, size_.width / side);
+    std::vector<float> left(static_cast<std::size_t>(size_.width));
     for (int y = 0; y < blocks.rows * side; ++y) {
       const float *d = picture_[y], *t = model_[y];
+      for (int x = 0; x < size_.width; ++x)
+        left[static_cast<std::size_t>(x)] = d[x] < kUnseen ? d[x] - t[x] : 0.0F;
       float* block = blocks[y / side];
       for (int x = 0; x < blocks.cols; ++x)
-        for (int k = x * side; k < (x + 1) * side; ++k)
-          if (d[k] < kUnseen) block[x] += d[k] - t[k];
+        for (int k = x * side; k < (x + 1) * side; ++k) block[x] += left[static_cast<std::size_t>(k)];
     }
     if (blocks.empty()) return 0;
     cv::boxFilter(blocks, blocks, CV_32F, {3, 3}, {-1, -1}, false, cv::BORDER_CONSTANT);
@@ -222,7 +208,7 @@ class PictureFit {
       });
       if (!known) add(p);
     }
-    if (beads_.size() > before) stale_ = true, last_.reset(), couplings_.clear();
+    if (beads_.size() > before) stale_ = true, before_.reset(), couplings_.clear();
     return beads_.size() - before;
   }
 
@@ -294,6 +280,32 @@ class PictureFit {
     Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
   };
 
+  /// How much R and a differ from bead to bead, from the beads themselves: the scatter less what the fit
+  /// alone would scatter.
+  void learn_beliefs() {
+    constexpr std::size_t kEnough = 20;
+    const std::array<double, 2> least = {0.002 * radius_, 0.003};
+    std::array<std::vector<double>, 2> values, variances;
+    for (std::size_t k = 0; k < beads_.size(); ++k) {
+      const Detection& b = beads_[k];
+      if (sums_[k].pixels < 0.8 * full_ring()) continue;
+      const std::array<double, 2> v = {b.radius, b.darkness};
+      for (std::size_t q = 0; q < 2; ++q) values[q].push_back(v[q]);
+      if (variances[0].size() > 200) continue;
+      const Normal covariance = normal_of(sums_[k]).inverse();
+      for (int q = 0; q < 2; ++q)
+        variances[static_cast<std::size_t>(q)].push_back(covariance(kR + q, kR + q));
+    }
+    if (values[0].size() < kEnough) return;
+    for (std::size_t q = 0; q < 2; ++q) {
+      const double middle = upper_median(values[q]);
+      for (double& v : values[q]) v = std::abs(v - middle);
+      const double scatter = 1.4826 * upper_median(values[q]);
+      const double own = scatter * scatter - upper_median(variances[q]);
+      beliefs_[q] = {middle, std::max(least[q], std::sqrt(std::max(0.0, own)))};
+    }
+  }
+
   /// Drops what has turned out to be no disc, or to lie outside. Left in, it would spoil its neighbours.
   void prune() {
     std::size_t kept = 0;
@@ -302,10 +314,10 @@ class PictureFit {
       const Detection& b = beads_[k];
       if (b.darkness < kMinDarkness) {
         drop(b, Verdict::pale);
-      } else if (sums_[k].pixels < 0.05 * full_ring()) {
-        drop(b, Verdict::unseen);
       } else if (b.x < -out || b.y < -out || b.x > size_.width - 1 + out || b.y > size_.height - 1 + out) {
         drop(b, Verdict::outside);
+      } else if (sums_[k].pixels < 0.05 * full_ring()) {
+        drop(b, Verdict::unseen);
       } else {
         beads_[kept] = b;
         sums_[kept++] = sums_[k];
@@ -313,7 +325,7 @@ class PictureFit {
     }
     if (kept == beads_.size()) return;
     stale_ = true;
-    last_.reset();
+    before_.reset();
     couplings_.clear();
     beads_.resize(kept);
     sums_.resize(kept);
@@ -341,8 +353,7 @@ class PictureFit {
     }
     std::vector<Step> steps(n);
     if (sweeps_ > 1) {
-      // Once discs hardly move any more, what couples them stays what it was.
-      if (restless_ || couplings_.empty()) couplings_ = couplings_of(args, discs);
+      couple(args, discs);
       steps = coupled_step(blocks, couplings_, right);
     } else {
       // R and a are not known well enough yet to say what neighbours do to each other.
@@ -352,24 +363,38 @@ class PictureFit {
       }
     }
     std::vector<double> far(n), sigma(n);
-    restless_ = false;
     Moved moved{0, 0, 0, damping_ > 0.1};
     for (std::size_t k = 0; k < n; ++k) {
       far[k] = apply(beads_[k], steps[k]);
-      restless_ = restless_ || far[k] > kRestless || std::abs(steps[k][kA]) > kRestless;
+      if (sweeps_ > 1) wandered_[k] += far[k] + std::abs(steps[k][kA]);
       sigma[k] = std::sqrt(excess(sums_[k]) / blocks[k](kX, kX));
     }
     if (n > 0) {
-      std::sort(far.begin(), far.end());
       const std::size_t most = sweeps_ > kPatient ? n - 1 - n / 50 : n - 1;
+      std::nth_element(far.begin(), far.begin() + static_cast<std::ptrdiff_t>(most), far.end());
       for (std::size_t k = 0; k <= most; ++k) moved.rms += far[k] * far[k];
       moved.most = far[most];
       moved.rms = std::sqrt(moved.rms / static_cast<double>(2 * (most + 1)));
       moved.sigma = upper_median(std::move(sigma));
     }
     moved.blur = blur.apply(blur_);
+    unsettled_ = sweeps_ == 1 ? kLeftByFirst * moved.rms : 0;
     stale_ = true;
     return moved;
+  }
+
+  /// What couples two discs stays what it was until one of them has moved.
+  void couple(const RingArgs& args, const std::vector<Disc>& discs) {
+    if (couplings_.empty()) {
+      couplings_ = couplings_of(args, discs);
+      wandered_.assign(discs.size(), 0.0);
+      return;
+    }
+    for (Coupling& c : couplings_)
+      if (std::max(wandered_[static_cast<std::size_t>(c.i)], wandered_[static_cast<std::size_t>(c.j)]) >
+          kRestless)
+        renew(c, args, discs);
+    for (double& w : wandered_) w = w > kRestless ? 0 : w;
   }
 
   /// Of each disc's x, y, R, a by the noise, with what its neighbours' uncertainty adds: of the inverse of
@@ -396,7 +421,17 @@ class PictureFit {
     dropped_.back().verdict = why;
   }
   [[nodiscard]] static Disc disc_of(const Detection& b) { return {b.x, b.y, b.radius, b.darkness}; }
-  [[nodiscard]] double full_ring() const { return 4 * std::numbers::pi * radius_ * options_.ring_px; }
+  static void put(Detection& b, const Disc& d) {
+    b.x = d.x, b.y = d.y, b.radius = d.radius, b.darkness = d.darkness;
+  }
+  /// Half width of the ring: out to where the edge says nothing more of the place.
+  [[nodiscard]] double ring() const {
+    constexpr double kFar = 3, kLeast = 2.5, kMost = 6;
+    if (options_.ring_px > 0) return options_.ring_px;
+    return std::clamp(kFar * std::sqrt(blur_.variance + std::max({0.0, blur_.motion[0], blur_.motion[2]})),
+                      kLeast, kMost);
+  }
+  [[nodiscard]] double full_ring() const { return 4 * std::numbers::pi * radius_ * ring(); }
   void render() {
     model_.create(picture_.size());
     model_.setTo(0);
@@ -408,7 +443,7 @@ class PictureFit {
     args.picture = &picture_;
     args.model = &model_;
     args.blur = blur_;
-    args.ring = options_.ring_px;
+    args.ring = ring();
     args.dark_variance = noise_.dark;
     args.light_variance = noise_.light;
     // The noise of a usable frame is below, rims of clear beads are above.
@@ -433,7 +468,7 @@ class PictureFit {
     b.y += dy;
     b.radius = std::clamp(b.radius + std::clamp(step[kR], -0.5, 0.5), 0.6 * radius_, 1.4 * radius_);
     b.darkness = std::clamp(b.darkness + step[kA], 0.0, 1.5);
-    return std::hypot(dx, dy);
+    return std::sqrt(dx * dx + dy * dy);
   }
 
   /// Where the fit leaves more than the noise, the scatter is larger by as much: variance over that of the
@@ -446,13 +481,13 @@ class PictureFit {
   void measure(Detection& b, const RingSums& s, const Normal& by_noise) const {
     const double n = s.pixels;
     const Normal covariance = excess(s) * by_noise;
-    b.sigma_x = std::sqrt(covariance(kX, kX));
-    b.sigma_y = std::sqrt(covariance(kY, kY));
+    b.sigma_x = std::sqrt(covariance(kX, kX) + unsettled_ * unsettled_);
+    b.sigma_y = std::sqrt(covariance(kY, kY) + unsettled_ * unsettled_);
     b.sigma_radius = std::sqrt(covariance(kR, kR));
     b.residual = n > 0 ? std::sqrt(s.residual_squares / n) : std::numeric_limits<double>::infinity();
     const double total = n > 0 ? s.seen_squares - s.seen * s.seen / n : 0;
     b.score = total > 0 ? std::clamp(1 - s.residual_squares / total, 0.0, 1.0) : 0;
-    b.ring_share = n / (4 * std::numbers::pi * b.radius * options_.ring_px);
+    b.ring_share = n / (4 * std::numbers::pi * b.radius * ring());
     measure_disc(image_, b);
   }
 
@@ -466,48 +501,62 @@ class PictureFit {
   cv::Mat1f picture_, model_;      // with spare columns; darkness, sum of all a P
   bool stale_ = true;              // the model is not that of the beads
   std::vector<Detection> beads_, dropped_;
-  std::vector<RingSums> sums_;  // of the last sweep
+  std::vector<RingSums> sums_;         // of the last sweep
+  std::vector<RingSums> sums_before_;  // of the sweep before that
   struct State {
-    std::vector<Detection> beads;
-    std::vector<RingSums> sums;
+    std::vector<Disc> discs;
     EdgeBlur blur;
-    double misfit;  // mean square of what is left, darkness^2
+    double misfit = 0;  // mean square of what is left, darkness^2
   };
-  std::optional<State> last_;  // before the last step; none after the picture or the set of beads was changed
+  std::optional<State> before_;  // the last step; none after the picture or the set of beads was changed
   double damping_ = kDamping;
-  bool restless_ = true;  // the last step was a large one
   int sweeps_ = 0;
+  double unsettled_ = 0;             // px, by which the places may be off beside the noise
   std::vector<Coupling> couplings_;  // empty after the set of beads was changed
+  std::vector<double> wandered_;     // of each bead since its couplings were found, px and darkness
 };
+
+/// In bands as high as a disc, each from left to right: a disc's pixels are then in the cache from its
+/// neighbours. By score, as they come, half of the time went into waiting for memory.
+std::vector<Proposal> by_place(std::vector<Proposal> proposals, double band) {
+  std::sort(proposals.begin(), proposals.end(), [&](const Proposal& a, const Proposal& b) {
+    return std::tuple(std::floor(a.y / band), a.x, a.y) < std::tuple(std::floor(b.y / band), b.x, b.y);
+  });
+  return proposals;
+}
 
 }  // namespace
 
 Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
                const RefineOptions& options) {
   PictureFit fit(image, radius_px, options);
-  for (const Proposal& p : proposals) fit.add(p);
+  const int most_sweeps = options.method == "fast" ? 1 : options.sweeps;
+  for (const Proposal& p : by_place(proposals, 2 * radius_px)) fit.add(p);
   const BlurFit blur = options.blur_px > 0 ? BlurFit::none : BlurFit::round;
   constexpr int kLeast = 3;
-  constexpr double kEnough =
-      0.25;  // of what a place is uncertain by: the next sweep would move a third of that
+  constexpr double kEnough = 0.1;        // of what a place is uncertain by
   constexpr double kBlurSettled = 0.03;  // of s^2: moves no touching bead by more than its error
   // Whether the bed moved during the exposure shows once the discs are in place.
   BlurFit moving = blur == BlurFit::none ? BlurFit::none : BlurFit::motion;
   int sweeps = 0;
   bool blurred = false;
-  while (sweeps < options.sweeps) {
-    const auto moved = fit.sweep(blurred ? BlurFit::none : sweeps < 3 ? blur : moving);
+  double before = HUGE_VAL;
+  while (sweeps < most_sweeps) {
+    const auto moved = fit.sweep(blurred ? BlurFit::none : sweeps < kLeast - 1 ? blur : moving);
     ++sweeps;
-    blurred = blurred || (sweeps >= 4 && !moved.short_step && moved.blur < kBlurSettled);
-    if (sweeps == 4 && moving == BlurFit::motion && !fit.moves()) moving = BlurFit::round;
+    blurred = blurred || (sweeps > kLeast && !moved.short_step && moved.blur < kBlurSettled);
+    if (sweeps == kLeast && moving == BlurFit::motion && !fit.moves()) moving = BlurFit::round;
     if (sweeps == 1) fit.expect_alike();
-    if (sweeps <= 3) fit.level();
-    // Those found now need a sweep of their own.
-    if (sweeps == 2 && sweeps < options.sweeps) fit.add_missed();
-    if (sweeps == 3) fit.learn_beliefs();
-    if (sweeps >= kLeast && !moved.short_step && moved.blur < kBlurSettled &&
-        moved.rms < kEnough * moved.sigma && moved.most < std::max(options.tolerance_px, 3 * moved.sigma))
+    const double shrinks = moved.rms < before ? moved.rms / before : 1;
+    before = moved.rms;
+    // The next step would be smaller than this one by about as much as this is smaller than the last.
+    if (sweeps >= kLeast && !moved.short_step && moved.blur < kBlurSettled && moving != BlurFit::motion &&
+        shrinks * moved.rms < kEnough * moved.sigma &&
+        shrinks * moved.most < std::max(options.tolerance_px, moved.sigma))
       break;
+    if (sweeps <= 3 && sweeps < most_sweeps) fit.level();
+    // Those found now need a sweep of their own.
+    if (sweeps == 2 && sweeps < most_sweeps) fit.add_missed();
   }
   return fit.result();
 }

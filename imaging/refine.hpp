@@ -11,6 +11,9 @@
 /// beads of one kind need not have each its own darkness fitted from noise. Then the fit is one of maximum
 /// likelihood. Bound (Cramer-Rao, 15 px disc, blur 0.8 px): 0.36/SNR px per coordinate.
 ///
+/// The first sweep, each disc for itself, moves a disc that stands apart to where it belongs and one among
+/// neighbours about three fifths of the way there.
+///
 /// When not to use: translucent discs with bright cores, or discs that overlap in projection.
 
 #include <opencv2/core.hpp>
@@ -24,10 +27,10 @@ namespace twincell {
 
 /// How the fit is done.
 struct RefineOptions {
-  std::string method = "exact";  ///< "exact": this fit; "fast": edge_fit.hpp
+  std::string method = "exact";  ///< "exact": this fit; "fast": its first sweep; "edges": edge_fit.hpp
   int sweeps = 30;               ///< at most, 1 .. 1000
   double tolerance_px = 2e-3;    ///< a sweep that moves no bead further is the last, > 0
-  double ring_px = 3;            ///< half width of the ring, > 1
+  double ring_px = 0;            ///< half width of the ring, 1 .. 50; 0: three times the blur, 2.5 .. 6
   double blur_px = 0;            ///< edge blur s; 0: fitted
   double radius_spread = 0.06;   ///< prior: relative scatter of the radii about the given one, > 0
 };

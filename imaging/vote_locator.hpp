@@ -9,11 +9,10 @@
 
 namespace twincell {
 
-/// Each pixel with a clear gradient votes once, with the weight |grad d|, for the point one radius up the
-/// gradient; votes are spread bilinearly, the sum is smoothed (1.5 px) and peaks nearer than 0.8 d to a
-/// better one are dropped. No edge thinning: only arcs that face a gap vote, so contacts do no harm. The
-/// score is the peak over that of a full circle of unit contrast. Centres up to one radius outside the frame
-/// are proposed (their rims are inside).
+/// Peaks of the smoothed votes of votes.hpp; those nearer than 0.8 d to a better one are dropped. No edge
+/// thinning: only arcs that face a gap vote, so contacts do no harm. The score is the peak over that of a
+/// full circle of unit contrast. Centres up to one radius outside the frame are proposed (their rims are
+/// inside).
 struct VoteFinder {
   static constexpr std::string_view name = "vote";
   static std::vector<Proposal> find(const Prepared& image, const FindOptions& options);

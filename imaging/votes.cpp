@@ -1,0 +1,179 @@
+#include "imaging/votes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "imaging/votes.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#ifndef TWINCELL_VOTES_ONCE
+#define TWINCELL_VOTES_ONCE
+namespace twincell::votes {
+inline constexpr std::size_t kSpare = 16;  // floats behind the end of a row, for the last vector
+inline constexpr std::size_t kReach = 2;   // pixels to each side that make a gradient
+}  // namespace twincell::votes
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace twincell::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using votes::kReach;
+
+// Noise at SNR 18 gives 0.02.
+constexpr float kMinGradient = 0.05F;
+
+using Tag = hn::CappedTag<float, 8>;
+using V = hn::Vec<Tag>;
+HWY_INLINE V of(float a) {
+  return hn::Set(Tag(), a);
+}
+
+/// Sums over the columns of five rows: 1 4 6 4 1, and -1 -2 0 2 1.
+void across_rows(const std::array<const float*, 5>& rows, std::size_t n, float* HWY_RESTRICT smooth,
+                 float* HWY_RESTRICT slope) {
+  const Tag tag;
+  for (std::size_t x = 0; x < n; x += hn::MaxLanes(tag)) {
+    const V a = hn::LoadU(tag, rows[0] + x), b = hn::LoadU(tag, rows[1] + x), c = hn::LoadU(tag, rows[2] + x),
+            d = hn::LoadU(tag, rows[3] + x), e = hn::LoadU(tag, rows[4] + x);
+    const V outer = hn::Add(a, e), inner = hn::Add(b, d);
+    hn::StoreU(hn::MulAdd(of(6), c, hn::MulAdd(of(4), inner, outer)), tag, smooth + x);
+    hn::StoreU(hn::MulAdd(of(2), hn::Sub(d, b), hn::Sub(e, a)), tag, slope + x);
+  }
+}
+
+/// One row's votes: the pixel of the picture of votes that each votes for, and how much.
+std::size_t votes_of_row(const float* HWY_RESTRICT smooth, const float* HWY_RESTRICT slope,
+                         const std::uint8_t* ignore, std::size_t n, float radius, float y, int stride,
+                         std::int32_t* HWY_RESTRICT place, float* HWY_RESTRICT weight) {
+  const Tag tag;
+  const hn::RebindToSigned<Tag> whole;
+  constexpr float kUnit = 1.0F / 128;  // 16 by 8
+  std::size_t found = 0;
+  for (std::size_t x = 0; x < n; x += hn::MaxLanes(tag)) {
+    const float *s = smooth + x + kReach, *d = slope + x + kReach;
+    const V gx = hn::Mul(of(kUnit), hn::MulAdd(of(2), hn::Sub(hn::LoadU(tag, s + 1), hn::LoadU(tag, s - 1)),
+                                               hn::Sub(hn::LoadU(tag, s + 2), hn::LoadU(tag, s - 2))));
+    const V inner = hn::Add(hn::LoadU(tag, d - 1), hn::LoadU(tag, d + 1)),
+            outer = hn::Add(hn::LoadU(tag, d - 2), hn::LoadU(tag, d + 2));
+    const V gy =
+        hn::Mul(of(kUnit), hn::MulAdd(of(6), hn::LoadU(tag, d), hn::MulAdd(of(4), inner, outer)));
+    const V g2 = hn::MulAdd(gx, gx, hn::Mul(gy, gy));
+    auto clear = hn::And(hn::Gt(g2, of(kMinGradient * kMinGradient)), hn::FirstN(tag, n - x));
+    if (hn::AllFalse(tag, clear)) continue;
+    if (ignore != nullptr) {
+      HWY_ALIGN std::array<float, 8> passed{};
+      for (std::size_t k = 0; k < std::min(hn::MaxLanes(tag), n - x); ++k)
+        passed[k] = ignore[x + k] != 0 ? 1.0F : 0.0F;
+      clear = hn::And(clear, hn::Eq(hn::Load(tag, passed.data()), hn::Zero(tag)));
+    }
+    const V g = hn::Sqrt(g2), far = hn::Div(of(radius), hn::Max(g, of(kMinGradient)));
+    const V column = hn::Add(hn::Iota(tag, static_cast<float>(x)), hn::Mul(far, gx)),
+            row = hn::Add(of(y), hn::Mul(far, gy));
+    const auto at = hn::Add(hn::NearestInt(column), hn::Mul(hn::NearestInt(row), hn::Set(whole, stride)));
+    hn::StoreU(hn::Compress(at, hn::RebindMask(whole, clear)), whole, place + found);
+    hn::StoreU(hn::Compress(g, clear), tag, weight + found);
+    found += hn::CountTrue(tag, clear);
+  }
+  return found;
+}
+
+/// Weighted sums of nine numbers `step` apart, symmetric about the middle one.
+void blur_line(const std::array<const float*, 9>& from, const std::array<float, 5>& weights, std::size_t n,
+               float* HWY_RESTRICT to) {
+  const Tag tag;
+  for (std::size_t x = 0; x < n; x += hn::MaxLanes(tag)) {
+    V sum = hn::Mul(of(weights[0]), hn::LoadU(tag, from[4] + x));
+    for (std::size_t k = 1; k < 5; ++k)
+      sum = hn::MulAdd(of(weights[k]),
+                       hn::Add(hn::LoadU(tag, from[4 - k] + x), hn::LoadU(tag, from[4 + k] + x)), sum);
+    hn::StoreU(sum, tag, to + x);
+  }
+}
+
+}  // namespace twincell::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace twincell {
+
+HWY_EXPORT(across_rows);
+HWY_EXPORT(votes_of_row);
+HWY_EXPORT(blur_line);
+
+namespace {
+
+using votes::kReach, votes::kSpare;
+
+/// Calls use(y, five rows around y) for each row of the frame; beyond its border it goes on as at the border.
+template <class Use>
+void with_neighbour_rows(const cv::Mat1f& frame, Use&& use) {
+  constexpr int kRows = 5, kMiddle = 2;
+  const auto n = static_cast<std::size_t>(frame.cols), width = n + 2 * kReach + kSpare;
+  std::array<std::vector<float>, kRows> kept;
+  for (auto& row : kept) row.assign(width, 0.0F);
+  const auto read = [&](int y) {
+    std::vector<float>& row = kept[static_cast<std::size_t>((y + kRows) % kRows)];
+    const float* from = frame[std::clamp(y, 0, frame.rows - 1)];
+    std::copy_n(from, n, row.data() + kReach);
+    std::fill_n(row.data(), kReach, from[0]);
+    std::fill_n(row.data() + kReach + n, kReach, from[n - 1]);
+  };
+  for (int y = -kMiddle; y < kMiddle; ++y) read(y);
+  for (int y = 0; y < frame.rows; ++y) {
+    read(y + kMiddle);
+    std::array<const float*, kRows> rows{};
+    for (int k = 0; k < kRows; ++k)
+      rows[static_cast<std::size_t>(k)] =
+          kept[static_cast<std::size_t>((y - kMiddle + k + kRows) % kRows)].data();
+    use(y, rows);
+  }
+}
+
+}  // namespace
+
+cv::Mat1f smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, double radius_px, int pad) {
+  constexpr int kTail = 4;  // pixels of the smoothing to each side
+  const auto n = static_cast<std::size_t>(darkness.cols);
+  const int border = pad + kTail;
+  cv::Mat1f votes = cv::Mat1f::zeros(darkness.rows + 2 * border, darkness.cols + 2 * border + int{kSpare});
+  std::vector<float> smooth(n + 2 * kReach + kSpare), slope(smooth), weight(n + kSpare);
+  std::vector<std::int32_t> place(n + kSpare);
+  with_neighbour_rows(darkness, [&](int y, const std::array<const float*, 5>& rows) {
+    HWY_DYNAMIC_DISPATCH(across_rows)(rows, n + 2 * kReach, smooth.data(), slope.data());
+    const std::size_t found = HWY_DYNAMIC_DISPATCH(votes_of_row)(
+        smooth.data(), slope.data(), ignore.empty() ? nullptr : ignore[y], n, static_cast<float>(radius_px),
+        static_cast<float>(border), static_cast<int>(votes.step1()), place.data(), weight.data());
+    float* from = votes[y] + border;
+    for (std::size_t k = 0; k < found; ++k) from[place[k]] += weight[k];
+  });
+
+  std::array<float, kTail + 1> weights{};
+  double sum = 0;
+  for (int k = 0; k <= kTail; ++k) {
+    const double w = std::exp(-0.5 * k * k / (kVoteSmoothing * kVoteSmoothing));
+    weights[static_cast<std::size_t>(k)] = static_cast<float>(w);
+    sum += k == 0 ? w : 2 * w;
+  }
+  for (float& w : weights) w /= static_cast<float>(sum);
+  cv::Mat1f result(darkness.rows + 2 * pad, darkness.cols + 2 * pad);
+  const auto wide = static_cast<std::size_t>(result.cols + 2 * kTail);
+  std::vector<float> column_sums(wide + kSpare), blurred(static_cast<std::size_t>(result.cols) + kSpare);
+  for (int y = 0; y < result.rows; ++y) {
+    std::array<const float*, 2 * kTail + 1> from{};
+    for (int k = 0; k <= 2 * kTail; ++k) from[static_cast<std::size_t>(k)] = votes[y + k];
+    HWY_DYNAMIC_DISPATCH(blur_line)(from, weights, wide, column_sums.data());
+    for (int k = 0; k <= 2 * kTail; ++k) from[static_cast<std::size_t>(k)] = column_sums.data() + k;
+    HWY_DYNAMIC_DISPATCH(blur_line)(from, weights, static_cast<std::size_t>(result.cols), blurred.data());
+    std::copy_n(blurred.data(), result.cols, result[y]);
+  }
+  return result;
+}
+
+}  // namespace twincell
+#endif
