@@ -46,9 +46,9 @@ std::string row(const Detection& b, std::int64_t frame) {
 }
 
 nlohmann::json as_json(const Score& s) {
-  return {{"recall", s.recall()},        {"precision", s.precision()}, {"rms_px", s.rms},
-          {"bias_x_px", s.bias_x},       {"bias_y_px", s.bias_y},      {"truths", s.truths},
-          {"false_finds", s.false_finds}};
+  return {{"recall", s.recall()},      {"precision", s.precision()},  {"rms_px", s.rms},
+          {"rms_sure_px", s.rms_sure}, {"bias_x_px", s.bias_x},       {"bias_y_px", s.bias_y},
+          {"truths", s.truths},        {"false_finds", s.false_finds}};
 }
 
 std::string candidate_row(const Detection& b, std::int64_t frame) {
@@ -167,6 +167,8 @@ void run(LocateOptions& o, const Common& common) {
         "against the truth: recall {:.4f}, precision {:.4f}, rms {:.4f} px per coordinate, bias {:+.4f} "
         "{:+.4f} px\n",
         s.recall(), s.precision(), s.rms, s.bias_x, s.bias_y);
+    if (s.sure < s.found)
+      text += fmt::format("of the {} beads whose truth is surest: rms {:.4f} px\n", s.sure, s.rms_sure);
   }
   print_result(common, document, text);
 }

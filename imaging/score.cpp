@@ -36,7 +36,7 @@ class Table {
     const std::vector<std::string> names = split(line);
     for (std::size_t i = 0; i < names.size(); ++i) column_[names[i]] = i;
     width_ = names.size();
-    for (const char* needed : {"id", "x_px", "y_px", "r_px"})
+    for (const char* needed : {"x_px", "y_px", "r_px"})
       if (!has(needed))
         throw InputError(Where{.file = file.string(), .line = 1, .key = needed}, "is not a column.");
   }
@@ -75,7 +75,7 @@ class Table {
 
 TruthBead bead(const Table& t) {
   TruthBead b;
-  b.id = static_cast<std::int64_t>(t.number("id"));
+  if (t.has("id")) b.id = static_cast<std::int64_t>(t.number("id"));
   b.x = t.number("x_px");
   b.y = t.number("y_px");
   b.r = t.number("r_px");
@@ -112,7 +112,10 @@ void Scorer::add(const std::vector<TruthBead>& truth, const std::vector<FoundBea
     squares_ += dx * dx + dy * dy;
     sum_x_ += dx;
     sum_y_ += dy;
-    if (found[p.f].track >= 0) links.push_back({b.id, found[p.f].track});
+    constexpr double kAlike = 1.01;
+    if (b.u * kAlike < least_u_) least_u_ = b.u, squares_sure_ = 0, sums_.sure = 0;
+    if (b.u <= least_u_ * kAlike) squares_sure_ += dx * dx + dy * dy, ++sums_.sure;
+    if (b.id >= 0 && found[p.f].track >= 0) links.push_back({b.id, found[p.f].track});
   }
   for (const TruthBead& b : truth)
     if (b.counts && scored(b.y)) ++sums_.truths;
@@ -132,6 +135,7 @@ Score Scorer::score() const {
   if (s.found > 0) {
     const double n = static_cast<double>(s.found);
     s.rms = std::sqrt(squares_ / (2 * n));
+    s.rms_sure = std::sqrt(squares_sure_ / (2 * static_cast<double>(s.sure)));
     s.bias_x = sum_x_ / n;
     s.bias_y = sum_y_ / n;
   }
@@ -142,10 +146,8 @@ std::vector<std::vector<TruthBead>> read_truth(const fs::path& path) {
   std::vector<std::vector<TruthBead>> frames;
   if (!fs::is_directory(path)) {
     Table table(path);
-    if (!table.has("frame"))
-      throw InputError(Where{.file = path.string(), .line = 1, .key = "frame"}, "is not a column.");
     while (table.next_row()) {
-      const double frame = table.number("frame");
+      const double frame = table.has("frame") ? table.number("frame") : 0;
       if (!(frame >= 0 && frame < 1e7))
         throw InputError(Where{.file = path.string(), .key = "frame"}, "must lie in 0 .. 10000000.");
       if (frames.size() <= static_cast<std::size_t>(frame))

@@ -61,8 +61,7 @@ std::size_t votes_of_row(const float* HWY_RESTRICT smooth, const float* HWY_REST
                                                hn::Sub(hn::LoadU(tag, s + 2), hn::LoadU(tag, s - 2))));
     const V inner = hn::Add(hn::LoadU(tag, d - 1), hn::LoadU(tag, d + 1)),
             outer = hn::Add(hn::LoadU(tag, d - 2), hn::LoadU(tag, d + 2));
-    const V gy =
-        hn::Mul(of(kUnit), hn::MulAdd(of(6), hn::LoadU(tag, d), hn::MulAdd(of(4), inner, outer)));
+    const V gy = hn::Mul(of(kUnit), hn::MulAdd(of(6), hn::LoadU(tag, d), hn::MulAdd(of(4), inner, outer)));
     const V g2 = hn::MulAdd(gx, gx, hn::Mul(gy, gy));
     auto clear = hn::And(hn::Gt(g2, of(kMinGradient * kMinGradient)), hn::FirstN(tag, n - x));
     if (hn::AllFalse(tag, clear)) continue;

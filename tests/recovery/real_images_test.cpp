@@ -48,12 +48,15 @@ TEST(RealImages, BedloadIsFoundLinkedAndRepeats) {
   const Score s = scorer.score();
   ASSERT_GT(resting, 1000U);
   const double repeat = std::sqrt(squares / static_cast<double>(resting));
-  std::cout << "recall " << s.recall() << ", precision " << s.precision() << ", rms " << s.rms << " px, bias "
-            << s.bias_x << " " << s.bias_y << " px, " << s.wrong_links << " of " << s.links
+  std::cout << "recall " << s.recall() << ", precision " << s.precision() << ", rms " << s.rms << " px ("
+            << s.rms_sure << " px of the " << s.sure << " whose truth is surest), bias " << s.bias_x << " "
+            << s.bias_y << " px, " << s.wrong_links << " of " << s.links
             << " links wrong, repeatability of resting beads " << repeat << " px\n";
   EXPECT_EQ(s.recall(), 1);
   EXPECT_EQ(s.precision(), 1);
   EXPECT_LE(s.rms, 0.08);
+  EXPECT_GT(s.sure, 2000U);
+  EXPECT_LE(s.rms_sure, 0.05);  // as sure as that truth is
   EXPECT_GT(s.links, 2500U);
   EXPECT_EQ(s.wrong_links, 0U);
   EXPECT_LE(repeat, 0.02);
