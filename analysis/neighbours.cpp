@@ -27,6 +27,7 @@ class CellLayout {
       const double fitting = std::min(std::floor(period / cutoff), static_cast<double>(kLargest));
       origin_[axis] = box.lower[axis];
       periodic_count_[a] = fitting >= 3 ? static_cast<std::int64_t>(fitting) : 1;
+      alone_[a] = periodic_count_[a] == 1;
       width_[axis] = period / static_cast<double>(periodic_count_[a]);
     }
   }
@@ -45,7 +46,10 @@ class CellLayout {
   }
 
   /// Steps to take along axis a to meet every cell within a cutoff exactly once.
-  [[nodiscard]] std::int64_t reach(std::size_t a) const { return periodic_count_[a] == 1 ? 0 : 1; }
+  [[nodiscard]] std::int64_t reach(std::size_t a) const { return alone_[a] ? 0 : 1; }
+  /// Says that all beads lie in one layer of cells across axis a, as those of a plane do across y.
+  void one_layer(std::size_t a) { alone_[a] = true; }
+  [[nodiscard]] bool periodic(std::size_t a) const { return periodic_count_[a] > 0; }
 
   [[nodiscard]] std::uint64_t key(Cell cell) const {
     std::uint64_t packed = 0;
@@ -64,6 +68,7 @@ class CellLayout {
   Vec3 origin_ = Vec3::Zero();
   Vec3 width_ = Vec3::Ones();
   std::array<std::int64_t, 3> periodic_count_ = {0, 0, 0};
+  std::array<bool, 3> alone_ = {false, false, false};
 };
 
 struct Entry {
@@ -89,10 +94,18 @@ Neighbours find_neighbours(const Frame& frame, const Box& box, double cutoff) {
     }
   if (beads.empty()) return result;
 
-  const CellLayout layout(box, cutoff, lowest);
+  CellLayout layout(box, cutoff, lowest);
   std::vector<Entry> sorted;
   sorted.reserve(beads.size());
-  for (const std::size_t i : beads) sorted.push_back({layout.key(layout.cell_of(frame.position[i])), i});
+  std::vector<Cell> cell(n);
+  std::array<bool, 3> one_layer = {true, true, true};
+  for (const std::size_t i : beads) {
+    cell[i] = layout.cell_of(frame.position[i]);
+    sorted.push_back({layout.key(cell[i]), i});
+    for (std::size_t a = 0; a < 3; ++a) one_layer[a] = one_layer[a] && cell[i][a] == cell[beads.front()][a];
+  }
+  for (std::size_t a = 0; a < 3; ++a)
+    if (one_layer[a]) layout.one_layer(a);
   std::sort(sorted.begin(), sorted.end(),
             [](const Entry& a, const Entry& b) { return a.key != b.key ? a.key < b.key : a.bead < b.bead; });
 
@@ -108,19 +121,27 @@ Neighbours find_neighbours(const Frame& frame, const Box& box, double cutoff) {
     if (next == beads.end() || *next != i) continue;
     ++next;
     found.clear();
-    const Cell home = layout.cell_of(frame.position[i]);
+    const Cell& home = cell[i];
+    const auto look = [&](std::uint64_t first_key, std::uint64_t last_key) {
+      auto entry = std::lower_bound(sorted.begin(), sorted.end(), first_key,
+                                    [](const Entry& e, std::uint64_t k) { return e.key < k; });
+      for (; entry != sorted.end() && entry->key <= last_key; ++entry) {
+        if (entry->bead == i) continue;
+        const Vec3 bond = box.nearest_image(frame.position[entry->bead] - frame.position[i]);
+        if (bond.squaredNorm() <= cutoff2) found.push_back({entry->bead, bond});
+      }
+    };
+    const std::int64_t up = layout.reach(2);
     for (std::int64_t dx = -layout.reach(0); dx <= layout.reach(0); ++dx)
-      for (std::int64_t dy = -layout.reach(1); dy <= layout.reach(1); ++dy)
-        for (std::int64_t dz = -layout.reach(2); dz <= layout.reach(2); ++dz) {
-          const std::uint64_t key = layout.key({home[0] + dx, home[1] + dy, home[2] + dz});
-          auto entry = std::lower_bound(sorted.begin(), sorted.end(), key,
-                                        [](const Entry& e, std::uint64_t k) { return e.key < k; });
-          for (; entry != sorted.end() && entry->key == key; ++entry) {
-            if (entry->bead == i) continue;
-            const Vec3 bond = box.nearest_image(frame.position[entry->bead] - frame.position[i]);
-            if (bond.squaredNorm() <= cutoff2) found.push_back({entry->bead, bond});
-          }
-        }
+      for (std::int64_t dy = -layout.reach(1); dy <= layout.reach(1); ++dy) {
+        const auto key = [&](std::int64_t dz) {
+          return layout.key({home[0] + dx, home[1] + dy, home[2] + dz});
+        };
+        if (!layout.periodic(2))
+          look(key(-up), key(up));  // keys of one column follow each other
+        else
+          for (std::int64_t dz = -up; dz <= up; ++dz) look(key(dz), key(dz));
+      }
     std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.bead < b.bead; });
     for (const Found& f : found) {
       result.index.push_back(f.bead);

@@ -12,10 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "analysis/bond_order.hpp"
 #include "analysis/neighbours.hpp"
 #include "analysis/statistics.hpp"
 #include "analysis/trajectory/progress.hpp"
 #include "analysis/trajectory/trajectory.hpp"
+#include "analysis/voronoi.hpp"
 
 namespace twincell {
 
@@ -41,16 +43,34 @@ struct Result {
 /// A result without a value.
 Result absent_result(const std::string& name, const std::string& reason, const std::string& source);
 
+/// `r` with the mean of `series`, its interval and its count; absent for that reason if the series is empty.
+Result mean_of(const BlockAverage& series, Result r, const std::string& why_absent);
+/// `r` with these values as an array of one axis and the count of those that are numbers; absent if none is.
+Result array_of(const std::vector<double>& values, Result r, const std::string& why_absent);
+
 /// Which of the readings of eq. B4 (s_b_of in phase_thresholds.hpp).
 enum class SbForm { variance, about_rest, as_printed };
 /// The form of that name. \throws ConfigError for another
 SbForm s_b_named(const std::string& name);
 
+/// Whose bonds make the order of a bead.
+enum class NeighbourRule {
+  cutoff,    ///< centres within AnalysisOptions::neighbour_cutoff
+  delaunay,  ///< beads whose Voronoi cells share an edge (voronoi.hpp)
+  voronoi,   ///< the same, each bond weighted by the length of that edge
+};
+/// The rule of that name. \throws ConfigError for another
+NeighbourRule neighbour_rule_named(const std::string& name);
+
 /// Choices for one analysis.
 struct AnalysisOptions {
   std::int64_t discard_cycles = 0;  ///< cycles left out at the beginning
   SbForm s_b = SbForm::variance;
+  NeighbourRule neighbours = NeighbourRule::cutoff;
   std::optional<double> neighbour_cutoff;  ///< sigma; default 1.2, for experiments 1.3
+  double cell_radius = kCellRadius;        ///< sigma; size of a Voronoi cell (voronoi.hpp)
+  double field_cell = 2;                   ///< sigma; side of the cells in which displacements are averaged
+  std::optional<double> rest_height;       ///< sigma; barycentre of the bed at rest, above the plate
   std::vector<std::string> only;           ///< names of results wanted; empty: all
 };
 
@@ -71,17 +91,27 @@ struct AnalysisContext {
       tracer_rest_height;  ///< mean height of the tracers above the plate when they were chosen; NaN unknown
 };
 
+/// How neighbours were found, in words.
+std::string neighbour_rule_text(const AnalysisContext& context);
+
 /// One frame with what is computed at most once for all observables.
 class FrameView {
  public:
   FrameView(const Frame& frame, const AnalysisContext& context) : frame_(frame), context_(context) {}
   [[nodiscard]] const Frame& frame() const { return frame_; }
+  /// By the rule of the analysis.
   [[nodiscard]] const Neighbours& neighbours() const;
+  /// Of those neighbours.
+  [[nodiscard]] const BondOrder& order() const;
+  /// The Voronoi cells, whatever the rule. \pre the trajectory is planar
+  [[nodiscard]] const VoronoiCells& cells() const;
 
  private:
   const Frame& frame_;
   const AnalysisContext& context_;
   mutable std::optional<Neighbours> neighbours_;
+  mutable std::optional<BondOrder> order_;
+  mutable std::optional<VoronoiCells> cells_;
 };
 
 /// An accumulator: sees each frame once, in order.

@@ -6,10 +6,16 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/barycentre.hpp"
+#include "analysis/convection.hpp"
+#include "analysis/defects.hpp"
+#include "analysis/grains.hpp"
 #include "analysis/granular_temperature.hpp"
 #include "analysis/observable.hpp"
 #include "analysis/order.hpp"
+#include "analysis/orientation.hpp"
 #include "analysis/phase_thresholds.hpp"
+#include "analysis/profiles.hpp"
 #include "analysis/tracers.hpp"
 
 namespace twincell {
@@ -27,6 +33,18 @@ const std::vector<Entry>& entries() {
       {{"q6", "psi6", "psi4", "hexagonal_fraction", "square_fraction", "q6_beads", "psi6_beads",
         "psi4_beads"},
        make_bond_order},
+      {{"ordered_fraction", "orientation", "orientation_a", "orientation_b", "orientation_beads"},
+       make_orientation},
+      {{"grains", "largest_grain", "grain_boundary_fraction", "grain_boundary_angle", "grain_beads"},
+       make_grains},
+      {{"disclinations_5", "disclinations_7", "disclinations_other", "dislocations", "free_disclinations",
+        "holes", "defect_fraction", "defect_fraction_j", "coordination_beads"},
+       make_defects},
+      {{"displacement_field", "field_x", "field_z", "circulation_left", "circulation_right", "rolls",
+        "convection_sense"},
+       make_convection},
+      {{"profile_z", "phi_z", "T_z_z", "T_x_z"}, make_profiles},
+      {{"h_cm", "h_cm_k", "h_cm_j", "delta_h_cm", "delta_h_bar"}, make_barycentre},
   };
   return list;
 }
@@ -48,6 +66,9 @@ void check(const AnalysisOptions& options) {
                       fmt::format("{} cycles cannot be left out; at least 0", options.discard_cycles));
   if (options.neighbour_cutoff)
     require_range({.file = {}, .key = "cutoff"}, *options.neighbour_cutoff, 0, 100, true);
+  require_range({.file = {}, .key = "cell_radius"}, options.cell_radius, 0, 100, true);
+  require_range({.file = {}, .key = "field_cell"}, options.field_cell, 0.1, 100);
+  if (options.rest_height) require_range({.file = {}, .key = "rest_height"}, *options.rest_height, 0, 1e4);
 }
 
 /// Chooses tracers on the first frame at phase 0 (the first of all if the frames have no phase).
@@ -97,6 +118,23 @@ Result absent_result(const std::string& name, const std::string& reason, const s
   return r;
 }
 
+Result mean_of(const BlockAverage& series, Result r, const std::string& why_absent) {
+  if (series.n() == 0) return absent_result(r.name, why_absent, r.source);
+  r.values = {series.mean()};
+  r.n = series.n();
+  r.interval = series.interval(r.n_of);
+  return r;
+}
+
+Result array_of(const std::vector<double>& values, Result r, const std::string& why_absent) {
+  r.n = static_cast<std::size_t>(
+      std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }));
+  if (r.n == 0) return absent_result(r.name, why_absent, r.source);
+  r.values = values;
+  r.shape = {values.size()};
+  return r;
+}
+
 SbForm s_b_named(const std::string& name) {
   if (name == "variance") return SbForm::variance;
   if (name == "about_rest") return SbForm::about_rest;
@@ -105,9 +143,39 @@ SbForm s_b_named(const std::string& name) {
                     fmt::format("\"{}\" is not one of variance, about_rest, as_printed", name));
 }
 
+NeighbourRule neighbour_rule_named(const std::string& name) {
+  if (name == "cutoff") return NeighbourRule::cutoff;
+  if (name == "delaunay") return NeighbourRule::delaunay;
+  if (name == "voronoi") return NeighbourRule::voronoi;
+  throw ConfigError({.file = {}, .key = "neighbours"},
+                    fmt::format("\"{}\" is not one of cutoff, delaunay, voronoi", name));
+}
+
+std::string neighbour_rule_text(const AnalysisContext& context) {
+  if (context.options.neighbours == NeighbourRule::cutoff)
+    return fmt::format("neighbours: centres within {:.4g} sigma", context.cutoff);
+  return fmt::format(
+      "neighbours: Voronoi cells within {:.4g} sigma that share an edge{}", context.options.cell_radius,
+      context.options.neighbours == NeighbourRule::voronoi ? ", bonds weighted by the length of that edge"
+                                                           : "");
+}
+
 const Neighbours& FrameView::neighbours() const {
+  if (context_.options.neighbours != NeighbourRule::cutoff) return cells().neighbours;
   if (!neighbours_) neighbours_ = find_neighbours(frame_, context_.info.box, context_.cutoff);
   return *neighbours_;
+}
+
+const BondOrder& FrameView::order() const {
+  if (!order_)
+    order_ = context_.options.neighbours == NeighbourRule::voronoi ? bond_order(neighbours(), cells().edge)
+                                                                   : bond_order(neighbours());
+  return *order_;
+}
+
+const VoronoiCells& FrameView::cells() const {
+  if (!cells_) cells_ = voronoi_cells(frame_, context_.info.box, context_.options.cell_radius);
+  return *cells_;
 }
 
 std::vector<std::string> result_names() {

@@ -1,0 +1,130 @@
+#include "analysis/barycentre.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace twincell {
+namespace {
+
+const char* const kSource = "Bhateja, Sharma & Singh 2016, Table II and Fig. 7";
+
+class Barycentre : public Observable {
+ public:
+  explicit Barycentre(const AnalysisContext& context)
+      : info_(context.info),
+        rest_height_(context.options.rest_height),
+        phases_(context.info.columns.phase ? static_cast<std::size_t>(context.info.phases_per_cycle) : 0),
+        by_phase_(phases_) {}
+
+  void add(const FrameView& view) override {
+    const Frame& frame = view.frame();
+    const double height = barycentre_height(frame, info_.mass);
+    if (!std::isfinite(height)) return;
+    if (phases_ == 0) {
+      mean_.add(height);
+      return;
+    }
+    if (frame.phase < 0 || static_cast<std::size_t>(frame.phase) >= phases_) return;
+    by_phase_[static_cast<std::size_t>(frame.phase)].add(height);
+    if (frame.cycle != cycle_) {
+      cycle_ = frame.cycle;
+      sum_ = 0;
+      count_ = 0;
+    }
+    sum_ += height;
+    // A part of a cycle would weigh the phases it has.
+    if (++count_ == phases_) {
+      by_cycle_.push_back(sum_ / static_cast<double>(phases_));
+      mean_.add(by_cycle_.back());
+    }
+  }
+
+  [[nodiscard]] std::vector<Result> results() const override {
+    const char* of = phases_ > 0 ? "cycles" : "frames";
+    const std::string none = phases_ > 0 ? "no whole cycle" : "no frame holds a bead";
+    const std::string rule =
+        fmt::format("mean over {} of the height of the centre of mass above the plate's mean",
+                    phases_ > 0 ? "whole cycles" : "frames");
+    const Result h = mean_of(
+        mean_, {.name = "h_cm", .unit = "sigma", .n_of = of, .convention = rule, .source = kSource}, none);
+    std::vector<double> phases;
+    for (const BlockAverage& phase : by_phase_) phases.push_back(phase.mean());
+    const std::string no_phase = phases_ > 0 ? none : "the frames have no phase";
+    return {h,
+            array_of(phases,
+                     {.name = "h_cm_k",
+                      .unit = "sigma",
+                      .n_of = "phases",
+                      .convention = "height of the centre of mass at each phase, mean over cycles",
+                      .source = kSource},
+                     no_phase),
+            array_of(by_cycle_,
+                     {.name = "h_cm_j",
+                      .unit = "sigma",
+                      .n_of = "cycles",
+                      .convention = "height of the centre of mass, mean of each whole cycle",
+                      .source = kSource},
+                     no_phase),
+            lift("delta_h_cm", h, "sigma", 1), lift("delta_h_bar", h, "1", velocity_scale())};
+  }
+
+ private:
+  /// V_p^2/g in sigma; NaN if the drive is not known or at rest.
+  [[nodiscard]] double velocity_scale() const {
+    if (!info_.drive || info_.drive->peak_velocity() == 0) return std::numeric_limits<double>::quiet_NaN();
+    return info_.drive->peak_velocity() * info_.drive->peak_velocity();
+  }
+
+  [[nodiscard]] Result lift(const std::string& name, const Result& h, const std::string& unit,
+                            double scale) const {
+    if (!h.present()) return absent_result(name, h.absent, kSource);
+    if (!rest_height_)
+      return absent_result(
+          name, "the height at rest is not given; it is h_cm of the same bed with the drive at rest",
+          kSource);
+    if (std::isnan(scale))
+      return absent_result(name, "the trajectory does not say how it was driven", kSource);
+    Result r = h;
+    r.name = name;
+    r.unit = unit;
+    r.values = {(h.value() - *rest_height_) / scale};
+    if (r.interval) {
+      r.interval->low = (r.interval->low - *rest_height_) / scale;
+      r.interval->high = (r.interval->high - *rest_height_) / scale;
+    }
+    r.convention = fmt::format("h_cm above its height at rest, {:.6g} sigma{}; {}", *rest_height_,
+                               scale == 1 && unit != "1" ? "" : ", over V_p^2/g", h.convention);
+    return r;
+  }
+
+  const TrajectoryInfo& info_;
+  std::optional<double> rest_height_;
+  std::size_t phases_;
+  std::vector<BlockAverage> by_phase_;
+  std::vector<double> by_cycle_;
+  std::int64_t cycle_ = -1;
+  double sum_ = 0;
+  std::size_t count_ = 0;
+  BlockAverage mean_;
+};
+
+}  // namespace
+
+double barycentre_height(const Frame& frame, const std::vector<double>& mass) {
+  double moment = 0, total = 0;
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    if (!frame.present(i) || !std::isfinite(frame.position[i].z())) continue;
+    const double m = mass.empty() ? 1 : mass[i];
+    moment += m * frame.position[i].z();
+    total += m;
+  }
+  return total > 0 ? moment / total : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::unique_ptr<Observable> make_barycentre(const AnalysisContext& context) {
+  return std::make_unique<Barycentre>(context);
+}
+
+}  // namespace twincell

@@ -1,0 +1,33 @@
+#pragma once
+/// \file
+/// Profiles over height: packing fraction and temperature.
+
+#include <memory>
+
+#include "analysis/observable.hpp"
+
+namespace twincell {
+
+/// Area of the part of a disc of this radius that lies below a line at `height` above its centre, exact;
+/// 0 below, pi radius^2 above.
+double disc_below(double radius, double height);
+/// Volume of the part of a sphere below a plane, likewise.
+double sphere_below(double radius, double height);
+
+inline constexpr std::size_t kProfileSamples = 100;  ///< least number of bead velocities in a slab
+
+/// Slabs of thickness sigma, [k, k + 1) in the frame of the cell (plate mean at 0), all frames:
+///
+///   phi_z   area of discs (2D) or volume of spheres (3D) inside the slab over that of the slab, by exact
+///           overlap and not by counting centres; the slab is as wide (and deep) as the cell
+///   T_z_z   m <(w - <w>)^2>, w the vertical velocity of beads whose centres are in the slab, <w> the mean of
+///   that
+///           slab over the whole average; absent (NaN) with fewer than kProfileSamples, m g sigma
+///   T_x_z   the same of the horizontal velocity along x
+///   profile_z  centres of the slabs, sigma
+///
+/// Kinetic convention: eq. 5 of Bhateja et al. 2016 has (m/2) where their numbers have m. Bhateja, Sharma &
+/// Singh 2016, Figs. 12 to 16.
+std::unique_ptr<Observable> make_profiles(const AnalysisContext& context);
+
+}  // namespace twincell

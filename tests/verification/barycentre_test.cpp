@@ -1,0 +1,48 @@
+// The height of the centre of mass of beds whose motion is known in closed form.
+#include "analysis/barycentre.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/rigid_bed.hpp"
+#include "tests/support/validation.hpp"
+
+using namespace twincell;
+
+TEST(Barycentre, OfTheBouncingRigidBed) {
+  const test::RigidBed bed{.gamma = 1.5, .columns = 10, .rows = 4, .phases = 40, .cycles = 6};
+  // Rows at 1/2 + k sqrt(3)/2 with 10, 9, 10, 9 beads.
+  const double rest = 0.5 + std::sqrt(3.0) / 2 * (0 * 10 + 1 * 9 + 2 * 10 + 3 * 9) / 38.0;
+  double lift = 0;
+  for (int k = 0; k < bed.phases; ++k)
+    lift += test::rigid_bed_height(bed.gamma, 2 * std::numbers::pi * k / bed.phases) / bed.phases;
+  const auto results = analyze(test::rigid_bed(bed), {.rest_height = rest});
+  test::validate({"V5.16", "h_cm of the rigid bed at Gamma 1.5", rest + lift, 1e-12, "closed form"},
+                 find_result(results, "h_cm").value());
+  test::validate({"V5.16", "delta h_cm of the rigid bed at Gamma 1.5", lift, 1e-12, "closed form"},
+                 find_result(results, "delta_h_cm").value());
+  EXPECT_NEAR(find_result(results, "delta_h_bar").value(), lift / 2.25, 1e-12);
+  const Result& by_phase = find_result(results, "h_cm_k");
+  ASSERT_EQ(by_phase.values.size(), 40U);
+  const double phi = 2 * std::numbers::pi * 10 / 40;
+  EXPECT_NEAR(by_phase.values[10], rest + 1.5 + test::rigid_bed_height(1.5, phi), 1e-12);
+  EXPECT_EQ(find_result(results, "h_cm_j").values.size(), 6U);
+  ASSERT_TRUE(find_result(results, "delta_h_cm").interval);
+}
+
+TEST(Barycentre, WithoutARestHeightThereIsNoLift) {
+  const auto results = analyze(test::rigid_bed({.cycles = 4}));
+  EXPECT_TRUE(find_result(results, "h_cm").present());
+  EXPECT_NE(find_result(results, "delta_h_cm").absent.find("at rest"), std::string::npos);
+}
+
+TEST(Barycentre, WeighsMassesAndSkipsEmptySlots) {
+  Frame frame;
+  frame.position = {Vec3(0, 0, 1), Vec3(0, 0, 4), Vec3::Constant(std::nan(""))};
+  frame.id = {0, 1, -1};
+  EXPECT_DOUBLE_EQ(barycentre_height(frame, {2, 1, 5}), 2);
+  frame.id = {-1, -1, -1};
+  EXPECT_TRUE(std::isnan(barycentre_height(frame, {})));
+}
