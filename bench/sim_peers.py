@@ -72,6 +72,7 @@ phases = 4
 # Name, scene, periods in a piece, whether also at equal accuracy.
 JOBS = [
     ("shaker_1600", SHAKER.replace("{count}", "1600"), 1, True),
+    ("shaker_1600_unequal", SHAKER.replace("{count}", '1600\nspread = "uniform"\nspread_width = 0.1'), 1, False),
     ("shaker_400", SHAKER.replace("{count}", "400"), 1, False),
     ("gas_3d", GAS.replace("{width}", "5.0").replace("{discard}", "50"), 50, False),
     ("gas_3d_1600", GAS.replace("{width}", "20.0").replace("{discard}", "20"), 3, False),

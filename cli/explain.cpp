@@ -9,6 +9,7 @@
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
 #include "sim/cost.hpp"
+#include "sim/step_error.hpp"
 
 namespace twincell::cli {
 
@@ -67,7 +68,8 @@ std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::C
 void run(const ExplainOptions& o, const Common& common) {
   const sim::Scene scene = sim::read_scene(o.scene, with_seed(o.assignments, common));
   const sim::Cost cost = sim::measure_cost(scene, kMeasuredSeconds, common.threads);
-  const sim::Plan& plan = cost.plan;
+  sim::Plan plan = cost.plan;
+  sim::state_step_error(scene, plan);
   nlohmann::json d = as_json(plan);
   const double beads = static_cast<double>(cost.beads);
   d["beads"] = cost.beads;

@@ -16,6 +16,7 @@
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
 #include "sim/checkpoint_folder.hpp"
+#include "sim/step_error.hpp"
 
 namespace twincell::cli {
 
@@ -97,7 +98,9 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, s
                       {"list_builds", run.list_builds()},
                       {"seconds", seconds},
                       {"particle_steps_per_second", seconds > 0 ? steps * n / seconds : 0}};
-  d.update(as_json(run.plan()));
+  sim::Plan plan = run.plan();
+  sim::state_step_error(s, plan);
+  d.update(as_json(plan));
   if (const auto fraction = run.contact_fraction()) d["contact_fraction"] = *fraction;
   return d;
 }
@@ -144,7 +147,9 @@ std::string provenance_of(const sim::Scene& scene, const std::vector<sim::Bead>&
   provenance.inputs = {options.scene};
   if (!scene.from.empty()) provenance.inputs.push_back(scene.from);
   provenance.config = scene.resolved;
-  provenance.plan = as_json(sim::make_plan(scene, beads)).dump();
+  sim::Plan plan = sim::make_plan(scene, beads);
+  sim::state_step_error(scene, plan);
+  provenance.plan = as_json(plan).dump();
   provenance.seed = scene.seed;
   provenance.threads = sim::threads_for(scene.n_beads.value_or(0), common.threads);
   return provenance.to_json();

@@ -259,9 +259,8 @@ void require_same_run(const Scene& scene, const Checkpoint& checkpoint,
   all.insert(then.begin(), then.end());
   for (const auto& [key, unused] : all)
     if (value(now, key) != value(then, key))
-      throw ConfigError({scene.file, 0, 0, key},
-                        fmt::format("is {}, but {} in the run that is to be resumed; {}", value(now, key),
-                                    value(then, key), remedy));
+      throw ConfigError(scene.where(key), fmt::format("is {}, but {} in the run that is to be resumed; {}",
+                                                      value(now, key), value(then, key), remedy));
   if (scene.resolved != checkpoint.scene)
     throw ConfigError({scene.file, 0, 0, ""}, "is not the scene of the run that is to be resumed; " + remedy);
   if (checkpoint.program != version_line())

@@ -69,7 +69,7 @@ template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
 [[noreturn]] void refuse(const Scene& scene, const std::string& key, const std::string& why) {
-  throw ConfigError({scene.file, 0, 0, key}, why);
+  throw ConfigError(scene.where(key), why);
 }
 
 /// \param table the scene's table with what is special to this kind of contact

@@ -28,6 +28,9 @@ struct Effect {
 /// "on", "off (scene)", "off (proven)", "approximated".
 std::string word_of(Effect::State state);
 
+/// The effect that stands for the step and its integrator.
+inline constexpr const char* kTimeIntegration = "time integration";
+
 /// One limit of the time step.
 struct TimeLimit {
   std::string name;
@@ -56,6 +59,7 @@ struct Plan {
   PassKey key{};                       ///< which kernel
   bool locate = false;                 ///< moments of entry and exit are located within their steps
   bool rotation = false, history = false;
+  double usual_radius = 0.5, usual_mass = 1;  ///< of the median bead
   double largest_force =
       0;  ///< m g, that an overlap at the guard's bound makes: sets the grain of summed forces
 

@@ -384,6 +384,7 @@ Scene interpret(const Config& config, const std::string& name) {
   scene.resolved = config.text();
   const Section root = config.root(), cell = root.section("cell"), beads = root.section("beads"),
                 contact = root.section("contact"), drive = root.section("drive");
+  scene.source = root;
   static_cast<void>(root.text("preset"));
   const double g = read_cell(cell, scene);
   read_beads(beads, scene);
@@ -439,6 +440,11 @@ double largest_deviation(SizeSpread spread, double width) {
       break;
   }
   return std::min(3 * width, 0.9);
+}
+
+Where Scene::where(const std::string& key) const {
+  const Where at = source ? source->where(key) : Where{};
+  return at.file == file ? at : Where{file, 0, 0, key};
 }
 
 double Scene::mass_of(double bead_radius) const {

@@ -108,6 +108,11 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   // What need not be reckoned, says the user; the plan refuses what would change the answer.
   bool rotation = true, history = true;
 
+  std::optional<ConfigSection> source;  ///< what was read; absent in a scene that no text stands for
+
+  /// Where "section.key" stands in the scene's file, or where it could, for complaints about what is only
+  /// known after reading; file and key alone if a preset or the command line says it.
+  [[nodiscard]] Where where(const std::string& key) const;
   [[nodiscard]] double g() const { return gravity.norm(); }
   /// Mass of a bead of the same material: as R^2 for discs, R^3 for spheres.
   [[nodiscard]] double mass_of(double bead_radius) const;

@@ -120,7 +120,7 @@ Simulation::Simulation(Scene scene, RunState state, KernelKind kind, int threads
   try {
     check_motion(system_, limits);
   } catch (const RunError& e) {  // before the first step it is the start that is wrong
-    throw ConfigError({scene_.file, 0, 0, "start"}, e.what());
+    throw ConfigError(scene_.where("start"), e.what());
   }
 }
 

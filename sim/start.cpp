@@ -114,7 +114,7 @@ Start make_start(const Scene& scene) {
     require_sound(start.beads, scene, kRefused);
     if (const double left = relax_overlaps(start.beads, scene, kTolerated, 50000); left > kTolerated)
       throw ConfigError(
-          {scene.file, 0, 0, "start.relax"},
+          scene.where("start.relax"),
           fmt::format("the beads cannot be pushed apart, an overlap of {:.3g} sigma is left, the "
                       "bound is {:g}; is there room for them?",
                       left, kTolerated));

@@ -18,7 +18,7 @@ namespace {
 
 void require_count(const Scene& scene, std::size_t found, const std::string& source) {
   if (scene.n_beads && *scene.n_beads != found)
-    throw ConfigError({scene.file, 0, 0, "beads.count"},
+    throw ConfigError(scene.where("beads.count"),
                       fmt::format("{} beads were announced, {} holds {}.", *scene.n_beads, source, found));
 }
 
@@ -38,10 +38,10 @@ Start from_trajectory(const Scene& scene) {
   const TrajectoryInfo& info = file.info();
   if (scene.frame >= file.n_frames())
     throw ConfigError(
-        {scene.file, 0, 0, "start.frame"},
+        scene.where("start.frame"),
         fmt::format("frame {} was asked for, {} has {}.", scene.frame, scene.from.string(), file.n_frames()));
   if (info.box.dimension == 3 && scene.dimension == 2)
-    throw ConfigError({scene.file, 0, 0, "start.from"},
+    throw ConfigError(scene.where("start.from"),
                       fmt::format("{} is three-dimensional, the cell is not; say cell.dimension = 3.",
                                   scene.from.string()));
   const bool own_sizes = info.source == "simulation";
@@ -74,7 +74,7 @@ Start from_trajectory(const Scene& scene) {
   const double left = relax_overlaps(start.beads, scene, kTolerated, 20000);
   if (left > kLeft)
     throw ConfigError(
-        {scene.file, 0, 0, "start.from"},
+        scene.where("start.from"),
         fmt::format(
             "{}: the beads cannot be pushed apart, an overlap of {:.3g} sigma is left, the bound is {:g}; is "
             "the width right?",

@@ -39,7 +39,7 @@ Start fill_lattice(const Scene& scene, const std::vector<double>& radii, double 
     });
     empty = start.beads.size() > before ? 0 : empty + 1;
     if (empty > most_empty)
-      throw ConfigError({scene.file, 0, 0, "beads.count"},
+      throw ConfigError(scene.where("beads.count"),
                         fmt::format("only {} of {} beads fit on the lattice in {}.", start.beads.size(),
                                     radii.size(), describe_cell(scene)));
   }

@@ -103,7 +103,7 @@ void require_periods(const std::vector<Bead>& beads, const Scene& scene) {
   for (const double period : scene.period())
     if (period > 0 && period < 2 * reach && beads.size() > 1)
       throw ConfigError(
-          {scene.file, 0, 0, "cell"},
+          scene.where("cell"),
           fmt::format("a bead of radius {:g} would meet two images of another: a period of {:g} is less "
                       "than {:g}, twice the reach of the pair list.",
                       first, period, 2 * reach));
@@ -112,7 +112,7 @@ void require_periods(const std::vector<Bead>& beads, const Scene& scene) {
 }  // namespace
 
 void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bound) {
-  const Where where{scene.file, 0, 0, "start"};
+  const Where where = scene.where("start");
   constexpr double kFar = 1e9;  // as high as a cell may be
   const auto walls = scene.walls();
   for (std::size_t i = 0; i < beads.size(); ++i) {

@@ -64,7 +64,7 @@ Start random_deposit(const Scene& scene) {
     const double radius = radii[i];
     for (bool placed = false; !placed;) {
       if (--tries_left < 0)
-        throw ConfigError({scene.file, 0, 0, "beads.count"},
+        throw ConfigError(scene.where("beads.count"),
                           fmt::format("{} beads find no random places in {}.", n, describe_cell(scene)));
       Vec3 r = Vec3::Zero();
       r.x() = along(scene.width, radius, scene.sides == Edge::periodic);

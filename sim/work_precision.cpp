@@ -64,19 +64,6 @@ struct Run {
   [[nodiscard]] double mobility() const { return (1 + 1 / scene.inertia_factor) / scene.mass; }
 };
 
-PhaseSpread spread_of(const std::vector<double>& values, double exact) {
-  PhaseSpread s;
-  const double n = static_cast<double>(values.size());
-  for (const double value : values) {
-    const double error = value - exact;
-    s.mean += error / n;
-    s.rms += error * error / n;
-    s.largest = std::max(s.largest, std::abs(error));
-  }
-  s.rms = std::sqrt(s.rms);
-  return s;
-}
-
 struct ImpactSpread {
   PhaseSpread restitution, sticking;
 };
@@ -85,9 +72,9 @@ ImpactSpread compare(const std::vector<double>& e, const std::vector<double>& st
   const LinearCollision exact =
       std::get<LinearSpringDashpot>(laws.normal).oscillator({.m_eff = m_eff, .r_eff = 0, .inv_m_t = inv_m_t});
   const auto& friction = std::get<SpringSlider>(laws.tangential);
-  return {spread_of(e, exact.restitution()),
-          spread_of(sticking, sticking_ratio(friction.k_t, friction.damping.eta(m_eff), inv_m_t,
-                                             exact.contact_time()))};
+  return {PhaseSpread::of(e, exact.restitution()),
+          PhaseSpread::of(sticking, sticking_ratio(friction.k_t, friction.damping.eta(m_eff), inv_m_t,
+                                                   exact.contact_time()))};
 }
 
 constexpr double kImpactSpeed = 1e-3;
@@ -239,6 +226,19 @@ bool no_worse(const BedErrors& a, const BedErrors& b) {
 }
 
 }  // namespace
+
+PhaseSpread PhaseSpread::of(const std::vector<double>& values, double exact) {
+  PhaseSpread s;
+  const double n = static_cast<double>(values.size());
+  for (const double value : values) {
+    const double error = value - exact;
+    s.mean += error / n;
+    s.rms += error * error / n;
+    s.largest = std::max(s.largest, std::abs(error));
+  }
+  s.rms = std::sqrt(s.rms);
+  return s;
+}
 
 double CollisionErrors::restitution() const {
   return std::max(restitution_pair.largest, restitution_wall.largest);

@@ -26,6 +26,9 @@ struct StepSetting {
 /// An error over the entry phases of a collision: where within a step the contact begins.
 struct PhaseSpread {
   double mean = 0, rms = 0, largest = 0;  ///< the last of the modulus
+
+  /// Of what was measured, about what is exact.
+  static PhaseSpread of(const std::vector<double>& values, double exact);
 };
 
 /// Errors of one collision: of e (Fortini & Huang 2015, eq. A5) and of v_t'/v_t without slip.

@@ -54,8 +54,9 @@ const toml::node* find(const toml::table& root, const std::string& path) {
 Where ConfigSection::where(const std::string& key) const {
   const std::string path = full(key);
   if (const toml::node* node = find(shared_->table, path)) return shared_->where_of(*node, path);
-  if (const toml::node* table = find(shared_->table, path_); table != nullptr && !path_.empty())
-    return shared_->where_of(*table, path);
+  if (const std::size_t dot = path.rfind('.'); dot != std::string::npos)
+    if (const toml::node* table = find(shared_->table, path.substr(0, dot)))
+      return shared_->where_of(*table, path);
   return {shared_->name, 0, 0, path};
 }
 

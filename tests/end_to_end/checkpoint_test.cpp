@@ -1,5 +1,7 @@
 // Runs that are stopped, killed or damaged, as a user meets them: what is resumed ends in the same datasets.
 
+#include "sim/checkpoint.hpp"
+
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <sys/resource.h>
@@ -10,6 +12,7 @@
 #include <random>
 
 #include "analysis/trajectory/hdf5.hpp"
+#include "analysis/trajectory/provenance.hpp"
 #include "tests/support/program.hpp"
 
 namespace twincell {
@@ -188,6 +191,25 @@ TEST_F(Checkpoints, DamageIsFound) {
   EXPECT_GE(refused, 14);  // all of the segments' and the cut ones at least
   fs::remove(place_ / "segment-0001.h5");
   expect_refusal({"--resume"}, kInput, {"segment-0001.h5", "missing"});
+}
+
+TEST_F(Checkpoints, AnotherProgramsRunIsNotResumed) {
+  ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
+  const fs::path state = place_ / "state.h5";
+  sim::Checkpoint checkpoint = sim::read_checkpoint(state);
+  const std::string own = checkpoint.program;
+  EXPECT_EQ(own, version_line());
+  checkpoint.program = "twincell 0.0.1";
+  sim::write_checkpoint(state, checkpoint);
+  expect_refusal({"--resume"}, kUsage,
+                 {"o.h5.checkpoint", "written by twincell 0.0.1", "this is " + own, "remove"});
+  EXPECT_FALSE(fs::exists(output_));
+  // The refusal leaves the run as it was.
+  checkpoint.program = own;
+  sim::write_checkpoint(state, checkpoint);
+  const Ran rest = run_program(words({"--resume"}));
+  EXPECT_EQ(rest.code, kDone) << rest.err;
+  EXPECT_EQ(datasets_of(output_), uninterrupted());
 }
 
 TEST_F(Checkpoints, AFullDiskStopsTheRunWhichGoesOnWhenThereIsRoom) {

@@ -109,6 +109,22 @@ TEST_F(Explain, WhatActsMayNotBeDropped) {
     EXPECT_NE(run("explain", harmless).out.find("= false drops nothing"), std::string::npos);
 }
 
+TEST_F(Explain, ARefusalPointsToItsLine) {
+  std::ofstream(scene_, std::ios::app) << "[effects]\nrotation = false\n";
+  expect_refusal({}, {"scene.toml:13:12: effects.rotation: is false, but friction turns beads"});
+}
+
+TEST_F(Explain, TheErrorOfTheStepIsTheScenesOwn) {
+  const auto reason = [&](const std::string& restitution) {
+    const auto plan = explained({"--set", "contact.restitution=" + restitution});
+    for (const auto& e : plan["effects"])
+      if (e["name"] == "time integration") return e["reason"].get<std::string>();
+    return std::string("absent");
+  };
+  for (const std::string e : {"0.9", "0.6"})
+    EXPECT_NE(reason(e).find(" is " + e + " and errs by up to 0.0"), std::string::npos) << reason(e);
+}
+
 TEST_F(Explain, WhatIsOffHasNoColumnAndTheFileHoldsThePlan) {
   for (const std::string mu : {"0.0", "0.6"}) {
     const std::string output = folder_ / ("mu" + mu + ".h5");

@@ -163,7 +163,7 @@ TEST(Precision, WhatItCannotHoldIsRefused) {
       << planned("\"float\"\n");
   for (const char* set : {"contact.overlap_bound=0.2", "beads.radius=1e-7", "beads.mass=1e-7"}) {
     const std::string said = planned("\"single\"\n", {set});
-    EXPECT_NE(said.find("scene.toml: time.precision: \"single\" "), std::string::npos) << said;
+    EXPECT_NE(said.find("scene.toml:7:13: time.precision: \"single\" "), std::string::npos) << said;
     EXPECT_EQ(planned("\"double\"\n", {set}).find("precision"), std::string::npos) << set;
   }
 }

@@ -188,14 +188,23 @@ inline double effective_diameter(double stiffness, double temperature) {
 }
 
 /// Equation of state of hard discs from the virial coefficients B_2...B_10 of Clisby & McCoy, J. Stat. Phys.
-/// 122, 15 (2006), as the Pade approximant [4/5]; [5/4] agrees to 0.03 % up to phi = 0.6, where Henderson's
-/// formula lies 1.2 % higher.
+/// 122, 15 (2006), Table 1 (B_3 and B_4 are closed forms), as the Pade approximant [4/5]; [5/4] agrees to
+/// 0.03 % up to phi = 0.6, where Henderson's formula lies 1.2 % higher.
 inline double hard_disc_z(double phi) {
   // In x = 2 phi: numerator and denominator of the approximant.
   static const auto pade = [] {
     constexpr int kTop = 4, kBottom = 5;
-    const double b[10] = {1,         1,         0.782004436, 0.53223180, 0.33355604,
-                          0.1988425, 0.1148728, 0.0649930,   0.0362193,  0.0199537};
+    constexpr double kPi = std::numbers::pi, kRoot = std::numbers::sqrt3;
+    const double b[10] = {1,
+                          1,
+                          4.0 / 3 - kRoot / kPi,
+                          2 - 9 * kRoot / (2 * kPi) + 10 / (kPi * kPi),
+                          0.33355604,
+                          0.1988425,
+                          0.1148728,
+                          0.0649930,
+                          0.0362193,
+                          0.0199537};
     Eigen::Matrix<double, kBottom, kBottom> a;
     Eigen::Matrix<double, kBottom, 1> right;
     for (int i = 0; i < kBottom; ++i) {

@@ -40,5 +40,13 @@ TEST(Config, NumbersOfAListAreFinite) {
   EXPECT_FALSE(config.root().is_list("absent"));
 }
 
+TEST(Config, AKeyStandsInItsTable) {
+  const ConfigSection root = Config::from_text("[a]\nb = 1\n[a.c]\nd = 2\n", "f.toml").root();
+  EXPECT_EQ(root.where("a.b").text(), "f.toml:2:5: a.b");
+  EXPECT_EQ(root.where("a.c.d").text(), "f.toml:4:5: a.c.d");
+  EXPECT_EQ(root.where("a.c.absent").text(), "f.toml:3:1: a.c.absent");
+  EXPECT_EQ(root.where("absent.b").text(), "f.toml: absent.b");
+}
+
 }  // namespace
 }  // namespace twincell

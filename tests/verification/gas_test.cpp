@@ -53,22 +53,28 @@ TEST(ElasticGas, EnergyWalksAtRandomAndDoesNotDrift) {
 }
 
 TEST(ElasticGas, KeepsEnergyWhereStepsAreSplit) {
+  // The plan asks for 1e-4 over 1e7 steps, with a fitted drift of 1e-5: n = 100 holds that, n = 50 a
+  // twentieth of it.
+  struct Case {
+    double n;
+    std::int64_t steps;
+  };
   constexpr int kLooks = 100;
-  constexpr std::int64_t kSteps = 500'000;
-  for (const double n : {50.37, 100.37}) {
-    Gas gas({.cells = 16, .phi = 0.3, .n = n, .integrator = "split"});
+  for (const Case& c : {Case{50.37, 500'000}, {100.37, 10'000'000}}) {
+    Gas gas({.cells = 16, .phi = 0.3, .n = c.n, .integrator = "split"});
     const double start = gas.kinetic_energy() + gas.potential_energy();
     double up = 0, down = 0, largest = 0;
     for (int k = 0; k < kLooks; ++k) {
-      gas.kernel->advance(gas.system, kSteps / kLooks);
+      gas.kernel->advance(gas.system, c.steps / kLooks);
       const double change = (gas.kinetic_energy() + gas.potential_energy()) / start - 1;
       largest = std::max(largest, std::abs(change));
       const double t = (k - 0.5 * (kLooks - 1)) / kLooks;
       up += t * change, down += t * t;
     }
-    const std::string what = " of the energy, 256 discs, phi = 0.3, split, 5e5 steps, n = " + number(n);
+    const std::string what = " of the energy, 256 discs, phi = 0.3, split, " +
+                             number(static_cast<double>(c.steps)) + " steps, n = " + number(c.n);
     validate({"V3.1", "largest change" + what, 0, 1e-4, "conservation"}, largest);
-    if (n > 100) validate({"V3.1", "drift" + what, 0, 1e-5, "conservation"}, up / down);
+    if (c.n > 100) validate({"V3.1", "drift over the run" + what, 0, 1e-5, "conservation"}, up / down);
   }
 }
 
