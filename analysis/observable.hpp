@@ -5,6 +5,7 @@
 /// To add one: NAME.hpp and NAME.cpp with a make_NAME, one row in the list of observables.cpp, two lines in
 /// CMakeLists.txt, a test. Observables see frames and neighbours, never each other.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -31,9 +32,10 @@ struct Result {
   std::size_t n = 0;                    ///< how many independent samples entered
   std::string n_of = {};                ///< samples of what: "cycles", "frames"
   std::optional<Interval> interval = {};
-  std::string convention = {};  ///< choices that the definition leaves open, as made here
-  std::string source = {};      ///< equation
-  std::string absent = {};      ///< why there is no value; empty if there is one
+  std::string no_interval = {};  ///< why a value has no interval; empty if it has one
+  std::string convention = {};   ///< choices that the definition leaves open, as made here
+  std::string source = {};       ///< equation
+  std::string absent = {};       ///< why there is no value; empty if there is one
 
   [[nodiscard]] bool present() const { return absent.empty(); }
   /// The scalar value; NaN if absent.
@@ -64,7 +66,11 @@ NeighbourRule neighbour_rule_named(const std::string& name);
 
 /// Choices for one analysis.
 struct AnalysisOptions {
-  std::int64_t discard_cycles = 0;  ///< cycles left out at the beginning
+  std::int64_t discard_cycles = 0;         ///< cycles left out at the beginning
+  std::int64_t cycles = 0;                 ///< N_f: cycles used after those; 0: all. s_c depends on it
+  std::vector<std::int64_t> tracers = {};  ///< ids of the tracers; empty: as marked or chosen (tracers.hpp)
+  std::optional<std::array<double, 2>> tracer_band = {};  ///< or all beads that begin at heights in [low,
+                                                          ///< high] above the plate, sigma
   SbForm s_b = SbForm::variance;
   NeighbourRule neighbours = NeighbourRule::cutoff;
   std::optional<double> neighbour_cutoff;  ///< sigma; default 1.2, for experiments 1.3
@@ -72,6 +78,9 @@ struct AnalysisOptions {
   double field_cell = 2;                   ///< sigma; side of the cells in which displacements are averaged
   std::optional<double> rest_height;       ///< sigma; barycentre of the bed at rest, above the plate
   std::vector<std::string> only;           ///< names of results wanted; empty: all
+
+  /// Whether the result of that name is wanted.
+  [[nodiscard]] bool wants(const std::string& name) const;
 };
 
 /// The cutoff of these options for this trajectory, sigma: touching beads are at 1, the next shell of a
@@ -123,8 +132,8 @@ class Observable {
 };
 
 /// All results of a trajectory in one pass; memory does not grow with the number of frames (series per cycle
-/// excepted). \throws ConfigError for an unknown name in `only`, a negative discard, a cutoff that is not
-/// positive; InputError for a
+/// excepted). \throws ConfigError for an unknown name in `only`, a negative discard or number of cycles, a
+/// cutoff that is not positive, tracers that are not there; InputError for a
 ///         trajectory without frames
 std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOptions& options = {},
                             Progress& progress = Progress::none());

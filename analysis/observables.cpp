@@ -16,6 +16,7 @@
 #include "analysis/orientation.hpp"
 #include "analysis/phase_thresholds.hpp"
 #include "analysis/profiles.hpp"
+#include "analysis/slip.hpp"
 #include "analysis/tracers.hpp"
 
 namespace twincell {
@@ -28,8 +29,14 @@ struct Entry {
 };
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> list = {
-      {{"s_k", "s_b", "s_j", "s_c", "cycle_of_convection", "phase"}, make_phase_thresholds},
-      {{"T_g"}, make_granular_temperature},
+      {{"s_k", "s_b", "s_b_variance", "s_b_about_rest", "s_b_as_printed", "half_pixel", "s_b_noise",
+        "s_j_noise", "s_j", "s_c", "cycle_of_convection", "s_j_growth", "s_j_growth_late", "drift", "phase",
+        "tracers", "tracer_heights"},
+       make_phase_thresholds},
+      {{"p_s", "slips", "p_s_j", "slip_directions", "slip_oblique", "slip_vertical", "slip_horizontal"},
+       make_slip},
+      {{"T_g", "T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar"},
+       make_granular_temperature},
       {{"q6", "psi6", "psi4", "hexagonal_fraction", "square_fraction", "q6_beads", "psi6_beads",
         "psi4_beads"},
        make_bond_order},
@@ -49,11 +56,6 @@ const std::vector<Entry>& entries() {
   return list;
 }
 
-bool wanted(const AnalysisOptions& options, const std::string& name) {
-  return options.only.empty() ||
-         std::find(options.only.begin(), options.only.end(), name) != options.only.end();
-}
-
 void check(const AnalysisOptions& options) {
   const auto names = result_names();
   for (const std::string& name : options.only)
@@ -64,6 +66,9 @@ void check(const AnalysisOptions& options) {
   if (options.discard_cycles < 0)
     throw ConfigError({.file = {}, .key = "discard"},
                       fmt::format("{} cycles cannot be left out; at least 0", options.discard_cycles));
+  if (options.cycles < 0)
+    throw ConfigError({.file = {}, .key = "cycles"},
+                      fmt::format("{} cycles cannot be used; at least 1, or 0 for all", options.cycles));
   if (options.neighbour_cutoff)
     require_range({.file = {}, .key = "cutoff"}, *options.neighbour_cutoff, 0, 100, true);
   require_range({.file = {}, .key = "cell_radius"}, options.cell_radius, 0, 100, true);
@@ -83,7 +88,7 @@ AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisO
     while (frame.phase != 0 && index + 1 < trajectory.n_frames()) trajectory.read(++index, frame);
   if (info.columns.phase && frame.phase != 0) trajectory.read(0, frame);
 
-  const TracerChoice choice = choose_tracers(info, frame);
+  const TracerChoice choice = choose_tracers(info, frame, {options.tracers, options.tracer_band});
   context.tracers = choice.slots;
   context.tracer_choice = choice.how;
   if (choice.slots.empty())
@@ -104,6 +109,10 @@ AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisO
 
 double neighbour_cutoff(const TrajectoryInfo& info, const AnalysisOptions& options) {
   return options.neighbour_cutoff.value_or(info.source == "experiment" ? 1.3 : 1.2);
+}
+
+bool AnalysisOptions::wants(const std::string& name) const {
+  return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
 }
 
 double Result::value() const {
@@ -197,14 +206,14 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
   if (trajectory.n_frames() == 0)
     throw InputError({.file = trajectory.name(), .key = {}}, "the trajectory holds no frame");
   const AnalysisContext context = make_context(trajectory, options);
-  if (options.discard_cycles > 0 && !context.info.columns.phase)
-    throw ConfigError({.file = trajectory.name(), .key = "discard"},
-                      "cycles cannot be left out of a trajectory whose frames have no cycle number");
+  if ((options.discard_cycles > 0 || options.cycles > 0) && !context.info.columns.phase)
+    throw ConfigError({.file = trajectory.name(), .key = options.cycles > 0 ? "cycles" : "discard"},
+                      "cycles cannot be chosen from a trajectory whose frames have no cycle number");
 
   std::vector<std::unique_ptr<Observable>> observables;
   for (const Entry& entry : entries())
     if (std::any_of(entry.names.begin(), entry.names.end(),
-                    [&](const std::string& name) { return wanted(options, name); }))
+                    [&](const std::string& name) { return options.wants(name); }))
       observables.push_back(entry.make(context));
 
   Frame frame;
@@ -214,10 +223,12 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
   for (std::size_t f = 0; f < n_frames; ++f) {
     trajectory.read(f, frame);
     progress.update(static_cast<std::int64_t>(f) + 1, static_cast<std::int64_t>(n_frames));
-    if (options.discard_cycles > 0) {
+    if (options.discard_cycles > 0 || options.cycles > 0) {
       if (frame.cycle < 0) continue;
       if (first_cycle < 0) first_cycle = frame.cycle;
-      if (frame.cycle < first_cycle + options.discard_cycles) continue;
+      const std::int64_t since = frame.cycle - first_cycle - options.discard_cycles;
+      if (since < 0) continue;
+      if (options.cycles > 0 && since >= options.cycles) break;
     }
     ++used;
     const FrameView view(frame, context);
@@ -230,7 +241,7 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
   std::vector<Result> results;
   for (const auto& observable : observables)
     for (Result& r : observable->results())
-      if (wanted(options, r.name)) results.push_back(std::move(r));
+      if (options.wants(r.name)) results.push_back(std::move(r));
   return results;
 }
 

@@ -7,13 +7,13 @@
 #include <limits>
 #include <numeric>
 
+#include "analysis/tracer_line.hpp"
 #include "analysis/tracers.hpp"
 
 namespace twincell {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kEnoughTracers = 0.8;
 constexpr double kJump = 0.5;
 
 /// Sums of tracer heights over the plate for each (tracer, phase).
@@ -40,7 +40,7 @@ class PhaseThresholds : public Observable {
         pair_(n_tracers_ * n_phases_),
         cycle_(n_tracers_ * n_phases_),
         phase_seen_(n_phases_, 0),
-        previous_start_(n_tracers_, kNaN) {}
+        line_{.n_tracers = n_tracers_} {}
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
@@ -52,6 +52,7 @@ class PhaseThresholds : public Observable {
       current_cycle_ = frame.cycle;
     }
     add_heights(frame);
+    add_noise(frame);
     if (frame.phase == 0) add_cycle_start(frame);
   }
 
@@ -80,25 +81,29 @@ class PhaseThresholds : public Observable {
   }
 
   void add_cycle_start(const Frame& frame) {
-    std::vector<double> z;
+    std::size_t seen = 0;
     for (std::size_t t = 0; t < n_tracers_; ++t) {
       const double now = has(frame, t) ? height(frame, t) : kNaN;
-      if (std::isfinite(now)) z.push_back(now);
-      if (std::abs(now - previous_start_[t]) > kJump) ++jumps_;
-      previous_start_[t] = now;
+      seen += std::isfinite(now) ? 1 : 0;
+      if (line_.n() > 0 && std::abs(now - line_.at(line_.n() - 1, t)) > kJump) ++jumps_;
+      line_.height.push_back(now);
     }
-    if (z.size() < n_tracers_) ++incomplete_starts_;
-    const bool counts = z.size() >= 2 && enough(frame);
-    double variance = kNaN;
-    if (counts) {
-      const double mean = std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
-      variance = 0;
-      for (const double height : z) variance += (height - mean) * (height - mean);
-      variance /= static_cast<double>(z.size());
-      s_j2_.add(variance);
+    if (seen < n_tracers_) ++incomplete_starts_;
+    line_.cycle.push_back(frame.cycle);
+  }
+
+  void add_noise(const Frame& frame) {
+    if (frame.position_sigma.empty()) return;
+    for (std::size_t t = 0; t < n_tracers_; ++t) {
+      const double u = frame.position_sigma[context_.tracers[t]].z();
+      if (!has(frame, t) || !std::isfinite(u)) continue;
+      noise_squares_ += u * u;
+      ++noise_count_;
     }
-    s_j_.push_back(std::sqrt(variance));
-    s_j_cycle_.push_back(frame.cycle);
+  }
+  /// Standard uncertainty of one height, rms over tracers and frames; NaN unknown.
+  [[nodiscard]] double noise() const {
+    return noise_count_ > 0 ? std::sqrt(noise_squares_ / static_cast<double>(noise_count_)) : kNaN;
   }
 
   /// A whole cycle joins its partner; a pair joins the total.
@@ -160,8 +165,11 @@ class PhaseThresholds : public Observable {
   [[nodiscard]] std::vector<Result> closed_results() const {
     std::vector<Result> all;
     add_bounce(all);
+    add_detection(all);
     add_convection(all);
+    add_drift(all);
     add_phase(all);
+    add_line(all);
     return all;
   }
 
@@ -175,7 +183,8 @@ class PhaseThresholds : public Observable {
       reason = fmt::format("no cycle has all {} phases with at least 80 % of the tracers", n_phases_);
     if (!reason.empty()) {
       all.push_back(absent_result("s_k", reason, b3));
-      all.push_back(absent_result("s_b", reason, b4));
+      for (const char* name : {"s_b", "s_b_variance", "s_b_about_rest", "s_b_as_printed"})
+        all.push_back(absent_result(name, reason, b4));
       return;
     }
     const HeightSums& sums = whole_cycles_ < 2 ? pair_ : total_;
@@ -194,39 +203,93 @@ class PhaseThresholds : public Observable {
     if (used < whole_cycles_) s_k.convention += "; last cycle left out to keep their number even";
     s_k.source = b3;
 
-    const SbForm form = context_.options.s_b;
-    const double rest = context_.tracer_rest_height;
-    const double value = n_phases_ < 2 ? kNaN : s_b_of(s_k.values, form, rest);
-    if (n_phases_ < 2)
-      reason = "a curve s(k) needs at least 2 phases per cycle";
-    else if (!std::isfinite(value))
-      reason = "the rest height of the tracers is not known";
-    if (reason.empty()) {
-      Result s_b{.name = "s_b", .values = {value}, .unit = "sigma", .n = used, .n_of = "cycles"};
-      s_b.interval = bootstrap_interval(
+    s_k.no_interval = "s_b has the interval of the curve as a whole";
+    const std::vector<double> curve_of_all = s_k.values;
+    all.push_back(std::move(s_k));
+    const auto s_b = [&](const std::string& name, SbForm form) {
+      const double rest = context_.tracer_rest_height;
+      if (n_phases_ < 2) return absent_result(name, "a curve s(k) needs at least 2 phases per cycle", b4);
+      Result r{.name = name,
+               .values = {s_b_of(curve_of_all, form, rest)},
+               .unit = "sigma",
+               .n = used,
+               .n_of = "cycles"};
+      if (!std::isfinite(r.value()))
+        return absent_result(name, "the rest height of the tracers is not known", b4);
+      if (!context_.options.wants(name)) return r;
+      r.interval = bootstrap_interval(
           n_tracers_,
           [&](const std::vector<std::size_t>& pick) { return s_b_of(curve(sums, pick), form, rest); },
           "tracers");
-      s_b.convention = form == SbForm::variance ? "variance of s(k) over the phases"
-                       : form == SbForm::about_rest
-                           ? fmt::format("mean square of s(k) about the rest height {:.4f} sigma", rest)
-                           : "mean square of s(k), as printed";
-      s_b.convention += fmt::format("; {} phases, {} tracers; threshold sigma/30", n_phases_, n_tracers_);
-      s_b.source = b4;
-      all.push_back(std::move(s_k));
-      all.push_back(std::move(s_b));
+      if (!r.interval) r.no_interval = "one tracer only";
+      r.convention = form == SbForm::variance ? "standard deviation of s(k) over the phases"
+                     : form == SbForm::about_rest
+                         ? fmt::format("rms of s(k) about the rest height {:.4f} sigma", rest)
+                         : "rms of s(k), as printed";
+      r.convention += fmt::format("; {} phases, {} tracers; threshold sigma/30", n_phases_, n_tracers_);
+      r.source = b4;
+      return r;
+    };
+    all.push_back(s_b("s_b", context_.options.s_b));
+    all.push_back(s_b("s_b_variance", SbForm::variance));
+    all.push_back(s_b("s_b_about_rest", SbForm::about_rest));
+    all.push_back(s_b("s_b_as_printed", SbForm::as_printed));
+  }
+
+  /// What the camera could not have seen, to stand beside sigma/30.
+  void add_detection(std::vector<Result>& all) const {
+    const std::string source = "Fortini & Huang 2015, app. B";
+    const auto beside = [](double limit) {
+      return fmt::format("{} sigma/30 = {:.4f}", limit <= kBouncingThreshold ? "below" : "above",
+                         kBouncingThreshold);
+    };
+    if (const auto scale = context_.info.scale.pixels_per_sigma) {
+      Result r{.name = "half_pixel", .values = {0.5 / *scale}, .unit = "sigma", .n = 1, .n_of = "scale"};
+      r.convention = fmt::format("half a pixel at {:.4g} pixels per sigma; {}", *scale, beside(r.value()));
+      r.no_interval = "the scale is taken as given";
+      r.source = source;
+      all.push_back(std::move(r));
     } else {
-      all.push_back(std::move(s_k));
-      all.push_back(absent_result("s_b", reason, b4));
+      all.push_back(
+          absent_result("half_pixel", "the trajectory has no pixels per sigma: no camera saw it", source));
     }
+    const std::size_t used = std::max<std::size_t>(1, whole_cycles_ - whole_cycles_ % 2);
+    if (!std::isfinite(noise())) {
+      for (const char* name : {"s_b_noise", "s_j_noise"})
+        all.push_back(absent_result(name, "the trajectory has no uncertainties of positions", source));
+      return;
+    }
+    const double floor = noise() / std::sqrt(static_cast<double>(n_tracers_ * used));
+    const auto noise_result = [&](const std::string& name, double value, const std::string& how) {
+      Result r{.name = name, .values = {value}, .unit = "sigma", .n = noise_count_, .n_of = "heights"};
+      r.convention = how + fmt::format("; one height is uncertain by {:.4g} sigma (rms)", noise());
+      r.no_interval = "from the uncertainties that the locating states";
+      r.source = source;
+      all.push_back(std::move(r));
+    };
+    noise_result(
+        "s_b_noise", floor,
+        fmt::format("s_b of a bed at rest by the camera's noise alone, sigma_z/sqrt(N_t N_f) with {} "
+                    "tracers and {} cycles; {}",
+                    n_tracers_, used, beside(floor)));
+    noise_result("s_j_noise", noise(), "what the noise alone adds in square to s_j");
   }
 
   void add_convection(std::vector<Result>& all) const {
     const std::string b1 = "Fortini & Huang 2015, eq. B1", b2 = "Fortini & Huang 2015, eq. B2";
     std::string reason = why_no_cycles();
     if (reason.empty() && n_tracers_ < 2) reason = "a spread of heights needs at least 2 tracers";
-    if (reason.empty() && s_j_.empty()) reason = "no frame lies at the beginning of a cycle";
-    if (reason.empty() && s_j2_.n() == 0)
+    if (reason.empty() && line_.n() == 0) reason = "no frame lies at the beginning of a cycle";
+    std::vector<std::size_t> everyone(n_tracers_);
+    std::iota(everyone.begin(), everyone.end(), std::size_t{0});
+    std::vector<double> spread;
+    BlockAverage squares;
+    for (std::size_t j = 0; j < line_.n(); ++j) {
+      const double squared = spread_squared(line_, j, everyone);
+      spread.push_back(std::sqrt(squared));
+      if (std::isfinite(squared)) squares.add(squared);
+    }
+    if (reason.empty() && squares.n() == 0)
       reason = "fewer than 80 % of the tracers are present at the beginning of every cycle";
     if (!reason.empty()) {
       all.push_back(absent_result("s_j", reason, b1));
@@ -235,47 +298,130 @@ class PhaseThresholds : public Observable {
       return;
     }
     Result s_j{.name = "s_j",
-               .values = s_j_,
-               .shape = {s_j_.size()},
+               .values = spread,
+               .shape = {spread.size()},
                .unit = "sigma",
-               .n = s_j2_.n(),
+               .n = squares.n(),
                .n_of = "cycles"};
     s_j.convention =
         fmt::format("spread of {} tracers about their mean at the beginning of each cycle, from cycle {}; {}",
-                    n_tracers_, s_j_cycle_.front(), context_.tracer_choice);
+                    n_tracers_, line_.cycle.front(), context_.tracer_choice);
     if (incomplete_starts_ > 0)
       s_j.convention += fmt::format("; some tracers missing in {} cycles", incomplete_starts_);
     if (jumps_ > 0)
       s_j.convention += fmt::format("; {} jumps of a tracer by more than sigma/2 within one cycle", jumps_);
+    s_j.no_interval = "single cycles; s_c has the interval of their mean square";
     s_j.source = b1;
 
     Result s_c{.name = "s_c",
-               .values = {std::sqrt(s_j2_.mean())},
+               .values = {std::sqrt(squares.mean())},
                .unit = "sigma",
-               .n = s_j2_.n(),
+               .n = squares.n(),
                .n_of = "cycles"};
-    if (auto squared = s_j2_.interval("cycles")) {
-      squared->low = std::sqrt(std::max(0.0, squared->low));
-      squared->high = std::sqrt(squared->high);
-      s_c.interval = squared;
-    }
-    s_c.convention = fmt::format("root mean square of s_j over N_f = {} cycles; threshold sigma", s_j2_.n());
+    s_c.interval = interval_of_s_c(squares);
+    if (!s_c.interval) s_c.no_interval = squares.why_no_interval("cycles");
+    s_c.convention =
+        fmt::format("root mean square of s_j over N_f = {} cycles; threshold sigma", squares.n());
     s_c.source = b2;
 
     const auto first =
-        std::find_if(s_j_.begin(), s_j_.end(), [](double s) { return s > kConvectionThreshold; });
+        std::find_if(spread.begin(), spread.end(), [](double s) { return s > kConvectionThreshold; });
     all.push_back(std::move(s_j));
     all.push_back(std::move(s_c));
-    if (first == s_j_.end()) {
+    if (first == spread.end()) {
       all.push_back(absent_result("cycle_of_convection",
-                                  fmt::format("s_j does not exceed sigma in {} cycles", s_j_.size()), b1));
+                                  fmt::format("s_j does not exceed sigma in {} cycles", spread.size()), b1));
       return;
     }
-    Result onset{.name = "cycle_of_convection", .unit = "cycles", .n = s_j2_.n(), .n_of = "cycles"};
-    onset.values = {static_cast<double>(s_j_cycle_[static_cast<std::size_t>(first - s_j_.begin())])};
+    Result onset{.name = "cycle_of_convection", .unit = "cycles", .n = squares.n(), .n_of = "cycles"};
+    onset.values = {static_cast<double>(line_.cycle[static_cast<std::size_t>(first - spread.begin())])};
     onset.convention = "first cycle at whose beginning s_j > sigma";
+    onset.no_interval = "one event of one run; seeds give its scatter";
     onset.source = b1;
     all.push_back(std::move(onset));
+  }
+
+  /// Block averages where s_j is stationary. A line that drifts or comes to rest is one event, not a series;
+  /// the scatter of the tracers remains.
+  [[nodiscard]] std::optional<Interval> interval_of_s_c(const BlockAverage& squares) const {
+    auto interval = squares.interval("cycles");
+    if (!interval) {
+      if (squares.n() < 2) return interval;
+      interval = mean_interval(mean_squares(line_), "tracers");
+      if (!interval) return interval;
+      interval->method += " (" + squares.why_no_interval("cycles") + ")";
+    }
+    interval->low = std::sqrt(std::max(0.0, interval->low));
+    interval->high = std::sqrt(interval->high);
+    return interval;
+  }
+
+  void add_drift(std::vector<Result>& all) const {
+    const std::string source = "Fortini & Huang 2015, eq. B1";
+    const Result& s_j = find_result(all, "s_j");
+    if (!s_j.present()) {
+      for (const char* name : {"s_j_growth", "s_j_growth_late", "drift"})
+        all.push_back(absent_result(name, s_j.absent, source));
+      return;
+    }
+    const auto slope = [&](const std::string& name, const Growth& line, std::size_t first) {
+      if (!std::isfinite(line.rate)) return absent_result(name, "one cycle has no slope", source);
+      Result r{
+          .name = name, .values = {line.rate}, .unit = "sigma^2", .n = line_.n() - first, .n_of = "cycles"};
+      r.interval = line.interval;
+      if (!r.interval) r.no_interval = "fewer than 3 tracers";
+      r.convention = fmt::format("d s_j^2/dj by least squares, cycles {} to {}; per cycle",
+                                 line_.cycle[first], line_.cycle.back());
+      r.source = source;
+      return r;
+    };
+    const double last = s_j.values.back();  // the reference does not outlive what is added below
+    const DriftVerdict verdict = judge_drift(line_, std::isfinite(noise()) ? noise() : 0);
+    all.push_back(slope("s_j_growth", growth(line_, 0, line_.n()), 0));
+    if (verdict.drift == Drift::undetermined) {
+      all.push_back(absent_result("s_j_growth_late", verdict.reason, source));
+      all.push_back(absent_result("drift", verdict.reason, source));
+      return;
+    }
+    all.push_back(slope("s_j_growth_late", verdict.late, line_.n() / 2));
+    Result word{.name = "drift", .text = drift_name(verdict.drift), .n = line_.n(), .n_of = "cycles"};
+    word.convention = verdict.reason + fmt::format("; s_j ends at {:.3g} sigma", last);
+    word.source = source;
+    all.push_back(std::move(word));
+  }
+
+  void add_line(std::vector<Result>& all) const {
+    const std::string source = "Fortini & Huang 2015, eq. B1";
+    if (n_tracers_ == 0) {
+      all.push_back(absent_result("tracers", context_.no_tracers, source));
+      all.push_back(absent_result("tracer_heights", context_.no_tracers, source));
+      return;
+    }
+    Result who{.name = "tracers",
+               .values = {context_.tracers.begin(), context_.tracers.end()},
+               .shape = {n_tracers_},
+               .unit = "id",
+               .n = n_tracers_,
+               .n_of = "tracers"};
+    who.convention = context_.tracer_choice;
+    who.source = source;
+    all.push_back(std::move(who));
+    if (line_.n() == 0) {
+      const std::string none = why_no_cycles();
+      all.push_back(absent_result("tracer_heights",
+                                  none.empty() ? "no frame lies at the beginning of a cycle" : none, source));
+      return;
+    }
+    Result heights{.name = "tracer_heights",
+                   .values = line_.height,
+                   .shape = {line_.n(), n_tracers_},
+                   .unit = "sigma",
+                   .n = line_.n(),
+                   .n_of = "cycles"};
+    heights.convention = fmt::format("height of each tracer at the beginning of each cycle, from cycle {}",
+                                     line_.cycle.front());
+    heights.source = source;
+    all.push_back(std::move(heights));
   }
 
   static void add_phase(std::vector<Result>& all) {
@@ -290,6 +436,8 @@ class PhaseThresholds : public Observable {
     }
     Result r{.name = "phase", .text = phase_name(phase), .n = s_b.n, .n_of = s_b.n_of};
     r.convention = "s_b > sigma/30: leaves the plate; and s_c > sigma: convects";
+    if (phase == BedPhase::convecting && find_result(all, "drift").text == drift_name(Drift::annealed))
+      r.convention += "; but annealed: s_c shows the first rearrangement, not steady convection";
     r.source = source;
     all.push_back(std::move(r));
   }
@@ -305,10 +453,9 @@ class PhaseThresholds : public Observable {
   std::size_t whole_cycles_ = 0;
   std::size_t broken_cycles_ = 0;
   bool no_plate_ = false;
-  std::vector<double> previous_start_;
-  std::vector<double> s_j_;
-  std::vector<std::int64_t> s_j_cycle_;
-  BlockAverage s_j2_;
+  TracerLine line_;
+  double noise_squares_ = 0;
+  std::size_t noise_count_ = 0;
   std::size_t incomplete_starts_ = 0;
   std::size_t jumps_ = 0;
 };

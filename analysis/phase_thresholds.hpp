@@ -36,10 +36,22 @@ double s_b_of(const std::vector<double>& s_k, SbForm form, double rest_height);
 
 /// Results
 ///   s_k   [N_k]      mean height of the tracers above the plate in phase k (B3)
-///   s_b   scalar     (B4); 95 % interval by bootstrap over tracers
+///   s_b   scalar     (B4) in the form asked for; 95 % interval by bootstrap over tracers
+///   s_b_variance, s_b_about_rest, s_b_as_printed   the three forms side by side
+///   half_pixel, s_b_noise, s_j_noise   what the camera cannot tell: half a pixel; s_b of a bed at rest from
+///   the
+///                    uncertainties of positions, sigma_z/sqrt(N_t N_f); the same in s_j. sigma
 ///   s_j   [cycles]   spread of the tracers' heights at the beginning of each cycle (B1); NaN for a cycle
-///   without value s_c   scalar     root mean square of s_j (B2); 95 % interval by block averages of s_j^2
-///   over cycles cycle_of_convection   first cycle with s_j > sigma phase            a word
+///   without
+///                    value
+///   s_c   scalar     root mean square of s_j (B2); 95 % interval by block averages of s_j^2 over cycles, or
+///   by
+///                    bootstrap over tracers where s_j drifts
+///   cycle_of_convection   first cycle with s_j > sigma
+///   s_j_growth, s_j_growth_late   d s_j^2/dj over all cycles and over the second half (tracer_line.hpp)
+///   drift            a word: still, annealed, drifting, mixing (tracer_line.hpp)
+///   phase            a word
+///   tracers [N_t], tracer_heights [cycles x N_t]   who they are, and where at the beginning of each cycle
 /// s(k) is averaged over whole cycles, an even number of them if there are two or more (a bed of period 2
 /// would bias an odd number). A moment counts if at least 80 % of the tracers are there; jumps of one tracer
 /// by more than sigma/2 from one cycle's beginning to the next are counted in the convention of s_j. Absent

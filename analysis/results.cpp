@@ -56,6 +56,8 @@ nlohmann::json to_json(const Result& r) {
                      {"high", number(r.interval->high)},
                      {"level", r.interval->level},
                      {"method", r.interval->method}};
+  else if (!r.no_interval.empty())
+    j["no_interval"] = r.no_interval;
   return j;
 }
 
@@ -90,6 +92,8 @@ void write_result(hid_t results, const Result& r) {
     h5::write_dataset(group.get(), "interval", bounds, {2});
     h5::write_attribute(group.get(), "interval_method",
                         ascii(fmt::format("{:.0f} %, {}", 100 * r.interval->level, r.interval->method)));
+  } else if (!r.no_interval.empty()) {
+    h5::write_attribute(group.get(), "no_interval", ascii(r.no_interval));
   }
 }
 
@@ -118,6 +122,7 @@ std::string results_text(const std::vector<Result>& results) {
     if (!r.present()) continue;
     text += fmt::format("  {}: {}", r.name, r.convention);
     if (r.interval) text += fmt::format("; interval: {}", r.interval->method);
+    if (!r.interval && !r.no_interval.empty()) text += fmt::format("; no interval: {}", r.no_interval);
     text += fmt::format(" ({})\n", r.source);
   }
   return text;

@@ -15,8 +15,8 @@ namespace twincell {
 std::string results_text(const std::vector<Result>& results);
 
 /// {"NAME": {"value": number | text | array, "shape": […], "unit", "n", "n_of", "interval": {"low", "high",
-/// "level", "method"}, "convention", "source"} | {"absent": reason, "source"}}. NaN becomes null. Text of one
-/// JSON object.
+/// "level", "method"} | "no_interval": reason, "convention", "source"} | {"absent": reason, "source"}}. NaN
+/// becomes null. Text of one JSON object.
 std::string results_json(const std::vector<Result>& results);
 
 /// One group per result below /results: dataset `value` with the attributes of results_json, or attribute

@@ -1,7 +1,11 @@
 #include "analysis/tracers.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "analysis/trajectory/error.hpp"
 
 namespace twincell {
 namespace {
@@ -56,9 +60,52 @@ std::vector<std::size_t> one_per_column(const Frame& frame, const std::vector<st
   return line;
 }
 
+TracerChoice of_ids(const TrajectoryInfo& info, std::vector<std::int64_t> ids) {
+  const Where where{.file = {}, .key = "tracers"};
+  for (const std::int64_t id : ids)
+    if (id < 0 || id >= static_cast<std::int64_t>(info.n_beads))
+      throw ConfigError(where, fmt::format("there is no bead {}; ids run from 0 to {}", id,
+                                           static_cast<std::int64_t>(info.n_beads) - 1));
+  std::sort(ids.begin(), ids.end());
+  if (const auto twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end())
+    throw ConfigError(where, fmt::format("bead {} is named twice", *twice));
+  TracerChoice choice;
+  choice.slots.assign(ids.begin(), ids.end());
+  choice.how = fmt::format("{} tracers named by their ids", ids.size());
+  return choice;
+}
+
+TracerChoice in_band(const TrajectoryInfo& info, const Frame& first, const std::array<double, 2>& band) {
+  const Where where{.file = {}, .key = "tracer_band"};
+  if (!(band[0] < band[1]))
+    throw ConfigError(where,
+                      fmt::format("[{:g}, {:g}] is not a band: low must be below high", band[0], band[1]));
+  const double plate = plate_height(info, first).value_or(0);
+  TracerChoice choice;
+  double low = INFINITY, high = -INFINITY;
+  for (const std::size_t i : beads_of(first)) {
+    const double height = first.position[i].z() - plate;
+    low = std::min(low, height);
+    high = std::max(high, height);
+    if (height >= band[0] && height <= band[1]) choice.slots.push_back(i);
+  }
+  if (choice.slots.empty())
+    throw ConfigError(where,
+                      fmt::format("no bead begins between {:g} and {:g} sigma above the plate; the bed "
+                                  "reaches from {:.4g} to {:.4g}",
+                                  band[0], band[1], low, high));
+  choice.how = fmt::format("the {} beads that begin {:g} to {:g} sigma above the plate", choice.slots.size(),
+                           band[0], band[1]);
+  return choice;
+}
+
 }  // namespace
 
-TracerChoice choose_tracers(const TrajectoryInfo& info, const Frame& first) {
+TracerChoice choose_tracers(const TrajectoryInfo& info, const Frame& first, const TracerWish& wish) {
+  if (!wish.ids.empty() && wish.band)
+    throw ConfigError({.file = {}, .key = "tracers"}, "ids and a band are two choices of tracers; state one");
+  if (!wish.ids.empty()) return of_ids(info, wish.ids);
+  if (wish.band) return in_band(info, first, *wish.band);
   TracerChoice choice;
   if (!info.tracer.empty()) {
     for (std::size_t i = 0; i < info.tracer.size(); ++i)

@@ -2,6 +2,8 @@
 /// \file
 /// The line of tracer beads whose heights tell the phases apart, and the plate under them.
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,12 +18,20 @@ struct TracerChoice {
   std::string how;
 };
 
-/// The tracers the trajectory names (TrajectoryInfo::tracer); otherwise a straight horizontal line at
-/// mid-height H/2 of the bed in `first` (Fortini & Huang 2015, app. B, "initially at the centre"): the
-/// lattice row nearest to H/2 if a row within 0.2 sigma of one height holds at least 3/4 of the width's
-/// beads (crystal), else for each column of width sigma the bead nearest to H/2. H from the lowest bead to
-/// the 99th percentile, so that one high flyer does not shift it. Ties: the lower slot.
-TracerChoice choose_tracers(const TrajectoryInfo& info, const Frame& first);
+/// A user's own choice: by id (the bead's slot), or by where the beads begin.
+struct TracerWish {
+  std::vector<std::int64_t> ids = {};
+  std::optional<std::array<double, 2>> band = {};  ///< heights [low, high] above the plate, sigma
+};
+
+/// The tracers of `wish`; else those the trajectory names (TrajectoryInfo::tracer); otherwise a straight
+/// horizontal line at mid-height H/2 of the bed in `first` (Fortini & Huang 2015, app. B, "initially at the
+/// centre"): the lattice row nearest to H/2 if a row within 0.2 sigma of one height holds at least 3/4 of the
+/// width's beads (crystal), else for each column of width sigma the bead nearest to H/2. H from the lowest
+/// bead to the 99th percentile, so that one high flyer does not shift it. Ties: the lower slot. \throws
+/// ConfigError for ids that are not beads of the trajectory or are named twice, a band that is empty or holds
+/// no bead, ids and a band together
+TracerChoice choose_tracers(const TrajectoryInfo& info, const Frame& first, const TracerWish& wish = {});
 
 /// Height of the plate in `frame`, sigma: measured if the trajectory has it, else of the drive at the frame's
 /// phase (0 for a horizontal drive). Absent if neither is known.

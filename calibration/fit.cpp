@@ -13,6 +13,8 @@ namespace twincell {
 namespace {
 
 constexpr double kLargestCondition = 1e12;
+/// Share in a direction that the data leave open from which on a parameter is called undetermined.
+constexpr double kShare = 0.1;
 
 /// J at the solution, dense: our problems have few parameters.
 Eigen::MatrixXd jacobian_at(ceres::Problem& problem) {
@@ -33,7 +35,10 @@ void add_covariance(FitReport& report, const Eigen::MatrixXd& jacobian, Residual
   for (Eigen::Index c = 0; c < n; ++c) scale[c] = jacobian.col(c).norm();
   if (scale.minCoeff() <= 0) {
     report.condition = std::numeric_limits<double>::infinity();
-    report.why_not = "a parameter has no influence on the residuals";
+    for (Eigen::Index c = 0; c < n; ++c)
+      if (scale[c] <= 0) report.undetermined.push_back(report.names[static_cast<std::size_t>(c)]);
+    report.why_not =
+        fmt::format("{} has no influence on the residuals", fmt::join(report.undetermined, ", "));
     return;
   }
   const Eigen::MatrixXd scaled = jacobian * scale.cwiseInverse().asDiagonal();
@@ -41,8 +46,15 @@ void add_covariance(FitReport& report, const Eigen::MatrixXd& jacobian, Residual
   const Eigen::VectorXd& s = svd.singularValues();
   report.condition = s[0] * s[0] / (s[s.size() - 1] * s[s.size() - 1]);
   if (!(report.condition <= kLargestCondition)) {
-    report.why_not =
-        fmt::format("the data do not tell the parameters apart (condition number {:.1e})", report.condition);
+    for (Eigen::Index c = 0; c < n; ++c) {
+      bool open = false;
+      for (Eigen::Index d = 0; d < n; ++d)
+        open = open ||
+               (!(s[0] * s[0] <= kLargestCondition * s[d] * s[d]) && std::abs(svd.matrixV()(c, d)) > kShare);
+      if (open) report.undetermined.push_back(report.names[static_cast<std::size_t>(c)]);
+    }
+    report.why_not = fmt::format("the data do not tell {} apart (condition number {:.1e})",
+                                 fmt::join(report.undetermined, ", "), report.condition);
     return;
   }
   double variance = 1;
@@ -60,6 +72,46 @@ void add_covariance(FitReport& report, const Eigen::MatrixXd& jacobian, Residual
       variance * (scale.cwiseInverse().asDiagonal() * inverse * scale.cwiseInverse().asDiagonal());
   for (Eigen::Index c = 0; c < n; ++c) report.standard_errors.push_back(std::sqrt(report.covariance(c, c)));
 }
+
+/// Largest cosine of the angle between the residuals and a column of J: 0 at a minimum, whatever the units;
+/// infinite where the law has no value.
+double slope_left(ceres::Problem& problem) {
+  std::vector<double> residuals;
+  if (!problem.Evaluate(ceres::Problem::EvaluateOptions(), nullptr, &residuals, nullptr, nullptr))
+    return std::numeric_limits<double>::infinity();
+  const Eigen::Map<const Eigen::VectorXd> r(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
+  const Eigen::MatrixXd jacobian = jacobian_at(problem);
+  if (!jacobian.allFinite()) return std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (Eigen::Index c = 0; c < jacobian.cols(); ++c) {
+    const double length = jacobian.col(c).norm() * r.norm();
+    if (length > 0) largest = std::max(largest, std::abs(jacobian.col(c).dot(r)) / length);
+  }
+  return largest;
+}
+
+/// Newton's last steps. Ceres stops where the sum of squares no longer changes, which leaves half of the
+/// parameters' digits; the slope still knows the way.
+void polish(ceres::Problem& problem, double* parameters, std::size_t n) {
+  double left = slope_left(problem);
+  for (int step = 0; step < 100; ++step) {
+    std::vector<double> residuals;
+    problem.Evaluate(ceres::Problem::EvaluateOptions(), nullptr, &residuals, nullptr, nullptr);
+    const Eigen::Map<const Eigen::VectorXd> r(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
+    const Eigen::VectorXd delta = jacobian_at(problem).colPivHouseholderQr().solve(r);
+    const std::vector<double> before(parameters, parameters + n);
+    for (std::size_t p = 0; p < n; ++p) parameters[p] -= delta[static_cast<Eigen::Index>(p)];
+    const double now = slope_left(problem);
+    if (!(now < left)) {
+      std::copy(before.begin(), before.end(), parameters);
+      return;
+    }
+    left = now;
+  }
+}
+
+/// Below this the start is the minimum, to the digits that a step could still improve.
+constexpr double kAtMinimum = 1e-11;
 
 }  // namespace
 
@@ -87,19 +139,30 @@ FitReport solve(ceres::Problem& problem, double* parameters, const std::vector<s
   options.minimizer_progress_to_stdout = false;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
-  options.max_num_iterations = 200;
+  options.max_num_iterations = 2000;
   options.function_tolerance = 1e-15;
   options.gradient_tolerance = 1e-15;
   options.parameter_tolerance = 1e-15;
+  FitReport report;
+  report.names = names;
+  report.n_residuals = problem.NumResiduals();
+  // A linear problem may begin at its end, where Ceres finds no step that improves and calls that a failure.
+  if (slope_left(problem) <= kAtMinimum) {
+    report.values.assign(parameters, parameters + names.size());
+    problem.Evaluate(ceres::Problem::EvaluateOptions(), &report.cost_after, nullptr, nullptr, nullptr);
+    report.cost_before = report.cost_after;
+    report.stop_reason = "The start is the minimum: the residuals are orthogonal to every derivative.";
+    report.usable = true;
+    add_covariance(report, jacobian_at(problem), residuals);
+    return report;
+  }
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
 
-  FitReport report;
-  report.names = names;
+  if (summary.IsSolutionUsable()) polish(problem, parameters, names.size());
   report.values.assign(parameters, parameters + names.size());
-  report.n_residuals = problem.NumResiduals();
   report.cost_before = summary.initial_cost;
-  report.cost_after = summary.final_cost;
+  problem.Evaluate(ceres::Problem::EvaluateOptions(), &report.cost_after, nullptr, nullptr, nullptr);
   report.stop_reason = summary.message;
   report.usable = summary.IsSolutionUsable();
   if (!report.usable) {

@@ -23,6 +23,7 @@ struct FitReport {
   double cost_after = 0;   ///< and at the end
   double condition =
       0;  ///< condition number of the scaled normal matrix; large: the data do not tell parameters apart
+  std::vector<std::string> undetermined;  ///< parameters that the data leave open; empty if none is
   std::string stop_reason;
   bool usable = false;
   std::string why_not;  ///< if not usable, or usable without errors: the reason
@@ -42,7 +43,7 @@ enum class Residuals {
 
 /// Solves `problem`, whose only parameter block is `parameters` (one per name), to the last digits
 /// (tolerances 1e-15). A fit whose scaled normal matrix has a condition number above 1e12 is reported without
-/// errors: not identifiable.
+/// errors: not identifiable; the parameters that have a share in what the data leave open are named.
 FitReport solve(ceres::Problem& problem, double* parameters, const std::vector<std::string>& names,
                 Residuals residuals = Residuals::unweighted);
 

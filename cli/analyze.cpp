@@ -53,7 +53,7 @@ void run(const Common& common, const AnalyzeOptions& options) {
 void add_analyze(CLI::App& program, Common& common) {
   CLI::App& verb = add_verb(
       program, common, "analyze",
-      "observables of a trajectory: phase, s_b, s_c, order, defects, convection, profiles, temperature",
+      "observables of a trajectory: phase, s_b, s_c, order, defects, slip, convection, profiles, temperature",
       "twincell analyze sim.h5 --discard 10 -o results.h5");
   auto options = std::make_shared<AnalyzeOptions>();
   verb.add_option("trajectory", options->trajectory, "trajectory (H5MD)")->required();
@@ -62,6 +62,14 @@ void add_analyze(CLI::App& program, Common& common) {
                   "draw the lattice, the convection field, the profiles and the defects into this folder");
   verb.add_option("--discard", options->analysis.discard_cycles, "cycles left out at the beginning")
       ->capture_default_str();
+  verb.add_option("--cycles", options->analysis.cycles, "cycles used after those, N_f (0: all)")
+      ->capture_default_str();
+  verb.add_option("--tracers", options->analysis.tracers, "ids of the tracers, comma separated")
+      ->delimiter(',');
+  verb.add_option("--tracer-band", options->analysis.tracer_band,
+                  "as tracers all beads that begin LOW,HIGH sigma above the plate")
+      ->delimiter(',')
+      ->type_name("LOW,HIGH");
   verb.add_option("--s-b", options->s_b, "reading of eq. B4")
       ->check(CLI::IsMember({"variance", "about_rest", "as_printed"}))
       ->capture_default_str();

@@ -19,6 +19,7 @@ void add_compare(CLI::App& program, Common& common);
 void add_cost(CLI::App& program, Common& common);
 void add_explain(CLI::App& program, Common& common);
 void add_export(CLI::App& program, Common& common);
+void add_fit(CLI::App& program, Common& common);
 void add_import(CLI::App& program, Common& common);
 void add_info(CLI::App& program, Common& common);
 void add_locate(CLI::App& program, Common& common);

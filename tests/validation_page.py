@@ -45,7 +45,8 @@ TAIL = """
 | spread sizes | variance of a uniform law, of a cut normal one; mass as R² or R³ | `unit.Sizes.*` |
 | near pairs by cells | all pairs and images, 1 : 100 in size; candidates a bead independent of their number | `unit.CellGrid.*` |
 | every kernel, law, dimension and integrator; lists built at every step or never (V2.14) | each other and the all-pairs oracle, bit for bit | `agreement.*` |
-| fits | exact data; coverage of the 95 % intervals | `recovery.*Fit*` |
+| fits | exact data; NIST's certified problems; coverage of the 95 % intervals | `recovery.*Fit*`, `recovery.Nist.*` |
+| block averages, bootstraps, binomial intervals | coverage over synthetic processes with known truth | `unit.Statistics.*` |
 | locator on synthetic frames | recall, precision 1; rms against the Cramér–Rao bound | `tests/recovery/locator_test.cpp` |
 | locator and linker on real frames | published centres and identities (Lafaye de Micheaux et al. 2018) | `tests/recovery/real_images_test.cpp` |
 | camera → tracker → trajectory | the trajectory that was filmed | `tests/recovery/closed_loop_test.cpp` |

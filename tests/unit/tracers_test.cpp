@@ -50,6 +50,28 @@ TEST(Tracers, MarkedOnesAreTaken) {
   EXPECT_EQ(choose_tracers(bed.info(), bed.frames().front()).slots, (std::vector<std::size_t>{3, 17}));
 }
 
+TEST(Tracers, GivenByIdOrByBand) {
+  const MemoryTrajectory bed = test::rigid_bed({.gamma = 1.5, .columns = 20, .rows = 11});
+  const Frame& first = bed.frames().front();
+  EXPECT_EQ(choose_tracers(bed.info(), first, {{17, 3}, {}}).slots, (std::vector<std::size_t>{3, 17}));
+  const TracerChoice band = choose_tracers(bed.info(), first, {{}, {{0, 1.5}}});
+  EXPECT_EQ(band.slots.size(), 39U);  // the two lowest rows
+  EXPECT_NE(band.how.find("39 beads"), std::string::npos);
+  const auto refusal = [&](const TracerWish& wish) -> std::string {
+    try {
+      choose_tracers(bed.info(), first, wish);
+    } catch (const ConfigError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal({{3, 9999}, {}}).find("9999"), std::string::npos);
+  EXPECT_NE(refusal({{3, 3}, {}}).find("twice"), std::string::npos);
+  EXPECT_NE(refusal({{}, {{50, 60}}}).find("reaches from 0.5"), std::string::npos);
+  EXPECT_NE(refusal({{}, {{2, 1}}}).find("not a band"), std::string::npos);
+  EXPECT_FALSE(refusal({{3}, {{1, 2}}}).empty());
+}
+
 TEST(PlateHeight, MeasuredBeforeDriveBeforeNothing) {
   TrajectoryInfo info;
   Frame frame;

@@ -47,3 +47,108 @@ TEST(GranularTemperature, MassesWeighTheCentreOfMass) {
   EXPECT_DOUBLE_EQ(granular_temperature(frame, {1, 3}), 3);
   EXPECT_TRUE(std::isnan(granular_temperature(Frame{}, {})));
 }
+
+namespace {
+
+/// 200 beads in 2D whose velocities are a translation of the whole, a wave in height and phase, and Gaussian
+/// noise of variances t_x, t_z.
+MemoryTrajectory gas(double t_x, double t_z, double wave, int cycles, std::mt19937_64& generator,
+                     std::size_t beads = 200) {
+  TrajectoryInfo info;
+  info.n_beads = beads;
+  info.columns.velocity = info.columns.phase = true;
+  info.box.upper = Vec3(20, 1, 30);
+  info.drive = Drive{Axis::z, 2, 1.5};
+  info.phases_per_cycle = 4;
+  MemoryTrajectory trajectory(info);
+  std::normal_distribution<double> one;
+  std::uniform_real_distribution<double> height(0, 10);
+  for (int f = 0; f < 4 * cycles; ++f) {
+    Frame frame;
+    frame.step = f;
+    frame.cycle = f / 4;
+    frame.phase = f % 4;
+    for (std::size_t i = 0; i < info.n_beads; ++i) {
+      frame.position.emplace_back(10, 0, height(generator));
+      const double layer = std::floor(frame.position.back().z());
+      frame.velocity.emplace_back(
+          3 + std::sqrt(t_x) * one(generator), 0,
+          -1 + wave * (layer - 4.5) * (frame.phase % 2 == 0 ? 1 : -1) + std::sqrt(t_z) * one(generator));
+    }
+    trajectory.append(frame);
+  }
+  return trajectory;
+}
+
+}  // namespace
+
+TEST(GranularTemperature, ConventionsOfBothPapersSideBySide) {
+  std::mt19937_64 generator(21);
+  const int cycles = 300;
+  const double t_x = 0.4, t_z = 0.9, n = 200, v_p = 3;
+  const auto results = analyze(gas(t_x, t_z, 0, cycles, generator));
+  const double finite = 1 - 1 / n, samples = n * 4 * cycles;
+  const auto expect = [&](const char* name, double value) {
+    const Result& r = find_result(results, name);
+    test::validate({"V5.3", std::string(name) + " of a Maxwellian gas, T_x = 0.4, T_z = 0.9, 200 beads",
+                    value, 4 * value * std::sqrt(2 / samples), "closed form"},
+                   r.value());
+    EXPECT_FALSE(r.convention.empty());
+    if (r.name != "T_z_field") {
+      ASSERT_TRUE(r.interval.has_value()) << name;
+      EXPECT_NE(r.interval->method.find("cycles"), std::string::npos);
+      EXPECT_LT(r.interval->high - r.interval->low, 0.05 * value);
+    }
+  };
+  expect("T_g", (t_x + t_z) / 2 * finite);
+  expect("T_x", t_x * finite);
+  expect("T_z", t_z * finite);
+  expect("T", (t_x + t_z) / 2 * finite);
+  expect("T_z_eq5", t_z / 2 * finite);
+  expect("T_z_field", t_z);
+  expect("T_bar_z", t_z * finite / (v_p * v_p));
+  expect("T_bar", (t_x + t_z) / 2 * finite / (v_p * v_p));
+  EXPECT_FALSE(find_result(results, "T_y").present());
+}
+
+TEST(GranularTemperature, TheFieldTakesOutAWaveThatTheCentreOfMassDoesNot) {
+  std::mt19937_64 generator(22);
+  const auto results = analyze(gas(0.4, 0.9, 0.5, 200, generator));
+  // The wave is 0.5 (l - 4.5) over ten equally likely layers: variance 0.25 (10^2 - 1)/12.
+  const double wave = 0.25 * 99 / 12;
+  test::validate({"V5.3", "T_z about the centre of mass with a standing wave", (0.9 + wave) * (1 - 1 / 200.0),
+                  0.03, "closed form"},
+                 find_result(results, "T_z").value());
+  test::validate({"V5.3", "T_z about the field of the same", 0.9, 0.015, "closed form"},
+                 find_result(results, "T_z_field").value());
+}
+
+TEST(GranularTemperature, IntervalsCover) {
+  std::mt19937_64 generator(23);
+  const int seeds = 400;
+  int covered = 0, given = 0;
+  for (int s = 0; s < seeds; ++s) {
+    AnalysisOptions options;
+    options.only = {"T_g"};
+    const auto interval = find_result(analyze(gas(0.4, 0.9, 0, 40, generator, 20), options), "T_g").interval;
+    if (!interval) continue;  // 40 cycles are not enough where they happen to look correlated
+    ++given;
+    const double truth = 0.65 * (1 - 1 / 20.0);
+    covered += interval->low <= truth && truth <= interval->high ? 1 : 0;
+  }
+  test::validate({"V5.12", "coverage, %, of the interval of T_g, 40 cycles", 95, 2, "binomial"},
+                 100.0 * covered / given);
+  EXPECT_GT(given, 0.9 * seeds);
+}
+
+TEST(GranularTemperature, AbsentWithoutVelocitiesOrDrive) {
+  std::mt19937_64 generator(24);
+  MemoryTrajectory still = gas(0.4, 0.9, 0, 3, generator);
+  still.info().drive.reset();
+  const auto undriven = analyze(still);
+  EXPECT_FALSE(find_result(undriven, "T_bar_z").present());
+  EXPECT_TRUE(find_result(undriven, "T_z").present());
+  still.info().columns.velocity = false;
+  for (const char* name : {"T_g", "T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar"})
+    EXPECT_FALSE(find_result(analyze(still), name).present()) << name;
+}

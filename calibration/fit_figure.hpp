@@ -1,0 +1,19 @@
+#pragma once
+/// \file
+/// A fit as a picture.
+
+#include <string>
+#include <vector>
+
+#include "analysis/figures.hpp"
+#include "calibration/curve_fit.hpp"
+
+namespace twincell {
+
+/// Above: the points (open where they did not enter; triangles for upper limits of zeros), the curve with its
+/// 95 % band. Below: the residuals in the ordinate that was fitted, in units of their errors if they have
+/// any. x is drawn as the law likes it (Law::axis).
+Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, const std::string& x_name,
+                  const std::string& y_name);
+
+}  // namespace twincell

@@ -1,0 +1,72 @@
+// fit as a user runs it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "analysis/trajectory/atomic_file.hpp"
+#include "tests/support/program.hpp"
+
+namespace twincell {
+namespace {
+
+std::string slips(const TemporaryFolder& folder) {
+  std::string text = "# made up: E_b = 7\nK_m, p_s, trials\n";
+  for (const double k : {2.0, 2.5, 3.0, 4.0, 6.0, 10.0})
+    text += fmt::format("{}, {:.9f}, 40000\n", k, std::exp(-7 / k));
+  text += "1.2, 0, 40000\n";
+  write_text_file(folder / "p_s.csv", text);
+  return (folder / "p_s.csv").string();
+}
+
+}  // namespace
+
+TEST(Fit, TextJsonAndPictureSayTheSame) {
+  const TemporaryFolder folder;
+  const std::string table = slips(folder);
+  const Ran json = run_program({"fit", table, "--law", "arrhenius", "--x", "K_m", "--y", "p_s", "--trials",
+                                "trials", "--json", "-q", "-o", folder / "fit"});
+  ASSERT_EQ(json.code, 0) << json.err;
+  const auto document = nlohmann::json::parse(json.out);
+  EXPECT_NEAR(document["parameters"]["E_b"]["value"].get<double>(), 7, 1e-4);
+  EXPECT_EQ(document["n"]["zero"], 1);
+  EXPECT_EQ(document["upper_limits"].size(), 1U);
+  EXPECT_TRUE(document["weighted"]);
+  EXPECT_EQ(document["undetermined"].size(), 0U);
+  EXPECT_FALSE(document["stop_reason"].get<std::string>().empty());
+  EXPECT_EQ(document["covariance"].size(), 2U);
+  EXPECT_EQ(names_in(folder / "fit"),
+            (std::vector<std::string>{"fit.dat", "fit.gp", "fit.json", "fit.png", "fit.svg"}));
+  EXPECT_EQ(nlohmann::json::parse(read_text_file(folder / "fit/fit.json"))["parameters"],
+            document["parameters"]);
+
+  const Ran text = run_program({"fit", table, "--law", "arrhenius", "--trials", "trials", "-q"});
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_NE(text.out.find("E_b"), std::string::npos);
+  EXPECT_NE(text.out.find("1 zero and left out"), std::string::npos) << text.out;
+}
+
+TEST(Fit, Refusals) {
+  const TemporaryFolder folder;
+  const std::string table = slips(folder);
+  const auto refused = [](const std::vector<std::string>& words, int code, const std::string& says) {
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, code) << ran.err;
+    EXPECT_NE(ran.err.find(says), std::string::npos) << ran.err;
+  };
+  refused({"fit", table, "--law", "parabola", "-q"}, 2, "arrhenius");
+  refused({"fit", table, "--law", "arrhenius", "--y", "p_t", "-q"}, 2, "K_m, p_s, trials");
+  refused({"fit", table, "--law", "arrhenius", "--window", "20,30", "-q"}, 3, "[20, 30]");
+  refused({"fit", table, "--law", "arrhenius", "--window", "30,20", "-q"}, 2, "window");
+  refused({"fit", folder / "no.csv", "--law", "line", "-q"}, 3, "no.csv");
+  refused({"fit", table, "--law", "line", "-q", "-o", folder / "no/fit"}, 2, "no");
+  write_text_file(folder / "bad.csv", "x,y\n1,2\n3,four\n");
+  refused({"fit", folder / "bad.csv", "--law", "line", "-q"}, 3, "bad.csv:3");
+  write_text_file(folder / "short.csv", "x,y\n1,2\n3\n");
+  refused({"fit", folder / "short.csv", "--law", "line", "-q"}, 3, "short.csv:3");
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"bad.csv", "p_s.csv", "short.csv"}));
+}
+
+}  // namespace twincell
