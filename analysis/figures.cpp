@@ -397,7 +397,11 @@ void draw(const Figure& figure, const std::filesystem::path& folder) {
       "do for [kind in '{3}'] {{\n"
       "if (kind eq 'svg') {{\n"
       "  set terminal svg size {4},{5} dynamic enhanced font 'Arial,15' background 'white'\n"
-      "}} else {{\n"
+      "}}\n"
+      "if (kind eq 'pdf') {{\n"
+      "  set terminal pdfcairo size {10}in,{11}in enhanced font 'sans,9' background 'white'\n"
+      "}}\n"
+      "if (kind eq 'png') {{\n"
       "  set terminal pngcairo size {6},{7} enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale "
       "1.6 "
       "background 'white'\n"
@@ -408,9 +412,10 @@ void draw(const Figure& figure, const std::filesystem::path& folder) {
       "reset\n"
       "}}\n",
       figure.title, figure.name,
-      own_svg ? fmt::format("{}.png", figure.name) : fmt::format("{0}.svg and {0}.png", figure.name),
-      own_svg ? "png" : "svg png", figure.width, figure.height, figure.width * 8 / 5, figure.height * 8 / 5,
-      kStyle, figure.plot);
+      own_svg ? fmt::format("{0}.pdf and {0}.png", figure.name)
+              : fmt::format("{0}.svg, {0}.pdf and {0}.png", figure.name),
+      own_svg ? "pdf png" : "svg pdf png", figure.width, figure.height, figure.width * 8 / 5,
+      figure.height * 8 / 5, kStyle, figure.plot, figure.width / 90.0, figure.height / 90.0);
   write_text_file(folder / (figure.name + ".dat"), figure.data);
   write_text_file(folder / (figure.name + ".gp"), script);
   if (own_svg) write_text_file(folder / (figure.name + ".svg"), figure.svg);

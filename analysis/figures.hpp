@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Figures by gnuplot, a child process. Each figure leaves NAME.gp and NAME.dat beside NAME.svg and NAME.png:
-/// `gnuplot NAME.gp` in that folder draws it again, so that it can be restyled.
+/// Figures by gnuplot, a child process. Each figure leaves NAME.gp and NAME.dat beside NAME.svg, NAME.pdf and
+/// NAME.png: `gnuplot NAME.gp` in that folder draws it again, so that it can be restyled.
 
 #include <filesystem>
 #include <string>
@@ -24,7 +24,7 @@ struct Figure {
       {};  ///< the drawing itself where gnuplot's own would be too large; empty: gnuplot draws it
 };
 
-/// Writes NAME.gp and NAME.dat into `folder` and draws NAME.svg and NAME.png.
+/// Writes NAME.gp and NAME.dat into `folder` and draws NAME.svg, NAME.pdf and NAME.png.
 /// \throws RunError if gnuplot is missing or fails, with its own words
 void draw(const Figure& figure, const std::filesystem::path& folder);
 

@@ -143,5 +143,7 @@ std::vector<std::string> result_names();
 
 /// The result called `name`. \pre it is there
 const Result& find_result(const std::vector<Result>& results, const std::string& name);
+/// The result called `name`, or null.
+const Result* seek_result(const std::vector<Result>& results, const std::string& name);
 
 }  // namespace twincell

@@ -193,10 +193,15 @@ std::vector<std::string> result_names() {
   return names;
 }
 
-const Result& find_result(const std::vector<Result>& results, const std::string& name) {
+const Result* seek_result(const std::vector<Result>& results, const std::string& name) {
   const auto found =
       std::find_if(results.begin(), results.end(), [&](const Result& r) { return r.name == name; });
-  assert(found != results.end());
+  return found != results.end() ? &*found : nullptr;
+}
+
+const Result& find_result(const std::vector<Result>& results, const std::string& name) {
+  const Result* found = seek_result(results, name);
+  assert(found != nullptr);
   return *found;
 }
 

@@ -3,20 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "analysis/tracers.hpp"
+#include "analysis/trajectory/config.hpp"
 
 namespace twincell {
 namespace {
-
-Snapshot snapshot(const TrajectorySource& trajectory, std::size_t index, double cutoff) {
-  Snapshot s;
-  trajectory.read(index, s.frame);
-  s.order = bond_order(find_neighbours(s.frame, trajectory.info().box, cutoff));
-  s.plate = plate_height(trajectory.info(), s.frame).value_or(trajectory.info().box.lower.z());
-  return s;
-}
 
 /// Index of the first frame at phase 0 from `start` in steps of `step`; `start` itself if there is none.
 std::size_t find_phase_0(const TrajectorySource& trajectory, std::size_t start, bool forward) {
@@ -28,6 +22,14 @@ std::size_t find_phase_0(const TrajectorySource& trajectory, std::size_t start, 
     if (frame.phase == 0 || !trajectory.info().columns.phase) return index;
   }
   return start;
+}
+
+/// start.kind of the scene that a simulation keeps in its provenance.
+std::string start_of(const TrajectoryInfo& info) {
+  const auto provenance = nlohmann::json::parse(info.provenance_json, nullptr, false);
+  if (info.source != "simulation" || !provenance.is_object() || !provenance.contains("config")) return {};
+  const std::string text = provenance["config"].get<std::string>();
+  return Config::from_text(text, "scene").root().section("start").text("kind").value_or("");
 }
 
 }  // namespace
@@ -44,6 +46,7 @@ Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOpt
                      "the trajectory does not say how it was driven, so that it has no Gamma");
   Run run;
   run.side = side;
+  run.start = start_of(info);
   run.name = std::filesystem::path(trajectory.name()).filename().string();
   run.results = analyze(trajectory, options, progress);
   run.phase = phase_named(find_result(run.results, "phase").text);
@@ -53,9 +56,11 @@ Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOpt
   run.omega = info.drive->omega;
   run.box = info.box;
   run.radius = info.radius;
+  run.phases_per_cycle = info.phases_per_cycle;
   run.n_frames = trajectory.n_frames();
   run.first = snapshot(trajectory, find_phase_0(trajectory, 0, true), run.cutoff);
   run.last = snapshot(trajectory, find_phase_0(trajectory, run.n_frames - 1, false), run.cutoff);
+  run.tracers = choose_tracers(info, run.first.frame, {options.tracers, options.tracer_band}).slots;
   run.n_beads = run.first.frame.n_present();
   run.n_l = static_cast<double>(run.n_beads) / info.box.size().x();
   return run;

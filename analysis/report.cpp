@@ -4,16 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <string_view>
 
 #include "analysis/figures.hpp"
+#include "analysis/report_data.hpp"
 #include "analysis/results.hpp"
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/provenance.hpp"
 
 namespace twincell {
+
+namespace embedded {  // files of analysis/report/, put into the program by cmake/embed.cmake
+extern const std::string_view page_css, page_js, plotly_js, plotly_license;
+}
+
 namespace {
 
 std::string escape(const std::string& text) {
@@ -88,7 +96,18 @@ nlohmann::json or_null(double v) {
   return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr);
 }
 
-constexpr std::array<const char*, 6> kScalars = {"s_b", "s_c", "T_g", "q6", "psi6", "hexagonal_fraction"};
+/// Names of the results that are one number, in the order of the observables.
+std::vector<std::string> scalar_names(const std::vector<Run>& runs) {
+  std::vector<std::string> names;
+  for (const std::string& name : result_names()) {
+    const auto is_number = [&](const Run& run) {
+      const Result* r = seek_result(run.results, name);
+      return r != nullptr && r->present() && r->shape.empty() && r->text.empty();
+    };
+    if (std::any_of(runs.begin(), runs.end(), is_number)) names.push_back(name);
+  }
+  return names;
+}
 
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
@@ -97,23 +116,51 @@ std::string csv_field(const std::string& text) {
   return out + "\"";
 }
 
+double value_of(const Result* r) {
+  return r != nullptr ? r->value() : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string csv_number(double v) {
+  return std::isfinite(v) ? fmt::format("{:.9g}", v) : std::string();
+}
+
 /// One line per run; an empty field is an absent value.
 std::string runs_csv(const std::vector<Run>& runs) {
-  std::string text = "side,run,gamma,k_m,n_l,n_beads,n_frames,phase,cycle_of_convection";
-  for (const char* name : kScalars) text += fmt::format(",{0},{0}_low,{0}_high", name);
+  const auto names = scalar_names(runs);
+  std::string text = "side,run,start,gamma,k_m,n_l,n_beads,n_frames,phase";
+  for (const std::string& name : names) text += fmt::format(",{0},{0}_low,{0}_high", name);
   text += "\n";
-  const auto field = [](double v) { return std::isfinite(v) ? fmt::format("{:.9g}", v) : std::string(); };
   for (const Run& run : runs) {
-    text += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{},{},{},{}", side_name(run.side), csv_field(run.name),
-                        run.gamma, run.k_m, run.n_l, run.n_beads, run.n_frames, phase_name(run.phase),
-                        field(find_result(run.results, "cycle_of_convection").value()));
-    for (const char* name : kScalars) {
-      const Result& r = find_result(run.results, name);
-      text += fmt::format(",{}", field(r.value()));
-      text += r.interval ? fmt::format(",{:.9g},{:.9g}", r.interval->low, r.interval->high) : ",,";
+    text +=
+        fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{},{},{}", side_name(run.side), csv_field(run.name),
+                    run.start, run.gamma, run.k_m, run.n_l, run.n_beads, run.n_frames, phase_name(run.phase));
+    for (const std::string& name : names) {
+      const Result* r = seek_result(run.results, name);
+      text += fmt::format(",{}", csv_number(value_of(r)));
+      text += r != nullptr && r->interval ? fmt::format(",{:.9g},{:.9g}", r->interval->low, r->interval->high)
+                                          : ",,";
     }
     text += "\n";
   }
+  return text;
+}
+
+/// One line per match and number; an empty field was not determined.
+std::string differences_csv(const Comparison& c) {
+  std::string text =
+      "gamma,number,unit,experiment,experiment_error,simulation,simulation_error,difference,filmed,camera,"
+      "statistics,"
+      "seeds,tracers,defects,remainder,error,attribution\n";
+  const auto part = [](const std::optional<double>& v) {
+    return csv_number(v.value_or(std::numeric_limits<double>::quiet_NaN()));
+  };
+  for (const Difference& d : c.differences)
+    text +=
+        fmt::format("{:.9g},{},{},{:.9g},{},{:.9g},{},{:.9g},{},{},{},{},{},{},{:.9g},{},{}\n",
+                    c.matches[d.match].gamma, d.quantity, d.unit, d.experiment.value,
+                    part(d.experiment.error), d.simulation.value, part(d.simulation.error), d.difference(),
+                    part(d.filmed), part(d.camera), part(d.statistics), part(d.seeds), part(d.tracers),
+                    part(d.defects), d.remainder(), part(d.error()), csv_field(d.attribution()));
   return text;
 }
 
@@ -128,22 +175,6 @@ std::string series_csv(const std::vector<Run>& runs, const std::string& name, co
   }
   return text;
 }
-
-const char* kCss = R"(
-:root{color-scheme:light}
-body{font:16px/1.5 system-ui,"Segoe UI",Helvetica,Arial,sans-serif;color:#1c1c1c;background:#fff;margin:0 auto;max-width:60rem;padding:1rem}
-h1{font-size:1.6rem;line-height:1.2;margin:.5rem 0}h2{font-size:1.25rem;margin:2rem 0 .5rem;border-bottom:1px solid #ccc}
-p.lead{font-size:1.1rem}
-.scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.92rem;font-variant-numeric:tabular-nums}
-th,td{padding:.3rem .6rem;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}th{background:#f3f3f3}
-td.nowrap{white-space:nowrap}tr.differ td{background:#fff1e6}
-figure{margin:1rem 0 2rem}figure>.picture{overflow-x:auto;max-width:38rem}figure svg{display:block;width:100%;min-width:21rem;height:auto}
-figcaption{font-size:.92rem;color:#444;max-width:38rem}
-.chip{display:inline-block;padding:0 .5rem;border-radius:.7rem;color:#fff;white-space:nowrap}
-.co-moving{background:#0072B2}.bouncing{background:#E69F00;color:#000}.convecting{background:#B64E00}.undetermined{background:#6b6b6b}
-pre{overflow-x:auto;background:#f6f6f6;padding:.6rem;font-size:.85rem}summary{cursor:pointer}
-@media print{details{display:block}}
-)";
 
 std::string chips(const std::vector<Run>& runs, const std::vector<std::size_t>& members) {
   if (members.empty()) return "no run";
@@ -163,44 +194,117 @@ std::string numbers_of(const std::vector<Run>& runs, const std::vector<std::size
   return fmt::format("{}", fmt::join(lines, "<br>"));
 }
 
-std::string verdict_table(const std::vector<Run>& runs, const std::vector<Match>& matches) {
-  std::string html =
-      "<div "
-      "class=\"scroll\"><table><thead><tr><th>Γ</th><th>K<sub>m</sub></th><th>N<sub>l</sub>σ</"
-      "th><th>experiment</th><th>simulation</th><th></th>"
-      "<th>s<sub>b</sub>/σ experiment</th><th>s<sub>b</sub>/σ simulation</th><th>s<sub>c</sub>/σ "
-      "experiment</th><th>s<sub>c</sub>/σ simulation</th></tr></thead><tbody>\n";
-  for (const Match& match : matches) {
-    const Run& any = runs[match.experiments.empty() ? match.simulations.front() : match.experiments.front()];
-    const std::string word = verdict(runs, match);
-    html += fmt::format(
-        "<tr{}><td>{:.3g}</td><td>{:.3g}</td><td>{:.3g}</td><td>{}</td><td>{}</td><td>{}</td><td "
-        "class=\"nowrap\">{}</td><td class=\"nowrap\">{}</td>"
-        "<td class=\"nowrap\">{}</td><td class=\"nowrap\">{}</td></tr>\n",
-        word == "differ" ? " class=\"differ\"" : "", match.gamma, any.k_m, any.n_l,
-        chips(runs, match.experiments), chips(runs, match.simulations),
-        word == "differ" ? "<strong>differ</strong>" : word, numbers_of(runs, match.experiments, "s_b"),
-        numbers_of(runs, match.simulations, "s_b"), numbers_of(runs, match.experiments, "s_c"),
-        numbers_of(runs, match.simulations, "s_c"));
+/// A table that sorts by its headings and can be saved, once the page is alive.
+class Table {
+ public:
+  Table(const std::string& name, const std::vector<std::string>& heads)
+      : html_(fmt::format("<div class=\"scroll\"><table data-name=\"{}\"><thead><tr>", name)) {
+    for (const std::string& head : heads) html_ += "<th>" + head + "</th>";
+    html_ += "</tr></thead><tbody>\n";
   }
-  return html + "</tbody></table></div>\n";
+  void row(const std::string& attributes = {}) {
+    if (open_) html_ += "</tr>\n";
+    html_ += "<tr" + attributes + ">";
+    open_ = true;
+  }
+  void cell(const std::string& html, const char* kind = "") {
+    html_ += fmt::format("<td{}>{}</td>", *kind != 0 ? fmt::format(" class=\"{}\"", kind) : "", html);
+  }
+  void cell(const std::optional<double>& v) { cell(v ? number(*v) : "–"); }
+  [[nodiscard]] std::string html() const {
+    return html_ + (open_ ? "</tr>\n" : "") + "</tbody></table></div>\n";
+  }
+
+ private:
+  std::string html_;
+  bool open_ = false;
+};
+
+std::string verdict_table(const std::vector<Run>& runs, const std::vector<Match>& matches) {
+  Table table("phases", {"Γ", "K<sub>m</sub>", "N<sub>l</sub>σ", "experiment", "simulation", "verdict",
+                         "s<sub>b</sub>/σ experiment", "s<sub>b</sub>/σ simulation",
+                         "s<sub>c</sub>/σ experiment", "s<sub>c</sub>/σ simulation"});
+  for (const Match& match : matches) {
+    const std::size_t first =
+        match.experiments.empty() ? match.simulations.front() : match.experiments.front();
+    const std::string word = verdict(runs, match);
+    table.row(fmt::format(" data-run=\"{}\"{}", first, word == "differ" ? " class=\"differ\"" : ""));
+    table.cell(match.gamma);
+    table.cell(runs[first].k_m);
+    table.cell(runs[first].n_l);
+    table.cell(chips(runs, match.experiments));
+    table.cell(chips(runs, match.simulations));
+    table.cell(word == "differ" ? "<strong>differ</strong>" : word);
+    for (const char* name : {"s_b", "s_c"})
+      for (const auto& members : {match.experiments, match.simulations})
+        table.cell(numbers_of(runs, members, name), "nowrap");
+  }
+  return table.html();
 }
 
 std::string runs_table(const std::vector<Run>& runs) {
-  std::string html =
-      "<div "
-      "class=\"scroll\"><table><thead><tr><th>run</th><th>side</th><th>Γ</th><th>beads</th><th>frames</"
-      "th><th>phase</th><th>T<sub>g</sub>/mgσ</th>"
-      "<th>q<sub>6</sub></th><th>ψ<sub>6</sub></th><th>hexagonal</th></tr></thead><tbody>\n";
-  for (const Run& run : runs) {
-    html += fmt::format("<tr><td>{}</td><td>{}</td><td>{:.4g}</td><td>{}</td><td>{}</td><td>{}</td>",
-                        escape(run.name), side_name(run.side), run.gamma, run.n_beads, run.n_frames,
-                        phase_name(run.phase));
-    for (const char* name : {"T_g", "q6", "psi6", "hexagonal_fraction"})
-      html += fmt::format("<td>{}</td>", number(find_result(run.results, name).value(), "absent"));
-    html += "</tr>\n";
+  const auto names = scalar_names(runs);
+  std::vector<std::string> heads = {"run", "side", "start", "Γ", "beads", "frames", "phase"};
+  for (const std::string& name : names) heads.push_back(typeset(name));
+  Table table("runs", heads);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Run& run = runs[i];
+    table.row(fmt::format(" data-run=\"{}\"", i));
+    table.cell(escape(run.name));
+    table.cell(side_name(run.side));
+    table.cell(run.start.empty() ? "–" : escape(run.start));
+    table.cell(run.gamma);
+    table.cell(fmt::format("{}", run.n_beads));
+    table.cell(fmt::format("{}", run.n_frames));
+    table.cell(phase_name(run.phase));
+    for (const std::string& name : names) {
+      const Result* r = seek_result(run.results, name);
+      table.cell(number(value_of(r), "absent"));
+    }
   }
-  return html + "</tbody></table></div>\n";
+  return table.html();
+}
+
+std::string boundary_table(const std::vector<PhaseBoundary>& boundaries) {
+  Table table("boundaries", {"onset of", "of", "N<sub>l</sub>σ", "Γ", "half width", "runs"});
+  for (const PhaseBoundary& b : boundaries) {
+    table.row();
+    table.cell(phase_name(b.onset));
+    table.cell(escape(boundary_of(b)));
+    table.cell(b.n_l);
+    if (b.half_width()) {
+      table.cell(b.gamma());
+      table.cell(b.half_width());
+    } else {
+      table.cell(boundary_text(b));
+      table.cell("–");
+    }
+    table.cell(fmt::format("{}{}", b.n_runs, b.overlap ? ", which overlap" : ""));
+  }
+  return table.html();
+}
+
+std::string with_error(const Measured& m) {
+  return m.error ? fmt::format("{:.4g} ± {:.2g}", m.value, *m.error) : fmt::format("{:.4g}", m.value);
+}
+
+std::string differences_table(const Comparison& c) {
+  Table table("differences", {"Γ", "number", "experiment", "simulation", "difference", "attributed to",
+                              "by camera and tracking", "what is left", "error by statistics", "by seed",
+                              "by tracers", "between starts"});
+  for (const Difference& d : c.differences) {
+    table.row(fmt::format(" data-run=\"{}\"", c.matches[d.match].experiments.front()));
+    table.cell(c.matches[d.match].gamma);
+    table.cell(typeset(d.quantity));
+    table.cell(with_error(d.experiment), "nowrap");
+    table.cell(with_error(d.simulation), "nowrap");
+    table.cell(d.difference());
+    table.cell(d.attribution(), "words");
+    table.cell(d.camera);
+    table.cell(d.remainder());
+    for (const auto& part : {d.statistics, d.seeds, d.tracers, d.defects}) table.cell(part);
+  }
+  return table.html();
 }
 
 /// How each number was made, once per distinct sentence and with the runs it holds for.
@@ -244,56 +348,188 @@ std::string inline_svg(const std::string& file, const std::string& prefix, const
                             std::regex_constants::format_first_only);
 }
 
-std::string page(const std::vector<Run>& runs, const std::vector<Match>& matches,
-                 const std::vector<Figure>& figures, const std::filesystem::path& figure_folder,
-                 const std::string& provenance_json) {
+/// Text for the inside of a script element.
+std::string script(std::string_view text) {
+  std::string safe(text);
+  for (std::size_t at = safe.find("</script"); at != std::string::npos; at = safe.find("</script", at))
+    safe.insert(at + 1, 1, '\\');
+  return safe;
+}
+
+/// Where the script draws. Hidden without it: the figures by gnuplot, further down, then stand alone.
+constexpr std::string_view kLive = R"(
+<div class="needs-script">
+<h2>Phase diagram</h2>
+<p>Open symbols: experiment; filled: simulation. A click on one shows its bed below.</p>
+<div id="phase-diagram"></div>
+<section id="point">
+<h2 id="point-title">A point</h2>
+<div class="controls"><label>Point <select id="which"></select></label></div>
+<div class="controls"><button id="play">Play</button><input id="moment" type="range" min="0" value="0" aria-label="moment"><span id="moment-label"></span></div>
+<div class="controls">
+<label><input type="checkbox" id="layer-raw" checked> camera frame</label>
+<label><input type="checkbox" id="layer-found" checked> beads</label>
+<label><input type="checkbox" id="layer-other"> other side on top</label>
+<label><input type="checkbox" id="layer-tracks" checked> tracks</label>
+<label>colour <select id="colour"><option value="q6">q6</option><option value="psi6">ψ6</option><option value="structure">local structure</option><option value="coordination">Voronoi neighbours (defects)</option><option value="none">none</option></select></label>
+</div>
+<p id="key"></p>
+<div class="pair">
+<figure id="panel-experiment"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
+<figure id="panel-simulation"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
+</div>
+<p><small>The wheel zooms (with Ctrl outwards from the whole picture), a drag moves, a double click goes back.</small></p>
+<div class="pair">
+<div><h3>Height of the tracers above the plate, s(k)</h3><div id="series-s_k"></div></div>
+<div><h3>Spread of the tracer line, s<sub>j</sub></h3><div id="series-s_j"></div></div>
+</div>
+<div class="pair">
+<figure id="convection-experiment" hidden><svg class="field" role="img"></svg><figcaption></figcaption></figure>
+<figure id="convection-simulation" hidden><svg class="field" role="img"></svg><figcaption></figcaption></figure>
+</div>
+</section>
+<h2>s<sub>b</sub> and s<sub>c</sub> against the drive</h2>
+<div class="pair"><div id="curve-s_b"></div><div id="curve-s_c"></div></div>
+</div>
+)";
+
+std::string filmed_words(const Comparison& c) {
+  std::vector<std::string> names;
+  for (const Checks::Filmed& f : c.checks.filmed)
+    names.push_back(fmt::format("{} ({})", c.runs[f.run].name, f.camera));
+  return names.empty()
+             ? "Nothing was filmed, so what camera and tracking do is not known."
+             : fmt::format("Filmed by the synthetic camera, located, linked and analysed again: {}.",
+                           fmt::join(names, "; "));
+}
+
+std::string static_figures(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
+  std::string html = "<div class=\"static\">\n";
+  for (const Figure& figure : figures)
+    html += fmt::format(
+        "<h3>{}</h3>\n<figure><div class=\"picture\">{}</div><figcaption>{} <small>(figures/{}.svg, .pdf, "
+        ".png, "
+        ".gp, .dat)</small></figcaption></figure>\n",
+        typeset(figure.title),
+        inline_svg(read_text_file(folder / (figure.name + ".svg")), figure.name, figure.title),
+        typeset(figure.caption), figure.name);
+  return html + "</div>\n";
+}
+
+std::string page(const Comparison& c, const std::vector<Figure>& figures,
+                 const std::filesystem::path& figure_folder, const std::string& provenance_json) {
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n"
       "<title>Experiment and simulation</title><style>{}</style></head><body>\n<h1>Experiment and "
       "simulation, side by side</h1>\n<p class=\"lead\">{}</p>\n",
-      kCss, escape(conclusion(runs, matches)));
+      embedded::page_css, escape(conclusion(c.runs, c.matches)));
   html +=
       "<p>Both sides went through the same analysis. A bed <em>bounces</em> if s<sub>b</sub> &gt; σ/30 and "
       "<em>convects</em> if also s<sub>c</sub> &gt; σ "
       "(Fortini &amp; Huang 2015, app. B). In brackets: 95 % intervals.</p>\n";
-  html += "<h2>Phases</h2>\n" + verdict_table(runs, matches);
-  for (const Figure& figure : figures)
-    html += fmt::format(
-        "<h2>{}</h2>\n<figure><div class=\"picture\">{}</div><figcaption>{} <small>(figures/{}.svg, .png, "
-        ".gp, .dat)</small></figcaption></figure>\n",
-        typeset(figure.title),
-        inline_svg(read_text_file(figure_folder / (figure.name + ".svg")), figure.name, figure.title),
-        typeset(figure.caption), figure.name);
-  html += "<h2>Runs</h2>\n" + runs_table(runs);
-  html += "<h2>How each number was made</h2>\n" + conventions(runs);
+  html += "<h2>Phases</h2>\n" + verdict_table(c.runs, c.matches);
+  html += kLive;
+  if (!c.boundaries.empty())
+    html +=
+        "<h2>Boundaries</h2>\n<p>Each lies between the strongest drive without the phase and the weakest "
+        "with it: "
+        "a bracket, no fit; those of a sweep are fitted, with their 95 % interval.</p>\n" +
+        boundary_table(c.boundaries);
+  if (!c.differences.empty())
+    html +=
+        "<h2>Differences</h2>\n<p>Experiment minus simulation. What camera and tracking make of it is the "
+        "difference between the simulation as filmed and tracked and the simulation itself; what is left is "
+        "held "
+        "against the errors (± one standard error). " +
+        escape(filmed_words(c)) + "</p>\n" + differences_table(c);
+  html += "<h2>Runs</h2>\n" + runs_table(c.runs);
+  html += "<details><summary>The same figures, drawn by gnuplot</summary>\n" +
+          static_figures(figures, figure_folder) + "</details>\n";
+  html += "<h2>How each number was made</h2>\n" + conventions(c.runs);
   html += "<h2>Provenance</h2>\n<p>" + escape(version_line()) +
           "</p>\n<details><summary>Command, inputs and their digests</summary><pre>" +
-          escape(nlohmann::json::parse(provenance_json).dump(2)) + "</pre></details>\n</body></html>\n";
+          escape(nlohmann::json::parse(provenance_json).dump(2)) +
+          "</pre></details>\n<details><summary>Licence of plotly.js, which draws the graphs</summary><pre>" +
+          escape(std::string(embedded::plotly_license)) + "</pre></details>\n";
+  html += "<script type=\"application/json\" id=\"data\">" + report_data(c) + "</script>\n";
+  html += "<script>" + script(embedded::plotly_js) + "</script>\n<script>" + script(embedded::page_js) +
+          "</script>\n</body></html>\n";
   return html;
+}
+
+nlohmann::json differences_json(const std::vector<Difference>& differences,
+                                const std::vector<Match>& matches) {
+  nlohmann::json list = nlohmann::json::array();
+  const auto part = [](const std::optional<double>& v) {
+    return or_null(v.value_or(std::numeric_limits<double>::quiet_NaN()));
+  };
+  const auto measured = [&](const Measured& m) {
+    return nlohmann::json{{"value", m.value}, {"error", part(m.error)}};
+  };
+  for (const Difference& d : differences)
+    list.push_back({{"gamma", matches[d.match].gamma},
+                    {"number", d.quantity},
+                    {"unit", d.unit},
+                    {"experiment", measured(d.experiment)},
+                    {"simulation", measured(d.simulation)},
+                    {"difference", d.difference()},
+                    {"filmed", part(d.filmed)},
+                    {"camera", part(d.camera)},
+                    {"statistics", part(d.statistics)},
+                    {"seeds", part(d.seeds)},
+                    {"tracers", part(d.tracers)},
+                    {"defects", part(d.defects)},
+                    {"remainder", d.remainder()},
+                    {"error", part(d.error())},
+                    {"attribution", d.attribution()}});
+  return list;
+}
+
+nlohmann::json boundaries_json(const std::vector<PhaseBoundary>& boundaries) {
+  nlohmann::json list = nlohmann::json::array();
+  const auto part = [](const std::optional<double>& v) {
+    return or_null(v.value_or(std::numeric_limits<double>::quiet_NaN()));
+  };
+  for (const PhaseBoundary& b : boundaries)
+    list.push_back({{"onset", phase_name(b.onset)},
+                    {"of", boundary_of(b)},
+                    {"n_l", b.n_l},
+                    {"gamma", part(b.gamma())},
+                    {"half_width", part(b.half_width())},
+                    {"below", part(b.below)},
+                    {"above", part(b.above)},
+                    {"runs", b.n_runs},
+                    {"overlap", b.overlap}});
+  return list;
 }
 
 }  // namespace
 
-std::string comparison_text(const std::vector<Run>& runs, const std::vector<Match>& matches) {
+std::string comparison_text(const Comparison& c) {
   std::string text = fmt::format("{:>7}  {:>7}  {:>6}  {:<22}  {:<22}  {}\n", "Gamma", "K_m", "N_l",
                                  "experiment", "simulation", "verdict");
-  for (const Match& match : matches) {
-    const Run& any = runs[match.experiments.empty() ? match.simulations.front() : match.experiments.front()];
+  for (const Match& match : c.matches) {
+    const Run& any =
+        c.runs[match.experiments.empty() ? match.simulations.front() : match.experiments.front()];
     text += fmt::format("{:>7.3f}  {:>7.3f}  {:>6.2f}  {:<22}  {:<22}  {}\n", match.gamma, any.k_m, any.n_l,
-                        phases_of(runs, match.experiments), phases_of(runs, match.simulations),
-                        verdict(runs, match));
+                        phases_of(c.runs, match.experiments), phases_of(c.runs, match.simulations),
+                        verdict(c.runs, match));
   }
-  return text + conclusion(runs, matches) + "\n";
+  for (const PhaseBoundary& b : c.boundaries)
+    text += fmt::format("onset of {}, {}, N_l = {:.3g}: Gamma {}\n", phase_name(b.onset), boundary_of(b),
+                        b.n_l, boundary_text(b));
+  return text + differences_text(c.differences, c.matches) + conclusion(c.runs, c.matches) + "\n";
 }
 
-std::string comparison_json(const std::vector<Run>& runs, const std::vector<Match>& matches) {
+std::string comparison_json(const Comparison& c) {
   nlohmann::json document;
-  document["conclusion"] = conclusion(runs, matches);
+  document["conclusion"] = conclusion(c.runs, c.matches);
   document["runs"] = nlohmann::json::array();
-  for (const Run& run : runs)
+  for (const Run& run : c.runs)
     document["runs"].push_back({{"side", side_name(run.side)},
                                 {"run", run.name},
+                                {"start", run.start},
                                 {"gamma", or_null(run.gamma)},
                                 {"k_m", or_null(run.k_m)},
                                 {"n_l", or_null(run.n_l)},
@@ -305,39 +541,41 @@ std::string comparison_json(const std::vector<Run>& runs, const std::vector<Matc
   const auto names = [&](const std::vector<std::size_t>& members) {
     nlohmann::json list = nlohmann::json::array();
     for (const std::size_t i : members)
-      list.push_back({{"run", runs[i].name}, {"phase", phase_name(runs[i].phase)}});
+      list.push_back({{"run", c.runs[i].name}, {"phase", phase_name(c.runs[i].phase)}});
     return list;
   };
-  for (const Match& match : matches)
+  for (const Match& match : c.matches)
     document["matches"].push_back({{"gamma", match.gamma},
                                    {"experiments", names(match.experiments)},
                                    {"simulations", names(match.simulations)},
-                                   {"verdict", verdict(runs, match)}});
+                                   {"verdict", verdict(c.runs, match)}});
+  document["boundaries"] = boundaries_json(c.boundaries);
+  document["differences"] = differences_json(c.differences, c.matches);
   return document.dump();
 }
 
-void write_report(const std::filesystem::path& folder, const std::vector<Run>& runs,
-                  const std::vector<Match>& matches, const std::string& provenance_json, Progress& progress) {
+void write_report(const std::filesystem::path& folder, const Comparison& c,
+                  const std::string& provenance_json, Progress& progress) {
   AtomicPath output(folder, AtomicPath::Kind::folder);
   const std::filesystem::path figure_folder = output.part() / "figures";
   std::filesystem::create_directories(figure_folder);
 
-  std::vector<Figure> figures = {phase_strip_figure(runs), phase_diagram_figure(runs),
-                                 thresholds_figure(runs), s_k_figure(runs), s_j_figure(runs)};
-  for (std::size_t m = 0; m < matches.size(); ++m)
-    figures.push_back(snapshots_figure(runs, matches[m], fmt::format("snapshots_{}", m + 1)));
+  std::vector<Figure> figures = {phase_strip_figure(c.runs), phase_diagram_figure(c.runs),
+                                 thresholds_figure(c.runs), s_k_figure(c.runs), s_j_figure(c.runs)};
+  for (std::size_t m = 0; m < c.matches.size(); ++m)
+    figures.push_back(snapshots_figure(c.runs, c.matches[m], fmt::format("snapshots_{}", m + 1)));
   for (std::size_t i = 0; i < figures.size(); ++i) {
     draw(figures[i], figure_folder);
     progress.update(static_cast<std::int64_t>(i) + 1, static_cast<std::int64_t>(figures.size()));
   }
-  write_text_file(output.part() / "runs.csv", runs_csv(runs));
-  write_text_file(output.part() / "series_s_k.csv", series_csv(runs, "s_k", "k"));
-  write_text_file(output.part() / "series_s_j.csv", series_csv(runs, "s_j", "j"));
-  write_text_file(output.part() / "phases.txt", comparison_text(runs, matches));
-  write_text_file(output.part() / "results.json", comparison_json(runs, matches) + "\n");
+  write_text_file(output.part() / "runs.csv", runs_csv(c.runs));
+  write_text_file(output.part() / "differences.csv", differences_csv(c));
+  write_text_file(output.part() / "series_s_k.csv", series_csv(c.runs, "s_k", "k"));
+  write_text_file(output.part() / "series_s_j.csv", series_csv(c.runs, "s_j", "j"));
+  write_text_file(output.part() / "phases.txt", comparison_text(c));
+  write_text_file(output.part() / "results.json", comparison_json(c) + "\n");
   write_text_file(output.part() / "provenance.json", provenance_json + "\n");
-  write_text_file(output.part() / "report.html",
-                  page(runs, matches, figures, figure_folder, provenance_json));
+  write_text_file(output.part() / "report.html", page(c, figures, figure_folder, provenance_json));
   output.commit();
 }
 

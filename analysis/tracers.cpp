@@ -113,20 +113,26 @@ TracerChoice choose_tracers(const TrajectoryInfo& info, const Frame& first, cons
     choice.how = "tracers as marked in the trajectory";
     return choice;
   }
+  return line_of_tracers(info, first, 0);
+}
+
+TracerChoice line_of_tracers(const TrajectoryInfo& info, const Frame& first, double above) {
+  TracerChoice choice;
   const auto beads = beads_of(first);
   if (beads.empty()) {
     choice.how = "no bead to choose from in the first frame";
     return choice;
   }
-  const double middle = mid_height(first, beads);
+  const double middle = mid_height(first, beads) + above;
+  const std::string height = above == 0 ? "mid-height" : fmt::format("mid-height {:+g} sigma", above);
   choice.slots = row_at(first, beads, middle);
   if (static_cast<double>(choice.slots.size()) >= 0.75 * std::floor(info.box.size().x())) {
-    choice.how = "tracers chosen here: the row nearest to mid-height of the first frame";
+    choice.how = fmt::format("tracers chosen here: the row nearest to {} of the first frame", height);
     return choice;
   }
   choice.slots = one_per_column(first, beads, info.box, middle);
-  choice.how =
-      "tracers chosen here: in each column of width sigma the bead nearest to mid-height of the first frame";
+  choice.how = fmt::format(
+      "tracers chosen here: in each column of width sigma the bead nearest to {} of the first frame", height);
   return choice;
 }
 

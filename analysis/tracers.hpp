@@ -33,6 +33,10 @@ struct TracerWish {
 /// no bead, ids and a band together
 TracerChoice choose_tracers(const TrajectoryInfo& info, const Frame& first, const TracerWish& wish = {});
 
+/// The same choice, made `above` sigma over mid-height, whatever beads are marked: another line by which to
+/// see what the choice of the line is worth. Empty if the frame holds no bead.
+TracerChoice line_of_tracers(const TrajectoryInfo& info, const Frame& first, double above);
+
 /// Height of the plate in `frame`, sigma: measured if the trajectory has it, else of the drive at the frame's
 /// phase (0 for a horizontal drive). Absent if neither is known.
 std::optional<double> plate_height(const TrajectoryInfo& info, const Frame& frame);

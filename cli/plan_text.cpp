@@ -1,5 +1,9 @@
 #include "cli/plan_text.hpp"
 
+#include "cli/output.hpp"
+#include "sim/simulation.hpp"
+#include "sim/step_error.hpp"
+
 namespace twincell::cli {
 
 nlohmann::json as_json(const sim::Plan& plan) {
@@ -14,6 +18,20 @@ nlohmann::json as_json(const sim::Plan& plan) {
     d["time_limits"].push_back({{"name", l.name}, {"time", l.time}});
   if (!plan.warnings.empty()) d["warnings"] = plan.warnings;
   return d;
+}
+
+std::string scene_provenance(const Common& common, const sim::Scene& scene,
+                             const std::vector<sim::Bead>& beads, std::vector<std::filesystem::path> inputs) {
+  Provenance provenance = common.provenance();
+  provenance.inputs = std::move(inputs);
+  if (!scene.from.empty()) provenance.inputs.push_back(scene.from);
+  provenance.config = scene.resolved;
+  sim::Plan plan = sim::make_plan(scene, beads);
+  sim::state_step_error(scene, plan);
+  provenance.plan = as_json(plan).dump();
+  provenance.seed = scene.seed;
+  provenance.threads = sim::threads_for(scene.n_beads.value_or(0), common.threads);
+  return provenance.to_json();
 }
 
 }  // namespace twincell::cli

@@ -140,21 +140,6 @@ std::string failed_name(const std::string& output) {
   return path.replace_extension(".failed" + path.extension().string()).string();
 }
 
-/// \param beads as placed: a file's may set another step than the scene's
-std::string provenance_of(const sim::Scene& scene, const std::vector<sim::Bead>& beads,
-                          const SimulateOptions& options, const Common& common) {
-  Provenance provenance = common.provenance();
-  provenance.inputs = {options.scene};
-  if (!scene.from.empty()) provenance.inputs.push_back(scene.from);
-  provenance.config = scene.resolved;
-  sim::Plan plan = sim::make_plan(scene, beads);
-  sim::state_step_error(scene, plan);
-  provenance.plan = as_json(plan).dump();
-  provenance.seed = scene.seed;
-  provenance.threads = sim::threads_for(scene.n_beads.value_or(0), common.threads);
-  return provenance.to_json();
-}
-
 /// Whether a run that is to be resumed had come to its end.
 /// \throws ConfigError if the output is there, but of another scene
 bool is_finished(const sim::Scene& scene, const SimulateOptions& options) {
@@ -218,7 +203,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
     start = sim::placed(scene);
   const auto make_provenance = [&] {
     if (!start) start = sim::placed(scene);
-    return provenance_of(scene, start->beads, options, common);
+    return scene_provenance(common, scene, start->beads, {options.scene});
   };
   auto checkpoints = folder_for(scene, options, make_provenance, common);
   sim::CheckpointFolder* folder = checkpoints ? &*checkpoints : nullptr;

@@ -23,6 +23,7 @@ void add_fit(CLI::App& program, Common& common);
 void add_import(CLI::App& program, Common& common);
 void add_info(CLI::App& program, Common& common);
 void add_locate(CLI::App& program, Common& common);
+void add_match(CLI::App& program, Common& common);
 void add_render(CLI::App& program, Common& common);
 void add_simulate(CLI::App& program, Common& common);
 void add_track(CLI::App& program, Common& common);

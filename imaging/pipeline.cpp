@@ -274,19 +274,25 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan) {
       tracers["broken"].push_back({{"slot", slot},
                                    {"first", stack.tracks[static_cast<std::size_t>(t)].first},
                                    {"last", stack.tracks[static_cast<std::size_t>(t)].last}});
-  const nlohmann::json document = {{"phase_lock", lock},
-                                   {"links",
-                                    {{"made", l.links},
-                                     {"settled", l.settled},
-                                     {"bridged", l.bridged},
-                                     {"ambiguous", l.ambiguous},
-                                     {"births", l.births},
-                                     {"losses", l.losses},
-                                     {"networks", l.networks},
-                                     {"largest_network", l.largest_network},
-                                     {"unsolved", l.unsolved},
-                                     {"unclear_shifts", l.unclear_shifts}}},
-                                   {"tracers", tracers}};
+  const nlohmann::json document = {
+      {"phase_lock", lock},
+      {"links",
+       {{"made", l.links},
+        {"settled", l.settled},
+        {"bridged", l.bridged},
+        {"ambiguous", l.ambiguous},
+        {"births", l.births},
+        {"losses", l.losses},
+        {"networks", l.networks},
+        {"largest_network", l.largest_network},
+        {"unsolved", l.unsolved},
+        {"unclear_shifts", l.unclear_shifts}}},
+      {"tracers", tracers},
+      {"camera",
+       {{"pixels_per_sigma", plan.pixel_frame.pixels_per_sigma},
+        {"origin_px", {plan.pixel_frame.origin.x_px, plan.pixel_frame.origin.y_px}},
+        {"width_px", stack.width_px},
+        {"height_px", stack.height_px}}}};
   return document.dump();
 }
 

@@ -1,0 +1,408 @@
+// The interactive half of the report. Data: one JSON document, made by report_data.cpp, in #data.
+// Two things are drawn: graphs (plotly) and beads (SVG in camera pixels, pixel centres at whole numbers).
+'use strict';
+(() => {
+  const data = JSON.parse(document.getElementById('data').textContent);
+  const $ = id => document.getElementById(id);
+  const runs = data.runs, matches = data.matches;
+
+  // Okabe and Ito's colours; every colour has a shape or a dash of its own as well.
+  const phaseColour = {'co-moving': '#0072B2', bouncing: '#E69F00', convecting: '#D55E00', undetermined: '#9A9A9A'};
+  const phaseSymbol = {'co-moving': 'circle', bouncing: 'square', convecting: 'triangle-up', undetermined: 'x-thin'};
+  const sideColour = {experiment: '#222222', simulation: '#0072B2'};
+  const structures = [['undefined', '#FFFFFF', 'under 2 bonds'], ['hexagonal', '#009E73', 'hexagonal'],
+                      ['square', '#D55E00', 'square'], ['other', '#E8E0C8', 'other']];
+  const coordinations = {0: ['#FFFFFF', 'at a surface'], 5: ['#0072B2', '5 neighbours'], 6: ['#E8E0C8', '6'], 7: ['#D55E00', '7'], other: ['#CC79A7', 'other']};
+  const viridis = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+  function viridisAt(x) {
+    const y = 4 * Math.min(1, Math.max(0, x)), i = Math.min(3, Math.floor(y)), w = y - i;
+    return 'rgb(' + [0, 1, 2].map(c => Math.round((1 - w) * viridis[i][c] + w * viridis[i + 1][c])).join(',') + ')';
+  }
+
+  // ---- graphs ----
+  const base = {font: {family: 'system-ui, "Segoe UI", Helvetica, Arial, sans-serif', size: 13, color: '#1c1c1c'},
+                margin: {l: 58, r: 12, t: 10, b: 46}, paper_bgcolor: '#fff', plot_bgcolor: '#fff', hovermode: 'closest',
+                legend: {orientation: 'h', y: -0.2, yanchor: 'top', x: 0}};
+  const axis = (title, more) => Object.assign(
+    {title: {text: title, standoff: 8}, gridcolor: '#e4e4e4', linecolor: '#444', zeroline: false, ticks: 'outside', showline: true, automargin: true}, more);
+  function graph(id, traces, layout) {
+    const config = {responsive: true, displaylogo: false, modeBarButtonsToRemove: ['select2d', 'lasso2d', 'autoScale2d'],
+                    toImageButtonOptions: {format: 'svg', filename: id}};
+    return Plotly.react(id, traces, Object.assign({}, base, layout), config);
+  }
+  const interval = r => r && r.interval ? [r.value - r.interval.low, r.interval.high - r.value] : [0, 0];
+  const present = r => r && r.value !== undefined && r.value !== null;
+
+  function niceKm(omega2, low, high) {  // K_m = Gamma^2/omega^2: marks at whole numbers of it, at their Gamma
+    const top = high * high / omega2, step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100].find(s => top / s <= 7) || 200;
+    const marks = [];
+    for (let k = 0; k <= top; k += step) if (Math.sqrt(k * omega2) >= low) marks.push(Math.round(k / step) * step);
+    return {tickvals: marks.map(k => Math.sqrt(k * omega2)), ticktext: marks.map(k => String(+k.toPrecision(3)))};
+  }
+
+  function drawDiagram() {
+    const nl = runs.concat(data.sweep).map(r => r.n_l), gammas = runs.concat(data.sweep).map(r => r.gamma);
+    const wide = Math.max(5, 0.12 * (Math.max(...nl) - Math.min(...nl)));
+    const x = [Math.min(...nl) - wide, Math.max(...nl) + wide];
+    const aside = 9.5 * (x[1] - x[0]) / Math.max(100, $('phase-diagram').clientWidth - 116);  // symbols side by side, not on top of each other
+    const pad = Math.max(0.1, 0.08 * (Math.max(...gammas) - Math.min(...gammas)));
+    const y = [Math.min(...gammas) - pad, Math.max(...gammas) + pad];
+    const traces = [];
+    for (const start of new Set(data.sweep.map(p => p.start)))
+      for (const phase of Object.keys(phaseColour)) {
+        const of = data.sweep.filter(p => p.start === start && p.phase === phase);
+        if (of.length) traces.push({x: of.map(p => p.n_l), y: of.map(p => p.gamma), mode: 'markers', name: `sweep ${start}, ${phase}`,
+          hovertemplate: `sweep, ${start}: ${phase}<br>N_l σ %{x:.3g}, Γ %{y:.4g}<extra></extra>`,
+          marker: {size: 8, symbol: phaseSymbol[phase] + (start.startsWith('crystal') ? '' : '-dot'), color: phaseColour[phase], opacity: 0.6}});
+      }
+    for (const side of ['experiment', 'simulation'])
+      for (const phase of Object.keys(phaseColour)) {
+        const of = runs.map((r, i) => i).filter(i => runs[i].side === side && runs[i].phase === phase);
+        if (!of.length) continue;
+        const open = side === 'experiment';
+        traces.push({x: of.map(i => runs[i].n_l + (open ? -aside : aside)), y: of.map(i => runs[i].gamma), customdata: of,
+          mode: 'markers', name: `${side}, ${phase}`, text: of.map(i => runs[i].name),
+          hovertemplate: `${side}: ${phase}<br>%{text}<br>Γ = %{y:.4g}<extra>click to look</extra>`,
+          marker: {size: 14, symbol: phaseSymbol[phase] + (open || phase === 'undetermined' ? '-open' : ''), color: phaseColour[phase],
+                   line: {width: 2, color: open ? phaseColour[phase] : '#222'}}});
+      }
+    for (const kind of ['bouncing', 'convecting'])
+      for (const key of new Set(data.boundaries.filter(b => b.onset === kind && b.gamma !== null).map(b => b.of))) {
+        const of = data.boundaries.filter(b => b.onset === kind && b.of === key && b.gamma !== null);
+        const experiment = of[0].side === 'experiment';
+        traces.push({x: of.map(b => b.n_l + (experiment ? -0.4 : 0.4) * aside), y: of.map(b => b.gamma), mode: of.length > 1 ? 'lines+markers' : 'markers', name: `onset of ${kind}, ${key}`,
+          hovertemplate: `onset of ${kind}, ${key}<br>Γ = %{y:.3g}<extra></extra>`,
+          error_y: {type: 'data', symmetric: false, array: of.map(b => b.high - b.gamma), arrayminus: of.map(b => b.gamma - b.low), width: 6, thickness: 1.2},
+          line: {color: sideColour[experiment ? 'experiment' : 'simulation'], width: 1.2, dash: kind === 'bouncing' ? 'dot' : 'solid'},
+          marker: {size: 6, symbol: experiment ? 'square' : 'diamond', color: sideColour[experiment ? 'experiment' : 'simulation']}});
+      }
+    const omegas = runs.map(r => r.omega), one = omegas.every(w => Math.abs(w - omegas[0]) <= 1e-3 * omegas[0]);
+    const layout = {height: 520, xaxis: axis('N<sub>l</sub> σ', {range: x}), yaxis: axis('Γ = A ω² / g', {range: y}),
+                    margin: {l: 58, r: one ? 58 : 12, t: 10, b: 46}};
+    if (one && runs.length) {
+      traces.push({x: [x[0]], y: [y[0]], yaxis: 'y2', mode: 'markers', marker: {opacity: 0}, hoverinfo: 'skip', showlegend: false});
+      layout.yaxis2 = axis('K<sub>m</sub> = A² ω² / σ g', Object.assign({overlaying: 'y', side: 'right', range: y, matches: 'y', showgrid: false},
+                                                                niceKm(omegas[0] ** 2, Math.max(0, y[0]), y[1])));
+    }
+    graph('phase-diagram', traces, layout).then(element =>
+      element.on('plotly_click', event => {
+        const run = event.points.map(p => p.customdata).find(r => r !== undefined && r !== null);
+        if (run !== undefined) show(run);
+      }));
+  }
+
+  function drawThresholds() {
+    for (const [name, bound, word] of [['s_b', 1 / 30, 'σ/30'], ['s_c', 1, 'σ']]) {
+      const gammas = runs.map(r => r.gamma), low = Math.min(...gammas) - 0.1, high = Math.max(...gammas) + 0.1;
+      const traces = [{x: [low, high], y: [bound, bound], mode: 'lines', name: word, hoverinfo: 'skip', line: {color: '#D55E00', dash: 'dash', width: 1.5}}];
+      for (const side of ['experiment', 'simulation']) {
+        const of = runs.map((r, i) => i).filter(i => runs[i].side === side && present(runs[i].results[name]))
+          .sort((a, b) => runs[a].gamma - runs[b].gamma);
+        const bars = of.map(i => interval(runs[i].results[name]));
+        const starts = new Set(of.map(i => runs[i].start));
+        for (const start of starts) {
+          const some = of.map((i, k) => k).filter(k => runs[of[k]].start === start);
+          traces.push({x: some.map(k => runs[of[k]].gamma), y: some.map(k => Math.max(1e-4, runs[of[k]].results[name].value)), customdata: some.map(k => of[k]),
+            mode: 'lines+markers', name: starts.size > 1 ? `${side}, ${start}` : side, text: some.map(k => runs[of[k]].name),
+            hovertemplate: `${side}, %{text}<br>Γ = %{x:.4g}, ${name} = %{y:.4g} σ<extra></extra>`,
+            error_y: {type: 'data', symmetric: false, array: some.map(k => bars[k][1]), arrayminus: some.map(k => bars[k][0]), width: 5, thickness: 1.2},
+            line: {color: sideColour[side], width: 1.2, dash: side === 'experiment' ? 'dash' : 'solid'},
+            marker: {size: side === 'experiment' ? 10 : 7, symbol: side === 'experiment' ? 'circle-open' : 'circle', line: {width: 2}, color: sideColour[side]}});
+        }
+      }
+      graph('curve-' + name, traces, {height: 340, xaxis: axis('Γ = A ω² / g', {range: [low, high]}),
+        yaxis: axis(name.replace('_', '<sub>') + '</sub> / σ', {type: 'log', exponentformat: 'power', dtick: 'D2', tickfont: {size: 14}})}).then(element =>
+          element.on('plotly_click', event => { if (event.points[0].customdata !== undefined) show(event.points[0].customdata); }));
+    }
+  }
+
+  // ---- the chosen point ----
+  const state = {match: 0, experiment: null, simulation: null, moment: 0, playing: null, view: null};
+  const shown = () => [state.experiment, state.simulation].filter(i => i !== null);
+  const at = m => m.cycle === null ? m.step : m.cycle + m.fraction;
+
+  function show(run) {
+    const m = matches.findIndex(x => x.experiments.includes(run) || x.simulations.includes(run));
+    const match = matches[m];
+    state.match = m;
+    state.experiment = match.experiments.includes(run) ? run : match.experiments.length ? match.experiments[0] : null;
+    state.simulation = match.simulations.includes(run) ? run : match.simulations.length ? match.simulations[0] : null;
+    state.view = null;
+    const lead = runs[state.experiment !== null ? state.experiment : state.simulation];
+    state.moment = Math.max(0, lead.moments.length - 1);
+    $('moment').max = Math.max(0, lead.moments.length - 1);
+    $('moment').value = state.moment;
+    $('which').value = String(run);
+    $('point-title').textContent = `Γ = ${+match.gamma.toPrecision(4)}, N_l σ = ${+lead.n_l.toPrecision(4)}: ` +
+      shown().map(i => `${runs[i].side} ${runs[i].phase}`).join(', ');
+    drawMoment();
+    drawSeries();
+    document.body.dataset.run = run;
+  }
+
+  // The place of cell coordinates in the picture. A run without a camera borrows the other side's, or gets one.
+  function cameraOf(run) {
+    const other = shown().map(i => runs[i]).find(r => r.camera);
+    if (run.camera) return run.camera;
+    if (other) return other.camera;
+    let top = 4;
+    for (const i of shown()) for (const m of runs[i].moments) for (const z of m.z) if (z !== null) top = Math.max(top, z / 1000 + 1.5);
+    const width = run.box[1] - run.box[0], s = 20;
+    top = Math.min(top, 3 * width);
+    return {s, ox: s - run.box[0] * s, oy: (top + 0.5) * s, w: Math.round((width + 2) * s), h: Math.round((top + 2.5) * s)};
+  }
+
+  const scales = {q6: [0.3125, 0.7408], psi6: [0, 1]};
+  function colourOf(m, i, by) {
+    if (by === 'q6' || by === 'psi6') {
+      const v = m[by][i];
+      return v < 0 ? '#FFFFFF' : viridisAt((v / 100 - scales[by][0]) / (scales[by][1] - scales[by][0]));
+    }
+    if (by === 'structure') return structures[m.structure[i]][1];
+    if (by === 'coordination') return (coordinations[m.coordination[i]] || coordinations.other)[0];
+    return 'none';
+  }
+
+  const svgNs = 'http://www.w3.org/2000/svg';
+  function make(tag, attributes, parent) {
+    const element = document.createElementNS(svgNs, tag);
+    for (const key in attributes) element.setAttribute(key, attributes[key]);
+    if (parent) parent.appendChild(element);
+    return element;
+  }
+
+  // One circle per bead, its outer edge at the true radius: filled; or, over a camera frame, a ring that leaves the bead in sight.
+  function beads(parent, run, m, camera, colour, look) {
+    for (let i = 0; i < m.x.length; ++i) {
+      if (m.x[i] === null) continue;
+      const r = run.radius ? run.radius[i] / 1000 : 0.5, line = look === 'ring' ? 0.4 * r : 0.05;
+      const circle = make('circle', {cx: (camera.ox + camera.s * m.x[i] / 1000).toFixed(2), cy: (camera.oy - camera.s * m.z[i] / 1000).toFixed(2),
+        r: ((r - line / 2) * camera.s).toFixed(2), fill: look === 'disc' ? colour(i) : 'none', stroke: look === 'disc' ? '#222' : colour(i),
+        'stroke-width': (line * camera.s).toFixed(2)}, parent);
+      if (look === 'dashed') circle.setAttribute('stroke-dasharray', `${0.16 * camera.s} ${0.1 * camera.s}`);
+      else make('title', {}, circle).textContent =
+        `bead ${i}: q6 ${m.q6[i] < 0 ? '–' : m.q6[i] / 100}, ψ6 ${m.psi6[i] < 0 ? '–' : m.psi6[i] / 100}, ${m.bonds[i]} bonds`;
+    }
+  }
+
+  function nearest(run, when) {
+    let best = 0;
+    run.moments.forEach((m, k) => { if (Math.abs(at(m) - when) < Math.abs(at(run.moments[best]) - when) - 1e-9) best = k; });
+    return best;
+  }
+
+  function panel(side, index, when) {
+    const box = $('panel-' + side);
+    box.hidden = index === null;
+    if (index === null) return;
+    const run = runs[index], svg = box.querySelector('svg'), camera = cameraOf(run);
+    svg.replaceChildren();
+    if (!run.moments.length) { box.querySelector('figcaption').textContent = `${run.name}: no frames are kept in this report.`; return; }
+    const m = run.moments[nearest(run, when)];
+    const view = state.view || [-0.5, -0.5, camera.w, camera.h];
+    svg.setAttribute('viewBox', view.join(' '));
+    svg.setAttribute('aria-label', `${side}, ${m.label}`);
+    const raw = $('layer-raw').checked && m.picture;
+    if (raw) make('image', {href: m.picture, x: -0.5, y: -0.5, width: camera.w, height: camera.h, preserveAspectRatio: 'none', class: 'raw'}, svg);
+    const by = $('colour').value;
+    if ($('layer-found').checked) {
+      const group = make('g', {class: 'found'}, svg);
+      beads(group, run, m, camera, i => by === 'none' ? '#009E73' : colourOf(m, i, by), raw ? 'ring' : 'disc');
+    }
+    const other = side === 'experiment' ? state.simulation : state.experiment;
+    if ($('layer-other').checked && other !== null && runs[other].moments.length) {
+      const group = make('g', {class: 'other'}, svg), o = runs[other];
+      beads(group, o, o.moments[nearest(o, when)], camera, () => '#CC79A7', 'dashed');
+    }
+    if ($('layer-tracks').checked) {
+      const group = make('g', {class: 'tracks', fill: 'none', stroke: '#D55E00', 'stroke-width': 0.09 * camera.s, 'stroke-linejoin': 'round'}, svg);
+      const past = run.moments.filter(x => at(x) <= at(m) && x.fraction === 0);
+      if (past[past.length - 1] !== m) past.push(m);
+      for (const i of run.tracers) {
+        const points = past.filter(x => x.x[i] !== null && x.x[i] !== undefined)
+          .map(x => `${(camera.ox + camera.s * x.x[i] / 1000).toFixed(2)},${(camera.oy - camera.s * x.z[i] / 1000).toFixed(2)}`);
+        if (points.length > 1) make('polyline', {points: points.join(' ')}, group);
+        if (points.length) {
+          const [cx, cy] = points[points.length - 1].split(',');
+          make('circle', {cx, cy, r: 0.12 * camera.s, fill: '#D55E00', stroke: 'none'}, group);
+        }
+      }
+    }
+    const left = camera.ox + camera.s * run.box[0], right = camera.ox + camera.s * run.box[1], floor = camera.oy - camera.s * m.plate;
+    make('path', {d: `M${left} -0.5V${floor}H${right}V-0.5`, fill: 'none', stroke: '#444', 'stroke-width': 0.12 * camera.s,
+                  'stroke-dasharray': run.periodic ? `${0.4 * camera.s}` : 'none', class: 'walls'}, svg);
+    box.querySelector('figcaption').textContent = `${side}: ${run.name}, ${m.label}` +
+      ($('layer-raw').checked && !m.picture ? ' (no camera frame kept)' : '') +
+      (run.side === 'simulation' && raw ? ' (frame by the synthetic camera)' : '');
+  }
+
+  function drawMoment() {
+    const lead = runs[state.experiment !== null ? state.experiment : state.simulation];
+    const m = lead.moments[state.moment], when = m ? at(m) : 0;
+    $('moment-label').textContent = m ? m.label : 'no frames';
+    panel('experiment', state.experiment, when);
+    panel('simulation', state.simulation, when);
+    drawKey();
+  }
+
+  function drawKey() {
+    const by = $('colour').value, key = $('key');
+    key.replaceChildren();
+    const chip = (colour, text) => {
+      const item = document.createElement('span');
+      item.className = 'keyed';
+      const dot = document.createElement('i');
+      dot.style.background = colour;
+      item.append(dot, text);
+      key.append(item);
+    };
+    if (scales[by]) {
+      const bar = document.createElement('span');
+      bar.className = 'bar';
+      bar.style.background = 'linear-gradient(90deg,' + [0, 0.25, 0.5, 0.75, 1].map(viridisAt).join(',') + ')';
+      const [low, high] = scales[by];
+      key.append(by === 'q6' ? `q6 ${low} (least a plane allows) ` : 'ψ6 0 ', bar, by === 'q6' ? ` ${high} (hexagonal)` : ' 1 (hexagonal)');
+      chip('#FFFFFF', 'under 2 bonds');
+    }
+    if (by === 'structure') structures.forEach(s => chip(s[1], s[2]));
+    if (by === 'coordination') for (const c of Object.values(coordinations)) chip(c[0], c[1]);
+    if ($('layer-tracks').checked) chip('#D55E00', 'tracers and their way since the first frame shown');
+    if ($('layer-other').checked) chip('#CC79A7', 'the other side (dashed)');
+  }
+
+  function drawSeries() {
+    const s_k = [], s_j = [];
+    for (const i of shown()) {
+      const run = runs[i], r = run.results.s_k, j = run.results.s_j;
+      const look = {mode: 'lines+markers', name: run.side, line: {color: sideColour[run.side], width: 1.6, dash: run.side === 'experiment' ? 'dash' : 'solid'},
+                    marker: {size: 6, symbol: run.side === 'experiment' ? 'circle-open' : 'circle'}};
+      if (present(r)) s_k.push(Object.assign({x: r.value.map((v, k) => k / r.value.length), y: r.value}, look));
+      if (present(j)) s_j.push(Object.assign({x: j.value.map((v, k) => k), y: j.value}, look));
+    }
+    const length = Math.max(1, ...s_j.map(t => t.x.length - 1));
+    s_j.push({x: [0, length], y: [1, 1], mode: 'lines', name: 'σ', hoverinfo: 'skip', line: {color: '#D55E00', dash: 'dash', width: 1.5}});
+    graph('series-s_k', s_k, {height: 300, xaxis: axis('phase k / N<sub>k</sub>', {range: [-0.02, 1]}), yaxis: axis('s(k) / σ')});
+    graph('series-s_j', s_j, {height: 300, xaxis: axis('cycle j'), yaxis: axis('s<sub>j</sub> / σ', {rangemode: 'tozero'})});
+    for (const side of ['experiment', 'simulation']) drawConvection(side, state[side]);
+  }
+
+  // Mean displacement per cycle and cell as arrows, where the results hold it: [rows][columns][x, z], NaN where no bead passed.
+  function drawConvection(side, index) {
+    const box = $('convection-' + side), field = index === null ? null : runs[index].convection;
+    box.hidden = !field;
+    if (!field) return;
+    const svg = box.querySelector('svg');
+    svg.replaceChildren();
+    const [x0, x1, z0, z1] = field.extent, width = x1 - x0, height = z1 - z0;
+    svg.setAttribute('viewBox', `${x0 - 0.5} ${-z1 - 0.5} ${width + 1} ${height + 1}`);
+    make('rect', {x: x0, y: -z1, width, height, fill: '#fff', stroke: '#444', 'stroke-width': 0.08}, svg);
+    const dx = width / field.columns, dz = height / field.rows;
+    let longest = 1e-12;
+    for (let k = 0; k < field.u.length; ++k) if (field.u[k] !== null) longest = Math.max(longest, Math.hypot(field.u[k], field.w[k]));
+    const gain = 0.9 * Math.min(dx, dz) / longest;
+    for (let row = 0; row < field.rows; ++row)
+      for (let column = 0; column < field.columns; ++column) {
+        const k = row * field.columns + column;
+        if (field.u[k] === null) continue;
+        const u = gain * field.u[k], w = gain * field.w[k], cx = x0 + (column + 0.5) * dx, cz = z0 + (row + 0.5) * dz;
+        const speed = Math.hypot(field.u[k], field.w[k]) / longest, length = Math.hypot(u, w);
+        const ex = cx + u / 2, ez = cz + w / 2, h = 0.35 * length, angle = Math.atan2(w, u);
+        const wing = turn => `${(ex - h * Math.cos(angle + turn)).toFixed(3)} ${(-(ez - h * Math.sin(angle + turn))).toFixed(3)}`;
+        make('path', {d: `M${(cx - u / 2).toFixed(3)} ${(-(cz - w / 2)).toFixed(3)}L${ex.toFixed(3)} ${(-ez).toFixed(3)}M${wing(0.5)}L${ex.toFixed(3)} ${(-ez).toFixed(3)}L${wing(-0.5)}`,
+          fill: 'none', stroke: viridisAt(0.85 * speed), 'stroke-width': Math.min(dx, dz) * 0.07, 'stroke-linecap': 'round'}, svg);
+      }
+    box.querySelector('figcaption').textContent = `${side}: mean displacement per cycle; the longest arrow is ${longest.toPrecision(3)} σ.`;
+  }
+
+  // ---- zoom: the wheel, a drag; a double click goes back ----
+  function zoomable(svg) {
+    const place = event => {
+      const box = svg.getBoundingClientRect(), v = svg.viewBox.baseVal, k = Math.min(box.width / v.width, box.height / v.height);
+      return [v.x + (event.clientX - box.x - (box.width - k * v.width) / 2) / k, v.y + (event.clientY - box.y - (box.height - k * v.height) / 2) / k, k];
+    };
+    svg.addEventListener('wheel', event => {
+      if (!event.ctrlKey && !state.view && event.deltaY > 0) return;  // the page scrolls on
+      event.preventDefault();
+      const v = svg.viewBox.baseVal, [px, py] = place(event), f = event.deltaY > 0 ? 1.25 : 0.8;
+      state.view = [px + f * (v.x - px), py + f * (v.y - py), f * v.width, f * v.height];
+      drawMoment();
+    }, {passive: false});
+    let from = null;
+    svg.addEventListener('pointerdown', event => { if (state.view) { from = place(event); svg.setPointerCapture(event.pointerId); } });
+    svg.addEventListener('pointermove', event => {
+      if (!from || !state.view) return;
+      const [px, py] = place(event);
+      state.view = [state.view[0] + from[0] - px, state.view[1] + from[1] - py, state.view[2], state.view[3]];
+      drawMoment();
+    });
+    svg.addEventListener('pointerup', () => { from = null; });
+    svg.addEventListener('dblclick', () => { state.view = null; drawMoment(); });
+  }
+
+  // ---- tables: a click on a heading sorts, a button saves ----
+  function tables() {
+    for (const table of document.querySelectorAll('table[data-name]')) {
+      const cell = (row, k) => (row.cells[k].dataset.value || row.cells[k].innerText).trim();
+      table.querySelectorAll('th').forEach((head, k) => {
+        head.tabIndex = 0;
+        const sort = () => {
+          const down = head.getAttribute('aria-sort') === 'ascending';
+          table.querySelectorAll('th').forEach(h => h.removeAttribute('aria-sort'));
+          head.setAttribute('aria-sort', down ? 'descending' : 'ascending');
+          const rows = [...table.tBodies[0].rows], number = t => t === '' || isNaN(parseFloat(t)) ? null : parseFloat(t);
+          rows.sort((a, b) => {
+            const s = cell(a, k), t = cell(b, k), x = number(s), y = number(t);
+            if (x === null !== (y === null)) return x === null ? 1 : -1;  // what is absent comes last
+            return (down ? -1 : 1) * (x !== null ? x - y : s.localeCompare(t));
+          });
+          table.tBodies[0].append(...rows);
+        };
+        head.addEventListener('click', sort);
+        head.addEventListener('keydown', event => { if (event.key === 'Enter') sort(); });
+      });
+      const button = document.createElement('button');
+      button.className = 'csv';
+      button.textContent = 'Save as CSV';
+      button.addEventListener('click', () => {
+        const quoted = t => /[",\n]/.test(t) ? '"' + t.replace(/"/g, '""') + '"' : t;
+        const lines = [...table.rows].map(row => [...row.cells].map((c, k) => quoted(cell(row, k).replace(/\s*\n\s*/g, '; '))).join(','));
+        const link = document.createElement('a');
+        link.href = URL.createObjectURL(new Blob([lines.join('\n') + '\n'], {type: 'text/csv'}));
+        link.download = table.dataset.name + '.csv';
+        link.click();
+        setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+      });
+      table.closest('.scroll').before(button);
+      for (const row of table.tBodies[0].rows)
+        if (row.dataset.run !== undefined) {
+          row.classList.add('choosable');
+          row.addEventListener('click', () => { show(Number(row.dataset.run)); $('point').scrollIntoView({behavior: 'smooth'}); });
+        }
+    }
+  }
+
+  // ---- begin ----
+  runs.forEach((r, i) => $('which').add(new Option(`Γ = ${+r.gamma.toPrecision(4)}, ${r.side}: ${r.name} (${r.phase})`, i)));
+  $('which').addEventListener('change', () => show(Number($('which').value)));
+  $('moment').addEventListener('input', () => { state.moment = Number($('moment').value); drawMoment(); });
+  for (const id of ['layer-raw', 'layer-found', 'layer-other', 'layer-tracks', 'colour']) $(id).addEventListener('change', drawMoment);
+  $('play').addEventListener('click', () => {
+    if (state.playing) { clearInterval(state.playing); state.playing = null; $('play').textContent = 'Play'; return; }
+    $('play').textContent = 'Stop';
+    state.playing = setInterval(() => {
+      state.moment = (state.moment + 1) % (Number($('moment').max) + 1);
+      $('moment').value = state.moment;
+      drawMoment();
+    }, 250);
+  });
+  for (const svg of document.querySelectorAll('.beads')) zoomable(svg);
+  document.body.classList.add('live');
+  tables();
+  drawDiagram();
+  drawThresholds();
+  if (runs.length) {
+    const differ = matches.findIndex(m => m.verdict === 'differ'), first = matches[differ >= 0 ? differ : matches.length - 1];
+    show(first.experiments.concat(first.simulations)[0]);
+  }
+  document.body.dataset.ready = 'yes';
+})();

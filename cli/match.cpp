@@ -1,0 +1,94 @@
+// twincell match STACK CELL.toml: the twin of a filmed cell, and what it says.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "calibration/twin.hpp"
+#include "cli/comparing_options.hpp"
+#include "cli/plan_text.hpp"
+#include "cli/verb.hpp"
+#include "imaging/frame_source.hpp"
+
+namespace twincell::cli {
+namespace {
+
+struct MatchOptions {
+  TwinOptions twin;
+  std::string output;
+  ComparingFlags flags;
+};
+
+void run(const Common& common, MatchOptions& o) {
+  resolve(o.flags, common);
+  o.twin.threads = common.n_threads();
+  const std::filesystem::path folder = o.output;
+  const TwinProvenance provenance = {.of_experiment =
+                                         [&](const CellDescription& cell) {
+                                           Provenance p = common.provenance();
+                                           p.config = cell.text;
+                                           p.inputs = {file_of_stack(o.twin.stack), o.twin.cell_file};
+                                           return p.to_json();
+                                         },
+                                     .of_simulation =
+                                         [&](const sim::Scene& scene, const std::vector<sim::Bead>& beads) {
+                                           return scene_provenance(common, scene, beads, {});
+                                         }};
+  const Twin twin = make_twin(o.twin, folder, provenance, progress_bars(common));
+
+  o.flags.options.experiments = {twin.experiment};
+  o.flags.options.simulations = twin.simulations;
+  o.flags.options.scratch = folder;
+  std::vector<std::string> simulations;
+  for (const auto& file : twin.simulations) simulations.push_back(file.string());
+  const nlohmann::json said = {{"experiment", twin.experiment.string()},
+                               {"scene", twin.scene.string()},
+                               {"twins", simulations},
+                               {"pixels_per_sigma", twin.pixels_per_sigma},
+                               {"position_error", twin.position_error},
+                               {"beads", twin.beads},
+                               {"cycles", twin.cycles}};
+  compare_and_report(
+      common, o.flags.options, folder / "report", said,
+      fmt::format("{} beads in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} twins "
+                  "over {} cycles; {}\n",
+                  twin.beads, twin.pixels_per_sigma, twin.position_error, twin.simulations.size(),
+                  twin.cycles, twin.scene.string()));
+}
+
+}  // namespace
+
+void add_match(CLI::App& program, Common& common) {
+  CLI::App& verb =
+      add_verb(program, common, "match", "The twin of a filmed cell: track, simulate, compare, report",
+               "twincell match frames/ CELL.toml -o twin/");
+  auto o = std::make_shared<MatchOptions>();
+  verb.add_option("stack", o->twin.stack,
+                  "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
+      ->required();
+  verb.add_option("cell", o->twin.cell_file,
+                  "CELL.toml: origin, size, frames per cycle and drive of the cell; scale")
+      ->required();
+  verb.add_option("-o,--output", o->output, "Folder: experiment.h5, scene.toml, simulation-N.h5, report/")
+      ->required();
+  verb.add_option(
+      "--scene", o->twin.scene,
+      "What the cell does not say: contacts, steps (TOML); absent: the preset fortini-huang-2015");
+  verb.add_option("--set", o->twin.assignments, "section.key=value of the twin's scene; may be repeated")
+      ->take_all();
+  verb.add_option(
+          "--twins", o->twin.twins,
+          "Simulations; all but the first begin with the beads shifted by as much as they are uncertain")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  verb.add_option("--diameter", o->twin.locator.diameter_px,
+                  "Bead diameter, px; absent: the scale, or estimated")
+      ->check(CLI::Range(3.0, 400.0));
+  verb.add_option("--memory", o->twin.link.memory, "Frames for which a bead may be missing");
+  add_comparing_flags(verb, o->flags);
+  verb.callback([&common, o] { run(common, *o); });
+}
+
+}  // namespace twincell::cli

@@ -1,0 +1,35 @@
+#include "imaging/stack_pictures.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "analysis/trajectory/error.hpp"
+
+namespace twincell {
+
+std::vector<std::string> picture_frames(FrameSource& stack, const std::vector<std::int64_t>& numbers,
+                                        int longest) {
+  std::vector<std::string> pictures(numbers.size());
+  double gain = 0;
+  cv::Mat frame, byte;
+  std::size_t next = 0;
+  for (std::int64_t number = 0; next < numbers.size() && stack.next(frame); ++number) {
+    if (number != numbers[next]) continue;
+    if (gain == 0) {
+      double top = 0;
+      cv::minMaxLoc(frame, nullptr, &top);
+      gain = frame.depth() == CV_8U || top <= 0 ? 1 : 255 / top;
+    }
+    frame.convertTo(byte, CV_8U, gain);
+    const int by = (std::max(byte.cols, byte.rows) + longest - 1) / longest;
+    if (by > 1) cv::resize(byte, byte, cv::Size(byte.cols / by, byte.rows / by), 0, 0, cv::INTER_AREA);
+    std::vector<unsigned char> bytes;
+    if (!cv::imencode(".png", byte, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9}))
+      throw RunError(stack.current() + ": the picture cannot be encoded as PNG.");
+    for (; next < numbers.size() && numbers[next] == number; ++next)
+      pictures[next].assign(bytes.begin(), bytes.end());
+  }
+  return pictures;
+}
+
+}  // namespace twincell

@@ -1,0 +1,145 @@
+// match as a user runs it, on frames that the synthetic camera took of a bed that is shipped with its truth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
+#include "calibration/twin.hpp"
+#include "tests/support/program.hpp"
+
+namespace twincell {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kStack = fs::path(TWINCELL_SOURCE_DIR) / "data_samples/demo/gamma-0.9";
+
+/// The first cycle of the shipped stack, to be quick.
+fs::path short_stack(const TemporaryFolder& folder) {
+  fs::path stack = folder.path() / "frames";
+  fs::create_directory(stack);
+  for (int f = 0; f < 20; ++f) {
+    const std::string name = "frame_000" + std::string(f < 10 ? "0" : "") + std::to_string(f) + ".png";
+    fs::copy_file(kStack / name, stack / name);
+  }
+  return stack;
+}
+
+/// CELL.toml of the shipped stack without the lines that begin with `key`.
+fs::path cell_without(const TemporaryFolder& folder, const std::string& key) {
+  std::ifstream in(kStack / "CELL.toml");
+  fs::path path = folder.path() / ("without_" + key + ".toml");
+  std::ofstream out(path);
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind(key, 0) != 0) out << line << "\n";
+  return path;
+}
+
+}  // namespace
+
+TEST(Match, GivesTheTwinOfAFilmedCell) {
+  const TemporaryFolder folder;
+  const fs::path stack = short_stack(folder);
+  const Ran ran = run_program({"match", stack, kStack / "CELL.toml", "-o", folder / "twin", "--twins", "2",
+                               "--set", "time.steps_per_contact=20", "-q", "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto d = nlohmann::json::parse(ran.out);
+  // SOURCE.md: 100 beads, 12 px each; truth.csv: located to a hundredth of a bead.
+  EXPECT_EQ(d["beads"], 100);
+  EXPECT_EQ(d["pixels_per_sigma"], 12);
+  EXPECT_EQ(d["cycles"], 1);
+  EXPECT_GT(d["position_error"].get<double>(), 1e-5);
+  EXPECT_LT(d["position_error"].get<double>(), 0.01);
+  EXPECT_EQ(names_in(folder / "twin"), (std::vector<std::string>{"experiment.h5", "report", "scene.toml",
+                                                                 "simulation-1.h5", "simulation-2.h5"}));
+  EXPECT_EQ(d["matches"][0]["experiments"].size(), 1U);
+  EXPECT_EQ(d["matches"][0]["simulations"].size(), 2U);
+
+  // Both sides are of one cell, and the first twin begins where the beads were seen, up to what settling
+  // moves.
+  const H5mdReader experiment(folder / "twin/experiment.h5"), one(folder / "twin/simulation-1.h5"),
+      two(folder / "twin/simulation-2.h5");
+  EXPECT_NEAR(one.info().drive->gamma(), 0.9, 1e-12);
+  EXPECT_EQ(one.info().phases_per_cycle, experiment.info().phases_per_cycle);
+  EXPECT_EQ(one.n_frames(), experiment.n_frames());
+  EXPECT_DOUBLE_EQ(one.info().box.size().x(), 10);
+  Frame seen, begun, shifted;
+  experiment.read(0, seen);
+  one.read(0, begun);
+  two.read(0, shifted);
+  double farthest = 0;
+  int shifted_beads = 0, far_away = 0;
+  for (std::size_t i = 0; i < begun.position.size(); ++i) {
+    double nearest = INFINITY;
+    for (std::size_t k = 0; k < seen.position.size(); ++k)
+      if (seen.present(k))
+        nearest = std::min(nearest, std::hypot(seen.position[k].x() - begun.position[i].x(),
+                                               seen.position[k].z() - begun.position[i].z()));
+    farthest = std::max(farthest, nearest);
+    const double apart = (begun.position[i] - shifted.position[i]).norm();
+    shifted_beads += apart > 0 ? 1 : 0;
+    far_away += apart > 0.1 ? 1 : 0;
+  }
+  EXPECT_LT(farthest, 0.1);
+  EXPECT_EQ(shifted_beads, 100) << "the second twin begins a little elsewhere";
+  EXPECT_LT(far_away, 5) << "but only beads that nothing holds settle far away";
+
+  // The scene can be run by itself and gives the first twin again, to the bit.
+  const Ran again = run_program({"simulate", folder / "twin/scene.toml", "--set", "time.steps_per_contact=20",
+                                 "-q", "-o", folder / "again.h5"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  const H5mdReader repeated(folder / "again.h5");
+  Frame last_of_one, last_of_again;
+  one.read(one.n_frames() - 1, last_of_one);
+  repeated.read(repeated.n_frames() - 1, last_of_again);
+  for (std::size_t i = 0; i < last_of_one.position.size(); ++i)
+    EXPECT_EQ(last_of_one.position[i], last_of_again.position[i]) << i;
+}
+
+TEST(Match, SaysWhatTheCellLacksAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const fs::path stack = short_stack(folder);
+  for (const auto& [key, named] : {std::pair<std::string, std::string>{"origin_px", "camera.origin_px"},
+                                   {"width", "cell.width"},
+                                   {"frames_per_cycle", "camera.frames_per_cycle"},
+                                   {"amplitude", "drive"}}) {
+    const fs::path cell = cell_without(folder, key);
+    const Ran ran = run_program({"match", stack, cell, "-o", folder / "twin", "-q"});
+    EXPECT_EQ(ran.code, 2) << key;
+    EXPECT_NE(ran.err.find(named), std::string::npos) << ran.err;
+    EXPECT_FALSE(fs::exists(folder / "twin")) << key;
+  }
+  EXPECT_EQ(run_program({"match", folder / "no", kStack / "CELL.toml", "-o", folder / "twin", "-q"}).code, 3);
+  EXPECT_EQ(run_program({"match", stack, folder / "no.toml", "-o", folder / "twin", "-q"}).code, 3);
+  EXPECT_EQ(run_program({"match", stack, kStack / "CELL.toml", "-o", folder / "no/twin", "-q"}).code, 2);
+  EXPECT_EQ(run_program(
+                {"match", stack, kStack / "CELL.toml", "-o", folder / "twin", "-q", "--set", "contact.mu=-1"})
+                .code,
+            2);
+  EXPECT_FALSE(fs::exists(folder / "twin"));
+}
+
+TEST(Match, TheCellsDriveDisplacesTheScenes) {
+  CellDescription cell;
+  cell.width = 12;
+  cell.origin = PixelPoint{0, 100};
+  cell.phase_lock.frames_per_cycle = 20;
+  cell.drive_spec.gamma = 2;
+  cell.drive_spec.omega = 2;
+  const std::string text =
+      twin_scene("[drive]\nk_m = 3\nfrequency = 1\n[contact]\nmu = 0.3\n", "base.toml", cell, "exp.h5", 4, 7);
+  EXPECT_EQ(text.find("k_m"), std::string::npos) << text;
+  EXPECT_NE(text.find("[contact]"), std::string::npos) << text;
+  const sim::Scene scene = sim::read_scene_text(twin_scene("", "", cell, "exp.h5", 4, 7), "twin");
+  EXPECT_DOUBLE_EQ(scene.drive.amplitude, 0.5);
+  EXPECT_DOUBLE_EQ(scene.drive.omega, 2);
+  EXPECT_DOUBLE_EQ(scene.width, 12);
+  EXPECT_EQ(scene.frame, 4U);
+  EXPECT_EQ(scene.cycles, 7);
+  EXPECT_EQ(scene.contact.tangential, "spring");  // the preset of paper 1
+}
+
+}  // namespace twincell

@@ -1,0 +1,266 @@
+#!/usr/bin/env python3
+"""A report in a browser: real clicks, keys and downloads, and no request that leaves the page.
+
+usage: report_test.py TWINCELL SOURCE_DIR SCRATCH [PICTURES]    (PICTURES: folder for screenshots)
+Talks to Debian's Chromium through a pipe (DevTools protocol); exits 77, saying so, where there is none.
+"""
+import base64
+import fcntl
+import json
+import os
+import pathlib
+import select
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+PATIENCE = 60  # s
+
+
+def skip(why):
+    print("skipped: " + why)
+    sys.exit(77)
+
+
+class Browser:
+    """Chromium without a window."""
+
+    def __init__(self, program, profile):
+        here_out, there_in = os.pipe()[::-1]
+        there_out, here_in = os.pipe()[::-1]
+        # The child's ends become 3 and 4, so none may be there already.
+        ends = [fcntl.fcntl(fd, fcntl.F_DUPFD, 10) for fd in (there_in, there_out)]
+
+        def pass_ends():
+            os.dup2(ends[0], 3)
+            os.dup2(ends[1], 4)
+
+        self.process = subprocess.Popen(
+            [program, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+             "--disable-component-update", "--disable-background-networking", "--remote-debugging-pipe",
+             "--user-data-dir=" + str(profile), "about:blank"],
+            close_fds=False, preexec_fn=pass_ends, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for fd in (there_in, there_out, *ends):
+            os.close(fd)
+        self.out, self.inward = here_out, here_in
+        self.buffer, self.number, self.events, self.session = b"", 0, [], None
+
+    def message(self, until):
+        while b"\0" not in self.buffer:
+            ready, _, _ = select.select([self.inward], [], [], max(0, until - time.monotonic()))
+            if not ready:
+                raise TimeoutError("the browser does not answer")
+            piece = os.read(self.inward, 1 << 20)
+            if not piece:
+                raise RuntimeError("the browser is gone")
+            self.buffer += piece
+        text, self.buffer = self.buffer.split(b"\0", 1)
+        return json.loads(text)
+
+    def call(self, method, **parameters):
+        self.number += 1
+        request = {"id": self.number, "method": method, "params": parameters}
+        if self.session:
+            request["sessionId"] = self.session
+        os.write(self.out, json.dumps(request).encode() + b"\0")
+        until = time.monotonic() + PATIENCE
+        while True:
+            answer = self.message(until)
+            if answer.get("id") == self.number:
+                assert "error" not in answer, f"{method}: {answer['error']}"
+                return answer["result"]
+            self.events.append(answer)
+
+    def value(self, expression):
+        result = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        assert "exceptionDetails" not in result, f"{expression}: {result['exceptionDetails']}"
+        return result["result"].get("value")
+
+    def wait(self, expression, what):
+        until = time.monotonic() + PATIENCE
+        while not self.value(expression):
+            assert time.monotonic() < until, f"waited in vain: {what}"
+            time.sleep(0.05)
+
+    def open(self, url, width, height):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+        self.call("Page.navigate", url=url)
+        self.wait("document.readyState === 'complete' && document.body.dataset.ready === 'yes'", "the page says that it is ready")
+
+    def middle(self, expression):
+        """Where the element is, scrolled into sight."""
+        self.value(f"({expression}).scrollIntoView({{block: 'center', behavior: 'instant'}})")
+        time.sleep(0.1)
+        box = self.value(f"(b => [b.x + b.width / 2, b.y + b.height / 2])(({expression}).getBoundingClientRect())")
+        assert box, expression
+        return box
+
+    def click(self, expression):
+        x, y = self.middle(expression)
+        for kind, more in (("mouseMoved", {}), ("mousePressed", {"button": "left", "clickCount": 1}), ("mouseReleased", {"button": "left", "clickCount": 1})):
+            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+            time.sleep(0.1)
+
+    def key(self, name, code):
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=name, code=name, windowsVirtualKeyCode=code)
+
+    def picture(self, file):
+        size = self.call("Page.getLayoutMetrics")["cssContentSize"]
+        shot = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=True,
+                         clip={"x": 0, "y": 0, "width": size["width"], "height": min(size["height"], 6000), "scale": 1})
+        pathlib.Path(file).write_bytes(base64.b64decode(shot["data"]))
+
+
+def run(*words):
+    done = subprocess.run([str(w) for w in words], capture_output=True, text=True)
+    assert done.returncode == 0, f"{words}: {done.stderr}"
+    return done.stdout
+
+
+def make_report(program, source, scratch):
+    """An experiment with its twin at Gamma = 0.9 and one more simulation, at Gamma = 1.6, without an experiment."""
+    stack = source / "data_samples/demo/gamma-0.9"
+    run(program, "match", stack, stack / "CELL.toml", "--twins", "1", "--set", "time.steps_per_contact=20", "-q", "-o", scratch / "twin")
+    run(program, "simulate", source / "data_samples/demo/experiment.toml", "-q", "--set", "time.cycles=2", "-o", scratch / "more.h5")
+    run(program, "compare", "-q", "-o", scratch / "report", "--no-film", "--experiment", scratch / "twin/experiment.h5",
+        "--simulation", scratch / "twin/simulation-1.h5", scratch / "more.h5")
+    return scratch / "report/report.html"
+
+
+def circles(browser, side, what="circle"):
+    return browser.value(f"document.querySelectorAll('#panel-{side} {what}').length")
+
+
+def outline(browser, side):
+    return browser.value(f"[...document.querySelectorAll('#panel-{side} .found circle')].map(c => c.getAttribute('cx') + c.getAttribute('cy')).join()")
+
+
+def check_clicks(browser):
+    """A click on a symbol of the phase diagram shows that bed."""
+    point = "[...document.querySelectorAll('#phase-diagram .scatterlayer .point')].find(p => p.__data__.data === {})"
+    names = browser.value("[...document.querySelectorAll('#phase-diagram .scatterlayer .point')].map(p => p.__data__.data)")
+    assert set(names) >= {0, 1, 2}, f"symbols of runs 0, 1, 2 are drawn, not {names}"
+    browser.click(point.format(2))
+    browser.wait("document.body.dataset.run === '2'", "a click on the simulation at Gamma = 1.6 shows it")
+    assert "1.6" in browser.value("document.getElementById('point-title').textContent")
+    assert browser.value("document.getElementById('panel-experiment').hidden"), "no experiment was made there"
+    assert circles(browser, "simulation", ".found circle") == 100
+    alone = outline(browser, "simulation")
+    browser.click(point.format(0))
+    browser.wait("document.body.dataset.run === '0'", "a click on the experiment shows it")
+    assert circles(browser, "experiment", ".found circle") == 100
+    assert circles(browser, "simulation", ".found circle") == 100
+    assert outline(browser, "simulation") != alone, "the twin is another bed"
+
+
+def check_overlay(browser):
+    """Frames, layers and colours follow the controls."""
+    assert circles(browser, "experiment", "image.raw") == 1, "the camera's frame is shown"
+    before = outline(browser, "experiment")
+    browser.click("document.getElementById('moment')")
+    browser.key("Home", 36)
+    browser.wait("document.getElementById('moment-label').textContent.startsWith('cycle 0, phase 0')", "Home leads to the first frame")
+    assert outline(browser, "experiment") != before, "another frame, other places"
+    # The first frame: found beads lie on the dark discs of the picture, and the twin begins where they are.
+    away = browser.value("""(() => { const at = s => [...document.querySelectorAll(`#panel-${s} .found circle`)].map(c => [+c.getAttribute('cx'), +c.getAttribute('cy')]);
+      const e = at('experiment'), s = at('simulation');
+      return Math.max(...s.map(p => Math.min(...e.map(q => Math.hypot(p[0] - q[0], p[1] - q[1]))))) })()""")
+    assert away < 1.2, f"a bead of the twin begins {away:.2f} px from where the camera saw it (a tenth of a bead is 1.2 px)"
+    dark = browser.value("""(async () => { const image = document.querySelector('#panel-experiment image.raw'), bitmap = new Image();
+      bitmap.src = image.getAttribute('href'); await bitmap.decode();
+      const canvas = document.createElement('canvas'); canvas.width = bitmap.width; canvas.height = bitmap.height;
+      const pen = canvas.getContext('2d'); pen.drawImage(bitmap, 0, 0);
+      const grey = (x, y) => pen.getImageData(Math.round(x), Math.round(y), 1, 1).data[0];
+      const beads = [...document.querySelectorAll('#panel-experiment .found circle')].map(c => grey(+c.getAttribute('cx'), +c.getAttribute('cy')));
+      return [Math.max(...beads), grey(bitmap.width / 2, 5)] })()""")
+    assert dark[0] < 0.75 * dark[1], f"circles sit on beads: centres up to {dark[0]}, background {dark[1]}"
+    browser.click("document.getElementById('layer-raw')")
+    assert circles(browser, "experiment", "image.raw") == 0, "the frame can be taken away"
+    browser.click("document.getElementById('layer-other')")
+    assert circles(browser, "experiment", ".other circle") == 100, "the other side can be laid on top"
+    browser.click("document.getElementById('layer-other')")
+    browser.click("document.getElementById('layer-raw')")
+    fills = {}
+    for by in ("q6", "psi6", "structure", "coordination"):
+        browser.value(f"(() => {{ const s = document.getElementById('colour'); s.value = '{by}'; s.dispatchEvent(new Event('change')) }})()")
+        fills[by] = browser.value("[...new Set([...document.querySelectorAll('#panel-experiment .found circle')].map(c => c.getAttribute('fill') + c.getAttribute('stroke')))].sort().join()")
+    assert len(set(fills.values())) == 4, f"each number has its colours: {fills}"
+    browser.value("document.getElementById('moment').focus()")
+    browser.key("End", 35)
+    assert circles(browser, "experiment", ".tracks polyline") > 0, "tracers leave tracks"
+    for name in ("s_k", "s_j"):
+        assert browser.value(f"document.querySelectorAll('#series-{name} .scatterlayer .trace').length") >= 2, name
+
+
+def check_tables(browser, downloads):
+    column = "[...document.querySelectorAll('table[data-name=runs] tbody tr')].map(r => parseFloat(r.cells[3].innerText))"
+    head = "document.querySelectorAll('table[data-name=runs] th')[3]"
+    browser.click(head)
+    assert browser.value(column) == sorted(browser.value(column)), "a click sorts"
+    browser.click(head)
+    assert browser.value(column) == sorted(browser.value(column), reverse=True), "another turns the order round"
+    browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(downloads))
+    browser.click("document.querySelector('table[data-name=runs]').closest('.scroll').previousElementSibling")
+    until = time.monotonic() + PATIENCE
+    while not (downloads / "runs.csv").exists():
+        assert time.monotonic() < until, "runs.csv is not saved"
+        time.sleep(0.1)
+    lines = (downloads / "runs.csv").read_text().splitlines()
+    assert len(lines) == 4 and lines[0].startswith("run,side,start,Γ"), lines
+    assert [line.split(",")[3] for line in lines[1:]] == ["1.6", "0.9", "0.9"], lines
+
+
+def check_fit(browser, width):
+    wide = browser.value("document.documentElement.scrollWidth")
+    assert wide <= width, f"the page is {wide} px wide on a screen of {width}"
+    small = browser.value("Math.min(...[...document.querySelectorAll('p, td, th, figcaption, label, .plotly text')].filter(e => e.getBoundingClientRect().width > 0).map(e => parseFloat(getComputedStyle(e).fontSize)))")
+    assert small >= 10, f"letters of {small} px"
+
+
+def check_no_request(browser):
+    outside = [e["params"]["request"]["url"] for e in browser.events if e.get("method") == "Network.requestWillBeSent"]
+    assert outside, "requests are watched"
+    assert all(url.startswith(("file:", "data:", "blob:")) for url in outside), outside
+    errors = [e["params"]["exceptionDetails"] for e in browser.events if e.get("method") == "Runtime.exceptionThrown"]
+    assert not errors, errors
+
+
+def main():
+    program, source, scratch = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]) / "report_in_browser"
+    pictures = pathlib.Path(sys.argv[4]) if len(sys.argv) > 4 else None
+    chromium = shutil.which("chromium")
+    if not chromium:
+        skip("no chromium here (Debian: chromium), so the report was not clicked through")
+    shutil.rmtree(scratch, ignore_errors=True)
+    scratch.mkdir(parents=True)
+    url = make_report(program, source, scratch).resolve().as_uri()
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        browser = Browser(chromium, profile)
+        try:
+            target = browser.call("Target.createTarget", url="about:blank")["targetId"]
+            browser.session = browser.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+            for domain in ("Page", "Runtime", "Network"):
+                browser.call(domain + ".enable")
+            browser.open(url, 1280, 900)
+            check_fit(browser, 1280)
+            check_clicks(browser)
+            check_overlay(browser)
+            check_tables(browser, scratch)
+            if pictures:
+                browser.picture(pictures / "laptop.png")
+            browser.open(url, 390, 844)
+            check_fit(browser, 390)
+            check_clicks(browser)
+            if pictures:
+                browser.picture(pictures / "phone.png")
+            check_no_request(browser)
+        finally:
+            browser.process.terminate()
+            browser.process.wait()
+    print("the report was clicked through at 1280 and 390 px; nothing was asked of the outside")
+
+
+main()
