@@ -222,12 +222,12 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
       observables.push_back(entry.make(context));
 
   Frame frame;
-  const std::size_t n_frames = trajectory.n_frames();
   std::int64_t first_cycle = -1;
   std::size_t used = 0;
-  for (std::size_t f = 0; f < n_frames; ++f) {
+  // The number of frames is asked for each time: a run that is analysed while it goes on may end early.
+  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
     trajectory.read(f, frame);
-    progress.update(static_cast<std::int64_t>(f) + 1, static_cast<std::int64_t>(n_frames));
+    progress.update(static_cast<std::int64_t>(f) + 1, static_cast<std::int64_t>(trajectory.n_frames()));
     if (options.discard_cycles > 0 || options.cycles > 0) {
       if (frame.cycle < 0) continue;
       if (first_cycle < 0) first_cycle = frame.cycle;

@@ -25,7 +25,9 @@ void add_info(CLI::App& program, Common& common);
 void add_locate(CLI::App& program, Common& common);
 void add_match(CLI::App& program, Common& common);
 void add_render(CLI::App& program, Common& common);
+void add_reproduce(CLI::App& program, Common& common);
 void add_simulate(CLI::App& program, Common& common);
+void add_sweep(CLI::App& program, Common& common);
 void add_track(CLI::App& program, Common& common);
 void add_validate(CLI::App& program, Common& common);
 

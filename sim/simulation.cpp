@@ -233,16 +233,19 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
   return frame;
 }
 
-void Simulation::run(TrajectorySink& sink, Progress& progress) {
+void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most) {
   settle(progress);
   if (!driven_) begin_drive(scene_, system_);
   driven_ = true;
   const std::int64_t per_phase = plan_.steps_per_period / scene_.phases;
   const std::int64_t last = plan_.steps;
+  std::int64_t handed_over = 0;
   while (system_.step < last) {
     const std::int64_t frame = system_.step / per_phase, into = system_.step % per_phase;
     const std::int64_t cycle = frame / scene_.phases - plan_.cycles_before;
     if (into == 0 && cycle >= 0) {
+      if (handed_over == most) return;
+      ++handed_over;
       sink.append(snapshot(cycle, static_cast<int>(frame % scene_.phases)));
       touching_ += beads_in_contact(system_);
       looked_at_ += static_cast<std::int64_t>(system_.beads.size());

@@ -3,6 +3,7 @@
 /// The run-time face of the simulator: a scene goes in, a trajectory comes out.
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -73,8 +74,10 @@ class Simulation {
   /// \throws RunError, Interrupted
   void settle(Progress& progress = Progress::none());
   /// Runs discard + cycles periods and hands over the frames of the latter, `phases` a cycle, cycle 0 first.
+  /// \param most ends the call when so many frames have been handed over; the next call goes on from there
   /// \throws RunError when the run goes wrong (frames up to there have been handed over), Interrupted
-  void run(TrajectorySink& sink, Progress& progress = Progress::none());
+  void run(TrajectorySink& sink, Progress& progress = Progress::none(),
+           std::int64_t most = std::numeric_limits<std::int64_t>::max());
   /// The state now. Whenever settle() and run() call progress.update it is whole: frames of all steps before
   /// state().step have been handed over, and no others.
   [[nodiscard]] RunState state() const;

@@ -24,9 +24,11 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"imaging", {"trajectory"}},
     {"sim", {"trajectory"}},
     {"calibration", {"trajectory", "analysis", "imaging", "sim"}},
-    {"cli", {"trajectory", "analysis", "imaging", "sim", "calibration"}},
+    {"sweep", {"trajectory", "analysis", "sim"}},
+    {"reproduce", {"trajectory", "analysis", "sim", "calibration", "sweep"}},
+    {"cli", {"trajectory", "analysis", "imaging", "sim", "calibration", "sweep", "reproduce"}},
     {"bench", {"trajectory", "analysis", "imaging", "sim", "calibration", "tests"}},
-    {"tests", {"trajectory", "analysis", "imaging", "sim", "calibration"}},
+    {"tests", {"trajectory", "analysis", "imaging", "sim", "calibration", "sweep", "reproduce"}},
 };
 
 /// Outside libraries that must stay inside one folder.
@@ -36,6 +38,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kLibraryHomes =
     {"toml++/", {"trajectory"}},
     {"CLI/", {"cli", "bench"}},
     {"hdf5.h", {"trajectory", "tests"}},
+    {"mpi.h", {"cli"}},
 };
 
 std::string module_of(const std::string& path) {

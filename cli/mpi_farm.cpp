@@ -1,0 +1,187 @@
+#include "cli/mpi_farm.hpp"
+
+#include "analysis/trajectory/error.hpp"
+
+#ifdef TWINCELL_MPI
+
+#define OMPI_SKIP_MPICXX  // the C interface alone: the C++ one is gone from the standard and from the link line
+#include <mpi.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <future>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "sweep/point_run.hpp"
+
+namespace twincell::cli {
+
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr int kWork = 1, kResult = 2, kEnd = 3;
+
+std::string receive(const MPI_Status& status) {
+  int size = 0;
+  MPI_Get_count(&status, MPI_CHAR, &size);
+  std::string text(static_cast<std::size_t>(size), '\0');
+  MPI_Recv(text.data(), size, MPI_CHAR, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  return text;
+}
+
+void send(const std::string& text, int rank, int tag) {
+  MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, rank, tag, MPI_COMM_WORLD);
+}
+
+/// Looks for a message without spinning: ranks that wait leave their core to those that compute.
+bool waits(MPI_Status& status) {
+  int there = 0;
+  MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &status);
+  if (there == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  return there != 0;
+}
+
+/// Notices a signal.
+class Signals : public Progress {
+ public:
+  explicit Signals(sweep::Watch& watch) : watch_(watch) {}
+  void update(std::int64_t, std::int64_t) override { watch_.look({}, kUnknown); }
+
+ private:
+  sweep::Watch& watch_;
+};
+
+std::string computed(const sweep::Plan& plan, const sweep::Store& store, const sweep::Point& point,
+                     bool keep_trajectories, Progress& progress) {
+  return run_point(plan, point,
+                   keep_trajectories ? store.of(point) / "trajectory.h5" : std::filesystem::path(), progress);
+}
+
+void serve(const sweep::Plan& plan, const sweep::Store& store, bool keep_trajectories) {
+  Common silent;
+  silent.quiet = true;
+  SweepWatch watch(silent);
+  Signals progress(watch);
+  for (;;) {
+    MPI_Status status;
+    watch.look({}, kUnknown);
+    if (!waits(status)) continue;
+    const int tag = status.MPI_TAG;
+    const std::string message = receive(status);
+    if (tag == kEnd) return;
+    const auto j = nlohmann::json::parse(message);
+    sweep::Point point;
+    point.id = j["id"];
+    point.seed = j["seed"];
+    point.scene = j["scene"];
+    send(computed(plan, store, point, keep_trajectories, progress), 0, kResult);
+  }
+}
+
+/// Ends the point that rank 0 computes when the job is to end.
+class Until : public Progress {
+ public:
+  explicit Until(const std::atomic<bool>& closing) : closing_(closing) {}
+  void update(std::int64_t, std::int64_t) override {
+    if (closing_) throw Interrupted(ExitCode::interrupted);
+  }
+
+ private:
+  const std::atomic<bool>& closing_;
+};
+
+void lead(sweep::Schedule& schedule, const sweep::Plan& plan, const sweep::Store& store,
+          bool keep_trajectories, SweepWatch& watch) {
+  using Clock = std::chrono::steady_clock;
+  int ranks = 1;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  std::vector<std::optional<sweep::Task>> at(static_cast<std::size_t>(ranks));
+  std::future<std::string> own;
+  std::atomic<bool> closing = false;
+  Until progress(closing);
+  double work = 0;
+  const auto begin = Clock::now();
+  const auto keep = [&](std::size_t rank, const std::string& result) {
+    store.keep(at[rank]->point, result);
+    work += at[rank]->point.work;
+    schedule.done(*at[rank], result);
+    at[rank].reset();
+  };
+  try {
+    while (!schedule.all()) {
+      for (std::size_t rank = at.size(); rank-- > 0;) {  // rank 0 last: it has the messages to look after
+        if (at[rank] || !(at[rank] = schedule.take())) continue;
+        const sweep::Point& point = at[rank]->point;
+        if (rank > 0)
+          send(nlohmann::json{{"id", point.id}, {"seed", point.seed}, {"scene", point.scene}}.dump(),
+               static_cast<int>(rank), kWork);
+        else
+          own = std::async(std::launch::async,
+                           [&, point] { return computed(plan, store, point, keep_trajectories, progress); });
+      }
+      MPI_Status status;
+      if (waits(status)) keep(static_cast<std::size_t>(status.MPI_SOURCE), receive(status));
+      if (at[0] && own.wait_for(std::chrono::seconds(0)) == std::future_status::ready) keep(0, own.get());
+      const sweep::Counts counts = schedule.counts();
+      const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+      watch.look(counts, work > 0 ? counts.work_left * seconds / work : kUnknown);
+    }
+  } catch (...) {
+    closing = true;
+    throw;
+  }
+  for (int rank = 1; rank < ranks; ++rank) send("", rank, kEnd);
+}
+
+}  // namespace
+
+MpiJob::MpiJob() {
+  int level = 0;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &level);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  watch_signals();  // MPI may have put handlers of its own in their place
+}
+
+MpiJob::~MpiJob() {
+  MPI_Finalize();
+}
+
+void run_on_ranks(sweep::Schedule* schedule, const sweep::Plan& plan, const sweep::Store& store,
+                  bool keep_trajectories, SweepWatch& watch) {
+  try {
+    if (schedule != nullptr)
+      lead(*schedule, plan, store, keep_trajectories, watch);
+    else
+      serve(plan, store, keep_trajectories);
+  } catch (const Error& e) {
+    std::fprintf(stderr, "twincell: %s\n", e.what());
+    MPI_Abort(MPI_COMM_WORLD, static_cast<int>(e.exit_code()));
+  }
+}
+
+}  // namespace twincell::cli
+
+#else
+
+namespace twincell::cli {
+
+MpiJob::MpiJob() {
+  throw ConfigError(
+      {"", 0, 0, "--mpi"},
+      "this program was built without MPI; install libopenmpi-dev and openmpi-bin and build it again.");
+}
+MpiJob::~MpiJob() = default;
+
+void run_on_ranks(sweep::Schedule*, const sweep::Plan&, const sweep::Store&, bool, SweepWatch&) {}
+
+}  // namespace twincell::cli
+
+#endif

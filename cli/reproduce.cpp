@@ -1,0 +1,112 @@
+// twincell reproduce NAME --budget 10
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/error.hpp"
+#include "cli/output.hpp"
+#include "cli/sweep_watch.hpp"
+#include "cli/verb.hpp"
+#include "reproduce/reproduction.hpp"
+
+namespace twincell::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using reproduce::Reproducible;
+using reproduce::Reproduction;
+using reproduce::Target;
+
+struct ReproduceOptions {
+  std::string name, output;
+  double budget = 10;
+  bool full = false;
+};
+
+const Reproducible& named(const std::string& name) {
+  const auto& all = reproduce::list();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Reproducible& r) { return r.name == name; });
+  if (found != all.end()) return *found;
+  std::vector<std::string> names;
+  for (const Reproducible& r : all) names.push_back(r.name);
+  throw ConfigError({"", 0, 0, "reproduce"},
+                    fmt::format("'{}' is not one of {}.", name, fmt::join(names, ", ")));
+}
+
+std::string as_text(const Reproduction& r, const fs::path& folder) {
+  std::string s = r.title + "\n\n";
+  for (const Target& t : r.targets) {
+    s += fmt::format("  {:<7} {}: {}\n          wanted {}", word_of(t.fate), t.name,
+                     t.measured.empty() ? "not measured" : t.measured, t.wanted);
+    s += (t.reason.empty() ? "" : " (" + t.reason + ")") + "\n";
+  }
+  s += "\nMeasured\n" + r.table + "\nCheaper than the paper\n";
+  for (const std::string& one : r.cheaper) s += "  - " + one + "\n";
+  if (!r.complete) s += "\nThe time is up; the same command, or a larger budget, goes on from here.\n";
+  return s + folder.string() + "\n";
+}
+
+nlohmann::json as_json(const Reproduction& r, const fs::path& folder) {
+  nlohmann::json j = {{"title", r.title},
+                      {"complete", r.complete},
+                      {"measured", nlohmann::json::parse(r.measured)},
+                      {"cheaper", r.cheaper},
+                      {"output", folder.string()}};
+  for (const Target& t : r.targets)
+    j["targets"].push_back({{"name", t.name},
+                            {"wanted", t.wanted},
+                            {"measured", t.measured},
+                            {"verdict", word_of(t.fate)},
+                            {"reason", t.reason}});
+  return j;
+}
+
+void run(const ReproduceOptions& options, const Common& common) {
+  const Reproducible& what = named(options.name);
+  const fs::path folder = options.output.empty() ? options.name : options.output;
+  const sweep::Store store(folder);  // an unwritable place is found before the work
+  SweepWatch watch(common, options.full ? 1e300 : 60 * options.budget);
+  const Reproduction r = what.run({.minutes = options.budget,
+                                   .full = options.full,
+                                   .threads = common.n_threads(),
+                                   .seed = common.seed.value_or(1),
+                                   .folder = folder,
+                                   .watch = &watch});
+  nlohmann::json document = as_json(r, folder);
+  document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
+  write_text_file(folder / (options.name + ".json"), document.dump(1) + "\n");
+  write_text_file(folder / (options.name + ".txt"), as_text(r, folder));
+  for (const Figure& figure : r.figures)
+    draw(figure, folder);  // last: what was measured outlives a missing gnuplot
+  print_result(common, document, as_text(r, folder));
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& program, Common& common) {
+  auto options = std::make_shared<ReproduceOptions>();
+  CLI::App& verb =
+      add_verb(program, common, "reproduce", "A figure or table of the papers, beside its targets",
+               "twincell reproduce p1-fig3 --budget 10");
+  std::string list = "One of:";
+  for (const Reproducible& r : reproduce::list()) list += fmt::format("\n{}: {}", r.name, r.what);
+  verb.add_option("name", options->name, list)->required();
+  verb.add_option("-o,--output", options->output, "Folder for runs, figures and results; NAME if not said");
+  const auto budget =
+      verb.add_option("--budget", options->budget, "Minutes that it may take; fewer minutes, fewer runs")
+          ->check(CLI::Range(0.01, 1e6))
+          ->capture_default_str();
+  verb.add_flag("--full", options->full, "All that the paper shows, however long it takes")->excludes(budget);
+  verb.callback([options, &common] { run(*options, common); });
+}
+
+}  // namespace twincell::cli

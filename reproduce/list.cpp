@@ -1,0 +1,38 @@
+#include "reproduce/reproduction.hpp"
+
+namespace twincell::reproduce {
+
+const std::vector<Reproducible>& list() {
+  static const std::vector<Reproducible> all = {p1_fig3()};
+  return all;
+}
+
+std::string word_of(Fate fate) {
+  switch (fate) {
+    case Fate::met:
+      return "met";
+    case Fate::missed:
+      return "MISSED";
+    case Fate::open:
+      return "open";
+    case Fate::absent:
+      break;
+  }
+  return "absent";
+}
+
+Fate within(const sweep::Onset& onset, double low, double high) {
+  if (onset.n == 0) return Fate::absent;
+  if (onset.value && *onset.value >= low && *onset.value <= high) return Fate::met;
+  if ((onset.low && *onset.low > high) || (onset.high && *onset.high < low)) return Fate::missed;
+  return Fate::open;
+}
+
+Fate above(const sweep::Onset& upper, const sweep::Onset& lower) {
+  if (upper.n == 0 || lower.n == 0) return Fate::absent;
+  if (evidence_above(upper, lower) >= sweep::kLikelihoodDrop) return Fate::met;
+  if (evidence_above(lower, upper) >= sweep::kLikelihoodDrop) return Fate::missed;
+  return Fate::open;
+}
+
+}  // namespace twincell::reproduce

@@ -1,0 +1,77 @@
+#pragma once
+/// \file
+/// What it means to reproduce a figure or table of the papers: targets, what was measured, and what was
+/// cheaper.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/figures.hpp"
+#include "sweep/farm.hpp"
+
+namespace twincell::reproduce {
+
+/// How a target fared.
+enum class Fate {
+  met,
+  missed,
+  open,    ///< the measurement does not decide
+  absent,  ///< not measured
+};
+/// "met", "MISSED", "open", "absent".
+std::string word_of(Fate fate);
+
+/// One number or statement of the paper beside what was measured.
+struct Target {
+  std::string name;      ///< "onset of bouncing, random, N_l = 20"
+  std::string wanted;    ///< "1.10 to 1.35"
+  std::string measured;  ///< with interval
+  Fate fate = Fate::absent;
+  std::string reason;  ///< why, where that is not plain
+};
+
+/// How much may be spent.
+struct Request {
+  double minutes = 10;  ///< of clock time; ignored if full
+  bool full = false;    ///< whatever the paper's own numbers take
+  int threads = 1;
+  std::uint64_t seed = 1;
+  std::filesystem::path folder;   ///< for the sweep; taken up if it is there
+  sweep::Watch* watch = nullptr;  ///< never null when a reproduction runs
+};
+
+/// All that is to be said.
+struct Reproduction {
+  std::string title;
+  std::vector<Target> targets;
+  std::vector<std::string> cheaper;  ///< what was cheaper than the paper, in sentences
+  std::string table;                 ///< what was measured, for a reader
+  std::string measured;              ///< the same as JSON
+  std::vector<Figure> figures;
+  bool complete = false;  ///< false: the time was up; the same command goes on
+};
+
+/// One entry of the list: a file p1_fig3.cpp has a `Reproducible p1_fig3()`.
+struct Reproducible {
+  std::string name;  ///< "p1-fig3"
+  std::string what;  ///< one line
+  std::function<Reproduction(const Request&)> run;
+};
+/// All that can be reproduced. To add one: its file, a line here, a word in list.cpp and in CMakeLists.txt, a
+/// test.
+const std::vector<Reproducible>& list();
+
+Reproducible p1_fig3();
+
+/// Whether an onset lies within [low, high]: met if its value does, missed if its whole interval does not,
+/// else open.
+Fate within(const sweep::Onset& onset, double low, double high);
+/// Whether one onset lies above another: met or missed if the opposite is excluded (evidence_above), else
+/// open.
+Fate above(const sweep::Onset& upper, const sweep::Onset& lower);
+
+}  // namespace twincell::reproduce

@@ -1,0 +1,158 @@
+#include "sweep/collect.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+namespace twincell::sweep {
+
+namespace {
+
+using nlohmann::json;
+
+/// What a line of the table says of its point besides axes and results.
+constexpr const char* kOfPoint[] = {"replica", "seed", "answer", "n_cycles", "failed"};
+
+/// A TOML scalar as JSON; what JSON spells otherwise stays text.
+json value_of(const std::string& literal) {
+  if (literal.size() >= 2 && literal.front() == '\'') return literal.substr(1, literal.size() - 2);
+  const json value = json::parse(literal, nullptr, false);
+  return value.is_discarded() ? json(literal) : value;
+}
+
+json axes_of(const Plan& plan, const std::vector<std::string>& values) {
+  json axes = json::object();
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) axes[plan.axes[a].key] = value_of(values[a]);
+  return axes;
+}
+
+json optional(const std::optional<double>& value) {
+  return value ? json(*value) : json(nullptr);
+}
+
+/// Points of a curve in the order of the search's key, then of their replicas; nothing here may tell in which
+/// order they were computed.
+std::vector<std::size_t> order_of(const Curve& curve) {
+  std::vector<std::size_t> order(curve.points.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const Point &p = curve.points[a], &q = curve.points[b];
+    return std::pair(p.at.value_or(0), p.replica) < std::pair(q.at.value_or(0), q.replica);
+  });
+  return order;
+}
+
+json point_json(const Plan& plan, const Point& point, const std::string& result) {
+  json j = json::parse(result);
+  j.erase("computed");
+  j["axes"] = axes_of(plan, point.values);
+  if (point.at) j["axes"][plan.search->key] = *point.at;
+  j["replica"] = point.replica;
+  j["seed"] = point.seed;
+  return j;
+}
+
+json onset_json(const Plan& plan, const Curve& curve) {
+  const Onset& o = *curve.onset;
+  return {{"axes", axes_of(plan, curve.values)},
+          {"key", plan.search->key},
+          {"verdict", plan.verdict->name},
+          {"value", optional(o.value)},
+          {"low", optional(o.low)},
+          {"high", optional(o.high)},
+          {"level", o.level},
+          {"method", "logistic regression over seeds, profile likelihood"},
+          {"range", {plan.search->low, plan.search->high}},
+          {"runs", o.n},
+          {"yes", o.yes},
+          {"complete", curve.complete},
+          {"text", o.text()}};
+}
+
+json document_of(const Schedule& schedule) {
+  const Plan& plan = schedule.plan();
+  json document = {
+      {"format", "twincell sweep 1"}, {"plan", plan.text}, {"seed", plan.seed}, {"points", json::array()}};
+  std::size_t open = 0;
+  for (const Curve& curve : schedule.curves()) {
+    for (const std::size_t i : order_of(curve)) {
+      if (curve.results[i])
+        document["points"].push_back(point_json(plan, curve.points[i], *curve.results[i]));
+      else
+        ++open;
+    }
+    if (curve.onset) document["onsets"].push_back(onset_json(plan, curve));
+  }
+  document["open"] = open;
+  return document;
+}
+
+std::string cell(const json& value) {
+  if (value.is_null()) return "";
+  if (!value.is_string()) return value.dump();
+  const std::string text = value.get<std::string>();
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+std::string collected_json(const Schedule& schedule) {
+  return document_of(schedule).dump(1) + "\n";
+}
+
+std::string collected_csv(const Schedule& schedule) {
+  const json document = document_of(schedule);
+  std::set<std::string> keys, names;
+  for (const json& point : document["points"]) {
+    for (const auto& [key, value] : point["axes"].items()) keys.insert(key);
+    if (!point.contains("results")) continue;
+    for (const auto& [name, result] : point["results"].items())
+      if (result.contains("value") && !result["value"].is_array()) names.insert(name);
+  }
+  std::vector<std::string> head = {"id"};
+  head.insert(head.end(), keys.begin(), keys.end());
+  for (const char* key : kOfPoint) head.emplace_back(key);
+  for (const auto& name : names)
+    for (const char* ending : {"", "_low", "_high"}) head.push_back(name + ending);
+  std::string text = fmt::format("{}\n", fmt::join(head, ","));
+  for (const json& point : document["points"]) {
+    std::vector<std::string> cells = {cell(point["id"])};
+    for (const auto& key : keys) cells.push_back(cell(point["axes"].value(key, json())));
+    for (const char* key : kOfPoint) cells.push_back(cell(point.value(key, json())));
+    const json results = point.value("results", json::object());
+    for (const auto& name : names) {
+      const json result = results.value(name, json::object());
+      const json value = result.value("value", json()), interval = result.value("interval", json::object());
+      cells.push_back(value.is_array() ? std::string() : cell(value));
+      for (const char* end : {"low", "high"}) cells.push_back(cell(interval.value(end, json())));
+    }
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  return text;
+}
+
+std::string collected_text(const Schedule& schedule) {
+  const Plan& plan = schedule.plan();
+  const Counts counts = schedule.counts();
+  std::string text =
+      fmt::format("{} of {} points done{}\n", counts.done, counts.known,
+                  counts.failed > 0 ? fmt::format(", {} of them went wrong", counts.failed) : "");
+  for (const Curve& curve : schedule.curves()) {
+    if (!curve.onset) continue;
+    std::string place;
+    for (std::size_t a = 0; a < plan.axes.size(); ++a)
+      place += fmt::format("{} = {}, ", plan.axes[a].key, curve.values[a]);
+    text += fmt::format("{}{} from {} {}{}\n", place, plan.verdict->name, plan.search->key,
+                        curve.onset->text(), curve.complete ? "" : " (unfinished)");
+  }
+  return text;
+}
+
+}  // namespace twincell::sweep

@@ -1,0 +1,183 @@
+#include "sweep/farm.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "sweep/point_run.hpp"
+
+namespace twincell::sweep {
+
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+/// Ends a point when the farm closes.
+class Until : public Progress {
+ public:
+  explicit Until(const std::atomic<bool>& closing) : closing_(closing) {}
+  void update(std::int64_t, std::int64_t) override {
+    if (closing_) throw Interrupted(ExitCode::interrupted);
+  }
+
+ private:
+  const std::atomic<bool>& closing_;
+};
+
+class Farm {
+ public:
+  Farm(const std::vector<Schedule*>& schedules, const Store& store, const FarmOptions& options, Watch& watch)
+      : schedules_(schedules), store_(store), options_(options), watch_(watch) {}
+
+  bool run() {
+    std::vector<std::thread> workers;
+    workers.reserve(static_cast<std::size_t>(options_.threads));
+    for (int t = 0; t < options_.threads; ++t) workers.emplace_back([this] { work(); });
+    try {
+      watch_until_idle();
+    } catch (...) {
+      fail(std::current_exception());
+    }
+    for (std::thread& worker : workers) worker.join();
+    if (error_) std::rethrow_exception(error_);
+    return all();
+  }
+
+ private:
+  [[nodiscard]] bool all() const {
+    return std::all_of(schedules_.begin(), schedules_.end(), [](const Schedule* s) { return s->all(); });
+  }
+
+  void fail(std::exception_ptr error) {
+    const std::lock_guard lock(mutex_);
+    if (!error_) error_ = std::move(error);
+    closing_ = true;
+    changed_.notify_all();
+  }
+
+  void watch_until_idle() {
+    std::unique_lock lock(mutex_);
+    while (working_ > 0 || started_ < options_.threads) {
+      changed_.wait_for(lock, 200ms);
+      Counts sum;
+      for (const Schedule* schedule : schedules_) {
+        const Counts c = schedule->counts();
+        sum.known += c.known;
+        sum.done += c.done;
+        sum.here += c.here;
+        sum.failed += c.failed;
+        sum.work_left += c.work_left;
+      }
+      const double left = sum.work_left / (rate() * options_.threads);
+      lock.unlock();
+      watch_.look(sum, left);
+      lock.lock();
+    }
+  }
+
+  /// Particle-steps a second of one worker, analysis included; NaN until a point is done.
+  [[nodiscard]] double rate() const { return seconds_ > 0 ? work_ / seconds_ : kUnknown; }
+
+  /// Work that fits into the time left. Before anything is known a point is simply begun.
+  [[nodiscard]] double most_work() const {
+    const double left = watch_.time_left();
+    if (left <= 0) return -1;
+    return std::isnan(rate()) || left > 1e200 ? 1e300 : left * rate();
+  }
+
+  void work() try {
+    {
+      const std::lock_guard lock(mutex_);
+      ++started_;
+      ++working_;
+    }
+    Until progress(closing_);
+    std::unique_lock lock(mutex_);
+    while (!closing_) {
+      std::optional<Task> task;
+      Schedule* schedule = nullptr;
+      const double most = most_work();
+      for (Schedule* s : in_turn())
+        if (!task) {
+          task = s->take(most);
+          schedule = s;
+        }
+      if (!task) {
+        if (all() || most < 0 || nothing_will_come()) break;
+        changed_.wait_for(lock, 100ms);
+        continue;
+      }
+      ++busy_;
+      lock.unlock();
+      const auto begin = Clock::now();
+      const std::string result = run_point(
+          schedule->plan(), task->point,
+          options_.keep_trajectories ? store_.of(task->point) / "trajectory.h5" : std::filesystem::path(),
+          progress);
+      store_.keep(task->point, result);
+      lock.lock();
+      --busy_;
+      seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
+      work_ += task->point.work;
+      schedule->done(*task, result);
+      changed_.notify_all();
+    }
+    --working_;
+    changed_.notify_all();
+  } catch (...) {
+    fail(std::current_exception());
+    const std::lock_guard lock(mutex_);
+    --working_;
+    changed_.notify_all();
+  }
+
+  /// The schedule with the fewest points begun first: what a stop leaves behind is then equally far.
+  [[nodiscard]] std::vector<Schedule*> in_turn() const {
+    std::vector<std::pair<std::size_t, Schedule*>> begun;
+    for (Schedule* s : schedules_) {
+      const Counts c = s->counts();
+      begun.emplace_back(c.done + c.here, s);
+    }
+    std::stable_sort(begun.begin(), begun.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Schedule*> order;
+    order.reserve(begun.size());
+    for (const auto& [n, s] : begun) order.push_back(s);
+    return order;
+  }
+
+  /// Nothing runs here, and what is open does not fit into the time left.
+  [[nodiscard]] bool nothing_will_come() const {
+    if (busy_ > 0 || watch_.time_left() > 1e200) return false;
+    return true;
+  }
+
+  const std::vector<Schedule*>& schedules_;
+  const Store& store_;
+  const FarmOptions& options_;
+  Watch& watch_;
+  std::mutex mutex_;  ///< of the schedules and of all below
+  std::condition_variable changed_;
+  std::atomic<bool> closing_ = false;
+  int started_ = 0, working_ = 0, busy_ = 0;
+  double seconds_ = 0, work_ = 0;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+bool run_here(const std::vector<Schedule*>& schedules, const Store& store, const FarmOptions& options,
+              Watch& watch) {
+  return Farm(schedules, store, options, watch).run();
+}
+
+}  // namespace twincell::sweep

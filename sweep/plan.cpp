@@ -1,0 +1,234 @@
+#include "sweep/plan.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "analysis/observable.hpp"
+#include "analysis/phase_thresholds.hpp"
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/config.hpp"
+#include "analysis/trajectory/sha256.hpp"
+#include "analysis/trajectory/toml_leaves.hpp"
+#include "sim/plan.hpp"
+#include "sim/scene.hpp"
+
+namespace twincell::sweep {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::int64_t kMostRuns = 100'000;
+constexpr std::size_t kMostPoints = 1'000'000;
+
+std::string sha256_text(const std::string& text) {
+  Sha256 sum;
+  sum.add(text.data(), text.size());
+  return sum.hex();
+}
+
+/// A TOML literal without its quotes, if it has any.
+std::string unquoted(const std::string& literal) {
+  const bool quoted = literal.size() >= 2 && (literal.front() == '"' || literal.front() == '\'');
+  return quoted ? literal.substr(1, literal.size() - 2) : literal;
+}
+
+void require_result(const Where& where, const std::string& name) {
+  const auto names = result_names();
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw ConfigError(where, fmt::format("the analysis gives no result called '{}'; it gives {}.", name,
+                                         fmt::join(names, ", ")));
+}
+
+/// Marks a dotted path and the tables on its way as asked for.
+void know(const ConfigSection& table, const std::string& path) {
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1))
+    static_cast<void>(table.has(path.substr(0, dot)));
+  static_cast<void>(table.has(path));
+}
+
+Verdict read_verdict(const ConfigSection& s) {
+  const auto word = s.word("verdict", {"bouncing", "convecting"});
+  const auto result = s.text("result");
+  const auto above = s.number("above");
+  if (word && (result || above))
+    throw ConfigError(s.where("verdict"),
+                      "is given together with 'result' or 'above'; only one of the two can be.");
+  if (word && *word == "bouncing") return {"bouncing", "s_b", kBouncingThreshold};
+  if (word) return {"convecting", "s_c", kConvectionThreshold};
+  if (!result || !above)
+    throw ConfigError(
+        s.where("verdict"),
+        "is missing: \"bouncing\", \"convecting\", or a result of the analysis and what it is above.");
+  require_result(s.where("result"), *result);
+  return {*result, *result, *above};
+}
+
+Search read_search(const ConfigSection& s) {
+  Search search;
+  search.key = s.text("key").value_or("drive.gamma");
+  const auto range = s.numbers("range", 2);
+  if (!range) throw ConfigError(s.where("range"), "is missing: [from, to] of the search.");
+  search.low = range->front();
+  search.high = range->back();
+  if (!(search.low < search.high))
+    throw ConfigError(s.where("range"),
+                      fmt::format("goes from {:g} to {:g}; it must rise.", search.low, search.high));
+  const double all = search.high - search.low;
+  const auto width = s.number_in("width", 0, all, true);
+  if (!width)
+    throw ConfigError(s.where("width"), "is missing: how narrow the interval of the onset is to be.");
+  if (*width < all / 1000)
+    throw ConfigError(s.where("width"),
+                      fmt::format("{:g} is less than a thousandth of the range, {:g}.", *width, all / 1000));
+  search.width = *width;
+  search.runs = static_cast<int>(s.integer_in("runs", 2, kMostRuns).value_or(search.runs));
+  search.batch = static_cast<int>(s.integer_in("batch", 1, 1000).value_or(search.batch));
+  return search;
+}
+
+void read_scene_of(Plan& plan, const ConfigSection& root, const fs::path& folder) {
+  const auto leaves = toml_leaves(plan.text, "scene");
+  if (!leaves.empty()) {
+    const ConfigSection table = root.section("scene");
+    for (const TomlLeaf& leaf : leaves) {
+      know(table, leaf.path);
+      plan.scene += leaf.path + " = " + leaf.literal + "\n";
+    }
+    plan.scene_name = plan.file + " [scene]";
+    return;
+  }
+  const auto file = root.text("scene");
+  if (!file)
+    throw ConfigError(root.where("scene"), "is missing: the file of the base scene, or a table [scene].");
+  const fs::path path = fs::path(*file).is_absolute() ? fs::path(*file) : folder / *file;
+  plan.scene = read_text_file(path);
+  plan.scene_name = path.string();
+}
+
+void read_axes(Plan& plan, const ConfigSection& root) {
+  const ConfigSection table = root.section("axes");
+  for (const TomlLeaf& leaf : toml_leaves(plan.text, "axes")) {
+    know(table, leaf.path);
+    if (leaf.path == "seeds") {
+      plan.seeds = static_cast<int>(table.integer_in("seeds", 1, kMostRuns).value_or(1));
+      if (plan.search)
+        throw ConfigError(table.where("seeds"),
+                          "a search chooses by itself how many seeds it runs; search.runs bounds them.");
+      continue;
+    }
+    if (leaf.items.empty()) throw ConfigError(table.where(leaf.path), "has no values.");
+    if (plan.search && leaf.path == plan.search->key)
+      throw ConfigError(table.where(leaf.path), "is the key that [search] varies.");
+    plan.axes.push_back({leaf.path, leaf.items});
+  }
+  std::size_t points = static_cast<std::size_t>(plan.seeds);
+  for (const Axis& axis : plan.axes) {
+    points *= axis.values.size();
+    if (points > kMostPoints)
+      throw ConfigError(table.where(axis.key),
+                        fmt::format("the axes make more than {} points.", kMostPoints));
+  }
+}
+
+void read_results(Plan& plan, const ConfigSection& root) {
+  if (!root.has("results")) return;
+  const Where where = root.where("results");
+  if (!root.is_list("results")) throw ConfigError(where, "a list of names is needed, [\"s_b\", \"s_c\"].");
+  for (const TomlLeaf& leaf : toml_leaves(plan.text, ""))
+    if (leaf.path == "results")
+      for (const std::string& item : leaf.items) plan.results.push_back(unquoted(item));
+  for (const std::string& name : plan.results) require_result(where, name);
+  if (plan.verdict &&
+      std::find(plan.results.begin(), plan.results.end(), plan.verdict->result) == plan.results.end())
+    plan.results.push_back(plan.verdict->result);
+}
+
+Plan interpret(const Config& config, const std::string& name, const fs::path& folder) {
+  Plan plan;
+  plan.file = name;
+  plan.text = config.text();
+  const ConfigSection root = config.root();
+  plan.seed = static_cast<std::uint64_t>(root.integer_in("seed", 0, std::int64_t{1} << 53).value_or(1));
+  plan.stop_early = root.boolean("stop_early").value_or(false);
+  read_scene_of(plan, root, folder);
+  if (root.has("search")) {
+    plan.search = read_search(root.section("search"));
+    plan.verdict = read_verdict(root.section("search"));
+  }
+  read_axes(plan, root);
+  read_results(plan, root);
+  config.refuse_unknown_keys();
+  if (plan.stop_early &&
+      (!plan.verdict || (plan.verdict->name != "bouncing" && plan.verdict->name != "convecting")))
+    throw ConfigError(
+        root.where("stop_early"),
+        "needs a search with the verdict \"bouncing\" or \"convecting\", which a run may settle early.");
+  return plan;
+}
+
+}  // namespace
+
+Plan read_plan_text(const std::string& text, const std::string& name, const fs::path& folder) {
+  return interpret(Config::from_text(text, name), name, folder);
+}
+
+Plan read_plan(const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  return interpret(Config::from_file(path), path.string(), folder);
+}
+
+Point make_point(const Plan& plan, const std::vector<std::string>& values, std::optional<double> at,
+                 int replica) {
+  std::vector<std::string> assignments;
+  bool seeded = false;
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
+    assignments.push_back(plan.axes[a].key + "=" + values[a]);
+    seeded = seeded || plan.axes[a].key == "start.seed";
+  }
+  if (at) assignments.push_back(fmt::format("{}={}", plan.search->key, *at));
+  sim::Scene scene = sim::read_scene_text(plan.scene, plan.scene_name, assignments);
+
+  Point point;
+  point.values = values;
+  point.at = at;
+  point.replica = replica;
+  point.seed = scene.seed;
+  if (!seeded) {
+    // 53 bits, which TOML's, JSON's and everybody's numbers hold.
+    const std::string drawn = sha256_text(fmt::format("{}\n{}\n{}", plan.seed, replica, scene.resolved));
+    point.seed = std::stoull(drawn.substr(0, 14), nullptr, 16) >> 3U;
+    assignments.push_back(fmt::format("start.seed={}", point.seed));
+    scene = sim::read_scene_text(plan.scene, plan.scene_name, assignments);
+  }
+  point.scene = scene.resolved;
+  std::string content = point.scene;
+  if (!scene.from.empty()) content += "\n# from " + sha256_of(scene.from);
+  if (!plan.results.empty()) content += fmt::format("\n# results {}", fmt::join(plan.results, ","));
+  if (plan.verdict)
+    content += fmt::format("\n# verdict {} {}{}", plan.verdict->result, plan.verdict->above,
+                           plan.stop_early ? ", stop early" : "");
+  point.id = sha256_text(content).substr(0, 16);
+  const sim::Plan cost = sim::make_plan(scene);
+  point.work = static_cast<double>(cost.steps) *
+               static_cast<double>(std::max<std::size_t>(1, scene.n_beads.value_or(1)));
+  return point;
+}
+
+std::vector<std::vector<std::string>> combinations(const std::vector<Axis>& axes) {
+  std::vector<std::vector<std::string>> all = {{}};
+  for (const Axis& axis : axes) {
+    std::vector<std::vector<std::string>> longer;
+    for (const auto& head : all)
+      for (const std::string& value : axis.values) {
+        longer.push_back(head);
+        longer.back().push_back(value);
+      }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+}  // namespace twincell::sweep

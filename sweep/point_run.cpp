@@ -1,0 +1,125 @@
+#include "sweep/point_run.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "analysis/observable.hpp"
+#include "analysis/results.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/provenance.hpp"
+#include "sim/simulation.hpp"
+#include "sweep/live_trajectory.hpp"
+#include "sweep/stop_rule.hpp"
+
+namespace twincell::sweep {
+
+namespace {
+
+/// Debian's HDF5 library serves one thread at a time.
+std::mutex& hdf5_turn() {
+  static std::mutex turn;
+  return turn;
+}
+
+/// A trajectory file that threads may write beside each other.
+class SharedWriter {
+ public:
+  SharedWriter(const std::filesystem::path& path, TrajectoryInfo info) {
+    const std::lock_guard lock(hdf5_turn());
+    writer_ = std::make_unique<H5mdWriter>(path, std::move(info));
+  }
+  ~SharedWriter() {
+    const std::lock_guard lock(hdf5_turn());
+    writer_.reset();
+  }
+  SharedWriter(const SharedWriter&) = delete;
+  SharedWriter& operator=(const SharedWriter&) = delete;
+  void append(const Frame& frame) {
+    const std::lock_guard lock(hdf5_turn());
+    writer_->append(frame);
+  }
+  void finish() {
+    const std::lock_guard lock(hdf5_turn());
+    writer_->finish();
+  }
+
+ private:
+  std::unique_ptr<H5mdWriter> writer_;
+};
+
+/// What went wrong on the disk, told apart from what went wrong in the bed.
+struct DiskTrouble {
+  Error error;
+};
+
+template <class Work>
+void on_disk(Work work) {
+  try {
+    work();
+  } catch (const Error& e) {
+    throw DiskTrouble{e};
+  }
+}
+
+sim::RunState placed_in_turn(const sim::Scene& scene) {
+  const std::lock_guard lock(hdf5_turn());  // a start may be read from a trajectory
+  return sim::placed(scene);
+}
+
+}  // namespace
+
+std::string run_point(const Plan& plan, const Point& point, const std::filesystem::path& trajectory,
+                      Progress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  nlohmann::json document = {{"id", point.id}, {"answer", nullptr}};
+  std::int64_t cycles = 0;
+  try {
+    sim::Scene scene = sim::read_scene_text(point.scene, "point " + point.id);
+    sim::RunState state = placed_in_turn(scene);
+    const std::int64_t all_cycles = scene.cycles;
+    sim::Simulation run(std::move(scene), std::move(state));
+    std::optional<StopRule> rule;
+    std::unique_ptr<SharedWriter> writer;
+    const LiveTrajectory live(run, "point " + point.id, progress, [&](const Frame& frame) {
+      cycles = frame.cycle + 1;
+      if (writer) on_disk([&] { writer->append(frame); });
+      return !rule || !rule->settled(frame);
+    });
+    if (plan.stop_early && plan.verdict) rule.emplace(*plan.verdict, live.info(), all_cycles);
+    if (!trajectory.empty()) {
+      TrajectoryInfo info = live.info();
+      Provenance provenance;
+      provenance.config = point.scene;
+      provenance.seed = point.seed;
+      info.provenance_json = provenance.to_json();
+      on_disk([&] { writer = std::make_unique<SharedWriter>(trajectory, std::move(info)); });
+    }
+    AnalysisOptions options;
+    options.only = plan.results;
+    const auto results = analyze(live, options);
+    if (writer) on_disk([&] { writer->finish(); });
+    document["results"] = nlohmann::json::parse(results_json(results));
+    if (rule && !rule->reason().empty()) document["stopped"] = rule->reason();
+    if (plan.verdict)
+      if (const double value = find_result(results, plan.verdict->result).value(); std::isfinite(value))
+        document["answer"] = value > plan.verdict->above;
+  } catch (const RunError& e) {
+    document["failed"] = e.what();
+  } catch (const DiskTrouble& e) {
+    throw Error(e.error);
+  }
+  document["n_cycles"] = cycles;
+  const nlohmann::json program = nlohmann::json::parse(Provenance{}.to_json());
+  document["computed"] = {
+      {"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()},
+      {"program", version_line()}};
+  for (const char* key : {"date", "time", "utc", "cpu", "processor"})
+    if (program.contains(key)) document["computed"][key] = program[key];
+  return document.dump() + "\n";
+}
+
+}  // namespace twincell::sweep

@@ -1,0 +1,146 @@
+#include "sweep/schedule.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace twincell::sweep {
+
+namespace {
+
+bool failed(const std::string& result) {
+  return nlohmann::json::parse(result).contains("failed");
+}
+
+std::vector<Trial> trials_of(const Curve& curve) {
+  std::vector<Trial> trials;
+  for (std::size_t i = 0; i < curve.points.size(); ++i)
+    if (const auto answer = curve.results[i] ? answer_of(*curve.results[i]) : std::nullopt)
+      trials.push_back({*curve.points[i].at, *answer});
+  return trials;
+}
+
+}  // namespace
+
+std::optional<bool> answer_of(const std::string& result) {
+  const auto document = nlohmann::json::parse(result);
+  if (!document.contains("answer") || !document["answer"].is_boolean()) return std::nullopt;
+  return document["answer"].get<bool>();
+}
+
+Schedule::Schedule(const Plan& plan, const Store& store, Shard shard) : plan_(plan), store_(store) {
+  int number = 0;
+  const auto ours = [&] { return number++ % shard.of == shard.index - 1; };
+  for (const auto& values : combinations(plan.axes)) {
+    Curve curve;
+    curve.values = values;
+    if (plan.search) {
+      if (ours()) curves_.push_back(std::move(curve));
+      continue;
+    }
+    for (int replica = 0; replica < plan.seeds; ++replica)
+      if (ours()) curve.points.push_back(make_point(plan, values, std::nullopt, replica));
+    if (!curve.points.empty()) curves_.push_back(std::move(curve));
+  }
+  here_.resize(curves_.size());
+  for (std::size_t c = 0; c < curves_.size(); ++c) advance(c, 0);
+}
+
+/// Takes up what the disk has of points from `unseen` on; when a round is whole, asks for the next.
+void Schedule::advance(std::size_t index, std::size_t unseen) {
+  Curve& curve = curves_[index];
+  for (;;) {
+    const std::size_t n = curve.points.size();
+    here_[index].resize(n, 0);
+    curve.results.resize(n);
+    curve.failed.resize(n, 0);
+    for (; unseen < n; ++unseen)
+      if (auto result = store_.result(curve.points[unseen])) {
+        curve.failed[unseen] = failed(*result) ? 1 : 0;
+        curve.results[unseen] = std::move(result);
+      }
+    if (!std::all_of(curve.results.begin(), curve.results.end(), [](const auto& r) { return r.has_value(); }))
+      return;
+    if (!plan_.search) {
+      curve.complete = true;
+      return;
+    }
+    const Search& search = *plan_.search;
+    curve.onset = estimate_onset(trials_of(curve), search.low, search.high, search.width);
+    const int left = search.runs - static_cast<int>(curve.points.size());
+    if (left <= 0 || settled(*curve.onset, search.low, search.high, search.width)) {
+      curve.complete = true;
+      return;
+    }
+    for (const double x :
+         next_places(*curve.onset, search.low, search.high, search.width, std::min(left, search.batch))) {
+      const auto before =
+          std::count_if(curve.points.begin(), curve.points.end(), [&](const Point& p) { return p.at == x; });
+      curve.points.push_back(make_point(plan_, curve.values, x, static_cast<int>(before)));
+    }
+  }
+}
+
+std::optional<Task> Schedule::take(double most) {
+  struct Open {
+    double work;
+    std::size_t curve, number;
+  };
+  std::vector<Open> open;
+  for (std::size_t c = 0; c < curves_.size(); ++c)
+    for (std::size_t i = 0; i < curves_[c].points.size(); ++i)
+      if (!curves_[c].results[i] && here_[c][i] == 0 && curves_[c].points[i].work <= most)
+        open.push_back({curves_[c].points[i].work, c, i});
+  std::stable_sort(open.begin(), open.end(), [](const Open& a, const Open& b) { return a.work > b.work; });
+  for (const Open& o : open) {
+    const Point& point = curves_[o.curve].points[o.number];
+    auto claim = store_.claim(point);
+    if (!claim) continue;
+    store_.announce(plan_, point);
+    // Whoever had the claim before may have finished since we looked.
+    if (const auto result = store_.result(point)) {
+      file(o.curve, o.number, *result);
+      return take(most);
+    }
+    here_[o.curve][o.number] = 1;
+    return Task{point, std::move(*claim), o.curve, o.number};
+  }
+  return std::nullopt;
+}
+
+void Schedule::file(std::size_t curve, std::size_t number, const std::string& result) {
+  Curve& c = curves_[curve];
+  c.results[number] = result;
+  c.failed[number] = failed(result) ? 1 : 0;
+  advance(curve, c.points.size());
+}
+
+void Schedule::done(const Task& task, const std::string& result) {
+  here_[task.curve][task.number] = 0;
+  file(task.curve, task.number, result);
+}
+
+void Schedule::give_up(const Task& task) {
+  here_[task.curve][task.number] = 0;
+}
+
+bool Schedule::all() const {
+  return std::all_of(curves_.begin(), curves_.end(), [](const Curve& c) { return c.complete; });
+}
+
+Counts Schedule::counts() const {
+  Counts counts;
+  for (std::size_t c = 0; c < curves_.size(); ++c)
+    for (std::size_t i = 0; i < curves_[c].points.size(); ++i) {
+      ++counts.known;
+      counts.here += here_[c][i] != 0 ? 1 : 0;
+      if (curves_[c].results[i]) {
+        ++counts.done;
+        counts.failed += curves_[c].failed[i] != 0 ? 1 : 0;
+      } else {
+        counts.work_left += curves_[c].points[i].work;
+      }
+    }
+  return counts;
+}
+
+}  // namespace twincell::sweep

@@ -1,0 +1,290 @@
+// Sweeps as a user meets them: whoever computes the points, however often he is stopped, the collected file
+// is the same.
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "tests/support/program.hpp"
+
+namespace twincell {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+constexpr int kDone = 0, kUsage = 2, kInput = 3, kPartial = 5;
+
+constexpr const char* kScene = R"(
+[scene]
+preset = "fortini-huang-2015"
+cell.width = 6.0
+beads.layers = 3
+time = { integrator = "split", steps_per_contact = 6.37, discard = 1, cycles = 4, phases = 10 }
+)";
+
+std::string bytes_of(const fs::path& path) {
+  std::ostringstream all;
+  all << std::ifstream(path, std::ios::binary).rdbuf();
+  return all.str();
+}
+
+class Sweeps : public ::testing::Test {
+ protected:
+  Sweeps() {
+    write(grid_,
+          "seed = 7\nresults = [\"s_b\", \"s_c\", \"phase\"]\n" + std::string(kScene) +
+              "[axes]\ndrive.gamma = [1.05, 1.6]\nstart.kind = [\"random\", \"crystal_a\"]\nseeds = 2\n");
+  }
+
+  static void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+  [[nodiscard]] std::string at(const std::string& name) const { return folder_ / name; }
+  static Ran run(const std::string& plan, const std::string& into,
+                 const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"sweep", "run", plan, "-o", into, "-q"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  }
+  /// What collect makes of a folder.
+  static std::string collected(const std::string& plan, const std::string& folder) {
+    const std::string out = folder + ".json";
+    const Ran ran = run_program({"sweep", "collect", plan, "--folder", folder, "-o", out, "-q"});
+    EXPECT_EQ(ran.code, kDone) << ran.err;
+    return bytes_of(out) + bytes_of(folder + ".csv");
+  }
+
+  TemporaryFolder folder_;
+  std::string grid_ = folder_ / "grid.toml";
+};
+
+TEST_F(Sweeps, OneCoreTwoCoresShardsAndRanksGiveTheSameBytes) {
+  ASSERT_EQ(run(grid_, at("one"), {"--threads", "1"}).code, kDone);
+  const std::string one = collected(grid_, at("one"));
+  const auto document = nlohmann::json::parse(bytes_of(at("one.json")));
+  ASSERT_EQ(document["points"].size(), 8U);
+  EXPECT_EQ(document["open"], 0);
+  for (const auto& point : document["points"]) {
+    EXPECT_TRUE(point["results"]["s_b"].contains("value")) << point;
+    EXPECT_FALSE(point.contains("computed"));
+  }
+
+  ASSERT_EQ(run(grid_, at("two"), {"--threads", "2"}).code, kDone);
+  EXPECT_EQ(collected(grid_, at("two")), one);
+  for (const char* shard : {"3/3", "1/3", "2/3"})
+    ASSERT_EQ(run(grid_, at("parts"), {"--shard", shard}).code, kDone);
+  EXPECT_EQ(collected(grid_, at("parts")), one);
+}
+
+TEST_F(Sweeps, RanksOfMpiGiveTheSameBytes) {
+  if (std::system("command -v mpirun >/dev/null 2>&1") != 0) GTEST_SKIP() << "mpirun is not there";
+  ASSERT_EQ(run(grid_, at("one"), {"--threads", "1"}).code, kDone);
+  const std::string line =
+      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 3 " +
+      std::string(TWINCELL_PROGRAM) + " sweep run " + grid_ + " -o " + at("ranks") + " -q --mpi >" +
+      at("log") + " 2>&1";
+  const int status = std::system(line.c_str());
+  if (bytes_of(at("log")).find("built without MPI") != std::string::npos) GTEST_SKIP() << "built without MPI";
+  ASSERT_EQ(WEXITSTATUS(status), kDone) << bytes_of(at("log"));
+  EXPECT_EQ(collected(grid_, at("ranks")), collected(grid_, at("one")));
+}
+
+TEST_F(Sweeps, KilledAgainAndAgainNothingIsLostAndNothingDoneTwice) {
+  ASSERT_EQ(run(grid_, at("whole")).code, kDone);
+  std::mt19937 random(20150101);
+  const auto results = [&] {
+    std::map<std::string, std::string> all;  // with the seconds each took: computed again they would differ
+    if (fs::exists(at("k") + "/points"))
+      for (const auto& point : fs::directory_iterator(at("k") + "/points"))
+        if (fs::exists(point.path() / "result.json"))
+          all[point.path().filename()] = bytes_of(point.path() / "result.json");
+    return all;
+  };
+  int killed = 0;
+  for (int k = 0; k < 200; ++k) {
+    const auto before = results();
+    RunningProgram program({"sweep", "run", grid_, "-o", at("k"), "-q", "--threads", "2"});
+    std::this_thread::sleep_for(milliseconds(100 + random() % 300));
+    program.signal(SIGKILL);
+    const Ran ran = program.wait();
+    const auto after = results();
+    for (const auto& [id, text] : before) EXPECT_EQ(after.at(id), text) << "computed twice, or lost";
+    for (const auto& [id, text] : after)
+      EXPECT_TRUE(nlohmann::json::accept(text)) << "half a result of " << id;
+    if (ran.code == 0) break;
+    ++killed;
+  }
+  EXPECT_GE(killed, 1);
+  EXPECT_EQ(run(grid_, at("k")).code, kDone);
+  EXPECT_EQ(collected(grid_, at("k")), collected(grid_, at("whole")));
+}
+
+TEST_F(Sweeps, TwoProcessesInOneFolderShareTheWork) {
+  RunningProgram first({"sweep", "run", grid_, "-o", at("both"), "-q", "--threads", "1"}),
+      second({"sweep", "run", grid_, "-o", at("both"), "-q", "--threads", "1"});
+  EXPECT_EQ(first.wait().code, kDone);
+  EXPECT_EQ(second.wait().code, kDone);
+  ASSERT_EQ(run(grid_, at("one")).code, kDone);
+  EXPECT_EQ(collected(grid_, at("both")), collected(grid_, at("one")));
+}
+
+TEST_F(Sweeps, AFullDiskIsOneSentenceAndTheSweepGoesOn) {
+  struct rlimit usual {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &usual), 0);
+  for (const rlim_t bytes : {rlim_t{400}, rlim_t{800}}) {  // no room for a scene; none for a result
+    const rlimit limit{bytes, usual.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    const Ran ran = run(grid_, at("f"));
+    ::setrlimit(RLIMIT_FSIZE, &usual);
+    EXPECT_EQ(ran.code, kPartial) << bytes;
+    EXPECT_NE(ran.err.find("the same command goes on"), std::string::npos) << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+  EXPECT_EQ(run(grid_, at("f")).code, kDone);
+  ASSERT_EQ(run(grid_, at("one")).code, kDone);
+  EXPECT_EQ(collected(grid_, at("f")), collected(grid_, at("one")));
+}
+
+TEST_F(Sweeps, ASearchBracketsTheOnsetOfBouncingWhateverTheEngine) {
+  const std::string plan = at("search.toml");
+  write(plan, "seed = 3\nresults = [\"s_b\"]\n" + std::string(kScene) +
+                  "start.perturbation = 1e-9\n[search]\nverdict = \"bouncing\"\nrange = [1.0, 1.6]\nwidth = "
+                  "0.1\nruns = 20\n");
+  ASSERT_EQ(run(plan, at("s"), {"--threads", "1"}).code, kDone);
+  const std::string one = collected(plan, at("s"));
+  const auto document = nlohmann::json::parse(bytes_of(at("s.json")));
+  ASSERT_EQ(document["onsets"].size(), 1U);
+  const auto& onset = document["onsets"][0];
+  EXPECT_TRUE(onset["complete"]);
+  // A completely inelastic rigid bed crosses s_b = sigma/30 at Gamma = 1.1636; a bed of beads nearby.
+  EXPECT_GT(onset["value"], 1.06);
+  EXPECT_LT(onset["value"], 1.30);
+  EXPECT_LT(onset["low"], onset["value"]);
+  EXPECT_GT(onset["high"], onset["value"]);
+  ASSERT_EQ(run(plan, at("t"), {"--threads", "2"}).code, kDone);
+  EXPECT_EQ(collected(plan, at("t")), one);
+}
+
+TEST_F(Sweeps, WhereNothingFlipsTheOnsetIsALimit) {
+  const std::string plan = at("none.toml");
+  write(plan, "results = [\"s_b\"]\n" + std::string(kScene) +
+                  "[search]\nverdict = \"bouncing\"\nrange = [0.5, 0.9]\nwidth = 0.2\nruns = 12\n");
+  ASSERT_EQ(run(plan, at("n")).code, kDone);
+  collected(plan, at("n"));
+  const auto onset = nlohmann::json::parse(bytes_of(at("n.json")))["onsets"][0];
+  EXPECT_TRUE(onset["value"].is_null());
+  EXPECT_TRUE(onset["high"].is_null());
+  EXPECT_EQ(onset["yes"], 0);
+  EXPECT_NE(onset["text"].get<std::string>().find("above"), std::string::npos) << onset;
+}
+
+TEST_F(Sweeps, ARunStopsEarlyWithTheSameAnswerAndSaysWhy) {
+  const std::string tail = "[search]\nverdict = \"bouncing\"\nrange = [1.0, 1.6]\nwidth = 0.3\nruns = 3\n";
+  const std::string scene = R"(
+[scene]
+preset = "fortini-huang-2015"
+cell.width = 6.0
+beads.layers = 3
+time = { integrator = "split", steps_per_contact = 6.37, discard = 1, cycles = 60, phases = 10 }
+)";
+  write(at("long.toml"), "results = [\"s_b\"]\n" + scene + tail);
+  write(at("short.toml"), "results = [\"s_b\"]\nstop_early = true\n" + scene + tail);
+  ASSERT_EQ(run(at("long.toml"), at("long")).code, kDone);
+  ASSERT_EQ(run(at("short.toml"), at("short")).code, kDone);
+  collected(at("long.toml"), at("long"));
+  collected(at("short.toml"), at("short"));
+  const auto whole = nlohmann::json::parse(bytes_of(at("long.json")))["points"];
+  const auto early = nlohmann::json::parse(bytes_of(at("short.json")))["points"];
+  ASSERT_EQ(whole.size(), early.size());
+  int stopped = 0;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_EQ(whole[i]["answer"], early[i]["answer"]);
+    EXPECT_EQ(whole[i]["n_cycles"], 60);
+    if (!early[i].contains("stopped")) continue;
+    ++stopped;
+    EXPECT_LT(early[i]["n_cycles"], 60);
+  }
+  EXPECT_GE(stopped, 1);
+}
+
+TEST_F(Sweeps, TheResultsAreThoseOfSimulateAndAnalyze) {
+  const std::string plan = at("one.toml");
+  write(plan, std::string(kScene) + "[axes]\ndrive.gamma = [1.6]\n");
+  ASSERT_EQ(run(plan, at("o"), {"--keep-trajectories"}).code, kDone);
+  const fs::path point = fs::directory_iterator(at("o") + "/points")->path();
+  const auto swept = nlohmann::json::parse(bytes_of(point / "result.json"))["results"];
+  const auto scene = nlohmann::json::parse(bytes_of(point / "point.json"))["scene"].get<std::string>();
+  write(at("scene.toml"), scene);
+  ASSERT_EQ(run_program({"simulate", at("scene.toml"), "-o", at("sim.h5"), "-q"}).code, kDone);
+  for (const std::string& file : {at("sim.h5"), (point / "trajectory.h5").string()}) {
+    const Ran analysed = run_program({"analyze", file, "--json", "-q"});
+    ASSERT_EQ(analysed.code, kDone) << analysed.err;
+    EXPECT_EQ(nlohmann::json::parse(analysed.out)["results"], swept) << file;
+  }
+}
+
+TEST_F(Sweeps, WrongPlansAreRefusedInOneSentence) {
+  const auto refused = [&](const std::string& text, const std::vector<std::string>& mentioned,
+                           int code = kUsage) {
+    write(at("bad.toml"), text);
+    const Ran ran = run(at("bad.toml"), at("bad"));
+    EXPECT_EQ(ran.code, code) << text << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    for (const auto& word : mentioned)
+      EXPECT_NE(ran.err.find(word), std::string::npos) << word << "\n" << ran.err;
+  };
+  const std::string scene = kScene;
+  refused("seed = 1\n", {"bad.toml", "scene"});
+  refused("scene = \"none.toml\"\n", {"none.toml"}, kInput);
+  refused(scene + "[axes]\ndrive.gama = [1.0]\n", {"drive.gama", "drive.gamma"});
+  refused(scene + "[axes]\ndrive.gamma = [-1.0]\n", {"-1"});
+  refused(scene + "[axes]\ndrive.gamma = []\n", {"bad.toml", "no values"});
+  refused(scene + "[search]\nrange = [1.0, 2.0]\nwidth = 0.1\n", {"verdict"});
+  refused(scene + "[search]\nverdict = \"flying\"\nrange = [1.0, 2.0]\nwidth = 0.1\n",
+          {"flying", "bouncing"});
+  refused(scene + "[search]\nverdict = \"bouncing\"\nrange = [2.0, 1.0]\nwidth = 0.1\n",
+          {"bad.toml", "range"});
+  refused(scene + "[search]\nresult = \"q7\"\nabove = 1\nrange = [1.0, 2.0]\nwidth = 0.1\n", {"q7", "q6"});
+  refused("stop_early = true\n" + scene, {"stop_early"});
+  refused("sedd = 3\n" + scene, {"sedd", "seed"});
+  for (const char* shard : {"0/3", "4/3", "1/0", "x", "1/2/3"}) {
+    const Ran ran = run(grid_, at("bad"), {"--shard", shard});
+    EXPECT_EQ(ran.code, kUsage) << shard;
+    EXPECT_NE(ran.err.find("--shard"), std::string::npos) << ran.err;
+  }
+}
+
+TEST_F(Sweeps, PlanAndStatusSayHowFarItIs) {
+  EXPECT_EQ(run_program({"sweep", "status", grid_, "-o", at("p")}).code, kInput);
+  ASSERT_EQ(run_program({"sweep", "plan", grid_, "-o", at("p"), "-q"}).code, kDone);
+  const auto status = [&] {
+    const Ran ran = run_program({"sweep", "status", grid_, "-o", at("p"), "--json"});
+    EXPECT_EQ(ran.code, kDone) << ran.err;
+    return nlohmann::json::parse(ran.out);
+  };
+  EXPECT_EQ(status()["points"], 8);
+  EXPECT_EQ(status()["done"], 0);
+  EXPECT_FALSE(status()["complete"]);
+  ASSERT_EQ(run(grid_, at("p"), {"--shard", "1/2"}).code, kDone);
+  EXPECT_EQ(status()["done"], 4);
+  EXPECT_GT(status()["core_seconds_left"], 0);
+  ASSERT_EQ(run(grid_, at("p")).code, kDone);
+  EXPECT_TRUE(status()["complete"]);
+}
+
+TEST_F(Sweeps, ADamagedResultIsNotRead) {
+  ASSERT_EQ(run(grid_, at("d")).code, kDone);
+  const fs::path point = fs::directory_iterator(at("d") + "/points")->path();
+  write(point / "result.json", "{\"id\": \"");
+  const Ran ran = run(grid_, at("d"));
+  EXPECT_EQ(ran.code, kInput);
+  EXPECT_NE(ran.err.find((point / "result.json").string()), std::string::npos) << ran.err;
+  fs::remove(point / "result.json");
+  EXPECT_EQ(run(grid_, at("d")).code, kDone);
+}
+
+}  // namespace
+}  // namespace twincell

@@ -1,0 +1,108 @@
+// Onsets drawn from a known law are found again, with intervals that cover as often as they say.
+
+#include "sweep/onset.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace twincell::sweep {
+namespace {
+
+/// A search as a sweep makes it, on answers drawn from P(yes at x) = 1/(1 + exp(-(x - mu)/w)); w = 0: a step.
+struct Search {
+  double mu, w, low = 1, high = 3, width = 0.2;
+  int runs = 40;
+
+  [[nodiscard]] Onset run(std::mt19937_64& random) const {
+    std::vector<Trial> trials;
+    Onset onset = estimate_onset(trials, low, high, width);
+    while (static_cast<int>(trials.size()) < runs && !settled(onset, low, high, width)) {
+      for (const double x : next_places(onset, low, high, width, 3)) {
+        const double p = w > 0 ? 1 / (1 + std::exp(-(x - mu) / w)) : (x > mu ? 1 : 0);
+        trials.push_back({x, std::uniform_real_distribution<>(0, 1)(random) < p});
+      }
+      onset = estimate_onset(trials, low, high, width);
+    }
+    return onset;
+  }
+};
+
+TEST(Onset, AStepIsFoundAndClosedOnBothSides) {
+  std::mt19937_64 random(1);
+  for (const double mu : {1.31, 1.8642, 2.4713}) {
+    const Onset onset = Search{mu, 0}.run(random);
+    ASSERT_TRUE(onset.value && onset.low && onset.high) << onset.text();
+    EXPECT_NEAR(*onset.value, mu, 0.1);
+    EXPECT_LT(*onset.low, mu);
+    EXPECT_GT(*onset.high, mu);
+    EXPECT_LE(*onset.high - *onset.low, 0.2 + 1e-9);
+    EXPECT_LE(onset.n, 40U);
+  }
+}
+
+TEST(Onset, IntervalsCoverAsOftenAsTheySay) {
+  std::mt19937_64 random(2015);
+  constexpr int kSearches = 60;
+  for (const double w : {0.03, 0.1}) {
+    int covered = 0;
+    double sum = 0;
+    for (int k = 0; k < kSearches; ++k) {
+      const double mu = std::uniform_real_distribution<>(1.6, 2.4)(random);
+      const Onset onset = Search{.mu = mu, .w = w}.run(random);
+      covered += onset.low.value_or(-1e9) <= mu && mu <= onset.high.value_or(1e9) ? 1 : 0;
+      sum += onset.value.value_or(mu) - mu;
+    }
+    // 95 % of 60 are 57; fewer than 51 would come once in hundreds of such tests.
+    EXPECT_GE(covered, 51) << w;
+    EXPECT_NEAR(sum / kSearches, 0, 0.03) << w;
+  }
+  // The interval is not merely wide: a law as noisy as this is known to a few of its own widths.
+  const Onset onset = Search{.mu = 2, .w = 0.1, .runs = 60}.run(random);
+  ASSERT_TRUE(onset.low && onset.high);
+  EXPECT_LT(*onset.high - *onset.low, 0.5);
+}
+
+TEST(Onset, ASingleFlipIsNoOnset) {
+  const Onset onset = estimate_onset({{1.4, false}, {1.6, true}}, 1, 3, 0.1);
+  EXPECT_FALSE(onset.low && onset.high && *onset.high - *onset.low < 1);
+}
+
+TEST(Onset, AllOrNoneIsALimit) {
+  std::mt19937_64 random(3);
+  const Onset never = Search{9, 0}.run(random), always = Search{-9, 0}.run(random);
+  EXPECT_FALSE(never.value || never.high);
+  ASSERT_TRUE(never.low);
+  EXPECT_GT(*never.low, 2.5);
+  EXPECT_NE(never.text().find("above"), std::string::npos);
+  EXPECT_FALSE(always.value || always.low);
+  ASSERT_TRUE(always.high);
+  EXPECT_LT(*always.high, 1.5);
+  EXPECT_NE(always.text().find("below"), std::string::npos);
+}
+
+// ln L = 4 ln(1/2) at a lone heap of two noes and two yeses: the profile is flat in the widest w's limit, and
+// symmetric about the heap.
+TEST(Onset, TheEstimateIsSymmetric) {
+  const Onset onset = estimate_onset(
+      {{1.5, false}, {1.5, false}, {2.5, true}, {2.5, true}, {2, true}, {2, false}}, 1, 3, 0.1);
+  ASSERT_TRUE(onset.value);
+  EXPECT_NEAR(*onset.value, 2, 1e-6);
+}
+
+TEST(Onset, RunsGoWhereTheOnsetMayBe) {
+  std::vector<Trial> trials;
+  for (int k = 0; k < 6; ++k) {
+    trials.push_back({1.5, false});
+    trials.push_back({2.0, true});
+  }
+  const Onset onset = estimate_onset(trials, 1, 3, 0.1);
+  for (const double x : next_places(onset, 1, 3, 0.1, 3)) {
+    EXPECT_GE(x, 1.4);
+    EXPECT_LE(x, 2.1);
+  }
+}
+
+}  // namespace
+}  // namespace twincell::sweep
