@@ -47,7 +47,8 @@ TEST(AnalyzeSpatial, FiguresAppearTogether) {
   ASSERT_EQ(ran.code, 0) << ran.err;
   std::vector<std::string> expected;
   for (const char* name : {"convection_field", "defect_evolution", "lattice", "profiles"})
-    for (const char* ending : {".dat", ".gp", ".png", ".svg"}) expected.push_back(std::string(name) + ending);
+    for (const char* ending : {".dat", ".gp", ".pdf", ".png", ".svg"})
+      expected.push_back(std::string(name) + ending);
   EXPECT_EQ(names_in(folder / "figures"), expected);
   EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"bed.h5", "figures"}));
   EXPECT_EQ(read_text_file(folder / "figures/lattice.svg").find("nan"), std::string::npos);

@@ -52,7 +52,7 @@ TEST(Cost, SaysWhatAccuracyCosts) {
 
   EXPECT_EQ(names_in(folder / "cost"),
             (std::vector<std::string>{"table.txt", "work_precision.dat", "work_precision.gp",
-                                      "work_precision.png", "work_precision.svg"}));
+                                      "work_precision.pdf", "work_precision.png", "work_precision.svg"}));
 }
 
 TEST(Cost, SaysWhatLocatingCosts) {
@@ -82,9 +82,9 @@ TEST(Cost, SaysWhatLocatingCosts) {
   }
   ASSERT_EQ(d["cheapest"].size(), 2U);
   for (const auto& c : d["cheapest"]) EXPECT_LE(c["setting"]["rms_px"], 0.02);
-  EXPECT_EQ(
-      names_in(folder / "cost"),
-      (std::vector<std::string>{"locating.dat", "locating.gp", "locating.png", "locating.svg", "table.txt"}));
+  EXPECT_EQ(names_in(folder / "cost"),
+            (std::vector<std::string>{"locating.dat", "locating.gp", "locating.pdf", "locating.png",
+                                      "locating.svg", "table.txt"}));
 }
 
 TEST(Cost, RefusesBeforeItMeasures) {

@@ -38,7 +38,7 @@ TEST(Fit, TextJsonAndPictureSayTheSame) {
   EXPECT_FALSE(document["stop_reason"].get<std::string>().empty());
   EXPECT_EQ(document["covariance"].size(), 2U);
   EXPECT_EQ(names_in(folder / "fit"),
-            (std::vector<std::string>{"fit.dat", "fit.gp", "fit.json", "fit.png", "fit.svg"}));
+            (std::vector<std::string>{"fit.dat", "fit.gp", "fit.json", "fit.pdf", "fit.png", "fit.svg"}));
   EXPECT_EQ(nlohmann::json::parse(read_text_file(folder / "fit/fit.json"))["parameters"],
             document["parameters"]);
 
