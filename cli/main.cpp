@@ -9,6 +9,7 @@
 #include "analysis/trajectory/config.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/hdf5.hpp"
+#include "analysis/trajectory/kept_memory.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
 
@@ -19,8 +20,8 @@ using namespace twincell::cli;
 
 // In the order in which a newcomer needs them.
 constexpr AddVerb kVerbs[] = {
-    add_locate, add_track,   add_explain, add_simulate, add_render, add_analyze,  add_sweep, add_reproduce,
-    add_match,  add_compare, add_fit,     add_info,     add_validate, add_export, add_import, add_cost,
+    add_locate, add_track,   add_explain, add_simulate, add_render,   add_analyze, add_sweep,  add_reproduce,
+    add_match,  add_compare, add_fit,     add_info,     add_validate, add_export,  add_import, add_cost,
 };
 
 int complain(const std::string& sentence, ExitCode code) {
@@ -94,6 +95,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   watch_signals();
   h5::quiet();
   try {

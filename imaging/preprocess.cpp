@@ -157,13 +157,18 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
   Prepared p;
   p.light = bright_envelope(image);
   p.darkness = cv::Mat1f(image.rows, image.cols + kSpareColumns, 0.0F).colRange(0, image.cols);
+  constexpr float kLeastLight = 1e-20F;
+  std::vector<float> bright(static_cast<std::size_t>(image.cols));
   for (int y = 0; y < image.rows; ++y) {
     const SurfaceRow light = surface_row(p.light, y, image.size());
     const float* i = image[y];
-    float* d = p.darkness[y];
+    float *d = p.darkness[y], *b = bright.data();
+    // In steps of one kind each: of a division and a choice together the compiler makes no vectors.
+    for (int x = 0; x < image.cols; ++x) b[x] = light.at(x);
+    for (int x = 0; x < image.cols; ++x) d[x] = 1 - i[x] / std::max(b[x], kLeastLight);
     for (int x = 0; x < image.cols; ++x) {
-      const float b = light.at(x), value = 1 - i[x] / (b > 0 ? b : 1.0F);
-      d[x] = b > 0 ? std::min(2.0F, std::max(-1.0F, value)) : 0.0F;
+      const float bounded = std::min(2.0F, std::max(-1.0F, d[x]));
+      d[x] = b[x] > 0 ? bounded : 0.0F;
     }
   }
   p.opaque = large_dark_regions(p.darkness, options.opaque_radii * radius_px);

@@ -83,12 +83,22 @@ class PictureFit {
     b.darkness = beliefs_[1].mean;
     // A proposal that is bright inside is a void or a clear bead, one with its centre in a wall is the wall's
     // edge; fitted along, they would spoil their neighbours.
-    if (in_wall(image_, b))
+    const double inside = rough_interior(image_, b);
+    if (in_wall(image_, b)) {
       drop(b, Verdict::in_wall);
-    else if (rough_interior(image_, b) < kMinInterior)
+    } else if (inside < kMinInterior) {
       drop(b, Verdict::bright_inside);
-    else
+    } else {
       beads_.push_back(b);
+      interiors_.push_back(inside);
+    }
+  }
+
+  /// Before the first sweep: most beads are as dark as the insides of those proposed.
+  void expect_as_dark_as_seen() {
+    if (interiors_.empty()) return;
+    beliefs_[1].mean = upper_median(std::move(interiors_));
+    for (Detection& b : beads_) b.darkness = beliefs_[1].mean;
   }
 
   struct Moved {
@@ -219,66 +229,91 @@ class PictureFit {
     return {std::move(beads_), std::move(dropped_), std::sqrt(blur_.variance), sweeps_};
   }
 
-  /// Whether blur differs clearly between directions. If not, what there is of it is taken back.
-  bool moves() {
-    constexpr double kClear = 0.1;  // of s^2
-    const auto [xx, xy, yy] = blur_.motion;
-    const double spread = std::hypot(xx - yy, 2 * xy);
-    if (spread > kClear * blur_.variance) return true;
-    blur_.variance += 0.5 * (xx + yy);
-    blur_.motion = {};
-    return false;
-  }
+  /// Whether the blur was found to differ between directions.
+  [[nodiscard]] bool moves() const { return moves_.value_or(false); }
 
  private:
-  /// The step of the blur, which all discs share, given that each disc's four follow it.
-  class BlurStep {
-   public:
-    explicit BlurStep(BlurFit fit) : n_(fit == BlurFit::none ? 0 : fit == BlurFit::round ? 1 : 3) {}
-    void learn(const RingSums& s, const Normal& block, const Step& right) {
-      if (n_ == 0) return;
-      Eigen::Matrix<double, kFitted, 3> c;
-      for (int m = 0; m < kFitted; ++m)
-        for (int q = 0; q < 3; ++q)
-          c(m, q) =
-              s.jb[std::size_t{RingSums::kBlurs} * static_cast<std::size_t>(m) + static_cast<std::size_t>(q)];
-      Eigen::Matrix<double, kFitted, 3> followed = Eigen::Matrix<double, kFitted, 3>::Zero();
-      const Eigen::LLT<Normal> solver(block);
-      for (int q = 0; q < n_; ++q) followed.col(q) = solver.solve(c.col(q));
-      std::size_t at = 0;
-      for (int m = 0; m < n_; ++m) {
-        for (int q = 0; q <= m; ++q, ++at) normal_(m, q) += s.bb[at] - c.col(m).dot(followed.col(q));
-        right_[m] += s.br[static_cast<std::size_t>(m)] - followed.col(m).dot(right);
-      }
-    }
-    /// \returns by what share of s^2 it changed
-    double apply(EdgeBlur& blur) const {
-      constexpr double kLeast = 0.09, kMost = 9;
-      const double old = blur.variance;
-      if (n_ == 1 && normal_(0, 0) > 0) {
-        const double step = right_[0] / normal_(0, 0);
-        blur.variance = std::clamp(old + std::clamp(step, -0.5 * old, old), kLeast, kMost);
-        return std::abs(blur.variance / old - 1);
-      }
-      if (n_ != 3) return 0;
-      Eigen::Matrix3d normal = normal_;
-      normal(0, 1) = normal(1, 0), normal(0, 2) = normal(2, 0), normal(1, 2) = normal(2, 1);
-      const Eigen::Vector3d step = normal.ldlt().solve(right_);
-      if (!step.allFinite()) return 0;
-      double most = 0;
-      for (int q = 0; q < 3; ++q) {
-        const double bounded = std::clamp(step[q], -0.5 * old, 2 * old);
-        blur.motion[static_cast<std::size_t>(q)] += bounded;
-        most = std::max(most, std::abs(bounded) / old);
-      }
-      return most;
-    }
-
-   private:
-    int n_;
-    Eigen::Matrix3d normal_ = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
+  /// What all discs' equations share with those of the blur: one unknown (s_0^2) or three (Q).
+  struct BlurEquations {
+    std::vector<std::vector<Step>> shared;  // for each unknown, of each disc
+    Eigen::MatrixXd normal;
+    Eigen::VectorXd right;
   };
+  [[nodiscard]] BlurEquations blur_equations(BlurFit fit) const {
+    const int n = fit == BlurFit::none ? 0 : fit == BlurFit::round ? 1 : RingSums::kBlurs;
+    BlurEquations e{std::vector(static_cast<std::size_t>(n), std::vector<Step>(sums_.size())),
+                    Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      const RingSums& s = sums_[k];
+      std::size_t at = 0;
+      for (int q = 0; q < n; ++q) {
+        for (int p = 0; p <= q; ++p, ++at) e.normal(q, p) = e.normal(p, q) += s.bb[at];
+        e.right[q] += s.br[static_cast<std::size_t>(q)];
+        for (int m = 0; m < kFitted; ++m)
+          e.shared[static_cast<std::size_t>(q)][k][m] =
+              s.jb[static_cast<std::size_t>(RingSums::kBlurs * m + q)];
+      }
+    }
+    return e;
+  }
+  /// Those of a round blur, which is Q_xx = Q_yy.
+  static BlurEquations rounded(const BlurEquations& e) {
+    BlurEquations r{{e.shared[0]}, Eigen::MatrixXd::Zero(1, 1), Eigen::VectorXd::Zero(1)};
+    for (std::size_t k = 0; k < r.shared[0].size(); ++k) r.shared[0][k] += e.shared[2][k];
+    r.normal(0, 0) = e.normal(0, 0) + 2 * e.normal(0, 2) + e.normal(2, 2);
+    r.right[0] = e.right[0] + e.right[2];
+    return r;
+  }
+
+  /// The step of the blur, bounded, with what the discs' steps change by through it: disc and blur together,
+  /// for a blur that were to follow one sweep behind would take twice as many of them.
+  Eigen::VectorXd blur_step(const BlurEquations& e, const std::vector<Normal>& blocks,
+                            const std::vector<Coupling>& couplings, std::vector<Step>& steps) const {
+    const auto n = static_cast<Eigen::Index>(e.shared.size());
+    std::vector<std::vector<Step>> follow;
+    Eigen::MatrixXd normal = e.normal;
+    Eigen::VectorXd right = e.right;
+    for (Eigen::Index q = 0; q < n; ++q) {
+      const std::vector<Step>& shared = e.shared[static_cast<std::size_t>(q)];
+      follow.push_back(coupled_step(blocks, couplings, shared));
+      for (std::size_t k = 0; k < steps.size(); ++k) {
+        right[q] -= shared[k].dot(steps[k]);
+        for (Eigen::Index p = 0; p < n; ++p)
+          normal(p, q) -= e.shared[static_cast<std::size_t>(p)][k].dot(follow.back()[k]);
+      }
+    }
+    Eigen::VectorXd step = normal.ldlt().solve(right);
+    if (!step.allFinite()) return Eigen::VectorXd::Zero(n);
+    for (Eigen::Index q = 0; q < n; ++q) {
+      step[q] = std::clamp(step[q], -0.5 * blur_.variance, blur_.variance);
+      for (std::size_t k = 0; k < steps.size(); ++k)
+        steps[k] -= step[q] * follow[static_cast<std::size_t>(q)][k];
+    }
+    return step;
+  }
+
+  /// Fits the blur along with the discs. Whether it differs clearly between directions is seen once, by the
+  /// first step that asks; if not, it is taken for round. \returns by what share of s^2 it changed
+  double fit_blur(BlurFit fit, const std::vector<Normal>& blocks, std::vector<Step>& steps) {
+    constexpr double kClear = 0.1;  // of s^2
+    constexpr double kLeast = 0.09, kMost = 9;
+    if (fit == BlurFit::none) return 0;
+    BlurEquations equations = blur_equations(fit);
+    if (fit == BlurFit::motion && !moves_) {
+      std::vector<Step> alone = steps;
+      const Eigen::VectorXd q = blur_step(equations, blocks, {}, alone);
+      moves_ = std::hypot(q[0] - q[2], 2 * q[1]) > kClear * blur_.variance;
+    }
+    if (fit == BlurFit::motion && !*moves_) equations = rounded(equations);
+    const double old = blur_.variance;
+    const Eigen::VectorXd step = blur_step(equations, blocks, couplings_, steps);
+    if (step.size() == 1) {
+      blur_.variance = std::clamp(old + step[0], kLeast, kMost);
+      return std::abs(blur_.variance / old - 1);
+    }
+    for (Eigen::Index q = 0; q < step.size(); ++q) blur_.motion[static_cast<std::size_t>(q)] += step[q];
+    return step.cwiseAbs().maxCoeff() / old;
+  }
 
   /// How much R and a differ from bead to bead, from the beads themselves: the scatter less what the fit
   /// alone would scatter.
@@ -342,13 +377,11 @@ class PictureFit {
     std::vector<Disc> discs(n);
     std::vector<Normal> blocks(n);
     std::vector<Step> right(n);
-    BlurStep blur(fit);
     for (std::size_t k = 0; k < n; ++k) {
       discs[k] = disc_of(beads_[k]);
       blocks[k] = normal_of(sums_[k]);
       right[k] = right_side(sums_[k]);
       believe(beads_[k], blocks[k], right[k]);
-      blur.learn(sums_[k], blocks[k], right[k]);
       blocks[k].diagonal() *= 1 + damping_;
     }
     std::vector<Step> steps(n);
@@ -364,6 +397,7 @@ class PictureFit {
     }
     std::vector<double> far(n), sigma(n);
     Moved moved{0, 0, 0, damping_ > 0.1};
+    moved.blur = fit_blur(fit, blocks, steps);
     for (std::size_t k = 0; k < n; ++k) {
       far[k] = apply(beads_[k], steps[k]);
       if (sweeps_ > 1) wandered_[k] += far[k] + std::abs(steps[k][kA]);
@@ -377,7 +411,6 @@ class PictureFit {
       moved.rms = std::sqrt(moved.rms / static_cast<double>(2 * (most + 1)));
       moved.sigma = upper_median(std::move(sigma));
     }
-    moved.blur = blur.apply(blur_);
     unsettled_ = sweeps_ == 1 ? kLeftByFirst * moved.rms : 0;
     stale_ = true;
     return moved;
@@ -501,6 +534,7 @@ class PictureFit {
   cv::Mat1f picture_, model_;      // with spare columns; darkness, sum of all a P
   bool stale_ = true;              // the model is not that of the beads
   std::vector<Detection> beads_, dropped_;
+  std::vector<double> interiors_;      // of the proposals
   std::vector<RingSums> sums_;         // of the last sweep
   std::vector<RingSums> sums_before_;  // of the sweep before that
   struct State {
@@ -513,6 +547,7 @@ class PictureFit {
   int sweeps_ = 0;
   double unsettled_ = 0;             // px, by which the places may be off beside the noise
   std::vector<Coupling> couplings_;  // empty after the set of beads was changed
+  std::optional<bool> moves_;        // whether the blur differs between directions, once asked
   std::vector<double> wandered_;     // of each bead since its couplings were found, px and darkness
 };
 
@@ -532,6 +567,7 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
   PictureFit fit(image, radius_px, options);
   const int most_sweeps = options.method == "fast" ? 1 : options.sweeps;
   for (const Proposal& p : by_place(proposals, 2 * radius_px)) fit.add(p);
+  fit.expect_as_dark_as_seen();
   const BlurFit blur = options.blur_px > 0 ? BlurFit::none : BlurFit::round;
   constexpr int kLeast = 3;
   constexpr double kEnough = 0.1;        // of what a place is uncertain by
@@ -542,7 +578,10 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
   bool blurred = false;
   double before = HUGE_VAL;
   while (sweeps < most_sweeps) {
-    const auto moved = fit.sweep(blurred ? BlurFit::none : sweeps < kLeast - 1 ? blur : moving);
+    // Places that are far off look like blur: the first sweep has none.
+    const auto moved = fit.sweep(blurred || sweeps == 0 ? BlurFit::none
+                                 : sweeps < kLeast - 1  ? blur
+                                                        : moving);
     ++sweeps;
     blurred = blurred || (sweeps > kLeast && !moved.short_step && moved.blur < kBlurSettled);
     if (sweeps == kLeast && moving == BlurFit::motion && !fit.moves()) moving = BlurFit::round;

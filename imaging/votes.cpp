@@ -160,16 +160,16 @@ cv::Mat1f smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, dou
     sum += k == 0 ? w : 2 * w;
   }
   for (float& w : weights) w /= static_cast<float>(sum);
-  cv::Mat1f result(darkness.rows + 2 * pad, darkness.cols + 2 * pad);
+  const int columns = darkness.cols + 2 * pad;
+  cv::Mat1f result = cv::Mat1f(darkness.rows + 2 * pad, columns + int{kSpare}).colRange(0, columns);
   const auto wide = static_cast<std::size_t>(result.cols + 2 * kTail);
-  std::vector<float> column_sums(wide + kSpare), blurred(static_cast<std::size_t>(result.cols) + kSpare);
+  std::vector<float> column_sums(wide + kSpare);
   for (int y = 0; y < result.rows; ++y) {
     std::array<const float*, 2 * kTail + 1> from{};
     for (int k = 0; k <= 2 * kTail; ++k) from[static_cast<std::size_t>(k)] = votes[y + k];
     HWY_DYNAMIC_DISPATCH(blur_line)(from, weights, wide, column_sums.data());
     for (int k = 0; k <= 2 * kTail; ++k) from[static_cast<std::size_t>(k)] = column_sums.data() + k;
-    HWY_DYNAMIC_DISPATCH(blur_line)(from, weights, static_cast<std::size_t>(result.cols), blurred.data());
-    std::copy_n(blurred.data(), result.cols, result[y]);
+    HWY_DYNAMIC_DISPATCH(blur_line)(from, weights, static_cast<std::size_t>(columns), result[y]);
   }
   return result;
 }

@@ -23,6 +23,7 @@
 #include <set>
 #include <sstream>
 
+#include "analysis/trajectory/kept_memory.hpp"
 #include "bench/locate/contestants.hpp"
 #include "imaging/rendered/cases.hpp"
 #include "imaging/rendered/marks.hpp"
@@ -241,6 +242,7 @@ void tune() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  twincell::keep_freed_memory();
   Wanted wanted;
   CLI::App program("Locators against rendered truth and the Cramér-Rao bound");
   program.add_option("--case", wanted.cases, "Only this case");

@@ -52,6 +52,7 @@ double largest_difference(const rendered::Picture& picture, double snr) {
   for (const rendered::Disc& d : picture.discs) proposals.push_back({d.x + 0.3, d.y - 0.2, 1});
   RefineOptions options;
   options.sweeps = 100;
+  options.ring_px = kRing;
   const Refined refined = refine(image, proposals, 7.5, options);
   EXPECT_EQ(refined.beads.size(), picture.discs.size());
 
