@@ -1,9 +1,13 @@
 # What accuracy costs in time
-# gnuplot locating.gp draws locating.svg and locating.png
-do for [kind in 'svg png'] {
+# gnuplot locating.gp draws locating.svg, locating.pdf and locating.png
+do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 1260,440 dynamic enhanced font 'Arial,15' background 'white'
-} else {
+}
+if (kind eq 'pdf') {
+  set terminal pdfcairo size 14in,4.888888888888889in enhanced font 'sans,9' background 'white'
+}
+if (kind eq 'png') {
   set terminal pngcairo size 2016,704 enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale 1.6 background 'white'
 }
 set output 'locating.' . kind
@@ -20,7 +24,7 @@ set yrange [1e-3:5]
 set xlabel 'processor time, ms a frame of 1600 beads'
 set ylabel 'rms error per coordinate, px'
 set title '15 px, SNR 51; dashed: Cramér–Rao bound'
-plot 'locating.dat' index 0 using 1:2 with linespoints pt 7 ps 0.9 lw 2 lc rgb '#0072B2' title 'vote, then 0, 1, 2 … sweeps', 'locating.dat' index 0 using 1:3 with lines lw 1 dt 2 lc rgb '#0072B2' notitle, 'locating.dat' index 1 using 1:2 with points pt 9 ps 0.9 lw 2 lc rgb '#D55E00' title 'hough, alone and fitted', 'locating.dat' index 2 using 1:2 with points pt 11 ps 0.9 lw 2 lc rgb '#CC79A7' title 'vote, fast', 'locating.dat' index 3 using 1:2 with points pt 5 ps 0.9 lw 2 lc rgb '#009E73' title 'rings of 1.5 to 5 px'
+plot 'locating.dat' index 0 using 1:2 with linespoints pt 7 ps 0.9 lw 2 lc rgb '#0072B2' title 'vote, then 0, 1, 2 … sweeps', 'locating.dat' index 0 using 1:3 with lines lw 1 dt 2 lc rgb '#0072B2' notitle, 'locating.dat' index 1 using 1:2 with points pt 9 ps 0.9 lw 2 lc rgb '#D55E00' title 'hough, alone and fitted', 'locating.dat' index 2 using 1:2 with points pt 11 ps 0.9 lw 2 lc rgb '#CC79A7' title 'vote, edges', 'locating.dat' index 3 using 1:2 with points pt 5 ps 0.9 lw 2 lc rgb '#009E73' title 'rings of 1.5 to 5 px'
 set title 'noise, 15 px'
 plot 'locating.dat' index 4 using 1:2 with linespoints pt 7 ps 0.9 lw 2 lc rgb '#0072B2' title 'SNR 51', 'locating.dat' index 4 using 1:3 with lines lw 1 dt 2 lc rgb '#0072B2' notitle, 'locating.dat' index 5 using 1:2 with linespoints pt 9 ps 0.9 lw 2 lc rgb '#D55E00' title 'SNR 164', 'locating.dat' index 5 using 1:3 with lines lw 1 dt 2 lc rgb '#D55E00' notitle, 'locating.dat' index 6 using 1:2 with linespoints pt 5 ps 0.9 lw 2 lc rgb '#009E73' title 'SNR 18.5', 'locating.dat' index 6 using 1:3 with lines lw 1 dt 2 lc rgb '#009E73' notitle, 'locating.dat' index 7 using 1:2 with linespoints pt 11 ps 0.9 lw 2 lc rgb '#CC79A7' title 'SNR 8.5', 'locating.dat' index 7 using 1:3 with lines lw 1 dt 2 lc rgb '#CC79A7' notitle
 set title 'pixels per bead, SNR 51'
