@@ -135,7 +135,8 @@ struct Ring {
     const int last_row = std::min(frame.height - 1 - base_y, floor_of(y + far));
     const int last_column = frame.width - 1 - base_x;
     const V from_centre = hn::Sub(hn::Iota(tag, 0.0F), hn::Set(tag, x));
-    for (int row = first_row; row <= last_row; row += row_step) {
+    const int beside = (base_y + first_row) % row_step;
+    for (int row = first_row + (beside > 0 ? row_step - beside : 0); row <= last_row; row += row_step) {
       const float dy = static_cast<float>(row) - y, half = std::sqrt(std::max(0.0F, far * far - dy * dy));
       const bool holed = near - std::abs(dy) > 0.5F * n;
       const float gap = holed ? std::sqrt(near * near - dy * dy) : -1.0F;
@@ -380,12 +381,12 @@ RingSums motion_blur(const RingArgs& args, const Disc& disc) {
   return Sums<BlurFit::motion>::of(args, disc);
 }
 
-void add(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, double factor) {
+void add(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, int row_step) {
   const Ring ring(disc, blur);
   const Tag tag;
   const double s = std::sqrt(blur.variance + std::max(0.0, blur.motion[0] + blur.motion[2]));
-  const V a = set(factor * disc.darkness);
-  ring.over<true>(frame_of(model), disc.radius - kFar * s, disc.radius + kFar * s, 1,
+  const V a = set(disc.darkness);
+  ring.over<true>(frame_of(model), disc.radius - kFar * s, disc.radius + kFar * s, row_step,
                   [&](int row, int column, V dx, V dy, bool inside) HWY_ATTR {
                     float* at = model.ptr<float>(ring.base_y + row) + ring.base_x + column;
                     const V old = hn::LoadU(tag, at);
@@ -449,8 +450,8 @@ PairSums pair_sums(const RingArgs& args, const Disc& i, const Disc& j) {
   return HWY_DYNAMIC_DISPATCH(pair)(args, i, j);
 }
 
-void add_disc(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, double factor) {
-  HWY_DYNAMIC_DISPATCH(add)(model, disc, blur, factor);
+void add_disc(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, int row_step) {
+  HWY_DYNAMIC_DISPATCH(add)(model, disc, blur, row_step);
 }
 
 DiscMoments disc_moments(const cv::Mat1f& picture, cv::Size size, const Disc& disc) {

@@ -38,7 +38,7 @@ struct RingArgs {
   const cv::Mat1f* model;    ///< T = sum of a P over all discs
   EdgeBlur blur;
   double ring = 3;              ///< pixels with |r - R| < ring count
-  int row_step = 1;             ///< every so many rows
+  int row_step = 1;             ///< only rows whose number is a multiple of it
   double dark_variance = 1e-3;  ///< of the noise in a dark pixel (T = 1), darkness^2
   double light_variance = 0;    ///< what full light adds to it: v = v_d + v_l (1 - T)
   double huber = 0.1;           ///< residuals beyond are weighted down
@@ -70,8 +70,9 @@ RingSums ring_sums(const RingArgs& args, const Disc& disc, BlurFit fit);
 using PairSums = std::array<double, 16>;
 PairSums pair_sums(const RingArgs& args, const Disc& i, const Disc& j);
 
-/// Adds factor a P to the model, out to where P vanishes.
-void add_disc(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, double factor = 1);
+/// Adds a P to the model, out to where P vanishes, in every row or in those whose number is a multiple of
+/// `row_step`.
+void add_disc(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, int row_step = 1);
 
 /// Sums over the pixels nearer than R to a disc's centre of v = max(d, 0), with dx and dy from the centre.
 struct DiscMoments {

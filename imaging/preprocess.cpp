@@ -156,7 +156,9 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
   }
   Prepared p;
   p.light = bright_envelope(image);
-  p.darkness = cv::Mat1f(image.rows, image.cols + kSpareColumns, 0.0F).colRange(0, image.cols);
+  cv::Mat1f with_spare(image.rows, image.cols + kSpareColumns);
+  with_spare.colRange(image.cols, with_spare.cols).setTo(kUnseen);
+  p.darkness = with_spare.colRange(0, image.cols);
   constexpr float kLeastLight = 1e-20F;
   std::vector<float> bright(static_cast<std::size_t>(image.cols));
   for (int y = 0; y < image.rows; ++y) {

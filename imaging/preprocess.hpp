@@ -32,7 +32,7 @@ struct Prepared {
   Surface light =
       Surface::Zero();  ///< B, grey levels: quadratic surface through the light that reaches the camera
   cv::Mat1f darkness;   ///< d = 1 - I/B: 0 where the light shines, about 1 in an opaque disc; behind each row
-                        ///< kSpareColumns more floats may be read
+                        ///< stand kSpareColumns more, kUnseen
   cv::Mat1b opaque;     ///< 255 on walls, plate and other dark regions too large to be beads and within two
                         ///< pixels of them; empty if there are none
 };

@@ -67,12 +67,11 @@ class PictureFit {
         beliefs_{Belief{radius, options.radius_spread * radius}, Belief{1, 0.3}} {
     const double s = options.blur_px > 0 ? options.blur_px : 0.8;
     blur_.variance = s * s;
-    picture_.create(size_.height, size_.width + kSpareColumns);
-    for (int y = 0; y < size_.height; ++y) {
-      std::copy_n(image.darkness[y], size_.width, picture_[y]);
-      std::fill_n(picture_[y] + size_.width, kSpareColumns, kUnseen);
-    }
-    if (!image.opaque.empty()) picture_.colRange(0, size_.width).setTo(kUnseen, image.opaque);
+    picture_ = image.darkness;
+    picture_.adjustROI(0, 0, 0, kSpareColumns);
+    if (image.opaque.empty()) return;
+    own_picture();
+    picture_.colRange(0, size_.width).setTo(kUnseen, image.opaque);
   }
 
   void add(const Proposal& p) {
@@ -174,6 +173,7 @@ class PictureFit {
     if (n < kEnough) return;
     a.diagonal().tail<5>().array() += 1e-3 * weights;
     const Surface q = a.ldlt().solve(right);
+    own_picture();
     std::vector<float> levelled(static_cast<std::size_t>(size_.width));
     for (int y = 0; y < size_.height; ++y) {
       float *d = picture_[y], *level = levelled.data();
@@ -367,7 +367,7 @@ class PictureFit {
   }
 
   void evaluate(const RingArgs& args, BlurFit fit) {
-    if (stale_) render();
+    if (stale_) render(args.row_step);
     sums_.resize(beads_.size());
     for (std::size_t k = 0; k < beads_.size(); ++k) sums_[k] = ring_sums(args, disc_of(beads_[k]), fit);
   }
@@ -465,10 +465,15 @@ class PictureFit {
                       kLeast, kMost);
   }
   [[nodiscard]] double full_ring() const { return 4 * std::numbers::pi * radius_ * ring(); }
-  void render() {
+  /// The picture is the frame's own until it is to be changed.
+  void own_picture() {
+    if (!owned_) picture_ = picture_.clone();
+    owned_ = true;
+  }
+  void render(int row_step = 1) {
     model_.create(picture_.size());
     model_.setTo(0);
-    for (const Detection& b : beads_) add_disc(model_, disc_of(b), blur_);
+    for (const Detection& b : beads_) add_disc(model_, disc_of(b), blur_, row_step);
     stale_ = false;
   }
   [[nodiscard]] RingArgs ring_args() const {
@@ -532,6 +537,7 @@ class PictureFit {
   EdgeBlur blur_;
   std::array<Belief, 2> beliefs_;  // R, a
   cv::Mat1f picture_, model_;      // with spare columns; darkness, sum of all a P
+  bool owned_ = false;             // the picture is no longer the frame's
   bool stale_ = true;              // the model is not that of the beads
   std::vector<Detection> beads_, dropped_;
   std::vector<double> interiors_;      // of the proposals
