@@ -137,7 +137,9 @@ double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options) 
   const Prepared image = prepare(grey, options, largest);
   constexpr double kRatio = 1.03;
   std::vector<double> sharpness;
-  for (double r = smallest; r <= largest; r *= kRatio) sharpness.push_back(vote_sharpness(image.darkness, r));
+  const int steps = static_cast<int>(std::log(largest / smallest) / std::log(kRatio));
+  for (int k = 0; k <= steps; ++k)
+    sharpness.push_back(vote_sharpness(image.darkness, smallest * std::pow(kRatio, k)));
   const auto peak = std::max_element(sharpness.begin(), sharpness.end());
   if (*peak <= 0) return 0;
   // The top of the parabola through the best and its neighbours.

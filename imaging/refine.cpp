@@ -123,7 +123,7 @@ class PictureFit {
       damping_ *= 20;
       couplings_.clear();
     } else {
-      if (!before_) before_.emplace();
+      if (!before_) before_ = State{};
       before_->discs.clear();
       for (const Detection& b : beads_) before_->discs.push_back(disc_of(b));
       before_->blur = blur_;
@@ -251,7 +251,7 @@ class PictureFit {
         e.right[q] += s.br[static_cast<std::size_t>(q)];
         for (int m = 0; m < kFitted; ++m)
           e.shared[static_cast<std::size_t>(q)][k][m] =
-              s.jb[static_cast<std::size_t>(RingSums::kBlurs * m + q)];
+              s.jb[std::size_t{RingSums::kBlurs} * static_cast<std::size_t>(m) + static_cast<std::size_t>(q)];
       }
     }
     return e;
@@ -546,7 +546,7 @@ class PictureFit {
   struct State {
     std::vector<Disc> discs;
     EdgeBlur blur;
-    double misfit = 0;  // mean square of what is left, darkness^2
+    double misfit;  // mean square of what is left, darkness^2
   };
   std::optional<State> before_;  // the last step; none after the picture or the set of beads was changed
   double damping_ = kDamping;

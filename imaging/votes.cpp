@@ -162,7 +162,7 @@ cv::Mat1f smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, dou
   for (float& w : weights) w /= static_cast<float>(sum);
   const int columns = darkness.cols + 2 * pad;
   cv::Mat1f result = cv::Mat1f(darkness.rows + 2 * pad, columns + int{kSpare}).colRange(0, columns);
-  const auto wide = static_cast<std::size_t>(result.cols + 2 * kTail);
+  const auto wide = static_cast<std::size_t>(result.cols) + std::size_t{2 * kTail};
   std::vector<float> column_sums(wide + kSpare);
   for (int y = 0; y < result.rows; ++y) {
     std::array<const float*, 2 * kTail + 1> from{};
