@@ -4,7 +4,8 @@
 
 #ifdef TWINCELL_MPI
 
-#define OMPI_SKIP_MPICXX  // the C interface alone: the C++ one is gone from the standard and from the link line
+#define OMPI_SKIP_MPICXX  // the C interface alone: the C++ one is gone from the standard and from the link
+                          // line
 #include <mpi.h>
 
 #include <atomic>

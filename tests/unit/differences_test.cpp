@@ -57,7 +57,7 @@ TEST(Differences, CameraAndRemainderAddUp) {
 
 TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
   Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.8, 0.01),
-                           run(Side::simulation, 1.2, 0.01), run(Side::simulation, 1.1, 0.01)};
+               run(Side::simulation, 1.2, 0.01), run(Side::simulation, 1.1, 0.01)};
   const Difference d = only(runs);
   EXPECT_NEAR(d.seeds.value(), 0.2082, 1e-4);  // of 0.8, 1.2, 1.1
   EXPECT_FALSE(d.camera);
@@ -66,7 +66,7 @@ TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
 
 TEST(Differences, AStartWithOtherDefectsMayBeTheReason) {
   Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.5, 0.01, "crystal_a"),
-                           run(Side::simulation, 0.9, 0.01, "random")};
+               run(Side::simulation, 0.9, 0.01, "random")};
   const Difference d = only(runs);
   EXPECT_NEAR(d.defects.value(), 0.4, 1e-12);
   EXPECT_FALSE(d.seeds);
