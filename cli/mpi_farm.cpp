@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "sweep/point_run.hpp"
+#include "sweep/until.hpp"
 
 namespace twincell::cli {
 
@@ -87,18 +88,6 @@ void serve(const sweep::Plan& plan, const sweep::Store& store, bool keep_traject
   }
 }
 
-/// Ends the point that rank 0 computes when the job is to end.
-class Until : public Progress {
- public:
-  explicit Until(const std::atomic<bool>& closing) : closing_(closing) {}
-  void update(std::int64_t, std::int64_t) override {
-    if (closing_) throw Interrupted(ExitCode::interrupted);
-  }
-
- private:
-  const std::atomic<bool>& closing_;
-};
-
 void lead(sweep::Schedule& schedule, const sweep::Plan& plan, const sweep::Store& store,
           bool keep_trajectories, SweepWatch& watch) {
   using Clock = std::chrono::steady_clock;
@@ -107,7 +96,7 @@ void lead(sweep::Schedule& schedule, const sweep::Plan& plan, const sweep::Store
   std::vector<std::optional<sweep::Task>> at(static_cast<std::size_t>(ranks));
   std::future<std::string> own;
   std::atomic<bool> closing = false;
-  Until progress(closing);
+  sweep::Until progress(closing);
   double work = 0;
   const auto begin = Clock::now();
   const auto keep = [&](std::size_t rank, const std::string& result) {

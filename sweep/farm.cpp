@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "sweep/point_run.hpp"
+#include "sweep/until.hpp"
 
 namespace twincell::sweep {
 
@@ -20,18 +21,6 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
-
-/// Ends a point when the farm closes.
-class Until : public Progress {
- public:
-  explicit Until(const std::atomic<bool>& closing) : closing_(closing) {}
-  void update(std::int64_t, std::int64_t) override {
-    if (closing_) throw Interrupted(ExitCode::interrupted);
-  }
-
- private:
-  const std::atomic<bool>& closing_;
-};
 
 class Farm {
  public:
