@@ -93,11 +93,11 @@ double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options);
 struct FoundSettings {
   double diameter_px = 0;
   bool bright = false;   ///< beads are brighter than what lies behind them
-  double explained = 0;  ///< area of well explained discs over pi, px^2
+  double explained = 0;  ///< by well explained discs: sum of -R^2 ln(1 - score), px^2
 };
 
 /// Finds what `given` leaves open: the diameter, first from the votes, then as the median of the fitted beads
-/// until it stands; the polarity that explains more discs. None if nothing round stands out.
+/// until it stands; the polarity that explains more. None if nothing round stands out.
 std::optional<FoundSettings> find_settings(const cv::Mat& grey, const LocatorOptions& given);
 
 }  // namespace twincell

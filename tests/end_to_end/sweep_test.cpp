@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <chrono>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <thread>
 
 #include "tests/support/program.hpp"
 
@@ -15,7 +17,6 @@ namespace twincell {
 namespace {
 
 namespace fs = std::filesystem;
-using std::chrono::milliseconds;
 
 constexpr int kDone = 0, kUsage = 2, kInput = 3, kPartial = 5;
 
@@ -93,7 +94,9 @@ TEST_F(Sweeps, RanksOfMpiGiveTheSameBytes) {
 }
 
 TEST_F(Sweeps, KilledAgainAndAgainNothingIsLostAndNothingDoneTwice) {
+  const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(run(grid_, at("whole")).code, kDone);
+  const auto undisturbed = std::chrono::steady_clock::now() - start;  // fast or slow, it is killed midway
   std::mt19937 random(20150101);
   const auto results = [&] {
     std::map<std::string, std::string> all;  // with the seconds each took: computed again they would differ
@@ -107,7 +110,7 @@ TEST_F(Sweeps, KilledAgainAndAgainNothingIsLostAndNothingDoneTwice) {
   for (int k = 0; k < 200; ++k) {
     const auto before = results();
     RunningProgram program({"sweep", "run", grid_, "-o", at("k"), "-q", "--threads", "2"});
-    std::this_thread::sleep_for(milliseconds(100 + random() % 300));
+    std::this_thread::sleep_for(undisturbed * (10 + random() % 50) / 100);
     program.signal(SIGKILL);
     const Ran ran = program.wait();
     const auto after = results();
