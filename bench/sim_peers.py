@@ -253,4 +253,5 @@ def main():
         print(f"  {key:<36} absent: {why}")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -172,6 +172,24 @@ class CellGrid {
 template <class Visit>
 void for_each_near_pair(const std::vector<Bead>& beads, int dimension, const std::array<double, 3>& period,
                         double margin, Visit visit) {
+  const auto look_at = [&](std::int32_t i, std::int32_t j) {
+    const Bead &p = beads[static_cast<std::size_t>(i)], &q = beads[static_cast<std::size_t>(j)];
+    const Vec3 apart = centre_of(p) - centre_of(q);
+    const double reach = p.radius + q.radius, far = reach + margin;
+    if (period[2] == 0 && std::abs(apart.z()) > far) return;
+    const Vec3 shift = nearest_shift(apart, period);
+    const double square = (apart + shift).squaredNorm();
+    if (square > far * far) return;
+    const double gap = std::sqrt(square) - reach;
+    if (gap < margin) visit(i, j, gap, shift);
+  };
+  constexpr std::size_t kFew = 150;  // of whom every pair is sooner seen than a grid of cells filled
+  if (beads.size() <= kFew) {
+    const auto n = static_cast<std::int32_t>(beads.size());
+    for (std::int32_t j = 1; j < n; ++j)
+      for (std::int32_t i = 0; i < j; ++i) look_at(i, j);
+    return;
+  }
   std::vector<double> radii;
   radii.reserve(beads.size());
   for (const Bead& b : beads) radii.push_back(b.radius);
@@ -184,15 +202,8 @@ void for_each_near_pair(const std::vector<Bead>& beads, int dimension, const std
   std::sort(order.begin(), order.end());
   for (const auto& [size_class, k] : order) {
     const Bead& b = beads[static_cast<std::size_t>(k)];
-    grid.around(centre_of(b), b.radius, [&, k = k](std::int32_t other) {
-      const std::int32_t i = std::min(k, other), j = std::max(k, other);
-      const Bead &p = beads[static_cast<std::size_t>(i)], &q = beads[static_cast<std::size_t>(j)];
-      const Vec3 apart = centre_of(p) - centre_of(q), shift = nearest_shift(apart, period);
-      const double square = (apart + shift).squaredNorm(), reach = p.radius + q.radius, far = reach + margin;
-      if (square > far * far) return;
-      const double gap = std::sqrt(square) - reach;
-      if (gap < margin) visit(i, j, gap, shift);
-    });
+    grid.around(centre_of(b), b.radius,
+                [&, k = k](std::int32_t other) { look_at(std::min(k, other), std::max(k, other)); });
     grid.insert(k, centre_of(b), b.radius);
   }
 }

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "analysis/trajectory/error.hpp"
+#include "sim/flight_kernel.hpp"
 #include "sim/list_kernel.hpp"
 
 namespace twincell::sim {
@@ -44,11 +45,11 @@ std::unique_ptr<Kernel> make_kernel(const Plan& plan, const GuardLimits& limits,
     case KernelKind::best:
       break;
   }
-  return make_list_kernel(plan, limits,
-                          kAvx512.available() ? kAvx512
-                          : kAvx2.available() ? kAvx2
-                                              : kScalar,
-                          threads);
+  const Target& widest = kAvx512.available() ? kAvx512 : kAvx2.available() ? kAvx2 : kScalar;
+  if (!plan.flights) return make_list_kernel(plan, limits, widest, threads);
+  return make_flight_kernel(plan, limits, [plan, limits, &widest, threads] {
+    return make_list_kernel(plan, limits, widest, threads);
+  });
 }
 
 }  // namespace twincell::sim

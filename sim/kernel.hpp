@@ -38,6 +38,10 @@ class Kernel {
   [[nodiscard]] virtual std::vector<ContactMemory> contacts() const = 0;
   /// Takes up contacts() of another kernel of the same plan; call before the first advance.
   virtual void restore(std::vector<ContactMemory> contacts) = 0;
+  /// What else the rest of a run depends on, for a checkpoint.
+  [[nodiscard]] virtual std::vector<double> memory() const { return {}; }
+  /// Takes up memory() of another kernel of the same plan, after restore(), at the same step.
+  virtual void recall(const System& /*system*/, const std::vector<double>& /*memory*/) {}
   /// Instruction set, and what it costs: "AVX-512, 8 contacts at a time".
   [[nodiscard]] virtual std::string description() const = 0;
   /// Mean share of the listed pairs that were looked at per step, and lists of near pairs made.
@@ -57,7 +61,7 @@ class Kernel {
 int threads_for(std::size_t beads, int asked);
 
 enum class KernelKind {
-  best,    ///< the widest vectors that this processor has
+  best,    ///< what the plan asks for, with the widest vectors that this processor has
   scalar,  ///< one contact at a time
   avx2,    ///< \throws ConfigError where the processor lacks it
   avx512,

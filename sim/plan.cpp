@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "analysis/trajectory/error.hpp"
+#include "sim/flight_kernel.hpp"
 
 namespace twincell::sim {
 
@@ -194,6 +195,35 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
                   s.integrator == "split"       ? "split at entry and exit"
                   : s.integrator == "predicted" ? "velocities predicted for a step's end"
                                                 : "dashpots half a step late"));
+}
+
+/// Whether beads fly from contact to contact: where that is exact, and asked for or likely to be faster,
+/// which it is in a dilute bed of not too many beads.
+void choose_stepping(const Scene& s, std::size_t beads, Plan& plan) {
+  using State = Effect::State;
+  constexpr double kDilute = 10;  // W; measured (bench gas): below, three bodies meet all the time
+  constexpr std::size_t kMost = 2000;
+  const std::string hindrance = why_not_flights(s, plan);
+  const double w = s.drive.amplitude == 0 ? 0 : s.g() > 0 ? s.drive.k_m(s.g()) : HUGE_VAL;
+  if (s.stepping == "flights" && !hindrance.empty())
+    throw ConfigError(s.where("time.stepping"),
+                      fmt::format("is \"flights\", but {}; choose \"auto\" or \"steps\".", hindrance));
+  plan.flights = s.stepping == "flights" ||
+                 (s.stepping == "auto" && hindrance.empty() && w >= kDilute && beads <= kMost);
+  const char* name = "free flight";
+  if (plan.flights)
+    plan.effects.push_back(
+        {name, State::on,
+         "beads fly from contact to contact, contacts of two bodies are integrated to 1e-7; "
+         "the time step acts only where three meet"});
+  else if (s.stepping == "steps")
+    plan.effects.push_back({name, State::off_by_scene, "time.stepping = \"steps\""});
+  else
+    plan.effects.push_back(
+        {name, State::off_by_proof,
+         !hindrance.empty() ? hindrance
+         : w < kDilute ? fmt::format("W = {:.3g} is below {:g}: in a dense bed steps are faster", w, kDilute)
+                       : fmt::format("{} beads are more than {}: steps are faster", beads, kMost)});
 }
 
 /// What acts may not be dropped.
@@ -399,6 +429,7 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   plan.cycles_before = static_cast<std::int64_t>(std::ceil(s.envelope.duration())) + s.discard;
   plan.steps = (plan.cycles_before + s.cycles) * plan.steps_per_period;
   list_effects(s, chosen, plan);
+  choose_stepping(s, beads.empty() ? s.n_beads.value_or(0) : beads.size(), plan);
   warn(s, plan);
   return plan;
 }

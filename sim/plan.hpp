@@ -59,6 +59,7 @@ struct Plan {
   PassKey key{};                       ///< which kernel
   bool locate = false;                 ///< moments of entry and exit are located within their steps
   bool rotation = false, history = false;
+  bool flights = false;  ///< beads fly from contact to contact where that is exact (flight_kernel.hpp)
   double usual_radius = 0.5, usual_mass = 1;  ///< of the median bead
   double largest_force =
       0;  ///< m g, that an overlap at the guard's bound makes: sets the grain of summed forces

@@ -259,6 +259,7 @@ void read_time(const Section& s, Scene& scene) {
   scene.steps_per_contact =
       s.number_in("steps_per_contact", scene.force ? 1 : kFewestSteps, 1e6).value_or(scene.steps_per_contact);
   scene.integrator = s.word("integrator", {"verlet", "predicted", "split"}).value_or(scene.integrator);
+  scene.stepping = s.word("stepping", {"auto", "steps", "flights"}).value_or(scene.stepping);
   scene.single = s.word("precision", {"double", "single"}).value_or("double") == "single";
   scene.discard = s.integer_in("discard", 0, 1'000'000).value_or(scene.discard);
   scene.cycles = s.integer_in("cycles", 1, 100'000'000).value_or(scene.cycles);

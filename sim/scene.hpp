@@ -101,6 +101,7 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   bool force = false;                 ///< fewer than kFewestSteps steps per contact are run all the same
   std::string integrator = "verlet";  ///< verlet | predicted | split
   bool single = false;                ///< precision of contacts between beads
+  std::string stepping = "auto";      ///< auto | steps | flights
   std::int64_t discard = 10, cycles = 200;
   int phases = 20;
   Scale scale;

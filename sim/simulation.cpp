@@ -116,6 +116,7 @@ Simulation::Simulation(Scene scene, RunState state, KernelKind kind, int threads
   system_.forces_known = !state.forces.empty();
   system_.forces = std::move(state.forces);
   system_.rim_speeds = std::move(state.rim_speeds);
+  kernel_->recall(system_, state.kernel);
   if (driven_ || system_.step > 0) return;
   try {
     check_motion(system_, limits);
@@ -181,6 +182,7 @@ RunState Simulation::state() const {
   if (system_.forces_known) state.forces = system_.forces;
   state.rim_speeds = system_.rim_speeds;
   state.contacts = kernel_->contacts();
+  state.kernel = kernel_->memory();
   state.tracer = tracer_;
   state.looked_at = looked_at_;
   state.touching = touching_;

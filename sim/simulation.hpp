@@ -35,6 +35,7 @@ struct RunState {
   std::vector<Force> forces;     ///< at the present positions, or empty
   std::vector<Vec3> rim_speeds;  ///< as in System
   std::vector<ContactMemory> contacts;
+  std::vector<double> kernel;                ///< Kernel::memory()
   std::vector<std::uint8_t> tracer;          ///< empty: not chosen yet
   std::int64_t looked_at = 0, touching = 0;  ///< beads in frames so far, and those of them in contact
 };

@@ -36,6 +36,21 @@ struct DashpotSlider {
   static T force(const V* c, const T& v_t, V f_n, V /*dt*/, X& /*xi*/) {
     return limited(c[0] * v_t, c[1] * abs(f_n)).value;
   }
+  // The same in its two regimes, each continued beyond where it holds: what an integrator needs that goes
+  // from one to the other only at the ends of its steps (encounter.hpp).
+  template <class V, class T>
+  static T sticking(const V* c, const T& v_t) {
+    return c[0] * v_t;
+  }
+  template <class V, class T>
+  static T sliding(const V* c, const T& v_t, V f_n) {
+    return (-(c[1] * abs(f_n)) / max(norm(v_t), V(kTiny<V>))) * v_t;
+  }
+  /// How far the dashpot of surfaces that slide at |v_t| is from the limit; negative where it is cut.
+  template <class V>
+  static V slack(const V* c, V speed, V f_n) {
+    return fma(c[0], speed, c[1] * abs(f_n));
+  }
 };
 
 }  // namespace twincell::sim

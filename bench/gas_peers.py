@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""The second paper's gases at W = 50: beads that fly from contact to contact, the same moved by steps, and LAMMPS.
+
+usage: gas_peers.py BUILD [--json] [--repetitions N] [--job NAME]
+
+As sim_peers.py, whose pieces and rules these are: all three run the same whole periods of the same gas, in turn;
+LAMMPS from the state that ours has reached, with the steps that the scene asks for. Printed are milliseconds of
+processor time per period of the drive, and quotients.
+"""
+
+import argparse
+import contextlib
+import json
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+
+from sim_peers import SCENE, Absent, Ours, lammps_cpu_seconds
+
+GAS = """
+preset = "bhateja-2016-{system}"
+[drive]
+k_m = 50.0
+[start]
+settle_limit = 2.0
+[time]
+steps_per_contact = 50
+stepping = "{stepping}"
+discard = 50
+cycles = {cycles}
+phases = 1
+"""
+JOBS = ["rough-2d", "smooth-2d", "rough-3d", "smooth-3d"]
+PERIODS = 100  # a piece, of ours
+LAMMPS_PERIODS = 5
+
+
+def measure(build, system, repetitions):
+    """Milliseconds per period by who runs it, and reasons of what is absent."""
+    spent = {"flights": [], "steps": [], "lammps": []}
+    absent = {}
+    with tempfile.TemporaryDirectory() as temporary, contextlib.ExitStack() as running:
+        folder = Path(temporary)
+
+        def engine(stepping):
+            own = folder / stepping
+            own.mkdir()
+            scene = GAS.replace("{system}", system).replace("{stepping}", stepping)
+            (own / SCENE).write_text(scene.replace("{cycles}", str(PERIODS * repetitions)))
+            return own, running.enter_context(Ours(build, SCENE, PERIODS, own))
+
+        (own, flights), (_, steps) = engine("flights"), engine("steps")
+        for _ in range(repetitions):
+            piece = flights.answer()
+            steps.answer()
+            # Everybody waits now: what is timed runs alone.
+            spent["flights"].append(1e3 * flights.run() / PERIODS)
+            spent["steps"].append(1e3 * steps.run() / PERIODS)
+            if "lammps" not in absent:
+                try:
+                    count = piece["steps"] * LAMMPS_PERIODS // PERIODS
+                    spent["lammps"].append(1e3 * lammps_cpu_seconds(build, piece["state"], count, own) / LAMMPS_PERIODS)
+                except Absent as why:
+                    absent["lammps"] = str(why)
+    numbers = {f"{who}_ms": statistics.median(times) for who, times in spent.items() if times}
+    numbers["beads"] = piece["beads"]
+    numbers["ratio_steps"] = statistics.median(b / a for a, b in zip(spent["flights"], spent["steps"]))
+    if "lammps" not in absent:
+        numbers["ratio_lammps"] = statistics.median(b / a for a, b in zip(spent["flights"], spent["lammps"]))
+    return numbers, absent
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument("build", type=lambda path: Path(path).resolve())
+    arguments.add_argument("--json", action="store_true")
+    arguments.add_argument("--repetitions", type=int, default=3)
+    arguments.add_argument("--job", action="append", choices=JOBS, help="only this gas")
+    options = arguments.parse_args()
+    document, absent = {}, {}
+    for job in JOBS:
+        if options.job and job not in options.job:
+            continue
+        print(f"bench: {job}", file=sys.stderr)
+        try:
+            numbers, reasons = measure(options.build, job, options.repetitions)
+        except Absent as why:
+            absent[job] = str(why)
+            continue
+        absent.update({f"{job}.{key}": why for key, why in reasons.items()})
+        document.update({f"{job}.{key}": value for key, value in numbers.items()})
+    if options.json:
+        print(json.dumps({**document, "absent": absent}, indent=2))
+        return
+    print("milliseconds of processor time per period at W = 50, and quotients by the time of flights")
+    for key, value in document.items():
+        print(f"  {key:<28} {value if isinstance(value, int) else format(value, '.4g')}")
+    for key, why in absent.items():
+        print(f"  {key:<28} absent: {why}")
+
+
+main()

@@ -1,0 +1,690 @@
+#include "sim/flight_kernel.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "sim/cell_grid.hpp"
+#include "sim/encounter.hpp"
+#include "sim/flight_lines.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+constexpr double kTolerance = 1e-7;  // of an encounter
+constexpr double kLongest = 20;      // contact times: what lasts longer rests, and is left to steps
+// Contact times, at first, between attempts to fly, doubled when they fail: three bodies stay together for
+// one or two, and an attempt costs as much as a hundred steps.
+constexpr double kLookAfter = 2;
+constexpr std::int64_t kLookSeldom = 1024;  // steps
+
+/// A contact of two bodies that goes on, or has just ended. Its beads' lines are those after it.
+struct Contact {
+  std::int32_t i, j;            ///< i < j; or j = -1 - w for wall w
+  double begin, end;            ///< of the contact
+  double from, until;           ///< the whole steps about it: nothing else may touch its beads in between
+  std::array<double, 2> stray;  ///< how far its beads get from `before` by then, sigma
+  RelativeMotion motion;        ///< at `begin`
+  Vec3 shift = Vec3::Zero();
+  std::array<FlightLine, 2> before;
+  std::array<Vec3, 2> rim;  ///< R w before
+};
+
+/// What happens next to a bead.
+struct Event {
+  enum class Kind { touch, wall, look_again, none };
+  double time = HUGE_VAL;
+  Kind kind = Kind::none;
+  std::int32_t partner = -1;
+};
+
+/// A bead as it is at a moment.
+struct Instant {
+  Vec3 r, v, rim;
+};
+
+class FlightKernel : public Kernel {
+ public:
+  FlightKernel(const Plan& plan, const GuardLimits& limits, std::function<std::unique_ptr<Kernel>()> steps)
+      : plan_(plan),
+        limits_(limits),
+        look_every_(std::clamp<std::int64_t>(std::llround(kLookAfter * plan.shortest().time / plan.dt), 8,
+                                             kLookSeldom)),
+        make_steps_(std::move(steps)),
+        steps_(make_steps_()) {}
+
+  void advance(System& s, std::int64_t steps) override {
+    if (s.beads.empty() || steps <= 0) {
+      s.step += std::max<std::int64_t>(0, steps);
+      return;
+    }
+    if (flying() && !is_as_left(s)) {
+      lines_.reset();  // somebody else moved a bead, the clock or the plate
+      steps_ = make_steps_();
+    }
+    if (!flying() && s.step < next_look_ - kLookSeldom) next_look_ = 0;  // the clock was set back
+    const std::int64_t last = s.step + steps;
+    while (s.step < last) flying() ? fly(s, last) : step(s, last);
+    if (flying()) {
+      write(s);
+      check_motion(s, limits_);
+      left_ = s.beads;
+      left_step_ = s.step;
+      left_amplitude_ = s.drive.amplitude;
+    }
+  }
+  [[nodiscard]] std::int64_t list_builds() const override {
+    return list_builds_ + (steps_ ? steps_->list_builds() : 0);
+  }
+  void rebuild_every(std::int64_t n) override {
+    if (steps_) steps_->rebuild_every(n);
+  }
+  [[nodiscard]] std::vector<ContactMemory> contacts() const override {
+    return steps_ ? steps_->contacts() : memories_;
+  }
+  void restore(std::vector<ContactMemory> contacts) override {
+    if (steps_) steps_->restore(std::move(contacts));
+  }
+  [[nodiscard]] std::vector<double> memory() const override {
+    Archive out;
+    const_cast<FlightKernel*>(this)->pass(out);  // which only reads when it writes out
+    return out.numbers;
+  }
+  void recall(const System& s, const std::vector<double>& memory) override {
+    if (memory.empty()) return;
+    Archive in{memory, true, 0};
+    if (memory.front() != 0) {
+      begin_flights(s);
+      steps_.reset();
+      left_ = s.beads;
+      left_step_ = s.step;
+      left_amplitude_ = s.drive.amplitude;
+    }
+    pass(in);
+  }
+  [[nodiscard]] std::string description() const override {
+    return "flights between contacts; where three bodies meet " + make_steps_()->description();
+  }
+  [[nodiscard]] Counters counters() const override {
+    Counters c = steps_ ? steps_->counters() : Counters{};
+    c.steps += counted_.steps, c.pair_visits += counted_.pair_visits, c.wall_visits += counted_.wall_visits,
+        c.near_refreshes += counted_.near_refreshes;
+    return c;
+  }
+
+ private:
+  [[nodiscard]] bool flying() const { return lines_.has_value(); }
+  [[nodiscard]] bool is_as_left(const System& s) const {
+    return s.step == left_step_ && s.drive.amplitude == left_amplitude_ && s.beads.size() == left_.size() &&
+           std::memcmp(s.beads.data(), left_.data(), left_.size() * sizeof(Bead)) == 0;
+  }
+
+  // --- checkpoints ---
+
+  /// Numbers, one after the other, in or out.
+  struct Archive {
+    std::vector<double> numbers;
+    bool in = false;
+    std::size_t at = 0;
+    template <class T>
+    void operator()(T& x) {
+      if constexpr (std::is_same_v<T, Vec3>) {
+        for (Eigen::Index k = 0; k < 3; ++k) (*this)(x[k]);
+      } else if constexpr (std::is_same_v<T, FlightLine>) {
+        (*this)(x.a), (*this)(x.b);
+      } else if (!in) {
+        numbers.push_back(static_cast<double>(x));
+      } else {
+        x = static_cast<T>(at < numbers.size() ? numbers[at++] : 0.0);
+      }
+    }
+  };
+  /// Everything that a flight, or the wait for one, depends on beyond the beads.
+  void pass(Archive& a) {
+    double in_flight = flying() ? 1 : 0;
+    a(in_flight);
+    a(next_look_), a(wait_);
+    if (!flying()) return;
+    a(base_), a(now_);
+    for (std::size_t i = 0; i < lines_->size(); ++i) {
+      FlightLine line = (*lines_)[i];
+      a(line);
+      lines_->put(i, line);
+      a(lines_->valid_from(i)), a(rim_[i]);
+      a(events_[i].time), a(events_[i].kind), a(events_[i].partner);
+    }
+    std::size_t open = open_.size();
+    a(open);
+    open_.resize(open);
+    for (Contact& c : open_) {
+      a(c.i), a(c.j), a(c.begin), a(c.end), a(c.from), a(c.until), a(c.motion.r), a(c.motion.u),
+          a(c.motion.s);
+      a(c.shift);
+      for (std::size_t q = 0; q < 2; ++q) a(c.stray[q]), a(c.before[q]), a(c.rim[q]);
+    }
+  }
+
+  // --- steps ---
+
+  void step(System& s, std::int64_t last) {
+    if (next_look_ <= s.step) {
+      if (take(s)) {
+        wait_ = look_every_;
+        return;
+      }
+      // At multiples of the wait: the same steps however the run is cut.
+      wait_ = next_look_ == 0 ? look_every_ : std::min(kLookSeldom, 2 * wait_);
+      next_look_ = (s.step / wait_ + 1) * wait_;
+    }
+    const std::int64_t n = std::min(last, next_look_) - s.step;
+    steps_->advance(s, n);
+  }
+
+  /// From steps to flights. \returns false, with nothing changed, if three bodies meet
+  bool take(const System& s) {
+    const std::size_t n = s.beads.size();
+    std::vector<std::int32_t> touching(n, 0);
+    std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+    const Vec3 plate = s.plate_displacement();
+    for (std::size_t w = 0; w < s.walls.size(); ++w) {
+      const Wall& wall = s.walls[w];
+      const double offset = wall.offset + (wall.moves ? wall.n.dot(plate) : 0);
+      for (std::size_t i = 0; i < n; ++i)
+        if (wall.n.dot(centre_of(s.beads[i])) - offset < s.beads[i].radius) {
+          if (++touching[i] > 1) return false;
+          pairs.emplace_back(static_cast<std::int32_t>(i), -1 - static_cast<std::int32_t>(w));
+        }
+    }
+    bool crowded = false;
+    const auto touch = [&](std::int32_t i, std::int32_t j) {
+      crowded = crowded || ++touching[static_cast<std::size_t>(i)] > 1 ||
+                ++touching[static_cast<std::size_t>(j)] > 1;
+      pairs.emplace_back(i, j);
+    };
+    for_each_near_pair(s.beads, s.dimension, s.period, 0,
+                       [&](std::int32_t i, std::int32_t j, double, const Vec3&) { touch(i, j); });
+    if (crowded) return false;
+    begin_flights(s);
+    for (const auto& [i, j] : pairs)
+      if (!meet_now(i, j)) return give_up();
+    for (std::size_t i = 0; i < n; ++i)
+      if (!foresee(i)) return give_up();
+    counted_ = counters();
+    list_builds_ = list_builds();
+    steps_.reset();
+    return true;
+  }
+  bool give_up() {
+    lines_.reset();
+    open_.clear();
+    return false;
+  }
+  void begin_flights(const System& s) {
+    const std::size_t n = s.beads.size();
+    std::vector<double> radii;
+    for (const Bead& b : s.beads) radii.push_back(b.radius);
+    lines_.emplace(radii, s.dimension, s.period);
+    gravity_ = s.gravity;
+    walls_ = s.walls;
+    axis_ = static_cast<Eigen::Index>(s.drive.axis);
+    amplitude_ = s.drive.amplitude, omega_ = s.drive.omega;
+    dt_ = s.dt, per_period_ = s.steps_per_period;
+    base_ = s.step / per_period_ * per_period_;
+    now_ = static_cast<double>(s.step - base_) * dt_;
+    mass_.resize(n), turn_.resize(n), rim_.resize(n);
+    events_.assign(n, {});
+    open_.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Bead& b = s.beads[i];
+      mass_[i] = b.mass;
+      turn_[i] = b.radius * b.radius / b.inertia;
+      rim_[i] = s.rim_speeds.size() == n ? Vec3(s.rim_speeds[i])
+                                         : Vec3(b.radius * b.spin_x, -b.radius * b.spin, b.radius * b.spin_z);
+      lines_->put(i, FlightLine::through(centre_of(b), Vec3(b.vx, b.vy, b.vz), now_, gravity_));
+      lines_->valid_from(i) = now_;
+    }
+  }
+
+  // --- flights ---
+
+  void fly(System& s, std::int64_t last) {
+    const std::int64_t stop = std::min(last, base_ + per_period_);
+    const double until = static_cast<double>(stop - base_) * dt_;
+    for (;;) {
+      const auto next = std::min_element(events_.begin(), events_.end(),
+                                         [](const Event& a, const Event& b) { return a.time < b.time; });
+      if (!(next->time < until)) break;
+      const auto i = static_cast<std::size_t>(next - events_.begin());
+      now_ = std::max(now_, next->time);
+      if (!happen(i, *next)) {
+        s.step = std::max(s.step, base_ + step_before(now_));
+        hand_over(s);
+        return;
+      }
+    }
+    now_ = until;
+    s.step = stop;
+    if (stop == base_ + per_period_) begin_period();
+  }
+  /// Clocks go back by a period.
+  void begin_period() {
+    const double period = static_cast<double>(per_period_) * dt_;
+    base_ += per_period_;
+    now_ -= period;
+    std::erase_if(open_, [&](const Contact& c) { return c.until <= now_ + period; });
+    for (Event& e : events_) e.time -= period;
+    for (std::size_t i = 0; i < lines_->size(); ++i) {
+      lines_->put(i, (*lines_)[i].later(period, gravity_));
+      lines_->valid_from(i) -= period;
+    }
+    for (Contact& c : open_) {
+      c.begin -= period, c.end -= period, c.from -= period, c.until -= period;
+      for (FlightLine& line : c.before) line = line.later(period, gravity_);
+    }
+  }
+
+  /// \returns false if three bodies meet
+  bool happen(std::size_t i, Event event) {
+    switch (event.kind) {
+      case Event::Kind::look_again:
+        return foresee(i);
+      case Event::Kind::wall:
+        return meet_now(static_cast<std::int32_t>(i), event.partner) && foresee_anew(i, i);
+      case Event::Kind::touch: {
+        const auto j = static_cast<std::size_t>(event.partner);
+        return meet_now(static_cast<std::int32_t>(std::min(i, j)),
+                        static_cast<std::int32_t>(std::max(i, j))) &&
+               foresee_anew(i, j);
+      }
+      case Event::Kind::none:
+        break;
+    }
+    return true;
+  }
+  /// Looks ahead for two beads with new lines, and for those that were to meet them.
+  bool foresee_anew(std::size_t i, std::size_t j) {
+    events_[i] = events_[j] = {};
+    if (!foresee(i) || (j != i && !foresee(j))) return false;
+    for (std::size_t k = 0; k < events_.size(); ++k) {
+      if (k == i || k == j || events_[k].kind != Event::Kind::touch) continue;
+      const auto partner = static_cast<std::size_t>(events_[k].partner);
+      // A meeting just foreseen from i's or j's side stands.
+      if ((partner == i || partner == j) &&
+          !(events_[partner].kind == Event::Kind::touch && events_[partner].time == events_[k].time &&
+            static_cast<std::size_t>(events_[partner].partner) == k) &&
+          !foresee(k))
+        return false;
+    }
+    return true;
+  }
+
+  /// Finds what happens next to bead i, on its present line. \returns false if three bodies meet
+  bool foresee(std::size_t i) {
+    const FlightLines::Hit hit = lines_->first_hit(i, now_);
+    if (hit.overlap) return false;
+    Event event;
+    if (hit.time < event.time) event = {hit.time, Event::Kind::touch, hit.partner};
+    if (hit.until < event.time) event = {hit.until, Event::Kind::look_again, -1};
+    const double from = std::max(now_, lines_->valid_from(i));
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+      if (in_wall(i, walls_[w], from)) return false;
+      if (const double t = wall_touch(i, walls_[w], from); t < event.time)
+        event = {t, Event::Kind::wall, -1 - static_cast<std::int32_t>(w)};
+    }
+    // Contacts that go on: nothing may come near.
+    for (const Contact& c : open_) {
+      if (c.until <= now_ || c.i == static_cast<std::int32_t>(i) || c.j == static_cast<std::int32_t>(i))
+        continue;
+      for (const std::size_t q : {std::size_t{0}, std::size_t{1}}) {
+        const std::int32_t other = q == 0 ? c.i : c.j;
+        if (other >= 0 &&
+            come_near((*lines_)[i], lines_->radius(i), c.before[q],
+                      lines_->radius(static_cast<std::size_t>(other)) + c.stray[q], now_, c.until))
+          return false;
+      }
+    }
+    events_[i] = event;
+    if (event.kind == Event::Kind::touch) {
+      Event& other = events_[static_cast<std::size_t>(event.partner)];
+      if (event.time < other.time) other = {event.time, Event::Kind::touch, static_cast<std::int32_t>(i)};
+    }
+    return true;
+  }
+  [[nodiscard]] bool come_near(const FlightLine& p, double radius_p, const FlightLine& q, double radius_q,
+                               double begin, double end) const {
+    Vec3 d = p.a - q.a + begin * (p.b - q.b);
+    d += lines_->shift(d);
+    const Vec3 w = p.b - q.b;
+    const double t =
+        std::clamp(-d.dot(w) / std::max(w.squaredNorm(), 1e-300), 0.0, std::max(0.0, end - begin));
+    const double reach = radius_p + radius_q;
+    return (d + t * w).squaredNorm() < reach * reach;
+  }
+
+  [[nodiscard]] bool in_wall(std::size_t i, const Wall& wall, double t) const {
+    return wall.n.dot((*lines_)[i].position(t, gravity_) - surface(wall, t).first) <
+           lines_->radius(i) - 1e-12;
+  }
+  /// When a bead on its line first touches a wall, from a time on; never: infinite. What lies between them is
+  /// a parabola less a sine, h(t); since its curvature is bounded below by -m, h + h' x - m x^2/2 = 0 gives a
+  /// step x that never goes beyond the first root, and that converges on it as Newton's do.
+  [[nodiscard]] double wall_touch(std::size_t i, const Wall& wall, double from) const {
+    const FlightLine line = (*lines_)[i];
+    const double height = wall.n.dot(line.a) - wall.offset - lines_->radius(i), speed = wall.n.dot(line.b),
+                 fall = wall.n.dot(gravity_);
+    const double swing = wall.moves ? amplitude_ * wall.n[axis_] : 0, most = std::abs(swing);
+    const double bend = std::max(0.0, most * omega_ * omega_ - fall);
+    double t = from;
+    for (int k = 0; k < 200; ++k) {
+      // Nothing happens until the parabola comes down to where the wall gets.
+      const double above = height + t * (speed + 0.5 * t * fall) - most, rise = speed + t * fall;
+      if (above > 0) {
+        const double down = first_zero(above, rise, fall);
+        if (down == HUGE_VAL) return HUGE_VAL;
+        t += down;
+      }
+      const double sine = most > 0 ? std::sin(omega_ * t) : 0, cosine = most > 0 ? std::cos(omega_ * t) : 0;
+      const double h = height + t * (speed + 0.5 * t * fall) - swing * sine;
+      const double rate = speed + t * fall - swing * omega_ * cosine;
+      if (h < 1e-14 && rate <= 0) return t;
+      const double x = first_zero(std::max(0.0, h), rate, -bend);
+      if (x == HUGE_VAL) return HUGE_VAL;
+      if (t + x == t) return t;
+      t += x;
+    }
+    return t;
+  }
+  /// The first x > 0 with c + b x + a x^2/2 = 0, for c > 0, or c = 0 and b > 0; infinite if there is none.
+  static double first_zero(double c, double b, double a) {
+    const double inside = b * b - 2 * a * c;
+    if (inside < 0) return HUGE_VAL;
+    const double root = std::sqrt(inside);
+    if (b < 0) return 2 * c / (root - b);
+    return a < 0 ? (b + root) / -a : HUGE_VAL;
+  }
+
+  // --- contacts ---
+
+  [[nodiscard]] EncounterSetting setting(std::int32_t i, std::int32_t j) const {
+    const auto a = static_cast<std::size_t>(i);
+    EncounterSetting e;
+    e.dimension = plan_.dimension;
+    const double m = mass_[a], r = lines_->radius(a);
+    if (j < 0) {
+      const Wall& wall = walls_[static_cast<std::size_t>(-1 - j)];
+      e.laws = &plan_.wall_laws[static_cast<std::size_t>(-1 - j)];
+      e.reach = r;
+      e.turn = turn_[a];
+      e.pair = {m, r, 1 / m + turn_[a]};
+      e.wall = wall.n;
+      e.pull = gravity_;
+      if (wall.moves) e.swing[axis_] = amplitude_ * omega_ * omega_, e.omega = omega_;
+    } else {
+      const auto b = static_cast<std::size_t>(j);
+      const double m_b = mass_[b], r_b = lines_->radius(b);
+      e.laws = &plan_.bead;
+      e.reach = r + r_b;
+      e.turn = turn_[a] + turn_[b];
+      e.pair = {m * m_b / (m + m_b), r * r_b / (r + r_b), 1 / m + 1 / m_b + turn_[a] + turn_[b]};
+    }
+    return e;
+  }
+  /// Plate displacement and velocity at a time of this period.
+  [[nodiscard]] Vec3 plate(double t) const {
+    Vec3 d = Vec3::Zero();
+    d[axis_] = amplitude_ * std::sin(omega_ * t);
+    return d;
+  }
+  [[nodiscard]] Vec3 plate_velocity(double t) const {
+    Vec3 v = Vec3::Zero();
+    v[axis_] = amplitude_ * omega_ * std::cos(omega_ * t);
+    return v;
+  }
+  /// A point of the wall's surface, and how it moves.
+  [[nodiscard]] std::pair<Vec3, Vec3> surface(const Wall& wall, double t) const {
+    const Vec3 foot = wall.offset * wall.n;
+    if (!wall.moves) return {foot, Vec3::Zero()};
+    return {foot + plate(t), plate_velocity(t)};
+  }
+
+  /// The motions of both beads of a contact (of one, at a wall) from their relative motion at t.
+  [[nodiscard]] std::array<Instant, 2> apart(const Contact& c, const RelativeMotion& m, double t) const {
+    const auto i = static_cast<std::size_t>(c.i);
+    std::array<Instant, 2> both{};
+    if (c.j < 0) {
+      const auto [point, speed] = surface(walls_[static_cast<std::size_t>(-1 - c.j)], t);
+      both[0] = {point + m.r, speed + m.u, m.s};
+      return both;
+    }
+    const auto j = static_cast<std::size_t>(c.j);
+    const double share = mass_[i] / (mass_[i] + mass_[j]);
+    const Vec3 r = share * c.before[0].position(t, gravity_) +
+                   (1 - share) * (c.before[1].position(t, gravity_) - c.shift);
+    const Vec3 v =
+        share * c.before[0].velocity(t, gravity_) + (1 - share) * c.before[1].velocity(t, gravity_);
+    const Vec3 turned = m.s - c.rim[0] - c.rim[1];
+    const double part = turn_[i] / (turn_[i] + turn_[j]);
+    both[0] = {r + (1 - share) * m.r, v + (1 - share) * m.u, c.rim[0] + part * turned};
+    both[1] = {r - share * m.r + c.shift, v - share * m.u, c.rim[1] + (1 - part) * turned};
+    return both;
+  }
+
+  /// Two bodies touch, or are in contact, now: their encounter is integrated to its end, and their lines are
+  /// those after it. \returns false if it rests or something else comes near
+  bool meet_now(std::int32_t i, std::int32_t j) {
+    Contact c{};
+    c.i = i, c.j = j;
+    c.begin = now_;
+    const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(std::max(0, j));
+    c.before = {(*lines_)[a], j < 0 ? FlightLine{} : (*lines_)[b]};
+    c.rim = {rim_[a], j < 0 ? Vec3::Zero().eval() : rim_[b]};
+    const EncounterSetting e = setting(i, j);
+    const Vec3 r = c.before[0].position(now_, gravity_), v = c.before[0].velocity(now_, gravity_);
+    if (j < 0) {
+      const auto [point, speed] = surface(walls_[static_cast<std::size_t>(-1 - j)], now_);
+      c.motion = {r - point, v - speed, c.rim[0]};
+    } else {
+      c.motion.r = r - c.before[1].position(now_, gravity_);
+      c.shift = lines_->shift(c.motion.r);
+      c.motion.r += c.shift;
+      c.motion.u = v - c.before[1].velocity(now_, gravity_);
+      c.motion.s = c.rim[0] + c.rim[1];
+    }
+    const double speed = c.motion.u.norm();
+    const EncounterEnd end =
+        meet(e, c.motion, now_, now_ + kLongest * encounter_time(e, std::max(speed, 1e-3)), kTolerance);
+    if (!end.parted || end.deepest > limits_.overlap) return false;
+    c.end = end.time;
+    c.from = static_cast<double>(step_before(c.begin)) * dt_;
+    c.until = static_cast<double>(step_before(c.end) + 1) * dt_;
+    const auto after = apart(c, end.motion, end.time);
+    for (const std::size_t q : {std::size_t{0}, std::size_t{1}}) {
+      if (q == 1 && j < 0) continue;
+      // The force hardly turns, so that they get away ever farther.
+      c.stray[q] = 1.05 * ((after[q].r - c.before[q].position(c.end, gravity_)).norm() +
+                           (after[q].v - c.before[q].velocity(c.end, gravity_)).norm() * (c.until - c.end));
+    }
+    for (const std::size_t q : {std::size_t{0}, std::size_t{1}}) {
+      if (q == 1 && j < 0) continue;
+      if (lines_->any_near(c.before[q], lines_->radius(q == 0 ? a : b) + c.stray[q], now_, c.until,
+                           {a, j < 0 ? a : b}))
+        return false;
+      for (const Contact& other : open_)
+        if (other.until > now_ && other.i != i && other.j != i && other.i != j && (j < 0 || other.j != j))
+          for (const std::size_t p : {std::size_t{0}, std::size_t{1}})
+            if (const std::int32_t k = p == 0 ? other.i : other.j;
+                k >= 0 &&
+                come_near(c.before[q], lines_->radius(q == 0 ? a : b) + c.stray[q], other.before[p],
+                          lines_->radius(static_cast<std::size_t>(k)) + other.stray[p], now_, c.until))
+              return false;
+    }
+    // A bead near a wall and in contact with another body is three bodies too.
+    for (std::size_t w = 0; w < walls_.size(); ++w)
+      for (const std::size_t q : {std::size_t{0}, std::size_t{1}})
+        if (!(q == 1 && j < 0) && j != -1 - static_cast<std::int32_t>(w) &&
+            reaches(c.before[q], lines_->radius(q == 0 ? a : b) + c.stray[q], walls_[w], now_, c.until))
+          return false;
+    lines_->put(a, FlightLine::through(after[0].r, after[0].v, c.end, gravity_));
+    lines_->valid_from(a) = c.until;
+    rim_[a] = after[0].rim;
+    if (j >= 0) {
+      lines_->put(b, FlightLine::through(after[1].r, after[1].v, c.end, gravity_));
+      lines_->valid_from(b) = c.until;
+      rim_[b] = after[1].rim;
+    }
+    std::erase_if(open_, [&](const Contact& old) { return old.until <= now_; });
+    open_.push_back(c);
+    return true;
+  }
+  /// Whether a body may come into touch with a wall in a short time.
+  [[nodiscard]] bool reaches(const FlightLine& line, double radius, const Wall& wall, double begin,
+                             double end) const {
+    const auto gap = [&](double t) {
+      return wall.n.dot(line.position(t, gravity_) - surface(wall, t).first) - radius;
+    };
+    const double bend = gravity_.norm() + (wall.moves ? amplitude_ * omega_ * omega_ : 0), span = end - begin;
+    return std::min(gap(begin), gap(end)) < 0.125 * bend * span * span;
+  }
+
+  // --- from flights to beads ---
+
+  /// The last whole step of this period at or before a time.
+  [[nodiscard]] std::int64_t step_before(double t) const {
+    auto k = static_cast<std::int64_t>(std::floor(t / dt_));
+    if (static_cast<double>(k + 1) * dt_ <= t) ++k;
+    if (static_cast<double>(k) * dt_ > t) --k;
+    return k;
+  }
+  /// A contact of a bead that stands at a time, as motion of both; none if it flies.
+  [[nodiscard]] const Contact* contact_at(std::size_t i, double t) const {
+    for (const Contact& c : open_)
+      if ((c.i == static_cast<std::int32_t>(i) || c.j == static_cast<std::int32_t>(i)) && c.from <= t &&
+          t < c.until)
+        return &c;
+    return nullptr;
+  }
+  [[nodiscard]] RelativeMotion motion_at(const Contact& c, double t) const {
+    return t > c.begin ? meet(setting(c.i, c.j), c.motion, c.begin, t, kTolerance).motion : c.motion;
+  }
+  [[nodiscard]] Instant instant(std::size_t i, double t) const {
+    const Contact* c = contact_at(i, t);
+    if (c == nullptr || t >= c->end) {
+      const FlightLine line = (*lines_)[i];
+      return {line.position(t, gravity_), line.velocity(t, gravity_), rim_[i]};
+    }
+    const std::size_t q = c->i == static_cast<std::int32_t>(i) ? 0 : 1;
+    if (t <= c->begin)
+      return {c->before[q].position(t, gravity_), c->before[q].velocity(t, gravity_), c->rim[q]};
+    return apart(*c, motion_at(*c, t), t)[q];
+  }
+  /// Beads and contact forces at the system's step.
+  void write(System& s) {
+    const double t = static_cast<double>(s.step - base_) * dt_;
+    s.rim_speeds.clear();
+    for (std::size_t i = 0; i < s.beads.size(); ++i) {
+      Bead& b = s.beads[i];
+      const Instant at = instant(i, t);
+      b.x = at.r.x(), b.y = at.r.y(), b.z = at.r.z();
+      b.vx = at.v.x(), b.vy = at.v.y(), b.vz = at.v.z();
+      b.spin_x = at.rim.x() / b.radius, b.spin = -at.rim.y() / b.radius, b.spin_z = at.rim.z() / b.radius;
+    }
+    s.forces.assign(s.beads.size(), {});
+    s.forces_known = true;
+    memories_.clear();
+    for (const Contact& c : open_)
+      if (c.begin <= t && t < c.end) write_contact(s, c, t);
+    std::sort(memories_.begin(), memories_.end(), [](const ContactMemory& a, const ContactMemory& b) {
+      return std::pair(a.i, a.j) < std::pair(b.i, b.j);
+    });
+  }
+  void write_contact(System& s, const Contact& c, double t) {
+    const EncounterSetting e = setting(c.i, c.j);
+    RelativeMotion m = motion_at(c, t);
+    const EncounterForce f = force_of(e, m);
+    const auto add = [&](std::int32_t bead, double sign) {
+      Force& to = s.forces[static_cast<std::size_t>(bead)];
+      to.x += sign * f.force.x(), to.y += sign * f.force.y(), to.z += sign * f.force.z();
+      if (plan_.dimension == 2) {
+        to.q += -f.moment.y();
+      } else {
+        to.q_x += f.moment.x(), to.q += f.moment.y(), to.q_z += f.moment.z();
+      }
+    };
+    add(c.i, 1);
+    if (c.j >= 0) add(c.j, -1);
+    if (plan_.key.velocity == Velocity::half_step) return;
+    // What the step before would have left: the velocities in its middle.
+    const double half = 0.5 * dt_;
+    RelativeMotion middle = m;
+    Vec3 push = f.force / e.pair.m_eff + e.pull + e.swing * std::sin(e.omega * t);
+    middle.u -= half * push;
+    middle.s += half * e.turn * f.moment;
+    const double v_n = middle.u.dot(f.normal);
+    ContactMemory memory{c.i, c.j, {v_n}};
+    if (plan_.rotation) {
+      const Vec3 v_t = middle.u - v_n * f.normal - middle.s.cross(f.normal);
+      if (plan_.dimension == 2)
+        memory.values.push_back(-v_t.x() * f.normal.z() + v_t.z() * f.normal.x());
+      else
+        memory.values.insert(memory.values.end(), {v_t.x(), v_t.y(), v_t.z()});
+    }
+    memories_.push_back(std::move(memory));
+  }
+  /// From flights to steps.
+  void hand_over(System& s) {
+    write(s);
+    lines_.reset();
+    open_.clear();
+    steps_ = make_steps_();
+    steps_->restore(memories_);
+    wait_ = look_every_;
+    next_look_ = (s.step / wait_ + 1) * wait_;
+  }
+
+  Plan plan_;
+  GuardLimits limits_;
+  std::int64_t look_every_;
+  std::function<std::unique_ptr<Kernel>()> make_steps_;
+  std::unique_ptr<Kernel> steps_;  ///< while not flying
+  std::int64_t next_look_ = 0, wait_ = 1;
+  Counters counted_;
+  std::int64_t list_builds_ = 0;
+
+  std::optional<FlightLines> lines_;  ///< while flying; times from the beginning of the period
+  std::vector<Event> events_;
+  std::vector<Contact> open_;
+  std::vector<Vec3> rim_;            ///< R w, after a contact that goes on
+  std::vector<double> mass_, turn_;  ///< turn: R^2/I
+  std::vector<Wall> walls_;
+  Vec3 gravity_ = Vec3::Zero();
+  Eigen::Index axis_ = 2;
+  double amplitude_ = 0, omega_ = 0, dt_ = 0, now_ = 0;
+  std::int64_t per_period_ = 1, base_ = 0;  ///< the step at which the period began
+
+  std::vector<ContactMemory> memories_;
+  std::vector<Bead> left_;  ///< as this kernel left them
+  std::int64_t left_step_ = -1;
+  double left_amplitude_ = 0;
+};
+
+}  // namespace
+
+std::string why_not_flights(const Scene& scene, const Plan& plan) {
+  if (!can_meet_alone(plan.bead)) return "the contact law of beads remembers, or is not smooth";
+  for (const ContactLaws& laws : plan.wall_laws)
+    if (!can_meet_alone(laws)) return "the contact law of a wall remembers, or is not smooth";
+  if (scene.plate_drag > 0) return "cell.plate_drag slows beads between contacts";
+  if (!scene.envelope.points.empty()) return "the drive's amplitude changes";
+  if (scene.single) return "time.precision = \"single\"";
+  return "";
+}
+
+std::unique_ptr<Kernel> make_flight_kernel(const Plan& plan, const GuardLimits& limits,
+                                           std::function<std::unique_ptr<Kernel>()> steps) {
+  return std::make_unique<FlightKernel>(plan, limits, std::move(steps));
+}
+
+}  // namespace twincell::sim

@@ -1,0 +1,28 @@
+#pragma once
+/// \file
+/// The kernel of dilute gases: beads fly from contact to contact, and only contacts are integrated.
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "sim/kernel.hpp"
+#include "sim/scene.hpp"
+
+namespace twincell::sim {
+
+/// Why a plan's beads cannot fly from event to event; empty if they can.
+std::string why_not_flights(const Scene& scene, const Plan& plan);
+
+/// Steps while beads meet in threes, flights while they do not.
+///
+/// Beads that touch nothing fly on parabolas, exactly; the moment of the next touch is the root of a
+/// quadratic (two beads, which fall alike) or of a parabola less a sine (bead and wall). A contact of two
+/// bodies is integrated to a relative 1e-7 (encounter.hpp), whatever the time step. When a third body comes
+/// near one that is in contact, all beads are handed to `steps` at the whole step before, and taken back when
+/// each has at most one contact. So no contact is missed, none is simplified, and the time step acts only
+/// where three bodies meet. \param steps makes the kernel that moves all beads by steps, of the same plan
+std::unique_ptr<Kernel> make_flight_kernel(const Plan& plan, const GuardLimits& limits,
+                                           std::function<std::unique_ptr<Kernel>()> steps);
+
+}  // namespace twincell::sim

@@ -1,0 +1,193 @@
+#include "sim/flight_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sim/flight_lines.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#ifndef TWINCELL_FLIGHT_LINES_ONCE
+#define TWINCELL_FLIGHT_LINES_ONCE
+namespace twincell::sim::flight {
+inline constexpr std::size_t kSpare = 8;  // doubles behind the end, for the last vector
+
+/// What the loops read.
+struct View {
+  std::size_t n;
+  int dimension;
+  const double *a[3], *b[3], *radius, *from;
+  double period[3];
+};
+/// A body on a line, between two times.
+struct Body {
+  const double *a, *b;  // of the line, three numbers each
+  double radius, begin, end;
+  std::array<std::size_t, 2> but;
+};
+}  // namespace twincell::sim::flight
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace twincell::sim::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using flight::Body;
+using flight::View;
+
+// No fused products: every instruction set gives the same bits.
+using Tag = hn::CappedTag<double, flight::kSpare>;
+using V = hn::Vec<Tag>;
+using M = hn::Mask<Tag>;
+
+HWY_INLINE V set(double x) {
+  return hn::Set(Tag(), x);
+}
+/// x less the nearest multiple of a period.
+HWY_INLINE V nearest(V x, double period) {
+  const V magic = set(6755399441055744.0);  // 1.5 2^52: adding it rounds
+  return hn::Sub(x, hn::Mul(hn::Sub(hn::Add(hn::Mul(x, set(1 / period)), magic), magic), set(period)));
+}
+HWY_INLINE M others(std::size_t first, const View& f, std::size_t i, std::size_t j) {
+  const V place = hn::Add(hn::Iota(Tag(), 0), set(static_cast<double>(first)));
+  return hn::And(
+      hn::Lt(place, set(static_cast<double>(f.n))),
+      hn::And(hn::Ne(place, set(static_cast<double>(i))), hn::Ne(place, set(static_cast<double>(j)))));
+}
+
+FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
+  const Tag tag;
+  const V infinite = set(HUGE_VAL), zero = hn::Zero(tag);
+  const V start = set(std::max(now, f.from[i])), own_radius = set(f.radius[i]);
+  V best = infinite, partner = set(-1), until = infinite;
+  M overlap = hn::FirstN(tag, 0);
+  for (std::size_t j = 0; j < f.n; j += hn::Lanes(tag)) {
+    const M counts = others(j, f, i, i);
+    const V reach = hn::Add(own_radius, hn::LoadU(tag, f.radius + j));
+    const V from = hn::Max(start, hn::LoadU(tag, f.from + j));
+    V square = zero, closing = zero, speed = zero;
+    for (int k = 0; k < 3; ++k) {
+      if (k == 1 && f.dimension == 2) continue;
+      const V w = hn::Sub(set(f.b[k][i]), hn::LoadU(tag, f.b[k] + j));
+      V d = hn::Add(hn::Sub(set(f.a[k][i]), hn::LoadU(tag, f.a[k] + j)), hn::Mul(w, from));
+      const V ww = hn::Mul(w, w);
+      if (f.period[k] > 0) {
+        d = nearest(d, f.period[k]);
+        // The next image is a period away, and touches at `reach`.
+        const V way = hn::Sub(hn::Mul(hn::Sub(set(f.period[k]), reach), hn::Abs(w)), hn::Mul(d, w));
+        const V time = hn::Add(from, hn::Div(way, ww));
+        until = hn::IfThenElse(hn::And(counts, hn::Gt(ww, zero)), hn::Min(until, time), until);
+      }
+      square = hn::Add(square, hn::Mul(d, d));
+      closing = hn::Add(closing, hn::Mul(d, w));
+      speed = hn::Add(speed, ww);
+    }
+    const V c = hn::Sub(square, hn::Mul(reach, reach));
+    const V inside = hn::Sub(hn::Mul(closing, closing), hn::Mul(speed, c));
+    // Beads that have just parted lie at `reach` but for rounding.
+    overlap = hn::Or(overlap, hn::And(counts, hn::Lt(c, hn::Mul(set(-1e-12), hn::Mul(reach, reach)))));
+    const M hits = hn::And(counts, hn::And(hn::Lt(closing, zero), hn::Gt(inside, zero)));
+    const V after = hn::Div(c, hn::Sub(hn::Sqrt(hn::Max(inside, zero)), closing));
+    const V time = hn::IfThenElse(hits, hn::Add(from, hn::Max(after, zero)), infinite);
+    const M sooner = hn::Lt(time, best);
+    best = hn::IfThenElse(sooner, time, best);
+    partner = hn::IfThenElse(sooner, hn::Add(hn::Iota(tag, 0), set(static_cast<double>(j))), partner);
+  }
+  FlightLines::Hit hit{HUGE_VAL, -1, HUGE_VAL, !hn::AllFalse(tag, overlap)};
+  alignas(64) double times[flight::kSpare], partners[flight::kSpare], untils[flight::kSpare];
+  hn::Store(best, tag, times);
+  hn::Store(partner, tag, partners);
+  hn::Store(until, tag, untils);
+  for (std::size_t k = 0; k < hn::Lanes(tag); ++k) {
+    hit.until = std::min(hit.until, untils[k]);
+    const auto with = static_cast<std::int32_t>(partners[k]);
+    if (times[k] < hit.time || (times[k] == hit.time && with < hit.partner)) {
+      hit.time = times[k];
+      hit.partner = with;
+    }
+  }
+  return hit;
+}
+
+bool any_near(const View& f, const Body& body) {
+  const Tag tag;
+  const V zero = hn::Zero(tag), begin = set(body.begin), span = set(body.end - body.begin);
+  M near = hn::FirstN(tag, 0);
+  for (std::size_t j = 0; j < f.n; j += hn::Lanes(tag)) {
+    const V reach = hn::Add(set(body.radius), hn::LoadU(tag, f.radius + j));
+    V d[3], w[3], closing = zero, speed = set(1e-300);
+    for (int k = 0; k < 3; ++k) {
+      if (k == 1 && f.dimension == 2) continue;
+      w[k] = hn::Sub(set(body.b[k]), hn::LoadU(tag, f.b[k] + j));
+      d[k] = hn::Add(hn::Sub(set(body.a[k]), hn::LoadU(tag, f.a[k] + j)), hn::Mul(w[k], begin));
+      if (f.period[k] > 0) d[k] = nearest(d[k], f.period[k]);
+      closing = hn::Add(closing, hn::Mul(d[k], w[k]));
+      speed = hn::Add(speed, hn::Mul(w[k], w[k]));
+    }
+    const V nearest_time = hn::Min(hn::Max(hn::Neg(hn::Div(closing, speed)), zero), span);
+    V square = zero;
+    for (int k = 0; k < 3; ++k) {
+      if (k == 1 && f.dimension == 2) continue;
+      const V x = hn::Add(d[k], hn::Mul(w[k], nearest_time));
+      square = hn::Add(square, hn::Mul(x, x));
+    }
+    near =
+        hn::Or(near, hn::And(others(j, f, body.but[0], body.but[1]), hn::Lt(square, hn::Mul(reach, reach))));
+  }
+  return !hn::AllFalse(tag, near);
+}
+
+}  // namespace twincell::sim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace twincell::sim {
+
+HWY_EXPORT(first_hit);
+HWY_EXPORT(any_near);
+
+namespace {
+
+flight::View view(std::size_t n, int dimension, const std::array<std::vector<double>, 3>& a,
+                  const std::array<std::vector<double>, 3>& b, const std::vector<double>& radius,
+                  const std::vector<double>& from, const std::array<double, 3>& period) {
+  return {n,
+          dimension,
+          {a[0].data(), a[1].data(), a[2].data()},
+          {b[0].data(), b[1].data(), b[2].data()},
+          radius.data(),
+          from.data(),
+          {period[0], period[1], period[2]}};
+}
+
+}  // namespace
+
+FlightLines::FlightLines(const std::vector<double>& radii, int dimension, const std::array<double, 3>& period)
+    : n_(radii.size()), dimension_(dimension), period_(period), radius_(radii) {
+  const std::size_t with_spare = n_ + flight::kSpare;
+  for (std::size_t k = 0; k < 3; ++k) a_[k].resize(with_spare), b_[k].resize(with_spare);
+  radius_.resize(with_spare);
+  from_.resize(with_spare);
+}
+
+Vec3 FlightLines::shift(const Vec3& r) const {
+  Vec3 shift = Vec3::Zero();
+  for (Eigen::Index k = 0; k < 3; ++k)
+    if (const double period = period_[static_cast<std::size_t>(k)]; period > 0)
+      shift[k] = -period * std::round(r[k] / period);
+  return shift;
+}
+
+FlightLines::Hit FlightLines::first_hit(std::size_t i, double now) const {
+  return HWY_DYNAMIC_DISPATCH(first_hit)(view(n_, dimension_, a_, b_, radius_, from_, period_), i, now);
+}
+
+bool FlightLines::any_near(const FlightLine& line, double radius, double begin, double end,
+                           std::array<std::size_t, 2> but) const {
+  return HWY_DYNAMIC_DISPATCH(any_near)(view(n_, dimension_, a_, b_, radius_, from_, period_),
+                                        {line.a.data(), line.b.data(), radius, begin, end, but});
+}
+
+}  // namespace twincell::sim
+#endif

@@ -1,0 +1,273 @@
+// Beads that fly from contact to contact do what beads moved by steps do: one collision as of infinitely many
+// steps, a gas as hot, and the same bits however a run is cut.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cstring>
+
+#include "analysis/trajectory/error.hpp"
+#include "sim/encounter.hpp"
+#include "sim/flight_kernel.hpp"
+#include "sim/simulation.hpp"
+
+namespace twincell::sim {
+namespace {
+
+Scene scene_of(const std::string& text) {
+  return read_scene_text(text, "gas");
+}
+/// The second paper's cell, driven hard.
+std::string gas(const std::string& system, double w, const std::string& more = "") {
+  return "preset = \"bhateja-2016-" + system + "\"\n[drive]\nk_m = " + std::to_string(w) +
+         "\n[time]\nintegrator = \"split\"\nsteps_per_contact = 25\n" + more;
+}
+
+// --- one collision ---
+
+struct Impact {
+  double normal, tangential, spin, mu, restitution;
+  int dimension;
+};
+ContactLaws laws_of(const Impact& m) {
+  LinearSpringDashpot normal;
+  normal.k_n = 1e6;
+  normal.damping = {0, 0, damping_of_restitution(m.restitution) * 1e3};
+  ContactLaws laws{normal, NoTangential{}, NoRolling{}};
+  if (m.mu > 0) laws.tangential = DashpotSlider{normal.damping, m.mu};
+  return laws;
+}
+/// Two beads of mass 1 and radius 1/2, spheres in space, discs in the plane.
+EncounterSetting setting_of(const Impact& m, const ContactLaws& laws) {
+  const double turn = m.dimension == 2 ? 2 : 2.5;  // R^2/I for m = 1
+  EncounterSetting s;
+  s.dimension = m.dimension;
+  s.laws = &laws;
+  s.pair = {0.5, 0.25, 2 * (1 + turn)};
+  s.reach = 1;
+  s.turn = 2 * turn;
+  return s;
+}
+
+TEST(Encounter, HeadOnHasTheClosedFormsRestitutionAndDuration) {
+  for (const double e : {0.3, 0.7, 0.9, 1.0}) {
+    const Impact impact{4, 0, 0, 0, e, 2};
+    const ContactLaws laws = laws_of(impact);
+    const EncounterSetting s = setting_of(impact, laws);
+    const EncounterEnd end = meet(s, {Vec3(0, 0, 1), Vec3(0, 0, -4), Vec3::Zero()}, 0, 1, 1e-12);
+    const Collision exact = std::get<LinearSpringDashpot>(laws.normal).collision(s.pair);
+    ASSERT_TRUE(end.parted);
+    EXPECT_NEAR(end.motion.u.z() / 4, exact.restitution, 1e-10) << e;
+    EXPECT_NEAR(end.time / exact.duration, 1, 1e-10) << e;
+    EXPECT_NEAR(end.motion.r.z(), 1, 1e-13);
+  }
+}
+
+/// The same collision by the stepping kernel, n steps a contact: v_i - v_j and R_i w_i + R_j w_j after it.
+std::pair<Vec3, Vec3> by_steps(const Impact& m, double n) {
+  std::string text =
+      "[cell]\ndimension = " + std::to_string(m.dimension) +
+      "\nwidth = 40.0\nheight = 40.0\ngravity = 0.0\nbottom = \"periodic\"\nsides = \"periodic\"\n";
+  if (m.dimension == 3) text += "depth = 40.0\nplates = \"periodic\"\n";
+  text += "[beads]\ncount = 2\n[drive]\namplitude = 0.0\nomega = 6.0\n[time]\nintegrator = \"split\"\n" +
+          fmt::format(
+              "steps_per_contact = {}\n[contact]\nk_n = 1e6\ntangential = \"dashpot\"\nmu = {}\n"
+              "restitution = {}\nc_t_over_c_n = 1.0\n",
+              n, m.mu, m.restitution);
+  const Scene scene = scene_of(text);
+  const Plan plan = make_plan(scene);
+  System s = make_system(scene, plan);
+  Bead a, b;
+  a.inertia = b.inertia = m.dimension == 2 ? 0.125 : 0.1;
+  // Touching at the end of a step, then flown back by half a step: the entry lies within a step as any other.
+  const double back = 0.5 * plan.dt;
+  a.z = 0.5 + back * m.normal, a.vz = -0.5 * m.normal;
+  b.z = -0.5, b.vz = 0.5 * m.normal;
+  a.z -= 0.5 * back * m.normal, b.z -= 0.5 * back * m.normal;
+  a.vx = 0.5 * m.tangential, b.vx = -0.5 * m.tangential;
+  a.x -= back * a.vx, b.x -= back * b.vx;
+  a.spin = b.spin = m.spin;
+  s.beads = {a, b};
+  const auto kernel = make_kernel(plan, guard_limits(plan), KernelKind::all_pairs);
+  const double apart = 1;
+  std::int64_t steps = 0;
+  do {
+    kernel->advance(s, 1);
+    ++steps;
+  } while (steps < 10 || Vec3(s.beads[0].x - s.beads[1].x, 0, s.beads[0].z - s.beads[1].z).norm() < apart);
+  kernel->advance(s, 2);  // what a last step has left to correct
+  const Bead &p = s.beads[0], &q = s.beads[1];
+  return {Vec3(p.vx - q.vx, p.vy - q.vy, p.vz - q.vz), Vec3(0, -p.radius * p.spin - q.radius * q.spin, 0)};
+}
+
+TEST(Encounter, ObliqueIsTheLimitOfEverSmallerSteps) {
+  for (const int dimension : {2, 3})
+    for (const double mu : {0.0, 0.4})
+      for (const auto& [normal, tangential, spin] :
+           {std::tuple{4.0, 1.0, 0.3}, std::tuple{4.0, 6.0, 0.0}, std::tuple{1.0, 4.0, -2.0}}) {
+        const Impact impact{normal, tangential, spin, mu, 0.9, dimension};
+        const ContactLaws laws = laws_of(impact);
+        const RelativeMotion start{Vec3(0, 0, 1), Vec3(tangential, 0, -normal), Vec3(0, -spin, 0)};
+        const EncounterEnd end = meet(setting_of(impact, laws), start, 0, 1, 1e-12);
+        ASSERT_TRUE(end.parted);
+        // Second order: two step lengths tell the limit, a third how well.
+        const auto limit = [&](double n) {
+          const auto coarse = by_steps(impact, n), fine = by_steps(impact, 2 * n);
+          return std::pair<Vec3, Vec3>{(4 * fine.first - coarse.first) / 3,
+                                       (4 * fine.second - coarse.second) / 3};
+        };
+        const auto a = limit(2000), b = limit(50000);
+        const double speed = std::hypot(normal, tangential);
+        const std::string name = std::to_string(dimension) + "D mu " + std::to_string(mu) + " at " +
+                                 std::to_string(normal) + ", " + std::to_string(tangential);
+        EXPECT_LT((end.motion.u - b.first).norm() / speed, 1e-8)
+            << name << ", limits differ by " << (a.first - b.first).norm() / speed;
+        EXPECT_LT((end.motion.s - b.second).norm() / speed, 1e-9) << name;
+      }
+}
+
+// --- many beads ---
+
+struct Gas {
+  Scene scene;
+  Plan plan;
+  System system;
+  std::unique_ptr<Kernel> kernel;
+
+  Gas(const std::string& text, bool flights)
+      : scene(scene_of(text)), plan(make_plan(scene)), system(make_system(scene, plan)) {
+    plan.flights = flights;
+    kernel = make_kernel(plan, guard_limits(plan));
+    system.beads = placed(scene).beads;
+    system.drive.amplitude = 0;
+    kernel->advance(system, static_cast<std::int64_t>(8 / system.dt));
+    begin_drive(scene, system);
+  }
+  void periods(std::int64_t n) { kernel->advance(system, n * plan.steps_per_period); }
+};
+
+TEST(Flights, TheGasIsAsHotAsByStepsOfTime) {
+  for (const char* system : {"rough-2d", "smooth-3d"}) {
+    std::array<double, 2> mean{}, error{};
+    for (const bool flights : {false, true}) {
+      Gas g(gas(system, 50), flights);
+      g.periods(60);
+      constexpr int kBlocks = 10, kPeriods = 30, kLooks = 4;
+      std::vector<double> blocks;
+      for (int b = 0; b < kBlocks; ++b) {
+        double sum = 0;
+        for (int k = 0; k < kPeriods * kLooks; ++k) {
+          g.kernel->advance(g.system, g.plan.steps_per_period / kLooks);
+          double v = 0, vv = 0;
+          for (const Bead& bead : g.system.beads) v += bead.vz, vv += bead.vz * bead.vz;
+          const auto n = static_cast<double>(g.system.beads.size());
+          sum += vv / n - v * v / (n * n);
+        }
+        blocks.push_back(sum / (kPeriods * kLooks) / g.scene.drive.k_m());
+      }
+      double m = 0, var = 0;
+      for (const double b : blocks) m += b / kBlocks;
+      for (const double b : blocks) var += (b - m) * (b - m) / (kBlocks - 1) / kBlocks;
+      mean[flights ? 1 : 0] = m, error[flights ? 1 : 0] = std::sqrt(var);
+    }
+    const double spread = std::hypot(error[0], error[1]);
+    EXPECT_LT(spread, 0.1 * mean[0]) << system;
+    EXPECT_NEAR(mean[1], mean[0], 4 * spread)
+        << system << ": " << mean[0] << " +- " << error[0] << " by steps, " << mean[1] << " +- " << error[1]
+        << " by flights";
+  }
+}
+
+TEST(Flights, TheBitsDoNotDependOnHowARunIsCutOrTakenUp) {
+  Gas whole(gas("rough-3d", 30), true), cut(gas("rough-3d", 30), true), taken(gas("rough-3d", 30), true);
+  const std::int64_t steps = 6 * whole.plan.steps_per_period;
+  whole.kernel->advance(whole.system, steps);
+  for (std::int64_t done = 0, piece = 1; done < steps; done += piece, piece = piece * 7 % 1013 + 1)
+    cut.kernel->advance(cut.system, std::min(piece, steps - done));
+  for (std::int64_t done = 0, piece = steps / 11; done < steps; done += piece) {
+    taken.kernel->advance(taken.system, std::min(piece, steps - done));
+    const auto contacts = taken.kernel->contacts();
+    const auto memory = taken.kernel->memory();
+    taken.kernel = make_kernel(taken.plan, guard_limits(taken.plan));
+    taken.kernel->restore(contacts);
+    taken.kernel->recall(taken.system, memory);
+  }
+  const auto bytes = whole.system.beads.size() * sizeof(Bead);
+  EXPECT_EQ(std::memcmp(whole.system.beads.data(), cut.system.beads.data(), bytes), 0);
+  EXPECT_EQ(std::memcmp(whole.system.beads.data(), taken.system.beads.data(), bytes), 0);
+  EXPECT_NE(whole.system.beads[0].spin, 0);
+}
+
+// Beads that lose nothing, in a box without gravity: the energy is that of the start after some ten thousand
+// collisions, but for what the contacts of the moment hold.
+TEST(Flights, ElasticBeadsKeepTheirEnergy) {
+  Gas g(
+      "[cell]\ndimension = 3\nwidth = 8.0\ndepth = 8.0\nheight = 8.0\ngravity = 0.0\nsides = "
+      "\"periodic\"\nplates "
+      "= \"periodic\"\nbottom = \"periodic\"\n[beads]\ncount = 50\n[start]\nkind = "
+      "\"random\"\n[contact]\nk_n = "
+      "1e6\nrestitution = 1.0\ntangential = \"none\"\n[drive]\namplitude = 0.0\nomega = "
+      "6.0\n[time]\nintegrator = "
+      "\"split\"\nsteps_per_contact = 400\nstepping = \"flights\"\n",
+      true);
+  const auto least = [&] {  // over some steps, in one of which nothing touches
+    double e = 0;
+    for (int k = 0; k < 200; ++k) {
+      g.kernel->advance(g.system, 37);
+      e = std::max(e, kinetic_energy_per_bead(g.system));
+    }
+    return e;
+  };
+  const double before = least();
+  g.periods(200);
+  const double after = least();
+  EXPECT_GT(before, 0.1);
+  EXPECT_NEAR(after / before, 1, 1e-5);
+}
+
+TEST(Flights, HardCases) {
+  // Weak drives: the bed rides, and all is left to steps.
+  {
+    Gas g(gas("smooth-2d", 0.5, "stepping = \"flights\"\n"), true);
+    g.periods(30);
+    double v = 0, vv = 0;
+    for (const Bead& b : g.system.beads) v += b.vz / 40, vv += b.vz * b.vz / 40;
+    EXPECT_LT(vv - v * v, 1e-4 * 0.5);
+  }
+  // One bead, and one very high: it comes down when a parabola says.
+  {
+    Gas g(gas("smooth-2d", 50, "[beads]\ncount = 1\n"), true);
+    g.periods(100);
+    EXPECT_TRUE(std::isfinite(g.system.beads[0].z));
+    EXPECT_GT(g.system.beads[0].z, -1);
+    Bead& b = g.system.beads[0];
+    b.z = 1e4, b.vz = 0, b.vx = 3;
+    const double t_0 = g.system.time(), x_0 = b.x;
+    g.periods(100);
+    const double t = g.system.time() - t_0;
+    ASSERT_LT(0.5 * t * t, 9000);
+    EXPECT_NEAR(g.system.beads[0].z, 1e4 - 0.5 * t * t, 1e-9);
+    EXPECT_NEAR(g.system.beads[0].x, x_0 + 3 * t, 1e-9);
+  }
+  // Overdamped contacts do not end by themselves.
+  {
+    Gas g(gas("smooth-2d", 30, "[contact]\nrestitution = 1e-6\n"), true);
+    g.periods(20);
+    for (const Bead& b : g.system.beads) EXPECT_TRUE(std::isfinite(b.z) && b.z > -1);
+  }
+}
+
+TEST(Flights, AreRefusedWhereTheyAreNotExact) {
+  const auto flights = [](const std::string& more) { return "[time]\nstepping = \"flights\"\n" + more; };
+  EXPECT_THROW(make_plan(scene_of("preset = \"fortini-huang-2015\"\n" + flights(""))), ConfigError);
+  EXPECT_THROW(make_plan(scene_of("preset = \"bhateja-2016-smooth-2d\"\n" + flights("[drive]\nk_m = 50.0\n") +
+                                  "[contact]\nnormal = \"clipped\"\n")),
+               ConfigError);
+  EXPECT_TRUE(make_plan(scene_of(gas("rough-2d", 50))).flights);
+  EXPECT_FALSE(make_plan(scene_of(gas("rough-2d", 5))).flights);
+  EXPECT_FALSE(make_plan(scene_of(gas("rough-2d", 50, "stepping = \"steps\"\n"))).flights);
+}
+
+}  // namespace
+}  // namespace twincell::sim
