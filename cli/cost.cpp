@@ -1,4 +1,4 @@
-// twincell cost sim: error and time of the time steps together; cost locate is cost_locate.hpp
+// twincell cost sim: error and time of the time steps together; cost gas and cost locate have their own files
 
 #include <fmt/format.h>
 
@@ -13,6 +13,7 @@
 #include "analysis/figures.hpp"
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "cli/cost_gas.hpp"
 #include "cli/cost_locate.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
@@ -90,7 +91,7 @@ Measured measure(const CostOptions& options, const Common& common) {
     if (std::find(in_gas.begin(), in_gas.end(), s) == in_gas.end()) in_gas.push_back(s);
   for (const StepSetting& s : in_gas) {
     ProgressBar bar(common, fmt::format("gas, {}, n = {:g}", s.integrator, s.n));
-    m.gas.push_back(sim::gas_temperature(s, options.quick ? 50 : 1500, bar));
+    m.gas.push_back(sim::gas_temperature(s, {}, options.quick ? 50 : 1500, bar));
   }
   return m;
 }
@@ -289,7 +290,7 @@ CostReport cost_of_stepping(const CostOptions& options, const Common& common) {
 }
 
 void run(const CostOptions& options, const Common& common) {
-  constexpr double kAccuracy_px = 0.01;
+  constexpr double kAccuracy_px = 0.01, kAccuracy_gas = 0.01;
   const bool locate = options.what == "locate";
   if (options.accuracy)
     require_range({.file = {}, .key = "--accuracy"}, *options.accuracy, locate ? 1e-6 : 1e-12,
@@ -299,9 +300,10 @@ void run(const CostOptions& options, const Common& common) {
     folder.emplace(options.output, AtomicPath::Kind::folder);
     std::filesystem::create_directories(folder->part());
   }
-  CostReport report = locate
-                          ? cost_of_locating(options.accuracy.value_or(kAccuracy_px), options.quick, common)
-                          : cost_of_stepping(options, common);
+  CostReport report =
+      locate ? cost_of_locating(options.accuracy.value_or(kAccuracy_px), options.quick, common)
+      : options.what == "gas" ? cost_of_gas(options.accuracy.value_or(kAccuracy_gas), options.quick, common)
+                              : cost_of_stepping(options, common);
   report.document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
   if (folder) {
     draw(report.figure, folder->part());
@@ -321,13 +323,15 @@ void add_cost(CLI::App& program, Common& common) {
                             "twincell cost sim --accuracy 1e-3 -o cost");
   verb.add_option(
           "what", options->what,
-          "sim: integrators, steps per contact, stiffness; locate: finders, fit, noise, pixels per bead")
+          "sim: integrators, steps per contact, stiffness; gas: steps and flights for the temperature of a "
+          "gas; locate: finders, fit, noise, pixels per bead")
       ->required()
-      ->check(CLI::IsMember({"sim", "locate"}));
+      ->check(CLI::IsMember({"sim", "gas", "locate"}));
   verb.add_option("-o,--output", options->output, "Folder for figure and table; replaced as a whole");
-  verb.add_option("--accuracy", options->accuracy,
-                  "The cheapest setting is named whose largest error of e (sim; 1e-3) or rms error in px "
-                  "(locate; 0.01) is no larger");
+  verb.add_option(
+      "--accuracy", options->accuracy,
+      "The cheapest setting is named whose largest error of e (sim; 1e-3), relative error of T_z (gas; "
+      "0.01) or rms error in px (locate; 0.01) is no larger");
   verb.add_flag("--quick", options->quick, "Fewer settings, each timed once: some seconds");
   verb.callback([options, &common] { run(*options, common); });
 }

@@ -293,18 +293,19 @@ double GasTemperature::seconds_to(double relative) const {
   return seconds * times * times;
 }
 
-GasTemperature gas_temperature(const StepSetting& setting, int periods, Progress& progress) {
+GasTemperature gas_temperature(const StepSetting& setting, const GasCase& gas, int periods,
+                               Progress& progress) {
   constexpr int kBlocks = 10;
   Scene scene = make_scene(
-      setting,
-      fmt::format("preset = \"bhateja-2016-smooth-2d\"\n[drive]\nk_m = 20.0\n[start]\nsettle_limit = 2.0\n"
-                  "[contact]\nk_n = {}\n[time]\ndiscard = 50\ncycles = {}\n",
-                  setting.k_n, std::max(periods, kBlocks)));
+      setting, fmt::format("preset = \"bhateja-2016-{}\"\n[drive]\nk_m = {}\n[start]\nsettle_limit = 2.0\n"
+                           "[contact]\nk_n = {}\n[time]\nstepping = \"{}\"\ndiscard = 50\ncycles = {}\n",
+                           gas.system, gas.w, setting.k_n, gas.flights ? "flights" : "steps",
+                           std::max(periods, kBlocks)));
   Simulation run(scene);
   VerticalTemperature frames(scene.phases);
   const double begun = processor_seconds();
   run.run(frames, progress);
-  GasTemperature t{.setting = setting, .periods = static_cast<int>(frames.periods().size())};
+  GasTemperature t{.setting = setting, .gas = gas, .periods = static_cast<int>(frames.periods().size())};
   t.seconds = (processor_seconds() - begun) * t.periods / (t.periods + static_cast<double>(scene.discard));
   const double scale = scene.drive.peak_velocity() * scene.drive.peak_velocity();
   std::array<double, kBlocks> block{};

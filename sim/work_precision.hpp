@@ -52,11 +52,19 @@ struct BedErrors {
 };
 BedErrors bed_errors(const StepSetting& setting);
 
-/// T_z/(m V_p^2), m <(v_z - v_z,cm)^2>, of 40 smooth beads at W = 20 (Bhateja et al. 2016, 2D), and the
-/// standard error that the length of the run leaves it, from ten blocks. The start is forgotten for 50
-/// periods.
+/// A gas of the second paper.
+struct GasCase {
+  std::string system = "smooth-2d";  ///< of the presets bhateja-2016-...
+  double w = 20;
+  bool flights = false;  ///< beads fly from contact to contact; the setting then acts where three bodies meet
+  bool operator==(const GasCase&) const = default;
+};
+
+/// T_z/(m V_p^2), m <(v_z - v_z,cm)^2>, of a gas (Bhateja et al. 2016), and the standard error that the
+/// length of the run leaves it, from ten blocks. The start is forgotten for 50 periods.
 struct GasTemperature {
   StepSetting setting;
+  GasCase gas;
   double value = 0, standard_error = 0;
   int periods = 0;
   double seconds = 0;  ///< of processor time, for `periods`
@@ -64,7 +72,7 @@ struct GasTemperature {
   /// Processor time after which the statistical error is the share `relative` of the value.
   [[nodiscard]] double seconds_to(double relative) const;
 };
-GasTemperature gas_temperature(const StepSetting& setting, int periods,
+GasTemperature gas_temperature(const StepSetting& setting, const GasCase& gas, int periods,
                                Progress& progress = Progress::none());
 
 /// Processor time of one step.

@@ -55,6 +55,27 @@ TEST(Cost, SaysWhatAccuracyCosts) {
                                       "work_precision.pdf", "work_precision.png", "work_precision.svg"}));
 }
 
+TEST(Cost, SaysWhatAGasCosts) {
+  const TemporaryFolder folder;
+  const Ran ran = run_program({"cost", "gas", "--quick", "--json", "-q", "-o", folder / "cost"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto d = nlohmann::json::parse(ran.out);
+  ASSERT_EQ(d["gas"].size(), 3U);
+  EXPECT_EQ(d["gas"][0]["stepping"], "steps");
+  EXPECT_EQ(d["gas"][2]["stepping"], "flights");
+  for (const auto& g : d["gas"]) {
+    EXPECT_NEAR(g["t_z"], 0.36,
+                0.15);  // Table III: 0.327 at W = 50; ours 0.36; six hundred periods leave some per cent
+    EXPECT_LT(std::abs(g["errors_from_first"].get<double>()), 5);
+    const double share = g["standard_error"].get<double>() / g["t_z"].get<double>() / 0.01;
+    EXPECT_NEAR(g["seconds_to_accuracy"].get<double>(), g["seconds"].get<double>() * share * share, 1e-9);
+  }
+  EXPECT_GE(d["gain"]["rough-2d"], 1);
+  EXPECT_EQ(names_in(folder / "cost"),
+            (std::vector<std::string>{"gas_cost.dat", "gas_cost.gp", "gas_cost.pdf", "gas_cost.png",
+                                      "gas_cost.svg", "table.txt"}));
+}
+
 TEST(Cost, SaysWhatLocatingCosts) {
   const TemporaryFolder folder;
   const Ran ran =

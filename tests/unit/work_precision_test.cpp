@@ -95,8 +95,8 @@ TEST(BedErrors, BedsRestAtTheFewestSteps) {
 }
 
 TEST(GasTemperature, IsThatOfTheGasWhateverTheStep) {
-  const GasTemperature fine = gas_temperature({.n = 50.37}, 200),
-                       coarse = gas_temperature({.integrator = "split", .n = 6.37}, 200);
+  const GasTemperature fine = gas_temperature({.n = 50.37}, {}, 200),
+                       coarse = gas_temperature({.integrator = "split", .n = 6.37}, {}, 200);
   const double both = std::hypot(fine.standard_error, coarse.standard_error);
   std::printf("T_z = %.4f +- %.4f and %.4f +- %.4f\n", fine.value, fine.standard_error, coarse.value,
               coarse.standard_error);

@@ -1,0 +1,116 @@
+#include "cli/cost_gas.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "sim/work_precision.hpp"
+
+namespace twincell::cli {
+
+namespace {
+
+using sim::GasCase;
+using sim::GasTemperature;
+using sim::StepSetting;
+
+struct Method {
+  StepSetting setting;
+  bool flights;
+};
+
+std::string name_of(const GasTemperature& g) {
+  const std::string steps = fmt::format("{}, n = {:g}", g.setting.integrator, g.setting.n);
+  return g.gas.flights ? "flights; " + steps : steps;
+}
+
+/// The first is what the paper's own simulations did.
+std::vector<Method> methods(bool quick) {
+  const StepSetting verlet{}, fine{.integrator = "split", .n = 25.37},
+      coarse{.integrator = "split", .n = 10.37};
+  if (quick) return {{verlet, false}, {coarse, false}, {coarse, true}};
+  return {{verlet, false}, {fine, false}, {coarse, false}, {fine, true}, {coarse, true}};
+}
+
+}  // namespace
+
+CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
+  constexpr double kStrong = 50;  // W
+  const std::vector<std::string> systems =
+      quick ? std::vector<std::string>{"rough-2d"} : std::vector<std::string>{"rough-2d", "smooth-3d"};
+  std::vector<std::vector<GasTemperature>> all;
+  for (const std::string& system : systems) {
+    all.emplace_back();
+    for (const Method& m : methods(quick)) {
+      const GasCase gas{system, kStrong, m.flights};
+      ProgressBar bar(common, fmt::format("{}, {}{}, n = {:g}", system, m.flights ? "flights, " : "",
+                                          m.setting.integrator, m.setting.n));
+      all.back().push_back(sim::gas_temperature(m.setting, gas, quick ? 600 : 3000, bar));
+    }
+  }
+
+  CostReport report;
+  report.text = fmt::format(
+      "T_z of the second paper's gases at W = {:g}: processor time of a period, T_z, and the time after "
+      "which\n"
+      "chance leaves it {:g} of its value, since that falls with the root of a run's length.\n",
+      kStrong, accuracy);
+  Figure& figure = report.figure;
+  figure = {
+      .name = "gas_cost", .title = "What accuracy costs in time: T_z of a gas", .width = 960, .height = 460};
+  std::string panels;
+  int index = 0;
+  for (const std::vector<GasTemperature>& of_system : all) {
+    const GasTemperature& first = of_system.front();
+    report.text += fmt::format("\n{}\n", first.gas.system);
+    panels += fmt::format("set title '{}'\nplot ", first.gas.system);
+    const GasTemperature* cheapest = &first;
+    for (const GasTemperature& g : of_system) {
+      const double per_period = 1e3 * g.seconds / g.periods, to = g.seconds_to(accuracy);
+      const double apart = (g.value - first.value) / std::hypot(g.standard_error, first.standard_error);
+      report.text += fmt::format("  {:<26} {:8.3f} ms  {:.4f} +- {:.4f} m V_p^2 of {} periods  {:8.3g} s",
+                                 name_of(g), per_period, g.value, g.standard_error, g.periods, to);
+      report.text += &g == &first ? "\n" : fmt::format("  {:+.1f} errors from the first\n", apart);
+      if (g.seconds / g.periods < cheapest->seconds / cheapest->periods) cheapest = &g;
+      report.document["gas"].push_back({{"system", g.gas.system},
+                                        {"w", g.gas.w},
+                                        {"stepping", g.gas.flights ? "flights" : "steps"},
+                                        {"integrator", g.setting.integrator},
+                                        {"n", g.setting.n},
+                                        {"t_z", g.value},
+                                        {"standard_error", g.standard_error},
+                                        {"periods", g.periods},
+                                        {"seconds", g.seconds},
+                                        {"ms_per_period", per_period},
+                                        {"seconds_to_accuracy", to},
+                                        {"errors_from_first", apart}});
+      figure.data += fmt::format("# {}, {}: s of processor time, relative standard error of T_z\n",
+                                 g.gas.system, name_of(g));
+      for (const double times : {0.1, 1.0, 10.0, 100.0})
+        figure.data +=
+            fmt::format("{:.4g} {:.4g}\n", times * g.seconds, g.standard_error / g.value / std::sqrt(times));
+      figure.data += "\n\n";
+      // A line of what longer and shorter runs come to, a point for the one that was made.
+      panels += fmt::format(
+          "'{0}.dat' index {1} with lines dt {2} lw 2 lc {3} title '{4}', '' index {1} every ::1::1 "
+          "with points pt 7 lc {3} notitle, ",
+          figure.name, index, g.gas.flights ? 1 : 2, 1 + index % 5, name_of(g));
+      ++index;
+    }
+    panels += fmt::format("{} with lines lc rgb 'grey' notitle\n", accuracy);
+    const double gain = first.seconds / first.periods / (cheapest->seconds / cheapest->periods);
+    report.text += fmt::format("  a period takes {} {:.1f} times less time than {}\n", name_of(*cheapest),
+                               gain, name_of(first));
+    report.document["gain"][first.gas.system] = gain;
+  }
+  figure.plot = fmt::format(
+      "set multiplot layout 1,{}\nset logscale xy\nset key bottom left\nset xlabel 'processor time, s'\n"
+      "set ylabel 'standard error of T_z / T_z'\n{}unset multiplot\n",
+      all.size(), panels);
+  report.document["accuracy"] = accuracy;
+  return report;
+}
+
+}  // namespace twincell::cli

@@ -1,0 +1,12 @@
+#pragma once
+/// \file
+/// twincell cost gas: error and time of the granular temperature of a dilute gas.
+
+#include "cli/cost_locate.hpp"
+
+namespace twincell::cli {
+
+/// \param accuracy relative error of T_z asked for
+CostReport cost_of_gas(double accuracy, bool quick, const Common& common);
+
+}  // namespace twincell::cli
