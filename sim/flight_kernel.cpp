@@ -108,6 +108,12 @@ class FlightKernel : public Kernel {
   [[nodiscard]] std::string description() const override {
     return "flights between contacts; where three bodies meet " + make_steps_()->description();
   }
+  [[nodiscard]] Footprint footprint() const override {
+    if (steps_) return steps_->footprint();
+    constexpr std::size_t kNumbers = 6 + 2 + 3 + 2;  // line, radius and valid_from, rim, mass and turn
+    return {mass_.size() * (kNumbers * sizeof(double) + sizeof(Event)), open_.size() * sizeof(Contact),
+            open_.size()};
+  }
   [[nodiscard]] Counters counters() const override {
     Counters c = steps_ ? steps_->counters() : Counters{};
     c.steps += counted_.steps, c.pair_visits += counted_.pair_visits, c.wall_visits += counted_.wall_visits,
