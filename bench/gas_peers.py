@@ -29,7 +29,7 @@ steps_per_contact = 50
 stepping = "{stepping}"
 discard = 50
 cycles = {cycles}
-phases = 1
+phases = 4
 """
 JOBS = ["rough-2d", "smooth-2d", "rough-3d", "smooth-3d"]
 PERIODS = 100  # a piece, of ours
