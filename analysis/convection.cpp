@@ -104,25 +104,26 @@ class Convection : public Observable {
     const auto left = interval(total, circulation.left, [](const Circulation& c) { return c.left; });
     const auto right = interval(total, circulation.right, [](const Circulation& c) { return c.right; });
     const std::string sign = "counter-clockwise (x right, z up) is positive";
+    const std::string few = fmt::format("fewer than {} blocks of cycles", kFewestBlocks);
     add({.name = "circulation_left",
          .values = {circulation.left},
          .unit = "sigma^2 per cycle",
          .interval = left,
+         .no_interval = left ? "" : few,
          .convention = sign},
         why);
     add({.name = "circulation_right",
          .values = {circulation.right},
          .unit = "sigma^2 per cycle",
          .interval = right,
+         .no_interval = right ? "" : few,
          .convention = sign},
         why);
-    const std::string untold =
-        why.empty() && !left
-            ? fmt::format("fewer than {} blocks of cycles: rolls cannot be told from chance", kFewestBlocks)
-            : why;
+    const std::string untold = why.empty() && !left ? few + ": rolls cannot be told from chance" : why;
     add({.name = "rolls",
          .values = {untold.empty() ? static_cast<double>(count_rolls(total)) : kNaN},
          .unit = "1",
+         .no_interval = "a count of what is no chance",
          .convention =
              fmt::format("regions of one sign of circulation, at least {} of the largest; found in one "
                          "half of the cycles and above three standard errors in the other",

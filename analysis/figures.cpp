@@ -195,13 +195,6 @@ std::string curve_panels(const std::vector<Run>& runs, const std::string& name, 
   return plot;
 }
 
-/// What one snapshot panel shows.
-struct Panel {
-  const Run* run;
-  const Snapshot* moment;
-  std::string title;
-};
-
 struct StructureStyle {
   Structure structure;
   const char* colour;
@@ -213,41 +206,41 @@ constexpr std::array<StructureStyle, 4> kStructures = {{{Structure::hexagonal, k
                                                         {Structure::undefined, kWhite, "under 2 bonds"}}};
 
 /// Rows: first, last; columns: experiment, simulation. With one side only: one row, first and last.
-std::vector<Panel> snapshot_panels(const Run* experiment, const Run* simulation) {
-  std::vector<Panel> panels;
+std::vector<BeadPanel> snapshot_panels(const Run* experiment, const Run* simulation) {
+  std::vector<BeadPanel> panels;
   for (const bool last : {false, true})
     for (const Run* run : {experiment, simulation}) {
       if (run == nullptr) continue;
       const Snapshot& moment = last ? run->last : run->first;
       const std::string when = moment.frame.cycle >= 0 ? fmt::format("cycle {}", moment.frame.cycle)
                                                        : fmt::format("frame {}", moment.frame.step);
-      panels.push_back({run, &moment, fmt::format("{}, {}", side_name(run->side), when)});
+      panels.push_back({fmt::format("{}, {}", side_name(run->side), when), &moment, run->box, run->radius});
     }
   return panels;
 }
 
 /// Calls visit(x, z above the plate, radius, bead) for each bead of the panel.
 template <class Visit>
-void for_each_bead(const Panel& p, const Visit& visit) {
+void for_each_bead(const BeadPanel& p, const Visit& visit) {
   for (std::size_t i = 0; i < p.moment->frame.position.size(); ++i) {
     if (!p.moment->frame.present(i) || !p.moment->frame.position[i].allFinite()) continue;
-    const Vec3 r = p.run->box.wrap(p.moment->frame.position[i]);
-    visit(r.x(), r.z() - p.moment->plate, p.run->radius.empty() ? 0.5 : p.run->radius[i], i);
+    const Vec3 r = p.box.wrap(p.moment->frame.position[i]);
+    visit(r.x(), r.z() - p.moment->plate, p.radius.empty() ? 0.5 : p.radius[i], i);
   }
 }
 
 /// Where panels lie on the sheet, in pixels at 100 %.
 struct SnapshotSheet {
   Range x, z;  ///< common to all panels, z above the plate
-  std::size_t columns = 2;
-  std::size_t rows = 1;
+  std::size_t columns, rows;
   double scale = 1;  ///< pixels per sigma
   static constexpr double kWidth = 540, kMargin = 12, kTitle = 30, kLegend = 44;
 
-  explicit SnapshotSheet(const std::vector<Panel>& panels) : rows((panels.size() + 1) / 2) {
-    for (const Panel& p : panels) {
-      x.add(p.run->box.lower.x() - 0.3);
-      x.add(p.run->box.upper.x() + 0.3);
+  SnapshotSheet(const std::vector<BeadPanel>& panels, std::size_t columns_)
+      : columns(columns_), rows((panels.size() + columns_ - 1) / columns_) {
+    for (const BeadPanel& p : panels) {
+      x.add(p.box.lower.x() - 0.3);
+      x.add(p.box.upper.x() + 0.3);
       z.add(-0.6);
       z.add(2);
       for_each_bead(p,
@@ -272,7 +265,7 @@ struct SnapshotSheet {
 };
 
 /// The sheet as SVG with true circles: gnuplot's would be polygons of 72 corners, 50 times the size.
-std::string snapshots_svg(const std::vector<Panel>& panels, const SnapshotSheet& sheet) {
+std::string snapshots_svg(const std::vector<BeadPanel>& panels, const SnapshotSheet& sheet) {
   const int height = static_cast<int>(std::ceil(sheet.height()));
   std::string svg = fmt::format(
       "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 "
@@ -281,7 +274,7 @@ std::string snapshots_svg(const std::vector<Panel>& panels, const SnapshotSheet&
       "fill=\"white\"/>\n",
       SnapshotSheet::kWidth, height);
   for (std::size_t n = 0; n < panels.size(); ++n) {
-    const Panel& p = panels[n];
+    const BeadPanel& p = panels[n];
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
                        sheet.left(n) + sheet.panel_width() / 2, sheet.top(n) - 9, p.title);
     svg += fmt::format(
@@ -300,7 +293,7 @@ std::string snapshots_svg(const std::vector<Panel>& panels, const SnapshotSheet&
     svg += fmt::format(
         "<path d=\"M{0:.3f} {1:.3f}V0H{2:.3f}V{1:.3f}\" fill=\"none\" stroke=\"#222222\" "
         "stroke-width=\"0.15\"/>\n</svg>\n",
-        p.run->box.lower.x(), -sheet.z.high, p.run->box.upper.x());
+        p.box.lower.x(), -sheet.z.high, p.box.upper.x());
   }
   double at = 20;
   for (const StructureStyle& style : kStructures) {
@@ -314,7 +307,7 @@ std::string snapshots_svg(const std::vector<Panel>& panels, const SnapshotSheet&
 }
 
 /// The same sheet for gnuplot; fills `data`.
-std::string snapshots_plot(const std::vector<Panel>& panels, const SnapshotSheet& sheet,
+std::string snapshots_plot(const std::vector<BeadPanel>& panels, const SnapshotSheet& sheet,
                            const std::string& name, std::string& data) {
   const double height = std::ceil(sheet.height());
   std::string plot = fmt::format(
@@ -322,7 +315,7 @@ std::string snapshots_plot(const std::vector<Panel>& panels, const SnapshotSheet
       "grid\nunset border\nunset key\n",
       sheet.x.low, sheet.x.high, sheet.z.low, sheet.z.high);
   for (std::size_t n = 0; n < panels.size(); ++n) {
-    const Panel& p = panels[n];
+    const BeadPanel& p = panels[n];
     std::string block;
     for_each_bead(p, [&](double x, double z, double radius, std::size_t i) {
       const Structure s = structure_of(p.moment->order, i);
@@ -333,8 +326,7 @@ std::string snapshots_plot(const std::vector<Panel>& panels, const SnapshotSheet
                            std::isnan(q6) ? "?" : fmt::format("{:.5f}", q6));
     });
     if (block.empty()) block = "? ? ? 0 ?\n";
-    data +=
-        fmt::format("# {} {}: x, z above the plate, radius, colour, q6\n{}\n\n", p.run->name, p.title, block);
+    data += fmt::format("# {}: x, z above the plate, radius, colour, q6\n{}\n\n", p.title, block);
     plot += fmt::format(
         "set lmargin at screen {}\nset rmargin at screen {}\nset tmargin at screen {}\nset bmargin at screen "
         "{}\n",
@@ -345,7 +337,7 @@ std::string snapshots_plot(const std::vector<Panel>& panels, const SnapshotSheet
         "set arrow 1 from {1},0 to {1},{3} nohead front lw 2 lc rgb '#222222'\n"
         "set arrow 2 from {2},0 to {2},{3} nohead front lw 2 lc rgb '#222222'\n"
         "set arrow 3 from {1},0 to {2},0 nohead front lw 2 lc rgb '#222222'\n",
-        p.title, p.run->box.lower.x(), p.run->box.upper.x(), sheet.z.high);
+        p.title, p.box.lower.x(), p.box.upper.x(), sheet.z.high);
     if (n + 1 == panels.size())
       for (std::size_t k = 0; k < kStructures.size(); ++k)
         plot += fmt::format("set label {} '{}' at screen {},{} point pt {} ps 1.8 lc rgb '{}' offset 1.2,0\n",
@@ -627,26 +619,31 @@ Figure s_j_figure(const std::vector<Run>& runs) {
   return f;
 }
 
-Figure snapshots_figure(const std::vector<Run>& runs, const Match& match, const std::string& name) {
-  const Run* experiment = match.experiments.empty() ? nullptr : &runs[match.experiments.front()];
-  const Run* simulation = match.simulations.empty() ? nullptr : &runs[match.simulations.front()];
-  const auto panels = snapshot_panels(experiment, simulation);
-  const SnapshotSheet sheet(panels);
-
+Figure beads_figure(const std::vector<BeadPanel>& panels, const std::string& name, const std::string& title,
+                    std::size_t columns) {
+  const SnapshotSheet sheet(panels, columns);
   Figure f;
   f.name = name;
-  f.title = fmt::format("Local order at Γ = {:.3g}", match.gamma);
+  f.title = title;
   f.height = static_cast<int>(std::ceil(sheet.height()));
   f.svg = snapshots_svg(panels, sheet);
   f.plot = snapshots_plot(panels, sheet, name, f.data);
   f.caption =
-      "First and last frame at phase 0, beads to scale, heights above the plate. Hexagonal: 6 neighbours and "
-      "|q6 − 0.741| < "
-      "0.05; square: 4 neighbours and |q6 − 0.586| < 0.03. Neighbours are centres within ";
+      "Beads to scale, heights above the plate. Hexagonal: 6 neighbours and |q6 − 0.741| < 0.05; square: 4 "
+      "neighbours and |q6 − 0.586| < 0.03.";
+  return f;
+}
+
+Figure snapshots_figure(const std::vector<Run>& runs, const Match& match, const std::string& name) {
+  const Run* experiment = match.experiments.empty() ? nullptr : &runs[match.experiments.front()];
+  const Run* simulation = match.simulations.empty() ? nullptr : &runs[match.simulations.front()];
+  Figure f = beads_figure(snapshot_panels(experiment, simulation), name,
+                          fmt::format("Local order at Γ = {:.3g}", match.gamma), 2);
+  f.caption += " First and last frame at phase 0. Neighbours are centres within ";
   f.caption +=
       experiment != nullptr && simulation != nullptr
           ? fmt::format("{} σ (experiment) and {} σ (simulation).", experiment->cutoff, simulation->cutoff)
-          : fmt::format("{} σ.", panels.front().run->cutoff);
+          : fmt::format("{} σ.", (experiment != nullptr ? experiment : simulation)->cutoff);
   return f;
 }
 

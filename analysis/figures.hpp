@@ -39,6 +39,17 @@ Figure thresholds_figure(const std::vector<Run>& runs);
 Figure s_k_figure(const std::vector<Run>& runs);
 /// s_j against the cycle, both sides.
 Figure s_j_figure(const std::vector<Run>& runs);
+/// Beads of one moment.
+struct BeadPanel {
+  std::string title;
+  const Snapshot* moment;
+  Box box;
+  std::vector<double> radius;  ///< per slot, sigma; empty: 1/2
+};
+/// Moments side by side, `columns` in a row, beads to scale and coloured by local structure (Fortini & Huang
+/// 2015, Fig. 1). \pre there is a panel
+Figure beads_figure(const std::vector<BeadPanel>& panels, const std::string& name, const std::string& title,
+                    std::size_t columns);
 /// First and last frame of one run of each side (either may be absent), beads to scale and coloured by local
 /// structure (Fortini & Huang 2015, Fig. 1).
 Figure snapshots_figure(const std::vector<Run>& runs, const Match& match, const std::string& name);

@@ -132,6 +132,7 @@ Result mean_of(const BlockAverage& series, Result r, const std::string& why_abse
   r.values = {series.mean()};
   r.n = series.n();
   r.interval = series.interval(r.n_of);
+  if (!r.interval && r.no_interval.empty()) r.no_interval = series.why_no_interval(r.n_of);
   return r;
 }
 
@@ -245,8 +246,12 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
 
   std::vector<Result> results;
   for (const auto& observable : observables)
-    for (Result& r : observable->results())
-      if (options.wants(r.name)) results.push_back(std::move(r));
+    for (Result& r : observable->results()) {
+      if (!options.wants(r.name)) continue;
+      if (!r.shape.empty() && !r.interval && r.no_interval.empty())
+        r.no_interval = "an array: one value for each element";
+      results.push_back(std::move(r));
+    }
   return results;
 }
 

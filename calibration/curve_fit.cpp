@@ -160,7 +160,40 @@ void compare_with_nested(CurveFit& result, const Selected& selected) {
                                      simple.name, result.p_nested, fmt::join(law.lost, " and ")));
 }
 
-void add_intervals(CurveFit& result) {
+/// All bends whose squares exceed the least ones by less than a parameter's worth of chance (profile of the
+/// squares). At a kink the derivative jumps wherever a point is, so that the covariance there says too
+/// little.
+Interval interval_of_bend(const CurveFit& result, const Selected& selected, double reach) {
+  const Law& law = *result.law;
+  const double freedom = static_cast<double>(result.n_used - result.fit.values.size());
+  const double least = 2 * result.fit.cost_after, best = result.fit.values.back();
+  const double most = least + reach * reach * (result.weighted ? 1 : least / freedom);
+  const auto inside = [&](double bend) { return law.squares_bent_at(selected.points, bend) <= most; };
+  // Between the first and the last gap that have two points on their outer side; a bend beyond is no bend.
+  const double low = selected.points[1].x, high = selected.points[selected.points.size() - 2].x;
+  const auto edge = [&](double end) {
+    constexpr int kSteps = 400;
+    double in = best, out = end;
+    for (int i = 0; i <= kSteps; ++i) {  // from the end inwards: the outermost bend that is not excluded
+      const double x = end * std::pow(best / end, static_cast<double>(i) / kSteps);
+      if (!inside(x)) {
+        out = x;
+        continue;
+      }
+      in = x;
+      break;
+    }
+    if (in == end) return end;
+    for (int i = 0; i < 40; ++i) {
+      const double middle = (in + out) / 2;
+      (inside(middle) ? in : out) = middle;
+    }
+    return in;
+  };
+  return {std::min(best, edge(low)), std::max(best, edge(high)), 0.95, "profile of the squares"};
+}
+
+void add_intervals(CurveFit& result, const Selected& selected) {
   const FitReport& fit = result.fit;
   result.intervals.assign(fit.values.size(), std::nullopt);
   if (fit.standard_errors.empty()) return;
@@ -172,6 +205,8 @@ void add_intervals(CurveFit& result) {
   for (std::size_t p = 0; p < fit.values.size(); ++p)
     result.intervals[p] = Interval{fit.values[p] - reach * fit.standard_errors[p],
                                    fit.values[p] + reach * fit.standard_errors[p], 0.95, method};
+  if (result.law->squares_bent_at && fit.values.back() > 0)
+    result.intervals.back() = interval_of_bend(result, selected, reach);
 }
 
 void add_notes(CurveFit& result, const Selected& selected) {
@@ -267,7 +302,7 @@ CurveFit fit_curve(const Law& law, const std::vector<DataPoint>& points, const F
   result.correlation = correlation_of(selected.points, curve);
   result.runs = runs_test(residuals);
   compare_with_nested(result, selected);
-  add_intervals(result);
+  add_intervals(result, selected);
   add_notes(result, selected);
   return result;
 }

@@ -41,6 +41,9 @@ struct Law {
   std::function<double(double x, const double* parameters)> value = {};
   /// Where to begin: several starts if there may be several minima; the best end is taken.
   std::function<Starts(const std::vector<FitPoint>&)> starts = {};
+  /// Of a law whose last parameter is where it bends: the least sum of squares, in units of the errors, with
+  /// the bend held there. Empty for a law without a kink.
+  std::function<double(const std::vector<FitPoint>&, double bend)> squares_bent_at = {};
   /// (value - y)/error with its derivatives, for Ceres, which takes it over.
   std::function<ceres::CostFunction*(const FitPoint&)> residual = {};
 };

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
@@ -26,7 +27,7 @@ using reproduce::Reproduction;
 using reproduce::Target;
 
 struct ReproduceOptions {
-  std::string name, output;
+  std::string name, output, runs;
   double budget = 10;
   bool full = false;
 };
@@ -42,6 +43,13 @@ const Reproducible& named(const std::string& name) {
                     fmt::format("'{}' is not one of {}.", name, fmt::join(names, ", ")));
 }
 
+/// Where runs lie that figures share: beside the figure's own folder.
+fs::path runs_of(const Reproducible& what, const ReproduceOptions& options, const fs::path& folder) {
+  if (!options.runs.empty()) return options.runs;
+  return what.shared_runs.empty() ? folder
+                                  : fs::absolute(folder).lexically_normal().parent_path() / what.shared_runs;
+}
+
 std::string as_text(const Reproduction& r, const fs::path& folder) {
   std::string s = r.title + "\n\n";
   for (const Target& t : r.targets) {
@@ -49,18 +57,21 @@ std::string as_text(const Reproduction& r, const fs::path& folder) {
                      t.measured.empty() ? "not measured" : t.measured, t.wanted);
     s += (t.reason.empty() ? "" : " (" + t.reason + ")") + "\n";
   }
-  s += "\nMeasured\n" + r.table + "\nCheaper than the paper\n";
-  for (const std::string& one : r.cheaper) s += "  - " + one + "\n";
+  s += "\nMeasured\n" + r.table;
+  const auto list = [&s](const char* head, const std::vector<std::string>& sentences) {
+    if (!sentences.empty()) s += fmt::format("\n{}\n", head);
+    for (const std::string& one : sentences) s += "  - " + one + "\n";
+  };
+  list("Conditions", r.conditions);
+  list("Cheaper than the paper", r.cheaper);
   if (!r.complete) s += "\nThe time is up; the same command, or a larger budget, goes on from here.\n";
   return s + folder.string() + "\n";
 }
 
 nlohmann::json as_json(const Reproduction& r, const fs::path& folder) {
-  nlohmann::json j = {{"title", r.title},
-                      {"complete", r.complete},
-                      {"measured", nlohmann::json::parse(r.measured)},
-                      {"cheaper", r.cheaper},
-                      {"output", folder.string()}};
+  nlohmann::json j = {
+      {"title", r.title},           {"complete", r.complete}, {"measured", nlohmann::json::parse(r.measured)},
+      {"conditions", r.conditions}, {"cheaper", r.cheaper},   {"output", folder.string()}};
   for (const Target& t : r.targets)
     j["targets"].push_back({{"name", t.name},
                             {"wanted", t.wanted},
@@ -73,13 +84,18 @@ nlohmann::json as_json(const Reproduction& r, const fs::path& folder) {
 void run(const ReproduceOptions& options, const Common& common) {
   const Reproducible& what = named(options.name);
   const fs::path folder = options.output.empty() ? options.name : options.output;
-  const sweep::Store store(folder);  // an unwritable place is found before the work
+  std::error_code made;
+  fs::create_directories(folder, made);
+  {
+    const AtomicPath probe(folder / (options.name + ".json"));
+  }  // an unwritable place is found before the work
   SweepWatch watch(common, options.full ? 1e300 : 60 * options.budget);
   const Reproduction r = what.run({.minutes = options.budget,
                                    .full = options.full,
                                    .threads = common.n_threads(),
                                    .seed = common.seed.value_or(1),
                                    .folder = folder,
+                                   .runs = runs_of(what, options, folder),
                                    .watch = &watch});
   nlohmann::json document = as_json(r, folder);
   document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
@@ -105,6 +121,8 @@ void add_reproduce(CLI::App& program, Common& common) {
       verb.add_option("--budget", options->budget, "Minutes that it may take; fewer minutes, fewer runs")
           ->check(CLI::Range(0.01, 1e6))
           ->capture_default_str();
+  verb.add_option("--runs", options->runs,
+                  "Folder of runs that figures share, instead of the one beside the figure's folder");
   verb.add_flag("--full", options->full, "All that the paper shows, however long it takes")->excludes(budget);
   verb.callback([options, &common] { run(*options, common); });
 }

@@ -3,7 +3,8 @@
 namespace twincell::reproduce {
 
 const std::vector<Reproducible>& list() {
-  static const std::vector<Reproducible> all = {p1_fig3()};
+  static const std::vector<Reproducible> all = {p1_fig1(), p1_fig2(),   p1_fig3(),    p1_fig4(),
+                                                p1_fig5(), p1_table1(), p1_appendix()};
   return all;
 }
 

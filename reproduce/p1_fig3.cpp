@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/observable.hpp"
+#include "reproduce/p1_scene.hpp"
 #include "reproduce/reproduction.hpp"
 
 namespace twincell::reproduce {
@@ -54,23 +55,9 @@ const Size& size_for(const Request& request) {
 
 constexpr int kLayersOfA1 = 20;
 constexpr double kOmega = 1;
-constexpr double kDiscard = 10;
 
-/// Split at n = 6.37 is no less accurate than Verlet at n = 50 in any single collision, and 3.7 times quicker
-/// (docs/accuracy.md). The perturbation breaks the crystal's mirror symmetry and makes ensembles of it.
-std::string scene_of(int layers, bool random, int cycles) {
-  return fmt::format(R"([scene]
-preset = "fortini-huang-2015"
-beads.layers = {}
-start.kind = "{}"
-{}
-time.integrator = "split"
-time.steps_per_contact = 6.37
-time.discard = {}
-time.cycles = {}
-)",
-                     layers, random ? "random" : "crystal_a", random ? "" : "start.perturbation = 1e-9",
-                     kDiscard, cycles);
+P1Run run_of(int layers, bool random, int cycles) {
+  return {layers, random ? "random" : "crystal_a", cycles};
 }
 
 /// Results that the targets need, and no others: order and temperature of every frame would take as long as
@@ -100,8 +87,8 @@ sweep::Plan plan_of(const Size& size, int layers, bool random, bool convecting, 
   const std::string text = fmt::format(
       "seed = {}\nstop_early = {}\nresults = [\"s_b\", \"s_c\", \"phase\", \"s_j\"]\n{}\n[search]\nverdict = "
       "\"{}\"\nrange = [{}, {}]\nwidth = {}\nruns = {}\n",
-      seed, convecting, scene_of(layers, random, cycles), convecting ? "convecting" : "bouncing", low, high,
-      convecting ? size.convect_width : size.bounce_width, size.runs);
+      seed, convecting, p1_scene(run_of(layers, random, cycles)), convecting ? "convecting" : "bouncing", low,
+      high, convecting ? size.convect_width : size.bounce_width, size.runs);
   return sweep::read_plan_text(text, fmt::format("p1-fig3, {} layers", layers));
 }
 
@@ -157,7 +144,7 @@ std::optional<Crystals> crystals_of(const Size& size, std::uint64_t seed) {
   c.plan = sweep::read_plan_text(fmt::format("seed = {}\nresults = [\"slips\", \"p_s\", \"s_b\", "
                                              "\"phase\"]\n{}\n[axes]\ndrive.gamma = [1.2, 1.5, "
                                              "1.8, 2.1]\n",
-                                             seed, scene_of(kLayersOfA1, false, size.convect_cycles)),
+                                             seed, p1_scene(run_of(kLayersOfA1, false, size.convect_cycles))),
                                  "p1-fig3, slips");
   return c;
 }
@@ -298,10 +285,7 @@ Figure figure_of(const std::deque<Boundary>& all) {
 
 std::vector<std::string> cheaper_of(const Size& size, const std::deque<Boundary>& all) {
   std::vector<std::string> s;
-  s.emplace_back(
-      "integrator split at n = 6.37 steps per contact: no less accurate in any collision than Verlet at n = "
-      "50, 3.7 times "
-      "quicker (docs/accuracy.md)");
+  s.push_back(p1_cheaper_steps());
   std::vector<int> left_out;
   for (const int layers : sizes().back().layers)
     if (std::find(size.layers.begin(), size.layers.end(), layers) == size.layers.end())
@@ -352,6 +336,8 @@ Reproduction run(const Request& request) {
   }
   r.targets = targets_of(size, boundaries, crystals);
   r.cheaper = cheaper_of(size, boundaries);
+  r.conditions = p1_conditions(run_of(kLayersOfA1, false, size.convect_cycles));
+  r.conditions.push_back(fmt::format("seeds of all runs drawn from the master seed {}", request.seed));
   json measured = json::array();
   for (const Boundary& b : boundaries) {
     measured.push_back(as_json(b));

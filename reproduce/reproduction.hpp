@@ -40,17 +40,19 @@ struct Request {
   bool full = false;    ///< whatever the paper's own numbers take
   int threads = 1;
   std::uint64_t seed = 1;
-  std::filesystem::path folder;   ///< for the sweep; taken up if it is there
-  sweep::Watch* watch = nullptr;  ///< never null when a reproduction runs
+  std::filesystem::path folder;     ///< for the sweep; taken up if it is there
+  std::filesystem::path runs = {};  ///< for runs that several figures share (Reproducible::shared_runs)
+  sweep::Watch* watch = nullptr;    ///< never null when a reproduction runs
 };
 
 /// All that is to be said.
 struct Reproduction {
   std::string title;
   std::vector<Target> targets;
-  std::vector<std::string> cheaper;  ///< what was cheaper than the paper, in sentences
-  std::string table;                 ///< what was measured, for a reader
-  std::string measured;              ///< the same as JSON
+  std::vector<std::string> cheaper;          ///< what was cheaper than the paper, in sentences
+  std::vector<std::string> conditions = {};  ///< what must be stated beside each number, in sentences
+  std::string table;                         ///< what was measured, for a reader
+  std::string measured;                      ///< the same as JSON
   std::vector<Figure> figures;
   bool complete = false;  ///< false: the time was up; the same command goes on
 };
@@ -60,12 +62,19 @@ struct Reproducible {
   std::string name;  ///< "p1-fig3"
   std::string what;  ///< one line
   std::function<Reproduction(const Request&)> run;
+  std::string shared_runs = {};  ///< folder beside the figure's where runs lie that other figures use too
 };
 /// All that can be reproduced. To add one: its file, a line here, a word in list.cpp and in CMakeLists.txt, a
 /// test.
 const std::vector<Reproducible>& list();
 
+Reproducible p1_fig1();
+Reproducible p1_fig2();
 Reproducible p1_fig3();
+Reproducible p1_fig4();
+Reproducible p1_fig5();
+Reproducible p1_table1();
+Reproducible p1_appendix();
 
 /// Whether an onset lies within [low, high]: met if its value does, missed if its whole interval does not,
 /// else open.

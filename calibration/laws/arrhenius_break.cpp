@@ -25,12 +25,18 @@ const Law& arrhenius_break_law() {
                                 .axis = Law::Axis::reciprocal,
                                 .nested = "arrhenius",
                                 .lost = {"x_b"},
-                                .starts = [](const std::vector<FitPoint>& points) {
-                                  // In u = 1/x the region below x_b lies above the bend.
-                                  auto starts = bend_starts(points, [](double x) { return 1 / x; });
-                                  for (auto& s : starts) s = {s[0], -s[2], -s[1], 1 / s[3]};
-                                  return starts;
-                                }});
+                                .starts =
+                                    [](const std::vector<FitPoint>& points) {
+                                      // In u = 1/x the region below x_b lies above the bend.
+                                      auto starts = bend_starts(points, [](double x) { return 1 / x; });
+                                      for (auto& s : starts) s = {s[0], -s[2], -s[1], 1 / s[3]};
+                                      return starts;
+                                    },
+                                .squares_bent_at =
+                                    [](const std::vector<FitPoint>& points, double bend) {
+                                      const auto u = [](double x) { return 1 / x; };
+                                      return bent_line(points, u, u(bend)).second;
+                                    }});
   return law;
 }
 

@@ -56,6 +56,16 @@ inline std::pair<std::vector<double>, double> least_squares(const std::vector<Fi
   return {{weights.begin(), weights.end()}, (matrix * weights - y).squaredNorm()};
 }
 
+/// The best line in u(x) that bends at u = bend: {value at the bend, slope below, slope above} towards rising
+/// u, and its squares.
+inline std::pair<std::vector<double>, double> bent_line(const std::vector<FitPoint>& points,
+                                                        const std::function<double(double)>& u_of,
+                                                        double bend) {
+  return least_squares(points,
+                       {[](double) { return 1.0; }, [&](double x) { return std::min(u_of(x) - bend, 0.0); },
+                        [&](double x) { return std::max(u_of(x) - bend, 0.0); }});
+}
+
 /// Starts of a line in u(x) that bends at a point: one for each gap between neighbouring u that leaves two on
 /// either side, as {value at the bend, slope below, slope above, u of the bend}, slopes towards rising u.
 inline std::vector<std::vector<double>> bend_starts(const std::vector<FitPoint>& points,
@@ -67,9 +77,7 @@ inline std::vector<std::vector<double>> bend_starts(const std::vector<FitPoint>&
   std::vector<std::vector<double>> starts;
   for (std::size_t i = 1; i + 2 < u.size(); ++i) {
     const double bend = (u[i] + u[i + 1]) / 2;
-    auto [w, cost] = least_squares(
-        points, {[](double) { return 1.0; }, [&](double x) { return std::min(u_of(x) - bend, 0.0); },
-                 [&](double x) { return std::max(u_of(x) - bend, 0.0); }});
+    std::vector<double> w = bent_line(points, u_of, bend).first;
     w.push_back(bend);
     starts.push_back(std::move(w));
   }

@@ -29,11 +29,17 @@ const Law& slope_break_law() {
                             .axis = Law::Axis::logarithmic,
                             .nested = "power",
                             .lost = {"x_b"},
-                            .starts = [](const std::vector<FitPoint>& points) {
-                              auto starts = bend_starts(points, [](double x) { return std::log(x); });
-                              for (auto& start : starts) start[3] = std::exp(start[3]);
-                              return starts;
-                            }});
+                            .starts =
+                                [](const std::vector<FitPoint>& points) {
+                                  auto starts = bend_starts(points, [](double x) { return std::log(x); });
+                                  for (auto& start : starts) start[3] = std::exp(start[3]);
+                                  return starts;
+                                },
+                            .squares_bent_at =
+                                [](const std::vector<FitPoint>& points, double bend) {
+                                  const auto u = [](double x) { return std::log(x); };
+                                  return bent_line(points, u, u(bend)).second;
+                                }});
   return law;
 }
 

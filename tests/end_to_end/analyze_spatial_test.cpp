@@ -40,6 +40,23 @@ TEST(AnalyzeSpatial, OrderByEveryRule) {
   }
 }
 
+TEST(AnalyzeSpatial, EveryNumberHasAnIntervalOrSaysWhyNot) {
+  const TemporaryFolder folder;
+  const Ran ran = run_program({"analyze", film(folder / "bed.h5"), "-q", "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto results = nlohmann::json::parse(ran.out)["results"];
+  int numbers = 0;
+  for (const auto& [name, r] : results.items()) {
+    if (!r.contains("value") || r["value"].is_string()) continue;
+    ++numbers;
+    EXPECT_NE(r.contains("interval"), r.contains("no_interval")) << name;
+    if (r.contains("no_interval")) {
+      EXPECT_FALSE(r["no_interval"].get<std::string>().empty()) << name;
+    }
+  }
+  EXPECT_GT(numbers, 30);
+}
+
 TEST(AnalyzeSpatial, FiguresAppearTogether) {
   const TemporaryFolder folder;
   const std::string file = film(folder / "bed.h5");

@@ -93,6 +93,39 @@ TEST_F(Sweeps, RanksOfMpiGiveTheSameBytes) {
   EXPECT_EQ(collected(grid_, at("ranks")), collected(grid_, at("one")));
 }
 
+/// Runs a template's script in a shell that finds the program. \returns its exit code
+int run_script(const std::string& script, const std::string& before, const fs::path& folder) {
+  const std::string file = folder / "script.sh";
+  std::ofstream(file) << script;
+  const std::string line = "PATH=" + fs::path(TWINCELL_PROGRAM).parent_path().string() +
+                           ":$PATH; export PATH; " + before + " bash " + file + " >" + file + ".log 2>&1";
+  return WEXITSTATUS(std::system(line.c_str()));
+}
+
+TEST_F(Sweeps, TheTemplatesOfGnuParallelAndOfSlurmGiveTheSameBytes) {
+  ASSERT_EQ(run(grid_, at("one"), {"--threads", "1"}).code, kDone);
+  const std::string one = collected(grid_, at("one"));
+  const auto script = [&](const char* engine, const std::string& folder) {
+    const Ran ran = run_program({"sweep", "template", engine, grid_, "-o", folder, "--jobs", "3"});
+    EXPECT_EQ(ran.code, kDone) << ran.err;
+    return ran.out;
+  };
+  // What Slurm does with an array of three: the script once with each number.
+  const std::string array = script("slurm", at("array"));
+  EXPECT_NE(array.find("#SBATCH --array=1-3"), std::string::npos) << array;
+  for (const char* task : {"2", "1", "3"})
+    ASSERT_EQ(run_script(array, "SLURM_ARRAY_TASK_COUNT=3 SLURM_ARRAY_TASK_ID=" + std::string(task),
+                         folder_.path()),
+              kDone)
+        << bytes_of(at("script.sh.log"));
+  EXPECT_EQ(collected(grid_, at("array")), one);
+  if (std::system("parallel --version 2>/dev/null | grep -q GNU") != 0)
+    GTEST_SKIP() << "GNU parallel is not there";
+  ASSERT_EQ(run_script(script("parallel", at("parallel")), "", folder_.path()), kDone)
+      << bytes_of(at("script.sh.log"));
+  EXPECT_EQ(collected(grid_, at("parallel")), one);
+}
+
 TEST_F(Sweeps, KilledAgainAndAgainNothingIsLostAndNothingDoneTwice) {
   const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(run(grid_, at("whole")).code, kDone);

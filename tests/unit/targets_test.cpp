@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "reproduce/estimate.hpp"
+#include "reproduce/p1_ladder.hpp"
 #include "reproduce/reproduction.hpp"
 
 namespace twincell::reproduce {
@@ -52,6 +57,66 @@ TEST(Targets, OneOnsetIsAboveAnotherWhenTheOppositeIsExcluded) {
 TEST(Targets, EvidenceIsZeroForWhatFitsBestAndGrowsWithRuns) {
   EXPECT_NEAR(evidence_above(step_at(2, 4), step_at(3, 4)), 0, 1e-12);
   EXPECT_GT(evidence_above(step_at(3, 4), step_at(2, 4)), evidence_above(step_at(3, 2), step_at(2, 2)));
+}
+
+TEST(Targets, AnEstimateIsMetMissedOrLeftOpen) {
+  const Estimate known{7, 6.5, 7.5};
+  EXPECT_EQ(within(known, 6, 8), Fate::met);
+  EXPECT_EQ(within(known, 8, 9), Fate::missed);
+  EXPECT_EQ(within(known, 7.2, 9), Fate::open);
+  EXPECT_EQ(within(Estimate{7, {}, {}}, 8, 9), Fate::open);
+  EXPECT_EQ(within(exact(7), 8, 9), Fate::missed);
+  EXPECT_EQ(above(known, Estimate{5, 4, 6}), Fate::met);
+  EXPECT_EQ(above(Estimate{5, 4, 6}, known), Fate::missed);
+  EXPECT_EQ(above(known, Estimate{6, 5, 7}), Fate::open);
+  EXPECT_EQ(agree(known, Estimate{8, 7.2, 9}), Fate::met);
+  EXPECT_EQ(agree(known, Estimate{8, 7.6, 9}), Fate::missed);
+  EXPECT_EQ(agree(known, Estimate{8, 7.6, {}}), Fate::open);
+  EXPECT_EQ(all_of({Fate::met, Fate::met}), Fate::met);
+  EXPECT_EQ(all_of({Fate::met, Fate::open}), Fate::open);
+  EXPECT_EQ(all_of({Fate::open, Fate::missed}), Fate::missed);
+  EXPECT_EQ(all_of({}), Fate::absent);
+}
+
+/// A crystal whose slips follow the paper's barriers: none up to K_m = 6, 130 up to 9, 7 beyond.
+std::vector<LadderRun> paper_like_crystal() {
+  std::vector<LadderRun> runs;
+  for (const double gamma :
+       {1.1, 1.4, 1.8, 2.2, 2.4, 2.5, 2.6, 2.7, 2.8, 2.9, 3.1, 3.3, 3.6, 4.0, 4.5, 5.0}) {
+    const double k_m = gamma * gamma, trials = 1e9;
+    const double p_s = k_m < 6 ? 0 : k_m < 9 ? std::exp(-130 / k_m + 130. / 9 - 7. / 9) : std::exp(-7 / k_m);
+    runs.push_back({gamma, exact(1e-4 * k_m), gamma > 1.16 ? 1.0 : 0.0, k_m < 9 ? 0.1 : 2.0,
+                    std::round(p_s * trials), trials});
+  }
+  return runs;
+}
+
+TEST(Targets, TheLadderFindsTheRegionsAndBarriersThatWerePutIn) {
+  auto runs = paper_like_crystal();
+  std::reverse(runs.begin(), runs.end());  // in whatever order they come
+  const Ladder ladder = make_ladder("crystal_a", runs);
+  ASSERT_TRUE(ladder.first_slips && ladder.convection);
+  EXPECT_NEAR(*ladder.first_slips->low, 2.4 * 2.4, 1e-12);
+  EXPECT_NEAR(*ladder.first_slips->high, 2.5 * 2.5, 1e-12);
+  EXPECT_GT(ladder.convection->value, 2.9 * 2.9);
+  EXPECT_LT(ladder.convection->value, 3.1 * 3.1);
+  std::vector<DataPoint> a2, b;
+  for (const Rung& r : ladder.rungs)
+    if (r.slips > 0) (r.k_m() < ladder.convection->value ? a2 : b).push_back({r.k_m(), r.p_s(), 0, 0});
+  const auto steep = fitted("arrhenius", a2), flat = fitted("arrhenius", b);
+  ASSERT_TRUE(steep && flat);
+  EXPECT_NEAR(parameter(*steep, "E_b").value, 130, 1e-3);
+  EXPECT_NEAR(parameter(*flat, "E_b").value, 7, 1e-3);
+  EXPECT_FALSE(fitted("arrhenius", {a2.front()}));
+}
+
+TEST(Targets, ALadderWithSlipsFromTheFirstBouncingRungHasNoRegionA1) {
+  auto runs = paper_like_crystal();
+  for (LadderRun& run : runs)
+    if (run.gamma > 1.16) run.slips = std::max(run.slips, 1.0);
+  EXPECT_FALSE(make_ladder("crystal_a", runs).first_slips);
+  EXPECT_FALSE(make_ladder("crystal_a", {}).first_slips);
+  EXPECT_FALSE(make_ladder("crystal_a", {}).convection);
 }
 
 }  // namespace

@@ -1,0 +1,151 @@
+// Fortini & Huang 2015, Fig. 1: the beds before the drive begins, coloured by local order.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "analysis/neighbours.hpp"
+#include "analysis/voronoi.hpp"
+#include "reproduce/p1_packings.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+using nlohmann::json;
+
+/// Beads inside the bed: their Voronoi cells touch no wall, hole or free surface.
+struct Bulk {
+  double least_q6 = INFINITY, largest_q6 = -INFINITY, sum_q6 = 0, least_psi6 = INFINITY;
+  std::size_t n = 0;
+};
+
+Bulk bulk_of(const Packing& p) {
+  const VoronoiCells cells = voronoi_cells(p.moment.frame, p.box);
+  Bulk b;
+  for (std::size_t i = 0; i < cells.enclosed.size(); ++i) {
+    if (cells.enclosed[i] == 0) continue;
+    const double q6 = p.moment.order.q6[i];
+    ++b.n;
+    b.sum_q6 += q6;
+    b.least_q6 = std::min(b.least_q6, q6);
+    b.largest_q6 = std::max(b.largest_q6, q6);
+    b.least_psi6 = std::min(b.least_psi6, p.moment.order.psi6[i]);
+  }
+  return b;
+}
+
+/// Of the beads inside that have not six neighbours, the share that touches another such bead, over the share
+/// that would if they lay anywhere: 1 - (1 - f)^6.
+double clustering_of(const Packing& p) {
+  const VoronoiCells cells = voronoi_cells(p.moment.frame, p.box);
+  const auto defect = [&](std::size_t i) { return cells.enclosed[i] != 0 && cells.neighbours.count(i) != 6; };
+  double inside = 0, defects = 0, joined = 0;
+  for (std::size_t i = 0; i < cells.enclosed.size(); ++i) {
+    if (cells.enclosed[i] == 0) continue;
+    ++inside;
+    if (!defect(i)) continue;
+    ++defects;
+    bool touches = false;
+    cells.neighbours.for_each(i, [&](std::size_t j, const Vec3&) { touches = touches || defect(j); });
+    joined += touches ? 1 : 0;
+  }
+  return defects == 0 ? 0 : joined / defects / (1 - std::pow(1 - defects / inside, 6));
+}
+
+std::vector<Target> targets_of(const Packings& all) {
+  std::vector<Target> targets;
+  const Packing* crystal = all.crystal("crystal_a");
+  Target q6{"q6 inside the crystal", "0.7408 +- 0.001", "", Fate::absent, ""};
+  Target psi6{"psi6 inside the crystal", "above 0.999", "", Fate::absent, ""};
+  if (crystal != nullptr) {
+    const Bulk b = bulk_of(*crystal);
+    q6.measured = fmt::format("{:.5f}, from {:.5f} to {:.5f} over {} beads",
+                              b.sum_q6 / static_cast<double>(b.n), b.least_q6, b.largest_q6, b.n);
+    q6.fate =
+        all_of({within(exact(b.least_q6), 0.7398, 0.7418), within(exact(b.largest_q6), 0.7398, 0.7418)});
+    psi6.measured = fmt::format("{:.6f} at least, over {} beads", b.least_psi6, b.n);
+    psi6.fate = b.least_psi6 > 0.999 ? Fate::met : Fate::missed;
+  }
+  targets.push_back(q6);
+  targets.push_back(psi6);
+  Target ordered{"share of hexagonal beads (psi6 > 0.9) inside random beds", "above 0.5", "", Fate::absent,
+                 ""};
+  Target lines{"defects of random beds lie together, times chance", "above 1", "", Fate::absent, ""};
+  Target grains{"random beds have grain boundaries", "in every bed", "", Fate::absent, ""};
+  if (!all.random.empty()) {
+    const Estimate share = all.over_random([](const Packing& p) { return p.scalars.at("ordered_fraction"); });
+    ordered.measured = fmt::format("{}, {} random", share.text(), all.random.size());
+    ordered.fate = within(share, 0.5, 1);
+    const Estimate together = all.over_random(clustering_of);
+    lines.measured = together.text();
+    lines.fate = within(together, std::nextafter(1.0, 2.0), 1e300);
+    const auto with = std::count_if(all.random.begin(), all.random.end(), [](const Packing& p) {
+      return p.scalars.at("grain_boundary_fraction") > 0;
+    });
+    grains.measured =
+        fmt::format("{} of {} beds; {} grains and {} dislocations a bed", with, all.random.size(),
+                    all.over_random([](const Packing& p) { return p.scalars.at("grains"); }).text(),
+                    all.over_random([](const Packing& p) { return p.scalars.at("dislocations"); }).text());
+    grains.fate = static_cast<std::size_t>(with) == all.random.size() ? Fate::met : Fate::missed;
+  }
+  targets.push_back(ordered);
+  targets.push_back(lines);
+  targets.push_back(grains);
+  targets.push_back(
+      {"initial bed of the experiment", "the same look", "", Fate::absent,
+       "its positions are printed in the figure alone; `match` makes a bed from a stack of frames"});
+  return targets;
+}
+
+Figure figure_of(const Packings& all) {
+  std::vector<BeadPanel> panels;
+  const auto add = [&](const Packing& p) { panels.push_back({p.title(), &p.moment, p.box, p.radius}); };
+  if (const Packing* crystal = all.crystal("crystal_a")) add(*crystal);
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, all.random.size()); ++i) add(all.random[i]);
+  // Seeds are long numbers; the table has them.
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    if (panels[i].title.starts_with("random"))
+      panels[i].title = panels.size() == 3 && i == 2 ? "random, another seed" : "random";
+  Figure f = beads_figure(panels, "p1-fig1", fmt::format("Beds before the drive, N_l = {}", all.layers),
+                          panels.size());
+  f.caption += " Form of Fortini & Huang 2015, Fig. 1.";
+  return f;
+}
+
+Reproduction run(const Request& request) {
+  const Packings all = settle_packings(request);
+  Reproduction r;
+  r.title = "Fortini & Huang 2015, Fig. 1: initial beds";
+  r.complete = all.complete;
+  r.targets = targets_of(all);
+  r.conditions = all.conditions;
+  r.cheaper = all.cheaper;
+  json measured = json::array();
+  for (const auto* beds : {&all.crystals, &all.random})
+    for (const Packing& p : *beds) {
+      const Bulk b = bulk_of(p);
+      measured.push_back({{"start", p.start},
+                          {"layers", all.layers},
+                          {"seed", p.seed},
+                          {"results", p.scalars},
+                          {"q6_inside", b.sum_q6 / static_cast<double>(b.n)},
+                          {"defects_together_over_chance", clustering_of(p)}});
+      r.table += fmt::format("  {:<26} q6 {:.4f}, psi6 > 0.9: {:.3f}, {:.0f} grains, {:.0f} dislocations\n",
+                             p.title(), b.sum_q6 / static_cast<double>(b.n), p.scalars.at("ordered_fraction"),
+                             p.scalars.at("grains"), p.scalars.at("dislocations"));
+    }
+  r.measured = measured.dump();
+  if (!all.crystals.empty() || !all.random.empty()) r.figures = {figure_of(all)};
+  return r;
+}
+
+}  // namespace
+
+Reproducible p1_fig1() {
+  return {"p1-fig1", "beds before the drive, crystal and random, coloured by q6", run, kPackingRuns};
+}
+
+}  // namespace twincell::reproduce

@@ -1,0 +1,162 @@
+// Fortini & Huang 2015, Fig. 2: the two ways in which a hexagonal lattice stands at a side wall, and which of
+// them beds take.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "reproduce/p1_packings.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+using nlohmann::json;
+
+struct Orientation {
+  const char *start, *name, *colour;
+  double angle;  ///< of close-packed rows, degrees; 60 brings the lattice back
+};
+constexpr Orientation kA = {"crystal_a", "A", "#56B4E9", 0}, kB = {"crystal_b", "B", "#E69F00", 30};
+
+double share(const Packing& p, const char* name) {
+  return p.scalars.at(name);
+}
+
+std::vector<Target> targets_of(const Packings& all) {
+  std::vector<Target> targets;
+  for (const Orientation& o : {kA, kB}) {
+    Target t{fmt::format("close-packed rows of the crystal in orientation {}", o.name),
+             fmt::format("{:g} +- 1 degrees to the floor", o.angle), "", Fate::absent, ""};
+    if (const Packing* crystal = all.crystal(o.start)) {
+      const double angle = crystal->scalars.at("orientation");
+      t.measured = fmt::format("{:.4f} degrees", angle);
+      t.fate = within(exact(angle), o.angle - 1, o.angle + 1);
+    }
+    targets.push_back(t);
+  }
+  Target favoured{"random beds favour A: share of A less share of B", "above 0", "", Fate::absent, ""};
+  Target both{"random beds hold grains of both, with boundaries", "in every bed", "", Fate::absent, ""};
+  if (!all.random.empty()) {
+    const Estimate difference = all.over_random(
+        [](const Packing& p) { return share(p, "orientation_a") - share(p, "orientation_b"); });
+    favoured.measured = fmt::format("{}, {} random", difference.text(), all.random.size());
+    favoured.fate = difference.low && *difference.low > 0     ? Fate::met
+                    : difference.high && *difference.high < 0 ? Fate::missed
+                                                              : Fate::open;
+    if (favoured.fate == Fate::open) favoured.reason = "beds differ more among each other than A from B";
+    if (favoured.fate == Fate::missed)
+      favoured.reason = fmt::format(
+          "B grows from the side walls, which at N_l = {} are longer than the floor, from which A grows (see "
+          "Fig. 1); "
+          "the paper does not say how its beads were placed",
+          all.layers);
+    const auto with = std::count_if(all.random.begin(), all.random.end(), [](const Packing& p) {
+      return share(p, "orientation_a") > 0 && share(p, "orientation_b") > 0 &&
+             share(p, "grain_boundary_fraction") > 0;
+    });
+    both.measured = fmt::format("{} of {} beds", with, all.random.size());
+    both.fate = static_cast<std::size_t>(with) == all.random.size() ? Fate::met : Fate::missed;
+  }
+  targets.push_back(favoured);
+  targets.push_back(both);
+  targets.push_back({"the experiment's beds favour B", "B above A", "", Fate::absent,
+                     "their positions are printed in Fig. 1 alone; `analyze` gives orientation_a and "
+                     "orientation_b of a film"});
+  return targets;
+}
+
+Figure figure_of(const Packings& all) {
+  constexpr double kSide = 6;  // sigma; enough rows to see how they stand
+  Figure f{
+      .name = "p1-fig2", .title = "Orientations of the lattice at a side wall", .width = 760, .height = 360};
+  f.plot = "set multiplot\nunset grid\n";
+  int index = 0;
+  for (const Orientation& o : {kA, kB}) {
+    const Packing* crystal = all.crystal(o.start);
+    if (crystal == nullptr) continue;
+    f.data += fmt::format("# orientation {}, beads at the left wall: x, z, radius\n", o.name);
+    for (std::size_t i = 0; i < crystal->moment.frame.position.size(); ++i) {
+      const Vec3& at = crystal->moment.frame.position[i];
+      if (at.x() < kSide && at.z() < kSide)
+        f.data += fmt::format("{:.5f} {:.5f} {:g}\n", at.x(), at.z(),
+                              crystal->radius.empty() ? 0.5 : crystal->radius[i]);
+    }
+    f.data += "\n\n";
+    const double left = 0.02 + 0.32 * index;
+    f.plot += fmt::format(
+        "set lmargin at screen {0}\nset rmargin at screen {1}\nset bmargin at screen 0.14\nset tmargin at "
+        "screen 0.9\nset size ratio -1\nunset tics\nunset border\nunset key\nset xrange [-0.6:{2}]\nset "
+        "yrange "
+        "[-0.6:{2}]\nset title 'orientation {3}'\nset object 1 rectangle from -0.5,0 to 0,{2} fs solid 0.6 "
+        "noborder fc rgb '#888888' front\nset object 2 rectangle from -0.5,-0.5 to {2},0 fs solid 0.6 "
+        "noborder fc "
+        "rgb '#888888' front\nplot '{4}.dat' index {5} using 1:2:3 with circles fs solid border lc rgb "
+        "'#333333' fc rgb '{6}'\nunset object 1\nunset object 2\n",
+        left, left + 0.3, kSide, o.name, f.name, index, o.colour);
+    ++index;
+  }
+  if (!all.random.empty()) {
+    f.data += "# random beds: number, shares of A, between, B\n";
+    for (std::size_t i = 0; i < all.random.size(); ++i) {
+      const double a = share(all.random[i], "orientation_a"), b = share(all.random[i], "orientation_b");
+      f.data += fmt::format("{} {:.5f} {:.5f} {:.5f}\n", i + 1, a, 1 - a - b, b);
+    }
+    f.plot += fmt::format(
+        "set lmargin at screen 0.76\nset rmargin at screen 0.97\nset tmargin at screen 0.68\nset size "
+        "noratio\nset "
+        "border\nset tics\nset xtics 1 scale 0\nset ytics 0.2\nset xrange [0.3:{0}]\nset yrange [0:1]\nset "
+        "title "
+        "'random beds' offset 0,4.2\nset xlabel 'bed' offset 0,0.4\nset ylabel 'share of ordered beads' "
+        "offset "
+        "1,0\nset key at screen 0.965,0.9 vertical samplen 1.2 spacing 0.95\nset boxwidth 0.8\nset style "
+        "fill "
+        "solid border lc rgb '#333333'\n"
+        "plot '{1}.dat' index {2} using 1:($2+$3+$4) with boxes lc rgb '#E69F00' title 'B', '' index {2} "
+        "using "
+        "1:($2+$3) with boxes lc rgb '#DDDDDD' title 'between', '' index {2} using 1:2 with boxes lc rgb "
+        "'#56B4E9' title 'A'\n",
+        static_cast<double>(all.random.size()) + 0.7, f.name, index);
+  }
+  f.plot += "unset multiplot\n";
+  f.caption =
+      "Left: crystals in the two orientations at the side wall and the floor. Right: of the ordered beads "
+      "(psi6 > 0.9) of each random bed, the shares whose close-packed rows are within 10 degrees of the "
+      "floor "
+      "(A) and of the side walls (B); lattices that lie anyhow would give a third each. Form of Fortini & "
+      "Huang "
+      "2015, Fig. 2.";
+  return f;
+}
+
+Reproduction run(const Request& request) {
+  const Packings all = settle_packings(request);
+  Reproduction r;
+  r.title = "Fortini & Huang 2015, Fig. 2: orientations of the lattice";
+  r.complete = all.complete;
+  r.targets = targets_of(all);
+  r.conditions = all.conditions;
+  r.cheaper = all.cheaper;
+  json measured = json::array();
+  for (const auto* beds : {&all.crystals, &all.random})
+    for (const Packing& p : *beds) {
+      measured.push_back(
+          {{"start", p.start}, {"layers", all.layers}, {"seed", p.seed}, {"results", p.scalars}});
+      r.table +=
+          fmt::format("  {:<26} {:7.3f} degrees, A {:.3f}, B {:.3f}\n", p.title(),
+                      p.scalars.at("orientation"), share(p, "orientation_a"), share(p, "orientation_b"));
+    }
+  r.measured = measured.dump();
+  if (!all.crystals.empty() || !all.random.empty()) r.figures = {figure_of(all)};
+  return r;
+}
+
+}  // namespace
+
+Reproducible p1_fig2() {
+  return {"p1-fig2", "orientations A and B of the lattice at a side wall, and which random beds take", run,
+          kPackingRuns};
+}
+
+}  // namespace twincell::reproduce

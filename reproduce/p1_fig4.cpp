@@ -1,0 +1,218 @@
+// Fortini & Huang 2015, Fig. 4: granular temperature against the strength of the drive.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reproduce/p1_ladder.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+/// Rungs whose bed leaves the plate: below, T_g is what contacts tremble with.
+std::vector<DataPoint> points_of(const Ladder& ladder, double above = 0, double below = 1e300) {
+  std::vector<DataPoint> points;
+  for (const Rung& r : ladder.rungs)
+    if (r.bouncing > 0 && r.k_m() >= above && r.k_m() <= below)
+      points.push_back({r.k_m(), r.mean_temperature().value, 0, 0});
+  return points;
+}
+
+constexpr std::size_t kRunsForScatter = 3;  ///< from which on an interval speaks of beds, not of one run
+
+/// All rungs: how far it rises, and where it falls by more than its error.
+Target rise_of(const Ladder& ladder) {
+  Target t{fmt::format("{}: T_g* rises monotonically, over many decades",
+                       ladder.is_random() ? "(a) random" : "(b) crystal"),
+           "from every rung to the next, 3 decades or more", "", Fate::absent, ""};
+  if (ladder.rungs.size() < 3) return t;
+  std::vector<Fate> rises;
+  std::string falls;
+  for (std::size_t i = 1; i < ladder.rungs.size(); ++i) {
+    const Rung &below = ladder.rungs[i - 1], &rung = ladder.rungs[i];
+    const Estimate from = below.mean_temperature(), to = rung.mean_temperature();
+    rises.push_back(to.value > from.value ? Fate::met : above(to, from));
+    if (to.value <= from.value)
+      falls += fmt::format("{}from {} at K_m {:.3g} to {} at {:.3g}", falls.empty() ? "" : ", ", from.text(),
+                           below.k_m(), to.text(), rung.k_m());
+  }
+  const double decades = std::log10(ladder.rungs.back().mean_temperature().value /
+                                    ladder.rungs.front().mean_temperature().value);
+  t.measured =
+      fmt::format("{:.1f} decades from K_m {:.2g} to {:.3g}; {}", decades, ladder.rungs.front().k_m(),
+                  ladder.rungs.back().k_m(), falls.empty() ? "never falls" : "falls " + falls);
+  rises.push_back(decades >= 3 ? Fate::met : Fate::missed);
+  t.fate = all_of(rises);
+  if (t.fate != Fate::missed || falls.empty()) return t;
+  if (ladder.is_random() && ladder.rungs.front().runs < kRunsForScatter) {
+    t.fate = Fate::open;
+    t.reason = "neighbouring rungs are different beds, and beds differ by more than the interval of one run";
+  } else {
+    t.reason = "above Gamma = 4 a rigid inelastic bed, too, lands where it meets the plate more softly";
+  }
+  return t;
+}
+
+/// Slope of ln T_g* against ln K_m in a region of the crystal.
+std::optional<Estimate> slope_of(const Ladder& ladder, double above, double below) {
+  const auto points = points_of(ladder, above, below);
+  if (points.size() < 3) return std::nullopt;
+  const auto fit = fitted("power", points);
+  return fit ? std::optional(parameter(*fit, "alpha")) : std::nullopt;
+}
+
+struct Slopes {
+  std::optional<Estimate> a1, a2, b;
+};
+Slopes slopes_of(const Ladder& crystal) {
+  if (!crystal.first_slips || !crystal.convection) return {};
+  const double a1 = *crystal.first_slips->low, a2 = *crystal.first_slips->high, b = crystal.convection->value;
+  return {slope_of(crystal, 0, a1), slope_of(crystal, a2, b), slope_of(crystal, b, 1e300)};
+}
+
+std::vector<Target> targets_of(const Ladders& all, const std::optional<CurveFit>& bend) {
+  std::vector<Target> targets = {rise_of(all.random)};
+  Target at{"(a) random: change of slope", "K_m 3.3 +- 0.8", "", Fate::absent, ""};
+  Target same{"(a) random: change of slope where convection begins", "the same K_m", "", Fate::absent, ""};
+  if (bend) {
+    const Estimate x_b = parameter(*bend, "x_b");
+    at.measured = fmt::format("K_m {}, slopes {} and {}", x_b.text(), parameter(*bend, "s_1").text(),
+                              parameter(*bend, "s_2").text());
+    at.fate = within(x_b, 3.3 - 0.8, 3.3 + 0.8);
+    if (!(bend->p_nested < 0.05)) {
+      at.fate = Fate::open;
+      at.reason = "one straight line does as well";
+    }
+    if (all.random.convection) {
+      same.measured =
+          fmt::format("slope at K_m {}, convection from K_m {}", x_b.text(), all.random.convection->text());
+      same.fate = agree(x_b, *all.random.convection);
+    }
+  }
+  targets.push_back(at);
+  targets.push_back(same);
+  targets.push_back(rise_of(all.crystal));
+  Target three{"(b) crystal: three slopes A1, A2, B", "each differs from its neighbour", "", Fate::absent,
+               ""};
+  const Slopes s = slopes_of(all.crystal);
+  const auto text = [](const std::optional<Estimate>& e) { return e ? e->text() : "too few rungs"; };
+  if (s.a1 || s.a2 || s.b) {
+    three.measured =
+        fmt::format("A1 {}, A2 {}, B {}; A1 ends at K_m {}, B begins at K_m {}", text(s.a1), text(s.a2),
+                    text(s.b), all.crystal.first_slips->text(), all.crystal.convection->text());
+    const auto differ = [](const std::optional<Estimate>& a, const std::optional<Estimate>& b) {
+      if (!a || !b) return Fate::open;
+      return agree(*a, *b) == Fate::missed ? Fate::met : Fate::open;
+    };
+    three.fate = all_of({differ(s.a1, s.a2), differ(s.a2, s.b)});
+    if (three.fate == Fate::open) three.reason = "neighbouring intervals overlap";
+  } else {
+    three.reason = "slips or convection not found on the ladder";
+  }
+  targets.push_back(three);
+  return targets;
+}
+
+/// A dashed line at K_m and a name for the region to its right.
+std::string border(double k_m, int arrow) {
+  return fmt::format(
+      "set arrow {0} from first {1:.5g},graph 0 to first {1:.5g},graph 1 nohead dt 2 lw 1.3 lc rgb "
+      "'#666666'\n",
+      arrow, k_m);
+}
+std::string region(const char* name, double from, double to, int label) {
+  return fmt::format("set label {} '{}' at first {:.5g},graph 0.06 center\n", label, name,
+                     std::sqrt(from * to));
+}
+
+Figure figure_of(const Ladders& all, const std::optional<CurveFit>& bend) {
+  Figure f{.name = "p1-fig4", .title = "Granular temperature", .width = 820, .height = 400};
+  constexpr double kFrom = 0.7, kTo = 36;
+  double low = 1, high = 0;  // whole decades around all that is drawn
+  for (const Ladder* l : {&all.random, &all.crystal})
+    for (const Rung& r : l->rungs) {
+      const double t = r.mean_temperature().value;
+      if (!(t > 0)) continue;
+      low = std::min(low, std::pow(10, std::floor(std::log10(t))));
+      high = std::max(high, std::pow(10, std::ceil(std::log10(t))));
+    }
+  if (high <= low) high = 10 * low;
+  f.plot = fmt::format(
+      "set multiplot layout 1,2\nset logscale xy\nset xrange [{}:{}]\nset yrange [{:.3g}:{:.3g}]\nset format "
+      "y '10^{{%L}}'\nset xlabel "
+      "'K_m'\nset ylabel 'T_g^{{*}}' offset 0.5,0\nset lmargin 9\n",
+      kFrom, kTo, low, high);
+  int index = 0;
+  for (const Ladder* l : {&all.random, &all.crystal}) {
+    f.data += fmt::format("# {}: K_m, T_g*, low, high, convecting share\n", l->start);
+    for (const Rung& r : l->rungs) {
+      const Estimate t = r.mean_temperature();
+      f.data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {:.3g}\n", r.k_m(), t.value,
+                            std::max(t.low.value_or(t.value), t.value / 1e3), t.high.value_or(t.value),
+                            static_cast<double>(r.convecting) / static_cast<double>(r.runs));
+    }
+    if (l->rungs.empty()) f.data += "? ? ? ? ?\n";
+    f.data += "\n\n";
+    f.plot += "unset arrow\nunset label\n";
+    f.plot += fmt::format("set title '({}) {}, N_l = {}'\n", l->is_random() ? 'a' : 'b',
+                          l->is_random() ? "random" : "crystal", all.layers);
+    if (l->convection) {
+      f.plot += border(l->convection->value, 1) + region("B", l->convection->value, kTo, 1);
+      const double a_from = 1.35;
+      if (l->is_random() || !l->first_slips || l->first_slips->value >= l->convection->value)
+        f.plot += region("A", a_from, l->convection->value, 2);
+      else
+        f.plot += border(l->first_slips->value, 2) + region("A_1", a_from, l->first_slips->value, 2) +
+                  region("A_2", l->first_slips->value, l->convection->value, 3);
+    }
+    std::string law;
+    if (l->is_random() && bend) {
+      const double x = parameter(*bend, "x_b").value, y = parameter(*bend, "ln_y_b").value;
+      f.plot += fmt::format("f(x) = exp({:.8g} + (x < {:.8g} ? {:.8g} : {:.8g})*log(x/{:.8g}))\n", y, x,
+                            parameter(*bend, "s_1").value, parameter(*bend, "s_2").value, x);
+      law = ", [1.4:*] f(x) with lines lw 1.5 lc rgb '#333333' notitle";
+    }
+    const char* colour = l->is_random() ? "#D55E00" : "#0072B2";
+    f.plot += l->rungs.empty()
+                  ? std::string("plot NaN notitle\n")
+                  : fmt::format(
+                        "plot '{0}.dat' index {1} using 1:2:3:4 with yerrorbars pt {2} ps 1 lw 1.3 lc rgb "
+                        "'{3}' notitle{4}\n",
+                        f.name, index, l->is_random() ? 9 : 7, colour, law);
+    ++index;
+  }
+  f.plot += "unset multiplot\n";
+  f.caption =
+      "T_g* against K_m from random beds (a) and crystals (b), mean over runs. Dashed: onset of convection "
+      "(s_c > "
+      "σ), right of which is region B; in (b) also the first slips, left of which is A1. Line: two power "
+      "laws that meet. Form of Fortini & "
+      "Huang 2015, Fig. 4.";
+  return f;
+}
+
+Reproduction run(const Request& request) {
+  const Ladders all = climb(request);
+  const auto points = points_of(all.random);
+  const auto bend = points.size() >= 6 ? fitted("slope_break", points) : std::nullopt;
+  Reproduction r;
+  r.title = "Fortini & Huang 2015, Fig. 4: granular temperature against K_m";
+  r.complete = all.complete;
+  r.targets = targets_of(all, bend);
+  r.conditions = all.conditions;
+  r.cheaper = all.cheaper;
+  r.table = ladders_text(all);
+  r.measured = ladders_json(all);
+  r.figures = {figure_of(all, bend)};
+  return r;
+}
+
+}  // namespace
+
+Reproducible p1_fig4() {
+  return {"p1-fig4", "granular temperature against K_m, random and crystal", run, kLadderRuns};
+}
+
+}  // namespace twincell::reproduce

@@ -1,0 +1,238 @@
+// Fortini & Huang 2015, Fig. 5: slip probability against 1/K_m, and the barriers of its Arrhenius law.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reproduce/p1_ladder.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+constexpr double kBarrier = 7, kBarrierError = 1;           ///< random, and crystal in B
+constexpr double kNucleation = 130, kNucleationError = 20;  ///< crystal in A2
+
+/// Rungs with slips. Slips come in rows of beads, so their scatter is not binomial: all rungs count alike.
+std::vector<DataPoint> points_of(const Ladder& ladder, double above = 0, double below = 1e300) {
+  std::vector<DataPoint> points;
+  for (const Rung& r : ladder.rungs)
+    if (r.slips > 0 && r.k_m() >= above && r.k_m() <= below) points.push_back({r.k_m(), r.p_s(), 0, 0});
+  return points;
+}
+
+/// The Arrhenius laws of the figure.
+struct Barriers {
+  std::optional<CurveFit> random, random_bent, a2, b;
+};
+Barriers barriers_of(const Ladders& all) {
+  Barriers fits;
+  fits.random = fitted("arrhenius", points_of(all.random));
+  fits.random_bent = fitted("arrhenius_break", points_of(all.random));
+  if (!all.crystal.convection) return fits;
+  const double onset = all.crystal.convection->value;
+  fits.a2 = fitted("arrhenius", points_of(all.crystal, 0, onset));
+  fits.b = fitted("arrhenius", points_of(all.crystal, onset));
+  return fits;
+}
+
+/// Whether a barrier is known at all.
+bool told(const Estimate& e) {
+  return e.low && *e.low > 0;
+}
+constexpr const char* kUntold = "the interval does not leave out 0: too few rungs";
+
+Target barrier_target(const std::string& name, const std::optional<CurveFit>& fit, double wanted,
+                      double error, const char* none) {
+  Target t{name, fmt::format("E_b = {:g} +- {:g}", wanted, error), "", Fate::absent, ""};
+  if (!fit) {
+    t.reason = none;
+    return t;
+  }
+  const Estimate e = parameter(*fit, "E_b");
+  t.measured = fmt::format("E_b = {}, {} rungs", e.text(), fit->n_used);
+  t.fate = within(e, wanted - error, wanted + error);
+  if (t.fate == Fate::met && !told(e)) {
+    t.fate = Fate::open;
+    t.reason = kUntold;
+  }
+  return t;
+}
+
+std::vector<Target> targets_of(const Ladders& all, const Barriers& fits) {
+  std::vector<Target> targets;
+  constexpr const char* kFew = "fewer than two rungs with slips";
+  targets.push_back(barrier_target("(a) random, whole range", fits.random, kBarrier, kBarrierError, kFew));
+  if (targets.back().fate == Fate::missed)
+    targets.back().reason = "the paper does not state its N_l, nor how far its window reaches";
+  Target one{"(a) random: one line over the whole range, no break at the onset", "no break", "", Fate::absent,
+             ""};
+  if (fits.random_bent) {
+    const Estimate x = parameter(*fits.random_bent, "x_b");
+    one.measured = fmt::format("best break at K_m {}, from E = {} to {}; by chance with p = {:.2g}", x.text(),
+                               parameter(*fits.random_bent, "E_1").text(),
+                               parameter(*fits.random_bent, "E_2").text(), fits.random_bent->p_nested);
+    one.fate = fits.random_bent->p_nested < 0.05 ? Fate::missed : Fate::met;
+  }
+  targets.push_back(one);
+  Target zero{"(b) crystal: slips in region A1", "exactly 0", "", Fate::absent, ""};
+  if (all.crystal.first_slips) {
+    double slips = 0, eligible = 0;
+    std::size_t rungs = 0;
+    for (const Rung& r : all.crystal.rungs)
+      if (r.bouncing > 0 && r.k_m() <= *all.crystal.first_slips->low) {
+        slips += r.slips;
+        eligible += r.eligible;
+        ++rungs;
+      }
+    zero.measured = fmt::format(
+        "{:.0f} of {:.0f} bead-periods on {} bouncing rungs, up to K_m {:.3g}; first "
+        "slips at K_m {:.3g}",
+        slips, eligible, rungs, *all.crystal.first_slips->low, *all.crystal.first_slips->high);
+    // Two bouncing rungs or more: a region, not a rung that happened to see nothing.
+    zero.fate = slips == 0 && rungs >= 2 ? Fate::met : Fate::open;
+  } else if (!all.crystal.rungs.empty()) {
+    for (const Rung& r : all.crystal.rungs)
+      if (r.bouncing > 0 && r.slips > 0) {
+        zero.measured = fmt::format("{:.0f} slips already at K_m {:.3g}", r.slips, r.k_m());
+        zero.fate = Fate::missed;
+        break;
+      }
+  }
+  targets.push_back(zero);
+  constexpr const char* kRegion = "convection not found, or fewer than two rungs with slips in the region";
+  targets.push_back(barrier_target("(b) crystal, A2", fits.a2, kNucleation, kNucleationError, kRegion));
+  targets.push_back(barrier_target("(b) crystal, B", fits.b, kBarrier, kBarrierError, kRegion));
+  if (targets.back().fate == Fate::missed)
+    targets.back().reason =
+        "p_s nears 1 at strong drives, and the paper does not say how far its window reaches";
+  Target order{"(b) crystal: the barrier of A2 is several times that of B", "3 times or more", "",
+               Fate::absent, ""};
+  Target same{"barrier of B, crystal, is that of random beds", "the same", "", Fate::absent, ""};
+  if (fits.a2 && fits.b) {
+    const Estimate a2 = parameter(*fits.a2, "E_b"), b = parameter(*fits.b, "E_b");
+    Estimate three_b{3 * b.value, {}, {}};
+    if (b.low) three_b.low = 3 * *b.low;
+    if (b.high) three_b.high = 3 * *b.high;
+    order.measured = fmt::format("{} and {}: {:.3g} times", a2.text(), b.text(), a2.value / b.value);
+    order.fate = above(a2, three_b);
+  }
+  if (fits.b && fits.random) {
+    const Estimate b = parameter(*fits.b, "E_b"), random = parameter(*fits.random, "E_b");
+    same.measured = fmt::format("crystal {}, random {}", b.text(), random.text());
+    same.fate = agree(b, random);
+    if (same.fate == Fate::met && !(told(b) && told(random))) {
+      same.fate = Fate::open;
+      same.reason = kUntold;
+    }
+  }
+  targets.push_back(order);
+  targets.push_back(same);
+  return targets;
+}
+
+/// The line of an Arrhenius law between two K_m, as a clause of a plot against u = 1/K_m.
+std::string line_of(const std::optional<CurveFit>& fit, double from, double to, const char* dash) {
+  if (!fit) return "";
+  const Estimate e = parameter(*fit, "E_b");
+  const double c = std::log(fit->at(1.0)) + e.value;
+  return fmt::format(
+      ", [{:.6g}:{:.6g}] exp({:.8g} - {:.8g}*x) with lines lw 1.6 dt {} lc rgb '#333333' title "
+      "'E_b = {:.3g}'",
+      1 / to, 1 / from, c, e.value, dash, e.value);
+}
+
+Figure figure_of(const Ladders& all, const Barriers& fits) {
+  Figure f{.name = "p1-fig5", .title = "Slip probability", .width = 820, .height = 400};
+  f.plot =
+      "set multiplot layout 1,2\nset logscale y\nset xrange [0:0.75]\nset yrange [3e-7:2]\nset format y "
+      "'10^{%L}'\nset xlabel '1/K_m'\nset ylabel 'p_s' offset 0.5,0\nset key top right\nset lmargin 9\n";
+  int index = 0;
+  for (const Ladder* l : {&all.random, &all.crystal}) {
+    std::string counted, none;
+    for (const Rung& r : l->rungs) {
+      if (!(r.eligible > 0)) continue;
+      if (r.slips > 0)
+        counted += fmt::format("{:.6g} {:.6g}\n", 1 / r.k_m(), r.p_s());
+      else
+        none += fmt::format("{:.6g} {:.6g}\n", 1 / r.k_m(), r.upper_limit());
+    }
+    f.data +=
+        fmt::format("# {}: 1/K_m, p_s\n{}\n\n# {}, no slip: 1/K_m, 95 % upper limit of p_s\n{}\n\n", l->start,
+                    counted.empty() ? "? ?\n" : counted, l->start, none.empty() ? "? ?\n" : none);
+    const double last = l->rungs.empty() ? 30 : l->rungs.back().k_m(), first = 1.34;
+    f.plot += "unset arrow\nunset label\n";
+    f.plot += fmt::format("set title '({}) {}, N_l = {}'\n", l->is_random() ? 'a' : 'b',
+                          l->is_random() ? "random" : "crystal", all.layers);
+    std::string lines;
+    const auto border = [&](double k_m) {
+      f.plot += fmt::format(
+          "set arrow from first {0:.5g},graph 0 to first {0:.5g},graph 1 nohead dt 2 lw 1.3 lc "
+          "rgb '#666666'\n",
+          1 / k_m);
+    };
+    const auto name = [&](const char* region, double from, double to) {
+      f.plot +=
+          fmt::format("set label '{}' at first {:.5g},graph 0.06 center\n", region, (1 / from + 1 / to) / 2);
+    };
+    if (l->convection) {
+      border(l->convection->value);
+      name("B", l->convection->value, 1e3);
+    }
+    if (l->is_random()) {
+      lines = line_of(fits.random, points_of(*l).empty() ? first : points_of(*l).front().x, last, "1");
+      if (l->convection) name("A", l->convection->value, first);
+    } else if (l->convection) {
+      const double slips = l->first_slips ? *l->first_slips->high : first;
+      lines = line_of(fits.a2, std::min(slips, l->convection->value), l->convection->value, "1") +
+              line_of(fits.b, l->convection->value, last, "4");
+      if (l->first_slips && l->first_slips->value < l->convection->value) {
+        border(l->first_slips->value);
+        name("A_2", l->convection->value, l->first_slips->value);
+        name("A_1", l->first_slips->value, first);
+      }
+    }
+    const char* colour = l->is_random() ? "#D55E00" : "#0072B2";
+    std::string clauses = "NaN notitle";
+    if (!counted.empty())
+      clauses += fmt::format(", '{}.dat' index {} using 1:2 with points pt {} ps 1.1 lc rgb '{}' notitle",
+                             f.name, index, l->is_random() ? 9 : 7, colour);
+    if (!none.empty())
+      clauses += fmt::format(
+          ", '{}.dat' index {} using 1:2 with points pt 10 ps 1 lw 1.3 lc rgb '{}' title 'no "
+          "slip: 95 % limit'",
+          f.name, index + 1, colour);
+    f.plot += fmt::format("plot {}{}\n", clauses, lines);
+    index += 2;
+  }
+  f.plot += "unset multiplot\n";
+  f.caption =
+      "Slip probability against 1/K_m from random beds (a) and crystals (b), counted over all runs; open "
+      "triangles: no slip, drawn at the 95 % limit. Lines: Arrhenius laws, all rungs alike. Dashed: regions "
+      "of "
+      "Fig. 4. Form of Fortini & Huang 2015, Fig. 5.";
+  return f;
+}
+
+Reproduction run(const Request& request) {
+  const Ladders all = climb(request);
+  const Barriers fits = barriers_of(all);
+  Reproduction r;
+  r.title = "Fortini & Huang 2015, Fig. 5: slip probability against 1/K_m";
+  r.complete = all.complete;
+  r.targets = targets_of(all, fits);
+  r.conditions = all.conditions;
+  r.cheaper = all.cheaper;
+  r.table = ladders_text(all);
+  r.measured = ladders_json(all);
+  r.figures = {figure_of(all, fits)};
+  return r;
+}
+
+}  // namespace
+
+Reproducible p1_fig5() {
+  return {"p1-fig5", "slip probability against 1/K_m and its barriers, random and crystal", run, kLadderRuns};
+}
+
+}  // namespace twincell::reproduce
