@@ -73,7 +73,8 @@ class GranularTemperature : public Observable {
               ? "no bead has a velocity in any frame"
               : "the trajectory has no velocities, and differences between frames are another quantity";
       std::vector<Result> none = {absent_result("T_g", reason, kPaper1)};
-      for (const char* name : {"T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar"})
+      for (const char* name :
+           {"T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar", "T_z_tau"})
         none.push_back(absent_result(name, reason, kPaper2));
       return none;
     }
@@ -90,6 +91,7 @@ class GranularTemperature : public Observable {
     all.push_back(scaled("T_z_eq5", z_, 0.5, "(m/2) mean w'^2, eq. 5 as printed", kPaper2));
     all.push_back(field_result());
     add_scaled_by_drive(all, d_f);
+    all.push_back(correlation_result());
     return all;
   }
 
@@ -127,6 +129,19 @@ class GranularTemperature : public Observable {
     const std::string by = fmt::format(", over m V_p^2 with V_p = {:.6g} sigma/t0", v_p);
     all.push_back(scaled("T_bar_z", z_, per, "m mean w'^2" + by, kPaper2, "m V_p^2"));
     all.push_back(scaled("T_bar", sum_, per / d_f, "mean of the components" + by, kPaper2, "m V_p^2"));
+  }
+
+  [[nodiscard]] Result correlation_result() const {
+    const BlockAverage& average = z_.average();
+    const double tau = average.correlation_time();
+    if (!std::isfinite(tau)) return absent_result("T_z_tau", "one value has no correlation", kPaper2);
+    Result r{
+        .name = "T_z_tau", .values = {tau}, .unit = z_.of_what(), .n = average.n(), .n_of = z_.of_what()};
+    r.no_interval = "it is itself what the intervals of the means rest on";
+    r.convention =
+        "integrated correlation time of T_z, 1/2 + sum of rho_k; blocks of the error bar are five of it";
+    r.source = "Sokal 1997; Wolff 2004";
+    return r;
   }
 
   void add_field(const Frame& frame) {

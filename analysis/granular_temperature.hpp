@@ -26,6 +26,7 @@ double granular_temperature(const Frame& frame, const std::vector<double>& mass)
 ///   T_z_field      m <w'^2> about the mean velocity at that phase and height (slabs of sigma, lab frame)
 ///                  instead of about the centre of mass
 ///   T_bar_z, T_bar T_z and T in units of m V_p^2, V_p = A omega              (1)
+///   T_z_tau        integrated correlation time of T_z, in cycles (or frames): what its error bar rests on
 /// Means over the frames of whole cycles, so that all phases weigh the same, with block averages over cycles;
 /// over frames where the frames are not locked to the drive. Absent for a trajectory without velocities: a
 /// difference between frames would be another quantity (it averages over the time between them), so it is not

@@ -18,6 +18,7 @@
 #include "analysis/profiles.hpp"
 #include "analysis/slip.hpp"
 #include "analysis/tracers.hpp"
+#include "analysis/volume_fraction.hpp"
 
 namespace twincell {
 namespace {
@@ -35,7 +36,7 @@ const std::vector<Entry>& entries() {
        make_phase_thresholds},
       {{"p_s", "slips", "p_s_j", "slip_directions", "slip_oblique", "slip_vertical", "slip_horizontal"},
        make_slip},
-      {{"T_g", "T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar"},
+      {{"T_g", "T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar", "T_z_tau"},
        make_granular_temperature},
       {{"q6", "psi6", "psi4", "hexagonal_fraction", "square_fraction", "q6_beads", "psi6_beads",
         "psi4_beads"},
@@ -50,7 +51,8 @@ const std::vector<Entry>& entries() {
       {{"displacement_field", "field_x", "field_z", "circulation_left", "circulation_right", "rolls",
         "convection_sense"},
        make_convection},
-      {{"profile_z", "phi_z", "T_z_z", "T_x_z"}, make_profiles},
+      {{"profile_z", "phi_z", "T_z_z", "T_x_z", "T_z_volume"}, make_profiles},
+      {{"phi_top", "phi_cm"}, make_volume_fraction},
       {{"h_cm", "h_cm_k", "h_cm_j", "delta_h_cm", "delta_h_bar"}, make_barycentre},
   };
   return list;

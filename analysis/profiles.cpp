@@ -93,10 +93,37 @@ class Profiles : public Observable {
                                        : "volume of spheres in the slab over its volume, mean over frames",
               none),
         array("T_z_z", t_z, "m g sigma", temperature, cold),
-        array("T_x_z", t_x, "m g sigma", temperature, cold)};
+        array("T_x_z", t_x, "m g sigma", temperature, cold), volume_mean()};
   }
 
  private:
+  /// The local temperature averaged over volume, not over beads: with an open top the volume is that of the
+  /// lowest slabs that hold kMostOfTheBeads of the velocities.
+  [[nodiscard]] Result volume_mean() const {
+    std::size_t all = 0;
+    for (const auto& [k, slab] : slabs_) all += slab.w.n;
+    double sum = 0;
+    std::size_t held = 0, n = 0;
+    for (const auto& [k, slab] : slabs_) {
+      if (static_cast<double>(held) >= kMostOfTheBeads * static_cast<double>(all)) break;
+      held += slab.w.n;
+      if (slab.w.n < kProfileSamples) continue;
+      sum += slab.w.temperature();
+      ++n;
+    }
+    if (n == 0) return absent_result("T_z_volume", "no slab holds enough velocities", kSource);
+    Result r{.name = "T_z_volume",
+             .values = {sum / static_cast<double>(n)},
+             .unit = "m g sigma",
+             .n = n,
+             .n_of = "slabs"};
+    r.no_interval = "a mean over slabs that share their beads";
+    r.convention = "mean of T_z_z over the lowest slabs that hold 99 % of the beads, all slabs alike";
+    r.source = "Bhateja, Sharma & Singh 2016, eq. 1";
+    return r;
+  }
+
+  static constexpr double kMostOfTheBeads = 0.99;
   const TrajectoryInfo& info_;
   std::size_t frames_ = 0;
   std::map<std::int64_t, Slab> slabs_;  // sparse: a bead far above the bed makes two slabs, not thousands

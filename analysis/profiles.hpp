@@ -25,6 +25,8 @@ inline constexpr std::size_t kProfileSamples = 100;  ///< least number of bead v
 ///           slab over the whole average; absent (NaN) with fewer than kProfileSamples, m g sigma
 ///   T_x_z   the same of the horizontal velocity along x
 ///   profile_z  centres of the slabs, sigma
+///   T_z_volume  mean of T_z_z over the lowest slabs that hold 99 % of the beads: an average over volume, as
+///               the paper's introduction has it, where T_z is one over beads
 ///
 /// Kinetic convention: eq. 5 of Bhateja et al. 2016 has (m/2) where their numbers have m. Bhateja, Sharma &
 /// Singh 2016, Figs. 12 to 16.

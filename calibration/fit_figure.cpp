@@ -21,13 +21,21 @@ std::string label(const std::string& name) {
   return at == std::string::npos ? name : name.substr(0, at) + "_{" + name.substr(at + 1) + "}";
 }
 
+/// The plot with the name of its data file put in.
+std::string reading(const std::string& name, std::string plot) {
+  static const std::string kFile = "'fit.dat'";
+  for (std::size_t at = plot.find(kFile); at != std::string::npos; at = plot.find(kFile, at + name.size()))
+    plot.replace(at, kFile.size(), "'" + name + ".dat'");
+  return plot;
+}
+
 }  // namespace
 
 Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, const std::string& x_name,
-                  const std::string& y_name) {
+                  const std::string& y_name, const std::string& name) {
   const Law& law = *fit.law;
   const auto drawn = [&](double x) { return law.axis == Law::Axis::reciprocal ? 1 / x : x; };
-  Figure f{.name = "fit", .title = law.formula, .width = 560, .height = 640};
+  Figure f{.name = name, .title = law.formula, .width = 560, .height = 640};
 
   double low = INFINITY, high = -INFINITY;
   std::string used, left_out, limits;
@@ -114,6 +122,7 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
       fit.weighted      ? "residual/error"
       : law.logarithmic ? "residual in ln y"
                         : "residual");
+  f.plot = reading(name, f.plot);
   f.caption = law.formula + ", fitted to " + fmt::format("{} points", fit.n_used);
   return f;
 }

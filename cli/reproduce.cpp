@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
@@ -27,7 +29,8 @@ using reproduce::Reproduction;
 using reproduce::Target;
 
 struct ReproduceOptions {
-  std::string name, output, runs;
+  std::string name, output, runs, data;
+  std::optional<std::pair<double, double>> window;
   double budget = 10;
   bool full = false;
 };
@@ -84,6 +87,14 @@ nlohmann::json as_json(const Reproduction& r, const fs::path& folder) {
 void run(const ReproduceOptions& options, const Common& common) {
   const Reproducible& what = named(options.name);
   const fs::path folder = options.output.empty() ? options.name : options.output;
+  if ((options.window || !options.data.empty()) && !what.takes_data)
+    throw ConfigError(
+        {"", 0, 0, options.window ? "window" : "data"},
+        fmt::format("says nothing to {}; p2-fig2, p2-table1 and p2-table2 compare with your own.",
+                    options.name));
+  if (options.window && !(options.window->first < options.window->second))
+    throw ConfigError({"", 0, 0, "window"}, fmt::format("goes from {:g} to {:g}; it must rise.",
+                                                        options.window->first, options.window->second));
   std::error_code made;
   fs::create_directories(folder, made);
   {
@@ -96,6 +107,8 @@ void run(const ReproduceOptions& options, const Common& common) {
                                    .seed = common.seed.value_or(1),
                                    .folder = folder,
                                    .runs = runs_of(what, options, folder),
+                                   .window = options.window,
+                                   .data = options.data,
                                    .watch = &watch});
   nlohmann::json document = as_json(r, folder);
   document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
@@ -123,6 +136,11 @@ void add_reproduce(CLI::App& program, Common& common) {
           ->capture_default_str();
   verb.add_option("--runs", options->runs,
                   "Folder of runs that figures share, instead of the one beside the figure's folder");
+  verb.add_option("--window", options->window, "p2-fig2, -table1, -table2: your own window of W, LOW,HIGH")
+      ->delimiter(',')
+      ->type_name("LOW,HIGH");
+  verb.add_option("--data", options->data,
+                  "p2-fig2, -table1, -table2: your own points, CSV with W and T_bar_z (or delta_h_bar)");
   verb.add_flag("--full", options->full, "All that the paper shows, however long it takes")->excludes(budget);
   verb.callback([options, &common] { run(*options, common); });
 }

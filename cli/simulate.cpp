@@ -192,6 +192,11 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   if (options.relax) assignments.emplace_back("start.relax=true");
   sim::Scene scene = sim::read_scene(options.scene, assignments);
   { const AtomicPath probe(options.output); }  // an unwritable place is found before the work, not after
+  if (scene.until)
+    note(common,
+         fmt::format("[until] is for `measure` and `sweep`, which analyse while they run; all {} cycles are "
+                     "run here.",
+                     scene.cycles));
 
   if (is_finished(scene, options)) {
     note(common, options.output + " is finished, nothing is left to resume.");

@@ -24,6 +24,7 @@ void add_import(CLI::App& program, Common& common);
 void add_info(CLI::App& program, Common& common);
 void add_locate(CLI::App& program, Common& common);
 void add_match(CLI::App& program, Common& common);
+void add_measure(CLI::App& program, Common& common);
 void add_render(CLI::App& program, Common& common);
 void add_reproduce(CLI::App& program, Common& common);
 void add_simulate(CLI::App& program, Common& common);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/figures.hpp"
@@ -42,7 +43,9 @@ struct Request {
   std::uint64_t seed = 1;
   std::filesystem::path folder;     ///< for the sweep; taken up if it is there
   std::filesystem::path runs = {};  ///< for runs that several figures share (Reproducible::shared_runs)
-  sweep::Watch* watch = nullptr;    ///< never null when a reproduction runs
+  std::optional<std::pair<double, double>> window = {};  ///< the user's own window of W
+  std::filesystem::path data = {};                       ///< the user's own points, CSV; empty: none
+  sweep::Watch* watch = nullptr;                         ///< never null when a reproduction runs
 };
 
 /// All that is to be said.
@@ -63,6 +66,7 @@ struct Reproducible {
   std::string what;  ///< one line
   std::function<Reproduction(const Request&)> run;
   std::string shared_runs = {};  ///< folder beside the figure's where runs lie that other figures use too
+  bool takes_data = false;       ///< whether Request::window and Request::data mean something to it
 };
 /// All that can be reproduced. To add one: its file, a line here, a word in list.cpp and in CMakeLists.txt, a
 /// test.
@@ -75,6 +79,24 @@ Reproducible p1_fig4();
 Reproducible p1_fig5();
 Reproducible p1_table1();
 Reproducible p1_appendix();
+Reproducible p2_fig2();
+Reproducible p2_fig3();
+Reproducible p2_fig4();
+Reproducible p2_fig5();
+Reproducible p2_fig6();
+Reproducible p2_fig7();
+Reproducible p2_fig8();
+Reproducible p2_fig9();
+Reproducible p2_fig10();
+Reproducible p2_fig11();
+Reproducible p2_fig12();
+Reproducible p2_fig13();
+Reproducible p2_fig14();
+Reproducible p2_fig15();
+Reproducible p2_fig16();
+Reproducible p2_table1();
+Reproducible p2_table2();
+Reproducible p2_table3();
 
 /// Whether an onset lies within [low, high]: met if its value does, missed if its whole interval does not,
 /// else open.

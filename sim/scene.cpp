@@ -266,6 +266,16 @@ void read_time(const Section& s, Scene& scene) {
   scene.phases = static_cast<int>(s.integer_in("phases", 1, 10'000).value_or(scene.phases));
 }
 
+void read_until(const Section& s, Scene& scene) {
+  if (!s.has("quantity") && !s.has("relative_error") && !s.has("absolute_error")) return;
+  const auto quantity = s.text("quantity");
+  if (!quantity) throw ConfigError(s.where("quantity"), "is missing: the mean that is to be known so well.");
+  Precision until{.quantity = *quantity};
+  until.relative = s.number_in("relative_error", 0, 1, true).value_or(until.relative);
+  until.absolute = s.number_in("absolute_error", 0, 1e12).value_or(until.absolute);
+  scene.until = until;
+}
+
 void read_effects(const Section& s, Scene& scene) {
   scene.rotation = s.boolean("rotation").value_or(true);
   scene.history = s.boolean("history").value_or(true);
@@ -393,6 +403,7 @@ Scene interpret(const Config& config, const std::string& name) {
   const DriveSpec spec = read_drive(drive, scene);
   read_start(root.section("start"), scene);
   read_time(root.section("time"), scene);
+  read_until(root.section("until"), scene);
   read_scale(root.section("scale"), scene);
   read_effects(root.section("effects"), scene);
   // A misspelt key explains more than what is missing because of it.

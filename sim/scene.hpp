@@ -51,6 +51,14 @@ inline constexpr double kFewestSteps = 6, kFewSteps = 20;
 
 enum class StartKind { crystal_a, crystal_b, random, trajectory, table };
 
+/// When a driven bed has been watched for long enough: the 95 % interval of a mean is narrow. Scene::cycles
+/// is then the most that are run.
+struct Precision {
+  std::string quantity;    ///< "T_z": one of those that sweep/precision_rule.hpp knows
+  double relative = 0.01;  ///< half of the interval over the mean
+  double absolute = 0;     ///< or half of the interval, in the quantity's unit; the larger bound counts
+};
+
 struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in the order of a scene's tables
   std::string file;      ///< for messages
   std::string resolved;  ///< TOML with preset and overrides, for provenance
@@ -104,6 +112,7 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   std::string stepping = "auto";      ///< auto | steps | flights
   std::int64_t discard = 10, cycles = 200;
   int phases = 20;
+  std::optional<Precision> until;  ///< heeded by whoever analyses while the run goes on (sweep/measure.hpp)
   Scale scale;
 
   // What need not be reckoned, says the user; the plan refuses what would change the answer.

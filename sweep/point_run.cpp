@@ -12,7 +12,7 @@
 #include "analysis/trajectory/h5md_file.hpp"
 #include "analysis/trajectory/provenance.hpp"
 #include "sim/simulation.hpp"
-#include "sweep/live_trajectory.hpp"
+#include "sweep/measure.hpp"
 #include "sweep/stop_rule.hpp"
 
 namespace twincell::sweep {
@@ -84,25 +84,33 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
     sim::Simulation run(std::move(scene), std::move(state));
     std::optional<StopRule> rule;
     std::unique_ptr<SharedWriter> writer;
-    const LiveTrajectory live(run, "point " + point.id, progress, [&](const Frame& frame) {
-      cycles = frame.cycle + 1;
-      if (writer) on_disk([&] { writer->append(frame); });
-      return !rule || !rule->settled(frame);
-    });
-    if (plan.stop_early && plan.verdict) rule.emplace(*plan.verdict, live.info(), all_cycles);
-    if (!trajectory.empty()) {
-      TrajectoryInfo info = live.info();
-      Provenance provenance;
-      provenance.config = point.scene;
-      provenance.seed = point.seed;
-      info.provenance_json = provenance.to_json();
-      on_disk([&] { writer = std::make_unique<SharedWriter>(trajectory, std::move(info)); });
-    }
+    const Beside beside{
+        .begin =
+            [&](const TrajectoryInfo& info) {
+              if (plan.stop_early && plan.verdict) rule.emplace(*plan.verdict, info, all_cycles);
+              if (trajectory.empty()) return;
+              TrajectoryInfo kept = info;
+              Provenance provenance;
+              provenance.config = point.scene;
+              provenance.seed = point.seed;
+              kept.provenance_json = provenance.to_json();
+              on_disk([&] { writer = std::make_unique<SharedWriter>(trajectory, std::move(kept)); });
+            },
+        .frame =
+            [&](const Frame& frame) {
+              cycles = frame.cycle + 1;
+              if (writer) on_disk([&] { writer->append(frame); });
+              return !rule || !rule->settled(frame);
+            }};
     AnalysisOptions options;
     options.only = plan.results;
-    const auto results = analyze(live, options);
+    const Measured measured = measure(run, options, "point " + point.id, progress, beside);
+    const auto& results = measured.results;
     if (writer) on_disk([&] { writer->finish(); });
     document["results"] = nlohmann::json::parse(results_json(results));
+    if (measured.precise) document["until"] = {{"reached", *measured.precise}, {"text", measured.until}};
+    if (measured.rest_height) document["rest_height"] = *measured.rest_height;
+    if (measured.contact_fraction) document["contact_fraction"] = *measured.contact_fraction;
     if (rule && !rule->reason().empty()) document["stopped"] = rule->reason();
     if (plan.verdict)
       if (const double value = find_result(results, plan.verdict->result).value(); std::isfinite(value))

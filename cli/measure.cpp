@@ -1,0 +1,143 @@
+// twincell measure SCENE.toml
+
+#include "sweep/measure.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "analysis/results.hpp"
+#include "analysis/trajectory/atomic_file.hpp"
+#include "cli/output.hpp"
+#include "cli/plan_text.hpp"
+#include "cli/verb.hpp"
+
+namespace twincell::cli {
+
+namespace {
+
+using nlohmann::json;
+
+/// Peak velocities at which a bed may stay solid or boil, for hundreds of cycles, as it began (V. H38).
+constexpr double kLowestBistable = 1, kHighestBistable = 2.1;
+/// A bed that is first shaken at twice the amplitude begins boiling.
+constexpr const char* kFluidised = "drive.schedule=[[0, 2], [20, 2], [30, 1]]";
+
+struct MeasureOptions {
+  std::string scene, output;
+  std::vector<std::string> assignments;
+  AnalysisOptions analysis;
+  bool both_starts = false;
+};
+
+struct Run {
+  sweep::Measured measured;
+  json about;
+  std::string provenance;
+};
+
+Run run_once(const MeasureOptions& options, const std::vector<std::string>& assignments,
+             const std::string& start, const Common& common) {
+  sim::Scene scene = sim::read_scene(options.scene, assignments);
+  sim::RunState state = sim::placed(scene);
+  json provenance = json::parse(scene_provenance(common, scene, state.beads, {options.scene}));
+  const double w = scene.g() > 0 ? scene.drive.k_m(scene.g()) : std::nan("");
+  if (!options.both_starts && scene.g() > 0 && w > kLowestBistable && w < kHighestBistable)
+    note(common,
+         fmt::format("at W = {:.4g}, just above 1, a bed may stay as it began for hundreds of cycles; "
+                     "--both-starts runs it from rest and from a boiling bed.",
+                     w));
+  sim::Simulation run(std::move(scene), std::move(state), sim::KernelKind::best, common.threads);
+  ProgressBar progress(common, "measuring");
+  Run r{.measured = sweep::measure(run, options.analysis, options.scene, progress),
+        .about = {},
+        .provenance = {}};
+  for (const std::string& warning : run.warnings()) note(common, warning);
+  const sweep::Measured& m = r.measured;
+  r.about = {{"start", start}, {"cycles", m.cycles}, {"discarded", run.scene().discard}};
+  if (std::isfinite(w)) r.about["w"] = w;
+  if (m.precise) r.about["until"] = {{"reached", *m.precise}, {"text", m.until}};
+  if (m.rest_height) r.about["rest_height"] = *m.rest_height;
+  if (m.contact_fraction) r.about["contact_fraction"] = *m.contact_fraction;
+  provenance["run"] = r.about;
+  r.provenance = provenance.dump();
+  return r;
+}
+
+std::string as_text(const Run& run) {
+  const json& about = run.about;
+  std::string s = fmt::format("start: {}; {} cycles after {} discarded\n", about["start"].get<std::string>(),
+                              about["cycles"].get<long>(), about["discarded"].get<long>());
+  if (about.contains("w")) s += fmt::format("W = {:.6g}\n", about["w"].get<double>());
+  if (about.contains("until")) s += about["until"]["text"].get<std::string>() + "\n";
+  if (about.contains("rest_height"))
+    s += fmt::format("at rest on the plate the centre of mass lies at {:.6g} sigma\n",
+                     about["rest_height"].get<double>());
+  if (about.contains("contact_fraction"))
+    s += fmt::format("beads touch something {:.3g} of the time{}\n", about["contact_fraction"].get<double>(),
+                     about["contact_fraction"].get<double>() > 0.1
+                         ? ", more than the 0.1 up to which they are as good as hard"
+                         : "");
+  return s + results_text(run.measured.results);
+}
+
+/// Whether both starts gave one T_z: their intervals overlap.
+std::string compared(const Run& rest, const Run& boiling) {
+  const auto t_z = [](const Run& r) { return seek_result(r.measured.results, "T_z"); };
+  const Result *a = t_z(rest), *b = t_z(boiling);
+  if (a == nullptr || b == nullptr || !a->interval || !b->interval)
+    return "the starts cannot be compared: T_z has no interval from both";
+  const bool apart = a->interval->low > b->interval->high || b->interval->low > a->interval->high;
+  return fmt::format("T_z from rest {:.5g}, from a boiling bed {:.5g}: {}", a->value(), b->value(),
+                     apart ? "the result depends on the start" : "both starts end in one state");
+}
+
+void run(const MeasureOptions& options, const Common& common) {
+  if (!options.output.empty()) AtomicPath{options.output};
+  const std::vector<std::string> assignments = with_seed(options.assignments, common);
+  const Run first = run_once(options, assignments, "as the scene says", common);
+  if (!options.output.empty()) write_results(options.output, first.measured.results, first.provenance);
+  json document = first.about;
+  document["results"] = json::parse(results_json(first.measured.results));
+  document["provenance"] = json::parse(first.provenance);
+  std::string text = as_text(first);
+  if (options.both_starts) {
+    std::vector<std::string> boiling = assignments;
+    boiling.emplace_back(kFluidised);
+    const Run second =
+        run_once(options, boiling, "boiling: twice the amplitude for 20 cycles, calmed in 10", common);
+    document["other_start"] = second.about;
+    document["other_start"]["results"] = json::parse(results_json(second.measured.results));
+    document["starts"] = compared(first, second);
+    text += "\n" + as_text(second) + "\n" + document["starts"].get<std::string>() + "\n";
+  }
+  print_result(common, document, text);
+}
+
+}  // namespace
+
+void add_measure(CLI::App& program, Common& common) {
+  auto options = std::make_shared<MeasureOptions>();
+  CLI::App& verb =
+      add_verb(program, common, "measure",
+               "run a scene and analyse it on the way: until a mean is known as well as [until] asks, "
+               "no frame kept",
+               "twincell measure gas.toml --only T_z,delta_h_cm --set until.quantity=T_z "
+               "--set until.relative_error=0.01 --set time.cycles=20000");
+  verb.add_option("scene", options->scene, "Scene (TOML, docs/scene.md)")->required();
+  verb.add_option("-o,--output", options->output, "write the results to this HDF5 file too");
+  verb.add_option("--set", options->assignments, "section.key=value, over the scene's own; may be repeated")
+      ->take_all();
+  verb.add_option("--only", options->analysis.only, "results wanted, comma separated; fewer are quicker")
+      ->delimiter(',');
+  verb.add_option("--rest-height", options->analysis.rest_height,
+                  "h_cm of the bed at rest, sigma; measured on the settled bed if not said");
+  verb.add_flag("--both-starts", options->both_starts,
+                "run it once more from a boiling bed, and say whether that makes a difference");
+  verb.callback([options, &common] { run(*options, common); });
+}
+
+}  // namespace twincell::cli

@@ -1,0 +1,29 @@
+# T_z/(m g d) with A/d at fixed W
+# gnuplot p2-fig11.gp draws p2-fig11.svg, p2-fig11.pdf and p2-fig11.png
+do for [kind in 'svg pdf png'] {
+if (kind eq 'svg') {
+  set terminal svg size 640,460 dynamic enhanced font 'Arial,15' background 'white'
+}
+if (kind eq 'pdf') {
+  set terminal pdfcairo size 7.111111111111111in,5.111111111111111in enhanced font 'sans,9' background 'white'
+}
+if (kind eq 'png') {
+  set terminal pngcairo size 1024,736 enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale 1.6 background 'white'
+}
+set output 'p2-fig11.' . kind
+set encoding utf8
+set border lw 1 lc rgb '#444444'
+set tics textcolor rgb '#222222'
+set grid lw 0.5 lc rgb '#DDDDDD'
+set datafile missing '?'
+set xlabel 'W = V_p^2/(d g)'
+set ylabel 'T_z/(m g d)'
+set key top right
+set xrange [4:8.6]
+set yrange [0:*]
+set key top left
+
+plot 'p2-fig11.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'A/d = 1', 'p2-fig11.dat' index 1 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'A/d = 0.5', 'p2-fig11.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title 'A/d = 0.1'
+unset output
+reset
+}

@@ -1,0 +1,28 @@
+# alpha without gravity
+# gnuplot p2-fig6.gp draws p2-fig6.svg, p2-fig6.pdf and p2-fig6.png
+do for [kind in 'svg pdf png'] {
+if (kind eq 'svg') {
+  set terminal svg size 640,460 dynamic enhanced font 'Arial,15' background 'white'
+}
+if (kind eq 'pdf') {
+  set terminal pdfcairo size 7.111111111111111in,5.111111111111111in enhanced font 'sans,9' background 'white'
+}
+if (kind eq 'png') {
+  set terminal pngcairo size 1024,736 enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale 1.6 background 'white'
+}
+set output 'p2-fig6.' . kind
+set encoding utf8
+set border lw 1 lc rgb '#444444'
+set tics textcolor rgb '#222222'
+set grid lw 0.5 lc rgb '#DDDDDD'
+set datafile missing '?'
+set xlabel 'setting'
+set ylabel 'alpha'
+set key top right
+set xrange [0.5:3.5]
+set yrange [1.5:2.5]
+
+plot 'p2-fig6.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'k_n ~ V_p^2', 'p2-fig6.dat' index 1 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'one k_n'
+unset output
+reset
+}

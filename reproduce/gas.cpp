@@ -1,0 +1,372 @@
+#include "reproduce/gas.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+namespace twincell::reproduce {
+
+namespace {
+
+using nlohmann::json;
+
+/// Results that some figure needs. All figures ask for the same ones, so that their points are the same.
+constexpr const char* kResults =
+    R"(["T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar", "T_z_tau", "h_cm", "delta_h_cm", )"
+    R"("delta_h_bar", "profile_z", "phi_z", "T_z_z", "T_z_volume", "phi_top", "phi_cm"])";
+
+constexpr double kSigmaMetres = 0.005, kGravity = 9.81;
+
+/// Share of their time in contact up to which beads are a gas.
+constexpr double kHard = 0.1;
+
+std::vector<int> coarse_rpm() {
+  return {300, 400, 500, 600, 700, 800, 900, 1000, 1200, 1500, 2000, 2500, 3000, 3500, 4000};
+}
+
+/// Errors are halves of 95 % intervals, 2 standard errors.
+const std::vector<GasSize>& sizes() {
+  static const std::vector<GasSize> all = {{0, coarse_rpm(), 0.1, 300},
+                                           {10, coarse_rpm(), 0.05, 1000},
+                                           {40, all_rpm(), 0.05, 2000},
+                                           {150, all_rpm(), 0.03, 6000},
+                                           {1e300, all_rpm(), 0.01, 40000}};
+  return all;
+}
+
+Estimate estimate_of(const json& result) {
+  Estimate e{.value = result["value"].get<double>(), .low = {}, .high = {}};
+  if (result.contains("interval")) {
+    e.low = result["interval"]["low"].get<double>();
+    e.high = result["interval"]["high"].get<double>();
+  }
+  return e;
+}
+
+double half_width(const Estimate& e) {
+  return e.low && e.high ? (*e.high - *e.low) / 2 : std::nan("");
+}
+
+}  // namespace
+
+double w_of_rpm(double rpm) {
+  const double omega = 2 * std::numbers::pi * rpm / 60;
+  return kSigmaMetres / kGravity * omega * omega;
+}
+
+std::vector<int> all_rpm() {
+  std::vector<int> all;
+  for (int rpm = 300; rpm <= 4000; rpm += 100) all.push_back(rpm);
+  return all;
+}
+
+std::string GasSystem::name() const {
+  return fmt::format("{}D {}", dimension, rough ? "rough" : "smooth");
+}
+std::string GasSystem::preset() const {
+  return fmt::format("bhateja-2016-{}-{}d", rough ? "rough" : "smooth", dimension);
+}
+const std::vector<GasSystem>& gas_systems() {
+  static const std::vector<GasSystem> all = {{2, true}, {3, true}, {2, false}, {3, false}};
+  return all;
+}
+
+const GasSize& gas_size_for(const Request& request, double share) {
+  if (request.full) return sizes().back();
+  const double core_minutes = request.minutes * request.threads / share;
+  const GasSize* chosen = &sizes().front();
+  for (const GasSize& size : sizes())
+    if (core_minutes >= size.core_minutes) chosen = &size;
+  return *chosen;
+}
+
+Estimate quotient(const Estimate& a, const Estimate& b) {
+  Estimate q{.value = a.value / b.value, .low = {}, .high = {}};
+  const double half = std::abs(q.value) * std::hypot(half_width(a) / a.value, half_width(b) / b.value);
+  if (!std::isfinite(half)) return q;
+  q.low = q.value - half;
+  q.high = q.value + half;
+  return q;
+}
+
+std::optional<Estimate> GasPoint::get(const std::string& name) const {
+  const auto found = scalars.find(name);
+  if (found == scalars.end()) return std::nullopt;
+  return found->second;
+}
+
+bool GasPoint::solid() const {
+  const auto t = get("T_bar_z");
+  return t && t->value < kSolid;
+}
+
+Gas::Gas(const Request& request) : request_(request), store_(request.runs) {}
+
+std::size_t Gas::add(const GasCurve& curve) {
+  Runs& runs = runs_.emplace_back();
+  runs.curve = curve;
+  std::string values;
+  for (const double value : curve.values)
+    values += fmt::format("{}{:.17g}", values.empty() ? "" : ", ", value);
+  // Split at n = 6.37 is no less accurate than Verlet at n = 50 in any single collision (docs/accuracy.md).
+  // TOML wants a point in a number that is compared with others of the same list.
+  const std::string text = fmt::format(
+      "seed = {}\nresults = {}\n[scene]\n{}\ntime.integrator = \"split\"\ntime.steps_per_contact = 6.37\n"
+      "time.discard = {}\ntime.cycles = {}\nuntil.quantity = \"{}\"\nuntil.relative_error = {}\n"
+      "until.absolute_error = 1e-5\n[axes]\n{} = [{}]\n",
+      request_.seed, kResults, curve.scene, curve.discard, curve.cycles, curve.quantity, curve.relative_error,
+      curve.key, values);
+  runs.plan = sweep::read_plan_text(text, curve.name);
+  runs.schedule.emplace(runs.plan, store_);
+  read(runs);
+  return runs_.size() - 1;
+}
+
+std::size_t Gas::add(const GasSystem& system, const GasSize& size, const std::vector<int>& rpm) {
+  GasCurve curve{.name = system.name(),
+                 .scene = fmt::format("preset = \"{}\"", system.preset()),
+                 .relative_error = size.relative_error,
+                 .cycles = size.cycles};
+  for (const int f : rpm) curve.values.push_back(w_of_rpm(f));
+  return add(curve);
+}
+
+bool Gas::run() {
+  bool complete = true;
+  for (Runs& runs : runs_) {
+    complete = run_here({&*runs.schedule}, store_, {request_.threads, false}, *request_.watch) && complete;
+    read(runs);
+  }
+  return complete;
+}
+
+void Gas::read(Runs& runs) const {
+  runs.points.clear();
+  const auto& curves = runs.schedule->curves();  // one point each: nothing but the key's value varies
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    GasPoint p;
+    p.at = runs.curve.values[k];
+    p.id = curves[k].points.front().id;
+    if (const auto& text = curves[k].results.front()) {
+      const json result = json::parse(*text);
+      p.done = true;
+      p.failed = result.value("failed", "");
+      p.cycles = result.value("n_cycles", std::int64_t{0});
+      p.contact_fraction = result.value("contact_fraction", 0.0);
+      if (result.contains("until")) {
+        p.until = result["until"]["text"].get<std::string>();
+        p.precise = result["until"]["reached"].get<bool>();
+      }
+      const json results = result.value("results", json::object());  // items() of a temporary would dangle
+      for (const auto& [name, value] : results.items()) {
+        if (!value.contains("value") || value["value"].is_null()) continue;
+        if (value["value"].is_number()) p.scalars[name] = estimate_of(value);
+        if (!value["value"].is_array()) continue;
+        for (const json& element : value["value"])
+          p.arrays[name].push_back(element.is_number() ? element.get<double>() : std::nan(""));
+      }
+    }
+    runs.points.push_back(std::move(p));
+  }
+}
+
+std::string Gas::table() const {
+  std::string s =
+      "  T_bar_z = m <w'^2>/(m V_p^2), w' about the centre of mass of the instant; eq5: (m/2) <w'^2> as "
+      "printed;\n"
+      "  field: m <w'^2> about the mean velocity at that phase and height; all in m V_p^2; 95 % intervals\n";
+  for (const Runs& runs : runs_) {
+    if (std::none_of(runs.points.begin(), runs.points.end(), [](const GasPoint& p) { return p.done; })) {
+      s += fmt::format("  {}: none of {} points begun\n", runs.curve.name, runs.points.size());
+      continue;
+    }
+    s += fmt::format("  {}\n  {:>9} {:>26} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8}  {}\n", runs.curve.name,
+                     runs.curve.key == "drive.k_m" ? "W" : runs.curve.key, "T_bar_z", "eq5", "field",
+                     "T_bar_x", "T_bar", "dh_bar", "phi_top", "touching", "cycles (tau)");
+    for (const GasPoint& p : runs.points) {
+      if (!p.done || !p.failed.empty()) {
+        s += fmt::format("  {:>9.4g} {}\n", p.at, p.done ? p.failed : "not begun");
+        continue;
+      }
+      const auto cell = [&](const char* name, double scale) {
+        const auto e = p.get(name);
+        return e ? fmt::format("{:.4g}", e->value * scale) : std::string("-");
+      };
+      // V_p^2 from two conventions of the same number.
+      const auto t = p.get("T_z"), bar = p.get("T_bar_z");
+      const double per = t && bar && t->value > 0 ? bar->value / t->value : std::nan("");
+      s += fmt::format(
+          "  {:>9.4g} {:>26} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>8.2g}  {}\n", p.at,
+          bar ? bar->text() : "-", cell("T_z_eq5", per), cell("T_z_field", per), cell("T_x", per),
+          cell("T_bar", 1), cell("delta_h_bar", 1), p.contact_fraction > kHard ? "-" : cell("phi_top", 1),
+          p.contact_fraction,
+          fmt::format("{} ({}){}", p.cycles, cell("T_z_tau", 1), p.precise ? "" : ", ended by the cap"));
+    }
+  }
+  return s;
+}
+
+std::string Gas::as_json() const {
+  nlohmann::json all = nlohmann::json::array();
+  for (const Runs& runs : runs_)
+    for (const GasPoint& p : runs.points) {
+      if (!p.done) continue;
+      nlohmann::json j = {{"curve", runs.curve.name},
+                          {"key", runs.curve.key},
+                          {"at", p.at},
+                          {"id", p.id},
+                          {"cycles", p.cycles},
+                          {"contact_fraction", p.contact_fraction}};
+      if (!p.failed.empty()) j["failed"] = p.failed;
+      if (!p.until.empty()) j["until"] = {{"reached", p.precise}, {"text", p.until}};
+      for (const auto& [name, e] : p.scalars) {
+        j[name] = {{"value", e.value}};
+        if (e.low && e.high) j[name]["interval"] = {*e.low, *e.high};
+      }
+      all.push_back(j);
+    }
+  return all.dump();
+}
+
+std::vector<std::string> Gas::conditions() const {
+  int discard_least = 1000000, discard_most = 0;
+  for (const Runs& runs : runs_) {
+    discard_least = std::min(discard_least, runs.curve.discard);
+    discard_most = std::max(discard_most, runs.curve.discard);
+  }
+  return {
+      fmt::format("each point is one run; its seed is drawn from the master seed {} and its scene",
+                  request_.seed),
+      "contacts: linear spring, tension allowed; unless varied k_n = 1e6 m g/d, e = 0.9 for beads and walls, "
+      "rough: "
+      "dashpot with c_t = c_n and Coulomb slider without history, mu = 0.4; none of k_n, c_t is in the paper",
+      "n = 6.37 steps per contact, split at contact entry and exit, where steps are taken; from W = 10 on "
+      "beads fly "
+      "from contact to contact and steps act only where three meet (docs/flights.md)",
+      fmt::format("start: random, settled at rest, then moving with the plate; {} cycles discarded",
+                  discard_least == discard_most ? fmt::format("{}", discard_most)
+                                                : fmt::format("{} to {}", discard_least, discard_most)),
+      "T_z = m <w'^2> about the centre of mass of the instant, mean over beads and 20 phases a cycle",
+      "errors: 95 % intervals from blocks of five correlation times, which the table states in cycles (tau)"};
+}
+
+std::vector<std::string> Gas::cheaper() const {
+  std::vector<std::string> s = {
+      "where steps are taken, split at n = 6.37 per contact: no less accurate in any collision than Verlet "
+      "at "
+      "n = 50 (docs/accuracy.md); the paper states neither"};
+  std::size_t done = 0, all = 0, capped = 0, failed = 0, solid = 0, soft = 0;
+  double loosest = 0;
+  for (const Runs& runs : runs_) {
+    loosest = std::max(loosest, runs.curve.relative_error);
+    for (const GasPoint& p : runs.points) {
+      ++all;
+      done += p.done ? 1 : 0;
+      failed += p.failed.empty() ? 0 : 1;
+      capped += p.done && p.failed.empty() && !p.precise ? 1 : 0;
+      solid += p.solid() ? 1 : 0;
+      soft += p.contact_fraction > kHard && !p.solid() ? 1 : 0;
+    }
+  }
+  s.push_back(
+      fmt::format("{} of {} points; each ends when half of its 95 % interval is {:g} % of its value at most",
+                  done, all, 100 * loosest));
+  if (capped > 0) s.push_back(fmt::format("{} of them were ended by the cap of cycles before that", capped));
+  if (solid > 0)
+    s.push_back(fmt::format("{} are solid, T_bar_z < {:g}: left out of all fits", solid, kSolid));
+  if (soft > 0)
+    s.push_back(
+        fmt::format("in {} beads touch something more than 0.1 of the time: not a gas of hard beads", soft));
+  if (failed > 0) s.push_back(fmt::format("{} went wrong, see the table", failed));
+  return s;
+}
+
+Series series_of(const std::string& title, const std::vector<GasPoint>& points, const std::string& result) {
+  Series s{.title = title, .x = {}, .y = {}};
+  for (const GasPoint& p : points)
+    if (const auto e = p.get(result)) {
+      s.x.push_back(p.at);
+      s.y.push_back(*e);
+    }
+  return s;
+}
+
+Figure series_figure(const std::string& name, const std::string& title, const std::string& x_label,
+                     const std::string& y_label, const std::vector<Series>& all, const std::string& setup,
+                     const std::string& caption) {
+  static constexpr std::array<const char*, 8> kColours = {"#D55E00", "#0072B2", "#009E73", "#CC79A7",
+                                                          "#E69F00", "#56B4E9", "#000000", "#999999"};
+  static constexpr std::array<int, 6> kPoints = {7, 9, 5, 13, 11, 6};
+  Figure f{.name = name, .title = title, .caption = caption, .width = 640, .height = 460};
+  std::string plot;
+  int index = 0, points = 0, lines = 0;
+  for (const Series& s : all) {
+    if (s.x.empty()) continue;
+    f.data += "# " + s.title + "\n";
+    for (std::size_t k = 0; k < s.x.size(); ++k)
+      f.data += fmt::format("{} {} {} {}\n", s.x[k], s.y[k].value, s.y[k].low.value_or(s.y[k].value),
+                            s.y[k].high.value_or(s.y[k].value));
+    f.data += "\n\n";
+    const auto turn = static_cast<std::size_t>(s.line ? lines++ : points++);
+    plot += fmt::format("{}'{}.dat' index {} using 1:2{} with {} lc rgb '{}' title '{}'",
+                        plot.empty() ? "" : ", ", f.name, index++, s.line ? "" : ":3:4",
+                        s.line ? fmt::format("lines lw 1.3 dt {}", s.dash)
+                               : fmt::format("yerrorbars lw 1 ps 0.8 pt {}", kPoints[turn % kPoints.size()]),
+                        kColours[turn % kColours.size()], s.title);
+  }
+  if (plot.empty()) {  // gnuplot refuses to draw nothing
+    f.data = "# nothing measured\n";
+    f.plot =
+        "set xrange [0:1]\nset yrange [0:1]\nset label 'not measured at this budget' at 0.5,0.5 center\n"
+        "plot -1 notitle\n";
+    return f;
+  }
+  f.plot = fmt::format("set xlabel '{}'\nset ylabel '{}'\nset key top right\n{}\nplot {}\n", x_label, y_label,
+                       setup, plot);
+  return f;
+}
+
+std::optional<Peak> peak_of(const std::vector<GasPoint>& points) {
+  std::vector<std::pair<double, double>> t;
+  for (const GasPoint& p : points)
+    if (const auto e = p.get("T_bar_z"); e && !p.solid()) t.emplace_back(p.at, e->value);
+  if (t.size() < 3) return std::nullopt;
+  const auto top = static_cast<std::size_t>(
+      std::max_element(t.begin(), t.end(), [](const auto& a, const auto& b) { return a.second < b.second; }) -
+      t.begin());
+  Peak peak{.w = t[top].first, .grid = t[top].first, .height = t[top].second, .inside = false};
+  if (top == 0 || top + 1 == t.size()) return peak;
+  peak.inside = true;
+  const double x0 = std::log(t[top - 1].first), x1 = std::log(t[top].first), x2 = std::log(t[top + 1].first);
+  const double left = (t[top].second - t[top - 1].second) / (x1 - x0);
+  const double right = (t[top + 1].second - t[top].second) / (x2 - x1);
+  const double curvature = (right - left) / (x2 - x0);
+  if (curvature < 0) peak.w = std::exp((x0 + x1) / 2 - left / (2 * curvature));
+  return peak;
+}
+
+std::optional<double> w_2_of(const std::vector<GasPoint>& points) {
+  constexpr double kNearly = 0.05;
+  std::optional<double> w_2;
+  double last = 0;
+  for (auto p = points.rbegin(); p != points.rend(); ++p) {
+    const auto e = p->get("T_bar_z");
+    if (!e) continue;
+    if (last == 0) last = e->value;
+    if (std::abs(e->value - last) > kNearly * last) break;
+    w_2 = p->at;
+  }
+  return w_2;
+}
+
+double table_3(int dimension, bool algebraic, double w) {
+  if (dimension == 2)
+    return algebraic ? 0.282 * (1 + 2.07 * std::pow(w, -0.656)) : 0.327 * (1 + 1.022 * std::exp(-0.131 * w));
+  return algebraic ? 0.054 * (1 + 7.98 * std::pow(w, -0.622)) : 0.092 * (1 + 2.695 * std::exp(-0.124 * w));
+}
+
+}  // namespace twincell::reproduce

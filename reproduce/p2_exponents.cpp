@@ -1,0 +1,242 @@
+// Bhateja, Sharma & Singh 2016, Tables I and II: exponents of T_z and of the barycentre's lift with V_p, over
+// the windows of W of earlier experiments, or over the user's own.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "analysis/trajectory/error.hpp"
+#include "calibration/curve_fit.hpp"
+#include "calibration/fit_figure.hpp"
+#include "calibration/table.hpp"
+#include "reproduce/gas.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+/// W_f on the paper's grid for the rough system of the plane, 700 rpm: where Warr's fit of T_z must begin.
+constexpr double kFromPeak = -1;
+
+struct Study {
+  const char* name;
+  int dimension;
+  double low, high;  ///< W; NaN: only drawn in Fig. 2; kFromPeak: from W_f on
+  double wanted;     ///< exponent that the paper finds over that window
+};
+
+constexpr double kDrawn = std::numeric_limits<double>::quiet_NaN();
+constexpr double kEndOfData = 89.5;
+
+const std::vector<Study>& studies(bool of_height) {
+  static const std::vector<Study> temperature = {{"Warr et al.", 2, kFromPeak, 9, 1.49},
+                                                 {"Feitosa and Menon", 2, 44, 135, 1.92},
+                                                 {"Wildman et al.", 3, kDrawn, kDrawn, 1.43},
+                                                 {"Yang and Candela", 3, kDrawn, kDrawn, 1.12},
+                                                 {"Windows-Yule and Parker", 3, kDrawn, kDrawn, 1.29}};
+  static const std::vector<Study> height = {{"Warr et al.", 2, 2, 9, 1.41},
+                                            {"Wildman et al.", 3, kDrawn, kDrawn, 1.19},
+                                            {"Yang and Candela", 3, kDrawn, kDrawn, 0.88},
+                                            {"Windows-Yule and Parker", 3, kDrawn, kDrawn, 1.06}};
+  return of_height ? height : temperature;
+}
+
+/// ln y = ln C + alpha ln V_p over a window of W, unweighted; solid points have no logarithm and are counted.
+struct Exponent {
+  std::string name;
+  double low = 0, high = 0;
+  std::vector<DataPoint> points;  ///< V_p, y; y = 0 for a solid bed
+  std::optional<CurveFit> fit;
+  std::string why_not;
+
+  [[nodiscard]] Estimate alpha() const {
+    Estimate e{.value = fit->fit.value("alpha"), .low = {}, .high = {}};
+    if (const auto& interval = fit->intervals[1]) {
+      e.low = interval->low;
+      e.high = interval->high;
+    }
+    return e;
+  }
+  [[nodiscard]] std::string text() const {
+    std::string s =
+        fmt::format("{} from {} points, W {:.3g} to {:.3g}", alpha().text(), fit->n_used, low, high);
+    if (fit->n_zero > 0) s += fmt::format(", {} solid left out", fit->n_zero);
+    return s;
+  }
+};
+
+Exponent exponent_of(std::string name, std::vector<DataPoint> points, double low, double high) {
+  Exponent e{.name = std::move(name),
+             .low = low,
+             .high = high,
+             .points = std::move(points),
+             .fit = {},
+             .why_not = {}};
+  std::size_t inside = 0;
+  for (const DataPoint& p : e.points)
+    if (const double w = p.x * p.x; w >= low && w <= high && p.y > 0) ++inside;
+  constexpr std::size_t kFewest = 3;
+  if (inside < kFewest)
+    e.why_not = fmt::format("{} fluid points lie within W = {:.3g} to {:.3g}, {} are needed", inside, low,
+                            high, kFewest);
+  else
+    e.fit = fit_curve(law_named("power"), e.points, {.low = std::sqrt(low), .high = std::sqrt(high)});
+  return e;
+}
+
+std::vector<DataPoint> of_gas(const std::vector<GasPoint>& points, bool of_height) {
+  std::vector<DataPoint> all;
+  for (const GasPoint& p : points)
+    if (const auto y = p.get(of_height ? "delta_h_cm" : "T_z"))
+      all.push_back({.x = std::sqrt(p.at), .y = p.solid() ? 0 : y->value});
+  return all;
+}
+
+/// The user's columns W and T_bar_z (or delta_h_bar): y = that times V_p^2, V_p^2 = W.
+std::vector<DataPoint> of_user(const std::filesystem::path& path, bool of_height) {
+  const Table table = read_table(path);
+  const auto &w = table.column("W"), &y = table.column(of_height ? "delta_h_bar" : "T_bar_z");
+  std::vector<DataPoint> all;
+  for (std::size_t k = 0; k < w.size(); ++k) all.push_back({.x = std::sqrt(w[k]), .y = y[k] * w[k]});
+  return all;
+}
+
+std::string symbol(bool of_height) {
+  return of_height ? "alpha_h" : "alpha";
+}
+
+Target target_of(const Study& study, const Exponent* e, bool of_height) {
+  constexpr double kTolerance = 0.10;
+  Target t{fmt::format("{}, {}D rough: {}", study.name, study.dimension, symbol(of_height)),
+           fmt::format("{:g} +- {:g}", study.wanted, kTolerance), "", Fate::absent, ""};
+  if (std::isnan(study.high)) {
+    t.reason = "its window is only drawn in Fig. 2; --window LOW,HIGH tries one";
+    return t;
+  }
+  if (e == nullptr) return t;
+  if (!e->fit) {
+    t.reason = e->why_not;
+    return t;
+  }
+  t.measured = e->text();
+  t.fate = within(e->alpha(), study.wanted - kTolerance, study.wanted + kTolerance);
+  if (study.high > kEndOfData)
+    t.reason = fmt::format("the paper's data end at W = 89.4, the window at {:g}", study.high);
+  return t;
+}
+
+Figure figure_of(const std::string& name, const std::vector<Exponent>& all, bool of_height) {
+  std::vector<Series> series;
+  for (const Exponent& e : all) {
+    if (!e.fit) continue;
+    Series points{.title = e.name, .x = {}, .y = {}};
+    for (const DataPoint& p : e.points) {
+      if (!(p.y > 0) || p.x * p.x < e.low || p.x * p.x > e.high) continue;
+      points.x.push_back(p.x);
+      points.y.push_back({.value = p.y, .low = {}, .high = {}});
+    }
+    Series line{.title = fmt::format("{} = {:.3f}", symbol(of_height), e.alpha().value),
+                .x = {},
+                .y = {},
+                .line = true,
+                .dash = 1};
+    for (const double x : {points.x.front(), points.x.back()}) {
+      line.x.push_back(x);
+      line.y.push_back({.value = e.fit->at(x), .low = {}, .high = {}});
+    }
+    series.push_back(points);
+    series.push_back(line);
+  }
+  if (series.empty()) series.push_back({.title = "no window with enough points", .x = {}, .y = {}});
+  return series_figure(name, of_height ? "Lift of the barycentre against V_p" : "T_z against V_p",
+                       "V_p/(g d)^{1/2}", of_height ? "dh_cm/d" : "T_z/(m g d)", series,
+                       "set logscale xy\nset key outside right top\n",
+                       "Power laws over windows of W, unweighted least squares in the logarithms.");
+}
+
+Reproduction run(const Request& request, bool of_height) {
+  const GasSize& size = gas_size_for(request);
+  std::vector<DataPoint> own;  // read first: a table that cannot be is found before the work
+  if (!request.data.empty()) own = of_user(request.data, of_height);
+  Gas gas(request);
+  std::vector<std::size_t> rough;
+  for (const GasSystem& system : gas_systems())
+    if (system.rough) rough.push_back(gas.add(system, size, size.rpm));
+  Reproduction r;
+  r.title = fmt::format("Bhateja et al. 2016, Table {}: {} over windows of W", of_height ? "II" : "I",
+                        symbol(of_height));
+  r.complete = gas.run();
+
+  std::vector<Exponent> fitted;
+  for (const Study& study : studies(of_height)) {
+    if (std::isnan(study.high)) {
+      r.targets.push_back(target_of(study, nullptr, of_height));
+      continue;
+    }
+    const auto& points = gas.points(rough[study.dimension == 2 ? 0 : 1]);
+    const auto peak = peak_of(points);
+    if (study.low == kFromPeak && !peak) {
+      r.targets.push_back(target_of(study, nullptr, of_height));
+      continue;
+    }
+    const double low = study.low == kFromPeak ? peak->grid * (1 - 1e-9) : study.low;
+    fitted.push_back(exponent_of(fmt::format("{}, {}D rough", study.name, study.dimension),
+                                 of_gas(points, of_height), low, std::min(study.high, kEndOfData)));
+    r.targets.push_back(target_of(study, &fitted.back(), of_height));
+  }
+  // The universal window of the paper's sec. V, and whatever the user asks for.
+  for (const std::size_t k : rough) {
+    const auto peak = peak_of(gas.points(k));
+    const auto w_2 = w_2_of(gas.points(k));
+    if (peak && w_2)
+      fitted.push_back(exponent_of(gas.curve(k).name + ", [W_f, W_2]", of_gas(gas.points(k), of_height),
+                                   peak->grid * (1 - 1e-9), *w_2 * (1 + 1e-9)));
+    if (request.window)
+      fitted.push_back(exponent_of(gas.curve(k).name + ", your window", of_gas(gas.points(k), of_height),
+                                   request.window->first, request.window->second));
+  }
+  if (!own.empty()) {
+    const auto window = request.window.value_or(std::pair(1e-300, 1e300));
+    fitted.push_back(exponent_of("your data", own, window.first, window.second));
+  }
+  nlohmann::json exponents = nlohmann::json::array();
+  r.table = fmt::format("  {} by least squares in the logarithms, unweighted\n", symbol(of_height));
+  for (const Exponent& e : fitted) {
+    r.table += fmt::format("  {:<34} {}\n", e.name, e.fit ? e.text() : e.why_not);
+    nlohmann::json j = {{"name", e.name}, {"window", {e.low, e.high}}};
+    if (e.fit) {
+      const Estimate alpha = e.alpha();
+      j["alpha"] = alpha.value;
+      if (alpha.low && alpha.high) j["interval"] = {*alpha.low, *alpha.high};
+      j["points"] = e.fit->n_used;
+      j["solid"] = e.fit->n_zero;
+    } else {
+      j["absent"] = e.why_not;
+    }
+    exponents.push_back(j);
+  }
+  r.table += gas.table();
+  r.measured =
+      nlohmann::json({{"exponents", exponents}, {"points", nlohmann::json::parse(gas.as_json())}}).dump();
+  r.conditions = gas.conditions();
+  r.cheaper = gas.cheaper();
+  r.figures = {figure_of(of_height ? "p2-table2" : "p2-table1", fitted, of_height)};
+  return r;
+}
+
+}  // namespace
+
+Reproducible p2_table1() {
+  return {"p2-table1",
+          "exponents of T_z with V_p over the windows of earlier experiments, or your own (runs of p2-fig2)",
+          [](const Request& request) { return run(request, false); }, "p2-runs", true};
+}
+
+Reproducible p2_table2() {
+  return {"p2-table2", "exponents of the barycentre's lift over those windows (runs of p2-fig2)",
+          [](const Request& request) { return run(request, true); }, "p2-runs", true};
+}
+
+}  // namespace twincell::reproduce

@@ -1,0 +1,94 @@
+// Bhateja, Sharma & Singh 2016, Fig. 11: T_z/(m g d) with A/d at fixed W, beside W at A = d.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reproduce/gas.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+constexpr double kW[] = {4.52, 5.58, 8.04};
+constexpr double kAmplitudes[] = {1, 0.5, 0.1};
+
+/// T_z at kW[i] and kAmplitudes[j].
+std::optional<Estimate> t_z(const Gas& gas, std::size_t i, std::size_t j) {
+  return gas.points(j)[i].get("T_z");
+}
+
+/// Mean over the three W of 100 (T_z(j)/T_z(k) - 1), and its error.
+std::optional<Estimate> mean_change(const Gas& gas, std::size_t j, std::size_t k) {
+  Estimate sum{.value = 0, .low = {}, .high = {}};
+  double squares = 0;
+  for (std::size_t i = 0; i < std::size(kW); ++i) {
+    const auto a = t_z(gas, i, j), b = t_z(gas, i, k);
+    if (!a || !b) return std::nullopt;
+    const Estimate q = quotient(*a, *b);
+    sum.value += 100 * (q.value - 1) / 3;
+    squares += q.low ? std::pow(100 * (*q.high - *q.low) / 2 / 3, 2) : std::nan("");
+  }
+  if (std::isfinite(squares)) {
+    sum.low = sum.value - std::sqrt(squares);
+    sum.high = sum.value + std::sqrt(squares);
+  }
+  return sum;
+}
+
+Reproduction run(const Request& request) {
+  const GasSize& size = gas_size_for(request, 0.15);
+  Gas gas(request);
+  for (const double amplitude : kAmplitudes)
+    gas.add(
+        {.name = fmt::format("2D rough, A/d = {:g}", amplitude),
+         .scene = fmt::format("preset = \"bhateja-2016-rough-2d\"\ndrive.amplitude = {}", amplitude),
+         .values = {std::begin(kW), std::end(kW)},
+         .relative_error = size.relative_error / 2,  // what is looked for are differences of some per cent
+         // At fixed W a period is as long as the amplitude, the bed's own times are not.
+         .cycles = static_cast<int>(2 * size.cycles / amplitude),
+         .discard = static_cast<int>(100 / amplitude)});
+  Reproduction r;
+  r.title = "Bhateja et al. 2016, Fig. 11: temperature with amplitude at fixed W";
+  r.complete = gas.run();
+  Target rise{"T_z(W = 8.04)/T_z(4.52) at A = d", "1.50 +- 0.05", "", Fate::absent, ""};
+  if (const auto a = t_z(gas, 2, 0), b = t_z(gas, 0, 0); a && b) {
+    const Estimate q = quotient(*a, *b);
+    rise.measured = q.text();
+    rise.fate = within(q, 1.45, 1.55);
+  }
+  Target fall{"A/d from 1 to 0.1 at fixed W, mean change", "-15 % +- 4 %", "", Fate::absent, ""};
+  if (const auto change = mean_change(gas, 2, 0)) {
+    fall.measured = change->text() + " %";
+    fall.fate = within(*change, -19, -11);
+  }
+  Target small{"A/d from 0.5 to 0.1 at fixed W, mean change", "3 % +- 2 % in size", "", Fate::absent, ""};
+  if (const auto change = mean_change(gas, 2, 1)) {
+    small.measured = change->text() + " %";
+    small.fate = within(*change, -5, 5);
+    if (small.fate == Fate::met && std::abs(change->value) < 1) small.reason = "smaller than the paper's 3 %";
+  }
+  r.targets = {rise, fall, small};
+  std::vector<Series> all;
+  for (std::size_t j = 0; j < std::size(kAmplitudes); ++j)
+    all.push_back(series_of(fmt::format("A/d = {:g}", kAmplitudes[j]), gas.points(j), "T_z"));
+  r.table = gas.table();
+  r.measured = gas.as_json();
+  r.conditions = gas.conditions();
+  r.cheaper = gas.cheaper();
+  r.cheaper.emplace_back("A/d = 1, 0.5, 0.1 alone");
+  r.figures = {series_figure(
+      "p2-fig11", "T_z/(m g d) with A/d at fixed W", "W = V_p^2/(d g)", "T_z/(m g d)", all,
+      "set xrange [4:8.6]\nset yrange [0:*]\nset key top left\n",
+      "Filled circles: A = d. At fixed W the amplitude is reduced. Form of Bhateja et al. 2016, "
+      "Fig. 11.")};
+  return r;
+}
+
+}  // namespace
+
+Reproducible p2_fig11() {
+  return {"p2-fig11", "temperature with amplitude at fixed W", run, "p2-runs"};
+}
+
+}  // namespace twincell::reproduce

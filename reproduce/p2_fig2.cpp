@@ -1,0 +1,250 @@
+// Bhateja, Sharma & Singh 2016, Fig. 2: T_bar_z against W in the four canonical systems.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "calibration/table.hpp"
+#include "reproduce/gas.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+const std::vector<int> kJustFluid = {500, 600};  ///< W = 1.397, 2.012: where the start may matter
+
+struct Runs {
+  std::vector<std::size_t> systems;  ///< beside gas_systems()
+  std::size_t boiling = 0;           ///< 2D rough once more at kJustFluid, begun from a boiling bed
+};
+
+Runs add_runs(Gas& gas, const GasSize& size) {
+  Runs runs;
+  for (const GasSystem& system : gas_systems()) {
+    runs.systems.push_back(gas.add(system, size, size.rpm));
+    if (runs.systems.size() > 1) continue;
+    GasCurve boiling = gas.curve(runs.systems.front());
+    boiling.name += ", begun boiling";
+    boiling.scene += "\ndrive.schedule = [[0, 2], [20, 2], [30, 1]]";
+    boiling.values.clear();
+    for (const int rpm : kJustFluid) boiling.values.push_back(w_of_rpm(rpm));
+    runs.boiling = gas.add(boiling);
+  }
+  return runs;
+}
+
+const GasPoint* point_at(const std::vector<GasPoint>& points, double w) {
+  for (const GasPoint& p : points)
+    if (p.done && std::abs(p.at / w - 1) < 1e-9) return &p;
+  return nullptr;
+}
+
+Target shape_of(const GasSystem& system, const std::vector<GasPoint>& points) {
+  Target t{system.name() + ": shape", "zero, a rise, one maximum, a decay to a constant", "", Fate::absent,
+           ""};
+  const auto peak = peak_of(points);
+  if (!peak) return t;
+  std::vector<Fate> fates = {peak->inside ? Fate::met : Fate::open};
+  const GasPoint *solid = point_at(points, w_of_rpm(400)), *last = point_at(points, w_of_rpm(4000));
+  if (solid != nullptr) fates.push_back(solid->solid() ? Fate::met : Fate::missed);
+  const GasPoint* top = point_at(points, peak->grid);
+  if (last != nullptr && top != nullptr) fates.push_back(above(*top->get("T_bar_z"), *last->get("T_bar_z")));
+  t.measured =
+      fmt::format("largest, {:.4g}, at W_f = {:.3g} (grid point {:.4g})", peak->height, peak->w, peak->grid);
+  if (const auto w_2 = w_2_of(points))
+    t.measured += fmt::format("; within 5 % of its last value from W_2 = {:.3g} on", *w_2);
+  t.fate = all_of(fates);
+  return t;
+}
+
+/// Every point of a rough curve from W_f to the end of the data beside Table III.
+Target against_table_3(int dimension, const std::vector<GasPoint>& points) {
+  constexpr double kTolerance = 0.10;
+  Target t{fmt::format("{}D rough: Table III, algebraic, W_f < W <= 89.4", dimension), "each within 10 %", "",
+           Fate::absent, ""};
+  const auto peak = peak_of(points);
+  if (!peak) return t;
+  std::vector<Fate> fates;
+  double low = 1e300, high = 0, sum = 0;
+  std::string off;
+  for (const GasPoint& p : points) {
+    const auto e = p.get("T_bar_z");
+    if (!e || p.at < peak->grid) continue;
+    const double curve = table_3(dimension, true, p.at), ratio = e->value / curve;
+    fates.push_back(within(*e, curve * (1 - kTolerance), curve * (1 + kTolerance)));
+    low = std::min(low, ratio);
+    high = std::max(high, ratio);
+    sum += ratio;
+    if (std::abs(ratio - 1) > kTolerance) off += fmt::format("{}{:.3g}", off.empty() ? "" : ", ", p.at);
+  }
+  if (fates.empty()) return t;
+  t.measured = fmt::format("measured/Table III {:.3f} to {:.3f}, mean {:.3f} over {} points", low, high,
+                           sum / static_cast<double>(fates.size()), fates.size());
+  if (!off.empty()) t.measured += "; off by more at W = " + off;
+  t.fate = all_of(fates);
+  if (t.fate != Fate::met && dimension == 2)
+    t.reason = "an independent program of the same model lies 9 to 15 % above Table III at W = 35 to 89 too";
+  return t;
+}
+
+/// Whether one system lies above another wherever both are a gas.
+Target ordered(const std::string& name, const std::vector<GasPoint>& upper,
+               const std::vector<GasPoint>& lower) {
+  Target t{name, "at each W >= W_f", "", Fate::absent, ""};
+  std::vector<Fate> fates;
+  double least = 1e300, most = 0;
+  for (const GasPoint& p : lower) {
+    const GasPoint* q = point_at(upper, p.at);
+    if (q == nullptr || p.at < 2.7) continue;
+    const auto a = q->get("T_bar_z"), b = p.get("T_bar_z");
+    if (!a || !b) continue;
+    fates.push_back(above(*a, *b));
+    least = std::min(least, a->value / b->value);
+    most = std::max(most, a->value / b->value);
+  }
+  if (fates.empty()) return t;
+  t.measured = fmt::format("ratio {:.3g} to {:.3g} over {} points", least, most, fates.size());
+  t.fate = all_of(fates);
+  return t;
+}
+
+std::vector<Target> targets_of(const Gas& gas, const Runs& runs) {
+  const auto& rough_2d = gas.points(runs.systems[0]);
+  const auto& rough_3d = gas.points(runs.systems[1]);
+  const auto& smooth_2d = gas.points(runs.systems[2]);
+  const auto& smooth_3d = gas.points(runs.systems[3]);
+  std::vector<Target> targets;
+  for (std::size_t k = 0; k < runs.systems.size(); ++k)
+    targets.push_back(shape_of(gas_systems()[k], gas.points(runs.systems[k])));
+  {
+    Target t{"2D rough: W_f", "2 to 4.5", "", Fate::absent, ""};
+    if (const auto peak = peak_of(rough_2d)) {
+      t.measured = fmt::format("{:.3g}, grid point {:.4g}", peak->w, peak->grid);
+      t.fate = peak->w >= 2 && peak->w <= 4.5 ? Fate::met : peak->inside ? Fate::missed : Fate::open;
+    }
+    targets.push_back(t);
+  }
+  targets.push_back(against_table_3(2, rough_2d));
+  targets.push_back(against_table_3(3, rough_3d));
+  targets.push_back(ordered("2D: smooth above rough", smooth_2d, rough_2d));
+  targets.push_back(ordered("3D: smooth above rough", smooth_3d, rough_3d));
+  targets.push_back(ordered("rough: 2D above 3D", rough_2d, rough_3d));
+  targets.push_back(ordered("smooth: 2D above 3D", smooth_2d, smooth_3d));
+  {
+    Target t{"2D smooth: solid at 300 and 400 rpm, not at 500", "T_bar_z < 1e-4, < 1e-4, > 1e-3", "",
+             Fate::absent, ""};
+    const GasPoint *a = point_at(smooth_2d, w_of_rpm(300)), *b = point_at(smooth_2d, w_of_rpm(400)),
+                   *c = point_at(smooth_2d, w_of_rpm(500));
+    if (a != nullptr && b != nullptr && c != nullptr && a->get("T_bar_z") && b->get("T_bar_z") &&
+        c->get("T_bar_z")) {
+      const double ta = a->get("T_bar_z")->value, tb = b->get("T_bar_z")->value,
+                   tc = c->get("T_bar_z")->value;
+      t.measured = fmt::format("{:.2g}, {:.2g}, {:.3g}", ta, tb, tc);
+      t.fate = ta < 1e-4 && tb < 1e-4 && tc > 1e-3 ? Fate::met : Fate::missed;
+    }
+    targets.push_back(t);
+  }
+  {
+    Target t{"largest mean volume fraction, at W_f, 2D", "0.2 +- 0.1", "", Fate::absent,
+             "the paper does not say up to which height; here the top of the highest bead"};
+    std::vector<Fate> fates;
+    for (const std::size_t k : {std::size_t{0}, std::size_t{2}}) {
+      const auto peak = peak_of(gas.points(runs.systems[k]));
+      const GasPoint* p = peak ? point_at(gas.points(runs.systems[k]), peak->grid) : nullptr;
+      const auto phi = p != nullptr ? p->get("phi_top") : std::nullopt;
+      if (!phi) continue;
+      fates.push_back(within(*phi, 0.1, 0.3));
+      t.measured +=
+          fmt::format("{}{} {:.3g}", t.measured.empty() ? "" : ", ", gas_systems()[k].name(), phi->value);
+      if (const auto twice = p->get("phi_cm"))
+        t.measured += fmt::format(" ({:.3g} up to twice the barycentre)", twice->value);
+    }
+    t.fate = all_of(fates);
+    targets.push_back(t);
+  }
+  return targets;
+}
+
+std::string both_starts(const Gas& gas, const Runs& runs) {
+  std::string s = "  Both starts just above W = 1, 2D rough\n";
+  for (const GasPoint& boiling : gas.points(runs.boiling)) {
+    const GasPoint* rest = point_at(gas.points(runs.systems[0]), boiling.at);
+    const auto a = rest != nullptr ? rest->get("T_bar_z") : std::nullopt, b = boiling.get("T_bar_z");
+    if (!a || !b) continue;
+    const Fate apart = above(*a, *b);
+    s += fmt::format("  {:>9.4g} from rest {}, from a boiling bed {}: {}\n", boiling.at, a->text(), b->text(),
+                     apart == Fate::open ? "no difference to be seen" : "the result depends on the start");
+  }
+  return s;
+}
+
+/// The user's points, read before the work: a table that cannot be is found early.
+std::optional<Series> own_of(const Request& request) {
+  if (request.data.empty()) return std::nullopt;
+  const Table table = read_table(request.data);
+  Series s{.title = "yours", .x = table.column("W"), .y = {}};
+  for (const double t : table.column("T_bar_z")) s.y.push_back({.value = t, .low = {}, .high = {}});
+  return s;
+}
+
+Figure figure_of(const Gas& gas, const Runs& runs, const Request& request, const std::optional<Series>& own) {
+  std::vector<Series> all;
+  for (std::size_t k = 0; k < runs.systems.size(); ++k)
+    all.push_back(series_of(gas_systems()[k].name(), gas.points(runs.systems[k]), "T_bar_z"));
+  for (const int dimension : {2, 3}) {
+    Series s{.title = fmt::format("Table III, {}D rough", dimension),
+             .x = {},
+             .y = {},
+             .line = true,
+             .dash = dimension};
+    for (double w = 2.74; w <= 89.5; w *= 1.03) {
+      s.x.push_back(w);
+      s.y.push_back({.value = table_3(dimension, true, w), .low = {}, .high = {}});
+    }
+    all.push_back(s);
+  }
+  if (own) all.push_back(*own);
+  std::string setup =
+      "set xrange [0.4:150]\nset logscale x\nset yrange [0:*]\n"
+      "set arrow from 0.5,graph 0.95 to 9,graph 0.95 heads size graph 0.01,90 lc rgb '#777777'\n"
+      "set label 'Warr et al.' at 0.52,graph 0.975 font ',9' tc rgb '#777777'\n"
+      "set arrow from 44,graph 0.48 to 135,graph 0.48 heads size graph 0.01,90 lc rgb '#777777'\n"
+      "set label 'Feitosa, Menon' at 44,graph 0.505 font ',9' tc rgb '#777777'\n";
+  if (request.window)
+    setup += fmt::format(
+        "set arrow from {},graph 0.02 to {},graph 0.02 heads size graph 0.01,90 lw 2\n"
+        "set label 'your window' at {},graph 0.045 font ',9'\n",
+        request.window->first, request.window->second, request.window->first);
+  return series_figure(
+      "p2-fig2", "T_z/(m V_p^2) against W", "W = V_p^2/(d g)", "T_z/(m V_p^2)", all, setup,
+      "Scaled temperature, T_z = m <w'^2> about the instantaneous centre of mass, with 95 % intervals, "
+      "and the algebraic curves of Table III. Form of Bhateja et al. 2016, Fig. 2.");
+}
+
+Reproduction run(const Request& request) {
+  const GasSize& size = gas_size_for(request);
+  const std::optional<Series> own = own_of(request);
+  Gas gas(request);
+  const Runs runs = add_runs(gas, size);
+  Reproduction r;
+  r.title = "Bhateja et al. 2016, Fig. 2: scaled temperature against W in four systems";
+  r.complete = gas.run();
+  r.targets = targets_of(gas, runs);
+  r.table = both_starts(gas, runs) + gas.table();
+  r.measured = gas.as_json();
+  r.conditions = gas.conditions();
+  r.cheaper = gas.cheaper();
+  if (size.rpm.size() < all_rpm().size())
+    r.cheaper.push_back(fmt::format("{} of the 38 frequencies", size.rpm.size()));
+  r.figures = {figure_of(gas, runs, request, own)};
+  return r;
+}
+
+}  // namespace
+
+Reproducible p2_fig2() {
+  return {"p2-fig2", "scaled granular temperature against W, four systems, beside Table III", run, "p2-runs",
+          true};
+}
+
+}  // namespace twincell::reproduce

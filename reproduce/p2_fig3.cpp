@@ -1,0 +1,134 @@
+// Bhateja, Sharma & Singh 2016, Fig. 3: which layers move below, just below and at W_f.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "reproduce/gas.hpp"
+#include "sim/simulation.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+constexpr int kRpm[] = {500, 600, 700};  ///< W = 1.397 < W_f, 2.012, 2.739 = W_f
+constexpr std::size_t kLayers = 4;
+
+/// Beads that moved by more than a fifth of a diameter relative to the centre of mass within a cycle, by the
+/// layer in which they began it.
+class Mobility : public TrajectorySink {
+ public:
+  explicit Mobility(const Box& box) : box_(box) {}
+
+  void append(const Frame& frame) override {
+    if (frame.phase != 0) return;
+    if (!last.position.empty()) count(frame);
+    last = frame;
+  }
+  [[nodiscard]] double mobile(std::size_t layer) const { return moved_[layer] / std::max(1.0, seen_[layer]); }
+
+  Frame last;  ///< at the beginning of the last cycle
+
+ private:
+  void count(const Frame& now) {
+    const std::size_t n = now.position.size();
+    std::vector<Vec3> step(n);
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t i = 0; i < n; ++i) {
+      step[i] = box_.nearest_image(now.position[i] - last.position[i]);
+      mean += step[i] / static_cast<double>(n);
+    }
+    std::vector<std::size_t> by_height(n);
+    std::iota(by_height.begin(), by_height.end(), std::size_t{0});
+    std::sort(by_height.begin(), by_height.end(),
+              [&](std::size_t a, std::size_t b) { return last.position[a].z() < last.position[b].z(); });
+    constexpr double kFifth = 0.2;
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t layer = k * kLayers / n;
+      seen_[layer] += 1;
+      if ((step[by_height[k]] - mean).norm() > kFifth) moved_[layer] += 1;
+    }
+  }
+
+  Box box_;
+  std::array<double, kLayers> seen_{}, moved_{};
+};
+
+Figure snapshot_figure(const std::string& name, double w, const Frame& frame, const Box& box) {
+  Figure f{.name = name, .title = fmt::format("W = {:.3g}", w), .width = 420, .height = 420};
+  f.data = "# x z radius speed about the centre of mass\n";
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& v : frame.velocity) mean += v / static_cast<double>(frame.velocity.size());
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    const Vec3 r = box.wrap(frame.position[i]);
+    f.data += fmt::format("{} {} 0.5 {}\n", r.x(), r.z(), (frame.velocity[i] - mean).norm() / std::sqrt(w));
+  }
+  f.plot = fmt::format(
+      "set xrange [0:10]\nset yrange [-1:9]\nset size ratio -1\nset style fill solid 0.9 border -1\n"
+      "set palette defined (0 '#F0F0F0', 1 '#D55E00')\nset cbrange [0:1]\nset cblabel 'speed about the "
+      "centre of mass/V_p'\n"
+      "set xlabel 'x/d'\nset ylabel 'z/d'\nunset key\n"
+      "plot '{}.dat' using 1:2:3:4 with circles fc palette, {} lw 3 lc rgb '#222222'\n",
+      name, frame.plate_height);
+  f.caption = "A smooth bed of the plane at the beginning of a cycle. Form of Bhateja et al. 2016, Fig. 3.";
+  return f;
+}
+
+Reproduction run(const Request& request) {
+  Reproduction r;
+  r.title = "Bhateja et al. 2016, Fig. 3: which layers of a smooth bed move";
+  const int cycles = request.full ? 400 : 100;
+  std::vector<std::array<double, kLayers>> mobile;
+  nlohmann::json measured = nlohmann::json::array();
+  for (const int rpm : kRpm) {
+    const double w = w_of_rpm(rpm);
+    sim::Simulation bed(sim::read_scene_text(
+        fmt::format("preset = \"bhateja-2016-smooth-2d\"\ndrive.k_m = {:.17g}\nstart.seed = "
+                    "{}\ntime.integrator = \"split\"\n"
+                    "time.steps_per_contact = 6.37\ntime.discard = 50\ntime.cycles = {}\ntime.phases = 1\n",
+                    w, request.seed, cycles),
+        fmt::format("p2-fig3, {} rpm", rpm)));
+    const Box box = bed.trajectory_info().box;
+    Mobility mobility(box);
+    bed.run(mobility);
+    std::array<double, kLayers> shares{};
+    for (std::size_t k = 0; k < kLayers; ++k) shares[k] = mobility.mobile(k);
+    mobile.push_back(shares);
+    measured.push_back({{"w", w}, {"mobile", shares}});
+    r.table += fmt::format(
+        "  W = {:.4g}: share of mobile beads a cycle, from the lowest layer up: {:.2f} {:.2f} {:.2f} "
+        "{:.2f}\n",
+        w, shares[0], shares[1], shares[2], shares[3]);
+    r.figures.push_back(
+        snapshot_figure(fmt::format("p2-fig3{}", "abc"[r.figures.size()]), w, mobility.last, box));
+  }
+  const auto said = [&](std::size_t k) {
+    return fmt::format("lowest {:.2f}, highest {:.2f}", mobile[k][0], mobile[k][kLayers - 1]);
+  };
+  r.targets = {
+      {"W = 1.397 < W_f: only the upper layers are mobilized", "lowest layer less than half of the highest",
+       said(0), mobile[0][0] < mobile[0][kLayers - 1] / 2 ? Fate::met : Fate::missed,
+       "mobile: 0.2 d relative to the centre of mass within a cycle"},
+      {"W = 2.739 = W_f: all layers are agitated", "every layer more than half mobile", said(2),
+       *std::min_element(mobile[2].begin(), mobile[2].end()) > 0.5 ? Fate::met : Fate::missed, ""},
+      {"the lowest layer moves more from W to W", "rising",
+       fmt::format("{:.2f}, {:.2f}, {:.2f}", mobile[0][0], mobile[1][0], mobile[2][0]),
+       mobile[0][0] < mobile[1][0] && mobile[1][0] < mobile[2][0] ? Fate::met : Fate::missed, ""}};
+  r.measured = measured.dump();
+  r.cheaper = {fmt::format("one seed, {} cycles each", cycles),
+               "the insets, T_bar_z near W = 1, are p2-fig2's points"};
+  r.complete = true;
+  return r;
+}
+
+}  // namespace
+
+Reproducible p2_fig3() {
+  return {"p2-fig3", "snapshots below, near and at W_f, and which layers move", run};
+}
+
+}  // namespace twincell::reproduce

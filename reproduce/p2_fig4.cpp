@@ -1,0 +1,88 @@
+// Bhateja, Sharma & Singh 2016, Fig. 4: T_bar_x and T_bar against W.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reproduce/gas.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+/// T_x < T < T_z. T lies between the two as soon as T_x < T_z, whose intervals must be apart; the ratio is
+/// said.
+Target order_of(const GasSystem& system, const std::vector<GasPoint>& points) {
+  Target t{system.name() + ": T_x < T < T_z", "for all W > 1", "", Fate::absent, ""};
+  std::vector<Fate> fates;
+  double least = 1e300, most = 0;
+  for (const GasPoint& p : points) {
+    const auto x = p.get("T_x"), z = p.get("T_z");
+    if (!x || !z || p.at < 1) continue;
+    const Estimate ratio = quotient(*x, *z);
+    fates.push_back(above(*z, *x));
+    least = std::min(least, ratio.value);
+    most = std::max(most, ratio.value);
+  }
+  if (fates.empty()) return t;
+  t.measured = fmt::format("T_x/T_z from {:.3g} to {:.3g} over {} points", least, most, fates.size());
+  t.fate = all_of(fates);
+  return t;
+}
+
+Target same_shape(const GasSystem& system, const std::vector<GasPoint>& points) {
+  Target t{system.name() + ": T_bar like T_bar_z", "a maximum near W_f, then a decay", "", Fate::absent, ""};
+  const auto peak = peak_of(points);
+  const GasPoint *top = nullptr, *last = nullptr;
+  for (const GasPoint& p : points) {
+    const auto e = p.get("T_bar");
+    if (!e) continue;
+    if (top == nullptr || e->value > top->get("T_bar")->value) top = &p;
+    last = &p;
+  }
+  if (!peak || top == nullptr) return t;
+  t.measured = fmt::format("T_bar largest at W = {:.3g}, T_bar_z at {:.3g}", top->at, peak->grid);
+  // Neighbours on the paper's grid count as the same place.
+  const bool near = std::max(top->at, peak->grid) / std::min(top->at, peak->grid) < 2.1;
+  t.fate = all_of({near ? Fate::met : Fate::missed, above(*top->get("T_bar"), *last->get("T_bar"))});
+  return t;
+}
+
+Reproduction run(const Request& request) {
+  const GasSize& size = gas_size_for(request);
+  Gas gas(request);
+  for (const GasSystem& system : gas_systems()) gas.add(system, size, size.rpm);
+  Reproduction r;
+  r.title = "Bhateja et al. 2016, Fig. 4: horizontal and total temperature against W";
+  r.complete = gas.run();
+  std::vector<Series> horizontal, total;
+  for (std::size_t k = 0; k < gas_systems().size(); ++k) {
+    const GasSystem& system = gas_systems()[k];
+    r.targets.push_back(order_of(system, gas.points(k)));
+    r.targets.push_back(same_shape(system, gas.points(k)));
+    Series x = series_of(system.name(), gas.points(k), "T_x");
+    for (std::size_t i = 0; i < x.x.size(); ++i)
+      x.y[i] = quotient(x.y[i], {.value = x.x[i], .low = x.x[i], .high = x.x[i]});
+    horizontal.push_back(x);
+    total.push_back(series_of(system.name(), gas.points(k), "T_bar"));
+  }
+  r.table = gas.table();
+  r.measured = gas.as_json();
+  r.conditions = gas.conditions();
+  r.cheaper = gas.cheaper();
+  const std::string axes = "set logscale x\nset xrange [0.4:150]\nset yrange [0:*]\n";
+  r.figures = {
+      series_figure("p2-fig4a", "T_x/(m V_p^2) against W", "W = V_p^2/(d g)", "T_x/(m V_p^2)", horizontal,
+                    axes, "Horizontal temperature m <u'^2>. Form of Bhateja et al. 2016, Fig. 4."),
+      series_figure("p2-fig4b", "T/(m V_p^2) against W", "W = V_p^2/(d g)", "T/(m V_p^2)", total, axes,
+                    "Mean of the components. Form of Bhateja et al. 2016, Fig. 4.")};
+  return r;
+}
+
+}  // namespace
+
+Reproducible p2_fig4() {
+  return {"p2-fig4", "horizontal and total temperature against W (runs of p2-fig2)", run, "p2-runs"};
+}
+
+}  // namespace twincell::reproduce

@@ -1,0 +1,143 @@
+// Bhateja, Sharma & Singh 2016, Fig. 5: a channel shaken sideways, with and without gravity.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "reproduce/gas.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+/// What a budget buys: frequencies and the period of the channel along y, with beads in proportion.
+struct Size {
+  double core_minutes;
+  std::vector<int> rpm;
+  double depth;
+  double relative_error;
+  int cycles;
+};
+
+const Size& size_for(const Request& request) {
+  static const std::vector<Size> all = {
+      {0, {300, 600, 900}, 7, 0.1, 60},
+      {10, {100, 200, 300, 450, 600, 900}, 7, 0.05, 200},
+      {200, {40, 60, 80, 100, 150, 200, 300, 400, 500, 600, 700, 800, 900}, 7, 0.03, 400},
+      {1e300,
+       {40, 60, 80, 100, 150, 200, 250, 300, 350, 400, 450, 500, 550, 600, 650, 700, 800, 900},
+       35,
+       0.01,
+       2000}};
+  if (request.full) return all.back();
+  const Size* chosen = &all.front();
+  for (const Size& size : all)
+    if (request.minutes * request.threads >= size.core_minutes) chosen = &size;
+  return *chosen;
+}
+
+constexpr double kAmplitude = 10, kBeadsPerDepth = 3000.0 / 35;
+
+/// W of a point: its key is omega, which has a meaning without gravity too.
+double w_of(const GasPoint& p) {
+  return kAmplitude * kAmplitude * p.at * p.at;
+}
+
+std::vector<std::pair<double, Estimate>> curve_of(const std::vector<GasPoint>& points) {
+  std::vector<std::pair<double, Estimate>> all;
+  for (const GasPoint& p : points)
+    if (const auto t = p.get("T_bar_z")) all.emplace_back(w_of(p), *t);
+  return all;
+}
+
+Reproduction run(const Request& request) {
+  const Size& size = size_for(request);
+  Gas gas(request);
+  for (const bool gravity : {false, true}) {
+    GasCurve curve{
+        .name = gravity ? "with gravity" : "without gravity",
+        .scene = fmt::format("preset = \"bhateja-2016-horizontal\"\ncell.depth = {}\nbeads.count = {}{}",
+                             size.depth, std::lround(kBeadsPerDepth * size.depth),
+                             gravity ? "" : "\ncell.gravity = 0.0"),
+        .key = "drive.omega",
+        .relative_error = size.relative_error,
+        .cycles = size.cycles,
+        .discard = 30};
+    for (const int rpm : size.rpm) curve.values.push_back(std::sqrt(w_of_rpm(rpm)));  // omega: V_p at A = d
+    gas.add(curve);
+  }
+  Reproduction r;
+  r.title = "Bhateja et al. 2016, Fig. 5: vertical temperature in a channel shaken sideways";
+  r.complete = gas.run();
+  const auto without = curve_of(gas.points(0)), with = curve_of(gas.points(1));
+  const auto less = [](const auto& a, const auto& b) { return a.second.value < b.second.value; };
+
+  Target constant{"without gravity: T_bar_z", "constant, variation at most 3 %", "", Fate::absent, ""};
+  if (without.size() >= 2) {
+    const auto [low, high] = std::minmax_element(without.begin(), without.end(), less);
+    const Estimate q = quotient(high->second, low->second);
+    constant.measured = fmt::format("largest over smallest {} over {} points", q.text(), without.size());
+    constant.fate = within(q, 1, 1.03);
+  }
+  Target peak{"with gravity: rises, then decays to a constant", "a maximum inside the range", "",
+              Fate::absent, ""};
+  if (with.size() >= 3) {
+    const auto top = std::max_element(with.begin(), with.end(), less);
+    peak.measured = fmt::format("largest {} at W = {:.3g}; {} at the last, W = {:.3g}", top->second.text(),
+                                top->first, with.back().second.text(), with.back().first);
+    const bool inside = top != with.begin() && top + 1 != with.end();
+    peak.fate =
+        inside ? all_of({above(top->second, with.front().second), above(top->second, with.back().second)})
+               : Fate::open;
+    if (!inside) peak.reason = "the largest lies at an end of the frequencies that were run";
+  }
+  Target second{"with gravity: a second, smaller peak when beads strike the lid", "a second maximum", "",
+                Fate::absent, ""};
+  if (with.size() >= 6) {
+    const auto top = std::max_element(with.begin(), with.end(), less);
+    auto dip = top;
+    Fate fate = Fate::open;
+    for (auto p = top; p != with.end(); ++p) {
+      if (p->second.value < dip->second.value) dip = p;
+      if (above(p->second, dip->second) == Fate::met) fate = Fate::met;
+    }
+    second.measured = fmt::format("lowest after the peak {} at W = {:.3g}", dip->second.text(), dip->first);
+    second.fate = fate;
+  } else {
+    second.reason = "too few frequencies at this budget";
+  }
+  r.targets = {peak, second, constant};
+  std::vector<Series> series;
+  for (const bool gravity : {true, false}) {
+    Series s{.title = gravity ? "with gravity" : "without gravity", .x = {}, .y = {}};
+    for (const auto& [w, t] : gravity ? with : without) {
+      s.x.push_back(w);
+      s.y.push_back(t);
+    }
+    series.push_back(s);
+  }
+  r.table = "  the key is omega; W = 100 omega^2\n" + gas.table();
+  r.measured = gas.as_json();
+  r.conditions = gas.conditions();
+  r.cheaper = gas.cheaper();
+  if (size.depth < 35)
+    r.cheaper.push_back(fmt::format("period of {:g} d along y, {} beads, where the paper has 3000 (35 d)",
+                                    size.depth, std::lround(kBeadsPerDepth * size.depth)));
+  r.cheaper.push_back(fmt::format("{} frequencies", size.rpm.size()));
+  r.figures = {series_figure(
+      "p2-fig5", "A channel shaken sideways", "W = V_p^2/(d g)", "T_z/(m V_p^2)", series,
+      "set logscale x\nset xrange [0.5:600]\nset yrange [0:*]\n",
+      "Vertical temperature, drive along x, e = 0.3, smooth; without gravity the abscissa is the "
+      "same V_p. Form of Bhateja et al. 2016, Fig. 5.")};
+  return r;
+}
+
+}  // namespace
+
+Reproducible p2_fig5() {
+  return {"p2-fig5", "a channel shaken sideways, with and without gravity", run, "p2-runs"};
+}
+
+}  // namespace twincell::reproduce

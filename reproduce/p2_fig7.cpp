@@ -1,0 +1,89 @@
+// Bhateja, Sharma & Singh 2016, Fig. 7: T_bar_z over the scaled lift of the barycentre, against W.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reproduce/gas.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+Series ratio_of(const std::string& name, const std::vector<GasPoint>& points) {
+  Series s{.title = name, .x = {}, .y = {}};
+  for (const GasPoint& p : points) {
+    const auto t = p.get("T_bar_z"), h = p.get("delta_h_bar");
+    if (!t || !h || p.solid() || !(h->value > 0)) continue;
+    s.x.push_back(p.at);
+    s.y.push_back(quotient(*t, *h));
+  }
+  return s;
+}
+
+/// The value nearest to `w` on a logarithmic axis; nothing within a fifth of it.
+const Estimate* near(const Series& s, double w) {
+  const Estimate* best = nullptr;
+  double distance = 0.2;
+  for (std::size_t k = 0; k < s.x.size(); ++k)
+    if (const double d = std::abs(std::log(s.x[k] / w)); d < distance) {
+      distance = d;
+      best = &s.y[k];
+    }
+  return best;
+}
+
+std::vector<Target> targets_of(const std::string& name, const Series& s) {
+  constexpr double kPeak = 2.74, kMiddle = 20, kHigh = 56, kEnd = 89.4;
+  std::vector<Target> targets;
+  const Estimate *first = near(s, kPeak), *middle = near(s, kMiddle), *high = near(s, kHigh),
+                 *last = near(s, kEnd);
+  Target rises{name + ": T_bar_z/dh_bar is not constant for W < 20", "rises", "", Fate::absent, ""};
+  if (first != nullptr && middle != nullptr) {
+    rises.measured = fmt::format("{} at W = 2.7, {} near 20", first->text(), middle->text());
+    rises.fate = above(*middle, *first);
+  }
+  Target constant{name + ": it becomes constant at high W", "same at W = 50 ... 89 within 10 %", "",
+                  Fate::absent, ""};
+  if (high != nullptr && last != nullptr) {
+    const Estimate q = quotient(*last, *high);
+    constant.measured = fmt::format("{} over {}, quotient {}", last->text(), high->text(), q.text());
+    constant.fate = within(q, 0.9, 1.1);
+  }
+  return {rises, constant};
+}
+
+Reproduction run(const Request& request) {
+  const GasSize& size = gas_size_for(request);
+  Gas gas(request);
+  Reproduction r;
+  std::vector<Series> all;
+  for (const GasSystem& system : gas_systems())
+    if (system.rough) gas.add(system, size, size.rpm);
+  r.title = "Bhateja et al. 2016, Fig. 7: temperature over the lift of the barycentre";
+  r.complete = gas.run();
+  for (std::size_t k = 0; k < 2; ++k) {
+    all.push_back(ratio_of(gas.curve(k).name, gas.points(k)));
+    for (const Target& t : targets_of(all.back().title, all.back())) r.targets.push_back(t);
+  }
+  r.table = gas.table();
+  r.measured = gas.as_json();
+  r.conditions = gas.conditions();
+  r.cheaper = gas.cheaper();
+  r.cheaper.emplace_back("the height at rest is that of each run's own bed, settled at A = 0");
+  r.figures = {
+      series_figure("p2-fig7", "T_bar_z over dh_bar against W", "W = V_p^2/(d g)", "T_bar_z/dh_bar", all,
+                    "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
+                    "T_z = m <w'^2> over m g times the lift of the barycentre above its height at rest. Form "
+                    "of Bhateja et al. 2016, Fig. 7.")};
+  return r;
+}
+
+}  // namespace
+
+Reproducible p2_fig7() {
+  return {"p2-fig7", "temperature over the lift of the barycentre against W (runs of p2-fig2)", run,
+          "p2-runs"};
+}
+
+}  // namespace twincell::reproduce

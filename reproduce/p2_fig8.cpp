@@ -1,0 +1,181 @@
+// Bhateja, Sharma & Singh 2016, Fig. 8 and Table III: algebraic and exponential fits of T_bar_z(W) from W_f
+// on.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "calibration/curve_fit.hpp"
+#include "calibration/fit_figure.hpp"
+#include "reproduce/gas.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+struct Printed {
+  double a, b, c, correlation;
+};
+Printed printed(int dimension, bool algebraic) {
+  if (dimension == 2)
+    return algebraic ? Printed{0.282, 0.656, 2.07, 0.9957} : Printed{0.327, 0.131, 1.022, 0.9941};
+  return algebraic ? Printed{0.054, 0.622, 7.98, 0.9964} : Printed{0.092, 0.124, 2.695, 0.9943};
+}
+
+struct Fitted {
+  int dimension = 2;
+  bool algebraic = true;
+  std::vector<DataPoint> points;
+  std::optional<CurveFit> fit;
+  [[nodiscard]] std::string name() const {
+    return fmt::format("{}D rough, {}", dimension, algebraic ? "algebraic" : "exponential");
+  }
+};
+
+Fitted fit_of(int dimension, bool algebraic, const std::vector<GasPoint>& points) {
+  Fitted f{.dimension = dimension, .algebraic = algebraic, .points = {}, .fit = {}};
+  const auto peak = peak_of(points);
+  if (!peak) return f;
+  for (const GasPoint& p : points)
+    if (const auto t = p.get("T_bar_z"); t && p.at >= peak->grid)
+      f.points.push_back({.x = p.at, .y = t->value});
+  constexpr std::size_t kFewest = 5;  // three parameters and something to judge them by
+  // Unweighted, as least squares of a plotting program are; the paper does not say.
+  if (f.points.size() >= kFewest)
+    f.fit = fit_curve(law_named(algebraic ? "algebraic" : "exponential"), f.points);
+  return f;
+}
+
+double value_of(const CurveFit& fit, const char* name) {
+  return fit.fit.value(name);
+}
+
+void add_targets(std::vector<Target>& targets, const Fitted& f, bool coefficients) {
+  const Printed p = printed(f.dimension, f.algebraic);
+  Target curve{f.name() + ": the fitted curve beside the printed one", "within 10 % on [W_f, 89.4]", "",
+               Fate::absent, ""};
+  Target close{f.name() + ": correlation of points and curve", "at least 0.99", "", Fate::absent, ""};
+  Target signs{f.name() + ": signs of the residuals",
+               f.algebraic ? "random, p > 0.05" : "systematic, p < 0.05", "", Fate::absent, ""};
+  if (f.fit) {
+    double low = 1e300, high = 0;
+    for (double w = f.points.front().x; w <= f.points.back().x; w *= 1.02) {
+      const double ratio = f.fit->at(w) / table_3(f.dimension, f.algebraic, w);
+      low = std::min(low, ratio);
+      high = std::max(high, ratio);
+    }
+    curve.measured = fmt::format("fitted/printed from {:.3f} to {:.3f}", low, high);
+    curve.fate = low >= 0.9 && high <= 1.1 ? Fate::met : Fate::missed;
+    if (curve.fate == Fate::missed && f.dimension == 2)
+      curve.reason =
+          "an independent program of the same model lies 9 to 15 % above Table III at W = 35 to 89 too";
+    close.measured = fmt::format("{:.4f}, printed {:.4f}", f.fit->correlation, p.correlation);
+    close.fate = f.fit->correlation >= 0.99 ? Fate::met : Fate::missed;
+    signs.measured = fmt::format("{} runs of {} + and {} -, p = {:.3g}", f.fit->runs.runs,
+                                 f.fit->runs.positive, f.fit->runs.negative, f.fit->runs.p);
+    const bool random = !(f.fit->runs.p < 0.05);
+    signs.fate = random == f.algebraic ? Fate::met : f.algebraic ? Fate::missed : Fate::open;
+    if (signs.fate == Fate::open) signs.reason = "so few or so noisy points do not show it";
+  }
+  targets.insert(targets.end(), {curve, close, signs});
+  if (!coefficients) return;
+  const auto coefficient = [&](std::size_t k, const char* name, double wanted, double tolerance) {
+    Target t{fmt::format("{}: {}", f.name(), name), fmt::format("{:g} +- {:.3g}", wanted, tolerance), "",
+             Fate::absent, "coefficients are strongly correlated: compare curves"};
+    if (f.fit) {
+      Estimate e{.value = value_of(*f.fit, name), .low = {}, .high = {}};
+      if (const auto& interval = f.fit->intervals[k]) {
+        e.low = interval->low;
+        e.high = interval->high;
+      }
+      t.measured = e.text();
+      t.fate = within(e, wanted - tolerance, wanted + tolerance);
+    }
+    targets.push_back(t);
+  };
+  coefficient(0, "a", p.a, 0.25 * p.a);
+  for (std::size_t k = 0; f.fit && k < f.fit->fit.names.size(); ++k)
+    if (f.fit->fit.names[k] == "b") coefficient(k, "b", p.b, 0.2);
+}
+
+std::string line_of(const Fitted& f) {
+  if (!f.fit) return fmt::format("  {:<24} too few points\n", f.name());
+  const Printed p = printed(f.dimension, f.algebraic);
+  std::string s = fmt::format(
+      "  {:<24} a {:.4g} ({:g})  b {:.4g} ({:g})  c {:.4g} ({:g})  correlation {:.4f} ({:.4f})  runs p "
+      "{:.3g}  {} points\n",
+      f.name(), value_of(*f.fit, "a"), p.a, value_of(*f.fit, "b"), p.b, value_of(*f.fit, "c"), p.c,
+      f.fit->correlation, p.correlation, f.fit->runs.p, f.fit->n_used);
+  for (const std::string& note : f.fit->notes) s += "    " + note + "\n";
+  return s;
+}
+
+Reproduction run(const Request& request, bool coefficients) {
+  const GasSize& size = gas_size_for(request);
+  Gas gas(request);
+  for (const GasSystem& system : gas_systems())
+    if (system.rough) gas.add(system, size, size.rpm);
+  Reproduction r;
+  r.title = fmt::format("Bhateja et al. 2016, {}: fits of T_bar_z(W) from W_f on",
+                        coefficients ? "Table III" : "Fig. 8");
+  r.complete = gas.run();
+  std::vector<Series> all;
+  nlohmann::json fits = nlohmann::json::array();
+  r.table = "  Measured (printed)\n";
+  for (std::size_t k = 0; k < 2; ++k) {
+    const int dimension = gas_systems()[k].dimension;
+    all.push_back(series_of(gas.curve(k).name, gas.points(k), "T_bar_z"));
+    for (const bool algebraic : {true, false}) {
+      const Fitted f = fit_of(dimension, algebraic, gas.points(k));
+      add_targets(r.targets, f, coefficients);
+      r.table += line_of(f);
+      if (!f.fit) continue;
+      Series s{.title = f.name(), .x = {}, .y = {}, .line = true, .dash = algebraic ? 1 : 2};
+      for (double w = f.points.front().x; w <= f.points.back().x; w *= 1.03) {
+        s.x.push_back(w);
+        s.y.push_back({.value = f.fit->at(w), .low = {}, .high = {}});
+      }
+      all.push_back(s);
+      Figure residuals =
+          fit_figure(*f.fit, f.points, "W", "T_bar_z",
+                     fmt::format("p2-fig8-{}d-{}", dimension, algebraic ? "algebraic" : "exponential"));
+      residuals.title = f.name();
+      r.figures.push_back(residuals);
+      fits.push_back(
+          {{"system", gas.curve(k).name},
+           {"law", algebraic ? "algebraic" : "exponential"},
+           {"a", value_of(*f.fit, "a")},
+           {"b", value_of(*f.fit, "b")},
+           {"c", value_of(*f.fit, "c")},
+           {"correlation", f.fit->correlation},
+           {"runs_p", std::isfinite(f.fit->runs.p) ? nlohmann::json(f.fit->runs.p) : nlohmann::json()},
+           {"points", f.fit->n_used}});
+    }
+  }
+  r.table += gas.table();
+  r.measured = nlohmann::json({{"fits", fits}, {"points", nlohmann::json::parse(gas.as_json())}}).dump();
+  r.conditions = gas.conditions();
+  r.cheaper = gas.cheaper();
+  r.figures.insert(
+      r.figures.begin(),
+      series_figure("p2-fig8", "Fits of T_z/(m V_p^2)", "W = V_p^2/(d g)", "T_z/(m V_p^2)", all,
+                    "set logscale xy\nset xrange [1:150]\nset yrange [0.05:1]\nset key bottom left\n",
+                    "Algebraic and exponential fits from W_f on. Form of Bhateja et al. 2016, Fig. 8(b); "
+                    "residuals in the figures beside it."));
+  return r;
+}
+
+}  // namespace
+
+Reproducible p2_fig8() {
+  return {"p2-fig8", "algebraic and exponential fits of T_bar_z(W), with residuals (runs of p2-fig2)",
+          [](const Request& request) { return run(request, false); }, "p2-runs"};
+}
+
+Reproducible p2_table3() {
+  return {"p2-table3", "coefficients of those fits (runs of p2-fig2)",
+          [](const Request& request) { return run(request, true); }, "p2-runs"};
+}
+
+}  // namespace twincell::reproduce

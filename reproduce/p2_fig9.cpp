@@ -1,0 +1,259 @@
+// Bhateja, Sharma & Singh 2016, Figs. 9 and 10: T_bar_z(W) and alpha with stiffness, restitution, friction,
+// layers.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "calibration/curve_fit.hpp"
+#include "reproduce/gas.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+/// One panel: what is varied in the rough system of the plane, from the canonical value to the others.
+struct Panel {
+  std::string name, symbol, key;
+  std::vector<double> values;
+  std::vector<std::size_t> curves;  ///< beside values
+};
+
+/// The paper does not say which system Figs. 9 and 10 are of.
+std::vector<Panel> panels() {
+  return {{"d", "N", "beads.layers", {2, 4, 6, 8}, {}},
+          {"b", "e", "contact.restitution", {0.7, 0.8, 0.9, 0.95}, {}},
+          {"c", "mu", "contact.mu", {0.1, 0.4, 0.8}, {}},
+          {"a", "k_n", "contact.k_n", {1e5, 1e6, 1e7}, {}}};
+}
+
+const std::vector<int> kFrequencies = {500, 600, 700, 900, 1200, 1500, 2000, 3000, 4000};
+constexpr double kSoftest = 1e5;
+constexpr double kSoftUpTo = 23;  ///< W above which beads of k_n = 1e5 overlap by more than 5 %
+
+/// Canonical values are left out of the scene, so that the points are those of the other panels and figures.
+bool canonical(const Panel& p, double value) {
+  return (p.symbol == "N" && value == 4) || (p.symbol == "e" && value == 0.9) ||
+         (p.symbol == "mu" && value == 0.4) || (p.symbol == "k_n" && value == 1e6);
+}
+
+void add_panel(Gas& gas, Panel& panel, const GasSize& size) {
+  for (const double value : panel.values) {
+    GasCurve curve{.name = fmt::format("{} = {:g}", panel.symbol, value),
+                   .scene = "preset = \"bhateja-2016-rough-2d\"",
+                   .relative_error = size.relative_error,
+                   .cycles = size.cycles};
+    if (!canonical(panel, value)) curve.scene += fmt::format("\n{} = {}", panel.key, value);
+    for (const int rpm : kFrequencies)
+      if (!(panel.symbol == "k_n" && value == kSoftest && w_of_rpm(rpm) > kSoftUpTo))
+        curve.values.push_back(w_of_rpm(rpm));
+    panel.curves.push_back(gas.add(curve));
+  }
+}
+
+std::optional<Estimate> at_w(const Gas& gas, std::size_t curve, double w) {
+  for (const GasPoint& p : gas.points(curve))
+    if (std::abs(p.at / w - 1) < 0.01) return p.get("T_bar_z");
+  return std::nullopt;
+}
+
+Target close_to_each_other(const Gas& gas, const Panel& p) {
+  Target t{"(a) k_n = 1e5, 1e6, 1e7: T_bar_z", "the same within 5 %", "", Fate::absent, ""};
+  std::vector<Fate> fates;
+  double most = 0;
+  for (const double w : {w_of_rpm(900), w_of_rpm(1200), w_of_rpm(2000)})
+    for (const std::size_t other : {std::size_t{0}, std::size_t{2}}) {
+      const auto a = at_w(gas, p.curves[other], w), b = at_w(gas, p.curves[1], w);
+      if (!a || !b) continue;
+      const Estimate q = quotient(*a, *b);
+      most = std::max(most, std::abs(q.value - 1));
+      fates.push_back(within(q, 0.95, 1.05));
+    }
+  if (fates.empty()) return t;
+  t.measured = fmt::format("largest deviation from k_n = 1e6 {:.2g} % at W = 4.5, 8, 22", 100 * most);
+  t.fate = all_of(fates);
+  return t;
+}
+
+/// At W = 22 the values follow the parameter in one direction, neighbours apart.
+Target monotonic(const Gas& gas, const Panel& p, bool rising, const std::string& name,
+                 const std::string& wanted) {
+  Target t{name, wanted, "", Fate::absent, ""};
+  std::vector<Fate> fates;
+  std::optional<Estimate> last, first;
+  for (std::size_t k = 0; k < p.values.size(); ++k) {
+    const auto e = at_w(gas, p.curves[k], w_of_rpm(2000));
+    if (!e) continue;
+    t.measured +=
+        fmt::format("{}{:g}: {:.3g}", t.measured.empty() ? p.symbol + " = " : ", ", p.values[k], e->value);
+    if (last) fates.push_back(rising ? above(*e, *last) : above(*last, *e));
+    last = e;
+  }
+  if (!fates.empty()) t.measured += " at W = 22.4";
+  t.fate = all_of(fates);
+  return t;
+}
+
+/// Largest over smallest T_bar_z of a panel at W = 22.
+std::optional<double> reach(const Gas& gas, const Panel& p) {
+  double low = 1e300, high = 0;
+  for (std::size_t k = 0; k < p.values.size(); ++k) {
+    const auto e = at_w(gas, p.curves[k], w_of_rpm(2000));
+    if (!e) return std::nullopt;
+    low = std::min(low, e->value);
+    high = std::max(high, e->value);
+  }
+  return high / low;
+}
+
+Panel& panel_of(std::vector<Panel>& all, const std::string& symbol) {
+  return *std::find_if(all.begin(), all.end(), [&](const Panel& p) { return p.symbol == symbol; });
+}
+
+struct Study {
+  Gas gas;
+  std::vector<Panel> all = panels();
+  bool complete = false;
+  Study(const Request& request, bool stiffness) : gas(request) {
+    const GasSize& size = gas_size_for(request);
+    if (!stiffness) all.pop_back();
+    for (Panel& panel : all) add_panel(gas, panel, size);
+    complete = gas.run();
+  }
+};
+
+Reproduction begun(const Study& study, const std::string& title) {
+  Reproduction r;
+  r.title = title;
+  r.complete = study.complete;
+  r.measured = study.gas.as_json();
+  r.conditions = study.gas.conditions();
+  r.cheaper = study.gas.cheaper();
+  r.cheaper.push_back(
+      fmt::format("{} frequencies, 2D rough (the paper does not say which system)", kFrequencies.size()));
+  return r;
+}
+
+Reproduction run_9(const Request& request) {
+  Study study(request, true);
+  Gas& gas = study.gas;
+  Reproduction r = begun(study, "Bhateja et al. 2016, Fig. 9: temperature with k_n, e, mu and N");
+  r.targets = {close_to_each_other(gas, panel_of(study.all, "k_n")),
+               monotonic(gas, panel_of(study.all, "e"), true, "(b) T_bar_z with e", "rises"),
+               monotonic(gas, panel_of(study.all, "mu"), false, "(c) T_bar_z with mu", "falls slightly"),
+               monotonic(gas, panel_of(study.all, "N"), false, "(d) T_bar_z with N", "falls")};
+  Target order{"most impact: N; least: mu", "N above e above mu", "", Fate::absent, ""};
+  const auto n = reach(gas, panel_of(study.all, "N")), e = reach(gas, panel_of(study.all, "e")),
+             mu = reach(gas, panel_of(study.all, "mu"));
+  if (n && e && mu) {
+    order.measured =
+        fmt::format("largest over smallest at W = 22.4: N {:.3g}, e {:.3g}, mu {:.3g}", *n, *e, *mu);
+    order.fate = *n > *mu && *e > *mu ? (*n > *e ? Fate::met : Fate::open) : Fate::missed;
+    if (order.fate == Fate::open)
+      order.reason = "mu is least; which of N and e is more depends on how far each is varied";
+  }
+  r.targets.push_back(order);
+  for (const Panel& p : study.all) {
+    std::vector<Series> series;
+    for (std::size_t k = 0; k < p.values.size(); ++k)
+      series.push_back(series_of(gas.curve(p.curves[k]).name, gas.points(p.curves[k]), "T_bar_z"));
+    r.figures.push_back(series_figure(
+        "p2-fig9" + p.name, "T_z/(m V_p^2) with " + p.symbol, "W = V_p^2/(d g)", "T_z/(m V_p^2)", series,
+        "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
+        fmt::format("2D rough, {} varied. Form of Bhateja et al. 2016, Fig. 9({}).", p.symbol, p.name)));
+  }
+  r.table = gas.table();
+  return r;
+}
+
+/// alpha of T_z over [W_f, W_2].
+std::optional<Estimate> alpha_of(const std::vector<GasPoint>& points, std::string& window) {
+  const auto peak = peak_of(points);
+  const auto w_2 = w_2_of(points);
+  if (!peak || !w_2) return std::nullopt;
+  std::vector<DataPoint> data;
+  for (const GasPoint& p : points)
+    if (const auto t = p.get("T_z"); t && p.at >= peak->grid && p.at <= *w_2 && !p.solid())
+      data.push_back({.x = std::sqrt(p.at), .y = t->value});
+  window = fmt::format("[{:.3g}, {:.3g}]", peak->grid, *w_2);
+  if (data.size() < 3) return std::nullopt;
+  const CurveFit fit = fit_curve(law_named("power"), data);
+  Estimate e{.value = fit.fit.value("alpha"), .low = {}, .high = {}};
+  if (fit.intervals[1]) {
+    e.low = fit.intervals[1]->low;
+    e.high = fit.intervals[1]->high;
+  }
+  return e;
+}
+
+Reproduction run_10(const Request& request) {
+  Study study(request, false);
+  Gas& gas = study.gas;
+  Reproduction r = begun(study, "Bhateja et al. 2016, Fig. 10: alpha over [W_f, W_2] with e, mu and N");
+  for (const Panel& p : study.all) {
+    Series s{.title = "alpha", .x = {}, .y = {}};
+    std::string said;
+    for (std::size_t k = 0; k < p.values.size(); ++k) {
+      std::string window = "no window";
+      const auto alpha = alpha_of(gas.points(p.curves[k]), window);
+      r.table += fmt::format("  {:<10} {} over {}\n", gas.curve(p.curves[k]).name,
+                             alpha ? alpha->text() : "too few points", window);
+      if (!alpha) continue;
+      s.x.push_back(p.values[k]);
+      s.y.push_back(*alpha);
+      said +=
+          fmt::format("{}{:g}: {:.3g}", said.empty() ? p.symbol + " = " : ", ", p.values[k], alpha->value);
+    }
+    const bool enough = s.y.size() == p.values.size();
+    if (p.symbol == "e") {
+      Target t{"alpha with e", "rises gently", enough ? said : "", Fate::absent, ""};
+      if (enough) t.fate = above(s.y.back(), s.y.front());
+      r.targets.push_back(t);
+    }
+    if (p.symbol == "mu") {
+      Target t{"alpha with mu", "marginal", enough ? said : "", Fate::absent, ""};
+      if (enough) {
+        const double change = std::abs(s.y.back().value - s.y.front().value);
+        t.fate = change < 0.2 ? Fate::met : Fate::open;
+      }
+      r.targets.push_back(t);
+    }
+    if (p.symbol == "N") {
+      Target t{"alpha with N", "falls", enough ? said : "", Fate::absent, ""};
+      Target deep{"alpha for N >= 6", "1.0 +- 0.2", "", Fate::absent, ""};
+      if (enough) {
+        t.fate = above(s.y.front(), s.y.back());
+        std::vector<Fate> fates;
+        for (std::size_t k = 0; k < p.values.size(); ++k)
+          if (p.values[k] >= 6) {
+            fates.push_back(within(s.y[k], 0.8, 1.2));
+            deep.measured +=
+                fmt::format("{}N = {:g}: {}", deep.measured.empty() ? "" : ", ", p.values[k], s.y[k].text());
+          }
+        deep.fate = all_of(fates);
+        deep.reason = "2D; where W_2 lies depends on the error of the last point";
+      }
+      r.targets.push_back(t);
+      r.targets.push_back(deep);
+    }
+    r.figures.push_back(series_figure("p2-fig10-" + p.symbol, "alpha over [W_f, W_2] with " + p.symbol,
+                                      p.symbol, "alpha", {s}, "set yrange [0:2.5]\nunset key\n",
+                                      "Form of Bhateja et al. 2016, Fig. 10."));
+  }
+  r.table += gas.table();
+  return r;
+}
+
+}  // namespace
+
+Reproducible p2_fig9() {
+  return {"p2-fig9", "temperature with stiffness, restitution, friction and layers", run_9, "p2-runs"};
+}
+Reproducible p2_fig10() {
+  return {"p2-fig10", "alpha over [W_f, W_2] with restitution, friction and layers (runs of p2-fig9)", run_10,
+          "p2-runs"};
+}
+
+}  // namespace twincell::reproduce

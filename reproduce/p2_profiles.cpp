@@ -1,0 +1,420 @@
+// Bhateja, Sharma & Singh 2016, Figs. 12 to 16: local temperature and packing fraction over height.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "reproduce/gas.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+/// W = 5.58, 22.35, 50.3, 68.46, 85.01 of the paper.
+const std::vector<int> kFrequencies = {1000, 2000, 3000, 3500, 3900};
+
+/// A profile over height with the relative error of each slab, estimated from how many beads it saw in how
+/// many cycles (frames of one cycle know little of each other's fluctuations).
+struct Profile {
+  std::vector<double> z, t, phi, error;
+
+  /// Where T is largest; nothing without a temperature.
+  [[nodiscard]] std::optional<std::size_t> hottest() const {
+    std::optional<std::size_t> top;
+    for (std::size_t k = 0; k < t.size(); ++k)
+      if (std::isfinite(t[k]) && (!top || t[k] > t[*top])) top = k;
+    return top;
+  }
+  [[nodiscard]] std::size_t densest() const {
+    return static_cast<std::size_t>(std::max_element(phi.begin(), phi.end()) - phi.begin());
+  }
+  /// A maximum above another one, which rises over the dip between them by three errors of the difference and
+  /// by a twentieth of the first.
+  struct Second {
+    double z = 0, over_first = 0;  ///< height; its temperature over that of the maximum below
+  };
+  [[nodiscard]] std::optional<Second> second() const {
+    constexpr double kErrors = 3, kRise = 0.05;
+    std::optional<std::size_t> first, dip;
+    std::optional<Second> found;
+    for (std::size_t k = 0; k < t.size(); ++k) {
+      if (!std::isfinite(t[k])) continue;
+      if (!first || (t[k] > t[*first] && !dip)) first = k;
+      if (t[k] < t[*first] * (1 - kErrors * std::hypot(error[k], error[*first])) &&
+          (!dip || t[k] < t[*dip])) {
+        dip = k;
+        if (!found) continue;
+      }
+      if (!dip || k <= *dip) continue;
+      if (t[k] - t[*dip] >
+              std::max(kRise * t[*first], kErrors * std::hypot(error[k] * t[k], error[*dip] * t[*dip])) &&
+          (!found || t[k] > found->over_first * t[*first]))
+        found = Second{z[k], t[k] / t[*first]};
+    }
+    return found;
+  }
+};
+
+std::optional<Profile> profile_of(const GasPoint& p, double floor_area, bool flat) {
+  const auto z = p.arrays.find("profile_z"), t = p.arrays.find("T_z_z"), phi = p.arrays.find("phi_z");
+  if (z == p.arrays.end() || t == p.arrays.end() || phi == p.arrays.end()) return std::nullopt;
+  Profile profile{z->second, t->second, phi->second, {}};
+  // Frames of one cycle know little of each other, so that beads are counted once a cycle; a slab that a few
+  // flights passed has no temperature of its own.
+  constexpr double kFewest = 100;
+  const double bead = flat ? std::numbers::pi / 4 : std::numbers::pi / 6;
+  for (std::size_t k = 0; k < profile.phi.size(); ++k) {
+    const double seen = profile.phi[k] * floor_area / bead * static_cast<double>(p.cycles);
+    profile.error.push_back(std::sqrt(2 / std::max(1.0, seen)));
+    if (seen < kFewest) profile.t[k] = std::nan("");
+  }
+  return profile;
+}
+
+double area_of(int dimension) {
+  return dimension == 2 ? 10 : 25;
+}
+
+std::string height(double z) {
+  return fmt::format("z = {:g}", z);
+}
+
+Series temperatures(const std::string& title, const Profile& p) {
+  Series s{.title = title, .x = {}, .y = {}};
+  for (std::size_t k = 0; k < p.z.size(); ++k) {
+    if (!std::isfinite(p.t[k])) continue;
+    s.x.push_back(p.z[k]);
+    s.y.push_back(
+        {.value = p.t[k], .low = p.t[k] * (1 - 2 * p.error[k]), .high = p.t[k] * (1 + 2 * p.error[k])});
+  }
+  return s;
+}
+
+Series packing(const std::string& title, const Profile& p) {
+  Series s{.title = title, .x = {}, .y = {}};
+  for (std::size_t k = 0; k < p.z.size(); ++k) {
+    s.x.push_back(p.z[k]);
+    s.y.push_back({.value = p.phi[k], .low = {}, .high = {}});
+  }
+  return s;
+}
+
+std::string described(const Profile& p) {
+  const auto top = p.hottest();
+  if (!top) return "no temperature";
+  const auto second = p.second();
+  return fmt::format(
+      "hottest at {}, {}", height(p.z[*top]),
+      second ? fmt::format("second peak at {}, {:.2g} of the first", height(second->z), second->over_first)
+             : std::string("no second peak"));
+}
+
+Reproduction begun(Gas& gas, const std::string& title) {
+  Reproduction r;
+  r.title = title;
+  r.complete = gas.run();
+  r.table = gas.table();
+  r.measured = gas.as_json();
+  r.conditions = gas.conditions();
+  r.cheaper = gas.cheaper();
+  return r;
+}
+
+Fate yes(bool holds) {
+  return holds ? Fate::met : Fate::missed;
+}
+
+// ---------------------------------------------------------------- Figs. 12 and 13
+
+Reproduction run_12(const Request& request) {
+  const GasSize& size = gas_size_for(request);
+  std::vector<double> depths = {4, 8};
+  if (request.full) depths = {4, 6, 8, 10};
+  Gas gas(request);
+  for (const double n : depths) {
+    GasCurve curve{.name = fmt::format("3D smooth, N = {:g}", n),
+                   .scene = "preset = \"bhateja-2016-smooth-3d\"",
+                   .relative_error = size.relative_error,
+                   .cycles = size.cycles};
+    if (n != 4) curve.scene += fmt::format("\nbeads.layers = {}", n);
+    for (const int rpm : kFrequencies) curve.values.push_back(w_of_rpm(rpm));
+    gas.add(curve);
+  }
+  Reproduction r = begun(
+      gas, "Bhateja et al. 2016, Figs. 12 and 13: local temperature over height, deep and shallow beds");
+  const auto of = [&](std::size_t depth, std::size_t k) {
+    return profile_of(gas.points(depth)[k], area_of(3), false);
+  };
+  std::string seen;
+  for (std::size_t d = 0; d < depths.size(); ++d)
+    for (std::size_t k = 0; k < kFrequencies.size(); ++k)
+      if (const auto p = of(d, k))
+        seen += fmt::format("  {}, W = {:.4g}: {}\n", gas.curve(d).name, gas.points(d)[k].at, described(*p));
+  r.table = seen + r.table;
+
+  Target low{"W = 5.58: falls with height, low second peak before vanishing", "every N", "", Fate::absent,
+             ""};
+  std::vector<Fate> fates;
+  for (std::size_t d = 0; d < depths.size(); ++d)
+    if (const auto p = of(d, 0); p && p->hottest()) {
+      low.measured +=
+          fmt::format("{}N = {:g}: {}", low.measured.empty() ? "" : "; ", depths[d], described(*p));
+      fates.push_back(p->z[*p->hottest()] > 3 ? Fate::missed : p->second() ? Fate::met : Fate::open);
+    }
+  low.fate = all_of(fates);
+  if (low.fate == Fate::open) low.reason = "a second peak does not stand out of the noise of its slabs";
+
+  Target warm{"W = 22.35, N = 4: no second peak, hottest 7 to 10 d above the base", "7 to 10", "",
+              Fate::absent, ""};
+  if (const auto p = of(0, 1); p && p->hottest()) {
+    const double z = p->z[*p->hottest()];
+    warm.measured = described(*p);
+    warm.fate = z >= 6.5 && z <= 10.5 && !p->second() ? Fate::met : Fate::missed;
+  }
+  Target back{"W = 50.3, N = 4: the second peak is back", "a second peak", "", Fate::absent, ""};
+  if (const auto p = of(0, 2); p && p->hottest()) {
+    back.measured = described(*p);
+    back.fate = p->second() ? Fate::met : Fate::open;
+  }
+  Target equal{"W = 85.01, N = 4: second peak comparable to the first", "0.7 to 1.3 of it", "", Fate::absent,
+               ""};
+  if (const auto p = of(0, 4); p && p->hottest()) {
+    equal.measured = described(*p);
+    const auto second = p->second();
+    equal.fate = !second ? Fate::open : yes(second->over_first >= 0.7 && second->over_first <= 1.3);
+  }
+  Target off{"W = 50.3: hottest off the base for deep beds as well", "z > 1", "", Fate::absent, ""};
+  if (const auto p = of(depths.size() - 1, 2); p && p->hottest()) {
+    off.measured = fmt::format("N = {:g}: {}", depths.back(), described(*p));
+    off.fate = yes(p->z[*p->hottest()] > 1);
+  }
+  r.targets = {low, warm, back, equal, off};
+  static constexpr const char* kNames[] = {"p2-fig12a", "p2-fig12b", "p2-fig12c", "p2-fig13a", "p2-fig13b"};
+  for (std::size_t k = 0; k < kFrequencies.size(); ++k) {
+    std::vector<Series> series;
+    for (std::size_t d = 0; d < depths.size(); ++d)
+      if (const auto p = of(d, k)) series.push_back(temperatures(fmt::format("N = {:g}", depths[d]), *p));
+    if (series.empty()) continue;
+    r.figures.push_back(
+        series_figure(kNames[k], fmt::format("Local temperature, W = {:.4g}", w_of_rpm(kFrequencies[k])),
+                      "z/d", "T_z(z)/(m g d)", series, "set xrange [0:*]\nset yrange [0:*]\n",
+                      "3D smooth, slabs of d; bars of two errors. Form of Bhateja et al. 2016, Figs. 12 "
+                      "and 13."));
+  }
+  r.cheaper.push_back(fmt::format("{} depths", depths.size()));
+  return r;
+}
+
+// ---------------------------------------------------------------- Figs. 14 and 15
+
+struct Pair {
+  std::vector<std::optional<Profile>> smooth, rough;  ///< beside kFrequencies
+};
+
+void add_pair(Gas& gas, const Request& request) {
+  const GasSize& size = gas_size_for(request);
+  gas.add(GasSystem{3, false}, size, kFrequencies);
+  gas.add(GasSystem{3, true}, size, kFrequencies);
+}
+
+Pair pair_of(const Gas& gas) {
+  Pair pair;
+  for (std::size_t k = 0; k < kFrequencies.size(); ++k) {
+    pair.smooth.push_back(profile_of(gas.points(0)[k], area_of(3), false));
+    pair.rough.push_back(profile_of(gas.points(1)[k], area_of(3), false));
+  }
+  return pair;
+}
+
+std::vector<Figure> pair_figures(const std::string& name, const Pair& pair, bool of_packing) {
+  std::vector<Figure> figures;
+  for (const bool rough : {false, true}) {
+    std::vector<Series> series;
+    for (std::size_t k = 0; k < kFrequencies.size(); ++k)
+      if (const auto& p = (rough ? pair.rough : pair.smooth)[k]) {
+        const std::string title = fmt::format("W = {:.4g}", w_of_rpm(kFrequencies[k]));
+        series.push_back(of_packing ? packing(title, *p) : temperatures(title, *p));
+      }
+    if (series.empty()) continue;
+    figures.push_back(series_figure(
+        name + (rough ? "b" : "a"),
+        fmt::format("{}, 3D {}", of_packing ? "Packing fraction" : "Local temperature",
+                    rough ? "rough" : "smooth"),
+        "z/d", of_packing ? "phi(z)" : "T_z(z)/(m g d)", series, "set xrange [0:*]\nset yrange [0:*]\n",
+        "100 grains, N = 4, slabs of d. Form of Bhateja et al. 2016, Figs. 14 and 15."));
+  }
+  return figures;
+}
+
+Reproduction run_14(const Request& request) {
+  Gas gas(request);
+  add_pair(gas, request);
+  Reproduction r =
+      begun(gas, "Bhateja et al. 2016, Fig. 14: local temperature over height, 3D smooth and rough");
+  const Pair pair = pair_of(gas);
+  Target rises{"T_z(z) rises with W", "at every height below 10 d", "", Fate::absent, ""};
+  std::vector<Fate> fates;
+  for (const auto* side : {&pair.smooth, &pair.rough})
+    for (std::size_t k = 1; k < side->size(); ++k) {
+      const auto &lower = (*side)[k - 1], &upper = (*side)[k];
+      if (!lower || !upper) continue;
+      for (std::size_t i = 0; i < lower->z.size(); ++i)
+        for (std::size_t j = 0; j < upper->z.size(); ++j)
+          if (lower->z[i] == upper->z[j] && lower->z[i] > 1 && lower->z[i] < 10 &&
+              std::isfinite(lower->t[i]) && std::isfinite(upper->t[j])) {
+            const double gap = upper->t[j] - lower->t[i];
+            fates.push_back(
+                gap > 0 ? Fate::met
+                : -gap > 3 * std::hypot(upper->error[j] * upper->t[j], lower->error[i] * lower->t[i])
+                    ? Fate::missed
+                    : Fate::open);
+          }
+    }
+  rises.measured = fates.empty() ? ""
+                                 : fmt::format("{} pairs of slabs, {} rise", fates.size(),
+                                               std::count(fates.begin(), fates.end(), Fate::met));
+  rises.fate = all_of(fates);
+  r.targets.push_back(rises);
+  const auto last = kFrequencies.size() - 1;
+  Target smooth{"W = 85: second peak for smooth grains", "yes", "", Fate::absent, ""};
+  if (const auto& p = pair.smooth[last]) {
+    smooth.measured = described(*p);
+    smooth.fate = p->second() ? Fate::met : Fate::open;
+  }
+  Target rough{"no second peak for rough grains", "none at any W", "", Fate::absent, ""};
+  fates.clear();
+  for (std::size_t k = 0; k < pair.rough.size(); ++k)
+    if (const auto& p = pair.rough[k]; p && p->hottest()) {
+      fates.push_back(p->second() ? Fate::missed : Fate::met);
+      if (p->second())
+        rough.measured += fmt::format("W = {:.4g}: {}. ", w_of_rpm(kFrequencies[k]), described(*p));
+    }
+  if (!fates.empty() && rough.measured.empty()) rough.measured = fmt::format("none at {} W", fates.size());
+  rough.fate = all_of(fates);
+  Target off{"hottest off the base at high W, smooth", "z > 1 at W >= 22", "", Fate::absent, ""};
+  fates.clear();
+  for (std::size_t k = 1; k < pair.smooth.size(); ++k)
+    if (const auto& p = pair.smooth[k]; p && p->hottest()) {
+      fates.push_back(yes(p->z[*p->hottest()] > 1));
+      off.measured += fmt::format("{}{}", off.measured.empty() ? "" : ", ", height(p->z[*p->hottest()]));
+    }
+  off.fate = all_of(fates);
+  r.targets.insert(r.targets.end(), {smooth, rough, off});
+  r.figures = pair_figures("p2-fig14", pair, false);
+  return r;
+}
+
+Reproduction run_15(const Request& request) {
+  Gas gas(request);
+  add_pair(gas, request);
+  Reproduction r =
+      begun(gas, "Bhateja et al. 2016, Fig. 15: packing fraction over height, 3D smooth and rough");
+  const Pair pair = pair_of(gas);
+  Target rough{"phi(z) peaks nearer to the base and higher when rough", "at each W", "", Fate::absent, ""};
+  Target moves{"the peak of phi moves up with W", "monotonic", "", Fate::absent, ""};
+  Target apart{"phi and T peak at different heights", "at W >= 22", "", Fate::absent, ""};
+  std::vector<Fate> nearer, up, different;
+  for (std::size_t k = 0; k < kFrequencies.size(); ++k) {
+    const auto &s = pair.smooth[k], &q = pair.rough[k];
+    if (s && q) {
+      const double zs = s->z[s->densest()], zq = q->z[q->densest()];
+      nearer.push_back(zq > zs                                       ? Fate::missed
+                       : q->phi[q->densest()] > s->phi[s->densest()] ? Fate::met
+                                                                     : Fate::open);
+      rough.measured += fmt::format("{}W = {:.3g}: {:.2g} at {:g}, rough {:.2g} at {:g}",
+                                    rough.measured.empty() ? "" : "; ", w_of_rpm(kFrequencies[k]),
+                                    s->phi[s->densest()], zs, q->phi[q->densest()], zq);
+    }
+    if (k > 0 && s && pair.smooth[k - 1]) {
+      const double before = pair.smooth[k - 1]->z[pair.smooth[k - 1]->densest()];
+      up.push_back(yes(s->z[s->densest()] >= before));
+      moves.measured +=
+          fmt::format("{}{:g} to {:g}", moves.measured.empty() ? "" : ", ", before, s->z[s->densest()]);
+    }
+    if (k > 0 && s && s->hottest()) {
+      different.push_back(yes(*s->hottest() != s->densest()));
+      apart.measured += fmt::format("{}{:g} and {:g}", apart.measured.empty() ? "" : ", ", s->z[s->densest()],
+                                    s->z[*s->hottest()]);
+    }
+  }
+  rough.fate = all_of(nearer);
+  moves.fate = all_of(up);
+  apart.fate = all_of(different);
+  r.targets = {rough, moves, apart};
+  r.figures = pair_figures("p2-fig15", pair, true);
+  return r;
+}
+
+// ---------------------------------------------------------------- Fig. 16
+
+constexpr double kStations[] = {0.5, 2.5, 4.5, 7.5, 11.5};
+
+Reproduction run_16(const Request& request) {
+  const GasSize& size = gas_size_for(request);
+  Gas gas(request);
+  for (const GasSystem& system : gas_systems()) gas.add(system, size, size.rpm);
+  Reproduction r =
+      begun(gas, "Bhateja et al. 2016, Fig. 16: scaled local temperature at fixed heights against W");
+  for (std::size_t c = 0; c < gas_systems().size(); ++c) {
+    const GasSystem& system = gas_systems()[c];
+    std::vector<Series> series;
+    for (const double z : kStations) {
+      Series s{.title = fmt::format("z = {:g} d", z), .x = {}, .y = {}};
+      for (const GasPoint& point : gas.points(c)) {
+        const auto p = profile_of(point, area_of(system.dimension), system.dimension == 2);
+        if (!p || point.at < 1) continue;
+        for (std::size_t k = 0; k < p->z.size(); ++k)
+          if (p->z[k] == z && std::isfinite(p->t[k])) {
+            const double t = p->t[k] / point.at;  // V_p^2 = W d g
+            s.x.push_back(point.at);
+            s.y.push_back({.value = t, .low = t * (1 - 2 * p->error[k]), .high = t * (1 + 2 * p->error[k])});
+          }
+      }
+      series.push_back(s);
+    }
+    const auto trend = [&](const char* what, const char* wanted, const Series& s, double from, bool falls) {
+      Target t{fmt::format("{}: {}, z = {}", system.name(), what, s.title.substr(4)), wanted, "",
+               Fate::absent, "the paper's heights stand in its legend alone"};
+      std::size_t first = 0;
+      while (first < s.x.size() && s.x[first] < from) ++first;
+      if (first + 1 < s.x.size()) {
+        t.measured = fmt::format("{} at W = {:.3g}, {} at {:.3g}", s.y[first].text(), s.x[first],
+                                 s.y.back().text(), s.x.back());
+        t.fate = falls ? above(s.y[first], s.y.back()) : above(s.y.back(), s.y[first]);
+      }
+      r.targets.push_back(t);
+    };
+    trend("low z", "falls with W", series[1], 5, true);
+    trend("high z", "rises with W", series[4], 5, false);
+    r.figures.push_back(series_figure(
+        fmt::format("p2-fig16{}", "bdac"[c]), "Local temperature, " + system.name(), "W = V_p^2/(d g)",
+        "T_z(z)/(m V_p^2)", series, "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
+        "Slabs of d at fixed heights. Form of Bhateja et al. 2016, Fig. 16."));
+  }
+  return r;
+}
+
+}  // namespace
+
+Reproducible p2_fig12() {
+  return {"p2-fig12", "local temperature over height, shallow and deep beds (Figs. 12 and 13)", run_12,
+          "p2-runs"};
+}
+Reproducible p2_fig13() {
+  return {"p2-fig13", "the same as p2-fig12, which draws Fig. 13 too", run_12, "p2-runs"};
+}
+Reproducible p2_fig14() {
+  return {"p2-fig14", "local temperature over height, 3D smooth and rough", run_14, "p2-runs"};
+}
+Reproducible p2_fig15() {
+  return {"p2-fig15", "packing fraction over height, 3D smooth and rough (runs of p2-fig14)", run_15,
+          "p2-runs"};
+}
+Reproducible p2_fig16() {
+  return {"p2-fig16", "scaled local temperature at fixed heights against W (runs of p2-fig2)", run_16,
+          "p2-runs"};
+}
+
+}  // namespace twincell::reproduce

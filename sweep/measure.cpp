@@ -1,0 +1,51 @@
+#include "sweep/measure.hpp"
+
+#include "sweep/live_trajectory.hpp"
+#include "sweep/precision_rule.hpp"
+
+namespace twincell::sweep {
+
+namespace {
+
+/// Kinetic energy per bead, m g sigma, up to which a bed counts as resting: it is by no more than that, in
+/// sigma, that the centre of mass may still sink or rise. Smooth beds never come to rest altogether, for a
+/// bead may glide on them for ever, nor do those of a law without static friction.
+constexpr double kAtRest = 0.005;
+
+double height_of_centre(const std::vector<sim::Bead>& beads) {
+  double moment = 0, mass = 0;
+  for (const sim::Bead& b : beads) {
+    moment += b.mass * b.z;
+    mass += b.mass;
+  }
+  return moment / mass;
+}
+
+}  // namespace
+
+Measured measure(sim::Simulation& run, AnalysisOptions options, const std::string& name, Progress& progress,
+                 const Beside& beside) {
+  Measured measured;
+  std::optional<PrecisionRule> rule;
+  const LiveTrajectory live(run, name, progress, [&](const Frame& frame) {
+    measured.cycles = frame.cycle + 1;
+    const bool goes_on = beside.frame(frame);
+    return !(rule && rule->reached(frame)) && goes_on;
+  });
+  const sim::Scene& scene = run.scene();
+  if (scene.until) rule.emplace(scene, live.info());
+  const bool rests = run.settled().time > 0 && run.settled().energy_per_bead < kAtRest;
+  if (!options.rest_height && scene.g() > 0 && rests && !run.system().beads.empty())
+    options.rest_height = height_of_centre(run.system().beads);
+  measured.rest_height = options.rest_height;
+  beside.begin(live.info());
+  measured.results = analyze(live, options);
+  measured.contact_fraction = run.contact_fraction();
+  if (rule) {
+    measured.precise = rule->is_reached();
+    measured.until = rule->text();
+  }
+  return measured;
+}
+
+}  // namespace twincell::sweep
