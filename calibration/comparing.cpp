@@ -65,7 +65,9 @@ void show_frames(const TrajectoryInfo& info, const fs::path& stack, Run& run,
   for (const Snapshot& moment : run.show.moments) numbers.push_back(moment.frame.step);
   try {
     const auto frames = open_frames(stack);
-    run.show.pictures = picture_frames(*frames, numbers);
+    constexpr int kLongest_px = 800;
+    run.show.pictures = picture_frames(*frames, numbers, kLongest_px, camera.value("rotation_deg", 0.0),
+                                       camera.value("distortion", 0.0));
   } catch (const InputError& e) {
     notes.push_back(fmt::format("{}: the report shows no camera frames of it: {}", run.name, e.what()));
   }

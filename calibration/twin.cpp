@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/calibration_file.hpp"
 #include "analysis/trajectory/config.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "analysis/trajectory/median.hpp"
+#include "analysis/trajectory/toml_leaves.hpp"
 #include "imaging/frame_source.hpp"
 #include "imaging/pipeline.hpp"
 #include "sim/simulation.hpp"
@@ -93,11 +95,15 @@ void simulate(const sim::Scene& scene, const fs::path& output, const TwinProvena
 
 std::string twin_scene(const std::string& base, const std::string& base_name, const CellDescription& cell,
                        const fs::path& experiment, std::size_t frame, std::int64_t cycles) {
+  const std::string tilt =
+      cell.side_tilt && cell.sides == Boundary::wall
+          ? fmt::format("side_tilt = [{:.17g}, {:.17g}]\n", (*cell.side_tilt)[0], (*cell.side_tilt)[1])
+          : "";
   const std::string of_cell = fmt::format(
-      "[cell]\nwidth = {:.17g}\nsides = \"{}\"\n[drive]\namplitude = {:.17g}\nomega = {:.17g}\n"
+      "[cell]\nwidth = {:.17g}\nsides = \"{}\"\n{}[drive]\namplitude = {:.17g}\nomega = {:.17g}\n"
       "[start]\nkind = \"trajectory\"\nfrom = '''{}'''\nframe = {}\n[time]\ndiscard = 0\ncycles = {}\nphases "
       "= {}\n",
-      *cell.width, word_of_sides(cell, "the cell"), cell.drive()->amplitude, cell.drive()->omega,
+      *cell.width, word_of_sides(cell, "the cell"), tilt, cell.drive()->amplitude, cell.drive()->omega,
       experiment.string(), frame, cycles, cell.phase_lock.frames_per_cycle);
   std::string scale;
   if (cell.scale.sigma_m) scale += fmt::format("sigma_m = {:.17g}\n", *cell.scale.sigma_m);
@@ -105,6 +111,10 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
   Config scene = base_name.empty()
                      ? Config::from_text("preset = \"fortini-huang-2015\"\n", "preset of the twin")
                      : Config::from_text(base, base_name);
+  // One file speaks for cell and contacts.
+  if (!cell.included.file.empty() && !scene.root().has("calibration"))
+    scene.assign("calibration.from=" + toml_quoted(fs::absolute(cell.included.file).string()));
+  include_calibration(scene, base_name, Includer::scene);
   Config measured =
       Config::from_text(of_cell + (scale.empty() ? "" : "[scale]\n" + scale), "the cell description");
   scene.yield_to(measured, "drive", {"amplitude", "omega", "frequency", "gamma", "k_m", "peak_velocity"});

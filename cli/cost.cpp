@@ -1,4 +1,5 @@
-// twincell cost sim: error and time of the time steps together; cost gas and cost locate have their own files
+// twincell cost sim: error and time of the time steps together; cost gas, cost locate and cost calibration
+// have their own files
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include "analysis/figures.hpp"
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "cli/cost_calibration.hpp"
 #include "cli/cost_gas.hpp"
 #include "cli/cost_locate.hpp"
 #include "cli/output.hpp"
@@ -303,7 +305,8 @@ void run(const CostOptions& options, const Common& common) {
   CostReport report =
       locate ? cost_of_locating(options.accuracy.value_or(kAccuracy_px), options.quick, common)
       : options.what == "gas" ? cost_of_gas(options.accuracy.value_or(kAccuracy_gas), options.quick, common)
-                              : cost_of_stepping(options, common);
+      : options.what == "calibration" ? cost_of_calibrating(options.quick, common)
+                                      : cost_of_stepping(options, common);
   report.document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
   if (folder) {
     draw(report.figure, folder->part());
@@ -324,9 +327,9 @@ void add_cost(CLI::App& program, Common& common) {
   verb.add_option(
           "what", options->what,
           "sim: integrators, steps per contact, stiffness; gas: steps and flights for the temperature of a "
-          "gas; locate: finders, fit, noise, pixels per bead")
+          "gas; locate: finders, fit, noise, pixels per bead; calibration: frames used")
       ->required()
-      ->check(CLI::IsMember({"sim", "gas", "locate"}));
+      ->check(CLI::IsMember({"sim", "gas", "locate", "calibration"}));
   verb.add_option("-o,--output", options->output, "Folder for figure and table; replaced as a whole");
   verb.add_option(
       "--accuracy", options->accuracy,

@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "analysis/trajectory/h5md_file.hpp"
-#include "analysis/trajectory/hdf5.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
@@ -101,16 +100,6 @@ std::string as_text(const nlohmann::json& d) {
   s += "  scale       " + (d.contains("scale") ? d["scale"].dump() : std::string("absent")) + "\n";
   if (d["provenance"].is_object()) s += "  made by     " + d["provenance"].value("command_line", "") + "\n";
   return s;
-}
-
-// A trajectory is an HDF5 file with a group h5md. What is named .h5 and is no HDF5 is refused as a
-// trajectory.
-bool is_trajectory(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) return false;
-  h5::quiet();
-  const h5::Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  return opened ? h5::exists(opened.get(), "h5md") : file.extension() == ".h5";
 }
 
 }  // namespace

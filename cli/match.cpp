@@ -1,6 +1,7 @@
 // twincell match STACK CELL.toml: the twin of a filmed cell, and what it says.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -36,6 +37,9 @@ void run(const Common& common, MatchOptions& o) {
                                          [&](const sim::Scene& scene, const std::vector<sim::Bead>& beads) {
                                            return scene_provenance(common, scene, beads, {});
                                          }};
+  if (const CellDescription cell = read_cell(o.twin.cell_file); !cell.included.overridden.empty())
+    note(common, fmt::format("{} states what {} measured: {}", o.twin.cell_file.string(),
+                             cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
   const Twin twin = make_twin(o.twin, folder, provenance, progress_bars(common));
 
   o.flags.options.experiments = {twin.experiment};

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "analysis/trajectory/hdf5.hpp"
 #include "cli/output.hpp"
 
 namespace twincell::cli {
@@ -67,6 +68,14 @@ std::unique_ptr<FrameSource> open_stack(const std::filesystem::path& stack, cons
   auto frames = open_frames(stack);
   for (const std::string& sentence : frames->info().notes) note(common, stack.string() + ": " + sentence);
   return frames;
+}
+
+bool is_trajectory(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return false;
+  h5::quiet();
+  const h5::Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  return opened ? h5::exists(opened.get(), "h5md") : file.extension() == ".h5";
 }
 
 nlohmann::json describe_stack(const std::filesystem::path& stack) {

@@ -1,6 +1,7 @@
 // twincell track STACK: locate, phase-lock, link: a trajectory.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -149,6 +150,9 @@ std::string describe(const TrackedStack& stack) {
 
 void run(TrackOptions& o, const Common& common) {
   CellDescription cell = resolve_cell(o);
+  if (!cell.included.overridden.empty())
+    note(common, fmt::format("{} states what {} measured: {}", o.cell_file, cell.included.file.string(),
+                             fmt::join(cell.included.overridden, ", ")));
   const PhaseWay way = phase_way(o, cell);
   (void)cell.drive();  // a drive that contradicts itself is refused before the work, not after
   o.locator.preprocess.bright |= cell.bright;

@@ -15,6 +15,7 @@ struct Common;
 using AddVerb = void (*)(CLI::App& program, Common& common);
 
 void add_analyze(CLI::App& program, Common& common);
+void add_calibrate(CLI::App& program, Common& common);
 void add_compare(CLI::App& program, Common& common);
 void add_cost(CLI::App& program, Common& common);
 void add_explain(CLI::App& program, Common& common);

@@ -1,7 +1,7 @@
 # Everything comes from the distribution; `./run setup` installs the packages this file looks for.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs videoio)
+find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs videoio calib3d)
 find_package(Ceres 2.1 REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(HDF5 1.10 REQUIRED COMPONENTS C)

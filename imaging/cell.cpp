@@ -10,11 +10,18 @@ std::optional<Drive> CellDescription::drive() const {
   return solve_drive(s, 1, Where{.file = {}, .key = "drive"});
 }
 
+PixelFrame CellDescription::pixel_frame(cv::Size picture, double scale_px, PixelPoint zero) const {
+  PixelFrame frame{scale_px, zero};
+  if (rotation_deg != 0 || distortion != 0) frame.lens = Lens(picture, rotation_deg, distortion);
+  return frame;
+}
+
 CellDescription read_cell(const std::filesystem::path& path) {
   constexpr std::int64_t kMostPhases = 100000;
-  const Config config = Config::from_file(path);
-  const ConfigSection root = config.root();
+  Config config = Config::from_file(path);
   CellDescription cell;
+  cell.included = include_calibration(config, path, Includer::cell);
+  const ConfigSection root = config.root();
   cell.text = config.text();
 
   const ConfigSection camera = root.section("camera");
@@ -26,6 +33,9 @@ CellDescription read_cell(const std::filesystem::path& path) {
   cell.phase_lock.first_phase =
       static_cast<int>(camera.integer_in("first_phase", 0, kMostPhases).value_or(0));
   cell.phase_lock.check(camera.where("first_phase"));
+  cell.phase_lock.offset = camera.number_in("phase_offset", -1, 1).value_or(0);
+  cell.rotation_deg = camera.number_in("rotation_deg", -180, 180).value_or(0);
+  cell.distortion = camera.number_in("distortion", -0.2, 0.2).value_or(0);
   cell.bright = camera.boolean("bright").value_or(false);
 
   const ConfigSection box = root.section("cell");
@@ -35,6 +45,11 @@ CellDescription read_cell(const std::filesystem::path& path) {
     cell.sides = *sides == "walls"      ? Boundary::wall
                  : *sides == "periodic" ? Boundary::periodic
                                         : Boundary::open;
+
+  if (const auto tilt = box.numbers("side_tilt", 2)) {
+    for (const double t : *tilt) require_range(box.where("side_tilt"), t, -45, 45);
+    cell.side_tilt = {(*tilt)[0], (*tilt)[1]};
+  }
 
   cell.drive_spec = read_drive_spec(root.section("drive"));
   const ConfigSection scale = root.section("scale");

@@ -7,11 +7,15 @@
 ///     origin_px = [40.0, 560.0]    # lower-left inside corner, plate at its mean height
 ///     frames_per_cycle = 20        # 0 or absent: not phase-locked
 ///     first_phase = 0              # phase of the first frame
+///     phase_offset = 0.0           # frames by which each was taken later than its phase says
+///     rotation_deg = 0.0           # turn of the picture about its middle, counter-clockwise
+///     distortion = 0.0             # k1: what lies at r, in half diagonals, is seen at r (1 + k1 r^2)
 ///     bright = false               # discs brighter than their surroundings
 ///     [cell]
 ///     width = 20.0                 # sigma, between the side walls
 ///     height = 40.0                # sigma
 ///     sides = "walls"              # "walls", "periodic" or "open"
+///     side_tilt = [0.0, 0.0]       # degrees by which the left and the right wall lean outward
 ///     [drive]                      # any two that determine A and omega, as in a scene
 ///     gamma = 2.0
 ///     amplitude = 1.0
@@ -19,13 +23,21 @@
 ///     sigma_m = 0.002
 ///     gravity_m_s2 = 9.81
 ///
-/// Every key may be absent; an unknown one is an error.
+///     [calibration]
+///     from = "cell.calibration.toml"  # what calibrate measured (calibration_file.hpp); keys above win over
+///     it
+///
+/// Every key may be absent; an unknown one is an error. With a turn or a distortion, origin_px is a place of
+/// the picture as it would be without them.
 
+#include <array>
 #include <filesystem>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 
 #include "analysis/trajectory/box.hpp"
+#include "analysis/trajectory/calibration_file.hpp"
 #include "analysis/trajectory/drive.hpp"
 #include "analysis/trajectory/units.hpp"
 #include "imaging/phase_lock.hpp"
@@ -37,14 +49,24 @@ namespace twincell {
 struct CellDescription {
   std::optional<double> pixels_per_sigma;  ///< > 0
   std::optional<PixelPoint> origin;        ///< px
+  double rotation_deg = 0;                 ///< of the picture, counter-clockwise
+  double distortion = 0;                   ///< k1 (camera/lens.hpp)
   PhaseLock phase_lock;
   bool bright = false;
-  std::optional<double> width, height;  ///< sigma, > 0
+  std::optional<double> width, height;             ///< sigma, > 0
+  std::optional<std::array<double, 2>> side_tilt;  ///< degrees outward, left and right
   Boundary sides = Boundary::wall;
   DriveSpec drive_spec;  ///< empty: unknown
   Scale scale;           ///< pixels_per_sigma is not repeated here
+  Included included;     ///< what a calibration gave
   std::string text;      ///< the file's own text, for provenance
 
+  /// Map between a picture of that size and the cell. \pre origin and pixels_per_sigma are known
+  [[nodiscard]] PixelFrame pixel_frame(cv::Size picture) const {
+    return pixel_frame(picture, *pixels_per_sigma, *origin);
+  }
+  /// The same with scale and origin given.
+  [[nodiscard]] PixelFrame pixel_frame(cv::Size picture, double scale_px, PixelPoint zero) const;
   /// A and omega, if the drive is stated. \throws ConfigError as solve_drive
   [[nodiscard]] std::optional<Drive> drive() const;
 };

@@ -20,6 +20,7 @@ namespace twincell {
 struct PhaseLock {
   int frames_per_cycle = 0;  ///< N_k; 0: not phase-locked
   int first_phase = 0;       ///< k_0, the phase of frame 0, in 0 .. N_k - 1
+  double offset = 0;         ///< frame intervals by which every frame was taken later than its phase says
 
   [[nodiscard]] bool locked() const { return frames_per_cycle > 0; }
   [[nodiscard]] std::int32_t phase(std::int64_t frame) const {

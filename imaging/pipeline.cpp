@@ -42,9 +42,9 @@ std::vector<Located> locate_batch(const std::vector<cv::Mat>& batch, const Locat
   return results;
 }
 
-bool outside(const CellDescription& cell, const Detection& b) {
+bool outside(const CellDescription& cell, cv::Size picture, const Detection& b) {
   if (!cell.origin || !cell.pixels_per_sigma) return false;
-  const Vec3 r = PixelFrame{*cell.pixels_per_sigma, *cell.origin}.cell_from_pixel({b.x, b.y});
+  const Vec3 r = cell.pixel_frame(picture).cell_from_pixel({b.x, b.y});
   return (cell.width && (r.x() < 0 || r.x() > *cell.width)) || (cell.height && r.z() > *cell.height + 0.5);
 }
 
@@ -192,7 +192,7 @@ TrackedStack track_stack(FrameSource& frames, LocatorOptions& locator, LinkOptio
         height = grey.rows;
         beads.clear();
         for (const Detection& b : found.beads) {
-          if (outside(cell, b)) {
+          if (outside(cell, grey.size(), b)) {
             ++outside_cell;
             continue;
           }
@@ -218,7 +218,8 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
                           int shortest) {
   TrackPlan plan;
   const double scale = cell.pixels_per_sigma.value_or(diameter_px);
-  plan.pixel_frame = {scale, cell.origin.value_or(PixelPoint{-0.5, stack.height_px - 0.5})};
+  plan.pixel_frame = cell.pixel_frame({stack.width_px, stack.height_px}, scale,
+                                      cell.origin.value_or(PixelPoint{-0.5, stack.height_px - 0.5}));
   TrajectoryInfo& info = plan.info;
   plan.slot_of_track.assign(stack.tracks.size(), -1);
   for (std::size_t t = 0; t < stack.tracks.size(); ++t) {
@@ -242,11 +243,11 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
   info.scale = cell.scale;
   info.scale.pixels_per_sigma = scale;
   info.source = "experiment";
-  info.tracking_json = tracking_json(stack, plan);
+  info.tracking_json = tracking_json(stack, plan, cell);
   return plan;
 }
 
-std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan) {
+std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell) {
   const PhaseTable& phases = stack.phases;
   nlohmann::json lock = {{"way", phases.way}};
   if (phases.locked()) lock["frames_per_cycle"] = phases.frames_per_cycle;
@@ -274,31 +275,37 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan) {
       tracers["broken"].push_back({{"slot", slot},
                                    {"first", stack.tracks[static_cast<std::size_t>(t)].first},
                                    {"last", stack.tracks[static_cast<std::size_t>(t)].last}});
-  const nlohmann::json document = {
-      {"phase_lock", lock},
-      {"links",
-       {{"made", l.links},
-        {"settled", l.settled},
-        {"bridged", l.bridged},
-        {"ambiguous", l.ambiguous},
-        {"births", l.births},
-        {"losses", l.losses},
-        {"networks", l.networks},
-        {"largest_network", l.largest_network},
-        {"unsolved", l.unsolved},
-        {"unclear_shifts", l.unclear_shifts}}},
-      {"tracers", tracers},
-      {"camera",
-       {{"pixels_per_sigma", plan.pixel_frame.pixels_per_sigma},
-        {"origin_px", {plan.pixel_frame.origin.x_px, plan.pixel_frame.origin.y_px}},
-        {"width_px", stack.width_px},
-        {"height_px", stack.height_px}}}};
+  if (cell.phase_lock.offset != 0) lock["offset_frames"] = cell.phase_lock.offset;
+  nlohmann::json document = {{"phase_lock", lock},
+                             {"links",
+                              {{"made", l.links},
+                               {"settled", l.settled},
+                               {"bridged", l.bridged},
+                               {"ambiguous", l.ambiguous},
+                               {"births", l.births},
+                               {"losses", l.losses},
+                               {"networks", l.networks},
+                               {"largest_network", l.largest_network},
+                               {"unsolved", l.unsolved},
+                               {"unclear_shifts", l.unclear_shifts}}},
+                             {"tracers", tracers},
+                             {"camera",
+                              {{"pixels_per_sigma", plan.pixel_frame.pixels_per_sigma},
+                               {"origin_px", {plan.pixel_frame.origin.x_px, plan.pixel_frame.origin.y_px}},
+                               {"width_px", stack.width_px},
+                               {"height_px", stack.height_px}}}};
+  if (plan.pixel_frame.lens) {
+    document["camera"]["rotation_deg"] = cell.rotation_deg;
+    document["camera"]["distortion"] = cell.distortion;
+  }
+  if (cell.included.camera)
+    document["camera"]["covariance"] = {{"names", cell.included.camera->names},
+                                        {"matrix", cell.included.camera->matrix}};
   return document.dump();
 }
 
 void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell,
                       TrajectorySink& sink) {
-  (void)cell;
   const TrajectoryInfo& info = plan.info;
   const double nan = std::numeric_limits<double>::quiet_NaN(), scale = plan.pixel_frame.pixels_per_sigma;
   Frame frame;
@@ -311,9 +318,9 @@ void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, const Ce
     frame.cycle = at.cycle;
     frame.time = static_cast<double>(f);
     if (info.drive && stack.phases.locked()) {
-      const double fraction = static_cast<double>(at.phase) / stack.phases.frames_per_cycle;
+      const double fraction = (at.phase + cell.phase_lock.offset) / stack.phases.frames_per_cycle;
       frame.time = (static_cast<double>(at.cycle) + fraction) * info.drive->period();
-      frame.plate_height = info.drive->displacement(fraction);
+      frame.plate_height = info.drive->displacement(fraction - std::floor(fraction));
     }
     frame.position.assign(info.n_beads, Vec3(nan, nan, nan));
     frame.position_sigma.assign(info.n_beads, Vec3(nan, nan, nan));

@@ -93,8 +93,9 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
                           int shortest);
 
 /// What the tracking says of itself, as JSON: way and quality of the phases, links, ambiguous links, tracers.
-/// It is stored in the trajectory (docs/h5md.md). Slots, not tracks, are named.
-std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan);
+/// map of the camera with its covariance where a calibration gave it. It is stored in the trajectory
+/// (docs/h5md.md). Slots, not tracks, are named.
+std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell);
 
 /// Writes the frames, one at a time. Time is in t0 where the drive and N_k are known (a period per N_k
 /// frames), else the frame number. Velocity is absent; the plate height is there where the drive is known. A

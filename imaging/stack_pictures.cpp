@@ -4,11 +4,29 @@
 #include <opencv2/imgproc.hpp>
 
 #include "analysis/trajectory/error.hpp"
+#include "imaging/camera/lens.hpp"
 
 namespace twincell {
+namespace {
+
+/// The picture as it would be without turn and distortion.
+cv::Mat without_lens(const cv::Mat& picture, double rotation_deg, double distortion) {
+  const Lens lens(picture.size(), rotation_deg, distortion);
+  cv::Mat2f from(picture.size());
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x) {
+      const PixelPoint p = lens.picture_from_ideal({double(x), double(y)});
+      from(y, x) = {static_cast<float>(p.x_px), static_cast<float>(p.y_px)};
+    }
+  cv::Mat ideal;
+  cv::remap(picture, ideal, from, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  return ideal;
+}
+
+}  // namespace
 
 std::vector<std::string> picture_frames(FrameSource& stack, const std::vector<std::int64_t>& numbers,
-                                        int longest) {
+                                        int longest, double rotation_deg, double distortion) {
   std::vector<std::string> pictures(numbers.size());
   double gain = 0;
   cv::Mat frame, byte;
@@ -21,6 +39,7 @@ std::vector<std::string> picture_frames(FrameSource& stack, const std::vector<st
       gain = frame.depth() == CV_8U || top <= 0 ? 1 : 255 / top;
     }
     frame.convertTo(byte, CV_8U, gain);
+    if (rotation_deg != 0 || distortion != 0) byte = without_lens(byte, rotation_deg, distortion);
     const int by = (std::max(byte.cols, byte.rows) + longest - 1) / longest;
     if (by > 1) cv::resize(byte, byte, cv::Size(byte.cols / by, byte.rows / by), 0, 0, cv::INTER_AREA);
     std::vector<unsigned char> bytes;

@@ -95,7 +95,8 @@ SyntheticCamera::SyntheticCamera(const CameraOptions& options, const TrajectoryI
   discs_ = std::make_shared<Discs>(radii, std::min(1.0, corner), std::max(1.0, corner), options.blur_px);
 
   const double s = std::hypot(options.blur_px, std::sqrt(1.0 / 12));
-  const bool walls = info.box.boundary[0] == Boundary::wall;
+  const bool walls =
+      info.box.boundary[0] == Boundary::wall && options.left_tilt == 0 && options.right_tilt == 0;
   const double left = map_.pixel_from_cell(info.box.lower).x_px,
                right = map_.pixel_from_cell(info.box.upper).x_px;
   backlight_ = glass(size_, options);
@@ -152,6 +153,23 @@ void SyntheticCamera::draw_plate(const Moment& moment, cv::Mat1f& share) const {
         if (at[x][1] > above) row[x] *= at[x][1] > below ? 0 : light(at[x][1]);
     }
   }
+}
+
+void SyntheticCamera::draw_leaning_walls(const Moment& moment, cv::Mat1f& share) const {
+  constexpr double kDegree = std::numbers::pi / 180;
+  const double s = std::hypot(options_.blur_px, std::sqrt(1.0 / 12));
+  const double left = map_.pixel_from_cell(info_.box.lower).x_px,
+               right = map_.pixel_from_cell(info_.box.upper).x_px;
+  const double floor = map_.pixel_from_cell(Vec3(0, 0, shutter_.plate(moment, moment.late))).y_px;
+  const double l = options_.left_tilt * kDegree, r = options_.right_tilt * kDegree;
+  for (int y = 0; y < share.rows; ++y)
+    for (int x = 0; x < share.cols; ++x) {
+      const PixelPoint p =
+          ideal_.empty() ? PixelPoint{double(x), double(y)} : PixelPoint{ideal_(y, x)[0], ideal_(y, x)[1]};
+      const double up = floor - p.y_px;
+      share(y, x) *= edge((left - std::tan(l) * up - p.x_px) * std::cos(l), s) *
+                     edge((p.x_px - right - std::tan(r) * up) * std::cos(r), s);
+    }
 }
 
 cv::Mat1f SyntheticCamera::light(const Moment& moment) const {
@@ -228,6 +246,7 @@ cv::Mat1f SyntheticCamera::light(const Moment& moment) const {
   }
   share = cv::max(share, 0.0F);
   draw_plate(moment, share);
+  if (walls_.empty() && info_.box.boundary[0] == Boundary::wall) draw_leaning_walls(moment, share);
   const auto lamp = static_cast<float>(moment.lamp);
   for (int y = 0; y < size_.height; ++y)
     for (int x = 0; x < size_.width; ++x) {

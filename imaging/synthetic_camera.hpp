@@ -61,6 +61,8 @@ class SyntheticCamera {
 
  private:
   class Discs;
+  /// Darkens what lies behind leaning walls, whose feet ride on the plate.
+  void draw_leaning_walls(const Moment& moment, cv::Mat1f& share) const;
   void draw_plate(const Moment& moment, cv::Mat1f& share) const;
   [[nodiscard]] Vec3 place(const Moment& moment, std::size_t slot, double tau) const;
 

@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <numbers>
 
+#include "analysis/trajectory/calibration_file.hpp"
 #include "sim/laws/axes.hpp"
 #include "sim/presets.hpp"
 
@@ -424,8 +425,21 @@ Scene interpret(const Config& config, const std::string& name) {
   return scene;
 }
 
+const std::vector<std::string>& drive_words() {
+  static const std::vector<std::string> words = {"amplitude", "omega", "frequency",
+                                                 "gamma",     "k_m",   "peak_velocity"};
+  return words;
+}
+
+std::size_t count_drive_words(const Config& config) {
+  const Section drive = config.root().section("drive");
+  return static_cast<std::size_t>(std::count_if(drive_words().begin(), drive_words().end(),
+                                                [&](const std::string& word) { return drive.has(word); }));
+}
+
 Scene resolve(Config config, const std::string& name, const std::vector<std::string>& assignments) {
   for (const auto& assignment : assignments) config.assign(assignment);
+  const Included included = include_calibration(config, name, Includer::scene);
   const Section root = config.root();
   const auto preset = root.word("preset", preset_names());
   if (!preset) return interpret(config, name);
@@ -436,6 +450,11 @@ Scene resolve(Config config, const std::string& name, const std::vector<std::str
     for (const auto& group : {normal_damping_keys(), tangential_damping_keys()})
       base.yield_to(config, section, group);
   base.yield_to(config, "beads", {"count", "layers"});
+  // Two measured numbers, or a stated and a measured one, are a whole drive.
+  if (std::any_of(included.taken.begin(), included.taken.end(),
+                  [](const std::string& taken) { return taken.starts_with("drive."); }) &&
+      count_drive_words(config) >= 2)
+    base.yield_to(config, "drive", drive_words());
   base.overlay(std::move(config));
   return interpret(base, name);
 }

@@ -218,6 +218,42 @@ void Config::yield_to(const Config& upper, const std::string& section,
   for (const auto& key : alternatives) table.as_table()->erase(key);
 }
 
+namespace {
+
+/// The table that holds the last word of `path`; \param make whether missing ones are made, else nullptr.
+toml::table* table_above(toml::table& root, const std::string& path, bool make) {
+  toml::table* table = &root;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; table != nullptr && (end = path.find('.', begin)) != std::string::npos;
+       begin = end + 1) {
+    const std::string_view word = std::string_view(path).substr(begin, end - begin);
+    toml::node* below = table->get(word);
+    if (below == nullptr && make) below = &table->insert_or_assign(word, toml::table{}).first->second;
+    table = below == nullptr ? nullptr : below->as_table();
+  }
+  return table;
+}
+
+std::string_view last_word(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  return std::string_view(path).substr(dot == std::string::npos ? 0 : dot + 1);
+}
+
+}  // namespace
+
+void Config::adopt(Config& lower, const std::string& from, const std::string& to) {
+  toml::table* source = table_above(lower.shared_->table, from, false);
+  toml::table* target = table_above(shared_->table, to, true);
+  if (source == nullptr || target == nullptr) return;
+  // Moved, because a copied node forgets where it stood.
+  if (toml::node* node = source->get(last_word(from)))
+    node->visit([&](auto& value) { target->insert_or_assign(last_word(to), std::move(value)); });
+}
+
+void Config::erase(const std::string& path) {
+  if (toml::table* table = table_above(shared_->table, path, false)) table->erase(last_word(path));
+}
+
 void Config::assign(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   const Where where{"--set", 0, 0, assignment};

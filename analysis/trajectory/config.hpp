@@ -71,6 +71,11 @@ class Config {
   /// them, so that a user's choice displaces a preset's.
   void yield_to(const Config& upper, const std::string& section,
                 const std::vector<std::string>& alternatives);
+  /// Moves what `lower` has at the path `from` to the path `to` of this one, tables between made as needed;
+  /// it keeps its own file and line for complaints. \pre `from` is there, `to` is not
+  void adopt(Config& lower, const std::string& from, const std::string& to);
+  /// Removes the key or table at `path`, if it is there.
+  void erase(const std::string& path);
   /// "section.key=value" from the command line; a value that is not TOML is taken as text.
   void assign(const std::string& assignment);
   [[nodiscard]] ConfigSection root() const;

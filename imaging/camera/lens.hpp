@@ -7,7 +7,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "imaging/pixel_frame.hpp"
+#include "imaging/pixel_point.hpp"
 
 namespace twincell {
 

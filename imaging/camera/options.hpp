@@ -21,6 +21,7 @@ struct CameraOptions {
   double max_height = 0;
   double rotation_deg = 0;
   double distortion = 0;
+  double left_tilt = 0, right_tilt = 0;
   // Optics and light
   double blur_px = 0.8;
   double backlight = 215;

@@ -1,0 +1,42 @@
+#include "calibration/accelerometer.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "analysis/trajectory/error.hpp"
+#include "calibration/plate_lock.hpp"
+#include "calibration/table.hpp"
+
+namespace twincell {
+
+VibrationTable read_vibration(const std::filesystem::path& file) {
+  const Table table = read_table(file);
+  return {.file = table.file,
+          .time_s = table.column("time_s"),
+          .acceleration = table.column("acceleration_m_s2")};
+}
+
+VibrationFit fit_vibration(const VibrationTable& table) {
+  const std::size_t n = table.time_s.size();
+  const double step = n > 1 ? (table.time_s.back() - table.time_s.front()) / static_cast<double>(n - 1) : 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (!(std::abs(table.time_s[i] - table.time_s.front() - static_cast<double>(i) * step) <=
+          0.01 * step * static_cast<double>(n)) ||
+        !(step > 0))
+      throw InputError({.file = table.file, .key = "time_s"}, "does not rise in equal steps.");
+  PlateLock lock;
+  try {
+    lock = lock_plate(table.acceleration, {.frames_per_cycle = 0, .mend = false});
+  } catch (const InputError& e) {
+    throw InputError({.file = table.file, .key = "acceleration_m_s2"}, e.what());
+  }
+  const double hz = 1 / (2 * std::numbers::pi * step);
+  return {.frequency_hz = lock.omega * hz,
+          .frequency_error = lock.omega_error * hz,
+          .acceleration = lock.amplitude,
+          .acceleration_error = lock.amplitude_error};
+}
+
+}  // namespace twincell

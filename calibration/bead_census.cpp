@@ -1,0 +1,206 @@
+#include "calibration/bead_census.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/median.hpp"
+#include "imaging/pipeline.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+double median_spread(const std::vector<double>& v, double middle) {
+  std::vector<double> r;
+  for (const double x : v) r.push_back(std::abs(x - middle));
+  return 1.4826 * upper_median(r);
+}
+
+/// The middle of the shortest half, again and again (Robertson & Cryer 1974): the mode of few numbers.
+double half_sample_mode(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  while (v.size() > 3) {
+    const std::size_t half = (v.size() + 1) / 2;
+    std::size_t best = 0;
+    for (std::size_t a = 0; a + half <= v.size(); ++a)
+      if (v[a + half - 1] - v[a] < v[best + half - 1] - v[best]) best = a;
+    v = std::vector<double>(v.begin() + static_cast<std::ptrdiff_t>(best),
+                            v.begin() + static_cast<std::ptrdiff_t>(best + half));
+  }
+  return v[v.size() / 2];
+}
+
+/// Distances of pairs that may touch: up to a tenth further than the mean diameter.
+std::vector<double> near_pairs(const std::vector<SizedBead>& frame, double diameter) {
+  std::vector<SizedBead> sorted = frame;
+  std::sort(sorted.begin(), sorted.end(), [](const SizedBead& a, const SizedBead& b) { return a.x < b.x; });
+  std::vector<double> r;
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    for (std::size_t k = i + 1; k < sorted.size() && sorted[k].x - sorted[i].x < 1.1 * diameter; ++k) {
+      const double d = std::hypot(sorted[k].x - sorted[i].x, sorted[k].y - sorted[i].y);
+      if (d < 1.1 * diameter) r.push_back(d);
+    }
+  return r;
+}
+
+/// Distances pile up where beads touch and trail off above: the pile is symmetric by the noise alone. Its
+/// centre is the mean of what lies within two spreads of the mode, found again from there.
+std::optional<Estimate> touching(const std::vector<double>& pairs, double diameter, std::size_t frames) {
+  constexpr std::size_t kFewest = 20;
+  if (pairs.size() < kFewest) return std::nullopt;
+  double centre = half_sample_mode(pairs);
+  std::vector<double> below;
+  for (const double r : pairs)
+    if (r < centre) below.push_back(centre - r);
+  if (below.size() < kFewest / 2) return std::nullopt;
+  // Only the side on which no gap can be tells the noise.
+  const double width = std::max(1e-4 * diameter, 1.4826 * upper_median(below));
+  double n = 0;
+  for (int round = 0; round < 3; ++round) {
+    double sum = 0;
+    n = 0;
+    for (const double r : pairs)
+      if (std::abs(r - centre) < 2 * width) sum += r, ++n;
+    if (n < static_cast<double>(kFewest) / 2) return std::nullopt;
+    centre = sum / n;
+  }
+  // The same pairs come back in other frames.
+  return Estimate{centre, width / std::sqrt(n / static_cast<double>(frames))};
+}
+
+}  // namespace
+
+BeadFrames locate_beads(FrameSource& frames, LocatorOptions& options, const std::optional<Lens>& lens,
+                        int most, int threads, Progress& progress) {
+  /// Every so-and-so-many-th frame of another source.
+  class Thinned : public FrameSource {
+   public:
+    Thinned(FrameSource& whole, std::size_t stride) : whole_(whole), stride_(stride) {}
+    bool next(cv::Mat& frame) override {
+      for (std::size_t skip = first_ ? 0 : stride_ - 1; skip > 0; --skip) {
+        cv::Mat passed;
+        if (!whole_.next(passed)) return false;
+      }
+      first_ = false;
+      return whole_.next(frame);
+    }
+    [[nodiscard]] std::size_t announced() const override {
+      return (whole_.announced() + stride_ - 1) / stride_;
+    }
+    [[nodiscard]] std::string current() const override { return whole_.current(); }
+
+   private:
+    FrameSource& whole_;
+    std::size_t stride_;
+    bool first_ = true;
+  };
+  Thinned some(frames,
+               std::max<std::size_t>(1, frames.announced() / static_cast<std::size_t>(std::max(1, most))));
+  BeadFrames out;
+  locate_stack(
+      some, options, threads,
+      [&](std::int64_t, const cv::Mat&, const Located& found) {
+        out.frames.emplace_back();
+        out.counts.push_back(found.beads.size());
+        for (const Detection& b : found.beads) {
+          if (b.edge) continue;
+          SizedBead bead{b.x, b.y, b.radius, b.sigma_radius};
+          if (lens) {
+            const PixelPoint at = lens->ideal_from_picture({b.x, b.y});
+            bead = {at.x_px, at.y_px, b.radius / lens->magnification(at), b.sigma_radius};
+          }
+          out.frames.back().push_back(bead);
+        }
+      },
+      progress);
+  return out;
+}
+
+BeadFrames beads_of(const TrajectorySource& trajectory, int most) {
+  const TrajectoryInfo& info = trajectory.info();
+  if (info.radius.empty())
+    throw InputError({.file = trajectory.name(), .key = {}},
+                     "has no radii; calibrate beads on the stack itself.");
+  BeadFrames out;
+  const std::size_t stride =
+      std::max<std::size_t>(1, trajectory.n_frames() / static_cast<std::size_t>(std::max(1, most)));
+  Frame frame;
+  for (std::size_t f = 0; f < trajectory.n_frames(); f += stride) {
+    trajectory.read(f, frame);
+    out.frames.emplace_back();
+    for (std::size_t i = 0; i < info.n_beads; ++i)
+      if (frame.present(i) && std::isfinite(frame.position[i].x()))
+        out.frames.back().push_back({frame.position[i].x(), frame.position[i].z(), info.radius[i], 0});
+    out.counts.push_back(out.frames.back().size());
+  }
+  return out;
+}
+
+BeadCensus count_beads(const BeadFrames& beads) {
+  BeadCensus c;
+  c.frames = beads.frames.size();
+  std::vector<double> diameters, counts;
+  double noise = 0, most = 0;
+  for (std::size_t f = 0; f < beads.frames.size(); ++f) {
+    counts.push_back(static_cast<double>(beads.counts[f]));
+    most = std::max(most, static_cast<double>(beads.frames[f].size()));
+    for (const SizedBead& b : beads.frames[f]) {
+      diameters.push_back(2 * b.radius);
+      noise += 4 * b.sigma_radius * b.sigma_radius;
+    }
+  }
+  c.sizes = diameters.size();
+  if (diameters.size() < 3)
+    throw InputError({.file = {}, .key = "beads"},
+                     fmt::format("{} beads are too few to measure.", diameters.size()));
+  noise /= static_cast<double>(diameters.size());
+  c.count.value = upper_median(counts);
+  c.count.error = counts.size() > 1 ? 1.2533 * median_spread(counts, c.count.value) /
+                                          std::sqrt(static_cast<double>(counts.size()))
+                                    : kNaN;
+
+  // Discs that are none, or half hidden, are not of the distribution.
+  const double middle = upper_median(diameters),
+               width = std::max(median_spread(diameters, middle), 1e-6 * middle);
+  double sum = 0, squares = 0, cubes = 0, n = 0;
+  for (const double d : diameters) {
+    if (std::abs(d - middle) > 5 * width) continue;
+    sum += d, ++n;
+    c.diameters.push_back(d);
+  }
+  std::sort(c.diameters.begin(), c.diameters.end());
+  const double mean = sum / n;
+  double fourth = 0;
+  for (const double d : c.diameters) {
+    squares += (d - mean) * (d - mean);
+    fourth += std::pow(d - mean, 4);
+    cubes += std::pow(d / mean, 3);
+  }
+  const double variance = squares / std::max(1.0, n - 1), kurtosis = fourth / n;
+  // Independent are the beads of one frame, and no more than were kept.
+  const double independent = std::max(2.0, std::min(n, most));
+  c.diameter = {mean, std::sqrt(variance / independent)};
+  const double true_variance = std::max(0.0, variance - noise);
+  // Near zero the spread is no better known than its square is.
+  const double error_of_variance = std::sqrt(std::max(kurtosis - variance * variance, 0.0) / independent);
+  c.spread.value = std::sqrt(true_variance) / mean;
+  c.spread.error = true_variance > error_of_variance
+                       ? error_of_variance / (2 * std::sqrt(true_variance)) / mean
+                       : std::sqrt(error_of_variance) / mean;
+  c.mass.value = cubes / n - 3 * noise / (mean * mean);
+  c.mass.error = 3 * c.spread.value * c.spread.error * 2;
+
+  std::vector<double> pairs;
+  for (const auto& frame : beads.frames)
+    for (const double r : near_pairs(frame, mean))
+      if (r > 0.9 * mean) pairs.push_back(r);
+  c.spacing = touching(pairs, mean, std::max<std::size_t>(1, beads.frames.size()));
+  return c;
+}
+
+}  // namespace twincell

@@ -1,0 +1,20 @@
+#pragma once
+/// \file
+/// Pictures of what collisions say.
+
+#include "analysis/figures.hpp"
+#include "calibration/bounce.hpp"
+#include "calibration/collisions.hpp"
+#include "calibration/inference.hpp"
+#include "calibration/walton.hpp"
+
+namespace twincell {
+
+/// "bounce": e_n of each impact against its speed, with the mean and its error.
+Figure bounce_figure(const BounceFit& fit);
+/// "collisions": e_n against speed, and Walton's plane with the fitted branches. \param shape K
+Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, double shape);
+/// "profile": chi^2 of each parameter above its least, with the 95 % line.
+Figure profile_figure(const Inference& inference);
+
+}  // namespace twincell

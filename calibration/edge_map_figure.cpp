@@ -1,0 +1,29 @@
+#include "calibration/edge_map_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace twincell {
+
+Figure edge_map_figure(const CellGeometry& geometry) {
+  Figure f{.name = "edges", .title = "Residuals of walls and plate", .width = 640, .height = 520};
+  constexpr std::size_t kMost = 4000;
+  const std::size_t stride = std::max<std::size_t>(1, geometry.residuals.size() / kMost);
+  f.data = "# x, y, residual, px\n";
+  for (std::size_t i = 0; i < geometry.residuals.size(); i += stride) {
+    const EdgeResidual& r = geometry.residuals[i];
+    f.data += fmt::format("{:.2f} {:.2f} {:.4f}\n", r.at.x_px, r.at.y_px, r.distance_px);
+  }
+  f.plot = fmt::format(
+      "set size ratio {:.5f}\nset xrange [0:{}]\nset yrange [{}:0]\nset xlabel 'x, px'\nset ylabel 'y, px'\n"
+      "set cblabel 'residual, px'\nset cbrange [-0.2:0.2]\n"
+      "set palette defined (-1 '#0072B2', 0 '#DDDDDD', 1 '#D55E00')\n"
+      "plot 'edges.dat' using 1:2:3 with points pt 7 ps 0.5 palette notitle\n",
+      static_cast<double>(geometry.size.height) / geometry.size.width, geometry.size.width,
+      geometry.size.height);
+  f.caption = fmt::format("{} points on walls and plate", geometry.residuals.size());
+  return f;
+}
+
+}  // namespace twincell

@@ -1,0 +1,175 @@
+// twincell calibrate KIND: scale, drive, walls, beads and contacts measured, with errors, into a file that
+// scenes include.
+
+#include "cli/calibrate.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/sha256.hpp"
+#include "cli/stack_info.hpp"
+#include "cli/verb.hpp"
+#include "imaging/locator.hpp"
+
+namespace twincell::cli {
+namespace {
+
+// In the order in which they build on each other.
+constexpr AddKind kKinds[] = {add_calibrate_camera, add_calibrate_walls, add_calibrate_plate,
+                              add_calibrate_beads, add_calibrate_contacts};
+
+const Quantity& quantity(const std::string& name) {
+  const auto& all = quantities();
+  return *std::find_if(all.begin(), all.end(), [&](const Quantity& q) { return q.name == name; });
+}
+
+std::string table_of(const std::vector<Measurement>& measured) {
+  std::string s = fmt::format("{:<26}  {:<24}  {:<22}  {}\n", "quantity", "value", "standard error", "unit");
+  for (const Measurement& m : measured) {
+    std::vector<std::string> values, errors;
+    for (const double v : m.value) values.push_back(fmt::format("{:.7g}", v));
+    for (const double e : m.standard_error)
+      errors.push_back(std::isfinite(e) ? fmt::format("{:.2g}", e) : "-");
+    s += fmt::format("{:<26}  {:<24}  {:<22}  {}\n", m.name, fmt::format("{}", fmt::join(values, ", ")),
+                     fmt::format("{}", fmt::join(errors, ", ")), quantity(m.name).unit);
+  }
+  return s;
+}
+
+nlohmann::json json_of(const Measurement& m) {
+  nlohmann::json j;
+  const auto list = [](const std::vector<double>& v) {
+    if (v.size() == 1) return finite(v.front());
+    nlohmann::json a = nlohmann::json::array();
+    for (const double x : v) a.push_back(finite(x));
+    return a;
+  };
+  j["value"] = list(m.value);
+  j["standard_error"] = list(m.standard_error);
+  j["unit"] = quantity(m.name).unit;
+  j["method"] = m.method;
+  j["data"] = m.data;
+  return j;
+}
+
+}  // namespace
+
+nlohmann::json finite(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+std::string data_hash(const std::string& stack) {
+  return "sha256:" + sha256_of(file_of_stack(stack));
+}
+
+void add_output_flags(CLI::App& verb, CalibrateFlags& flags) {
+  verb.add_option(
+      "-o,--output", flags.output,
+      "Calibration file (TOML) that a scene or CELL.toml includes; quantities of other runs stay in it");
+  verb.add_option("--figures", flags.figures, "Folder for pictures and their data");
+}
+
+void add_stack_flags(CLI::App& verb, CalibrateFlags& flags) {
+  verb.add_option("stack", flags.stack,
+                  "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
+      ->required();
+  verb.add_option("--cell", flags.cell_file, "CELL.toml: what is known already");
+  verb.add_option("--diameter", flags.diameter_px,
+                  "Bead diameter, px; absent: the cell's scale, or estimated")
+      ->check(CLI::Range(3.0, 400.0));
+  verb.add_flag("--bright", flags.bright, "Beads, walls and plate are brighter than what lies behind them");
+  add_output_flags(verb, flags);
+}
+
+CellDescription cell_of(const CalibrateFlags& flags) {
+  return flags.cell_file.empty() ? CellDescription{} : read_cell(flags.cell_file);
+}
+
+CellGeometry geometry_of(const CalibrateFlags& flags, const CellDescription& cell, const Common& common,
+                         StackEdges& edges) {
+  constexpr double kUsualDiameter_px = 15;
+  const bool bright = flags.bright || cell.bright;
+  double diameter = flags.diameter_px > 0 ? flags.diameter_px : cell.pixels_per_sigma.value_or(0);
+  if (diameter <= 0) {
+    cv::Mat first;
+    if (open_frames(flags.stack)->next(first)) diameter = estimate_diameter(first, {.bright = bright});
+  }
+  const auto frames = open_stack(flags.stack, common);
+  {
+    ProgressBar bar(common, "edges");
+    edges = read_stack_edges(*frames, bright, diameter > 0 ? diameter : kUsualDiameter_px, common.n_threads(),
+                             bar);
+  }
+  try {
+    return fit_cell_geometry(edges);
+  } catch (const InputError& e) {
+    throw InputError({.file = flags.stack, .key = {}}, e.what());
+  }
+}
+
+std::optional<Measurement> calibrated(const CellDescription& cell, const std::string& name) {
+  const auto& taken = cell.included.taken;
+  if (std::find(taken.begin(), taken.end(), name) == taken.end()) return std::nullopt;
+  const Calibration file = read_calibration(cell.included.file);
+  return *file.find(name);
+}
+
+std::optional<KnownNumber> scale_of(const CellDescription& cell, const CellGeometry& geometry) {
+  if (cell.pixels_per_sigma) {
+    KnownNumber scale{.value = *cell.pixels_per_sigma, .error = std::nullopt, .from = "the cell's scale"};
+    if (const auto m = calibrated(cell, "camera.pixels_per_sigma"); m && std::isfinite(m->standard_error[0]))
+      scale.error = m->standard_error[0];
+    return scale;
+  }
+  if (!cell.width || !geometry.has_left || !geometry.has_right) return std::nullopt;
+  return KnownNumber{.value = geometry.width_px() / *cell.width,
+                     .error = geometry.width_error_px() / *cell.width,
+                     .from = "the walls' distance over cell.width"};
+}
+
+void finish_calibration(const CalibrateFlags& flags, const Common& common, CalibrationResult result) {
+  for (const std::string& sentence : result.notes) note(common, sentence);
+  std::string text =
+      (result.measured.empty() ? std::string() : table_of(result.measured) + "\n") + result.text;
+  nlohmann::json document = std::move(result.document);
+  document["measured"] = nlohmann::json::object();
+  for (const Measurement& m : result.measured) document["measured"][m.name] = json_of(m);
+  document["notes"] = result.notes;
+  if (!flags.figures.empty()) {
+    std::filesystem::create_directories(flags.figures);
+    for (const Figure& f : result.figures) {
+      draw(f, flags.figures);
+      const std::string file = (std::filesystem::path(flags.figures) / (f.name + ".svg")).string();
+      document["figures"].push_back(file);
+      text += "picture: " + file + "\n";
+    }
+  }
+  if (!flags.output.empty()) {
+    Calibration file;
+    if (std::filesystem::exists(flags.output)) file = read_calibration(flags.output);
+    for (Measurement& m : result.measured) file.put(std::move(m));
+    if (result.camera) file.camera = std::move(result.camera);
+    write_text_file(flags.output, calibration_text(file, version_line() + ", last: " + common.command_line));
+    document["output"] = flags.output;
+    text += flags.output + "\n";
+  }
+  document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
+  print_result(common, document, text);
+}
+
+void add_calibrate(CLI::App& program, Common& common) {
+  CLI::App& verb = add_verb(program, common, "calibrate",
+                            "Scale, drive, walls, beads and contacts measured, with standard errors",
+                            "twincell calibrate plate frames/ --cell CELL.toml -o cell.calibration.toml");
+  verb.require_subcommand(1);
+  for (const AddKind add : kKinds) add(verb, common);
+}
+
+}  // namespace twincell::cli

@@ -1,0 +1,103 @@
+// twincell calibrate beads STACK|TRAJ: how large, how unlike, how many.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
+#include "calibration/bead_census.hpp"
+#include "calibration/bead_census_figure.hpp"
+#include "cli/calibrate.hpp"
+#include "cli/stack_info.hpp"
+
+namespace twincell::cli {
+namespace {
+
+struct BeadOptions {
+  CalibrateFlags flags;
+  int frames = 20;
+};
+
+void run(const BeadOptions& o, const Common& common) {
+  const CellDescription cell = cell_of(o.flags);
+  CalibrationResult out;
+  BeadCensus c;
+  double unit_px = 1;  // px of the census' unit
+  std::optional<double> width = cell.width;
+  double width_error = 0;
+  if (is_trajectory(o.flags.stack)) {
+    const H5mdReader trajectory(o.flags.stack);
+    c = count_beads(beads_of(trajectory, o.frames));
+    const TrajectoryInfo& info = trajectory.info();
+    unit_px = info.scale.pixels_per_sigma.value_or(std::nan(""));
+    if (info.box.boundary[0] != Boundary::open) width = info.box.size().x();
+  } else {
+    LocatorOptions locator;
+    locator.preprocess.bright = o.flags.bright || cell.bright;
+    locator.diameter_px = o.flags.diameter_px > 0 ? o.flags.diameter_px : cell.pixels_per_sigma.value_or(0);
+    const auto frames = open_stack(o.flags.stack, common);
+    cv::Mat first;
+    std::optional<Lens> lens;
+    if (cell.rotation_deg != 0 || cell.distortion != 0) {
+      if (!open_frames(o.flags.stack)->next(first))
+        throw InputError({.file = o.flags.stack, .key = {}}, "holds no frame.");
+      lens = Lens(first.size(), cell.rotation_deg, cell.distortion);
+    }
+    ProgressBar bar(common, "beads");
+    c = count_beads(locate_beads(*frames, locator, lens, o.frames, common.n_threads(), bar));
+    if (const auto m = calibrated(cell, "cell.width")) width_error = m->standard_error[0];
+  }
+  const std::string data = data_hash(o.flags.stack);
+  const std::string method = fmt::format("{} discs in {} frames", c.sizes, c.frames);
+  const auto add = [&](const std::string& name, const Estimate& e, const std::string& how) {
+    out.measured.push_back(
+        {.name = name, .value = {e.value}, .standard_error = {e.error}, .method = how, .data = data});
+  };
+  if (std::isfinite(unit_px))
+    add("beads.diameter", {c.diameter.value * unit_px, c.diameter.error * unit_px}, "mean of " + method);
+  add("beads.spread", c.spread, "standard deviation over mean of " + method);
+  add("beads.mass", c.mass, "mean of d^3 over that of a bead of mean size, " + method);
+  if (width) {
+    const double layers = c.count.value / *width;
+    add("beads.layers",
+        {layers, layers * std::hypot(std::isfinite(c.count.error) ? c.count.error / c.count.value : 0,
+                                     width_error / *width)},
+        "beads of a frame over cell.width (Fortini & Huang 2015)");
+  } else {
+    out.notes.emplace_back("cell.width is not known: no number of layers");
+  }
+  nlohmann::json& d = out.document;
+  d["source"] = o.flags.stack;
+  d["frames"] = c.frames;
+  d["discs"] = c.sizes;
+  d["count"] = {{"value", c.count.value}, {"standard_error", finite(c.count.error)}};
+  if (c.spacing)
+    d["spacing"] = {{"value", c.spacing->value * unit_px}, {"standard_error", c.spacing->error * unit_px}};
+  out.text = fmt::format("{} beads in a frame\n", c.count.value);
+  if (c.spacing)
+    out.text += fmt::format("touching beads are {:.4f} +- {:.4f} px apart, {:.4f} mean diameters\n",
+                            c.spacing->value * unit_px, c.spacing->error * unit_px,
+                            c.spacing->value / c.diameter.value);
+  if (c.spread.value < 2 * c.spread.error) out.text += "sizes: no spread beyond that of locating them\n";
+  out.figures = {bead_census_figure(c, unit_px)};
+  finish_calibration(o.flags, common, std::move(out));
+}
+
+}  // namespace
+
+void add_calibrate_beads(CLI::App& calibrate, Common& common) {
+  auto o = std::make_shared<BeadOptions>();
+  CLI::App& verb =
+      add_verb(calibrate, common, "beads", "Diameters, masses by volume, effective number of layers",
+               "twincell calibrate beads frames/ --cell CELL.toml -o cell.calibration.toml");
+  add_stack_flags(verb, o->flags);
+  verb.add_option("--frames", o->frames, "Frames looked at, spread over the stack")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  verb.callback([o, &common] { run(*o, common); });
+}
+
+}  // namespace twincell::cli

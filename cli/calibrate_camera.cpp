@@ -1,0 +1,223 @@
+// twincell calibrate camera STACK: the map between pixels and the cell.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "analysis/trajectory/error.hpp"
+#include "calibration/bead_census.hpp"
+#include "calibration/edge_map_figure.hpp"
+#include "calibration/plate_lock.hpp"
+#include "calibration/target_fit.hpp"
+#include "cli/calibrate.hpp"
+#include "cli/stack_info.hpp"
+
+namespace twincell::cli {
+namespace {
+
+struct CameraCalibration {
+  CalibrateFlags flags;
+  int frames = 12;
+  std::string target, kind = "chessboard";
+  std::vector<int> grid;
+  std::optional<double> focal_px, spacing;
+};
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Row of the plate's mean height in the ideal picture: of its harmonic motion, or of the frames' mean if it
+/// rests.
+Estimate mean_row(const CellGeometry& g) {
+  std::vector<double> heights;
+  for (const PlateSighting& s : g.heights) heights.push_back(s.height_px);
+  try {
+    const PlateLock lock = lock_plate(heights);
+    return {g.plate_row - lock.z0, lock.z0_error};
+  } catch (const InputError&) {
+    return {g.plate_row, g.plate_row_error};
+  }
+}
+
+void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text) {
+  cv::Mat picture;
+  if (!open_frames(o.target)->next(picture))
+    throw InputError({.file = o.target, .key = {}}, "holds no picture.");
+  if (o.grid.size() != 2)
+    throw ConfigError({.file = {}, .key = "--target-grid"}, "is missing: points along x and y, say 9 6.");
+  const TargetPattern pattern{.kind = o.kind, .columns = o.grid[0], .rows = o.grid[1]};
+  const auto points = find_target(picture, pattern);
+  if (points.empty())
+    throw InputError({.file = o.target, .key = {}}, fmt::format("shows no whole {} of {} x {} points.",
+                                                                o.kind, pattern.columns, pattern.rows));
+  const TargetFit t = fit_target(points, pattern, picture.size());
+  nlohmann::json& out = d["target"];
+  out["rms_px"] = t.rms_px;
+  text += fmt::format("target: {} points, rms {:.3f} px\n", points.size(), t.rms_px);
+  for (std::size_t i = 0; i < t.fit.names.size(); ++i) {
+    const double e = t.fit.standard_errors.empty() ? kNaN : t.fit.standard_errors[i];
+    out[t.fit.names[i]] = {{"value", t.fit.values[i]}, {"standard_error", finite(e)}};
+    text += fmt::format("  {:<20} {:.6g} +- {:.2g}\n", t.fit.names[i], t.fit.values[i], e);
+  }
+  if (o.spacing) {
+    const double s = t.fit.values[0] / *o.spacing,
+                 e = t.fit.standard_error("pixels_per_spacing") / *o.spacing;
+    out["pixels_per_sigma"] = {{"value", s}, {"standard_error", finite(e)}};
+    text += fmt::format("  pixels per sigma     {:.6g} +- {:.2g}\n", s, e);
+  }
+  if (o.focal_px) {
+    // Depth grows as tan(tilt) across the plane; in the picture as tan(tilt)/f.
+    for (const char* axis : {"x", "y"}) {
+      const std::string name = std::string("gradient_") + axis;
+      const double tilt = std::atan(*o.focal_px * t.fit.value(name)) * 180 / M_PI,
+                   e = *o.focal_px * t.fit.standard_error(name) * 180 / M_PI;
+      out[std::string("tilt_") + axis + "_deg"] = {{"value", tilt}, {"standard_error", finite(e)}};
+      text += fmt::format("  camera's tilt in {}   {:.4g} +- {:.2g} degrees\n", axis, tilt, e);
+    }
+  }
+}
+
+void run(const CameraCalibration& o, const Common& common) {
+  CellDescription cell = cell_of(o.flags);
+  CalibrationResult out;
+  nlohmann::json& d = out.document;
+  d["stack"] = o.flags.stack;
+  StackEdges edges;
+  const CellGeometry g = geometry_of(o.flags, cell, common, edges);
+  const std::string data = data_hash(o.flags.stack);
+
+  // The beads' own scale, in the picture as it would be without turn and bend.
+  LocatorOptions locator;
+  locator.preprocess.bright = o.flags.bright || cell.bright;
+  locator.diameter_px = o.flags.diameter_px > 0 ? o.flags.diameter_px : cell.pixels_per_sigma.value_or(0);
+  std::optional<Lens> lens;
+  if (g.rotation_deg != 0 || g.distortion != 0) lens = Lens(g.size, g.rotation_deg, g.distortion);
+  std::optional<BeadCensus> census;
+  try {
+    const auto frames = open_stack(o.flags.stack, common);
+    ProgressBar bar(common, "beads");
+    census = count_beads(locate_beads(*frames, locator, lens, o.frames, common.n_threads(), bar));
+  } catch (const InputError& e) {
+    out.notes.push_back(fmt::format("no scale from the beads: {}", e.what()));
+  }
+  const bool walls = g.has_left && g.has_right;
+  std::optional<Estimate> by_walls;
+  if (walls && cell.width) {
+    double e = g.width_error_px() / *cell.width;
+    if (const auto m = calibrated(cell, "cell.width"))
+      e = std::hypot(e, g.width_px() / *cell.width * m->standard_error[0] / *cell.width);
+    by_walls = Estimate{g.width_px() / *cell.width, e};
+  }
+  std::optional<Estimate> scale = by_walls;
+  std::string method = "distance of the side walls over cell.width";
+  if (!scale && census) {
+    scale = census->diameter;
+    method = fmt::format("mean diameter of {} discs in {} frames", census->sizes, census->frames);
+  }
+  if (!scale)
+    throw InputError({.file = o.flags.stack, .key = {}},
+                     "gives no scale: no beads are found, and cell.width or a side wall is missing.");
+
+  const auto add = [&](const std::string& name, std::vector<double> value, std::vector<double> error,
+                       const std::string& how) {
+    out.measured.push_back({.name = name,
+                            .value = std::move(value),
+                            .standard_error = std::move(error),
+                            .method = how,
+                            .data = data});
+  };
+  add("camera.pixels_per_sigma", {scale->value}, {scale->error}, method);
+  const Estimate row = mean_row(g);
+  const auto err = [&](const char* name) { return g.fit.standard_error(name); };
+  if (g.has_left && g.has_plate)
+    add("camera.origin_px", {g.fit.value("x_left"), row.value}, {err("x_left"), row.error},
+        "foot of the left wall and mean height of the plate, picture without turn and distortion");
+  else
+    out.notes.emplace_back("the origin needs the left wall and the plate");
+  if (g.has_plate)
+    add("camera.rotation_deg", {g.rotation_deg}, {err("rotation")}, "slope of the plate's edge");
+  if (g.distortion_found)
+    add("camera.distortion", {g.distortion}, {*g.distortion_error},
+        g.distortion != 0 ? "bend of walls and plate"
+                          : "bend of walls and plate: less than three standard errors, taken as 0");
+  if (g.has_left && g.has_plate && g.fit.covariance.size() > 0) {
+    // Rows of the map from the fit's parameters to what is stored.
+    const auto place = [&](const char* name) {
+      return std::find(g.fit.names.begin(), g.fit.names.end(), name) - g.fit.names.begin();
+    };
+    const auto n = static_cast<Eigen::Index>(g.fit.names.size());
+    Eigen::MatrixXd map = Eigen::MatrixXd::Zero(5, n);
+    if (by_walls) {
+      map(0, place("x_right")) = 1 / *cell.width;
+      map(0, place("x_left")) = -1 / *cell.width;
+    }
+    map(1, place("x_left")) = 1;
+    map(3, place("rotation")) = 1;
+    if (g.distortion != 0) map(4, place("distortion")) = 1;
+    Eigen::MatrixXd c = map * g.fit.covariance * map.transpose();
+    c(0, 0) = scale->error * scale->error;
+    c(2, 2) = row.error * row.error;
+    MeasuredCovariance stored{
+        .names = {"pixels_per_sigma", "origin_x_px", "origin_y_px", "rotation_deg", "distortion"},
+        .matrix = {}};
+    for (Eigen::Index r = 0; r < 5; ++r)
+      for (Eigen::Index k = 0; k < 5; ++k) stored.matrix.push_back(std::isfinite(c(r, k)) ? c(r, k) : 0);
+    d["covariance"] = {{"names", stored.names}, {"matrix", stored.matrix}};
+    out.camera = std::move(stored);
+  }
+  const auto scale_line = [&](const char* what, const Estimate& e) {
+    d["scales"][what] = {{"value", e.value}, {"standard_error", finite(e.error)}};
+    out.text += fmt::format("  {:<10} {:.5f} +- {:.5f}\n", what, e.value, e.error);
+  };
+  out.text = "pixels per sigma\n";
+  if (by_walls) scale_line("walls", *by_walls);
+  if (census) {
+    scale_line("diameter", census->diameter);
+    if (census->spacing) scale_line("spacing", *census->spacing);
+  }
+  if (by_walls && census) {
+    const double apart =
+        (census->diameter.value - by_walls->value) / std::hypot(census->diameter.error, by_walls->error);
+    d["scales"]["standard_errors_apart"] = finite(apart);
+    out.text += fmt::format("  walls and diameters are {:.1f} standard errors apart\n", std::abs(apart));
+  }
+  if (g.distortion_found)
+    out.text += fmt::format("distortion k1 = {:.2g} +- {:.1g}{}\n", *g.distortion_found, *g.distortion_error,
+                            g.distortion == 0 ? ": none that the edges show" : "");
+  double squares = 0;
+  for (const EdgeResidual& r : g.residuals) squares += r.distance_px * r.distance_px;
+  const double rms = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, g.residuals.size())));
+  d["residuals"] = {{"points", g.residuals.size()}, {"rms_px", rms}};
+  d["blur_px"] = g.blur_px;
+  out.text += fmt::format("{} points on walls and plate, rms {:.3f} px; blur {:.2f} px\n", g.residuals.size(),
+                          rms, g.blur_px);
+  if (!o.target.empty()) add_target(o, d, out.text);
+  out.figures = {edge_map_figure(g)};
+  finish_calibration(o.flags, common, std::move(out));
+}
+
+}  // namespace
+
+void add_calibrate_camera(CLI::App& calibrate, Common& common) {
+  auto o = std::make_shared<CameraCalibration>();
+  CLI::App& verb = add_verb(calibrate, common, "camera", "Scale, origin, turn and distortion of the picture",
+                            "twincell calibrate camera frames/ --cell CELL.toml -o cell.calibration.toml");
+  add_stack_flags(verb, o->flags);
+  verb.add_option("--frames", o->frames, "Frames in which beads are located, spread over the stack")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  verb.add_option("--target", o->target,
+                  "Picture of a chessboard or of a grid of dots, for the camera's tilt");
+  verb.add_option("--target-kind", o->kind, "chessboard or dots")
+      ->check(CLI::IsMember({"chessboard", "dots"}));
+  verb.add_option("--target-grid", o->grid, "Inner corners, or dots, along x and y")->expected(2);
+  verb.add_option("--target-spacing", o->spacing, "Distance of its points, sigma")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--focal-px", o->focal_px, "Focal length, px: turns the change of scale into an angle")
+      ->check(CLI::PositiveNumber);
+  verb.callback([o, &common] { run(*o, common); });
+}
+
+}  // namespace twincell::cli

@@ -1,0 +1,447 @@
+// twincell calibrate contacts bounce|collisions|infer|numbers: restitution and friction from what was
+// measured.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "analysis/observable.hpp"
+#include "analysis/results.hpp"
+#include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
+#include "calibration/bounce.hpp"
+#include "calibration/collisions.hpp"
+#include "calibration/contact_figures.hpp"
+#include "calibration/contact_numbers.hpp"
+#include "calibration/inference.hpp"
+#include "calibration/table.hpp"
+#include "calibration/walton.hpp"
+#include "cli/calibrate.hpp"
+#include "cli/stack_info.hpp"
+#include "sim/laws/linear_collision.hpp"
+#include "sim/simulation.hpp"
+
+namespace twincell::cli {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// ---- bounce
+
+struct BounceFlags {
+  CalibrateFlags out;
+  std::string source;
+  std::size_t bead = 0;
+  std::optional<double> gravity, amplitude, omega, phase;
+  bool no_drag = false;
+};
+
+std::vector<BounceSample> samples_of(const BounceFlags& o, std::optional<Drive>& drive) {
+  std::vector<BounceSample> samples;
+  if (is_trajectory(o.source)) {
+    const H5mdReader trajectory(o.source);
+    if (o.bead >= trajectory.info().n_beads)
+      throw ConfigError({.file = {}, .key = "--bead"}, fmt::format("is {}; {} has beads 0 to {}.", o.bead,
+                                                                   o.source, trajectory.info().n_beads - 1));
+    drive = trajectory.info().drive;
+    Frame frame;
+    for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
+      trajectory.read(f, frame);
+      if (frame.present(o.bead)) samples.push_back({frame.time, frame.position[o.bead].z()});
+    }
+  } else {
+    const Table table = read_table(o.source);
+    const auto &t = table.column("time"), &z = table.column("height");
+    for (std::size_t i = 0; i < t.size(); ++i) samples.push_back({t[i], z[i]});
+  }
+  return samples;
+}
+
+void run_bounce(const BounceFlags& o, const Common& common) {
+  std::optional<Drive> drive;
+  const std::vector<BounceSample> samples = samples_of(o, drive);
+  if (o.amplitude || o.omega) {
+    if (!o.amplitude || !o.omega)
+      throw ConfigError({.file = {}, .key = "--amplitude"}, "and --omega say together how the plate moves.");
+    drive = Drive{.axis = Axis::z, .amplitude = *o.amplitude, .omega = *o.omega};
+  }
+  BounceOptions options{.gravity = o.gravity, .drag = !o.no_drag, .plate = {}};
+  if (drive && drive->amplitude > 0) {
+    const double phase = o.phase.value_or(0);
+    options.plate = [d = *drive, phase](double t) {
+      const double theta = d.omega * t + phase;
+      return PlateAt{d.amplitude * std::sin(theta), d.amplitude * d.omega * std::cos(theta)};
+    };
+  }
+  BounceFit fit;
+  try {
+    fit = fit_bounces(samples, options);
+  } catch (const InputError& e) {
+    throw InputError({.file = o.source, .key = {}}, e.what());
+  }
+  CalibrationResult out;
+  out.notes = fit.notes;
+  out.measured.push_back({.name = "contact.wall.restitution",
+                          .value = {fit.restitution},
+                          .standard_error = {fit.restitution_error},
+                          .method = fmt::format("{} impacts of a bouncing bead", fit.impacts.size()),
+                          .data = data_hash(o.source)});
+  nlohmann::json& d = out.document;
+  d["source"] = o.source;
+  d["flights"] = fit.flights;
+  d["samples"] = fit.samples;
+  d["outliers"] = fit.outliers;
+  d["rms_residual"] = fit.rms;
+  d["gravity"] = {
+      {"value", fit.gravity}, {"standard_error", finite(fit.gravity_error)}, {"fitted", !o.gravity}};
+  d["drag"] = {{"value", fit.drag}, {"standard_error", finite(fit.drag_error)}, {"fitted", !o.no_drag}};
+  out.text = fmt::format("{} samples in {} flights, {} outliers, rms {:.3g}\n", fit.samples, fit.flights,
+                         fit.outliers, fit.rms);
+  out.text += o.gravity ? fmt::format("gravity: {:g}, as given\n", fit.gravity)
+                        : fmt::format("gravity: {:.6g} +- {:.2g}\n", fit.gravity, fit.gravity_error);
+  if (!o.no_drag)
+    out.text +=
+        fmt::format("drag: {:.3g} +- {:.1g} of the velocity per unit time\n", fit.drag, fit.drag_error);
+  out.text += "  time        impact speed  e_n\n";
+  for (const BounceImpact& i : fit.impacts) {
+    d["impacts"].push_back({{"time", i.time},
+                            {"speed", i.speed},
+                            {"restitution", i.restitution},
+                            {"standard_error", finite(i.error)}});
+    out.text +=
+        fmt::format("  {:<10.5g}  {:<12.5g}  {:.5f} +- {:.5f}\n", i.time, i.speed, i.restitution, i.error);
+  }
+  out.figures = {bounce_figure(fit)};
+  finish_calibration(o.out, common, std::move(out));
+}
+
+// ---- collisions
+
+struct CollisionFlags {
+  CalibrateFlags out;
+  std::string trajectory;
+  CollisionOptions options;
+  std::string shape = "disc";
+};
+
+void run_collisions(const CollisionFlags& o, const Common& common) {
+  const H5mdReader trajectory(o.trajectory);
+  const FoundCollisions found = find_collisions(trajectory, o.options);
+  WaltonFit fit;
+  try {
+    fit = fit_walton(found.impacts, o.shape == "disc" ? 0.5 : 0.4);
+  } catch (const InputError& e) {
+    throw InputError({.file = o.trajectory, .key = {}},
+                     fmt::format("{} ({} pairs met between frames, {} of them with a third body)", e.what(),
+                                 found.pairs, found.crowded));
+  }
+  CalibrationResult out;
+  out.notes = fit.notes;
+  const std::string data = data_hash(o.trajectory),
+                    method = fmt::format("{} collisions of two beads", fit.impacts);
+  out.measured.push_back({.name = "contact.restitution",
+                          .value = {fit.restitution},
+                          .standard_error = {fit.restitution_error},
+                          .method = method,
+                          .data = data});
+  nlohmann::json& d = out.document;
+  const auto open = [&](const std::string& name) {
+    const auto& u = fit.tangential.undetermined;
+    return !fit.has_tangential || fit.tangential.standard_errors.empty() ||
+           std::find(u.begin(), u.end(), name) != u.end();
+  };
+  d["undetermined"] = nlohmann::json::array();
+  for (const auto& [name, quantity] :
+       {std::pair{"mu", "contact.mu"}, std::pair{"beta_0", "contact.beta_0"}}) {
+    if (open(name))
+      d["undetermined"].push_back(name);
+    else
+      out.measured.push_back({.name = quantity,
+                              .value = {fit.tangential.value(name)},
+                              .standard_error = {fit.tangential.standard_error(name)},
+                              .method = method + ", Walton's two branches",
+                              .data = data});
+  }
+  d["source"] = o.trajectory;
+  d["pairs"] = found.pairs;
+  d["crowded"] = found.crowded;
+  d["impacts"] = fit.impacts;
+  d["outliers"] = fit.outliers;
+  d["scatter"] = fit.scatter;
+  d["speed_slope"] = {{"value", finite(fit.slope)}, {"standard_error", finite(fit.slope_error)}};
+  d["sticking"] = fit.sticking;
+  d["sliding"] = fit.sliding;
+  d["spins"] = found.spins;
+  if (!found.spins)
+    out.notes.emplace_back("the trajectory has no spins, without which friction does not show");
+  out.text = fmt::format("{} pairs met between two frames, {} with a third body left out, {} outliers\n",
+                         found.pairs, found.crowded, fit.outliers);
+  out.text += fmt::format("e_n scatters by {:.2g} from impact to impact", fit.scatter);
+  if (std::isfinite(fit.slope))
+    out.text += fmt::format("; de_n/d ln(speed) = {:.2g} +- {:.1g}", fit.slope, fit.slope_error);
+  out.text += "\n";
+  if (fit.has_tangential) out.text += fmt::format("{} impacts stick, {} slide\n", fit.sticking, fit.sliding);
+  if (!d["undetermined"].empty()) out.text += "undetermined: " + d["undetermined"].dump() + "\n";
+  out.figures = {collisions_figure(found, fit, o.shape == "disc" ? 0.5 : 0.4)};
+  finish_calibration(o.out, common, std::move(out));
+}
+
+// ---- infer
+
+struct InferFlags {
+  CalibrateFlags out;
+  std::string measured, scene;
+  std::vector<std::string> vary, assignments;
+  std::vector<std::string> observables = {"s_b", "T_g"};
+  int runs = 24;
+  std::int64_t discard = 0;
+};
+
+Sought sought_of(const std::string& said) {
+  const auto equals = said.find('='), colon = said.find(':', equals == std::string::npos ? 0 : equals);
+  Sought s;
+  try {
+    if (equals == std::string::npos || colon == std::string::npos) throw std::invalid_argument("form");
+    s = {said.substr(0, equals), std::stod(said.substr(equals + 1)), std::stod(said.substr(colon + 1))};
+  } catch (const std::exception&) {
+    throw ConfigError({.file = {}, .key = "--vary"}, fmt::format("'{}' is not key=low:high.", said));
+  }
+  if (!(s.lower < s.upper))
+    throw ConfigError({.file = {}, .key = "--vary"}, fmt::format("'{}': low must be below high.", said));
+  return s;
+}
+
+std::vector<double> observe(const TrajectorySource& trajectory, const std::vector<std::string>& names,
+                            std::int64_t discard, std::vector<double>* errors) {
+  constexpr double kReach = 1.96;
+  AnalysisOptions options;
+  options.discard_cycles = discard;
+  options.only = names;
+  const std::vector<Result> results = analyze(trajectory, options);
+  std::vector<double> values;
+  for (const std::string& name : names) {
+    const auto r =
+        std::find_if(results.begin(), results.end(), [&](const Result& x) { return x.name == name; });
+    if (r == results.end() || (!r->shape.empty() && r->present()))
+      throw ConfigError({.file = {}, .key = "--observables"},
+                        fmt::format("'{}' is no number that analyze gives of {}.", name, trajectory.name()));
+    values.push_back(r->present() ? r->value() : kNaN);
+    if (errors) errors->push_back(r->interval ? (r->interval->high - r->interval->low) / (2 * kReach) : 0);
+  }
+  return values;
+}
+
+void run_infer(const InferFlags& o, const Common& common) {
+  std::vector<Sought> sought;
+  for (const std::string& said : o.vary) sought.push_back(sought_of(said));
+  if (sought.size() > 3)
+    throw ConfigError({.file = {}, .key = "--vary"},
+                      fmt::format("names {} parameters; at most 3 can be told apart.", sought.size()));
+  const H5mdReader experiment(o.measured);
+  std::vector<double> errors;
+  const std::vector<double> values = observe(experiment, o.observables, o.discard, &errors);
+  std::vector<MeasuredObservable> measured;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i]))
+      throw InputError({.file = o.measured, .key = o.observables[i]},
+                       "has no value there; --observables names others.");
+    measured.push_back({o.observables[i], values[i], errors[i]});
+  }
+  const auto points = spread_points(sought, o.runs);
+  const auto assignments_of = [&](std::size_t i) {
+    std::vector<std::string> all = o.assignments;
+    for (std::size_t k = 0; k < sought.size(); ++k)
+      all.push_back(fmt::format("{}={:.9g}", sought[k].name, points[i][k]));
+    all.push_back(fmt::format("start.seed={}", common.seed.value_or(1) + i));
+    return all;
+  };
+  (void)sim::read_scene(o.scene, assignments_of(0));  // refused before the work, not after
+  std::vector<SimulatedPoint> runs(points.size());
+  {
+    ProgressBar bar(common, "runs");
+    std::atomic<std::size_t> next{0}, done{0};
+    std::exception_ptr failure;
+    std::mutex mutex;
+    const auto work = [&](bool shows) {
+      for (std::size_t i = next++; i < points.size(); i = next++) try {
+          sim::Simulation run(sim::read_scene(o.scene, assignments_of(i)));
+          MemoryTrajectory trajectory(run.trajectory_info());
+          run.run(trajectory);
+          runs[i] = {points[i], observe(trajectory, o.observables, o.discard, nullptr)};
+          ++done;
+          if (shows)
+            bar.update(static_cast<std::int64_t>(done.load()), static_cast<std::int64_t>(points.size()));
+        } catch (...) {
+          const std::scoped_lock lock(mutex);
+          failure = std::current_exception();
+          next = points.size();
+        }
+    };
+    {
+      std::vector<std::jthread> others;
+      for (int t = 1; t < common.n_threads(); ++t) others.emplace_back(work, false);
+      work(true);
+    }
+    if (failure) std::rethrow_exception(failure);
+  }
+  const Inference inference = infer_parameters(sought, runs, measured);
+  CalibrationResult out;
+  out.notes = inference.notes;
+  nlohmann::json& d = out.document;
+  d["measured_from"] = o.measured;
+  d["chi2"] = inference.chi2;
+  d["freedom"] = inference.freedom;
+  out.text = "profile likelihood, 95 %\n";
+  const auto& known = quantities();
+  for (const Profile& p : inference.profiles) {
+    d["profiles"].push_back({{"parameter", p.sought.name},
+                             {"best", p.best},
+                             {"low", p.low},
+                             {"high", p.high},
+                             {"open_low", p.open_low},
+                             {"open_high", p.open_high},
+                             {"undetermined", p.undetermined()},
+                             {"at", p.at},
+                             {"chi2", p.chi2}});
+    out.text += fmt::format("  {:<24} {:<9.4g} [{:.4g}, {:.4g}]{}\n", p.sought.name, p.best, p.low, p.high,
+                            p.undetermined()            ? "  undetermined"
+                            : p.open_low || p.open_high ? "  bounded on one side"
+                                                        : "");
+    const bool writable =
+        std::any_of(known.begin(), known.end(), [&](const Quantity& q) { return q.name == p.sought.name; });
+    if (writable && std::isfinite(p.standard_error))
+      out.measured.push_back(
+          {.name = p.sought.name,
+           .value = {p.best},
+           .standard_error = {p.standard_error},
+           .method = fmt::format("{} simulations matched in {}", o.runs, fmt::join(o.observables, ", ")),
+           .data = data_hash(o.measured)});
+  }
+  out.text += "observable        measured      of the best   scatter of a run\n";
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    d["observables"].push_back({{"name", measured[i].name},
+                                {"measured", measured[i].value},
+                                {"error", measured[i].error},
+                                {"predicted", inference.predicted[i]},
+                                {"scatter", inference.scatter[i]}});
+    out.text += fmt::format("{:<16}  {:<12.5g}  {:<12.5g}  {:.2g}\n", measured[i].name, measured[i].value,
+                            inference.predicted[i], inference.scatter[i]);
+  }
+  out.text += fmt::format("chi^2 = {:.3g}, {:g} degrees of freedom\n", inference.chi2, inference.freedom);
+  out.figures = {profile_figure(inference)};
+  finish_calibration(o.out, common, std::move(out));
+}
+
+// ---- numbers
+
+struct NumberFlags {
+  std::optional<double> restitution, contact_time, k_n, gamma_n;
+  double m_eff = 0.5;
+};
+
+void run_numbers(const NumberFlags& o, const Common& common) {
+  const bool forward = o.k_n && o.gamma_n, back = o.restitution && o.contact_time;
+  if (forward == back)
+    throw ConfigError(
+        {.file = {}, .key = "--restitution"},
+        "and --contact-time give k_n and gamma_n; --k-n and --gamma-n give them back. Say one pair.");
+  double e = 0, t_c = 0;
+  SpringDashpot s;
+  if (back) {
+    e = *o.restitution;
+    t_c = *o.contact_time;
+    s = spring_of(e, t_c, o.m_eff);
+  } else {
+    const sim::LinearCollision c(*o.k_n, *o.gamma_n * o.m_eff, o.m_eff);
+    e = c.restitution();
+    t_c = c.contact_time();
+    s = {.k_n = *o.k_n, .gamma_n = *o.gamma_n, .c_n = *o.gamma_n * o.m_eff};
+  }
+  const nlohmann::json d = {{"m_eff", o.m_eff}, {"restitution", e},     {"contact_time", finite(t_c)},
+                            {"k_n", s.k_n},     {"gamma_n", s.gamma_n}, {"c_n", s.c_n}};
+  print_result(
+      common, d,
+      fmt::format(
+          "e_n = {:.8g}, t_c = {:.8g} t0  <->  k_n = {:.8g} m g/sigma, gamma_n = {:.8g}/t0, c_n = {:.8g} "
+          "m/t0  (m_eff = {:g})\n",
+          e, t_c, s.k_n, s.gamma_n, s.c_n, o.m_eff));
+}
+
+}  // namespace
+
+void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
+  CLI::App& verb = add_verb(calibrate, common, "contacts", "Restitution and friction from collisions",
+                            "twincell calibrate contacts bounce bounce.csv -o cell.calibration.toml");
+  verb.require_subcommand(1);
+  {
+    auto o = std::make_shared<BounceFlags>();
+    CLI::App& kind = add_verb(verb, common, "bounce", "e_n of bead and plate from a bouncing bead",
+                              "twincell calibrate contacts bounce bounce.csv --gravity 1");
+    kind.add_option("source", o->source, "CSV with columns time and height, or a trajectory (H5MD)")
+        ->required();
+    kind.add_option("--bead", o->bead, "Which bead of the trajectory")->capture_default_str();
+    kind.add_option("--gravity", o->gravity, "Held at this; absent: fitted")->check(CLI::PositiveNumber);
+    kind.add_flag("--no-drag", o->no_drag, "Fit no drag of the air");
+    kind.add_option("--amplitude", o->amplitude, "A of the vibrating plate, in the heights' unit");
+    kind.add_option("--omega", o->omega, "omega of the vibrating plate, in the times' unit");
+    kind.add_option("--phase", o->phase, "Its phase at time 0, rad");
+    add_output_flags(kind, o->out);
+    kind.callback([o, &common] { run_bounce(*o, common); });
+  }
+  {
+    auto o = std::make_shared<CollisionFlags>();
+    CLI::App& kind = add_verb(verb, common, "collisions", "e_n, mu and beta_0 from collisions of two beads",
+                              "twincell calibrate contacts collisions film.h5 -o cell.calibration.toml");
+    kind.add_option("trajectory", o->trajectory, "Trajectory (H5MD) with frames close together")->required();
+    kind.add_option("--gravity", o->options.gravity, "Along -z, reduced units")->capture_default_str();
+    kind.add_option("--least-speed", o->options.least_speed, "Slower impacts are left out, sigma/t0")
+        ->capture_default_str();
+    kind.add_option("--shape", o->shape, "disc or sphere: moment of inertia")
+        ->check(CLI::IsMember({"disc", "sphere"}));
+    add_output_flags(kind, o->out);
+    kind.callback([o, &common] { run_collisions(*o, common); });
+  }
+  {
+    auto o = std::make_shared<InferFlags>();
+    CLI::App& kind =
+        add_verb(verb, common, "infer", "Contact parameters with which the simulator gives what was measured",
+                 "twincell calibrate contacts infer exp.h5 --scene scene.toml --vary "
+                 "contact.restitution=0.7:0.95 --observables s_b,T_g");
+    kind.add_option("measured", o->measured, "Trajectory of the experiment (H5MD)")->required();
+    kind.add_option("--scene", o->scene, "The same cell as a scene")->required();
+    kind.add_option("--vary", o->vary, "section.key=low:high; up to three")->required()->take_all();
+    kind.add_option("--observables", o->observables, "Numbers that analyze gives, comma separated")
+        ->delimiter(',')
+        ->capture_default_str();
+    kind.add_option("--runs", o->runs, "Simulations")->check(CLI::Range(5, 100000))->capture_default_str();
+    kind.add_option("--discard", o->discard, "Cycles left out at the beginning, of both")
+        ->capture_default_str();
+    kind.add_option("--set", o->assignments, "section.key=value of the scene; may be repeated")->take_all();
+    add_output_flags(kind, o->out);
+    kind.callback([o, &common] { run_infer(*o, common); });
+  }
+  {
+    auto o = std::make_shared<NumberFlags>();
+    CLI::App& kind = add_verb(verb, common, "numbers", "k_n and gamma_n from e_n and t_c, and back",
+                              "twincell calibrate contacts numbers --restitution 0.9 --contact-time 2.2e-3");
+    kind.add_option("--restitution", o->restitution, "e_n, above 0, at most 1");
+    kind.add_option("--contact-time", o->contact_time, "t_c, t0");
+    kind.add_option("--k-n", o->k_n, "m g/sigma")->check(CLI::PositiveNumber);
+    kind.add_option("--gamma-n", o->gamma_n, "Rate, 1/t0")->check(CLI::NonNegativeNumber);
+    kind.add_option("--m-eff", o->m_eff, "1/2: two beads; 1: bead and wall")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    kind.callback([o, &common] { run_numbers(*o, common); });
+  }
+}
+
+}  // namespace twincell::cli

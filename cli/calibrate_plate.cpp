@@ -1,0 +1,216 @@
+// twincell calibrate plate STACK: the drive from the plate's edge.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <fstream>
+#include <memory>
+
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/error.hpp"
+#include "calibration/accelerometer.hpp"
+#include "calibration/plate_lock.hpp"
+#include "calibration/plate_lock_figure.hpp"
+#include "cli/calibrate.hpp"
+#include "imaging/frame_source.hpp"
+
+namespace twincell::cli {
+namespace {
+
+struct PlateOptions {
+  CalibrateFlags flags;
+  std::string phases, accelerometer;
+  int frames_per_cycle = 0;
+  std::optional<double> frame_rate_hz;
+};
+
+void write_phases(const std::string& path, const PlateLock& lock) {
+  AtomicPath file(path);
+  {
+    std::ofstream out(file.part());
+    out << "frame,cycles\n";
+    // read_triggers counts cycles from 0 on.
+    const double first = std::floor(lock.frames.front().cycles);
+    for (std::size_t f = 0; f < lock.frames.size(); ++f)
+      out << fmt::format("{},{:.6f}\n", f, lock.frames[f].cycles - first);
+    if (!out.flush()) throw RunError(path + ": writing the table failed.");
+  }
+  file.commit();
+}
+
+std::string list_of(const PlateLock& lock, FrameLock kind) {
+  constexpr int kMostNamed = 12;
+  std::string s;
+  int n = 0;
+  for (std::size_t f = 0; f < lock.frames.size(); ++f)
+    if (lock.frames[f].lock == kind && ++n <= kMostNamed) s += fmt::format("{}{}", n > 1 ? ", " : "", f);
+  return n > kMostNamed ? s + ", ..." : s;
+}
+
+PlateLock lock_of(const PlateOptions& o, const CellDescription& cell, const CellGeometry& g) {
+  constexpr double kFloor_px = 0.015;  // as of the walls' edges (cell_geometry.hpp)
+  std::vector<double> heights;
+  for (const PlateSighting& s : g.heights) heights.push_back(s.height_px);
+  try {
+    const int known = o.frames_per_cycle > 0 ? o.frames_per_cycle : cell.phase_lock.frames_per_cycle;
+    return lock_plate(heights, {.frames_per_cycle = known, .mend = true, .floor = kFloor_px});
+  } catch (const InputError& e) {
+    throw InputError({.file = o.flags.stack, .key = {}}, e.what());
+  }
+}
+
+void run(const PlateOptions& o, const Common& common) {
+  const CellDescription cell = cell_of(o.flags);
+  const std::optional<VibrationTable> vibration =
+      o.accelerometer.empty() ? std::nullopt : std::optional(read_vibration(o.accelerometer));
+  StackEdges edges;
+  const CellGeometry g = geometry_of(o.flags, cell, common, edges);
+  const PlateLock lock = lock_of(o, cell, g);
+  const auto scale = scale_of(cell, g);
+  const std::string data = data_hash(o.flags.stack);
+
+  CalibrationResult out;
+  out.notes = lock.notes;
+  const auto add = [&](const std::string& name, double value, double error, const std::string& method) {
+    out.measured.push_back(
+        {.name = name, .value = {value}, .standard_error = {error}, .method = method, .data = data});
+  };
+  const std::string harmonic = fmt::format("harmonic fit to the plate's edge in {} frames", lock.locked);
+  if (lock.frames_per_cycle > 0) {
+    add("camera.frames_per_cycle", lock.frames_per_cycle, 0, "the nearest whole number to camera.period");
+    add("camera.first_phase", lock.first_phase, 0, harmonic);
+    add("camera.phase_offset", lock.phase_offset, lock.phase_offset_error, harmonic);
+  }
+  add("camera.period", lock.period, lock.period_error, harmonic);
+  if (lock.jitter)
+    add("camera.jitter", *lock.jitter, lock.jitter_error, "scatter that grows with the plate's speed");
+  if (scale) {
+    const double a = lock.amplitude / scale->value;
+    add("drive.amplitude", a,
+        a * std::hypot(lock.amplitude_error / lock.amplitude, scale->error.value_or(0) / scale->value),
+        harmonic + ", scale: " + scale->from);
+    if (!scale->error) out.notes.emplace_back("the error of drive.amplitude takes the cell's scale as exact");
+  } else {
+    out.notes.emplace_back(
+        "no scale is known, so A is in px only: give camera.pixels_per_sigma or cell.width in CELL.toml, or "
+        "run "
+        "calibrate camera first");
+  }
+  // A frame's length in t0 makes frames per cycle an omega.
+  std::optional<double> rate = o.frame_rate_hz;
+  if (!rate && edges.time_s.size() > 1 && edges.time_s.back() > edges.time_s.front())
+    rate = static_cast<double>(edges.time_s.size() - 1) / (edges.time_s.back() - edges.time_s.front());
+  if (!rate) rate = open_frames(o.flags.stack)->info().frame_rate_hz;
+  const auto t0 = cell.scale.t0_s();
+  if (rate && t0)
+    add("drive.omega", lock.omega * *rate * *t0, lock.omega_error * *rate * *t0,
+        fmt::format("{}, {:.7g} frames per second", harmonic, *rate));
+  if (lock.second_harmonic)
+    add("drive.second_harmonic", *lock.second_harmonic, *lock.second_harmonic_error, harmonic);
+
+  nlohmann::json& d = out.document;
+  d["stack"] = o.flags.stack;
+  d["plate"] = {
+      {"z0_px", lock.z0},
+      {"row_px", g.plate_row - lock.z0},
+      {"amplitude_px", lock.amplitude},
+      {"amplitude_error_px", lock.amplitude_error},
+      {"omega_per_frame", lock.omega},
+      {"omega_error_per_frame", lock.omega_error},
+      {"phi", lock.phi},
+      {"phi_error", lock.phi_error},
+      {"rms_residual_px", lock.rms},
+      {"blur_px", g.blur_px},
+      {"rotation_deg", g.rotation_deg},
+      {"p_sinusoidal", lock.p_sinusoidal ? finite(*lock.p_sinusoidal) : nlohmann::json()},
+      {"sinusoidal", lock.p_sinusoidal ? nlohmann::json(*lock.p_sinusoidal >= 0.01) : nlohmann::json()},
+      {"jitter_limit_frames", lock.jitter_limit}};
+  if (rate)
+    d["plate"]["frequency_hz"] = {{"value", lock.omega / (2 * M_PI) * *rate},
+                                  {"standard_error", lock.omega_error / (2 * M_PI) * *rate}};
+  d["frames"] = {{"locked", lock.locked},
+                 {"out_of_lock", lock.out_of_lock},
+                 {"unseen", lock.unseen},
+                 {"dropped", lock.dropped},
+                 {"doubled", lock.doubled}};
+  constexpr const char* kLocks[] = {"locked", "out_of_lock", "unseen"};
+  for (std::size_t f = 0; f < lock.frames.size(); ++f)
+    d["per_frame"].push_back({{"frame", f},
+                              {"tick", lock.frames[f].tick},
+                              {"phase", lock.frames[f].cycles - std::floor(lock.frames[f].cycles)},
+                              {"height_px", finite(g.heights[f].height_px)},
+                              {"error_px", finite(g.heights[f].sigma_px)},
+                              {"residual_px", finite(lock.frames[f].residual)},
+                              {"lock", kLocks[static_cast<std::size_t>(lock.frames[f].lock)]}});
+
+  out.text =
+      fmt::format("A = {:.4f} +- {:.4f} px about row {:.3f}; rms residual {:.3f} px, edge blur {:.2f} px\n",
+                  lock.amplitude, lock.amplitude_error, g.plate_row - lock.z0, lock.rms, g.blur_px);
+  out.text += fmt::format("frames: {} locked, {} out of lock, {} without a plate, {} dropped, {} doubled\n",
+                          lock.locked, lock.out_of_lock, lock.unseen, lock.dropped, lock.doubled);
+  if (lock.out_of_lock > 0) out.text += "out of lock: " + list_of(lock, FrameLock::out_of_lock) + "\n";
+  if (!lock.jitter) out.text += fmt::format("jitter: below {:.2g} frames\n", lock.jitter_limit);
+  if (lock.p_sinusoidal)
+    out.text += fmt::format("second harmonic: {:.2g} +- {:.1g} of A, p = {:.2g} for a pure sine\n",
+                            *lock.second_harmonic, *lock.second_harmonic_error, *lock.p_sinusoidal);
+  if (lock.dropped + lock.doubled > 0)
+    out.notes.emplace_back("frames are missing or doubled: hand the list of --phases to track --phase-lock");
+  if (vibration) {
+    const VibrationFit v = fit_vibration(*vibration);
+    d["accelerometer"] = {
+        {"frequency_hz", {{"value", v.frequency_hz}, {"standard_error", v.frequency_error}}},
+        {"acceleration", {{"value", v.acceleration}, {"standard_error", v.acceleration_error}}}};
+    out.text += fmt::format("accelerometer: {:.6g} +- {:.2g} Hz, amplitude {:.5g} +- {:.2g} m/s^2\n",
+                            v.frequency_hz, v.frequency_error, v.acceleration, v.acceleration_error);
+    if (rate) {
+      const double f = lock.omega / (2 * M_PI) * *rate, e = lock.omega_error / (2 * M_PI) * *rate;
+      const double z = (f - v.frequency_hz) / std::hypot(e, v.frequency_error);
+      d["accelerometer"]["frequency_difference"] = {{"hz", f - v.frequency_hz},
+                                                    {"standard_errors", finite(z)}};
+      out.text += fmt::format("  frequency: camera - accelerometer = {:.2g} Hz, {:.1f} standard errors\n",
+                              f - v.frequency_hz, z);
+      if (scale && cell.scale.sigma_m) {
+        const double metres = lock.amplitude / scale->value * *cell.scale.sigma_m, w = 2 * M_PI * f;
+        const double seen = metres * w * w;
+        const double error =
+            seen * std::sqrt(std::pow(lock.amplitude_error / lock.amplitude, 2) +
+                             std::pow(scale->error.value_or(0) / scale->value, 2) + std::pow(2 * e / f, 2));
+        const double za = (seen - v.acceleration) / std::hypot(error, v.acceleration_error);
+        d["accelerometer"]["acceleration_difference"] = {{"m_s2", seen - v.acceleration},
+                                                         {"standard_errors", finite(za)}};
+        out.text += fmt::format("  A omega^2: camera {:.5g} +- {:.2g} m/s^2, {:.1f} standard errors apart\n",
+                                seen, error, za);
+      }
+    } else {
+      out.notes.emplace_back("without a frame rate (--fps) the accelerometer cannot be compared");
+    }
+  }
+  if (!o.phases.empty()) {
+    write_phases(o.phases, lock);
+    d["phases"] = o.phases;
+    out.text += o.phases + "\n";
+  }
+  out.figures = {plate_lock_figure(lock)};
+  finish_calibration(o.flags, common, std::move(out));
+}
+
+}  // namespace
+
+void add_calibrate_plate(CLI::App& calibrate, Common& common) {
+  auto o = std::make_shared<PlateOptions>();
+  CLI::App& verb = add_verb(calibrate, common, "plate", "Drive and phases from the plate's edge",
+                            "twincell calibrate plate frames/ --cell CELL.toml -o cell.calibration.toml");
+  add_stack_flags(verb, o->flags);
+  verb.add_option("--frames-per-cycle", o->frames_per_cycle,
+                  "Where the search for the period begins; absent: the cell's, or sought")
+      ->check(CLI::Range(2, 100000));
+  verb.add_option("--fps", o->frame_rate_hz, "Frames per second, where the stack does not say")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--phases", o->phases, "List of each frame's phase (CSV) for track --phase-lock");
+  verb.add_option("--accelerometer", o->accelerometer,
+                  "CSV with columns time_s and acceleration_m_s2 to compare with");
+  verb.callback([o, &common] { run(*o, common); });
+}
+
+}  // namespace twincell::cli

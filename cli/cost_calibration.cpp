@@ -1,0 +1,111 @@
+#include "cli/cost_calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "calibration/calibration_cost.hpp"
+#include "cli/calibrate.hpp"
+
+namespace twincell::cli {
+namespace {
+
+std::vector<std::string> names_of(const CalibrationCost& cost) {
+  std::vector<std::string> names;
+  for (const CalibrationPrecision& p : cost.numbers)
+    if (std::find(names.begin(), names.end(), p.name) == names.end()) names.push_back(p.name);
+  return names;
+}
+
+nlohmann::json as_json(const CalibrationCost& cost) {
+  nlohmann::json d;
+  for (const CalibrationPrecision& p : cost.numbers)
+    d["numbers"].push_back({{"name", p.name},
+                            {"unit", p.unit},
+                            {"frames", p.frames},
+                            {"standard_error", finite(p.stated)},
+                            {"actual_error", finite(p.actual)}});
+  for (const CalibrationTime& t : cost.times)
+    d["times"].push_back(
+        {{"frames", t.frames}, {"edges_s", t.edges_s}, {"fit_s", t.fit_s}, {"beads_s", t.beads_s}});
+  return d;
+}
+
+std::string as_text(const CalibrationCost& cost) {
+  std::string s = fmt::format(
+      "Standard error as stated, in brackets the value minus the truth. Frames of {} x {} px, 12 x 6 beads, "
+      "14.3 px "
+      "each.\n\n",
+      cost.width_px, cost.height_px);
+  s += fmt::format("{:<26}", "frames");
+  for (const CalibrationTime& t : cost.times) s += fmt::format("  {:>20}", t.frames);
+  s += "\n";
+  for (const std::string& name : names_of(cost)) {
+    std::string unit, row;
+    for (const CalibrationTime& t : cost.times) {
+      const auto at =
+          std::find_if(cost.numbers.begin(), cost.numbers.end(),
+                       [&](const CalibrationPrecision& p) { return p.name == name && p.frames == t.frames; });
+      if (at == cost.numbers.end()) {
+        row += fmt::format("  {:>20}", "-");
+        continue;
+      }
+      unit = at->unit;
+      row += fmt::format("  {:>20}", fmt::format("{:.2g} ({:+.1g})", at->stated, at->actual));
+    }
+    s += fmt::format("{:<26}{}  {}\n", name, row, unit);
+  }
+  const auto line = [&](const char* what, double CalibrationTime::*member) {
+    s += fmt::format("{:<26}", what);
+    for (const CalibrationTime& t : cost.times) s += fmt::format("  {:>20.3g}", t.*member);
+    s += "  s\n";
+  };
+  line("time: edges", &CalibrationTime::edges_s);
+  line("time: fits", &CalibrationTime::fit_s);
+  line("time: beads", &CalibrationTime::beads_s);
+  return s;
+}
+
+Figure figure(const CalibrationCost& cost) {
+  // Okabe and Ito's colours, as in all figures.
+  constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                      "#E69F00", "#56B4E9", "#000000"};
+  Figure f{.name = "calibrating", .title = "What accuracy of calibration costs", .width = 760, .height = 460};
+  std::string clauses;
+  int index = 0;
+  for (const std::string& name : names_of(cost)) {
+    f.data += fmt::format("# {}: frames, standard error\n", name);
+    std::string unit;
+    for (const CalibrationPrecision& p : cost.numbers)
+      if (p.name == name && p.stated > 0) {
+        f.data += fmt::format("{} {:.4g}\n", p.frames, p.stated);
+        unit = p.unit;
+      }
+    f.data += "\n\n";
+    std::string title = name + (unit == "1" ? "" : ", " + unit);
+    std::replace(title.begin(), title.end(), '_', ' ');
+    clauses += fmt::format(
+        "{}'calibrating.dat' index {} using 1:2 with linespoints pt {} ps 0.9 lw 2 lc rgb '{}' title '{}'",
+        index > 0 ? ", " : "", index, 4 + index, kColours[index % 7], title);
+    ++index;
+  }
+  f.plot = fmt::format(
+      "set logscale xy\nset format y '10^{{%T}}'\nset key outside right\nset xlabel 'frames'\nset ylabel "
+      "'standard "
+      "error'\nplot {}\n",
+      clauses);
+  return f;
+}
+
+}  // namespace
+
+CostReport cost_of_calibrating(bool quick, const Common& common) {
+  ProgressBar bar(common, "calibrating");
+  const CalibrationCost cost =
+      measure_calibration(quick ? std::vector{20, 60} : std::vector{20, 40, 100, 200, 400, 1000}, bar);
+  return {as_json(cost), as_text(cost), figure(cost)};
+}
+
+}  // namespace twincell::cli

@@ -1,0 +1,218 @@
+// calibrate as a user runs it: a stack whose scale, drive, phase and restitution nobody wrote down, and its
+// twin.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/calibration_file.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
+#include "imaging/cell.hpp"
+#include "imaging/synthetic_camera.hpp"
+#include "sim/scene.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/rigid_bed.hpp"
+
+namespace twincell {
+namespace {
+
+namespace fs = std::filesystem;
+
+const test::RigidBed kBed = {.gamma = 1.3, .columns = 12, .rows = 5, .phases = 20, .cycles = 3};
+
+/// Frames of a known bed. Each is 0.04 t0 late.
+void film(const TemporaryFolder& folder, const CameraOptions& camera) {
+  render(test::rigid_bed(kBed), camera, folder / "frames");
+}
+
+nlohmann::json run_json(const std::vector<std::string>& words) {
+  std::vector<std::string> all = words;
+  all.insert(all.end(), {"-q", "--json"});
+  const Ran ran = run_program(all);
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  return ran.code == 0 ? nlohmann::json::parse(ran.out) : nlohmann::json();
+}
+
+/// The measured number lies within three of its standard errors, which are small.
+void expect_within(const nlohmann::json& document, const std::string& name, double truth,
+                   double largest_error) {
+  ASSERT_TRUE(document["measured"].contains(name)) << document.dump(1).substr(0, 2000);
+  const double value = document["measured"][name]["value"],
+               error = document["measured"][name]["standard_error"];
+  std::cout << name << ": " << value << " +- " << error << ", truth " << truth << ", "
+            << (value - truth) / error << " standard errors\n";
+  EXPECT_LE(std::abs(value - truth), 3 * error) << name;
+  EXPECT_LE(error, largest_error) << name;
+}
+
+/// A bead that bounces on a plate at rest, e_n = 0.8545 (paper 1's wall).
+void write_bounces(const fs::path& file) {
+  std::ofstream out(file);
+  out << "time,height\n";
+  double begin = 0, top = 3;
+  std::uint32_t state = 7;
+  for (double v = 0, t = 0; t < 14; t += 0.02) {
+    if (begin == 0 && t > std::sqrt(2 * top)) begin = std::sqrt(2 * top), v = 0.8545 * std::sqrt(2 * top);
+    while (begin > 0 && t > begin + 2 * v) begin += 2 * v, v *= 0.8545;
+    const double z = begin == 0 ? top - 0.5 * t * t : v * (t - begin) - 0.5 * (t - begin) * (t - begin);
+    state = state * 1664525U + 1013904223U;
+    out << t << "," << 0.5 + z + 0.01 * (state / 4294967296.0 - 0.5) << "\n";
+  }
+}
+
+}  // namespace
+
+TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
+  const TemporaryFolder folder;
+  const double late = 0.04;  // t0; a frame is 2 pi/20
+  const CameraOptions camera{
+      .pixels_per_sigma = 14.37, .max_height = 9, .rotation_deg = 0.6, .trigger_offset = late, .seed = 8};
+  film(folder, camera);
+  const std::string frames = folder / "frames", file = folder / "cell.calibration.toml",
+                    known = folder / "KNOWN.toml";
+  // What a user knows: how wide the cell is, how long, and how fast the shaker turns.
+  write_text_file(known, "[cell]\nwidth = 12.0\nheight = 20.0\n[drive]\nomega = 1.0\n");
+
+  const nlohmann::json c = run_json({"calibrate", "camera", frames, "--cell", known, "-o", file});
+  expect_within(c, "camera.pixels_per_sigma", 14.37, 0.02);
+  expect_within(c, "camera.rotation_deg", 0.6, 0.03);
+  EXPECT_EQ(c["covariance"]["matrix"].size(), 25U);
+  EXPECT_LT(c["scales"]["standard_errors_apart"].get<double>(), 4);
+
+  write_text_file(folder / "CELL.toml",
+                  "[cell]\nwidth = 12.0\nheight = 20.0\n[drive]\nomega = 1.0\n[calibration]\nfrom = "
+                  "\"cell.calibration.toml\"\n");
+  const std::string cell = folder / "CELL.toml";
+  const std::string phases = folder / "phases.csv";
+  const nlohmann::json p = run_json({"calibrate", "plate", frames, "--cell", cell, "-o", file, "--phases",
+                                     phases, "--figures", folder / "figures"});
+  expect_within(p, "drive.amplitude", kBed.gamma, 0.005);
+  expect_within(p, "camera.period", 20, 0.02);
+  expect_within(p, "camera.phase_offset", late / (2 * std::numbers::pi / 20), 0.02);
+  EXPECT_EQ(p["measured"]["camera.frames_per_cycle"]["value"], 20);
+  EXPECT_EQ(p["measured"]["camera.first_phase"]["value"], 0);
+  EXPECT_EQ(p["frames"]["dropped"], 0);
+  EXPECT_TRUE(fs::exists(folder / "figures/plate.svg"));
+
+  const nlohmann::json w = run_json({"calibrate", "walls", frames, "--cell", cell});
+  const auto& tilt = w["measured"]["cell.side_tilt"];
+  for (int side = 0; side < 2; ++side)
+    EXPECT_LE(std::abs(tilt["value"][side].get<double>()), 3 * tilt["standard_error"][side].get<double>());
+  const nlohmann::json b = run_json({"calibrate", "beads", frames, "--cell", cell, "--frames", "5"});
+  EXPECT_NEAR(b["measured"]["beads.layers"]["value"].get<double>(), 58.0 / 12, 1e-9);
+  EXPECT_NEAR(b["measured"]["beads.diameter"]["value"].get<double>(), 14.37, 0.03);
+
+  write_bounces(folder / "bounce.csv");
+  const nlohmann::json e = run_json({"calibrate", "contacts", "bounce", folder / "bounce.csv", "-o", file});
+  expect_within(e, "contact.wall.restitution", 0.8545, 0.005);
+
+  // One file holds it all, and the twin is made of it.
+  const Calibration all = read_calibration(file);
+  EXPECT_NE(all.find("camera.origin_px"), nullptr);
+  EXPECT_NE(all.find("drive.amplitude"), nullptr);
+  EXPECT_TRUE(all.camera.has_value());
+  const nlohmann::json m = run_json({"match", frames, cell, "-o", folder / "twin", "--twins", "1",
+                                     "--no-film", "--set", "time.steps_per_contact=20"});
+  EXPECT_NEAR(m["pixels_per_sigma"].get<double>(), all.find("camera.pixels_per_sigma")->value[0], 1e-9);
+  const H5mdReader experiment(folder / "twin/experiment.h5");
+  EXPECT_NEAR(experiment.info().drive->amplitude, all.find("drive.amplitude")->value[0], 1e-9);
+  const auto tracking = nlohmann::json::parse(experiment.info().tracking_json);
+  EXPECT_EQ(tracking["camera"]["covariance"]["matrix"].size(), 25U);
+  EXPECT_NEAR(tracking["camera"]["rotation_deg"].get<double>(), 0.6, 0.1);
+  const sim::Scene scene = sim::read_scene(folder / "twin/scene.toml");
+  EXPECT_NEAR(scene.contact.wall.at("bottom").required("restitution"),
+              all.find("contact.wall.restitution")->value[0], 1e-9);
+  // Positions: the truth of the film, in the cell. The turned picture was turned back.
+  const MemoryTrajectory truth = test::rigid_bed(kBed);
+  Frame seen;
+  double squares = 0, n = 0;
+  experiment.read(5, seen);
+  for (const Vec3& r : truth.frames()[5].position) {
+    double nearest = INFINITY;
+    for (std::size_t i = 0; i < seen.position.size(); ++i)
+      if (seen.present(i))
+        nearest = std::min(nearest, std::hypot(seen.position[i].x() - r.x(), seen.position[i].z() - r.z()));
+    squares += nearest * nearest;
+    ++n;
+  }
+  std::cout << "positions: rms " << std::sqrt(squares / n) << " sigma from the untimed truth\n";
+  // 0.04 t0 at speeds of up to A omega = 1.3 are 0.05 sigma.
+  EXPECT_LT(std::sqrt(squares / n), 0.06);
+  // Phases as a list do the same for track.
+  const Ran tracked = run_program(
+      {"track", frames, "-o", folder / "listed.h5", "--cell", cell, "--phase-lock", phases, "-q"});
+  EXPECT_EQ(tracked.code, 0) << tracked.err;
+}
+
+TEST(Calibrate, DroppedFramesAreCountedAndTheDriveStands) {
+  const TemporaryFolder folder;
+  const CameraOptions camera{.pixels_per_sigma = 12, .max_height = 8, .drop = 0.02, .seed = 4};
+  test::RigidBed bed = kBed;
+  bed.cycles = 6;
+  const Rendered done = render(test::rigid_bed(bed), camera, RenderJob{.folder = folder / "frames"});
+  ASSERT_GT(done.dropped, 0U);
+  const nlohmann::json p =
+      run_json({"calibrate", "plate", folder / "frames", "--cell", folder / "frames/CELL.toml"});
+  // A frame lost before the first that was stored, or after the last, leaves no gap.
+  std::ifstream record(folder / "frames/frames.csv");
+  std::string line;
+  std::getline(record, line);
+  long first = -1, last = -1, stored = 0;
+  while (std::getline(record, line)) {
+    last = std::stol(line.substr(line.find(',') + 1));
+    first = first < 0 ? last : first;
+    ++stored;
+  }
+  EXPECT_EQ(p["frames"]["dropped"], last - first + 1 - stored);
+  expect_within(p, "drive.amplitude", bed.gamma, 0.01);
+}
+
+TEST(Calibrate, NumbersGoThereAndBack) {
+  const nlohmann::json there =
+      run_json({"calibrate", "contacts", "numbers", "--restitution", "0.9", "--contact-time", "0.002"});
+  const nlohmann::json back =
+      run_json({"calibrate", "contacts", "numbers", "--k-n", std::to_string(there["k_n"].get<double>()),
+                "--gamma-n", std::to_string(there["gamma_n"].get<double>())});
+  EXPECT_NEAR(back["restitution"].get<double>(), 0.9, 1e-6);
+  EXPECT_NEAR(back["contact_time"].get<double>(), 0.002, 1e-9);
+}
+
+TEST(Calibrate, AccuracyCostsFrames) {
+  const TemporaryFolder folder;
+  const nlohmann::json d = run_json({"cost", "calibration", "--quick", "-o", folder / "cost"});
+  std::map<std::string, std::vector<double>> errors;
+  for (const auto& n : d["numbers"]) {
+    errors[n["name"]].push_back(n["standard_error"]);
+    // Touching discs are located 0.002 px too large; that does not average away.
+    EXPECT_LE(std::abs(n["actual_error"].get<double>()), 4 * n["standard_error"].get<double>() + 0.003)
+        << n.dump();
+  }
+  // The period's error falls as frames^(-3/2): three times the frames, a fifth of the error.
+  const std::vector<double>& period = errors.at("camera.period");
+  ASSERT_EQ(period.size(), 2U);
+  EXPECT_NEAR(std::log(period[0] / period[1]) / std::log(3), 1.5, 0.7);
+  EXPECT_EQ(d["times"].size(), 2U);
+  EXPECT_TRUE(fs::exists(folder / "cost/calibrating.svg"));
+}
+
+TEST(Calibrate, SaysWhatIsWrongAndLeavesNothing) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(run_program({"calibrate"}).code, 2);
+  EXPECT_EQ(run_program({"calibrate", "plate", folder / "no", "-q"}).code, 3);
+  EXPECT_EQ(
+      run_program({"calibrate", "contacts", "numbers", "--restitution", "1.5", "--contact-time", "0.1"}).code,
+      2);
+  write_text_file(folder / "two.csv", "time,height\n0,1\n1,0\n");
+  const Ran few =
+      run_program({"calibrate", "contacts", "bounce", folder / "two.csv", "-o", folder / "c.toml", "-q"});
+  EXPECT_EQ(few.code, 3);
+  EXPECT_NE(few.err.find("two.csv"), std::string::npos) << few.err;
+  EXPECT_FALSE(fs::exists(folder / "c.toml"));
+}
+
+}  // namespace twincell

@@ -1,0 +1,262 @@
+// Restitution and friction from bounces and collisions whose truth is known: by formula, and by the
+// simulator.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include "analysis/trajectory/error.hpp"
+#include "calibration/bounce.hpp"
+#include "calibration/collisions.hpp"
+#include "calibration/contact_numbers.hpp"
+#include "calibration/inference.hpp"
+#include "calibration/walton.hpp"
+#include "sim/laws/linear_collision.hpp"
+#include "sim/simulation.hpp"
+#include "tests/support/validation.hpp"
+
+using namespace twincell;
+
+namespace {
+
+struct Film {
+  double e = 0.85, drop = 4, noise = 0.005, dt = 0.02, drag = 0, outliers = 0;
+  double amplitude = 0, omega = 1;
+  double duration = 16;
+};
+
+/// A bead of radius 1/2 that bounces on a plate; flights with drag to first order in short steps, impacts by
+/// bisection.
+std::vector<BounceSample> bounce(const Film& film, std::mt19937_64& generator) {
+  std::normal_distribution<double> noise(0, film.noise);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const auto plate = [&](double t) { return film.amplitude * std::sin(film.omega * t); };
+  const auto plate_velocity = [&](double t) {
+    return film.amplitude * film.omega * std::cos(film.omega * t);
+  };
+  double t = 0, z = film.drop, v = 0;
+  std::vector<BounceSample> samples;
+  const double step = film.dt / 20;
+  const auto fly = [&](double h) {
+    z += v * h - 0.5 * h * h - film.drag * (v * 0.5 * h * h);
+    v -= h + film.drag * (v * h - 0.5 * h * h);
+    t += h;
+  };
+  for (int i = 0; t < film.duration; ++i) {
+    if (i % 20 == 0) {
+      const double wild = uniform(generator) < film.outliers ? 2 * (uniform(generator) - 0.5) : 0;
+      samples.push_back({t, z + noise(generator) + wild});
+    }
+    const double t0 = t, z0 = z, v0 = v;
+    fly(step);
+    if (z - 0.5 >= plate(t)) continue;
+    double low = 0, high = step;
+    for (int k = 0; k < 60; ++k) {
+      t = t0, z = z0, v = v0;
+      const double middle = 0.5 * (low + high);
+      fly(middle);
+      (z - 0.5 >= plate(t) ? low : high) = middle;
+    }
+    v = plate_velocity(t) - film.e * (v - plate_velocity(t));
+    if (v - plate_velocity(t) < 0.05) break;
+    fly(step - low);
+  }
+  return samples;
+}
+
+struct Recovered {
+  double bias = 0, rms = 0, coverage = 0;
+};
+
+Recovered recover(const char* what, const Film& film, int trials, const BounceOptions& options) {
+  std::mt19937_64 generator(31);
+  Recovered r;
+  for (int i = 0; i < trials; ++i) {
+    const BounceFit fit = fit_bounces(bounce(film, generator), options);
+    const double error = fit.restitution - film.e;
+    r.bias += error / trials;
+    r.rms += error * error / trials;
+    r.coverage += std::abs(error) <= 1.96 * fit.restitution_error ? 1.0 / trials : 0;
+  }
+  r.rms = std::sqrt(r.rms);
+  std::cout << what << ": bias " << r.bias << ", rms " << r.rms << ", coverage " << 100 * r.coverage
+            << " %\n";
+  EXPECT_LE(std::abs(r.bias), 4 * r.rms / std::sqrt(trials));
+  return r;
+}
+
+}  // namespace
+
+TEST(ContactNumbers, AreInverseToTheCollision) {
+  // Table of physics: bead-bead of paper 1, t_c = 2.222831e-3 t0, e_n = 0.894812 from k_n = 1e6, gamma_n =
+  // 100.
+  const SpringDashpot s = spring_of(0.894812, 2.222831e-3, 0.5);
+  test::validate({"I6.1", "k_n from e_n and t_c, paper 1 bead-bead", 1e6, 5, "closed form, eq. A5"}, s.k_n);
+  test::validate({"I6.1", "gamma_n from e_n and t_c, paper 1 bead-bead", 100, 1e-3, "closed form, eq. A5"},
+                 s.gamma_n);
+  for (const double e : {0.05, 0.5, 0.9, 1.0})
+    for (const double t_c : {1e-3, 0.1}) {
+      const SpringDashpot there = spring_of(e, t_c, 0.5);
+      const sim::LinearCollision back(there.k_n, there.c_n, 0.5);
+      EXPECT_NEAR(back.restitution(), e, 1e-12);
+      EXPECT_NEAR(back.contact_time(), t_c, 1e-12 * t_c);
+      EXPECT_NEAR(there.c_n, 0.5 * there.gamma_n, 1e-12 * there.gamma_n);
+    }
+  EXPECT_THROW(spring_of(0, 1e-3, 1), ConfigError);
+  EXPECT_THROW(spring_of(1.01, 1e-3, 1), ConfigError);
+  EXPECT_THROW(spring_of(0.9, 0, 1), ConfigError);
+}
+
+TEST(Bounce, RestingPlateIntervalsCover) {
+  const Recovered r = recover("resting plate", {}, 200, {});
+  EXPECT_GE(r.coverage, 0.91);
+  EXPECT_LE(r.coverage, 0.985);
+  EXPECT_LT(r.rms, 0.005);
+}
+
+TEST(Bounce, OutliersAreTold) {
+  const Recovered r = recover("20 % outliers", {.outliers = 0.2}, 200, {});
+  EXPECT_GE(r.coverage, 0.91);
+  EXPECT_LE(r.coverage, 0.985);
+}
+
+TEST(Bounce, DragAndGravityAreNuisancesThatComeBack) {
+  std::mt19937_64 generator(32);
+  const BounceFit fit = fit_bounces(bounce({.drop = 12, .noise = 0.003, .drag = 0.02}, generator));
+  std::cout << "g " << fit.gravity << " +- " << fit.gravity_error << ", drag " << fit.drag << " +- "
+            << fit.drag_error << ", e " << fit.restitution << " +- " << fit.restitution_error << "\n";
+  EXPECT_NEAR(fit.gravity, 1, 4 * fit.gravity_error);
+  EXPECT_NEAR(fit.drag, 0.02, 4 * fit.drag_error);
+  EXPECT_GT(fit.drag, 3 * fit.drag_error);
+  EXPECT_NEAR(fit.restitution, 0.85, 4 * fit.restitution_error);
+}
+
+TEST(Bounce, VibratingPlate) {
+  const Film film{.e = 0.8, .amplitude = 0.3, .omega = 2.5, .duration = 30};
+  const BounceOptions options{.gravity = std::nullopt, .drag = false, .plate = [](double t) {
+                                return PlateAt{0.3 * std::sin(2.5 * t), 0.75 * std::cos(2.5 * t)};
+                              }};
+  const Recovered r = recover("vibrating plate", film, 200, options);
+  EXPECT_GE(r.coverage, 0.91);
+  EXPECT_LE(r.coverage, 0.985);
+}
+
+TEST(Bounce, WhatCannotBeFitted) {
+  EXPECT_THROW(fit_bounces({}), InputError);
+  std::vector<BounceSample> fall;
+  for (int i = 0; i < 40; ++i) fall.push_back({0.02 * i, 5 - 0.5 * 0.0004 * i * i});
+  EXPECT_THROW(fit_bounces(fall), InputError) << "a fall without an impact";
+}
+
+namespace {
+
+/// Impacts by Walton's law.
+std::vector<Impact> impacts(double e, double mu, double beta, double steepest, int n, double noise,
+                            std::mt19937_64& generator) {
+  std::normal_distribution<double> normal(0, noise);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<Impact> all;
+  for (int i = 0; i < n; ++i) {
+    const double psi = steepest * uniform(generator);
+    all.push_back({.speed = 0.3 + uniform(generator),
+                   .restitution = e + normal(generator),
+                   .psi_1 = psi,
+                   .psi_2 = std::max(-beta * psi, psi - mu * (1 + e) * 3) + normal(generator)});
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST(Walton, IntervalsCover) {
+  std::mt19937_64 generator(41);
+  const int trials = 300;
+  int e = 0, mu = 0, beta = 0;
+  double bias[3] = {};
+  for (int i = 0; i < trials; ++i) {
+    const WaltonFit f = fit_walton(impacts(0.9, 0.25, 0.4, 5, 80, 0.02, generator), 0.5);
+    e += std::abs(f.restitution - 0.9) <= 1.99 * f.restitution_error ? 1 : 0;
+    mu += std::abs(f.tangential.value("mu") - 0.25) <= 1.99 * f.tangential.standard_error("mu") ? 1 : 0;
+    beta +=
+        std::abs(f.tangential.value("beta_0") - 0.4) <= 1.99 * f.tangential.standard_error("beta_0") ? 1 : 0;
+    bias[0] += (f.restitution - 0.9) / trials;
+    bias[1] += (f.tangential.value("mu") - 0.25) / trials;
+    bias[2] += (f.tangential.value("beta_0") - 0.4) / trials;
+  }
+  std::cout << "coverage of e_n, mu, beta_0: " << 100.0 * e / trials << ", " << 100.0 * mu / trials << ", "
+            << 100.0 * beta / trials << " %; bias " << bias[0] << ", " << bias[1] << ", " << bias[2] << "\n";
+  EXPECT_GE(e + mu + beta, 0.93 * 3 * trials);
+  EXPECT_LE(e + mu + beta, 0.97 * 3 * trials);
+}
+
+TEST(Walton, SaysWhatIsUndetermined) {
+  std::mt19937_64 generator(42);
+  // All stick: friction is at least what held them, and no more is known.
+  const WaltonFit sticking = fit_walton(impacts(0.9, 5, 0.4, 1, 60, 0.01, generator), 0.5);
+  EXPECT_NE(std::find(sticking.tangential.undetermined.begin(), sticking.tangential.undetermined.end(), "mu"),
+            sticking.tangential.undetermined.end());
+  EXPECT_NEAR(sticking.tangential.value("beta_0"), 0.4, 0.02);
+  // Spins unknown.
+  std::vector<Impact> blind = impacts(0.9, 0.2, 0.4, 4, 60, 0.01, generator);
+  for (Impact& i : blind) i.psi_1 = i.psi_2 = std::nan("");
+  const WaltonFit f = fit_walton(blind, 0.5);
+  EXPECT_FALSE(f.has_tangential);
+  EXPECT_NEAR(f.restitution, 0.9, 0.01);
+  EXPECT_THROW(fit_walton({}, 0.5), InputError);
+}
+
+TEST(Collisions, OfTheSimulatorGiveItsRestitutionAndFriction) {
+  // A gas of discs without gravity; linear dashpot e_n = 0.9, mu = 0.2. 1/m_t = 6, MODEL's sticking ratio is
+  // -beta_0.
+  const sim::Scene scene = sim::read_scene_text(
+      "[cell]\nwidth = 20.0\nheight = 20.0\nlid = \"wall\"\ngravity = 0.0\n[beads]\ncount = "
+      "60\n[contact]\nk_n = 1e5\n"
+      "restitution = 0.9\nk_t = 28571.0\ngamma_t = 0.0\nmu = 0.2\n[drive]\namplitude = 0.0\nomega = "
+      "12.566\n[start]\nkind "
+      "= \"random\"\nseed = 3\nvelocity_scale = 2.0\n[time]\ndiscard = 0\ncycles = 60\nphases = 20\n",
+      "gas");
+  sim::Simulation run(scene);
+  MemoryTrajectory trajectory(run.trajectory_info());
+  run.run(trajectory);
+  const FoundCollisions found = find_collisions(trajectory, {.gravity = 0, .least_speed = 0.2});
+  const WaltonFit f = fit_walton(found.impacts, 0.5);
+  std::cout << found.impacts.size() << " impacts, " << found.crowded << " crowded; e_n " << f.restitution
+            << " +- " << f.restitution_error << ", mu " << f.tangential.value("mu") << " +- "
+            << f.tangential.standard_error("mu") << ", beta_0 " << f.tangential.value("beta_0") << "\n";
+  EXPECT_GT(found.impacts.size(), 50U);
+  test::validate({"I6.2", "e_n from collisions found in a trajectory", 0.9, 0.003, "closed form of the law"},
+                 f.restitution);
+  test::validate(
+      {"I6.2", "mu from collisions found in a trajectory", 0.2, 0.01, "Coulomb's law of the scene"},
+      f.tangential.value("mu"));
+}
+
+TEST(Inference, IntervalsCoverAndWhatDoesNotMatterIsUndetermined) {
+  // A simulator by formula: one observable falls with e, the other too; neither knows mu.
+  std::mt19937_64 generator(51);
+  std::normal_distribution<double> normal(0, 1);
+  const std::vector<Sought> sought = {{"e", 0.6, 0.95}, {"mu", 0, 1}};
+  const auto simulate = [&](const std::vector<double>& t) {
+    return std::vector<double>{2 - t[0] + 0.02 * normal(generator), t[0] * t[0] + 0.03 * normal(generator)};
+  };
+  const int trials = 200;
+  int covered = 0, open = 0;
+  double bias = 0;
+  for (int i = 0; i < trials; ++i) {
+    std::vector<SimulatedPoint> runs;
+    for (const auto& theta : spread_points(sought, 40)) runs.push_back({theta, simulate(theta)});
+    const auto y = simulate({0.8, 0.4});
+    const Inference f = infer_parameters(sought, runs, {{"a", y[0], 0}, {"b", y[1], 0}});
+    covered += f.profiles[0].low <= 0.8 && 0.8 <= f.profiles[0].high ? 1 : 0;
+    open += f.profiles[1].undetermined() ? 1 : 0;
+    bias += (f.profiles[0].best - 0.8) / trials;
+  }
+  std::cout << "coverage of e " << 100.0 * covered / trials << " %, bias " << bias << "; mu undetermined in "
+            << 100.0 * open / trials << " %\n";
+  EXPECT_GE(covered, 0.91 * trials);
+  EXPECT_LE(covered, 0.99 * trials);
+  EXPECT_GE(open, 0.9 * trials);
+  EXPECT_NEAR(bias, 0, 0.005);
+  EXPECT_THROW(infer_parameters(sought, {{{0.7, 0.5}, {1, 1}}}, {{"a", 1, 0}, {"b", 1, 0}}), InputError);
+}

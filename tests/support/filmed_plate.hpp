@@ -1,0 +1,51 @@
+#pragma once
+/// \file
+/// A cell with a plate that moves and a crystal that rides on it, filmed with a known camera.
+
+#include <cmath>
+#include <vector>
+
+#include "imaging/cell_edges.hpp"
+#include "imaging/synthetic_camera.hpp"
+#include "tests/support/rigid_bed.hpp"
+
+namespace twincell::test {
+
+/// A small cell, 12 sigma wide.
+inline RigidBed small_bed(double gamma, int cycles) {
+  return {.gamma = gamma, .columns = 12, .rows = 5, .phases = 20, .cycles = cycles};
+}
+
+/// Frames in memory.
+inline std::vector<cv::Mat> film(const MemoryTrajectory& bed, const CameraOptions& options) {
+  const SyntheticCamera camera(options, bed.info());
+  std::vector<cv::Mat> frames;
+  for (std::size_t f = 0; f < bed.n_frames(); ++f) {
+    const Frame& now = bed.frames()[f];
+    Moment moment{.now = &now};
+    if (f > 0) moment.before = &bed.frames()[f - 1];
+    if (f + 1 < bed.n_frames()) moment.after = &bed.frames()[f + 1];
+    moment.late = options.trigger_offset;
+    frames.push_back(camera.expose(moment));
+  }
+  return frames;
+}
+
+/// Pictures as a stack.
+class FilmedFrames : public FrameSource {
+ public:
+  explicit FilmedFrames(std::vector<cv::Mat> frames) : frames_(std::move(frames)) {}
+  bool next(cv::Mat& frame) override {
+    if (at_ == frames_.size()) return false;
+    frame = frames_[at_++];
+    return true;
+  }
+  [[nodiscard]] std::size_t announced() const override { return frames_.size(); }
+  [[nodiscard]] std::string current() const override { return "memory"; }
+
+ private:
+  std::vector<cv::Mat> frames_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace twincell::test
