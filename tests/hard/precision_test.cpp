@@ -137,7 +137,8 @@ TEST(Precision, BedsAtRestErrByTheStatedAmount) {
 }
 
 TEST(Precision, AGasIsAsHot) {  // to what the length of the runs leaves to chance
-  const GasTemperature exact = gas_temperature({}, {}, 400), single = gas_temperature({.single = true}, {}, 400);
+  const GasTemperature exact = gas_temperature({}, {}, 400),
+                       single = gas_temperature({.single = true}, {}, 400);
   const double error = std::hypot(exact.standard_error, single.standard_error);
   std::printf("T_z of 40 beads, W = 20: %.3f +- %.3f (double), %.3f +- %.3f m V_p^2 (single)\n", exact.value,
               exact.standard_error, single.value, single.standard_error);
