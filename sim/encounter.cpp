@@ -86,7 +86,7 @@ class Encounter {
     const Numbers y = numbers(m);
     const Forces f = forces(y, kinks(y));
     const Vec3 n = vector(f.n), f_t = vector(f.f_t);
-    return {f.f_n * n + f_t, n.cross(f_t), n, f.v_n, vector(f.v_t)};
+    return {f.f_n * n + f_t, n.cross(f_t), n};
   }
 
  private:
@@ -94,8 +94,8 @@ class Encounter {
     double length, speed;  ///< errors that a step may make
   };
   struct Forces {
-    double n[D], v_t[D] = {}, f_t[D] = {};  // as vectors
-    Tangent<double, kTurn> turning{};       // n x F_t; in the plane F_t
+    double n[D], f_t[D] = {};          // as vectors
+    Tangent<double, kTurn> turning{};  // n x F_t; in the plane F_t
     double overlap, v_n, f_n;
   };
 
@@ -180,13 +180,12 @@ class Encounter {
       else
         f_t = -1.0 * T::sliding(c_t_.data(), v_t, pressed);
       if constexpr (D == 2) {
-        f.v_t[0] = -v_t.c[0] * f.n[1], f.v_t[1] = v_t.c[0] * f.n[0];
         f.f_t[0] = -f_t.c[0] * f.n[1], f.f_t[1] = f_t.c[0] * f.n[0];
         f.turning = f_t;
       } else {
         for (int k = 0; k < 3; ++k) {
           const int l = (k + 1) % 3, m = (k + 2) % 3;
-          f.v_t[k] = v_t.c[k], f.f_t[k] = f_t.c[k];
+          f.f_t[k] = f_t.c[k];
           f.turning.c[k] = f.n[l] * f_t.c[m] - f.n[m] * f_t.c[l];
         }
       }

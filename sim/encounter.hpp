@@ -57,12 +57,9 @@ double encounter_time(const EncounterSetting& setting, double speed);
 EncounterEnd meet(const EncounterSetting& setting, const RelativeMotion& motion, double time, double last,
                   double tolerance);
 
-/// Contact force on i now, and its turning moment n x F_t.
+/// Contact force on i now, its turning moment n x F_t, and n.
 struct EncounterForce {
-  Vec3 force, moment;
-  Vec3 normal;  ///< n
-  double v_n;   ///< u . n
-  Vec3 v_t;     ///< of the surfaces
+  Vec3 force, moment, normal;
 };
 EncounterForce force_of(const EncounterSetting& setting, const RelativeMotion& motion);
 

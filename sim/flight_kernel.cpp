@@ -90,7 +90,7 @@ class FlightKernel : public Kernel {
   }
   [[nodiscard]] std::vector<double> memory() const override {
     Archive out;
-    const_cast<FlightKernel*>(this)->pass(out);  // which only reads when it writes out
+    const_cast<FlightKernel*>(this)->pass(out);  // which puts back what it read
     return out.numbers;
   }
   void recall(const System& s, const std::vector<double>& memory) override {
@@ -438,7 +438,7 @@ class FlightKernel : public Kernel {
     }
     return e;
   }
-  /// Plate displacement and velocity at a time of this period.
+  /// Plate displacement, and velocity, at a time of this period.
   [[nodiscard]] Vec3 plate(double t) const {
     Vec3 d = Vec3::Zero();
     d[axis_] = amplitude_ * std::sin(omega_ * t);
@@ -564,60 +564,49 @@ class FlightKernel : public Kernel {
     if (static_cast<double>(k) * dt_ > t) --k;
     return k;
   }
-  /// A contact of a bead that stands at a time, as motion of both; none if it flies.
-  [[nodiscard]] const Contact* contact_at(std::size_t i, double t) const {
-    for (const Contact& c : open_)
-      if ((c.i == static_cast<std::int32_t>(i) || c.j == static_cast<std::int32_t>(i)) && c.from <= t &&
-          t < c.until)
-        return &c;
-    return nullptr;
-  }
-  [[nodiscard]] RelativeMotion motion_at(const Contact& c, double t) const {
-    return t > c.begin ? meet(setting(c.i, c.j), c.motion, c.begin, t, kTolerance).motion : c.motion;
-  }
-  [[nodiscard]] Instant instant(std::size_t i, double t) const {
-    const Contact* c = contact_at(i, t);
-    if (c == nullptr || t >= c->end) {
-      const FlightLine line = (*lines_)[i];
-      return {line.position(t, gravity_), line.velocity(t, gravity_), rim_[i]};
-    }
-    const std::size_t q = c->i == static_cast<std::int32_t>(i) ? 0 : 1;
-    if (t <= c->begin)
-      return {c->before[q].position(t, gravity_), c->before[q].velocity(t, gravity_), c->rim[q]};
-    return apart(*c, motion_at(*c, t), t)[q];
-  }
   /// Beads and contact forces at the system's step.
   void write(System& s) {
     const double t = static_cast<double>(s.step - base_) * dt_;
-    s.rim_speeds.clear();
-    for (std::size_t i = 0; i < s.beads.size(); ++i) {
+    const auto put = [&](std::size_t i, const Instant& at) {
       Bead& b = s.beads[i];
-      const Instant at = instant(i, t);
       b.x = at.r.x(), b.y = at.r.y(), b.z = at.r.z();
       b.vx = at.v.x(), b.vy = at.v.y(), b.vz = at.v.z();
       b.spin_x = at.rim.x() / b.radius, b.spin = -at.rim.y() / b.radius, b.spin_z = at.rim.z() / b.radius;
-    }
+    };
+    const auto flown = [&](const FlightLine& line, const Vec3& rim) {
+      return Instant{line.position(t, gravity_), line.velocity(t, gravity_), rim};
+    };
+    s.rim_speeds.clear();
     s.forces.assign(s.beads.size(), {});
     s.forces_known = true;
     memories_.clear();
-    for (const Contact& c : open_)
-      if (c.begin <= t && t < c.end) write_contact(s, c, t);
+    for (std::size_t i = 0; i < s.beads.size(); ++i) put(i, flown((*lines_)[i], rim_[i]));
+    // Lines are those after a contact: its beads are not there yet.
+    for (const Contact& c : open_) {
+      if (t < c.from || t >= c.end) continue;
+      std::array<Instant, 2> both{};
+      if (t <= c.begin) {
+        for (std::size_t q = 0; q < 2; ++q) both[q] = flown(c.before[q], c.rim[q]);
+        if (t == c.begin) write_contact(s, c, c.motion, t);
+      } else {
+        const RelativeMotion m = meet(setting(c.i, c.j), c.motion, c.begin, t, kTolerance).motion;
+        both = apart(c, m, t);
+        write_contact(s, c, m, t);
+      }
+      put(static_cast<std::size_t>(c.i), both[0]);
+      if (c.j >= 0) put(static_cast<std::size_t>(c.j), both[1]);
+    }
     std::sort(memories_.begin(), memories_.end(), [](const ContactMemory& a, const ContactMemory& b) {
       return std::pair(a.i, a.j) < std::pair(b.i, b.j);
     });
   }
-  void write_contact(System& s, const Contact& c, double t) {
+  void write_contact(System& s, const Contact& c, const RelativeMotion& m, double t) {
     const EncounterSetting e = setting(c.i, c.j);
-    RelativeMotion m = motion_at(c, t);
     const EncounterForce f = force_of(e, m);
     const auto add = [&](std::int32_t bead, double sign) {
       Force& to = s.forces[static_cast<std::size_t>(bead)];
       to.x += sign * f.force.x(), to.y += sign * f.force.y(), to.z += sign * f.force.z();
-      if (plan_.dimension == 2) {
-        to.q += -f.moment.y();
-      } else {
-        to.q_x += f.moment.x(), to.q += f.moment.y(), to.q_z += f.moment.z();
-      }
+      to.q_x += f.moment.x(), to.q -= f.moment.y(), to.q_z += f.moment.z();
     };
     add(c.i, 1);
     if (c.j >= 0) add(c.j, -1);

@@ -199,6 +199,49 @@ TEST(Flights, TheBitsDoNotDependOnHowARunIsCutOrTakenUp) {
   EXPECT_NE(whole.system.beads[0].spin, 0);
 }
 
+// While two spheres slide on each other, three others meet elsewhere: all go over to steps in the middle of
+// that contact, and it must end as if nothing had happened.
+TEST(Flights, AContactIsHandedOverAsItStands) {
+  const auto after = [](const std::string& stepping, int n) {
+    const Scene scene = scene_of(fmt::format(
+        "[cell]\ndimension = 3\nwidth = 40.0\ndepth = 40.0\nheight = 40.0\ngravity = 0.0\nbottom = "
+        "\"periodic\"\nsides = \"periodic\"\nplates = \"periodic\"\n[beads]\ncount = 5\n[drive]\namplitude "
+        "= 0.0\nomega = 6.0\n[time]\nintegrator = \"split\"\nsteps_per_contact = {}\nstepping = "
+        "\"{}\"\n[contact]\nk_n = 1e6\ntangential = \"dashpot\"\nmu = 0.4\nrestitution = 0.9\n"
+        "c_t_over_c_n = 1.0\n",
+        n, stepping));
+    const Plan plan = make_plan(scene);
+    System s = make_system(scene, plan);
+    const auto put = [&](const Vec3& r, const Vec3& v) {
+      Bead b;
+      b.inertia = 0.1;
+      b.x = r.x(), b.y = r.y(), b.z = r.z(), b.vx = v.x(), b.vy = v.y(), b.vz = v.z();
+      s.beads.push_back(b);
+    };
+    const double t_c = 2.2227e-3, gap = 1e-4, v = 4;  // the pair touches after gap/v
+    put({10, 10, 10.5 + gap / 2}, {1.5, 1, -v / 2});
+    put({10, 10, 9.5 - gap / 2}, {-1.5, -1, v / 2});
+    put({30, 10, 10}, Vec3::Zero());
+    const double way = 1 + v * (gap / v + 0.45 * t_c);  // the three meet 0.45 t_c after that
+    put({30 + way, 10, 10}, {-v, 0, 0});
+    put({30 - way, 10, 10}, {v, 0, 0});
+    const auto kernel = make_kernel(plan, guard_limits(plan));
+    while (s.time() < 3 * t_c) kernel->advance(s, 1);
+    return s.beads;
+  };
+  const auto exact = after("steps", 8000), handed = after("flights", 200);
+  for (const std::size_t i : {0, 1}) {
+    const Bead &a = handed[i], &b = exact[i];
+    EXPECT_GT(std::abs(b.spin), 1);
+    EXPECT_GT(std::abs(b.spin_x), 0.5);
+    EXPECT_NEAR(a.spin, b.spin, 1e-3 * std::abs(b.spin));
+    EXPECT_NEAR(a.spin_x, b.spin_x, 1e-3 * std::abs(b.spin_x));
+    EXPECT_NEAR(a.vx, b.vx, 1e-4);
+    EXPECT_NEAR(a.vy, b.vy, 1e-4);
+    EXPECT_NEAR(a.vz, b.vz, 1e-4);
+  }
+}
+
 // Beads that lose nothing, in a box without gravity: the energy is that of the start after some ten thousand
 // collisions, but for what the contacts of the moment hold.
 TEST(Flights, ElasticBeadsKeepTheirEnergy) {
