@@ -8,15 +8,13 @@ LAMMPS from the state that ours has reached, with the steps that the scene asks 
 processor time per period of the drive, and quotients.
 """
 
-import argparse
 import contextlib
-import json
 import statistics
 import sys
 import tempfile
 from pathlib import Path
 
-from sim_peers import SCENE, Absent, Ours, lammps_cpu_seconds
+from sim_peers import SCENE, Absent, Ours, lammps_cpu_seconds, read_options, show
 
 GAS = """
 preset = "bhateja-2016-{system}"
@@ -72,12 +70,7 @@ def measure(build, system, repetitions):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument("build", type=lambda path: Path(path).resolve())
-    arguments.add_argument("--json", action="store_true")
-    arguments.add_argument("--repetitions", type=int, default=3)
-    arguments.add_argument("--job", action="append", choices=JOBS, help="only this gas")
-    options = arguments.parse_args()
+    options = read_options(__doc__, JOBS)
     document, absent = {}, {}
     for job in JOBS:
         if options.job and job not in options.job:
@@ -90,14 +83,8 @@ def main():
             continue
         absent.update({f"{job}.{key}": why for key, why in reasons.items()})
         document.update({f"{job}.{key}": value for key, value in numbers.items()})
-    if options.json:
-        print(json.dumps({**document, "absent": absent}, indent=2))
-        return
-    print("milliseconds of processor time per period at W = 50, and quotients by the time of flights")
-    for key, value in document.items():
-        print(f"  {key:<28} {value if isinstance(value, int) else format(value, '.4g')}")
-    for key, why in absent.items():
-        print(f"  {key:<28} absent: {why}")
+    show("milliseconds of processor time per period at W = 50, and quotients by the time of flights", document, absent,
+         options.json)
 
 
 main()

@@ -64,6 +64,7 @@ k_m = 50.0
 settle_limit = 2.0
 [time]
 steps_per_contact = 50
+stepping = "steps"
 discard = {discard}
 cycles = {cycles}
 phases = 4
@@ -221,14 +222,30 @@ def append_row(row):
         table.writerow({key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()})
 
 
-def main():
-    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def read_options(description, jobs):
+    """The command line that benches against peers share."""
+    arguments = argparse.ArgumentParser(description=description.splitlines()[0])
     arguments.add_argument("build", type=lambda path: Path(path).resolve())
     arguments.add_argument("--json", action="store_true")
     arguments.add_argument("--repetitions", type=int, default=3)
-    arguments.add_argument("--job", action="append", choices=[job[0] for job in JOBS], help="only this job")
-    options = arguments.parse_args()
+    arguments.add_argument("--job", action="append", choices=jobs, help="only this job")
+    return arguments.parse_args()
 
+
+def show(heading, document, absent, as_json):
+    """Numbers by key, and the reasons of those that are absent."""
+    if as_json:
+        print(json.dumps({**document, "absent": absent}, indent=2))
+        return
+    print(heading)
+    for key, value in document.items():
+        print(f"  {key:<36} {value if isinstance(value, int) else format(value, '.4g')}")
+    for key, why in absent.items():
+        print(f"  {key:<36} absent: {why}")
+
+
+def main():
+    options = read_options(__doc__, [job[0] for job in JOBS])
     document, absent = {}, {}
     for name, scene, periods, equal_accuracy in JOBS:
         if options.job and name not in options.job:
@@ -243,14 +260,7 @@ def main():
         append_row({"date": datetime.date.today().isoformat(), "commit": commit(), "job": name,
                     "repetitions": options.repetitions, **numbers})
         document.update({f"{name}.{key}": value for key, value in numbers.items()})
-    if options.json:
-        print(json.dumps({**document, "absent": absent}, indent=2))
-        return
-    print("particle-steps per second of processor time, and their quotients")
-    for key, value in document.items():
-        print(f"  {key:<36} {value if isinstance(value, int) else format(value, '.4g')}")
-    for key, why in absent.items():
-        print(f"  {key:<36} absent: {why}")
+    show("particle-steps per second of processor time, and their quotients", document, absent, options.json)
 
 
 if __name__ == "__main__":

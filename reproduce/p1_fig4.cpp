@@ -197,14 +197,8 @@ Reproduction run(const Request& request) {
   const Ladders all = climb(request);
   const auto points = points_of(all.random);
   const auto bend = points.size() >= 6 ? fitted("slope_break", points) : std::nullopt;
-  Reproduction r;
-  r.title = "Fortini & Huang 2015, Fig. 4: granular temperature against K_m";
-  r.complete = all.complete;
+  Reproduction r = reproduction_of(all, "Fortini & Huang 2015, Fig. 4: granular temperature against K_m");
   r.targets = targets_of(all, bend);
-  r.conditions = all.conditions;
-  r.cheaper = all.cheaper;
-  r.table = ladders_text(all);
-  r.measured = ladders_json(all);
   r.figures = {figure_of(all, bend)};
   return r;
 }

@@ -217,14 +217,8 @@ Figure figure_of(const Ladders& all, const Barriers& fits) {
 Reproduction run(const Request& request) {
   const Ladders all = climb(request);
   const Barriers fits = barriers_of(all);
-  Reproduction r;
-  r.title = "Fortini & Huang 2015, Fig. 5: slip probability against 1/K_m";
-  r.complete = all.complete;
+  Reproduction r = reproduction_of(all, "Fortini & Huang 2015, Fig. 5: slip probability against 1/K_m");
   r.targets = targets_of(all, fits);
-  r.conditions = all.conditions;
-  r.cheaper = all.cheaper;
-  r.table = ladders_text(all);
-  r.measured = ladders_json(all);
   r.figures = {figure_of(all, fits)};
   return r;
 }

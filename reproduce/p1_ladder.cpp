@@ -205,7 +205,9 @@ Ladders climb(const Request& request) {
   return all;
 }
 
-std::string ladders_text(const Ladders& ladders) {
+namespace {
+
+std::string text_of(const Ladders& ladders) {
   std::string text;
   for (const Ladder* l : {&ladders.random, &ladders.crystal}) {
     text += fmt::format("  {}, N_l = {}\n  {:>6} {:>7} {:>5} {:>24} {:>10} {:>20}\n",
@@ -221,7 +223,7 @@ std::string ladders_text(const Ladders& ladders) {
   return text;
 }
 
-std::string ladders_json(const Ladders& ladders) {
+std::string json_of(const Ladders& ladders) {
   json all = json::array();
   for (const Ladder* l : {&ladders.random, &ladders.crystal}) {
     json rungs = json::array();
@@ -244,6 +246,19 @@ std::string ladders_json(const Ladders& ladders) {
                    {"first_slips_k_m", as_json(l->first_slips)}});
   }
   return all.dump();
+}
+
+}  // namespace
+
+Reproduction reproduction_of(const Ladders& ladders, const std::string& title) {
+  Reproduction r;
+  r.title = title;
+  r.complete = ladders.complete;
+  r.conditions = ladders.conditions;
+  r.cheaper = ladders.cheaper;
+  r.table = text_of(ladders);
+  r.measured = json_of(ladders);
+  return r;
 }
 
 std::optional<CurveFit> fitted(const std::string& law, const std::vector<DataPoint>& points) {

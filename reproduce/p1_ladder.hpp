@@ -68,9 +68,9 @@ struct Ladders {
 /// and lower beds.
 Ladders climb(const Request& request);
 
-/// K_m, T_g, p_s of every rung for a reader, and as JSON.
-std::string ladders_text(const Ladders& ladders);
-std::string ladders_json(const Ladders& ladders);
+/// What every figure of the ladders says alike: K_m, T_g, p_s of every rung for a reader and as JSON,
+/// conditions.
+Reproduction reproduction_of(const Ladders& ladders, const std::string& title);
 
 /// The law fitted, all points alike; nothing where they are too few for it.
 std::optional<CurveFit> fitted(const std::string& law, const std::vector<DataPoint>& points);
