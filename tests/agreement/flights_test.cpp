@@ -309,6 +309,7 @@ TEST(Flights, AreRefusedWhereTheyAreNotExact) {
                ConfigError);
   EXPECT_TRUE(make_plan(scene_of(gas("rough-2d", 50))).flights);
   EXPECT_FALSE(make_plan(scene_of(gas("rough-2d", 5))).flights);
+  EXPECT_FALSE(make_plan(scene_of(gas("rough-2d", 50, "[beads]\ncount = 400\n"))).flights);
   EXPECT_FALSE(make_plan(scene_of(gas("rough-2d", 50, "stepping = \"steps\"\n"))).flights);
 }
 
