@@ -201,9 +201,10 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
 /// which it is in a dilute bed of not too many beads.
 void choose_stepping(const Scene& s, std::size_t beads, Plan& plan) {
   using State = Effect::State;
-  constexpr double kDilute =
-      10;  // W; at 5.6 flights took as long as steps, for three bodies meet all the time
-  constexpr std::size_t kMost = 200;  // of 400 beads some three meet nearly always
+  // At W = 5.6 flights took as long as steps, at W = 50 with 400 beads twice as long: some three meet nearly
+  // always.
+  constexpr double kDilute = 10;
+  constexpr std::size_t kMost = 200;
   const std::string hindrance = why_not_flights(s, plan);
   const double w = s.drive.amplitude == 0 ? 0 : s.g() > 0 ? s.drive.k_m(s.g()) : HUGE_VAL;
   if (s.stepping == "flights" && !hindrance.empty())
