@@ -3,10 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "sim/contact.hpp"
+#include "sim/dormand_prince.hpp"
 
 namespace twincell::sim {
 
@@ -23,7 +26,6 @@ concept PresentTangential = !T::kActs || (!T::kHistory && requires(const double*
   { T::slack(c, x, x) } -> std::same_as<double>;
 });
 
-constexpr int kMostColumns = 7;        // of the extrapolation: midpoint rules of 2, 4 .. 14 substeps
 constexpr double kLongestStep = 0.35;  // of the contact time: a bead is not to part and come back in one
 
 template <class N, class T, int D>
@@ -54,28 +56,31 @@ class Encounter {
     const Scales scales{tolerance * speed * scale, tolerance * speed};
     EncounterEnd end;
     end.deepest = std::max(0.0, overlap(y));
-    double h = kLongestStep * scale, t = time;
-    while (t < last) {
+    // The first step is about as long as the tolerance allows: the contact begins like any other.
+    double h = kLongestStep * scale * std::min(1.0, std::sqrt(std::sqrt(std::sqrt(tolerance / 1e-6)))),
+           t = time;
+    while (t < last && !end.parted) {
       h = std::min(h, last - t);
       const Kinks regime = kinks(y);
-      const Step step(*this, regime, t, y, scales);
-      Numbers next;
-      if (!step.take(h, next) && h > 1e-9 * scale) {
-        h /= 2;
+      Step step(*this, regime, t, y);
+      const double error = step.take(h, scales);
+      const double better = std::clamp(0.9 / std::sqrt(std::sqrt(std::sqrt(error))), 0.2, 2.0);
+      if (!(error <= 1) && h > 1e-9 * scale) {
+        h *= better;
         continue;
       }
-      double done = h;
-      const bool kinked = before_kink(step, regime, next, done);
-      const bool parted = overlap(next) <= 0 && normal_speed(next) > 0;
-      if (parted) to_parting(step, next, done);
-      t += done;
+      double x = to_kink(step, regime, 0.1 * std::sqrt(tolerance));
+      for (const double by : {step.parts(x), x})
+        if (!end.parted && overlap(by < 1 ? step.at(by) : step.end()) <= 0) {
+          end.parted = true;
+          x = to_parting(step, by);
+        }
+      Numbers next = x < 1 ? step.at(x) : step.end();
+      t += x * h;
+      if (end.parted) t += part(t, regime, next);
       y = next;
       end.deepest = std::max(end.deepest, overlap(y));
-      if (parted) {
-        end.parted = true;
-        break;
-      }
-      h = std::min(kLongestStep * scale, kinked ? h : 1.5 * h);
+      h = std::min(kLongestStep * scale, better * h);
     }
     end.time = t;
     end.motion = motion(y, start);
@@ -84,7 +89,8 @@ class Encounter {
 
   [[nodiscard]] EncounterForce force(const RelativeMotion& m) const {
     const Numbers y = numbers(m);
-    const Forces f = forces(y, kinks(y));
+    Kinks far;
+    const Forces f = forces(y, kinks(y), far);
     const Vec3 n = vector(f.n), f_t = vector(f.f_t);
     return {f.f_n * n + f_t, n.cross(f_t), n};
   }
@@ -165,11 +171,13 @@ class Encounter {
       return {};
     }
   }
-  [[nodiscard]] Forces forces(const Numbers& y, const Kinks& regime) const {
+  /// In a regime of the force; \param far how far its kinks are
+  Forces forces(const Numbers& y, const Kinks& regime, Kinks& far) const {
     Forces f;
     Tangent<double, kTurn> v_t{};
     approach(y, f, v_t);
     if constexpr (T::kActs) {
+      far = {f.f_n, T::slack(c_t_.data(), norm(v_t), f.f_n)};
       // |F_n| is continued beyond its kink as +F_n or -F_n.
       const double pressed = regime[0] > 0 ? f.f_n : -f.f_n;
       Tangent<double, kTurn> f_t;
@@ -192,8 +200,10 @@ class Encounter {
     }
     return f;
   }
-  void rate(double t, const Numbers& y, const Kinks& regime, Numbers& dy) const {
-    const Forces f = forces(y, regime);
+  /// \returns the overlap, and how far the kinks are
+  std::pair<double, Kinks> rate(double t, const Numbers& y, const Kinks& regime, Numbers& dy) const {
+    Kinks far;
+    const Forces f = forces(y, regime, far);
     const double swing = wall_ && set_.omega > 0 ? std::sin(set_.omega * t) : 0;
     for (int k = 0; k < D; ++k) {
       dy[k] = y[D + k];
@@ -202,175 +212,173 @@ class Encounter {
     }
     if constexpr (T::kActs)
       for (int k = 0; k < kTurn; ++k) dy[2 * D + k] = -set_.turn * f.turning.c[k];
+    return {f.overlap, far};
   }
 
-  /// Steps of any length from one place, in one regime of the force.
+  /// A step from one place in one regime of the force, and the motion between its ends.
   class Step {
    public:
-    Step(const Encounter& law, const Kinks& regime, double t, const Numbers& y, const Scales& scales)
-        : law_(law), regime_(regime), t_(t), y_(y), scales_(scales) {
-      law_.rate(t, y, regime, first_);
+    Step(const Encounter& law, const Kinks& regime, double t, const Numbers& y)
+        : law_(law), regime_(regime), t_(t), y_(y) {
+      std::tie(overlaps_[0], far_[0]) = law_.rate(t, y, regime, slopes_[0]);
     }
-    /// By rational numbers of midpoint substeps, extrapolated to infinitely many. \returns whether exact
-    [[nodiscard]] const Numbers& from() const { return y_; }
-    [[nodiscard]] Numbers rate_at(double at, const Numbers& y) const {
-      Numbers change;
-      law_.rate(t_ + at, y, regime_, change);
-      return change;
-    }
-    /// From a place along a step, in the same regime.
-    [[nodiscard]] Step going_on(double at, const Numbers& y) const {
-      return {law_, regime_, t_ + at, y, scales_};
-    }
-    bool take(double h, Numbers& out) const {
-      std::array<Numbers, kMostColumns> row;  // of the triangle
-      double before = HUGE_VAL;
-      for (int k = 0; k < kMostColumns; ++k) {
-        const int n = 2 * (k + 1);
-        Numbers now = midpoint(h, n);
-        // Aitken and Neville, in (h/n)^2.
-        for (int j = 0; j < k; ++j) {
-          const double ratio = static_cast<double>(n) / (2 * (k - j));
-          const double factor = 1 / (ratio * ratio - 1);
-          const Numbers coarser = row[static_cast<std::size_t>(j)];
-          row[static_cast<std::size_t>(j)] = now;
-          for (std::size_t q = 0; q < now.size(); ++q) now[q] += (now[q] - coarser[q]) * factor;
-        }
-        row[static_cast<std::size_t>(k)] = now;
-        if (k < 1) continue;
-        double error = 0;  // against the column before
-        for (std::size_t q = 0; q < now.size(); ++q)
-          error = std::max(error, std::abs(now[q] - row[static_cast<std::size_t>(k) - 1][q]) /
-                                      (q < D ? scales_.length : scales_.speed));
-        // What is kept is as much better again as this column is than the one before.
-        if (error <= 1 || (k >= 3 && before < HUGE_VAL && error < 1e3 && error * error <= 0.1 * before)) {
-          out = now;
-          return true;
-        }
-        before = error;
+    /// \returns the error over what is allowed
+    double take(double h, const Scales& scales) {
+      h_ = h;
+      slope_at<1>(), slope_at<2>(), slope_at<3>(), slope_at<4>(), slope_at<5>(), slope_at<6>();
+      slope_at<7>(), slope_at<8>(), slope_at<9>(), slope_at<10>(), slope_at<11>();
+      end_ = moved<dormand_prince::kStages>();
+      continued_ = false;
+      const Numbers off_5 = weighted<dormand_prince::kError, 0>(),
+                    off_3 = weighted<dormand_prince::kError, 1>();
+      double fifth = 0, third = 0;
+      for (std::size_t q = 0; q < kNumbers; ++q) {
+        const double allowed = q < D ? scales.length : scales.speed;
+        fifth += off_5[q] * off_5[q] / (allowed * allowed),
+            third += off_3[q] * off_3[q] / (allowed * allowed);
       }
-      out = row[kMostColumns - 1];
-      return false;
+      if (!(fifth > 0)) return fifth;
+      return std::abs(h) * fifth / std::sqrt((fifth + 0.01 * third) * kNumbers);
+    }
+    [[nodiscard]] const Numbers& from() const { return y_; }
+    [[nodiscard]] const Numbers& end() const { return end_; }
+    /// The earliest fraction of the step, of those where slopes were taken, at which a kink has been passed;
+    /// 1 if none is. What begins and ends between two of them is missed, and is as small as it is short.
+    [[nodiscard]] double passes(std::size_t which) const {
+      double first = 1;
+      for (std::size_t k = 1; k < dormand_prince::kStages; ++k)
+        if ((far_[k][which] > 0) != (far_[0][which] > 0)) first = std::min(first, dormand_prince::kNode[k]);
+      return first;
+    }
+    /// The earliest of them before x at which the surfaces have parted; x if they have not.
+    [[nodiscard]] double parts(double x) const {
+      for (std::size_t k = 1; k < dormand_prince::kStages; ++k)
+        if (overlaps_[k] <= 0) x = std::min(x, dormand_prince::kNode[k]);
+      return x;
+    }
+    /// The motion at a fraction x of the step.
+    [[nodiscard]] Numbers at(double x) {
+      if (!continued_) go_on();
+      Numbers y{};
+      for (std::size_t k = terms_.size(); k-- > 0;)
+        for (std::size_t q = 0; q < kNumbers; ++q) y[q] = (y[q] + terms_[k][q]) * (k % 2 == 0 ? x : 1 - x);
+      for (std::size_t q = 0; q < kNumbers; ++q) y[q] += y_[q];
+      return y;
     }
 
    private:
-    [[nodiscard]] Numbers midpoint(double h, int n) const {
-      const double part = h / n;
-      Numbers before = y_, now, change;
-      for (std::size_t q = 0; q < now.size(); ++q) now[q] = y_[q] + part * first_[q];
-      for (int m = 1; m < n; ++m) {
-        law_.rate(t_ + m * part, now, regime_, change);
-        for (std::size_t q = 0; q < now.size(); ++q) {
-          const double next = before[q] + 2 * part * change[q];
-          before[q] = now[q];
-          now[q] = next;
-        }
+    template <const auto& Table, std::size_t Row>
+    [[nodiscard]] Numbers weighted() const {
+      Numbers sum{};
+      [&]<std::size_t... J>(std::index_sequence<J...>) {
+        const auto add = [&]<std::size_t K>() {
+          if constexpr (Table[Row][K] != 0)
+            for (std::size_t q = 0; q < kNumbers; ++q) sum[q] += Table[Row][K] * slopes_[K][q];
+        };
+        (add.template operator()<J>(), ...);
       }
-      law_.rate(t_ + h, now, regime_, change);
-      for (std::size_t q = 0; q < now.size(); ++q) now[q] = 0.5 * (before[q] + now[q] + part * change[q]);
-      return now;
+      (std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(Table[Row])>>>());
+      return sum;
+    }
+    template <std::size_t Row>
+    [[nodiscard]] Numbers moved() const {
+      Numbers y = weighted<dormand_prince::kWeight, Row>();
+      for (std::size_t q = 0; q < kNumbers; ++q) y[q] = y_[q] + h_ * y[q];
+      return y;
+    }
+    template <std::size_t Row>
+    void slope_at() {
+      std::tie(overlaps_[Row], far_[Row]) =
+          law_.rate(t_ + dormand_prince::kNode[Row] * h_, moved<Row>(), regime_, slopes_[Row]);
+    }
+    void go_on() {
+      slope_at<12>(), slope_at<13>(), slope_at<14>(), slope_at<15>();
+      const Numbers high[] = {
+          weighted<dormand_prince::kBetween, 0>(), weighted<dormand_prince::kBetween, 1>(),
+          weighted<dormand_prince::kBetween, 2>(), weighted<dormand_prince::kBetween, 3>()};
+      for (std::size_t q = 0; q < kNumbers; ++q) {
+        const double way = end_[q] - y_[q], first = h_ * slopes_[0][q], last = h_ * slopes_[12][q];
+        terms_[0][q] = way;
+        terms_[1][q] = first - way;
+        terms_[2][q] = 2 * way - (first + last);
+        for (std::size_t k = 0; k < 4; ++k) terms_[3 + k][q] = h_ * high[k][q];
+      }
+      continued_ = true;
     }
 
     const Encounter& law_;
     const Kinks& regime_;
-    double t_;
+    double t_, h_ = 0;
     const Numbers& y_;
-    Scales scales_;
-    Numbers first_{};
+    Numbers end_{};
+    std::array<Numbers, dormand_prince::kSlopes> slopes_;
+    std::array<Kinks, dormand_prince::kSlopes> far_;
+    std::array<double, dormand_prince::kSlopes> overlaps_;
+    std::array<Numbers, 7> terms_;
+    bool continued_ = false;
   };
 
-  /// Where along a step g(y) first vanishes, g having different signs at its ends: the root of the cubic
-  /// through values and slopes there, and from that place Newton's steps, tiny ones that cost little; where
-  /// those do not converge, regula falsi over the whole step. \param next the end of the step, then the place
-  /// found, with the sign that g has at the end, or 0 \returns the length of the step to there
+  /// The fraction of a step up to x = `last` at which g(y) has just changed its sign: regula falsi, an end
+  /// that stays getting half its value (the Illinois rule). \param near what |g| may be there
   template <class G>
-  double vanishing(const Step& step, double h, const G& g, double near, Numbers& next) const {
-    const double g_0 = g(step.from()), g_1 = g(next);
-    double at =
-        cubic_root(g_0, h * slope(step, 0, step.from(), h, g), g_1, h * slope(step, h, next, h, g)) * h;
-    Numbers there;
-    static_cast<void>(step.take(at, there));
-    for (int k = 0; k < 4; ++k) {
-      const double value = g(there);
-      if (std::abs(value) <= near && (value > 0) != (g_0 > 0)) {
-        next = there;
-        return at;
-      }
-      const double rise = slope(step, at, there, h, g);
-      // Half of what is allowed beyond the root, so as to be on its far side.
-      const double more = ((g_0 > 0 ? -0.5 : 0.5) * near - value) / rise;
-      if (!(at + more > 0) || !(at + more < h)) break;
-      Numbers moved;
-      static_cast<void>(step.going_on(at, there).take(more, moved));
-      there = moved;
-      at += more;
-    }
-    // An end that stays gets half its value (the Illinois rule).
-    double low = 0, g_low = g_0, high = h, g_high = g_1;
+  static double vanishing(Step& step, double last, double g_low, double g_high, const G& g, double near) {
+    double low = 0, high = last;
+    const bool sign = g_high > 0;
+    double found = g_high;
     int kept = 0;
-    for (int k = 0; k < 60 && high - low > 1e-15 * h && std::abs(g(next)) > near; ++k) {
-      at = std::clamp(low + (high - low) * g_low / (g_low - g_high), low + 0.01 * (high - low),
-                      high - 0.01 * (high - low));
-      static_cast<void>(step.take(at, there));
-      const double value = g(there);
-      if ((value > 0) == (g_0 > 0)) {
-        low = at, g_low = value;
+    for (int k = 0; k < 60 && high - low > 1e-15 && std::abs(found) > near; ++k) {
+      const double x = std::clamp(low + (high - low) * g_low / (g_low - g_high), low + 0.01 * (high - low),
+                                  high - 0.01 * (high - low));
+      const double value = g(step.at(x));
+      if ((value > 0) != sign) {
+        low = x, g_low = value;
         if (kept == 1) g_high /= 2;
         kept = 1;
       } else {
-        high = at, g_high = value, next = there;
+        high = x, g_high = found = value;
         if (kept == -1) g_low /= 2;
         kept = -1;
       }
     }
     return high;
   }
-  /// dg/dt along the motion.
-  template <class G>
-  double slope(const Step& step, double at, const Numbers& y, double h, const G& g) const {
-    const Numbers change = step.rate_at(at, y);
-    const double little = 1e-4 * h;
-    Numbers before = y, after = y;
-    for (std::size_t q = 0; q < y.size(); ++q)
-      before[q] -= little * change[q], after[q] += little * change[q];
-    return (g(after) - g(before)) / (2 * little);
-  }
-  /// The root in 0 .. 1 of the cubic with given ends and slopes, whose ends differ in sign: Newton's steps,
-  /// halves where they leave the bracket.
-  static double cubic_root(double g_0, double d_0, double g_1, double d_1) {
-    const double c_3 = 2 * (g_0 - g_1) + d_0 + d_1, c_2 = 3 * (g_1 - g_0) - 2 * d_0 - d_1;
-    double low = 0, high = 1, x = g_0 / (g_0 - g_1);
-    for (int k = 0; k < 12; ++k) {
-      const double value = g_0 + x * (d_0 + x * (c_2 + x * c_3)), rise = d_0 + x * (2 * c_2 + 3 * x * c_3);
-      ((value > 0) == (g_0 > 0) ? low : high) = x;
-      double next = x - value / rise;
-      if (!(next > low && next < high)) next = 0.5 * (low + high);
-      if (std::abs(next - x) < 1e-8) return next;
-      x = next;
+
+  /// The fraction of a step at which the force has just passed its first kink; 1 if it passes none.
+  /// \param near how near, of what F_n and the limit are at the step's ends: the force has no jump there, so
+  /// that the error of what follows is of second order in it
+  double to_kink(Step& step, const Kinks& at_start, double near) const {
+    double x = 1;
+    for (std::size_t which = 0; which < at_start.size(); ++which) {
+      const double begins = at_start[which];
+      // A slope was taken at a rougher place than the motion there.
+      for (const double end : {std::min(step.passes(which), x), x}) {
+        const double ends = kinks(end < 1 ? step.at(end) : step.end())[which];
+        if ((begins > 0) == (ends > 0)) continue;
+        x = vanishing(
+            step, end, begins, ends, [&](const Numbers& y) { return kinks(y)[which]; },
+            near * std::max(std::abs(begins), std::abs(ends)));
+        break;
+      }
     }
     return x;
   }
-
-  /// Shortens a step that would cross a kink to one that ends just beyond it. \returns whether it did
-  bool before_kink(const Step& step, const Kinks& regime, Numbers& next, double& h) const {
-    constexpr double kNear = 1e-6;  // of what F_n and the limit were
-    const Kinks at_start = kinks(step.from());
-    bool any = false;
-    for (std::size_t which = 0; which < regime.size(); ++which) {
-      const Kinks at_end = kinks(next);
-      if ((at_start[which] > 0) == (at_end[which] > 0)) continue;
-      const double near = kNear * std::max(std::abs(at_start[which]), std::abs(at_end[which]));
-      h = vanishing(
-          step, h, [&](const Numbers& y) { return kinks(y)[which]; }, near, next);
-      any = true;
-    }
-    return any;
+  /// The fraction of a step that ends beyond contact at which the surfaces part.
+  double to_parting(Step& step, double last) const {
+    return vanishing(
+        step, last, std::max(overlap(step.from()), 1e-300), overlap(last < 1 ? step.at(last) : step.end()),
+        [&](const Numbers& y) { return overlap(y); }, 1e-12 * set_.reach);
   }
-  /// Shortens a step that ends beyond contact to one that ends where the surfaces part.
-  void to_parting(const Step& step, Numbers& next, double& h) const {
-    if (overlap(step.from()) <= 0) return;
-    h = vanishing(
-        step, h, [&](const Numbers& y) { return overlap(y); }, 4e-15 * set_.reach, next);
+  /// From close to the moment of parting to it, by tiny straight steps. \returns how long they took
+  double part(double t, const Kinks& regime, Numbers& y) const {
+    double passed = 0;
+    for (int k = 0; k < 6 && std::abs(overlap(y)) > 4e-15 * set_.reach; ++k) {
+      const double more = overlap(y) / normal_speed(y);
+      Numbers change;
+      rate(t + passed, y, regime, change);
+      for (std::size_t q = 0; q < kNumbers; ++q) y[q] += more * change[q];
+      passed += more;
+    }
+    return passed;
   }
 
   const EncounterSetting& set_;

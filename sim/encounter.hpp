@@ -50,9 +50,9 @@ double encounter_time(const EncounterSetting& setting, double speed);
 
 /// Integrates from `motion` at `time` (in contact, or at first touch) until the surfaces part or `last`.
 ///
-/// Extrapolated midpoint steps (Gragg; Bulirsch & Stoer 1966) of about a third of a contact time, of whatever
-/// order reaches `tolerance`; steps end where the Coulomb limit begins or ceases to bind, where F_n changes
-/// its sign, and where the surfaces part.
+/// Runge-Kutta steps of order 8 (dormand_prince.hpp) of at most about a third of a contact time, as long as
+/// `tolerance` allows; their continuation tells where the Coulomb limit begins or ceases to bind, where F_n
+/// changes its sign, and where the surfaces part, and there they end.
 /// \param tolerance of lengths and velocities relative to those of the encounter; 1e-13 .. 1e-3
 EncounterEnd meet(const EncounterSetting& setting, const RelativeMotion& motion, double time, double last,
                   double tolerance);

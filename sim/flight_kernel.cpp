@@ -9,6 +9,7 @@
 #include "sim/cell_grid.hpp"
 #include "sim/encounter.hpp"
 #include "sim/flight_lines.hpp"
+#include "sim/huddle.hpp"
 
 namespace twincell::sim {
 
@@ -20,6 +21,7 @@ constexpr double kLongest = 20;      // contact times: what lasts longer rests, 
 // one or two, and an attempt costs as much as a hundred steps.
 constexpr double kLookAfter = 2;
 constexpr std::int64_t kLookSeldom = 1024;  // steps
+constexpr std::size_t kMostInCrowd = 8;     // more, and all beads go by steps
 
 /// A contact of two bodies that goes on, or has just ended. Its beads' lines are those after it.
 struct Contact {
@@ -31,6 +33,13 @@ struct Contact {
   Vec3 shift = Vec3::Zero();
   std::array<FlightLine, 2> before;
   std::array<Vec3, 2> rim;  ///< R w before
+};
+
+/// Beads that meet in threes, until they have parted. Their lines are those after it.
+struct Crowd {
+  Huddle huddle;
+  double from, until;              ///< whole steps: nothing else may touch them in between
+  std::vector<FlightLine> before;  ///< of each, as if nothing had met it
 };
 
 /// What happens next to a bead.
@@ -62,7 +71,7 @@ class FlightKernel : public Kernel {
       return;
     }
     if (flying() && !is_as_left(s)) {
-      lines_.reset();  // somebody else moved a bead, the clock or the plate
+      end_flights();  // somebody else moved a bead, the clock or the plate
       steps_ = make_steps_();
     }
     if (!flying() && s.step < next_look_ - kLookSeldom) next_look_ = 0;  // the clock was set back
@@ -171,6 +180,39 @@ class FlightKernel : public Kernel {
       a(c.shift);
       for (std::size_t q = 0; q < 2; ++q) a(c.stray[q]), a(c.before[q]), a(c.rim[q]);
     }
+    std::size_t crowds = crowds_.size();
+    a(crowds);
+    crowds_.resize(crowds);
+    for (Crowd& c : crowds_) pass(a, c);
+  }
+
+  void pass(Archive& a, Crowd& c) {
+    Huddle& h = c.huddle;
+    std::size_t n = h.members.size(), remembered = h.memories.size();
+    a(c.from), a(c.until), a(n), a(remembered), a(h.steps);
+    std::int64_t since = base_ - h.start.step;
+    a(since);
+    if (a.in) {
+      h.members.resize(n), h.stray.resize(n), c.before.resize(n), h.memories.resize(remembered);
+      h.start = frame_;
+      h.start.beads.resize(n), h.start.forces.resize(n);
+      h.start.forces_known = true;
+      h.start.step = base_ - since;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      Bead& b = h.start.beads[i];
+      Force& f = h.start.forces[i];
+      a(h.members[i]), a(h.stray[i]), a(c.before[i]);
+      a(b.x), a(b.y), a(b.z), a(b.vx), a(b.vy), a(b.vz), a(b.spin_x), a(b.spin), a(b.spin_z);
+      a(b.radius), a(b.mass), a(b.inertia);
+      a(f.x), a(f.y), a(f.z), a(f.q_x), a(f.q), a(f.q_z);
+    }
+    for (ContactMemory& m : h.memories) {
+      std::size_t values = m.values.size();
+      a(m.i), a(m.j), a(values);
+      m.values.resize(values);
+      for (double& v : m.values) a(v);
+    }
   }
 
   // --- steps ---
@@ -224,9 +266,13 @@ class FlightKernel : public Kernel {
     return true;
   }
   bool give_up() {
+    end_flights();
+    return false;
+  }
+  void end_flights() {
     lines_.reset();
     open_.clear();
-    return false;
+    crowds_.clear();
   }
   void begin_flights(const System& s) {
     const std::size_t n = s.beads.size();
@@ -243,6 +289,9 @@ class FlightKernel : public Kernel {
     mass_.resize(n), turn_.resize(n), rim_.resize(n);
     events_.assign(n, {});
     open_.clear();
+    crowds_.clear();
+    frame_ = s;
+    frame_.beads.clear(), frame_.forces.clear(), frame_.rim_speeds.clear();
     for (std::size_t i = 0; i < n; ++i) {
       const Bead& b = s.beads[i];
       mass_[i] = b.mass;
@@ -267,6 +316,7 @@ class FlightKernel : public Kernel {
       now_ = std::max(now_, next->time);
       if (!happen(i, *next)) {
         s.step = std::max(s.step, base_ + step_before(now_));
+        if (disperse_crowd(s)) continue;
         hand_over(s);
         return;
       }
@@ -281,6 +331,7 @@ class FlightKernel : public Kernel {
     base_ += per_period_;
     now_ -= period;
     std::erase_if(open_, [&](const Contact& c) { return c.until <= now_ + period; });
+    std::erase_if(crowds_, [&](const Crowd& c) { return c.until <= now_ + period; });
     for (Event& e : events_) e.time -= period;
     for (std::size_t i = 0; i < lines_->size(); ++i) {
       lines_->put(i, (*lines_)[i].later(period, gravity_));
@@ -290,9 +341,13 @@ class FlightKernel : public Kernel {
       c.begin -= period, c.end -= period, c.from -= period, c.until -= period;
       for (FlightLine& line : c.before) line = line.later(period, gravity_);
     }
+    for (Crowd& c : crowds_) {
+      c.from -= period, c.until -= period;
+      for (FlightLine& line : c.before) line = line.later(period, gravity_);
+    }
   }
 
-  /// \returns false if three bodies meet
+  /// \returns false if three bodies meet, of which `crowd_` names some
   bool happen(std::size_t i, Event event) {
     switch (event.kind) {
       case Event::Kind::look_again:
@@ -330,28 +385,26 @@ class FlightKernel : public Kernel {
   /// Finds what happens next to bead i, on its present line. \returns false if three bodies meet
   bool foresee(std::size_t i) {
     const FlightLines::Hit hit = lines_->first_hit(i, now_);
-    if (hit.overlap) return false;
+    const double from = std::max(now_, lines_->valid_from(i));
+    if (hit.overlap) {
+      crowd_ = {static_cast<std::int32_t>(i)};
+      const FlightLine line = (*lines_)[i];
+      add_near(line, lines_->radius(i), from, from);
+      return false;
+    }
     Event event;
     if (hit.time < event.time) event = {hit.time, Event::Kind::touch, hit.partner};
     if (hit.until < event.time) event = {hit.until, Event::Kind::look_again, -1};
-    const double from = std::max(now_, lines_->valid_from(i));
     for (std::size_t w = 0; w < walls_.size(); ++w) {
-      if (in_wall(i, walls_[w], from)) return false;
+      if (in_wall(i, walls_[w], from)) {
+        crowd_ = {static_cast<std::int32_t>(i)};
+        return false;
+      }
       if (const double t = wall_touch(i, walls_[w], from); t < event.time)
         event = {t, Event::Kind::wall, -1 - static_cast<std::int32_t>(w)};
     }
-    // Contacts that go on: nothing may come near.
-    for (const Contact& c : open_) {
-      if (c.until <= now_ || c.i == static_cast<std::int32_t>(i) || c.j == static_cast<std::int32_t>(i))
-        continue;
-      for (const std::size_t q : {std::size_t{0}, std::size_t{1}}) {
-        const std::int32_t other = q == 0 ? c.i : c.j;
-        if (other >= 0 &&
-            come_near((*lines_)[i], lines_->radius(i), c.before[q],
-                      lines_->radius(static_cast<std::size_t>(other)) + c.stray[q], now_, c.until))
-          return false;
-      }
-    }
+    crowd_ = {static_cast<std::int32_t>(i)};
+    if (near_others_meeting((*lines_)[i], lines_->radius(i), HUGE_VAL)) return false;
     events_[i] = event;
     if (event.kind == Event::Kind::touch) {
       Event& other = events_[static_cast<std::size_t>(event.partner)];
@@ -368,6 +421,56 @@ class FlightKernel : public Kernel {
         std::clamp(-d.dot(w) / std::max(w.squaredNorm(), 1e-300), 0.0, std::max(0.0, end - begin));
     const double reach = radius_p + radius_q;
     return (d + t * w).squaredNorm() < reach * reach;
+  }
+
+  /// Calls visit(bead, its line before, how far it gets from it, until when) for those that meet others now.
+  template <class Visit>
+  static void visit_members(const Contact& c, Visit visit) {
+    visit(c.i, c.before[0], c.stray[0]);
+    if (c.j >= 0) visit(c.j, c.before[1], c.stray[1]);
+  }
+  template <class Visit>
+  static void visit_members(const Crowd& c, Visit visit) {
+    for (std::size_t k = 0; k < c.huddle.members.size(); ++k)
+      visit(c.huddle.members[k], c.before[k], c.huddle.stray[k]);
+  }
+  /// Calls visit(meeting) for contacts and crowds that go on.
+  template <class Visit>
+  void visit_meetings(Visit visit) const {
+    for (const Contact& c : open_)
+      if (c.until > now_) visit(c);
+    for (const Crowd& c : crowds_)
+      if (c.until > now_) visit(c);
+  }
+  [[nodiscard]] bool in_crowd(std::int32_t bead) const {
+    return std::find(crowd_.begin(), crowd_.end(), bead) != crowd_.end();
+  }
+  /// Adds to `crowd_` who of a meeting that none of it takes part in a body on a line may come near, from now
+  /// until the meeting ends or `end`. \returns whether there is one
+  bool near_others_meeting(const FlightLine& line, double radius, double end) {
+    const std::size_t before = crowd_.size();
+    visit_meetings([&](const auto& meeting) {
+      bool own = false;
+      visit_members(meeting, [&](std::int32_t k, const FlightLine&, double) { own = own || in_crowd(k); });
+      if (own) return;
+      const double until = std::min(end, meeting.until);
+      std::int32_t found = -1;
+      visit_members(meeting, [&](std::int32_t k, const FlightLine& other, double stray) {
+        if (come_near(line, radius, other, lines_->radius(static_cast<std::size_t>(k)) + stray, now_, until))
+          found = k;
+      });
+      if (found >= 0) crowd_.push_back(found);
+    });
+    return crowd_.size() > before;
+  }
+  /// Adds to `crowd_` the beads whose lines come near a body's. \returns whether there is one
+  bool add_near(const FlightLine& line, double radius, double begin, double end) {
+    const std::size_t before = crowd_.size();
+    for (std::size_t k = 0; k < lines_->size(); ++k)
+      if (const auto bead = static_cast<std::int32_t>(k);
+          !in_crowd(bead) && come_near(line, radius, (*lines_)[k], lines_->radius(k), begin, end))
+        crowd_.push_back(bead);
+    return crowd_.size() > before;
   }
 
   [[nodiscard]] bool in_wall(std::size_t i, const Wall& wall, double t) const {
@@ -502,6 +605,7 @@ class FlightKernel : public Kernel {
     const double speed = c.motion.u.norm();
     const EncounterEnd end =
         meet(e, c.motion, now_, now_ + kLongest * encounter_time(e, std::max(speed, 1e-3)), kTolerance);
+    crowd_.clear();  // what rests, or is too deep, is for the whole
     if (!end.parted || end.deepest > limits_.overlap) return false;
     c.end = end.time;
     c.from = static_cast<double>(step_before(c.begin)) * dt_;
@@ -513,26 +617,20 @@ class FlightKernel : public Kernel {
       c.stray[q] = 1.05 * ((after[q].r - c.before[q].position(c.end, gravity_)).norm() +
                            (after[q].v - c.before[q].velocity(c.end, gravity_)).norm() * (c.until - c.end));
     }
-    for (const std::size_t q : {std::size_t{0}, std::size_t{1}}) {
-      if (q == 1 && j < 0) continue;
-      if (lines_->any_near(c.before[q], lines_->radius(q == 0 ? a : b) + c.stray[q], now_, c.until,
-                           {a, j < 0 ? a : b}))
-        return false;
-      for (const Contact& other : open_)
-        if (other.until > now_ && other.i != i && other.j != i && other.i != j && (j < 0 || other.j != j))
-          for (const std::size_t p : {std::size_t{0}, std::size_t{1}})
-            if (const std::int32_t k = p == 0 ? other.i : other.j;
-                k >= 0 &&
-                come_near(c.before[q], lines_->radius(q == 0 ? a : b) + c.stray[q], other.before[p],
-                          lines_->radius(static_cast<std::size_t>(k)) + other.stray[p], now_, c.until))
-              return false;
+    crowd_ = {i};
+    if (j >= 0) crowd_.push_back(j);
+    bool alone = true;
+    for (std::size_t q = 0; q < (j < 0 ? 1u : 2u); ++q) {
+      const double reach = lines_->radius(q == 0 ? a : b) + c.stray[q];
+      if (lines_->any_near(c.before[q], reach, now_, c.until, {a, j < 0 ? a : b}))
+        alone = !add_near(c.before[q], reach, now_, c.until) && alone;
+      alone = !near_others_meeting(c.before[q], reach, c.until) && alone;
+      // A bead near a wall and in contact with another body is three bodies too.
+      for (std::size_t w = 0; w < walls_.size(); ++w)
+        alone = alone && (j == -1 - static_cast<std::int32_t>(w) ||
+                          !reaches(c.before[q], reach, walls_[w], now_, c.until));
     }
-    // A bead near a wall and in contact with another body is three bodies too.
-    for (std::size_t w = 0; w < walls_.size(); ++w)
-      for (const std::size_t q : {std::size_t{0}, std::size_t{1}})
-        if (!(q == 1 && j < 0) && j != -1 - static_cast<std::int32_t>(w) &&
-            reaches(c.before[q], lines_->radius(q == 0 ? a : b) + c.stray[q], walls_[w], now_, c.until))
-          return false;
+    if (!alone) return false;
     lines_->put(a, FlightLine::through(after[0].r, after[0].v, c.end, gravity_));
     lines_->valid_from(a) = c.until;
     rim_[a] = after[0].rim;
@@ -553,6 +651,85 @@ class FlightKernel : public Kernel {
     };
     const double bend = gravity_.norm() + (wall.moves ? amplitude_ * omega_ * omega_ : 0), span = end - begin;
     return std::min(gap(begin), gap(end)) < 0.125 * bend * span * span;
+  }
+
+  // --- where three meet ---
+
+  /// Takes the beads of `crowd_`, those that they are in contact with, and whoever comes near, out of the
+  /// whole at the system's step, and moves them by steps until they have parted. \returns false if they do
+  /// not, or are too many; then their contacts are as they were
+  bool disperse_crowd(System& s) {
+    if (crowd_.empty()) return false;
+    write(s);
+    const double from = static_cast<double>(s.step - base_) * dt_;
+    const auto contact = std::max<std::int64_t>(1, std::llround(plan_.shortest().time / dt_));
+    std::vector<std::int32_t> members;
+    for (;;) {
+      const std::vector<std::int32_t> more = crowd_;
+      crowd_ = members;
+      for (const std::int32_t k : more)
+        if (!in_crowd(k)) crowd_.push_back(k);
+      add_partners(from);
+      if (crowd_.size() == members.size() || crowd_.size() > kMostInCrowd) return false;
+      members = crowd_;
+      std::sort(crowd_.begin(), crowd_.end());
+      Crowd c{take_out(s, memories_, crowd_), from, 0, {}};
+      const auto end =
+          disperse(c.huddle, contact, static_cast<std::int64_t>(kLongest) * contact, make_steps_);
+      if (!end) return false;
+      c.until = static_cast<double>(s.step + c.huddle.steps - base_) * dt_;
+      for (const Bead& b : c.huddle.start.beads)
+        c.before.push_back(FlightLine::through(centre_of(b), Vec3(b.vx, b.vy, b.vz), from, gravity_));
+      bool alone = true;
+      visit_members(c, [&](std::int32_t k, const FlightLine& line, double stray) {
+        const double reach = lines_->radius(static_cast<std::size_t>(k)) + stray;
+        alone = !add_near(line, reach, from, c.until) && alone;
+        alone = !near_others_meeting(line, reach, c.until) && alone;
+      });
+      if (alone && send_off(std::move(c), *end)) return true;
+    }
+  }
+  /// Adds to `crowd_` whoever is in contact, or in a crowd, with one of it.
+  void add_partners(double from) {
+    for (bool grown = true; grown;) {
+      grown = false;
+      const auto take_all = [&](const auto& meeting) {
+        bool own = false;
+        visit_members(meeting, [&](std::int32_t k, const FlightLine&, double) { own = own || in_crowd(k); });
+        if (!own || meeting.until <= from) return;
+        visit_members(meeting, [&](std::int32_t k, const FlightLine&, double) {
+          if (!in_crowd(k)) crowd_.push_back(k), grown = true;
+        });
+      };
+      for (const Contact& c : open_) take_all(c);
+      for (const Crowd& c : crowds_) take_all(c);
+    }
+  }
+  /// Beads of a crowd fly on after it. \returns false if they then meet others at once, of whom `crowd_`
+  /// names some
+  bool send_off(Crowd crowd, const System& end) {
+    const std::vector<std::int32_t> members = crowd.huddle.members;
+    const auto within = [&](std::int32_t k) { return std::binary_search(members.begin(), members.end(), k); };
+    std::erase_if(open_, [&](const Contact& c) { return c.until > crowd.from && within(c.i); });
+    std::erase_if(crowds_,
+                  [&](const Crowd& c) { return c.until > crowd.from && within(c.huddle.members.front()); });
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const Bead& b = end.beads[k];
+      const auto i = static_cast<std::size_t>(members[k]);
+      lines_->put(i, FlightLine::through(centre_of(b), Vec3(b.vx, b.vy, b.vz), crowd.until, gravity_));
+      lines_->valid_from(i) = crowd.until;
+      rim_[i] = end.rim_speeds.size() == members.size()
+                    ? end.rim_speeds[k]
+                    : Vec3(b.radius * b.spin_x, -b.radius * b.spin, b.radius * b.spin_z);
+      events_[i] = {};
+    }
+    crowds_.push_back(std::move(crowd));
+    for (std::size_t k = 0; k < events_.size(); ++k)
+      if ((within(static_cast<std::int32_t>(k)) ||
+           (events_[k].kind == Event::Kind::touch && within(events_[k].partner))) &&
+          !foresee(k))
+        return false;
+    return true;
   }
 
   // --- from flights to beads ---
@@ -596,6 +773,20 @@ class FlightKernel : public Kernel {
       put(static_cast<std::size_t>(c.i), both[0]);
       if (c.j >= 0) put(static_cast<std::size_t>(c.j), both[1]);
     }
+    for (const Crowd& c : crowds_) {
+      if (s.step - c.huddle.start.step >= c.huddle.steps) continue;
+      const HuddleState now = after(c.huddle, s.step - c.huddle.start.step, make_steps_);
+      for (std::size_t k = 0; k < c.huddle.members.size(); ++k) {
+        const auto i = static_cast<std::size_t>(c.huddle.members[k]);
+        s.beads[i] = now.system.beads[k];
+        s.forces[i] = now.system.forces[k];
+      }
+      for (ContactMemory m : now.memories) {
+        m.i = c.huddle.members[static_cast<std::size_t>(m.i)];
+        if (m.j >= 0) m.j = c.huddle.members[static_cast<std::size_t>(m.j)];
+        memories_.push_back(std::move(m));
+      }
+    }
     std::sort(memories_.begin(), memories_.end(), [](const ContactMemory& a, const ContactMemory& b) {
       return std::pair(a.i, a.j) < std::pair(b.i, b.j);
     });
@@ -631,8 +822,7 @@ class FlightKernel : public Kernel {
   /// From flights to steps.
   void hand_over(System& s) {
     write(s);
-    lines_.reset();
-    open_.clear();
+    end_flights();
     steps_ = make_steps_();
     steps_->restore(memories_);
     wait_ = look_every_;
@@ -651,6 +841,9 @@ class FlightKernel : public Kernel {
   std::optional<FlightLines> lines_;  ///< while flying; times from the beginning of the period
   std::vector<Event> events_;
   std::vector<Contact> open_;
+  std::vector<Crowd> crowds_;
+  std::vector<std::int32_t> crowd_;  ///< beads that were just found to meet in threes
+  System frame_;                     ///< without beads: walls, drive, period
   std::vector<Vec3> rim_;            ///< R w, after a contact that goes on
   std::vector<double> mass_, turn_;  ///< turn: R^2/I
   std::vector<Wall> walls_;

@@ -1,0 +1,97 @@
+#include "sim/huddle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "analysis/trajectory/error.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+Vec3 centre(const Bead& b) {
+  return {b.x, b.y, b.z};
+}
+Vec3 velocity(const Bead& b) {
+  return {b.vx, b.vy, b.vz};
+}
+
+bool apart(const System& s) {
+  for (std::size_t i = 0; i < s.beads.size(); ++i) {
+    const Bead& a = s.beads[i];
+    for (const Wall& wall : s.walls)
+      if (wall.n.dot(centre(a)) - offset_now(s, wall) < a.radius) return false;
+    for (std::size_t j = i + 1; j < s.beads.size(); ++j) {
+      Vec3 r = centre(a) - centre(s.beads[j]);
+      for (Eigen::Index k = 0; k < 3; ++k)
+        if (const double period = s.period[static_cast<std::size_t>(k)]; period > 0)
+          r[k] -= period * std::round(r[k] / period);
+      const double reach = a.radius + s.beads[j].radius;
+      if (r.squaredNorm() < reach * reach) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+Huddle take_out(const System& whole, const std::vector<ContactMemory>& memories,
+                std::vector<std::int32_t> members) {
+  Huddle h;
+  h.start = whole;
+  h.start.beads.clear(), h.start.forces.clear(), h.start.rim_speeds.clear();
+  for (const std::int32_t m : members) {
+    h.start.beads.push_back(whole.beads[static_cast<std::size_t>(m)]);
+    h.start.forces.push_back(whole.forces[static_cast<std::size_t>(m)]);
+  }
+  const auto place = [&](std::int32_t bead) {
+    const auto at = std::lower_bound(members.begin(), members.end(), bead);
+    return at != members.end() && *at == bead ? static_cast<std::int32_t>(at - members.begin()) : -1;
+  };
+  for (const ContactMemory& m : memories) {
+    const std::int32_t i = place(m.i), j = m.j < 0 ? m.j : place(m.j);
+    if (i >= 0 && (m.j < 0 || j >= 0)) h.memories.push_back({i, j, m.values});
+  }
+  h.members = std::move(members);
+  return h;
+}
+
+HuddleState after(const Huddle& huddle, std::int64_t steps,
+                  const std::function<std::unique_ptr<Kernel>()>& kernel) {
+  HuddleState state{huddle.start, huddle.memories};
+  if (steps == 0) return state;
+  const auto moving = kernel();
+  moving->restore(huddle.memories);
+  moving->advance(state.system, steps);
+  state.memories = moving->contacts();
+  return state;
+}
+
+std::optional<System> disperse(Huddle& huddle, std::int64_t contact, std::int64_t most,
+                               const std::function<std::unique_ptr<Kernel>()>& kernel) {
+  const std::int64_t every = std::max<std::int64_t>(1, contact / 8);
+  System s = huddle.start;
+  const auto moving = kernel();
+  moving->restore(huddle.memories);
+  huddle.stray.assign(s.beads.size(), 0);
+  std::vector<double> fastest(s.beads.size(), 0);  // beside free flight
+  try {
+    for (huddle.steps = every; huddle.steps <= most; huddle.steps += every) {
+      moving->advance(s, every);
+      const double t = static_cast<double>(huddle.steps) * s.dt, between = static_cast<double>(every) * s.dt;
+      for (std::size_t i = 0; i < s.beads.size(); ++i) {
+        const Bead &then = huddle.start.beads[i], &now = s.beads[i];
+        const Vec3 flown = centre(then) + t * (velocity(then) + 0.5 * t * s.gravity);
+        fastest[i] = std::max(fastest[i], (velocity(now) - velocity(then) - t * s.gravity).norm());
+        huddle.stray[i] =
+            std::max(huddle.stray[i], 1.05 * ((centre(now) - flown).norm() + between * fastest[i]));
+      }
+      if (apart(s)) return s;
+    }
+  } catch (const RunError&) {  // too deep: let the whole say so
+  }
+  return std::nullopt;
+}
+
+}  // namespace twincell::sim
