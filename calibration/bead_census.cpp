@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -73,6 +74,36 @@ std::optional<Estimate> touching(const std::vector<double>& pairs, double diamet
   return Estimate{centre, width / std::sqrt(n / static_cast<double>(frames))};
 }
 
+/// Straight line of the diameters in x and y, of what lies within `width` of their middle.
+void add_gradient(BeadCensus& c, const BeadFrames& beads, double middle, double width, double independent) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero(), centre = Eigen::Vector3d::Zero();
+  double n = 0, squares = 0;
+  const auto each = [&](const auto& use) {
+    for (const auto& frame : beads.frames)
+      for (const SizedBead& b : frame)
+        if (std::abs(2 * b.radius - middle) <= width) use(b);
+  };
+  each([&](const SizedBead& b) { centre += Eigen::Vector3d(0, b.x, b.y), ++n; });
+  centre /= std::max(1.0, n);
+  each([&](const SizedBead& b) {
+    const Eigen::Vector3d at(1, b.x - centre[1], b.y - centre[2]);
+    normal += at * at.transpose();
+    right += (2 * b.radius - middle) * at;
+  });
+  const Eigen::Vector3d line = normal.ldlt().solve(right);
+  each([&](const SizedBead& b) {
+    const Eigen::Vector3d at(1, b.x - centre[1], b.y - centre[2]);
+    squares += std::pow(2 * b.radius - middle - line.dot(at), 2);
+  });
+  // The same beads come back in other frames, but not at the same places: their sizes are as many as they
+  // are.
+  const Eigen::Matrix3d covariance =
+      squares / std::max(1.0, n - 3) * (n / std::max(4.0, independent)) * normal.inverse();
+  c.gradient_x = {line[1] / middle, std::sqrt(covariance(1, 1)) / middle};
+  c.gradient_y = {line[2] / middle, std::sqrt(covariance(2, 2)) / middle};
+}
+
 }  // namespace
 
 BeadFrames locate_beads(FrameSource& frames, LocatorOptions& options, const std::optional<Lens>& lens,
@@ -102,6 +133,8 @@ BeadFrames locate_beads(FrameSource& frames, LocatorOptions& options, const std:
   Thinned some(frames,
                std::max<std::size_t>(1, frames.announced() / static_cast<std::size_t>(std::max(1, most))));
   BeadFrames out;
+  out.mean_model_error = kDiameterModelError_px;
+  out.model_scatter = kDiameterModelScatter_px;
   locate_stack(
       some, options, threads,
       [&](std::int64_t, const cv::Mat&, const Located& found) {
@@ -184,16 +217,22 @@ BeadCensus count_beads(const BeadFrames& beads) {
   const double variance = squares / std::max(1.0, n - 1), kurtosis = fourth / n;
   // Independent are the beads of one frame, and no more than were kept.
   const double independent = std::max(2.0, std::min(n, most));
-  c.diameter = {mean, std::sqrt(variance / independent)};
+  c.diameter = {mean, std::hypot(std::sqrt(variance / independent), beads.mean_model_error)};
   const double true_variance = std::max(0.0, variance - noise);
   // Near zero the spread is no better known than its square is.
-  const double error_of_variance = std::sqrt(std::max(kurtosis - variance * variance, 0.0) / independent);
+  // The variance of a variance of n beads, mu_4/n - (n - 3)/(n (n - 1)) s^4, its own bias in mu_4 taken off.
+  const double of_few = std::max(1.0, independent - 3);
+  const double error_of_variance = std::sqrt(
+      std::max(kurtosis * independent / of_few - variance * variance * of_few / (independent - 1), 0.0) /
+      independent);
+  const double error_of_true = std::hypot(error_of_variance, beads.model_scatter * beads.model_scatter);
   c.spread.value = std::sqrt(true_variance) / mean;
-  c.spread.error = true_variance > error_of_variance
-                       ? error_of_variance / (2 * std::sqrt(true_variance)) / mean
-                       : std::sqrt(error_of_variance) / mean;
+  c.spread.error = true_variance > error_of_true ? error_of_true / (2 * std::sqrt(true_variance)) / mean
+                                                 : std::sqrt(error_of_true) / mean;
   c.mass.value = cubes / n - 3 * noise / (mean * mean);
   c.mass.error = 3 * c.spread.value * c.spread.error * 2;
+
+  add_gradient(c, beads, middle, 5 * width, independent);
 
   std::vector<double> pairs;
   for (const auto& frame : beads.frames)

@@ -25,8 +25,14 @@ struct SizedBead {
 struct BeadFrames {
   std::vector<std::vector<SizedBead>> frames;
   std::vector<std::size_t> counts;  ///< [frames], cut ones included
+  /// What a disc's diameter may be off by beyond its noise: the mean of all, and from disc to disc, by who
+  /// touches whom. 0: by nothing.
+  double mean_model_error = 0, model_scatter = 0;
 };
 
+/// Of diameters as locate_beads finds them, px: touching discs come out so much too large
+/// (end_to_end.Calibrate.AccuracyCostsFrames), and discs of one size scatter so much with their neighbours.
+inline constexpr double kDiameterModelError_px = 0.002, kDiameterModelScatter_px = 0.012;
 /// Locates up to `most` frames of a stack, spread over it. \param lens undone where given
 BeadFrames locate_beads(FrameSource& frames, LocatorOptions& options, const std::optional<Lens>& lens,
                         int most, int threads, Progress& progress = Progress::none());
@@ -45,6 +51,9 @@ struct BeadCensus {
   Estimate diameter;  ///< mean; in the unit of the frames
   Estimate spread;    ///< standard deviation of the diameters over their mean, the fit's own error taken off
   Estimate mass;      ///< mean of (d/<d>)^3: the mean mass over that of a bead of mean size
+  /// Relative change of the diameters along x and y, 1 over the frames' unit: a camera that looks askew sees
+  /// far beads smaller. Errors as if beads did not sort themselves by size.
+  Estimate gradient_x, gradient_y;
   std::vector<double> diameters;  ///< all of one frame's worth, for the picture, sorted
   std::optional<Estimate>
       spacing;  ///< distance of touching beads: mode of all near pairs; absent without such

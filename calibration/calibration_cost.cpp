@@ -16,7 +16,6 @@ namespace {
 
 constexpr int kPhases = 20, kColumns = 12, kRows = 6;
 constexpr double kScale = 14.3, kGamma = 0.9, kRestitution = 0.85;
-constexpr double kFloor_px = 0.015;  // as calibrate plate has it
 
 TrajectoryInfo cell() {
   TrajectoryInfo info;
@@ -99,9 +98,7 @@ CalibrationCost measure_calibration(const std::vector<int>& frames, Progress& pr
     time.edges_s = processor_seconds() - start;
     start = processor_seconds();
     const CellGeometry g = fit_cell_geometry(edges);
-    std::vector<double> heights;
-    for (const PlateSighting& s : g.heights) heights.push_back(s.height_px);
-    const PlateLock lock = lock_plate(heights, {.floor = kFloor_px});
+    const PlateLock lock = lock_plate(g.heights_px(), {.model_error = kHeightModelError_px});
     time.fit_s = processor_seconds() - start;
     start = processor_seconds();
     Pictures again(film, n);

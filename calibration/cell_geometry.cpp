@@ -174,12 +174,12 @@ Along along_of(const PixelPoint& p, int side) {
 struct WallRow {
   PixelPoint at;
   double frames = 1;
-  double floor = 0;  // mean row of the plate in them: beads and plate hide a row in some phases only
+  std::vector<std::size_t> seen = {};  // in these: beads and plate hide a row in some phases only
+  double floor = 0;                    // mean row of the plate in them, ideal picture
 };
 
 /// One point a row: the mean over the frames of what lies on the wall.
-std::vector<WallRow> rows_of_wall(const std::vector<std::vector<EdgePoint>>& frames, int side,
-                                  const std::vector<double>& floors) {
+std::vector<WallRow> rows_of_wall(const std::vector<std::vector<EdgePoint>>& frames, int side) {
   constexpr double kSteepest = 0.25;
   std::vector<Along> all;
   for (const auto& frame : frames)
@@ -222,15 +222,14 @@ std::vector<WallRow> rows_of_wall(const std::vector<std::vector<EdgePoint>>& fra
       WallRow& row = sums.try_emplace(static_cast<int>(p.at.y_px), WallRow{.at = {0, p.at.y_px}, .frames = 0})
                          .first->second;
       row.at.x_px += p.at.x_px;
-      row.floor += floors[f];
+      row.seen.push_back(f);
       ++row.frames;
     }
   for (auto& [y, row] : sums) {
     // A row that few frames show is one that beads hide most of the time.
     if (row.frames * 4 < static_cast<double>(frames.size())) continue;
     row.at.x_px /= row.frames;
-    row.floor /= row.frames;
-    rows.push_back(row);
+    rows.push_back(std::move(row));
   }
   return rows;
 }
@@ -280,7 +279,7 @@ struct Chosen {
 };
 
 FitReport solve_geometry(const Chosen& c, const Places& places, std::vector<double>& p, cv::Size size,
-                         const double (&error)[3]) {
+                         const double (&error)[3], Residuals residuals) {
   ceres::Problem problem;
   const std::size_t n = places.names.size();
   for (const bool left : {true, false})
@@ -293,11 +292,29 @@ FitReport solve_geometry(const Chosen& c, const Places& places, std::vector<doub
     if (frame.size() >= 3)
       problem.AddResidualBlock(cost_of(new PlateResidual{frame, error[2], places, size}, n, frame.size()),
                                nullptr, p.data());
-  return solve(problem, p.data(), places.names);
+  return solve(problem, p.data(), places.names, residuals);
+}
+
+/// By how much the squared error of a mean of residuals is larger than if each were by itself: what stands in
+/// the light beside an edge, a bead, a speck of dust, moves the points of one block alike. `block` numbers
+/// them; `fitted` numbers were taken from all.
+double block_factor(const std::vector<std::pair<int, double>>& block_and_residual, double fitted) {
+  std::map<int, double> sums;
+  double squares = 0, of_blocks = 0;
+  for (const auto& [block, r] : block_and_residual) sums[block] += r, squares += r * r;
+  for (const auto& [block, sum] : sums) of_blocks += sum * sum;
+  const auto n = static_cast<double>(sums.size());
+  if (n < fitted + 3 || squares <= 0) return 1;
+  return std::max(1.0, of_blocks / squares * n / (n - fitted));
 }
 
 }  // namespace
 
+std::vector<double> CellGeometry::heights_px() const {
+  std::vector<double> h;
+  for (const PlateSighting& s : heights) h.push_back(s.height_px);
+  return h;
+}
 double CellGeometry::width_px() const {
   return fit.value("x_right") - fit.value("x_left");
 }
@@ -315,6 +332,7 @@ StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px
   StackEdges out;
   const std::size_t stride = std::max<std::size_t>(1, frames.announced() / kWallFrames);
   out.stride = stride;
+  out.diameter_px = diameter_px;
   const auto batch_size = static_cast<std::size_t>(std::max(1, threads)) * 2;
   std::vector<double> blurs;
   bool stamped = true;
@@ -363,7 +381,7 @@ StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px
   return out;
 }
 
-CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion, double floor_px) {
+CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
   constexpr double kSteepestPlate = 0.1;
   CellGeometry g;
   g.size = edges.size;
@@ -386,21 +404,28 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion, do
 
   // Where the walls' feet are in each frame that shows walls, in the ideal picture; the mean where no plate
   // is seen.
-  std::vector<double> floors;
-  double known = 0, sum_of_floors = 0;
-  for (std::size_t w = 0; w < std::max(edges.left.size(), edges.right.size()); ++w) {
-    const std::size_t f = w * edges.stride;
-    const PlateSighting s = f < edges.plate.size() ? sighting(on_plate(edges.plate[f], slope, window),
-                                                              std::atan(slope) / kDegree, 0, g.size)
-                                                   : PlateSighting{.height_px = kNaN};
-    floors.push_back(-s.height_px);
-    if (std::isfinite(s.height_px)) sum_of_floors -= s.height_px, ++known;
-  }
-  g.plate_row = known > 0 ? sum_of_floors / known : edges.size.height - 1;
-  for (double& floor : floors)
-    if (!std::isfinite(floor)) floor = g.plate_row;
-  all.left = rows_of_wall(edges.left, 0, floors);
-  all.right = rows_of_wall(edges.right, 1, floors);
+  const auto put_floors = [&](double rotation_deg, double k1) {
+    std::vector<double> floors;
+    double known = 0, sum = 0;
+    for (std::size_t w = 0; w < std::max(edges.left.size(), edges.right.size()); ++w) {
+      const std::size_t f = w * edges.stride;
+      const PlateSighting s =
+          f < edges.plate.size() ? sighting(on_plate(edges.plate[f], slope, window), rotation_deg, k1, g.size)
+                                 : PlateSighting{.height_px = kNaN};
+      floors.push_back(-s.height_px);
+      if (std::isfinite(s.height_px)) sum -= s.height_px, ++known;
+    }
+    g.plate_row = known > 0 ? sum / known : edges.size.height - 1;
+    for (std::vector<WallRow>* wall : {&all.left, &all.right})
+      for (WallRow& row : *wall) {
+        row.floor = 0;
+        for (const std::size_t f : row.seen)
+          row.floor += (std::isfinite(floors[f]) ? floors[f] : g.plate_row) / row.frames;
+      }
+  };
+  all.left = rows_of_wall(edges.left, 0);
+  all.right = rows_of_wall(edges.right, 1);
+  put_floors(std::atan(slope) / kDegree, 0);
   g.has_left = all.left.size() >= 8;
   g.has_right = all.right.size() >= 8;
   if (!g.has_left) all.left.clear();
@@ -454,9 +479,29 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion, do
     for (std::size_t i = 0; i < q.size(); ++i) r[i] = q[i] - middle;
     return r;
   };
-  for (int round = 0; round < 4; ++round) {
-    g.fit = solve_geometry(kept, places, p, g.size, error);
-    if (round == 3) break;
+  constexpr int kRounds = 4;
+  for (int round = 0; round < kRounds; ++round) {
+    const bool last = round == kRounds - 1;
+    if (last) {
+      // Blocks of one bead's width; three numbers of each edge are fitted.
+      const auto block_of = [&](double place) { return static_cast<int>(place / edges.diameter_px); };
+      for (const bool left : {true, false}) {
+        std::vector<std::pair<int, double>> r;
+        for (const WallRow& row : left ? kept.left : kept.right)
+          r.emplace_back(block_of(row.at.y_px), residual_of(row, left) * std::sqrt(row.frames));
+        error[left ? 0 : 1] *= std::sqrt(block_factor(r, 3));
+      }
+      std::vector<std::pair<int, double>> r;
+      for (const auto& frame : kept.plate) {
+        const auto of_frame = plate_residuals(frame);
+        for (std::size_t i = 0; i < frame.size(); ++i) r.emplace_back(block_of(frame[i].x_px), of_frame[i]);
+      }
+      error[2] *= std::sqrt(block_factor(r, 3));
+    }
+    g.fit =
+        solve_geometry(kept, places, p, g.size, error, last ? Residuals::weighted : Residuals::unweighted);
+    if (last) break;
+    put_floors(value_at(p.data(), places.rotation), value_at(p.data(), places.distortion));
     // Each kind of edge is known as well as its points scatter; those too far away are not of it.
     kept = {};
     for (const bool left : {true, false}) {
@@ -481,27 +526,39 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion, do
   }
   if (g.fit.covariance.size() > 0) {
     // A line that is off by so much at one end leans.
-    const auto add_floor = [&](int place, double floor) {
+    const auto add_error = [&](int place, double more) {
       if (place < 0) return;
-      g.fit.covariance(place, place) += floor * floor;
+      g.fit.covariance(place, place) += more * more;
       g.fit.standard_errors[static_cast<std::size_t>(place)] = std::sqrt(g.fit.covariance(place, place));
     };
     const auto span = [](const std::vector<WallRow>& wall) {
       return wall.empty() ? 1.0 : std::max(1.0, wall.back().at.y_px - wall.front().at.y_px);
     };
-    add_floor(places.x_left, floor_px);
-    add_floor(places.x_right, floor_px);
-    add_floor(places.tilt_left, 2 * floor_px / span(kept.left) / kDegree);
-    add_floor(places.tilt_right, 2 * floor_px / span(kept.right) / kDegree);
-    add_floor(places.rotation, 2 * floor_px / edges.size.width / kDegree);
-    add_floor(places.distortion, 4 * floor_px / std::hypot(edges.size.width, edges.size.height));
+    constexpr double e = kEdgeModelError_px;
+    add_error(places.x_left, e);
+    add_error(places.x_right, e);
+    add_error(places.tilt_left, e / span(kept.left) / kDegree);
+    add_error(places.tilt_right, e / span(kept.right) / kDegree);
+    add_error(places.rotation, e / edges.size.width / kDegree);
+    add_error(places.distortion, 4 * e / std::hypot(edges.size.width, edges.size.height));
+  }
+  // Rims of beads that a frame cuts are no wall: they are in no line.
+  const auto is_line = [&](const char* name) {
+    constexpr double kLargest_px = 0.25;
+    return g.fit.standard_errors.empty() || g.fit.standard_error(name) < kLargest_px;
+  };
+  if ((g.has_left && !is_line("x_left")) || (g.has_right && !is_line("x_right"))) {
+    StackEdges lines = edges;
+    if (g.has_left && !is_line("x_left")) lines.left.clear();
+    if (g.has_right && !is_line("x_right")) lines.right.clear();
+    return fit_cell_geometry(lines, with_distortion);
   }
   if (with_distortion) {
     g.distortion_found = g.fit.value("distortion");
     g.distortion_error = g.fit.standard_error("distortion");
     // A bend that is not there costs accuracy everywhere else.
     if (!(std::abs(*g.distortion_found) > 3 * *g.distortion_error)) {
-      CellGeometry straight = fit_cell_geometry(edges, false, floor_px);
+      CellGeometry straight = fit_cell_geometry(edges, false);
       straight.distortion_found = g.distortion_found;
       straight.distortion_error = g.distortion_error;
       return straight;
@@ -530,7 +587,31 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion, do
   if (n > 0) {
     const double row = sum / n;
     g.plate_row = row;
-    g.plate_row_error = std::hypot(std::sqrt(squares) / n, floor_px);
+    // What turn and bend leave open moves and stretches the heights too.
+    if (g.fit.covariance.size() > 0) {
+      const PlateSighting *low = nullptr, *high = nullptr;
+      for (const PlateSighting& s : g.heights) {
+        if (!std::isfinite(s.height_px)) continue;
+        if (!low || s.height_px < low->height_px) low = &s;
+        if (!high || s.height_px > high->height_px) high = &s;
+      }
+      const auto moved = [&](const PlateSighting& s, int place) {
+        const auto& points = edges.plate[static_cast<std::size_t>(&s - g.heights.data())];
+        const double step = g.fit.standard_errors[static_cast<std::size_t>(place)];
+        const double turn = place == places.rotation ? step : 0, bend = place == places.distortion ? step : 0;
+        return sighting(on_plate(points, slope, window), g.rotation_deg + turn, g.distortion + bend, g.size)
+                   .height_px -
+               s.height_px;
+      };
+      for (const int place : {places.rotation, places.distortion}) {
+        if (place < 0) continue;
+        const double up = moved(*high, place), down = moved(*low, place);
+        g.plate_row_error_of_map = std::hypot(g.plate_row_error_of_map, 0.5 * (up + down));
+        if (high->height_px > low->height_px)
+          g.stretch_error = std::hypot(g.stretch_error, (up - down) / (high->height_px - low->height_px));
+      }
+    }
+    g.plate_row_error = std::hypot(std::sqrt(squares) / n, g.plate_row_error_of_map);
     for (PlateSighting& s : g.heights) s.height_px += row;
   }
   return g;

@@ -20,6 +20,13 @@
 
 namespace twincell {
 
+/// What edges may be off by in a way that no number of points or frames averages away, px: the model of light
+/// and blur. Measured over synthetic stacks with uneven light, blur, turn and bend of many sizes
+/// (recovery.CellGeometry.FilmedCellsOfManyKindsComeBack); in even light and without a bend it is 0.001 px.
+inline constexpr double kEdgeModelError_px = 0.002;
+/// Likewise of the plate's heights, beside which beads leave and land at the same phases of every cycle.
+inline constexpr double kHeightModelError_px = 0.004;
+
 /// Edges of a whole stack: the plate's in every frame, the walls' in some forty.
 struct StackEdges {
   cv::Size size;
@@ -28,6 +35,7 @@ struct StackEdges {
   std::size_t stride = 1;
   std::vector<double> time_s;  ///< of each frame, by the camera's stamps; empty if it has none
   double blur_px = 0;          ///< median over frames
+  double diameter_px = 15;     ///< of a bead: so far along an edge its points may err together
 };
 /// Reads the stack once. \throws InputError as FrameSource
 StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px, int threads,
@@ -53,14 +61,18 @@ struct CellGeometry {
   /// Of those that were fitted: "x_left", "tilt_left", "x_right", "tilt_right" (px, degrees), "rotation"
   /// (degrees), "distortion".
   FitReport fit;
-  double plate_row = 0;                     ///< y_p, ideal picture, mean over the frames, px
-  double plate_row_error = 0;               ///< its standard error if the frames cover whole cycles
+  double plate_row = 0;               ///< y_p, ideal picture, mean over the frames, px
+  double plate_row_error = 0;         ///< its standard error if the frames cover whole cycles
+  double plate_row_error_of_map = 0;  ///< the part of it that turn and bend leave, the same in all frames
+  double stretch_error = 0;           ///< relative error of differences of heights that they leave
   double rotation_deg = 0, distortion = 0;  ///< distortion is 0 where the data do not ask for one
   std::optional<double> distortion_found, distortion_error;  ///< as fitted, used or not
   std::vector<PlateSighting> heights;                        ///< [frames]
   std::vector<EdgeResidual> residuals;
   double blur_px = 0;
 
+  /// Of each frame; NaN: not seen. What lock_plate takes.
+  [[nodiscard]] std::vector<double> heights_px() const;
   /// x_right - x_left at the plate's mean height, and its standard error. \pre both walls are there
   [[nodiscard]] double width_px() const;
   [[nodiscard]] double width_error_px() const;
@@ -69,10 +81,8 @@ struct CellGeometry {
 /// Fits them all together. Points on beads and other outliers are told from the edge by lying inside the
 /// cell: the outermost line that enough points share is the edge. Points of one wall's row are averaged over
 /// the frames before they count, so that what is the same in every frame (dust) is not taken for many
-/// measurements. \param floor_px what no number of points can average away, uneven light beside an edge above
-/// all: it enters the
-///     errors of the walls' places and of the plate's row \throws InputError if neither plate nor a wall is
-///     seen
-CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion = true, double floor_px = 0.015);
+/// measurements. Errors are measured: from the scatter of the points, and of blocks one bead wide, which err
+/// together where a bead or dust stands in the light. \throws InputError if neither plate nor a wall is seen
+CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion = true);
 
 }  // namespace twincell

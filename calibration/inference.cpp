@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -15,8 +16,7 @@ namespace twincell {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDrop = 3.841458820694124;  // 95 % of chi^2 with one degree of freedom
-constexpr int kSteps = 60;                   // of a profile
+constexpr int kSteps = 60;  // of a profile
 
 /// 1, x_i, x_i x_k with x from -1 to 1 over the ranges.
 Eigen::VectorXd terms(const std::vector<Sought>& sought, const std::vector<double>& theta) {
@@ -37,6 +37,7 @@ struct Surface {
   Eigen::VectorXd c;
   Eigen::MatrixXd covariance;  // of c
   double scatter = 0;
+  double freedom = 0;  // runs beyond the coefficients: how well the scatter is known
 };
 
 Surface fit_surface(const std::vector<Sought>& sought, const std::vector<SimulatedPoint>& runs,
@@ -59,6 +60,7 @@ Surface fit_surface(const std::vector<Sought>& sought, const std::vector<Simulat
   s.c = basis.colPivHouseholderQr().solve(y);
   const double variance = (y - basis * s.c).squaredNorm() / static_cast<double>(basis.rows() - n);
   s.scatter = std::sqrt(variance);
+  s.freedom = static_cast<double>(basis.rows() - n);
   s.covariance = variance * (basis.transpose() * basis).inverse();
   return s;
 }
@@ -106,6 +108,10 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     }
     return sum;
   };
+  // The scatter is itself known from so many runs only: Student's t in place of 1.96.
+  double freedom = HUGE_VAL;
+  for (const Surface& s : surfaces) freedom = std::min(freedom, s.freedom);
+  const double t95 = boost::math::quantile(boost::math::students_t(freedom), 0.975), drop = t95 * t95;
   // A grid over all parameters: few, and chi^2 costs nothing.
   const int steps = sought.size() == 1 ? 20 * kSteps : sought.size() == 2 ? kSteps * 2 : 24;
   std::vector<std::vector<double>> least(sought.size(),
@@ -141,7 +147,7 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
       const double c = least[i][static_cast<std::size_t>(k)];
       p.at.push_back(x);
       p.chi2.push_back(c);
-      if (c <= out.chi2 + kDrop) {
+      if (c <= out.chi2 + drop) {
         if (!inside) p.low = x;
         p.high = x;
         inside = true;
@@ -149,7 +155,7 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     }
     p.open_low = p.low == sought[i].lower;
     p.open_high = p.high == p.at.back();
-    p.standard_error = p.open_low || p.open_high ? kNaN : (p.high - p.low) / (2 * std::sqrt(kDrop));
+    p.standard_error = p.open_low || p.open_high ? kNaN : (p.high - p.low) / (2 * t95);
     if (p.undetermined())
       out.notes.push_back(
           fmt::format("{} is undetermined: nothing between {:g} and {:g} contradicts what was measured",

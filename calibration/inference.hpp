@@ -6,8 +6,9 @@
 /// The simulator is noisy, so it is run at scattered points and each observable is fitted by a quadratic
 /// surface y_o(theta), whose residuals are what one run scatters. With the measured y*_o and its error
 ///     chi^2(theta) = sum_o (y_o(theta) - y*_o)^2/(e_o^2 + s_o^2)
-/// is profiled: the 95 % interval of a parameter is where chi^2, smallest over all others, is within 3.84 of
-/// its least. A parameter whose interval reaches both ends of what was looked at is undetermined.
+/// is profiled: the 95 % interval of a parameter is where chi^2, smallest over all others, is within t^2 of
+/// its least, t Student's 97.5 % quantile for the runs from which s_o is known (3.84 for very many). A
+/// parameter whose interval reaches both ends of what was looked at is undetermined.
 
 #include <string>
 #include <vector>
@@ -35,7 +36,7 @@ struct Profile {
   double best = 0;
   double low = 0, high = 0;                  ///< of the 95 % interval
   bool open_low = false, open_high = false;  ///< it reaches the end that was looked at
-  double standard_error = 0;                 ///< (high - low)/3.92; NaN where an end is open
+  double standard_error = 0;                 ///< (high - low)/2t; NaN where an end is open
   std::vector<double> at, chi2;              ///< the profile itself
   [[nodiscard]] bool undetermined() const { return open_low && open_high; }
 };

@@ -202,10 +202,10 @@ struct Attempt {
   std::vector<double> residuals;
   Scatter scatter;
   std::size_t off = 0, longest_run = 0;
-  [[nodiscard]] bool follows(std::size_t i, double floor = 0) const {
+  [[nodiscard]] bool follows(std::size_t i, double model_error = 0) const {
     const std::vector<double>& p = fitted.report.values;
     const double s = scatter.at(p[3] * (samples[i].t - fitted.middle) + p[2]);
-    return std::abs(residuals[i]) <= kWorstSigma * std::hypot(s, floor);
+    return std::abs(residuals[i]) <= kWorstSigma * std::hypot(s, model_error);
   }
 };
 
@@ -248,6 +248,31 @@ std::vector<double> filled(std::vector<double> h) {
   }
   for (std::size_t g = last + 1; last < h.size() && g < h.size(); ++g) h[g] = h[last];
   return h;
+}
+
+/// What comes back every cycle is no noise: the residuals' power at the drive's third and higher harmonics,
+/// over that of noise as white. Beads that hide the plate at the same phase of each cycle do that, and no
+/// number of cycles averages it away. At least 1; `harmonics` is how many were looked at.
+double cyclic_factor(const Attempt& a, int& harmonics) {
+  constexpr int kFirst = 3, kMost = 10;
+  const std::vector<double>& p = a.fitted.report.values;
+  const int last = std::min(kMost, static_cast<int>(std::ceil(kPi / p[3] - 1e-6)) - 1);
+  harmonics = std::max(0, last - kFirst + 1);
+  if (harmonics == 0) return 1;
+  double power = 0, squares = 0;
+  for (int m = kFirst; m <= last; ++m) {
+    double s = 0, c = 0;
+    for (std::size_t i = 0; i < a.samples.size(); ++i) {
+      if (!a.follows(i)) continue;
+      const double theta = p[3] * (a.samples[i].t - a.fitted.middle) + p[2];
+      s += a.residuals[i] * std::sin(m * theta);
+      c += a.residuals[i] * std::cos(m * theta);
+    }
+    power += s * s + c * c;
+  }
+  for (std::size_t i = 0; i < a.samples.size(); ++i)
+    if (a.follows(i)) squares += a.residuals[i] * a.residuals[i];
+  return squares > 0 ? std::max(1.0, power / (harmonics * squares)) : 1;
 }
 
 void add_jitter(PlateLock& lock, const Attempt& a) {
@@ -374,12 +399,16 @@ PlateLock lock_plate(const std::vector<double>& heights, const PlateLockOptions&
   lock.omega = omega;
   const double t0 = ticks.front() - a.fitted.middle;
   lock.phi = std::remainder(report.values[2] + omega * t0, 2 * kPi);
-  lock.z0_error = report.standard_error("z0");
-  lock.amplitude_error = report.standard_error("A");
+  int harmonics = 0;
+  lock.cyclic_factor = cyclic_factor(a, harmonics);
+  const double cyclic = std::sqrt(lock.cyclic_factor);
+  const double angle = options.model_error / amplitude;  // of the phase, and of a harmonic
+  lock.z0_error = std::hypot(cyclic * report.standard_error("z0"), options.model_error);
+  lock.amplitude_error = std::hypot(cyclic * report.standard_error("A"), options.model_error);
   lock.omega_error = report.standard_error("omega");
   if (report.covariance.size() > 0)
-    lock.phi_error = std::sqrt(report.covariance(2, 2) + t0 * t0 * report.covariance(3, 3) +
-                               2 * t0 * report.covariance(2, 3));
+    lock.phi_error = std::sqrt(angle * angle + lock.cyclic_factor * report.covariance(2, 2) +
+                               t0 * t0 * report.covariance(3, 3) + 2 * t0 * report.covariance(2, 3));
   if (!(amplitude > 5 * lock.amplitude_error) || !(a.scatter.at(0) < amplitude))
     throw InputError(
         {.file = {}, .key = "plate"},
@@ -388,11 +417,12 @@ PlateLock lock_plate(const std::vector<double>& heights, const PlateLockOptions&
                     amplitude, lock.amplitude_error, a.scatter.at(0)));
   if (a.fitted.second && report.covariance.size() > 0) {
     const Eigen::Vector2d h(report.values[4], report.values[5]);
-    const double off = options.floor / amplitude;
-    const Eigen::Matrix2d c = report.covariance.block<2, 2>(4, 4) + off * off * Eigen::Matrix2d::Identity();
+    const Eigen::Matrix2d c = lock.cyclic_factor * report.covariance.block<2, 2>(4, 4) +
+                              angle * angle * Eigen::Matrix2d::Identity();
     lock.second_harmonic = h.norm();
     lock.second_harmonic_error = std::sqrt(c.trace() / 2);
-    const double freedom = static_cast<double>(report.n_residuals) - 6;
+    const double freedom = lock.cyclic_factor > 1 ? std::min(2.0 * harmonics, report.n_residuals - 6.0)
+                                                  : report.n_residuals - 6.0;
     const double f = h.dot(c.ldlt().solve(h)) / 2;
     if (freedom > 0)
       lock.p_sinusoidal = boost::math::cdf(boost::math::complement(boost::math::fisher_f(2, freedom), f));
@@ -414,7 +444,7 @@ PlateLock lock_plate(const std::vector<double>& heights, const PlateLockOptions&
   for (std::size_t i = 0; i < a.samples.size(); ++i) {
     LockedFrame& frame = lock.frames[a.samples[i].frame];
     frame.residual = -a.residuals[i];  // Ceres has fit minus height
-    frame.lock = a.follows(i, 2 * options.floor) ? FrameLock::locked : FrameLock::out_of_lock;
+    frame.lock = a.follows(i, 2 * options.model_error) ? FrameLock::locked : FrameLock::out_of_lock;
     if (frame.lock == FrameLock::locked)
       squares += a.residuals[i] * a.residuals[i], ++lock.locked;
     else
@@ -425,14 +455,10 @@ PlateLock lock_plate(const std::vector<double>& heights, const PlateLockOptions&
   add_phases(lock, static_cast<std::size_t>(std::lround(ticks.back() - ticks.front())) + 1);
   if (lock.frames_per_cycle > 0) {
     // The phase at the middle of the stack; its own covariance, not that of the first frame.
-    lock.phase_offset_error = report.standard_error("phi") * lock.frames_per_cycle / (2 * kPi);
+    lock.phase_offset_error =
+        std::hypot(angle, cyclic * report.standard_error("phi")) * lock.frames_per_cycle / (2 * kPi);
   }
   add_jitter(lock, a);
-  lock.z0_error = std::hypot(lock.z0_error, options.floor);
-  lock.amplitude_error = std::hypot(lock.amplitude_error, options.floor);
-  lock.phi_error = std::hypot(lock.phi_error, options.floor / lock.amplitude);
-  lock.phase_offset_error =
-      std::hypot(lock.phase_offset_error, options.floor / lock.amplitude * lock.frames_per_cycle / (2 * kPi));
   return lock;
 }
 

@@ -35,9 +35,9 @@ struct LockedFrame {
 struct PlateLockOptions {
   int frames_per_cycle = 0;  ///< N_k if known: where the search begins; 0: sought
   bool mend = true;          ///< look for dropped and doubled frames where the heights ask for it
-  /// What the heights may be off by in a way that comes back every cycle, and no number of frames averages
-  /// away: it enters the errors of z0, A and the phase.
-  double floor = 0;
+  /// What the heights may be off by in a way that comes back every cycle, at the drive's own frequency too:
+  /// it enters the errors of z0, A, the phase and the second harmonic.
+  double model_error = 0;
 };
 
 /// What the heights say. Lengths in the unit of the heights.
@@ -52,6 +52,9 @@ struct PlateLock {
   std::optional<double> second_harmonic, second_harmonic_error;  ///< over A
   std::optional<double> p_sinusoidal;  ///< probability of a second harmonic this large by chance
   double rms = 0;                      ///< residual of the locked frames
+  /// By how much more the residuals come back every cycle than noise would, at the third and higher
+  /// harmonics; 1: not more. It enters the squared errors of z0, A, phi and the second harmonic.
+  double cyclic_factor = 1;
   /// N_k, if the frames keep their phases to a quarter of a frame over the whole stack; else 0.
   int frames_per_cycle = 0;
   int first_phase = 0;      ///< of the first frame, in 0 .. N_k - 1

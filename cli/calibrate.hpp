@@ -37,6 +37,9 @@ CellDescription cell_of(const CalibrateFlags& flags);
 CellGeometry geometry_of(const CalibrateFlags& flags, const CellDescription& cell, const Common& common,
                          StackEdges& edges);
 
+/// How a scale was measured that takes the cell's width as known.
+inline constexpr const char* kScaleByWalls = "distance of the side walls over cell.width";
+
 /// A number with its error; absent error: none.
 struct KnownNumber {
   double value = 0;

@@ -31,11 +31,9 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Row of the plate's mean height in the ideal picture: of its harmonic motion, or of the frames' mean if it
 /// rests.
 Estimate mean_row(const CellGeometry& g) {
-  std::vector<double> heights;
-  for (const PlateSighting& s : g.heights) heights.push_back(s.height_px);
   try {
-    const PlateLock lock = lock_plate(heights);
-    return {g.plate_row - lock.z0, lock.z0_error};
+    const PlateLock lock = lock_plate(g.heights_px(), {.model_error = kHeightModelError_px});
+    return {g.plate_row - lock.z0, std::hypot(lock.z0_error, g.plate_row_error_of_map)};
   } catch (const InputError&) {
     return {g.plate_row, g.plate_row_error};
   }
@@ -111,7 +109,7 @@ void run(const CameraCalibration& o, const Common& common) {
     by_walls = Estimate{g.width_px() / *cell.width, e};
   }
   std::optional<Estimate> scale = by_walls;
-  std::string method = "distance of the side walls over cell.width";
+  std::string method = kScaleByWalls;
   if (!scale && census) {
     scale = census->diameter;
     method = fmt::format("mean diameter of {} discs in {} frames", census->sizes, census->frames);
@@ -176,6 +174,30 @@ void run(const CameraCalibration& o, const Common& common) {
   if (census) {
     scale_line("diameter", census->diameter);
     if (census->spacing) scale_line("spacing", *census->spacing);
+  }
+  if (census) {
+    // Walls and beads together tell a tilted camera from leaning walls; alone neither does.
+    constexpr double kSure = 4, kWorthSaying = 2e-3;
+    const double change_x = census->gradient_x.value * g.size.width,
+                 error_x = census->gradient_x.error * g.size.width,
+                 change_y = census->gradient_y.value * g.size.height,
+                 error_y = census->gradient_y.error * g.size.height;
+    d["perspective"] = {{"across", {{"value", finite(change_x)}, {"standard_error", finite(error_x)}}},
+                        {"downwards", {{"value", finite(change_y)}, {"standard_error", finite(error_y)}}}};
+    out.text += fmt::format(
+        "  beads grow by {:.2f} +- {:.2f} % from left to right, by {:.2f} +- {:.2f} % from top to bottom\n",
+        100 * change_x, 100 * error_x, 100 * change_y, 100 * error_y);
+    const auto seen = [&](double change, double error) {
+      return std::abs(change) > kSure * error && std::abs(change) > kWorthSaying;
+    };
+    if (seen(change_x, error_x) || seen(change_y, error_y))
+      out.notes.push_back(
+          fmt::format("the camera looks askew, or beads are sorted by size: they grow by {:.1f} % from left "
+                      "to right and by "
+                      "{:.1f} % from top to bottom. Perspective is not modelled: scale and tilts of the "
+                      "walls are means over the "
+                      "picture; a --target tells them apart",
+                      100 * change_x, 100 * change_y));
   }
   if (by_walls && census) {
     const double apart =

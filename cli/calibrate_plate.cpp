@@ -49,12 +49,10 @@ std::string list_of(const PlateLock& lock, FrameLock kind) {
 }
 
 PlateLock lock_of(const PlateOptions& o, const CellDescription& cell, const CellGeometry& g) {
-  constexpr double kFloor_px = 0.015;  // as of the walls' edges (cell_geometry.hpp)
-  std::vector<double> heights;
-  for (const PlateSighting& s : g.heights) heights.push_back(s.height_px);
   try {
     const int known = o.frames_per_cycle > 0 ? o.frames_per_cycle : cell.phase_lock.frames_per_cycle;
-    return lock_plate(heights, {.frames_per_cycle = known, .mend = true, .floor = kFloor_px});
+    return lock_plate(g.heights_px(),
+                      {.frames_per_cycle = known, .mend = true, .model_error = kHeightModelError_px});
   } catch (const InputError& e) {
     throw InputError({.file = o.flags.stack, .key = {}}, e.what());
   }
@@ -66,7 +64,8 @@ void run(const PlateOptions& o, const Common& common) {
       o.accelerometer.empty() ? std::nullopt : std::optional(read_vibration(o.accelerometer));
   StackEdges edges;
   const CellGeometry g = geometry_of(o.flags, cell, common, edges);
-  const PlateLock lock = lock_of(o, cell, g);
+  PlateLock lock = lock_of(o, cell, g);
+  lock.amplitude_error = std::hypot(lock.amplitude_error, lock.amplitude * g.stretch_error);
   const auto scale = scale_of(cell, g);
   const std::string data = data_hash(o.flags.stack);
 

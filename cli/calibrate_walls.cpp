@@ -63,7 +63,13 @@ void of_stack(const CalibrateFlags& flags, const Common& common) {
   const auto err = [&](const char* name) { return g.fit.standard_error(name); };
   const std::string method = "lines through the walls' edges, fitted with the plate's";
   // A width in sigma needs a scale that does not come from the width itself.
-  if (cell.pixels_per_sigma) {
+  const auto scale_measured = calibrated(cell, "camera.pixels_per_sigma");
+  if (scale_measured && scale_measured->method == kScaleByWalls) {
+    out.notes.push_back(fmt::format(
+        "the scale in {} was made of cell.width, so the width is not measured again: leave cell.width out of "
+        "CELL.toml, and calibrate camera takes the scale from the beads",
+        cell.included.file.string()));
+  } else if (cell.pixels_per_sigma) {
     const KnownNumber scale = *scale_of(cell, g);
     const double w = width / scale.value;
     out.measured.push_back(

@@ -1,195 +1,302 @@
 #include "imaging/cell_edges.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
 #include "analysis/trajectory/median.hpp"
-#include "imaging/preprocess.hpp"
+#include "imaging/locator.hpp"
 
 namespace twincell {
 namespace {
 
-constexpr int kBorder = 3;   // px of dark that make a wall
-constexpr int kPlateau = 2;  // px of light that must follow a step
-constexpr int kMostPlateau = 4;
-constexpr int kFar = 8;  // px of light behind it where the step's own light says its place
+constexpr int kBorder = 3;     // px of dark that make a wall
+constexpr double kEdge = 3.2;  // standard deviations of the blur within which an edge shows
+// A bead that leaves less than this of the light hides what is behind it.
+constexpr float kLeastShare = 0.75F;
 
-using Profile = std::vector<double>;  // darkness from the border inwards
+enum class From { left, right, bottom };
 
-struct Step {
-  double at = 0;           // px from the border's first pixel centre
-  double slope = 0;        // error of `at` over that of a pixel
-  double light_level = 0;  // behind the step
-  double variance = 0;     // of the step's blur, pixels averaged; px^2
+/// A line of pixels from the border inwards.
+struct Line {
+  From from;
+  int number, light;  // row or column; its first pixel that is light
 };
 
-std::optional<int> first_light(const Profile& p) {
-  if (p.size() < 2 * kBorder) return std::nullopt;
-  for (int i = 0; i < kBorder; ++i)
-    if (!(p[static_cast<std::size_t>(i)] > 0.5)) return std::nullopt;
-  const auto found = std::find_if(p.begin(), p.end(), [](double d) { return d < 0.5; });
-  if (found == p.end()) return std::nullopt;
-  return static_cast<int>(found - p.begin());
+cv::Point pixel(const cv::Size& size, From from, int number, int i) {
+  return from == From::left    ? cv::Point(i, number)
+         : from == From::right ? cv::Point(size.width - 1 - i, number)
+                               : cv::Point(number, size.height - 1 - i);
 }
 
-// Half the distance between 84 % and 16 %: the standard deviation of a Gaussian blur.
-std::optional<double> half_width(const Profile& p, int light) {
-  const auto cross = [&](double level, int from, int step) -> std::optional<double> {
-    for (int i = from; i > 0 && i + 1 < static_cast<int>(p.size()); i += step) {
-      const double a = p[static_cast<std::size_t>(i - 1)], b = p[static_cast<std::size_t>(i)];
-      if (a >= level && b < level) return i - 1 + (a - level) / (a - b);
-      if (std::abs(i - light) > 15) break;
-    }
-    return std::nullopt;
-  };
-  const auto dark = cross(0.84, light, -1), bright = cross(0.16, light, 1);
-  if (!dark || !bright) return std::nullopt;
-  return 0.5 * (*bright - *dark);
+int length(const cv::Size& size, From from) {
+  return from == From::bottom ? size.height : size.width;
 }
 
-double dark_level(const Profile& p, int before) {
-  const int first = std::max(0, before - kMostPlateau), n = before - first;
-  double dark = 0;
-  for (int i = first; i < before; ++i) dark += p[static_cast<std::size_t>(i)] / n;
-  return n > 0 ? dark : 1;
+std::optional<int> first_light(const cv::Mat1f& d, From from, int number) {
+  const int n = length(d.size(), from);
+  if (n < 2 * kBorder) return std::nullopt;
+  for (int i = 0; i < n; ++i)
+    if (d(pixel(d.size(), from, number, i)) < 0.5F) return i < kBorder ? std::nullopt : std::optional(i);
+  return std::nullopt;
 }
 
-// By the light that the step lets through; needs both levels in sight.
-std::optional<Step> step_by_area(const Profile& p, int light, int reach, double noise) {
-  const int a = light - reach, b = light + reach - 1;
-  const int n_light = std::min(kMostPlateau, static_cast<int>(p.size()) - 1 - b);
-  if (a < 1 || n_light < kPlateau) return std::nullopt;
-  const double dark = dark_level(p, a);
-  double level = 0;
-  int used = 0;
-  // Light only as far as it lasts: the next bead may begin.
-  for (int i = b + 1; i <= b + n_light && p[static_cast<std::size_t>(i)] < 0.1 + 3 * noise; ++i, ++used)
-    level += p[static_cast<std::size_t>(i)];
-  if (used < kPlateau) return std::nullopt;
-  level /= used;
-  if (dark - level < 0.5) return std::nullopt;
-  // A bead somewhat further on still darkens the light that the sum counts.
-  for (int i = b + 1; i <= b + kFar; ++i)
-    if (i >= static_cast<int>(p.size()) || p[static_cast<std::size_t>(i)] > level + 0.01 + 3.5 * noise)
-      return std::nullopt;
-  double sum = 0;
-  for (int i = a; i <= b; ++i) sum += (p[static_cast<std::size_t>(i)] - level) / (dark - level);
-  const double r = reach, at = a - 0.5 + sum;
-  // Differences of pixels spread by a pixel's 1/12 more than the pixels themselves.
-  double variance = -1.0 / 12;
-  for (int i = a - 1; i <= b; ++i)
-    variance += (i + 0.5 - at) * (i + 0.5 - at) *
-                (p[static_cast<std::size_t>(i)] - p[static_cast<std::size_t>(i) + 1]) / (dark - level);
-  return Step{at, std::sqrt(r + r * r / used) / (dark - level), level, variance};
+double normal_cdf(double x) {
+  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
+}
+double normal_density(double x) {
+  return std::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi);
 }
 
-double normal_quantile(double p) {
-  return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * p);
-}
-
-// By the pixels on the step itself, d = Phi((e - i)/s): beside beads and in the narrow gaps under them, where
-// hardly a pixel is in full light. The brighter half of the step, which the bead's own blur may darken, is
-// left out.
-std::optional<Step> step_by_slope(const Profile& p, int light, double s, double level, double noise) {
-  const int last = std::min(static_cast<int>(p.size()) - 1, light + static_cast<int>(std::ceil(4 * s)) + 1);
-  double brightest = 1;
-  for (int i = light; i <= last && p[static_cast<std::size_t>(i)] < 0.5; ++i)
-    brightest = std::min(brightest, p[static_cast<std::size_t>(i)]);
-  if (brightest > level + 0.12 + 2 * noise) return std::nullopt;
-  const double dark = dark_level(p, light - static_cast<int>(std::ceil(3 * s)));
-  if (dark < 0.5) return std::nullopt;
-  double sum = 0, weights = 0;
-  for (int i = light - static_cast<int>(std::ceil(3 * s)); i <= last; ++i) {
-    if (i < 0) continue;
-    const double d = (p[static_cast<std::size_t>(i)] - level) / (dark - level);
-    if (d < 0.4) break;
-    if (d > 0.95) continue;
-    const double q = normal_quantile(d), density = std::exp(-0.5 * q * q) / std::sqrt(2 * std::numbers::pi);
-    sum += density * density * (i + s * q);
-    weights += density * density;
+/// Share of the light that the beads let through, by their fitted discs (disc_sums.hpp).
+cv::Mat1f light_past_beads(const Located& located, cv::Size size) {
+  constexpr double kSeen = 4;  // standard deviations of the blur
+  cv::Mat1f share(size, 1.0F);
+  const double s = located.blur_px;
+  for (const Detection& bead : located.beads) {
+    const double reach = bead.radius + kSeen * s, edge = bead.radius - s * s / (2 * bead.radius);
+    const int left = std::max(0, cvCeil(bead.x - reach)),
+              right = std::min(size.width - 1, cvFloor(bead.x + reach)),
+              top = std::max(0, cvCeil(bead.y - reach)),
+              bottom = std::min(size.height - 1, cvFloor(bead.y + reach));
+    for (int y = top; y <= bottom; ++y)
+      for (int x = left; x <= right; ++x)
+        share(y, x) -=
+            static_cast<float>(bead.darkness * normal_cdf((edge - std::hypot(x - bead.x, y - bead.y)) / s));
   }
-  if (weights <= 0) return std::nullopt;
-  return Step{sum / weights, s / std::sqrt(weights) / dark, level, s * s};
+  return share;
+}
+
+/// Quadratic surface through grey levels, least squares from `start`; share(x, y): what part of the surface a
+/// pixel shows, 0 where it shows another thing.
+template <class Share>
+Surface surface_through(const Prepared& image, Surface start, const Share& share) {
+  constexpr double kWild = 0.1, kFewest = 60, kSamples = 30000;
+  const cv::Mat1f& d = image.darkness;
+  const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(d.total()) / kSamples)));
+  for (int round = 0; round < 3; ++round) {
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    Surface right = Surface::Zero();
+    double n = 0;
+    for (int y = 0; y < d.rows; y += stride)
+      for (int x = 0; x < d.cols; x += stride) {
+        const auto t = static_cast<double>(share(x, y));
+        if (t <= 0) continue;
+        const Surface at = surface_basis(x, y, d.size());
+        const double light = image.light.dot(at), seen = (1 - static_cast<double>(d(y, x))) * light;
+        if (std::abs(seen - start.dot(at) * t) > kWild * light) continue;
+        normal.noalias() += t * t * at * at.transpose();
+        right += t * seen * at;
+        ++n;
+      }
+    if (n < kFewest) return start;
+    normal.diagonal().tail<5>().array() += 1e-4 * n;
+    start = normal.ldlt().solve(right);
+  }
+  return start;
+}
+
+/// The light: prepare() takes it from the brightest pixels, which the beads' shadows draw down where they
+/// crowd. Here it goes through what is seen past the beads, `inside` of all edges.
+Surface light_inside(const Prepared& image, const cv::Mat1f& share, const cv::Mat1b& inside) {
+  return surface_through(image, image.light, [&](int x, int y) {
+    return inside(y, x) == 0 || share(y, x) < kLeastShare ? 0 : share(y, x);
+  });
+}
+
+/// The walls' own light, from the border to 6 px before the edges: lit from the front, they are not equally
+/// bright.
+Surface light_of_walls(const Prepared& image, const std::vector<Line>& lines) {
+  constexpr int kBefore = 6;
+  const cv::Mat1f& d = image.darkness;
+  cv::Mat1b wall(d.size(), uchar{0});
+  double sum = 0, n = 0;
+  for (const Line& line : lines)
+    for (int i = 0; i < line.light - kBefore; ++i) {
+      const cv::Point at = pixel(d.size(), line.from, line.number, i);
+      wall(at) = 1;
+      sum += (1 - static_cast<double>(d(at))) * image.light.dot(surface_basis(at.x, at.y, d.size()));
+      ++n;
+    }
+  Surface start = Surface::Zero();
+  start[0] = n > 0 ? sum / n : 0;
+  return surface_through(image, start, [&](int x, int y) { return static_cast<float>(wall(y, x)); });
+}
+
+/// Where noise about black is cut at zero the walls look brighter than they are, by a part of the noise:
+/// black is then zero.
+bool clipped_black(const cv::Mat1f& d, const std::vector<Line>& lines) {
+  constexpr double kShare = 0.2;
+  double zeros = 0, n = 0;
+  for (const Line& line : lines)
+    for (int i = 0; i < kBorder; ++i, ++n)
+      if (d(pixel(d.size(), line.from, line.number, i)) >= 1) ++zeros;
+  return zeros > kShare * n;
+}
+
+/// Pixels 4 px and more behind the first that is light, seen from every side.
+cv::Mat1b inside_of(const std::vector<Line>& lines, const cv::Size& size) {
+  constexpr int kInside = 4;
+  cv::Mat1b inside(size, uchar{1});
+  for (const Line& line : lines)
+    for (int i = 0; i < std::min(length(size, line.from), line.light + kInside); ++i)
+      inside(pixel(size, line.from, line.number, i)) = 0;
+  return inside;
+}
+
+/// In a corner each edge takes light from the other: points that near are left out.
+void leave_corners_out(CellEdges& edges, double reach) {
+  constexpr std::size_t kNear = 25;  // points that say where the other edge passes
+  const auto median = [](std::vector<double> v) {
+    return v.empty() ? std::nan("") : upper_median(std::move(v));
+  };
+  const auto lowest = [&](const std::vector<EdgePoint>& wall) {  // column of a wall's foot
+    std::vector<double> x;
+    for (std::size_t i = wall.size() - std::min(kNear, wall.size()); i < wall.size(); ++i)
+      x.push_back(wall[i].at.x_px);
+    return median(std::move(x));
+  };
+  const auto row_beside = [&](bool left) {
+    std::vector<double> y;
+    const std::size_t n = std::min(kNear, edges.plate.size());
+    for (std::size_t i = 0; i < n; ++i)
+      y.push_back(edges.plate[left ? i : edges.plate.size() - 1 - i].at.y_px);
+    return median(std::move(y));
+  };
+  const double left = lowest(edges.left), right = lowest(edges.right), row_left = row_beside(true),
+               row_right = row_beside(false);
+  // Comparisons with what is not there are false.
+  std::erase_if(edges.plate,
+                [&](const EdgePoint& p) { return p.at.x_px < left + reach || p.at.x_px > right - reach; });
+  std::erase_if(edges.left, [&](const EdgePoint& p) { return p.at.y_px > row_left - reach; });
+  std::erase_if(edges.right, [&](const EdgePoint& p) { return p.at.y_px > row_right - reach; });
+}
+
+/// Lit from the front, what lies behind is black, and likewise cut at zero: it is then exactly that. Grey
+/// levels from the brightest down, as prepare() turns them.
+std::optional<Surface> clipped_background(const cv::Mat& grey, const cv::Mat1f& d) {
+  constexpr double kShare = 0.2;
+  constexpr float kClear = 0.15F;
+  const cv::Mat1b clear = d < kClear, zero = clear & (grey <= 0);
+  const double n = cv::countNonZero(clear);
+  if (cv::countNonZero(zero) <= kShare * n) return std::nullopt;
+  double top = 0;
+  cv::minMaxLoc(grey, nullptr, &top);
+  Surface light = Surface::Zero();
+  light[0] = top;
+  return light;
+}
+
+struct Step {
+  double at = 0, blur = 0, error = 0;  // px from the border's first pixel centre; error for a pixel's error 1
+};
+
+/// What is seen of a step: pixels i = first ..., in shares of the local light, and what beads leave of it.
+struct Window {
+  int first = 0;
+  std::vector<double> light, share;
+};
+
+/// l_i = T_i Phi((i - e)/s) by Gauss and Newton's steps on e, and on s if it is not given.
+std::optional<Step> fit_step(const Window& w, double start, double s, bool free_blur, double noise) {
+  constexpr double kLargestMisfit = 3.5, kModelError = 0.015;
+  double e = start;
+  Eigen::Matrix2d normal;
+  double squares = 0;
+  for (int step = 0; step < 20; ++step) {
+    normal.setZero();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    squares = 0;
+    for (std::size_t k = 0; k < w.light.size(); ++k) {
+      const double near = (w.first + static_cast<int>(k) - e) / s,
+                   rise = w.share[k] * normal_density(near) / s;
+      const double r = w.light[k] - w.share[k] * normal_cdf(near);
+      const Eigen::Vector2d slope(-rise, free_blur ? -rise * near : 0.0);
+      normal += slope * slope.transpose();
+      right += r * slope;
+      squares += r * r;
+    }
+    if (!free_blur) normal(1, 1) = 1;
+    if (!(normal.determinant() > 1e-9)) return std::nullopt;
+    const Eigen::Vector2d delta = normal.ldlt().solve(right);
+    e += std::clamp(delta[0], -1.0, 1.0);
+    s = std::clamp(s + delta[1], 0.5 * s, 2 * s);
+    if (!(e > w.first && e < w.first + static_cast<double>(w.light.size()))) return std::nullopt;
+    if (delta.cwiseAbs().maxCoeff() < 1e-6) break;
+  }
+  const double freedom = static_cast<double>(w.light.size()) - (free_blur ? 2 : 1);
+  if (freedom < 2 || std::sqrt(squares / freedom) > kLargestMisfit * noise + kModelError) return std::nullopt;
+  return Step{e, s, std::sqrt(normal.inverse()(0, 0))};
 }
 
 }  // namespace
 
 CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) {
+  constexpr double kCorner = 4.5, kUsualBlur = 0.9, kLargestBlur = 5, kLargestError = 0.12;
   const Prepared image = prepare(grey, {.bright = bright}, 0.5 * diameter_px);
   const cv::Mat1f& d = image.darkness;
   const Noise variance = noise_of(d);
   const double noise = std::sqrt(variance.dark + variance.light);
-
-  enum class From { left, right, bottom };
-  const auto profile = [&](From from, int line, Profile& p) {
-    if (from == From::bottom) {
-      p.resize(static_cast<std::size_t>(d.rows));
-      for (int i = 0; i < d.rows; ++i) p[static_cast<std::size_t>(i)] = d(d.rows - 1 - i, line);
-    } else {
-      p.resize(static_cast<std::size_t>(d.cols));
-      for (int i = 0; i < d.cols; ++i)
-        p[static_cast<std::size_t>(i)] = d(line, from == From::left ? i : d.cols - 1 - i);
-    }
-  };
-  const auto lines = [&](From from) { return from == From::bottom ? d.cols : d.rows; };
-
   CellEdges edges;
-  Profile p;
-  std::vector<double> widths;
+  std::vector<Line> lines;
   for (const From from : {From::left, From::right, From::bottom})
-    for (int line = 0; line < lines(from); ++line) {
-      profile(from, line, p);
-      if (const auto light = first_light(p))
-        if (const auto w = half_width(p, *light)) widths.push_back(*w);
+    for (int number = 0; number < (from == From::bottom ? d.cols : d.rows); ++number)
+      if (const auto light = first_light(d, from, number)) lines.push_back({from, number, *light});
+  if (lines.empty()) return edges;
+  LocatorOptions locator;
+  locator.diameter_px = diameter_px;
+  locator.preprocess.bright = bright;
+  const cv::Mat1f share = light_past_beads(locate(grey, locator), d.size());
+  const auto background = bright ? clipped_background(grey, d) : std::nullopt;
+  const Surface light = background ? *background : light_inside(image, share, inside_of(lines, d.size()));
+  const Surface walls = light_of_walls(image, lines);
+
+  const bool black_is_clipped = clipped_black(d, lines);
+
+  const auto window_of = [&](const Line& line, double s) {
+    const int reach = static_cast<int>(std::ceil(kEdge * s)) + 1, n = length(d.size(), line.from);
+    Window w{.first = std::max(1, line.light - reach), .light = {}, .share = {}};
+    for (int i = w.first; i < std::min(n, line.light + reach); ++i) {
+      const cv::Point at = pixel(d.size(), line.from, line.number, i);
+      if (share(at) < kLeastShare) break;
+      const Surface basis = surface_basis(at.x, at.y, d.size());
+      const double b = image.light.dot(basis), level = 1 - light.dot(basis) / b,
+                   dark = black_is_clipped ? 1 : 1 - walls.dot(basis) / b;
+      if (dark - level < 0.5) return Window{};
+      w.light.push_back((dark - static_cast<double>(d(at))) / (dark - level));
+      w.share.push_back(static_cast<double>(share(at)));
     }
-  if (widths.empty()) return edges;
-  edges.blur_px = upper_median(widths);
-  // Moving edges are wider than resting ones; 3.2 standard deviations leave 0.07 % of the step outside.
-  const int reach = std::clamp(static_cast<int>(std::ceil(3.2 * edges.blur_px + 0.5)), 3, 15);
-  struct Seen {
-    From from;
-    int line, light;
-    Step step;
+    return w;
   };
-  std::vector<Seen> seen, narrow;
-  std::vector<double> levels, variances;
-  for (const From from : {From::left, From::right, From::bottom})
-    for (int line = 0; line < lines(from); ++line) {
-      profile(from, line, p);
-      const auto light = first_light(p);
-      if (!light || *light < kBorder) continue;
-      if (const auto step = step_by_area(p, *light, std::min(reach, *light - 1), noise)) {
-        seen.push_back({from, line, *light, *step});
-        levels.push_back(step->light_level);
-        variances.push_back(step->variance);
-      } else {
-        narrow.push_back({from, line, *light, {}});
-      }
+  // Side walls share one blur, the plate, which moves, has its own.
+  double blur[2] = {kUsualBlur, kUsualBlur};
+  for (int round = 0; round < 2; ++round) {
+    std::vector<double> found[2];
+    for (const Line& line : lines) {
+      const int kind = line.from == From::bottom ? 1 : 0;
+      const auto step = fit_step(window_of(line, blur[kind]), line.light - 0.5, blur[kind], true, noise);
+      if (step && step->blur < kLargestBlur) found[kind].push_back(step->blur);
     }
-  // Light as it is where nothing stands in it; 0 but for what the fitted light B leaves.
-  const double level = levels.empty() ? 0 : upper_median(levels);
-  // Half widths read off between pixels are too large by a tenth.
-  edges.blur_px =
-      variances.empty() ? 0.89 * edges.blur_px : std::sqrt(std::max(0.05, upper_median(variances)));
-  for (Seen& n : narrow) {
-    profile(n.from, n.line, p);
-    if (const auto step = step_by_slope(p, n.light, edges.blur_px, level, noise)) {
-      n.step = *step;
-      seen.push_back(n);
-    }
+    for (int kind = 0; kind < 2; ++kind)
+      if (!found[kind].empty()) blur[kind] = upper_median(std::move(found[kind]));
   }
-  for (const Seen& n : seen) {
-    const double sigma = n.step.slope * noise;
-    if (n.from == From::left)
-      edges.left.push_back({{n.step.at, double(n.line)}, sigma});
-    else if (n.from == From::right)
-      edges.right.push_back({{d.cols - 1 - n.step.at, double(n.line)}, sigma});
+  edges.blur_px = blur[1];
+  for (const Line& line : lines) {
+    const double s = blur[line.from == From::bottom ? 1 : 0];
+    const auto step = fit_step(window_of(line, s), line.light - 0.5, s, false, noise);
+    if (!step) continue;
+    const double sigma = step->error * noise;
+    if (sigma > kLargestError) continue;
+    if (line.from == From::left)
+      edges.left.push_back({{step->at, double(line.number)}, sigma});
+    else if (line.from == From::right)
+      edges.right.push_back({{d.cols - 1 - step->at, double(line.number)}, sigma});
     else
-      edges.plate.push_back({{double(n.line), d.rows - 1 - n.step.at}, sigma});
+      edges.plate.push_back({{double(line.number), d.rows - 1 - step->at}, sigma});
   }
+  leave_corners_out(edges, kCorner * std::max(blur[0], blur[1]));
   return edges;
 }
 

@@ -3,14 +3,14 @@
 /// Edges of side walls and plate in a frame, to sub-pixel.
 ///
 /// Every row is followed from the left and from the right border, every column from the bottom, through the
-/// dark to the first light. Where the dark before and the light behind that step both show their levels D and
-/// L over some pixels, the edge lies where the step's own light says:
-///     e = a - 1/2 + sum_{i = a}^{b} (d_i - L)/(D - L)
-/// over pixels a .. b around the step (d: darkness). That is exact for any symmetric blur, motion blur
-/// included, and takes no model of the edge. In narrow gaps, where full light lasts for a pixel or two, the
-/// pixels on the step say it as those of a Gaussian's: d_i = Phi((e - i)/s) with the frame's own blur s.
-/// Steps beside a bead, where no full light shows, give no point. A bead that touches the wall hides it: the
-/// point then lies on the bead's far side, always further inside the cell, never outside.
+/// dark to the first light. On the step there, at e, light in shares of the local light is
+///     l_i = T_i Phi((i - e)/s),
+/// with the blur s that all rows (and all columns) of a frame share and T_i the light that the beads let
+/// pass, by their own fitted discs; pixels with T_i < 0.75 are left out. The local light is a quadratic
+/// surface through what is seen past the beads. Without a bead near it the step is symmetric, and e does not
+/// depend on s. Within 4.5 s of a corner there is no point, nor where no light reaches the step. A bead that
+/// touches the wall and was not located hides it: the point then lies on the bead's far side, always further
+/// inside the cell, never outside.
 
 #include <opencv2/core.hpp>
 #include <vector>
@@ -29,7 +29,7 @@ struct EdgePoint {
 struct CellEdges {
   std::vector<EdgePoint> left, right;  ///< one a row at most
   std::vector<EdgePoint> plate;        ///< one a column at most
-  double blur_px = 0;  ///< standard deviation of the edges' blur, the pixels' own width in it; 0: no edge
+  double blur_px = 0;  ///< standard deviation of the plate's blur, the pixels' own width in it; 0: no edge
 };
 
 /// Pure. A side without a dark border of at least 3 px has no points.

@@ -88,11 +88,11 @@ TEST(CellGeometry, AFilmedCellComesBack) {
             << ", turn " << g.rotation_deg << " +- " << g.fit.standard_error("rotation") << ", tilts "
             << g.fit.value("tilt_left") << " " << g.fit.value("tilt_right") << " +- "
             << g.fit.standard_error("tilt_left") << "\n";
-  EXPECT_NEAR(g.width_px(), 12 * 14.3, 0.03);
-  EXPECT_NEAR(g.fit.value("x_left"), map.origin.x_px, 0.03);
-  EXPECT_NEAR(g.rotation_deg, 0, 0.02);
-  EXPECT_NEAR(g.fit.value("tilt_left"), 0, 0.03);
-  EXPECT_NEAR(g.fit.value("tilt_right"), 0, 0.03);
+  EXPECT_NEAR(g.width_px(), 12 * 14.3, 0.008);
+  EXPECT_NEAR(g.fit.value("x_left"), map.origin.x_px, 0.006);
+  EXPECT_NEAR(g.rotation_deg, 0, 0.003);
+  EXPECT_NEAR(g.fit.value("tilt_left"), 0, 0.006);
+  EXPECT_NEAR(g.fit.value("tilt_right"), 0, 0.006);
   EXPECT_EQ(g.distortion, 0);
   double bias = 0, squares = 0, n = 0;
   for (std::size_t f = 0; f < g.heights.size(); ++f) {
@@ -104,9 +104,9 @@ TEST(CellGeometry, AFilmedCellComesBack) {
   }
   std::cout << "plate's row in " << n << " of " << g.heights.size() << " frames: bias " << bias / n
             << ", rms " << std::sqrt(squares / n) << " px\n";
-  EXPECT_GE(n, 0.9 * static_cast<double>(g.heights.size()));
-  EXPECT_NEAR(bias / n, 0, 0.02);
-  EXPECT_LE(std::sqrt(squares / n), 0.03);
+  EXPECT_EQ(n, static_cast<double>(g.heights.size()));
+  EXPECT_NEAR(bias / n, 0, 0.005);
+  EXPECT_LE(std::sqrt(squares / n), 0.01);
 }
 
 TEST(CellGeometry, TurnBendTiltAndUnevenLightComeBackTogether) {
@@ -126,11 +126,65 @@ TEST(CellGeometry, TurnBendTiltAndUnevenLightComeBackTogether) {
             << g.distortion << " +- " << *g.distortion_error << ", tilts " << g.fit.value("tilt_left") << " "
             << g.fit.value("tilt_right") << " +- " << g.fit.standard_error("tilt_left") << ", width "
             << g.width_px() - 12 * 16 << " +- " << g.width_error_px() << "\n";
-  EXPECT_NEAR(g.rotation_deg, 1.2, 0.05);
-  EXPECT_NEAR(g.distortion, 0.02, 0.002);
-  EXPECT_NEAR(g.fit.value("tilt_left"), 1.0, 0.15);
-  EXPECT_NEAR(g.fit.value("tilt_right"), -0.6, 0.15);
-  EXPECT_NEAR(g.width_px(), 12 * 16, 0.3);
+  EXPECT_NEAR(g.rotation_deg, 1.2, 0.004);
+  EXPECT_NEAR(g.distortion, 0.02, 0.0002);
+  EXPECT_NEAR(g.fit.value("tilt_left"), 1.0, 0.008);
+  EXPECT_NEAR(g.fit.value("tilt_right"), -0.6, 0.008);
+  EXPECT_NEAR(g.width_px(), 12 * 16, 0.02);
+}
+
+TEST(CellGeometry, FilmedCellsOfManyKindsComeBack) {
+  // What the model of light and blur leaves (kEdgeModelError_px) enters the errors; here is where it was
+  // measured.
+  std::mt19937_64 generator(77);
+  const auto within = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(generator);
+  };
+  constexpr int kStacks = 10;
+  int covered = 0, numbers = 0;
+  double squares = 0, widest = 0;
+  for (int i = 0; i < kStacks; ++i) {
+    const MemoryTrajectory bed = test::rigid_bed(test::small_bed(within(1.1, 2.2), 1));
+    const CameraOptions camera{.pixels_per_sigma = within(11, 17),
+                               .margin_px = std::round(within(15, 40)),
+                               .max_height = 9,
+                               .rotation_deg = within(-1.5, 1.5),
+                               .distortion = within(-0.02, 0.02),
+                               .left_tilt = within(-1, 1),
+                               .right_tilt = within(-1, 1),
+                               .blur_px = within(0.6, 1),
+                               .vignetting = within(0, 0.4),
+                               .lamp_flicker = within(0, 0.02),
+                               .seed = static_cast<std::uint64_t>(i)};
+    const SyntheticCamera truth(camera, bed.info());
+    const double left = truth.pixel_frame().origin.x_px, width = 12 * camera.pixels_per_sigma;
+    const auto [g, edges] = look_at(bed, camera);
+    ASSERT_TRUE(g.has_left && g.has_right && g.has_plate) << i;
+    ASSERT_TRUE(g.distortion_found.has_value());
+    const PlateLock lock = lock_plate(g.heights_px(), {.model_error = kHeightModelError_px});
+    const auto add = [&](const char* name, double error, double stated) {
+      const double z = error / stated;
+      EXPECT_LE(std::abs(z), 5) << name << " of stack " << i << ": " << error << " +- " << stated;
+      covered += std::abs(z) <= 1.96 ? 1 : 0;
+      squares += z * z;
+      ++numbers;
+    };
+    add("x_left", g.fit.value("x_left") - left, g.fit.standard_error("x_left"));
+    add("x_right", g.fit.value("x_right") - left - width, g.fit.standard_error("x_right"));
+    add("tilt_left", g.fit.value("tilt_left") - camera.left_tilt, g.fit.standard_error("tilt_left"));
+    add("tilt_right", g.fit.value("tilt_right") - camera.right_tilt, g.fit.standard_error("tilt_right"));
+    add("rotation", g.rotation_deg - camera.rotation_deg, g.fit.standard_error("rotation"));
+    add("distortion", *g.distortion_found - camera.distortion, *g.distortion_error);
+    add("A", lock.amplitude - bed.info().drive->amplitude * camera.pixels_per_sigma,
+        std::hypot(lock.amplitude_error, lock.amplitude * g.stretch_error));
+    widest = std::max(widest, std::abs(g.width_px() - width));
+  }
+  std::cout << numbers << " numbers of " << kStacks << " stacks: coverage " << 100.0 * covered / numbers
+            << " %, rms " << std::sqrt(squares / numbers) << " standard errors; width off by at most "
+            << widest << " px\n";
+  EXPECT_GE(covered, 0.93 * numbers);
+  EXPECT_NEAR(std::sqrt(squares / numbers), 1, 0.25);
+  EXPECT_LE(widest, 0.015);
 }
 
 TEST(CellGeometry, IntervalsCoverWithHalfTheEdgesHidden) {
@@ -144,7 +198,7 @@ TEST(CellGeometry, IntervalsCoverWithHalfTheEdgesHidden) {
   Number numbers[] = {
       {"x_left", 20}, {"x_right", 320}, {"tilt_left", 0.8}, {"tilt_right", -0.3}, {"rotation", 0.5}};
   for (int i = 0; i < trials; ++i) {
-    const CellGeometry g = fit_cell_geometry(edges_by_hand(generator, 0.8, -0.3, 0.5, 0.5), false, 0);
+    const CellGeometry g = fit_cell_geometry(edges_by_hand(generator, 0.8, -0.3, 0.5, 0.5), false);
     for (Number& n : numbers) {
       const double error = g.fit.value(n.name) - n.truth;
       n.bias += error / trials;
@@ -157,6 +211,8 @@ TEST(CellGeometry, IntervalsCoverWithHalfTheEdgesHidden) {
     std::cout << n.name << ": bias " << n.bias << ", rms " << std::sqrt(n.squares) << ", coverage "
               << 100.0 * n.covered / trials << " %\n";
     EXPECT_LE(std::abs(n.bias), 4 * std::sqrt(n.squares / trials)) << n.name;
+    EXPECT_GE(n.covered, 0.925 * trials) << n.name;
+    EXPECT_LE(n.covered, 0.985 * trials) << n.name;
     covered += n.covered;
   }
   EXPECT_GE(covered, 0.93 * 5 * trials);
@@ -182,7 +238,7 @@ TEST(BeadCensus, SizesAndSpacingComeBack) {
   std::normal_distribution<double> normal(0, 1);
   int covered = 0, covered_spread = 0;
   double bias = 0;
-  const int trials = 200;
+  const int trials = 400;
   for (int i = 0; i < trials; ++i) {
     BeadFrames beads;
     std::vector<SizedBead> row;
@@ -210,10 +266,39 @@ TEST(BeadCensus, SizesAndSpacingComeBack) {
   }
   std::cout << "diameter: bias " << bias << ", coverage " << 100.0 * covered / trials
             << " %; spread: coverage " << 100.0 * covered_spread / trials << " %\n";
-  EXPECT_GE(covered, 0.92 * trials);
-  EXPECT_LE(covered, 0.98 * trials);
-  EXPECT_GE(covered_spread, 0.90 * trials);
+  EXPECT_GE(covered, 0.93 * trials);
+  EXPECT_LE(covered, 0.97 * trials);
+  EXPECT_GE(covered_spread, 0.93 * trials);
+  EXPECT_LE(covered_spread, 0.97 * trials);
   EXPECT_THROW(count_beads({}), InputError);
+}
+
+TEST(BeadCensus, ACameraThatLooksAskewShowsInTheSizes) {
+  // Beads grow by 1 % over 300 px downwards and not at all across; 200 seeds.
+  std::mt19937_64 generator(14);
+  std::normal_distribution<double> normal(0, 1);
+  int covered_x = 0, covered_y = 0;
+  double bias = 0;
+  const int trials = 200;
+  for (int i = 0; i < trials; ++i) {
+    BeadFrames beads;
+    beads.frames.emplace_back();
+    for (int k = 0; k < 200; ++k) {
+      const double x = 15.0 * (k % 10), y = 15.0 * static_cast<int>(k / 10);
+      beads.frames.back().push_back(
+          {x, y, 7.5 * (1 + 0.01 * (y - 142.5) / 300 + 0.005 * normal(generator)), 0});
+    }
+    beads.counts.push_back(200);
+    const BeadCensus c = count_beads(beads);
+    bias += (c.gradient_y.value - 0.01 / 300) / trials;
+    covered_x += std::abs(c.gradient_x.value) <= 1.96 * c.gradient_x.error ? 1 : 0;
+    covered_y += std::abs(c.gradient_y.value - 0.01 / 300) <= 1.96 * c.gradient_y.error ? 1 : 0;
+  }
+  std::cout << "gradient: bias " << bias << " of " << 0.01 / 300 << ", coverage "
+            << 100.0 * covered_x / trials << ", " << 100.0 * covered_y / trials << " %\n";
+  EXPECT_NEAR(bias, 0, 1e-6);
+  EXPECT_GE(covered_x + covered_y, 0.93 * 2 * trials);
+  EXPECT_LE(covered_x + covered_y, 0.97 * 2 * trials);
 }
 
 TEST(BeadWalls, TiltOfALeaningCellComesBackFromItsBeads) {
