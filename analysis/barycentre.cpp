@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "analysis/tracers.hpp"
 
 namespace twincell {
 namespace {
@@ -14,7 +17,7 @@ class Barycentre : public Observable {
  public:
   explicit Barycentre(const AnalysisContext& context)
       : info_(context.info),
-        rest_height_(context.options.rest_height),
+        context_(context),
         phases_(context.info.columns.phase ? static_cast<std::size_t>(context.info.phases_per_cycle) : 0),
         by_phase_(phases_) {}
 
@@ -80,27 +83,28 @@ class Barycentre : public Observable {
   [[nodiscard]] Result lift(const std::string& name, const Result& h, const std::string& unit,
                             double scale) const {
     if (!h.present()) return absent_result(name, h.absent, kSource);
-    if (!rest_height_)
-      return absent_result(
-          name, "the height at rest is not given; it is h_cm of the same bed with the drive at rest",
-          kSource);
+    if (!context_.rest_height)
+      return absent_result(name, "the height at rest is neither given nor seen: " + context_.no_rest_height,
+                           kSource);
+    const double rest = *context_.rest_height;
     if (std::isnan(scale))
       return absent_result(name, "the trajectory does not say how it was driven", kSource);
     Result r = h;
     r.name = name;
     r.unit = unit;
-    r.values = {(h.value() - *rest_height_) / scale};
+    r.values = {(h.value() - rest) / scale};
     if (r.interval) {
-      r.interval->low = (r.interval->low - *rest_height_) / scale;
-      r.interval->high = (r.interval->high - *rest_height_) / scale;
+      r.interval->low = (r.interval->low - rest) / scale;
+      r.interval->high = (r.interval->high - rest) / scale;
     }
-    r.convention = fmt::format("h_cm above its height at rest, {:.6g} sigma{}; {}", *rest_height_,
+    r.convention = fmt::format("h_cm above its height at rest, {:.6g} sigma ({}){}; {}", rest,
+                               context_.options.rest_height ? "as given" : "of the first frame, at rest",
                                scale == 1 && unit != "1" ? "" : ", over V_p^2/g", h.convention);
     return r;
   }
 
   const TrajectoryInfo& info_;
-  std::optional<double> rest_height_;
+  const AnalysisContext& context_;
   std::size_t phases_;
   std::vector<BlockAverage> by_phase_;
   std::vector<double> by_cycle_;
@@ -121,6 +125,37 @@ double barycentre_height(const Frame& frame, const std::vector<double>& mass) {
     total += m;
   }
   return total > 0 ? moment / total : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& frame, std::string& why_not) {
+  const auto plate = plate_height(info, frame);
+  const double height = barycentre_height(frame, info.mass);
+  if (!plate || !std::isfinite(height)) {
+    why_not = plate ? "the first frame holds no bead" : "the plate's height is not known";
+    return std::nullopt;
+  }
+  if (frame.velocity.empty()) {
+    why_not = "the trajectory has no velocities by which to see whether its first frame is a bed at rest";
+    return std::nullopt;
+  }
+  Vec3 of_plate = Vec3::Zero();
+  if (info.drive && frame.phase >= 0 && info.phases_per_cycle > 0)
+    of_plate[static_cast<int>(info.drive->axis)] =
+        info.drive->velocity(static_cast<double>(frame.phase) / info.phases_per_cycle);
+  double riding = 0, still = 0, n = 0;
+  for (std::size_t i = 0; i < frame.velocity.size(); ++i) {
+    if (!frame.present(i) || !frame.velocity[i].allFinite()) continue;
+    riding += (frame.velocity[i] - of_plate).squaredNorm() / 2;
+    still += frame.velocity[i].squaredNorm() / 2;
+    ++n;
+  }
+  // A bed at the top of its flight stands still as well, but not at time 0.
+  const double energy = (frame.time == 0 ? std::min(riding, still) : riding) / n;
+  if (energy <= kAtRest) return height - *plate;
+  why_not = fmt::format(
+      "beads of the first frame move by {:.2g} m g sigma each against the plate; at most {:g} at rest",
+      energy, kAtRest);
+  return std::nullopt;
 }
 
 std::unique_ptr<Observable> make_barycentre(const AnalysisContext& context) {

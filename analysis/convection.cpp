@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/rolls.hpp"
+
 namespace twincell {
 namespace {
 
@@ -13,6 +15,9 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostRows = 4096;  // one bead on its way to the moon makes no table of that height
 constexpr std::size_t kMostBlocks = 20;
 constexpr std::size_t kFewestBlocks = 4;
+/// A roll carries at least this far in the whole run, sigma, across the side of a cell: half a pixel of paper
+/// 1's camera. Less is the creep of a bed that yields elastically.
+constexpr double kLeastCarried = 1.0 / 30;
 const char* const kSource = "Fortini & Huang 2015, sec. V";
 
 /// Sums of displacements per cell.
@@ -119,16 +124,26 @@ class Convection : public Observable {
          .no_interval = right ? "" : few,
          .convention = sign},
         why);
-    const std::string untold = why.empty() && !left ? few + ": rolls cannot be told from chance" : why;
+    const bool enough = blocks_.size() >= kFewestRollBlocks;
+    const std::string untold = why.empty() && !left ? few + ": the sense cannot be told from chance" : why;
+    const double least = kLeastCarried * cell_ / static_cast<double>(total.cycles);
     add({.name = "rolls",
-         .values = {untold.empty() ? static_cast<double>(count_rolls(total)) : kNaN},
+         .values = {why.empty() && enough ? static_cast<double>(count_rolls(shares(total), least)) : kNaN},
          .unit = "1",
          .no_interval = "a count of what is no chance",
          .convention =
-             fmt::format("regions of one sign of circulation, at least {} of the largest; found in one "
-                         "half of the cycles and above three standard errors in the other",
-                         kSmallestRoll)},
-        untold);
+             fmt::format("regions of one sense of the stream function psi of the circulation, psi = 0 at "
+                         "walls, floor and "
+                         "surface; |t| of psi over {} blocks of cycles exceeds what {:g} % of 999 draws with "
+                         "random signs of "
+                         "the blocks reach anywhere: a bed without steady flow shows a roll with that "
+                         "probability; |psi| at "
+                         "least {:g} of the largest and {:.3g} sigma^2 in the whole run",
+                         blocks_.size(), 100 * kRollFalseAlarm, kSmallestRoll, kLeastCarried * cell_)},
+        why.empty() && !enough
+            ? fmt::format("fewer than {} blocks of cycles: rolls cannot be told from chance",
+                          kFewestRollBlocks)
+            : why);
     Result sense{.name = "convection_sense"};
     if (untold.empty()) sense.text = words(*left, *right);
     sense.convention = "from the signs of both circulations where their intervals leave out 0";
@@ -226,32 +241,23 @@ class Convection : public Observable {
                     fmt::format("jackknife over {} blocks of cycles", values.size())};
   }
 
-  /// Regions are found in every other block and measured in the remaining ones: one that was chosen for its
-  /// sign and measured in the same cycles would pass by its choice, even in noise.
-  [[nodiscard]] std::size_t count_rolls(const FieldSums& total) const {
-    FieldSums even, odd;
-    for (std::size_t b = 0; b < blocks_.size(); ++b) (b % 2 == 0 ? even : odd).add(blocks_[b]);
-    const Circulation found = circulation_of(mean_field(even, cells_of(total)));
-    const auto within = [&](std::size_t roll) {
-      return [&, roll](const DisplacementField& f) {
-        const Circulation c = circulation_of(f);
-        double sum = 0;
-        for (std::size_t p = 0; p < c.plaquettes.size() && p < found.roll.size(); ++p)
-          if (found.roll[p] == roll && std::isfinite(c.plaquettes[p])) sum += c.plaquettes[p];
-        return sum;
-      };
-    };
-    double largest = 0;
-    for (const double roll : found.rolls) largest = std::max(largest, std::abs(roll));
-    const DisplacementField rest = mean_field(odd, cells_of(total));
-    std::size_t rolls = 0;
-    for (std::size_t r = 0; r < found.rolls.size(); ++r) {
-      if (std::abs(found.rolls[r]) < kSmallestRoll * largest) continue;
-      const double measured = within(r)(rest) * (found.rolls[r] > 0 ? 1 : -1);
-      // Half of the cycles: sqrt(2) times the error of all.
-      if (measured > 3 * std::sqrt(2.0) * spread(left_out(total, within(r)))) ++rolls;
+  /// The blocks' shares of the mean field: in cells that a block hardly visits it has little to say.
+  [[nodiscard]] CirculationBlocks shares(const FieldSums& total) const {
+    const std::vector<bool> cells = cells_of(total);
+    CirculationBlocks shares;
+    for (const FieldSums& block : blocks_) {
+      FieldSums share = total;
+      for (std::size_t c = 0; c < share.n.size(); ++c) {
+        const auto count = static_cast<double>(blocks_.size());
+        share.ux[c] = c < block.n.size() ? count * block.ux[c] : 0;
+        share.uz[c] = c < block.n.size() ? count * block.uz[c] : 0;
+      }
+      const Circulation circulation = circulation_of(mean_field(share, cells));
+      shares.columns = circulation.columns;
+      shares.blocks.push_back(circulation.plaquettes);
     }
-    return rolls;
+    shares.periodic = box_.periodic(Axis::x);
+    return shares;
   }
 
   static std::string words(const Interval& left, const Interval& right) {
@@ -299,36 +305,6 @@ Circulation circulation_of(const DisplacementField& field) {
       c.left += to_left * loop;
       c.right += (1 - to_left) * loop;
     }
-
-  c.roll.assign(c.plaquettes.size(), Circulation::kNoRoll);
-  for (std::size_t start = 0; start < c.plaquettes.size(); ++start) {
-    const auto same = [&](std::size_t p) {
-      return c.roll[p] == Circulation::kNoRoll && std::isfinite(c.plaquettes[p]) &&
-             c.plaquettes[p] * c.plaquettes[start] > 0;
-    };
-    if (!same(start)) continue;
-    std::vector<std::size_t> front = {start};
-    c.roll[start] = c.rolls.size();
-    double sum = 0;
-    while (!front.empty()) {
-      const std::size_t p = front.back();
-      front.pop_back();
-      sum += c.plaquettes[p];
-      const std::size_t r = p / c.columns, k = p % c.columns;
-      std::vector<std::size_t> beside;
-      if (r > 0) beside.push_back(p - c.columns);
-      if (r + 1 < rows) beside.push_back(p + c.columns);
-      if (k > 0 || field.periodic) beside.push_back(k > 0 ? p - 1 : p + c.columns - 1);
-      if (k + 1 < c.columns || field.periodic)
-        beside.push_back(k + 1 < c.columns ? p + 1 : p + 1 - c.columns);
-      for (const std::size_t q : beside)
-        if (same(q)) {
-          c.roll[q] = c.rolls.size();
-          front.push_back(q);
-        }
-    }
-    c.rolls.push_back(sum);
-  }
   return c;
 }
 

@@ -25,11 +25,8 @@ struct Circulation {
   /// cells, by the trapezoid rule; NaN where a cell is empty. By Stokes' theorem the sum over a region is the
   /// line integral round it.
   std::vector<double> plaquettes;
-  std::size_t columns = 0;        ///< plaquettes in a row
-  double left = 0, right = 0;     ///< of the halves; plaquettes on the middle line count half to each
-  std::vector<std::size_t> roll;  ///< [plaquettes] region of one sign of circulation, kNoRoll
-  std::vector<double> rolls;      ///< circulation of each region
-  static constexpr std::size_t kNoRoll = static_cast<std::size_t>(-1);
+  std::size_t columns = 0;     ///< plaquettes in a row
+  double left = 0, right = 0;  ///< of the halves; plaquettes on the middle line count half to each
 };
 Circulation circulation_of(const DisplacementField& field);
 
@@ -37,15 +34,13 @@ inline constexpr std::size_t kFieldSamples = 5;  ///< least number of displaceme
 /// Least filling of a cell, of close packing, mean over cycles: beads thrown about above the bed move by
 /// whole sigma and would outweigh its creep.
 inline constexpr double kFieldFilling = 0.75;
-inline constexpr double kSmallestRoll = 0.1;  ///< of the largest circulation; smaller regions are no rolls
 
 /// Displacements of all beads from the beginning of one cycle to that of the next, averaged over cycles in
 /// cells of about AnalysisOptions::field_cell at the middle of the way; the plate is at the same height then.
 /// Results displacement_field [rows x columns x 2], field_x [columns], field_z [rows] (centres of the cells),
-/// circulation_left, circulation_right (intervals by leaving out blocks of cycles), rolls (connected regions
-/// of one sign whose circulation is at least kSmallestRoll of the largest, found in one half of the cycles
-/// and above three standard errors in the other) and convection_sense, in words. In three dimensions the
-/// field is the mean over y. Fortini & Huang 2015, sec. V.
+/// circulation_left, circulation_right (intervals by leaving out blocks of cycles), rolls (rolls.hpp) and
+/// convection_sense, in words. In three dimensions the field is the mean over y. Fortini & Huang 2015, sec.
+/// V.
 std::unique_ptr<Observable> make_convection(const AnalysisContext& context);
 
 }  // namespace twincell

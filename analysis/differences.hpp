@@ -34,7 +34,7 @@ struct Difference {
   std::optional<double> filmed;      ///< F
   std::optional<double> camera;      ///< F - S, of the run that was filmed
   std::optional<double> statistics;  ///< standard error of E - F (or E - S) from the intervals of both
-  std::optional<double> seeds;       ///< standard deviation between simulations of one start
+  std::optional<double> seeds;       ///< largest standard deviation between simulations of one start
   std::optional<double> tracers;     ///< standard deviation of E - S over three lines of tracers
   std::optional<double> defects;  ///< largest difference between the means of simulations of different starts
 

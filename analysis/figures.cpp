@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "analysis/colours.hpp"
 #include "analysis/trajectory/atomic_file.hpp"
 
 extern char** environ;
@@ -18,15 +19,7 @@ extern char** environ;
 namespace twincell {
 namespace {
 
-// Okabe and Ito's colours: told apart by readers with any colour vision. Every colour has a shape of its own
-// as well.
-constexpr const char* kBlue = "#0072B2";
-constexpr const char* kOrange = "#E69F00";
-constexpr const char* kVermilion = "#D55E00";
-constexpr const char* kGreen = "#009E73";
-constexpr const char* kGrey = "#9A9A9A";
-constexpr const char* kSand = "#E8E0C8";
-constexpr const char* kWhite = "#FFFFFF";
+using namespace colours;
 
 constexpr std::array<BedPhase, 4> kPhases = {BedPhase::co_moving, BedPhase::bouncing, BedPhase::convecting,
                                              BedPhase::undetermined};

@@ -32,10 +32,11 @@ struct Result {
   std::size_t n = 0;                    ///< how many independent samples entered
   std::string n_of = {};                ///< samples of what: "cycles", "frames"
   std::optional<Interval> interval = {};
-  std::string no_interval = {};  ///< why a value has no interval; empty if it has one
-  std::string convention = {};   ///< choices that the definition leaves open, as made here
-  std::string source = {};       ///< equation
-  std::string absent = {};       ///< why there is no value; empty if there is one
+  std::string no_interval = {};      ///< why a value has no interval; empty if it has one
+  std::string convention = {};       ///< choices that the definition leaves open, as made here
+  std::string source = {};           ///< equation
+  std::string absent = {};           ///< why there is no value; empty if there is one
+  std::vector<double> of_runs = {};  ///< of a pooled scalar (pooling.hpp): the value of each run
 
   [[nodiscard]] bool present() const { return absent.empty(); }
   /// The scalar value; NaN if absent.
@@ -96,8 +97,12 @@ struct AnalysisContext {
   std::vector<std::size_t> tracers;  ///< slots
   std::string tracer_choice;         ///< how they were chosen
   std::string no_tracers;            ///< why there are none, if so
-  double
-      tracer_rest_height;  ///< mean height of the tracers above the plate when they were chosen; NaN unknown
+  /// Mean height of the tracers above the plate when they were chosen; NaN unknown.
+  double tracer_rest_height;
+  /// Height of the bed's centre of mass above the plate at rest, sigma: as the options say, else of the first
+  /// frame at phase 0 if the bed rests on the plate there (resting_height in barycentre.hpp).
+  std::optional<double> rest_height = {};
+  std::string no_rest_height = {};  ///< why there is none, if so
 };
 
 /// How neighbours were found, in words.

@@ -104,6 +104,8 @@ AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisO
       ++n;
     }
   if (plate && n > 0) context.tracer_rest_height = sum / static_cast<double>(n) - *plate;
+  context.rest_height =
+      options.rest_height ? options.rest_height : resting_height(info, frame, context.no_rest_height);
   return context;
 }
 

@@ -24,15 +24,14 @@ std::size_t find_phase_0(const TrajectorySource& trajectory, std::size_t start, 
   return start;
 }
 
-/// start.kind of the scene that a simulation keeps in its provenance.
+}  // namespace
+
 std::string start_of(const TrajectoryInfo& info) {
   const auto provenance = nlohmann::json::parse(info.provenance_json, nullptr, false);
   if (info.source != "simulation" || !provenance.is_object() || !provenance.contains("config")) return {};
   const std::string text = provenance["config"].get<std::string>();
   return Config::from_text(text, "scene").root().section("start").text("kind").value_or("");
 }
-
-}  // namespace
 
 std::string side_name(Side side) {
   return side == Side::experiment ? "experiment" : "simulation";

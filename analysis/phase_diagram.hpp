@@ -53,6 +53,9 @@ struct Run {
   Show show;
 };
 
+/// Kind of start of a simulation, by the scene that it keeps in its provenance; empty: not known.
+std::string start_of(const TrajectoryInfo& info);
+
 /// Analyses a trajectory and places it. \throws InputError if it has no drive; otherwise as `analyze`
 Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOptions& options = {},
                 Progress& progress = Progress::none());

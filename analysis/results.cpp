@@ -58,6 +58,7 @@ nlohmann::json to_json(const Result& r) {
                      {"method", r.interval->method}};
   else if (!r.no_interval.empty())
     j["no_interval"] = r.no_interval;
+  for (const double v : r.of_runs) j["runs"].push_back(number(v));
   return j;
 }
 
@@ -95,6 +96,37 @@ void write_result(hid_t results, const Result& r) {
   } else if (!r.no_interval.empty()) {
     h5::write_attribute(group.get(), "no_interval", ascii(r.no_interval));
   }
+  if (!r.of_runs.empty()) h5::write_dataset(group.get(), "runs", r.of_runs.data(), {r.of_runs.size()});
+}
+
+Result from_json(const std::string& name, const nlohmann::json& j) {
+  if (j.contains("absent")) return absent_result(name, j["absent"], j.value("source", ""));
+  const auto numbers = [](const nlohmann::json& list) {
+    std::vector<double> values;
+    for (const auto& v : list) values.push_back(v.is_number() ? v.get<double>() : std::nan(""));
+    return values;
+  };
+  const nlohmann::json& value = j.at("value");
+  Result r{.name = name,
+           .values = value.is_array() ? numbers(value) : numbers({value}),
+           .shape = j.value("shape", std::vector<std::size_t>{}),
+           .unit = j.value("unit", ""),
+           .n = j.value("n", std::size_t{0}),
+           .n_of = j.value("n_of", ""),
+           .no_interval = j.value("no_interval", ""),
+           .convention = j.value("convention", ""),
+           .source = j.value("source", "")};
+  if (value.is_string()) {
+    r.text = value;
+    r.values.clear();
+  }
+  if (j.contains("interval")) {
+    const auto& i = j["interval"];
+    const auto ends = numbers({i.at("low"), i.at("high")});
+    r.interval = Interval{ends[0], ends[1], i.value("level", 0.95), i.value("method", "")};
+  }
+  if (j.contains("runs")) r.of_runs = numbers(j["runs"]);
+  return r;
 }
 
 }  // namespace
@@ -132,6 +164,13 @@ std::string results_json(const std::vector<Result>& results) {
   nlohmann::json document = nlohmann::json::object();
   for (const Result& r : results) document[r.name] = to_json(r);
   return document.dump();
+}
+
+std::vector<Result> results_from_json(const std::string& text) {
+  std::vector<Result> results;
+  const auto document = nlohmann::json::parse(text);
+  for (const auto& [name, j] : document.items()) results.push_back(from_json(name, j));
+  return results;
 }
 
 void write_results(const std::filesystem::path& path, const std::vector<Result>& results,

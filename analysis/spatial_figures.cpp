@@ -7,17 +7,13 @@
 #include <cmath>
 
 #include "analysis/bond_order.hpp"
+#include "analysis/colours.hpp"
 #include "analysis/voronoi.hpp"
 
 namespace twincell {
 namespace {
 
-// Of Okabe and Ito: told apart by readers with any colour vision.
-constexpr const char* kBlue = "#0072B2";
-constexpr const char* kOrange = "#E69F00";
-constexpr const char* kVermilion = "#D55E00";
-constexpr const char* kSky = "#56B4E9";
-constexpr const char* kPale = "#EEEEEE";
+using namespace colours;
 
 std::string cell_text(double v) {
   return std::isfinite(v) ? fmt::format("{:.6g}", v) : "?";

@@ -11,6 +11,7 @@
 #include "analysis/trajectory/h5md_file.hpp"
 #include "calibration/filmed.hpp"
 #include "calibration/sweep_results.hpp"
+#include "imaging/camera_like.hpp"
 #include "imaging/frame_source.hpp"
 #include "imaging/stack_pictures.hpp"
 
@@ -46,6 +47,11 @@ fs::path stack_of(const TrajectoryInfo& info) {
   const auto provenance = nlohmann::json::parse(info.provenance_json, nullptr, false);
   if (!provenance.is_object() || provenance.value("inputs", nlohmann::json::array()).empty()) return {};
   return provenance["inputs"][0].value("path", "");
+}
+
+/// The stack of experiment number `i`.
+fs::path stack_behind(const ComparingOptions& options, const TrajectorySource& trajectory, std::size_t i) {
+  return options.stacks.empty() ? stack_of(trajectory.info()) : options.stacks[i];
 }
 
 /// The camera's frames of an experiment's moments.
@@ -101,12 +107,37 @@ struct Scratch {
   fs::path path;
 };
 
+/// A camera, and where it comes from.
+struct LikeCamera {
+  CameraOptions options;
+  std::string origin;  ///< in words, after a comma; empty: the user's
+};
+
+/// The camera that took an experiment, as far as its frames tell: scale, kind of light and noise.
+LikeCamera camera_of(const TrajectoryInfo& experiment, const fs::path& stack) {
+  CameraOptions camera;
+  if (experiment.scale.pixels_per_sigma) camera.pixels_per_sigma = *experiment.scale.pixels_per_sigma;
+  if (stack.empty()) return {camera, ", the camera's default noise"};
+  const auto tracking = nlohmann::json::parse(experiment.tracking_json, nullptr, false);
+  const bool bright =
+      tracking.is_object() && tracking.contains("camera") && tracking["camera"].value("bright", false);
+  try {
+    camera = with_noise_of(*open_frames(stack), camera.pixels_per_sigma, bright, camera);
+  } catch (const InputError&) {  // show_frames() has told the user that the frames are gone
+    return {camera, ", the camera's default noise"};
+  }
+  return {
+      camera,
+      fmt::format(", noise as in the experiment's frames: {:.3g} grey levels and {:.3g} electrons a level",
+                  camera.read_noise, camera.electrons_per_level)};
+}
+
 /// The first simulation of a match, filmed over as many cycles as the experiment has.
 Checks::Filmed film(const Run& experiment, Run& simulation, std::size_t index,
-                    const TrajectorySource& trajectory, std::optional<double> pixels_per_sigma,
-                    const ComparingOptions& options, Progress& progress) {
-  CameraOptions camera = options.camera.value_or(CameraOptions{});
-  if (!options.camera && pixels_per_sigma) camera.pixels_per_sigma = *pixels_per_sigma;
+                    const TrajectorySource& trajectory, const TrajectoryInfo& of_experiment,
+                    const fs::path& stack, const ComparingOptions& options, Progress& progress) {
+  const LikeCamera like = options.camera ? LikeCamera{*options.camera, ""} : camera_of(of_experiment, stack);
+  const CameraOptions& camera = like.options;
   std::size_t frames = experiment.n_frames;
   if (experiment.phases_per_cycle > 0 && simulation.phases_per_cycle > 0)
     frames = frames * static_cast<std::size_t>(simulation.phases_per_cycle) /
@@ -115,12 +146,11 @@ Checks::Filmed film(const Run& experiment, Run& simulation, std::size_t index,
   const Scratch scratch(options.scratch);
   const fs::path tracked = scratch.path / "filmed.h5";
   film_and_track(seen, camera, tracked, options.threads, simulation.show, progress);
-  return {
-      .run = index,
-      .seen = analyze(seen, options.analysis),
-      .filmed = analyze(H5mdReader(tracked), options.analysis),
-      .camera = fmt::format("{:.4g} px per bead, {} of {} frames{}", camera.pixels_per_sigma, seen.n_frames(),
-                            trajectory.n_frames(), options.camera ? "" : ", the camera's defaults")};
+  return {.run = index,
+          .seen = analyze(seen, options.analysis),
+          .filmed = analyze(H5mdReader(tracked), options.analysis),
+          .camera = fmt::format("{:.4g} px per bead, {} of {} frames{}", camera.pixels_per_sigma,
+                                seen.n_frames(), trajectory.n_frames(), like.origin)};
 }
 
 }  // namespace
@@ -146,8 +176,7 @@ Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progr
     for (const std::size_t f : telling_frames(trajectory, most))
       run.show.moments.push_back(snapshot(trajectory, f, run.cutoff));
     if (side == Side::experiment)
-      show_frames(trajectory.info(), options.stacks.empty() ? stack_of(trajectory.info()) : options.stacks[i],
-                  run, notes);
+      show_frames(trajectory.info(), stack_behind(options, trajectory, i), run, notes);
     for (auto& lines : tracer_lines(trajectory, i, options.analysis))
       c.checks.tracers.push_back(std::move(lines));
     c.runs.push_back(std::move(run));
@@ -159,8 +188,8 @@ Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progr
     const std::size_t e = match.experiments.front(), s = match.simulations.front();
     const auto bar = progress("filming " + c.runs[s].name);
     try {
-      c.checks.filmed.push_back(film(c.runs[e], c.runs[s], s, *readers[s],
-                                     readers[e]->info().scale.pixels_per_sigma, options, *bar));
+      c.checks.filmed.push_back(film(c.runs[e], c.runs[s], s, *readers[s], readers[e]->info(),
+                                     stack_behind(options, *readers[e], e), options, *bar));
     } catch (const Interrupted&) {
       throw;
     } catch (const Error& error) {

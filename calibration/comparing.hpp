@@ -22,7 +22,8 @@ struct ComparingOptions {
   AnalysisOptions analysis;
   double tolerance = 0.02;  ///< of Gamma, as in match_runs
   bool film = true;         ///< one simulation of each match with both sides goes through camera and tracker
-  /// The camera of the film; absent: the defaults, at the scale of the match's experiment.
+  /// The camera of the film; absent: the defaults at the scale of the match's experiment, with the noise of
+  /// its frames where these are there still.
   std::optional<CameraOptions> camera;
   std::filesystem::path scratch = std::filesystem::temp_directory_path();  ///< where the film waits
   int threads = 1;

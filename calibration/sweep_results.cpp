@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "analysis/trajectory/atomic_file.hpp"
@@ -72,17 +73,27 @@ std::optional<double> number(const json& object, const char* key) {
                                                          : std::nullopt;
 }
 
+/// As the analysis says; from s_b and s_c where a plan's `results` leave the phase out.
+BedPhase phase_of(const json& results) {
+  const auto value = [&](const char* name) {
+    return results.value(name, json::object()).value("value", json());
+  };
+  if (const json phase = value("phase"); phase.is_string()) return phase_named(phase.get<std::string>());
+  const auto scalar = [&](const char* name) {
+    const json v = value(name);
+    return v.is_number() ? v.get<double>() : std::nan("");
+  };
+  return bed_phase(scalar("s_b"), scalar("s_c"));
+}
+
 void add_points(const json& document, const ConfigSection& base, const std::string& file,
                 Comparison& comparison) {
   for (const json& point : document["points"]) {
-    const json phase =
-        point.value("results", json::object()).value("phase", json::object()).value("value", json());
-    if (!phase.is_string()) continue;
+    const BedPhase phase = phase_of(point.value("results", json::object()));
+    if (phase == BedPhase::undetermined) continue;
     const Place place = place_of(base, point["axes"], file);
-    comparison.sweep.push_back({.n_l = place.n_l,
-                                .gamma = place.gamma,
-                                .start = place.start,
-                                .phase = phase_named(phase.get<std::string>())});
+    comparison.sweep.push_back(
+        {.n_l = place.n_l, .gamma = place.gamma, .start = place.start, .phase = phase});
   }
 }
 

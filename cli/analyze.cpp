@@ -1,11 +1,21 @@
-#include <CLI/CLI.hpp>
-#include <filesystem>
-#include <nlohmann/json.hpp>
+#include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "analysis/barycentre.hpp"
 #include "analysis/observable.hpp"
+#include "analysis/pooling.hpp"
 #include "analysis/results.hpp"
 #include "analysis/spatial_figures.hpp"
+#include "analysis/tracers.hpp"
 #include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
@@ -14,36 +24,81 @@ namespace twincell::cli {
 namespace {
 
 struct AnalyzeOptions {
-  std::string trajectory;
+  std::vector<std::string> trajectories;
   std::string output;
   std::string figures;
+  std::string rest_height;
   std::string s_b = "variance";
   std::string neighbours = "cutoff";
   AnalysisOptions analysis;
 };
 
+/// A number, or the mean height of the centre of mass above the plate in a trajectory of a bed at rest.
+double rest_height_of(const std::string& said) {
+  double number = 0;
+  if (CLI::detail::lexical_cast(said, number)) return number;
+  const H5mdReader trajectory(said);
+  double sum = 0, low = INFINITY, high = -INFINITY;
+  Frame frame;
+  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
+    trajectory.read(f, frame);
+    const auto plate = plate_height(trajectory.info(), frame);
+    const double height = barycentre_height(frame, trajectory.info().mass) - plate.value_or(std::nan(""));
+    if (!std::isfinite(height))
+      throw InputError({.file = said, .key = "--rest-height"},
+                       fmt::format("frame {} has no bead or no plate height", f));
+    sum += height;
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  constexpr double kStill = 1.0 / 30;
+  if (trajectory.n_frames() == 0 || high - low > kStill)
+    throw InputError(
+        {.file = said, .key = "--rest-height"},
+        fmt::format("is no bed at rest: its centre of mass moves by {:.3g} sigma against the plate in "
+                    "{} frames; at most {:.3g}",
+                    high - low, trajectory.n_frames(), kStill));
+  return sum / static_cast<double>(trajectory.n_frames());
+}
+
 void run(const Common& common, const AnalyzeOptions& options) {
-  const H5mdReader trajectory(options.trajectory);
+  std::vector<std::unique_ptr<H5mdReader>> readers;
+  std::vector<const TrajectorySource*> trajectories;
+  for (const std::string& file : options.trajectories) {
+    readers.push_back(std::make_unique<H5mdReader>(file));
+    trajectories.push_back(readers.back().get());
+    if (readers.back()->n_frames() == 0)
+      throw InputError({.file = file, .key = {}}, "the trajectory holds no frame");
+  }
+  require_one_condition(trajectories);
+  if (readers.size() > 1 && !options.figures.empty())
+    throw ConfigError({.file = {}, .key = "--figures"},
+                      fmt::format("draws one trajectory; {} were given", readers.size()));
   // An unwritable place is found before the work, not after.
   if (!options.output.empty()) AtomicPath{options.output};
   if (!options.figures.empty()) AtomicPath(options.figures, AtomicPath::Kind::folder);
-  ProgressBar progress(common, "analyze");
-  const auto results = analyze(trajectory, options.analysis, progress);
+  std::vector<std::vector<Result>> runs;
+  for (const TrajectorySource* trajectory : trajectories) {
+    ProgressBar progress(common, readers.size() > 1 ? trajectory->name() : "analyze");
+    runs.push_back(analyze(*trajectory, options.analysis, progress));
+  }
+  const std::vector<Result> results = runs.size() > 1 ? pool(runs) : runs.front();
 
   Provenance provenance = common.provenance();
-  provenance.inputs = {options.trajectory};
+  provenance.inputs.assign(options.trajectories.begin(), options.trajectories.end());
   const std::string provenance_json = provenance.to_json();
   if (!options.output.empty()) write_results(options.output, results, provenance_json);
   if (!options.figures.empty()) {
     AtomicPath folder(options.figures, AtomicPath::Kind::folder);
     std::filesystem::create_directories(folder.part());
-    for (const Figure& figure : spatial_figures(results, trajectory, options.analysis))
+    for (const Figure& figure : spatial_figures(results, *readers.front(), options.analysis))
       draw(figure, folder.part());
     folder.commit();
   }
 
   nlohmann::json document;
   document["results"] = nlohmann::json::parse(results_json(results));
+  if (runs.size() > 1) document["runs"] = options.trajectories;
   document["provenance"] = nlohmann::json::parse(provenance_json);
   print_result(common, document, results_text(results));
 }
@@ -56,7 +111,10 @@ void add_analyze(CLI::App& program, Common& common) {
       "observables of a trajectory: phase, s_b, s_c, order, defects, slip, convection, profiles, temperature",
       "twincell analyze sim.h5 --discard 10 -o results.h5");
   auto options = std::make_shared<AnalyzeOptions>();
-  verb.add_option("trajectory", options->trajectory, "trajectory (H5MD)")->required();
+  verb.add_option("trajectory", options->trajectories,
+                  "trajectory (H5MD); several that differ by chance alone (seeds, repeats) are pooled, with "
+                  "intervals over them")
+      ->required();
   verb.add_option("-o,--output", options->output, "write the results to this HDF5 file too");
   verb.add_option("--figures", options->figures,
                   "draw the lattice, the convection field, the profiles and the defects into this folder");
@@ -83,11 +141,14 @@ void add_analyze(CLI::App& program, Common& common) {
   verb.add_option("--field-cell", options->analysis.field_cell,
                   "side of the cells in which displacements per cycle are averaged, sigma")
       ->capture_default_str();
-  verb.add_option("--rest-height", options->analysis.rest_height,
-                  "h_cm of the bed at rest, sigma, from which delta_h_cm is taken");
+  verb.add_option("--rest-height", options->rest_height,
+                  "from which delta_h_cm is taken: h_cm of the bed at rest, sigma, or a trajectory of it at "
+                  "rest; absent: the first frame, if it rests there")
+      ->type_name("SIGMA|FILE");
   verb.add_option("--cutoff", options->analysis.neighbour_cutoff,
                   "neighbour distance, sigma (1.2; experiments 1.3)");
   verb.callback([&common, options] {
+    if (!options->rest_height.empty()) options->analysis.rest_height = rest_height_of(options->rest_height);
     options->analysis.s_b = s_b_named(options->s_b);
     options->analysis.neighbours = neighbour_rule_named(options->neighbours);
     run(common, *options);

@@ -149,6 +149,8 @@ void run_collect(const SweepOptions& options, const Common& common) {
   const std::string json = collected_json(schedule);
   write_text_file(output, json);
   write_text_file(fs::path(output).replace_extension(".csv"), collected_csv(schedule));
+  if (const std::string pooled = pooled_csv(schedule); !pooled.empty())
+    write_text_file(fs::path(output).replace_extension(".pooled.csv"), pooled);
   if (!schedule.all()) note(common, "not all points are done; the file says how many are open.");
   print_result(common, nlohmann::json::parse(json), collected_text(schedule) + output.string() + "\n");
 }
@@ -208,7 +210,8 @@ void add_sweep(CLI::App& program, Common& common) {
 
   CLI::App& collect = add("collect", "All results in one file, JSON and CSV",
                           "twincell sweep collect plan.toml -o results.json");
-  collect.add_option("-o,--output", options->output, "FILE.json; FILE.csv is written beside it");
+  collect.add_option("-o,--output", options->output,
+                     "FILE.json; FILE.csv and, of several seeds, FILE.pooled.csv are written beside it");
   collect.callback([options, &common] { run_collect(*options, common); });
 
   CLI::App& script = *verb.add_subcommand("template", "A script for Slurm or GNU parallel");

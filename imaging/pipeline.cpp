@@ -293,7 +293,8 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
                               {{"pixels_per_sigma", plan.pixel_frame.pixels_per_sigma},
                                {"origin_px", {plan.pixel_frame.origin.x_px, plan.pixel_frame.origin.y_px}},
                                {"width_px", stack.width_px},
-                               {"height_px", stack.height_px}}}};
+                               {"height_px", stack.height_px},
+                               {"bright", cell.bright}}}};
   if (plan.pixel_frame.lens) {
     document["camera"]["rotation_deg"] = cell.rotation_deg;
     document["camera"]["distortion"] = cell.distortion;

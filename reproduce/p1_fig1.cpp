@@ -117,29 +117,18 @@ Figure figure_of(const Packings& all) {
 
 Reproduction run(const Request& request) {
   const Packings all = settle_packings(request);
-  Reproduction r;
-  r.title = "Fortini & Huang 2015, Fig. 1: initial beds";
-  r.complete = all.complete;
-  r.targets = targets_of(all);
-  r.conditions = all.conditions;
-  r.cheaper = all.cheaper;
-  json measured = json::array();
-  for (const auto* beds : {&all.crystals, &all.random})
-    for (const Packing& p : *beds) {
-      const Bulk b = bulk_of(p);
-      measured.push_back({{"start", p.start},
-                          {"layers", all.layers},
-                          {"seed", p.seed},
-                          {"results", p.scalars},
-                          {"q6_inside", b.sum_q6 / static_cast<double>(b.n)},
-                          {"defects_together_over_chance", clustering_of(p)}});
-      r.table += fmt::format("  {:<26} q6 {:.4f}, psi6 > 0.9: {:.3f}, {:.0f} grains, {:.0f} dislocations\n",
-                             p.title(), b.sum_q6 / static_cast<double>(b.n), p.scalars.at("ordered_fraction"),
-                             p.scalars.at("grains"), p.scalars.at("dislocations"));
-    }
-  r.measured = measured.dump();
-  if (!all.crystals.empty() || !all.random.empty()) r.figures = {figure_of(all)};
-  return r;
+  const auto mean_q6 = [](const Bulk& b) { return b.sum_q6 / static_cast<double>(b.n); };
+  return reproduction_of(
+      all, "Fortini & Huang 2015, Fig. 1: initial beds", targets_of(all),
+      [&](const Packing& p) {
+        return fmt::format("q6 {:.4f}, psi6 > 0.9: {:.3f}, {:.0f} grains, {:.0f} dislocations",
+                           mean_q6(bulk_of(p)), p.scalars.at("ordered_fraction"), p.scalars.at("grains"),
+                           p.scalars.at("dislocations"));
+      },
+      [&](const Packing& p) {
+        return json{{"q6_inside", mean_q6(bulk_of(p))}, {"defects_together_over_chance", clustering_of(p)}};
+      },
+      figure_of);
 }
 
 }  // namespace

@@ -132,24 +132,13 @@ Figure figure_of(const Packings& all) {
 
 Reproduction run(const Request& request) {
   const Packings all = settle_packings(request);
-  Reproduction r;
-  r.title = "Fortini & Huang 2015, Fig. 2: orientations of the lattice";
-  r.complete = all.complete;
-  r.targets = targets_of(all);
-  r.conditions = all.conditions;
-  r.cheaper = all.cheaper;
-  json measured = json::array();
-  for (const auto* beds : {&all.crystals, &all.random})
-    for (const Packing& p : *beds) {
-      measured.push_back(
-          {{"start", p.start}, {"layers", all.layers}, {"seed", p.seed}, {"results", p.scalars}});
-      r.table +=
-          fmt::format("  {:<26} {:7.3f} degrees, A {:.3f}, B {:.3f}\n", p.title(),
-                      p.scalars.at("orientation"), share(p, "orientation_a"), share(p, "orientation_b"));
-    }
-  r.measured = measured.dump();
-  if (!all.crystals.empty() || !all.random.empty()) r.figures = {figure_of(all)};
-  return r;
+  return reproduction_of(
+      all, "Fortini & Huang 2015, Fig. 2: orientations of the lattice", targets_of(all),
+      [](const Packing& p) {
+        return fmt::format("{:7.3f} degrees, A {:.3f}, B {:.3f}", p.scalars.at("orientation"),
+                           share(p, "orientation_a"), share(p, "orientation_b"));
+      },
+      [](const Packing&) { return json::object(); }, figure_of);
 }
 
 }  // namespace

@@ -124,4 +124,26 @@ Packings settle_packings(const Request& request) {
   return all;
 }
 
+Reproduction reproduction_of(const Packings& all, const std::string& title, std::vector<Target> targets,
+                             const std::function<std::string(const Packing&)>& line,
+                             const std::function<json(const Packing&)>& more,
+                             const std::function<Figure(const Packings&)>& figure) {
+  Reproduction r{.title = title,
+                 .targets = std::move(targets),
+                 .cheaper = all.cheaper,
+                 .conditions = all.conditions,
+                 .complete = all.complete};
+  json measured = json::array();
+  for (const auto* beds : {&all.crystals, &all.random})
+    for (const Packing& p : *beds) {
+      json bed = {{"start", p.start}, {"layers", all.layers}, {"seed", p.seed}, {"results", p.scalars}};
+      bed.update(more(p));
+      measured.push_back(std::move(bed));
+      r.table += fmt::format("  {:<26} {}\n", p.title(), line(p));
+    }
+  r.measured = measured.dump();
+  if (!all.crystals.empty() || !all.random.empty()) r.figures = {figure(all)};
+  return r;
+}
+
 }  // namespace twincell::reproduce

@@ -3,7 +3,9 @@
 /// Beds at rest before the drive begins: what Figs. 1 and 2 of Fortini & Huang 2015 show.
 
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,13 @@ struct Packings {
   /// Mean over the random beds, its interval by bootstrap over them. \pre there is one
   [[nodiscard]] Estimate over_random(const std::function<double(const Packing&)>& of) const;
 };
+
+/// What the two figures say alike, with a line and a JSON object of every bed. `figure` is drawn if there is
+/// a bed.
+Reproduction reproduction_of(const Packings& all, const std::string& title, std::vector<Target> targets,
+                             const std::function<std::string(const Packing&)>& line,
+                             const std::function<nlohmann::json(const Packing&)>& more,
+                             const std::function<Figure(const Packings&)>& figure);
 
 /// Settles them, or takes up what is in Request::runs. Small budgets mean lower beds and fewer seeds.
 Packings settle_packings(const Request& request);

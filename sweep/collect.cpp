@@ -4,18 +4,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
+
+#include "analysis/pooling.hpp"
+#include "analysis/results.hpp"
 
 namespace twincell::sweep {
 
 namespace {
 
 using nlohmann::json;
-
-/// What a line of the table says of its point besides axes and results.
-constexpr const char* kOfPoint[] = {"replica", "seed", "answer", "n_cycles", "failed"};
 
 /// A TOML scalar as JSON; what JSON spells otherwise stays text.
 json value_of(const std::string& literal) {
@@ -73,6 +74,42 @@ json onset_json(const Plan& plan, const Curve& curve) {
           {"text", o.text()}};
 }
 
+/// Points that differ in nothing but the seed.
+struct Group {
+  json axes;
+  std::vector<std::vector<Result>> runs;
+};
+
+/// Of the points with results, in the order of the points. The seed may be an axis of the plan; it tells no
+/// conditions apart.
+std::vector<Group> groups_of(const json& points) {
+  std::vector<Group> groups;
+  std::map<std::string, std::size_t> number;
+  for (const json& point : points) {
+    if (!point.contains("results")) continue;
+    json axes = point["axes"];
+    axes.erase("start.seed");
+    const auto [place, is_new] = number.emplace(axes.dump(), groups.size());
+    if (is_new) groups.push_back({axes, {}});
+    std::vector<Result> run = results_from_json(point["results"].dump());
+    std::erase_if(run, [](const Result& r) { return !r.shape.empty(); });
+    groups[place->second].runs.push_back(std::move(run));
+  }
+  return groups;
+}
+
+/// Scalars and words of every group of two runs or more.
+json pooled_json(const json& points) {
+  json pooled = json::array();
+  for (const Group& group : groups_of(points)) {
+    if (group.runs.size() < 2) continue;
+    pooled.push_back({{"axes", group.axes},
+                      {"runs", group.runs.size()},
+                      {"results", json::parse(results_json(pool(group.runs)))}});
+  }
+  return pooled;
+}
+
 json document_of(const Schedule& schedule) {
   const Plan& plan = schedule.plan();
   json document = {
@@ -87,6 +124,7 @@ json document_of(const Schedule& schedule) {
     }
     if (curve.onset) document["onsets"].push_back(onset_json(plan, curve));
   }
+  document["pooled"] = pooled_json(document["points"]);
   document["open"] = open;
   return document;
 }
@@ -101,32 +139,29 @@ std::string cell(const json& value) {
   return quoted + "\"";
 }
 
-}  // namespace
-
-std::string collected_json(const Schedule& schedule) {
-  return document_of(schedule).dump(1) + "\n";
-}
-
-std::string collected_csv(const Schedule& schedule) {
-  const json document = document_of(schedule);
+/// A line for each of `rows`: what `lead` lists, the axes, the keys, then value, low and high of every
+/// scalar.
+std::string table_of(const json& rows, const std::vector<std::string>& lead,
+                     const std::vector<std::string>& keys_of_row) {
   std::set<std::string> keys, names;
-  for (const json& point : document["points"]) {
-    for (const auto& [key, value] : point["axes"].items()) keys.insert(key);
-    if (!point.contains("results")) continue;
-    for (const auto& [name, result] : point["results"].items())
+  for (const json& row : rows) {
+    for (const auto& [key, value] : row["axes"].items()) keys.insert(key);
+    if (!row.contains("results")) continue;
+    for (const auto& [name, result] : row["results"].items())
       if (result.contains("value") && !result["value"].is_array()) names.insert(name);
   }
-  std::vector<std::string> head = {"id"};
+  std::vector<std::string> head = lead;
   head.insert(head.end(), keys.begin(), keys.end());
-  for (const char* key : kOfPoint) head.emplace_back(key);
+  head.insert(head.end(), keys_of_row.begin(), keys_of_row.end());
   for (const auto& name : names)
     for (const char* ending : {"", "_low", "_high"}) head.push_back(name + ending);
   std::string text = fmt::format("{}\n", fmt::join(head, ","));
-  for (const json& point : document["points"]) {
-    std::vector<std::string> cells = {cell(point["id"])};
-    for (const auto& key : keys) cells.push_back(cell(point["axes"].value(key, json())));
-    for (const char* key : kOfPoint) cells.push_back(cell(point.value(key, json())));
-    const json results = point.value("results", json::object());
+  for (const json& row : rows) {
+    std::vector<std::string> cells;
+    for (const auto& key : lead) cells.push_back(cell(row[key]));
+    for (const auto& key : keys) cells.push_back(cell(row["axes"].value(key, json())));
+    for (const auto& key : keys_of_row) cells.push_back(cell(row.value(key, json())));
+    const json results = row.value("results", json::object());
     for (const auto& name : names) {
       const json result = results.value(name, json::object());
       const json value = result.value("value", json()), interval = result.value("interval", json::object());
@@ -136,6 +171,22 @@ std::string collected_csv(const Schedule& schedule) {
     text += fmt::format("{}\n", fmt::join(cells, ","));
   }
   return text;
+}
+
+}  // namespace
+
+std::string collected_json(const Schedule& schedule) {
+  return document_of(schedule).dump(1) + "\n";
+}
+
+std::string collected_csv(const Schedule& schedule) {
+  return table_of(document_of(schedule)["points"], {"id"},
+                  {"replica", "seed", "answer", "n_cycles", "failed"});
+}
+
+std::string pooled_csv(const Schedule& schedule) {
+  const json pooled = document_of(schedule)["pooled"];
+  return pooled.empty() ? std::string() : table_of(pooled, {}, {"runs"});
 }
 
 std::string collected_text(const Schedule& schedule) {

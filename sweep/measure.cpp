@@ -1,16 +1,12 @@
 #include "sweep/measure.hpp"
 
+#include "analysis/barycentre.hpp"
 #include "sweep/live_trajectory.hpp"
 #include "sweep/precision_rule.hpp"
 
 namespace twincell::sweep {
 
 namespace {
-
-/// Kinetic energy per bead, m g sigma, up to which a bed counts as resting: it is by no more than that, in
-/// sigma, that the centre of mass may still sink or rise. Smooth beds never come to rest altogether, for a
-/// bead may glide on them for ever, nor do those of a law without static friction.
-constexpr double kAtRest = 0.005;
 
 double height_of_centre(const std::vector<sim::Bead>& beads) {
   double moment = 0, mass = 0;

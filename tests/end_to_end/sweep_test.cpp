@@ -264,6 +264,48 @@ TEST_F(Sweeps, TheResultsAreThoseOfSimulateAndAnalyze) {
   }
 }
 
+TEST_F(Sweeps, SeedsArePooledAsAnalyzePoolsThem) {
+  const std::string plan = at("seeds.toml");
+  write(plan, "seed = 3\n" + std::string(kScene) +
+                  "[axes]\ndrive.gamma = [1.05, 1.6]\nstart.kind = \"random\"\n" + "seeds = 3\n");
+  ASSERT_EQ(run(plan, at("o"), {"--keep-trajectories"}).code, kDone);
+  ASSERT_EQ(run_program({"sweep", "collect", plan, "--folder", at("o"), "-o", at("r.json"), "-q"}).code,
+            kDone);
+  const auto collected = nlohmann::json::parse(bytes_of(at("r.json")));
+  ASSERT_EQ(collected["pooled"].size(), 2U);
+  const std::string table = bytes_of(at("r.pooled.csv"));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+  for (const auto& group : collected["pooled"]) {
+    EXPECT_EQ(group["runs"], 3);
+    std::vector<std::string> words = {"analyze", "--json", "-q"};
+    for (const auto& point : collected["points"])
+      if (point["axes"] == group["axes"])
+        words.push_back(at("o") + "/points/" + point["id"].get<std::string>() + "/trajectory.h5");
+    const Ran ran = run_program(words);
+    ASSERT_EQ(ran.code, kDone) << ran.err;
+    const auto pooled = nlohmann::json::parse(ran.out)["results"];
+    for (const char* name : {"s_b", "s_c", "T_g", "q6", "phase"})
+      EXPECT_TRUE(pooled[name] == group["results"][name]) << pooled[name] << group["results"][name];
+    EXPECT_EQ(pooled["s_b"]["runs"].size(), 3U);
+    EXPECT_LT(pooled["s_b"]["interval"]["low"], pooled["s_b"]["value"]);
+    // The same runs stand in the report as runs and as points of the sweep.
+    words = {"compare", "-q",         "--json",       "--sweep", at("r.json"),
+             "-o",      at("report"), "--simulation", words[3],  words[4]};
+    const Ran compared = run_program(words);
+    EXPECT_EQ(compared.code, kDone) << compared.err;
+    EXPECT_NE(bytes_of(at("report/report.html")).find("sweep"), std::string::npos);
+  }
+  // Two strengths are not one condition, and one run is not two.
+  const std::string a =
+      at("o") + "/points/" + collected["points"][0]["id"].get<std::string>() + "/trajectory.h5";
+  const std::string b =
+      at("o") + "/points/" + collected["points"][5]["id"].get<std::string>() + "/trajectory.h5";
+  const Ran other = run_program({"analyze", a, b, "-q"});
+  EXPECT_EQ(other.code, kUsage);
+  EXPECT_NE(other.err.find("Gamma"), std::string::npos) << other.err;
+  EXPECT_NE(run_program({"analyze", a, a, "-q"}).err.find("same run"), std::string::npos);
+}
+
 TEST_F(Sweeps, WrongPlansAreRefusedInOneSentence) {
   const auto refused = [&](const std::string& text, const std::vector<std::string>& mentioned,
                            int code = kUsage) {

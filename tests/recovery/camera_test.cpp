@@ -15,6 +15,7 @@
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "imaging/camera/sensor.hpp"
+#include "imaging/camera_like.hpp"
 #include "imaging/synthetic_camera.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -48,6 +49,23 @@ CameraOptions plain() {
   o.read_noise = 0;
   return o;
 }
+
+/// Frames held in memory.
+class Held : public FrameSource {
+ public:
+  explicit Held(std::vector<cv::Mat> frames) : frames_(std::move(frames)) {}
+  bool next(cv::Mat& frame) override {
+    if (next_ == frames_.size()) return false;
+    frame = frames_[next_++];
+    return true;
+  }
+  [[nodiscard]] std::size_t announced() const override { return frames_.size(); }
+  [[nodiscard]] std::string current() const override { return "memory"; }
+
+ private:
+  std::vector<cv::Mat> frames_;
+  std::size_t next_ = 0;
+};
 
 /// Moments of the darkness of a picture.
 struct Moments {
@@ -446,4 +464,48 @@ TEST(Camera, PathsThatCannotBeDrawnAreRefused) {
   EXPECT_THROW(render(flight(true), o, RenderJob{.folder = folder / "a"}), ConfigError)
       << "frames would change places";
   EXPECT_FALSE(std::filesystem::exists(folder / "a"));
+}
+
+TEST(CameraLike, FindsTheNoiseOfAnotherCamera) {
+  // Touching beads in the lower half, light above; in 12 bits, so that levels are another camera's.
+  std::vector<Vec3> beads;
+  for (int x = 0; x < 12; ++x)
+    for (int z = 0; z < 6; ++z) beads.emplace_back(x + 0.5, 0, z + 0.5);
+  for (const auto& [read_noise, electrons] : {std::pair(4.0, 20.0), {2.0, 0.0}, {8.0, 10.0}}) {
+    CameraOptions other;
+    other.pixels_per_sigma = 24;
+    other.bits = 12;
+    other.read_noise = read_noise;
+    other.electrons_per_level = electrons;
+    other.backlight = 150;
+    const SyntheticCamera camera(other, empty_cell(12, beads.size()));
+    std::vector<cv::Mat> frames;
+    for (int f = 0; f < 3; ++f) {
+      Frame frame = frame_with(beads);
+      frame.step = f;
+      frames.push_back(camera.expose(frame));
+    }
+    Held stack(frames);
+    const CameraOptions like = with_noise_of(stack, 24, false, plain());
+    // Shares of the light count: 4 levels of 150 are 5.73 of 215. Black is clipped at 0, so that the dark
+    // tells less than there is; in the light all is seen.
+    const auto in_the_light = [](const CameraOptions& o) {
+      return std::pow(o.read_noise / o.backlight, 2) +
+             (o.electrons_per_level > 0 ? 1 / (o.electrons_per_level * o.backlight) : 0);
+    };
+    EXPECT_NEAR(in_the_light(like) / in_the_light(other), 1, 0.15) << read_noise << " " << electrons;
+  }
+  // Noise of less than a level of an 8-bit picture.
+  CameraOptions quiet;
+  quiet.pixels_per_sigma = 24;
+  quiet.read_noise = 0.3;
+  quiet.electrons_per_level = 400;
+  Frame frame = frame_with(beads);
+  Held stack(std::vector<cv::Mat>{SyntheticCamera(quiet, empty_cell(12, beads.size())).expose(frame)});
+  const CameraOptions like = with_noise_of(stack, 24, false, quiet);
+  const double variance = 0.09 + 215.0 / 400;
+  EXPECT_NEAR(like.read_noise * like.read_noise + like.backlight / like.electrons_per_level, variance,
+              0.2 * variance);
+  Held none(std::vector<cv::Mat>{});
+  EXPECT_THROW(with_noise_of(none, 24, false, plain()), InputError);
 }

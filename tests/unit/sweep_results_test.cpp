@@ -13,7 +13,9 @@ namespace {
 std::string results(const std::string& plan) {
   return R"({"format": "twincell sweep 1", "plan": ")" + plan + R"(", "open": 0, "points": [
     {"id": "a", "axes": {"start.kind": "random", "drive.gamma": 1.5}, "results": {"phase": {"value": "bouncing"}}},
-    {"id": "b", "axes": {"start.kind": "crystal_a", "drive.gamma": 2.5}, "results": {"phase": {"value": "convecting"}}},
+    {"id": "b", "axes": {"start.kind": "crystal_a", "drive.gamma": 2.5},
+     "results": {"s_b": {"value": 0.5}, "s_c": {"value": 1.5}}},
+    {"id": "d", "axes": {"start.kind": "crystal_a", "drive.gamma": 2.4}, "results": {"s_b": {"value": 0.5}}},
     {"id": "c", "axes": {"start.kind": "random", "drive.gamma": 9.0}, "failed": "an overlap"}],
    "onsets": [
     {"axes": {"start.kind": "random"}, "key": "drive.gamma", "verdict": "convecting", "value": 2.1, "low": 2.0,
@@ -23,7 +25,7 @@ std::string results(const std::string& plan) {
 }
 
 void check(const Comparison& c) {
-  ASSERT_EQ(c.sweep.size(), 2U);         // the point that failed has no phase
+  ASSERT_EQ(c.sweep.size(), 2U);  // the point that failed has no phase, nor has one that bounces, without s_c
   EXPECT_DOUBLE_EQ(c.sweep[0].n_l, 20);  // 400 beads in the preset's 20 sigma
   EXPECT_DOUBLE_EQ(c.sweep[0].gamma, 1.5);
   EXPECT_EQ(c.sweep[0].start, "random");

@@ -38,6 +38,37 @@ TEST(Barycentre, WithoutARestHeightThereIsNoLift) {
   EXPECT_NE(find_result(results, "delta_h_cm").absent.find("at rest"), std::string::npos);
 }
 
+TEST(Barycentre, ABedThatBeginsAtRestTellsItsRestHeight) {
+  const auto shaken = [](double speed) {
+    MemoryTrajectory t;
+    t.info().n_beads = 2;
+    t.info().phases_per_cycle = 2;
+    t.info().columns = {.velocity = true, .phase = true, .plate_height = true};
+    t.info().drive = Drive{.amplitude = 1.5, .omega = 1};
+    for (int f = 0; f < 12; ++f) {
+      Frame frame;
+      frame.step = f;
+      frame.phase = f % 2;
+      frame.cycle = f / 2;
+      frame.time = std::numbers::pi * f;
+      frame.plate_height = 0.1;
+      const double lift = f == 0 ? 0 : 0.25;
+      frame.position = {Vec3(0, 0, 0.6 + lift), Vec3(0, 0, 1.6 + lift)};
+      frame.velocity = {Vec3(0, 0, speed), Vec3(0, 0, speed)};
+      t.append(frame);
+    }
+    return t;
+  };
+  // The plate passes its mean height at A omega = 1.5.
+  const auto riding = analyze(shaken(1.5), {.discard_cycles = 1});
+  // 1 above the plate; h_cm counts from the plate's mean, 0.1 below the plate.
+  test::validate({"V5.16", "lift over the first frame's rest height", 0.35, 1e-12, "closed form"},
+                 find_result(riding, "delta_h_cm").value());
+  EXPECT_NEAR(find_result(analyze(shaken(0)), "delta_h_cm").value(), 0.35 - 0.25 / 12, 1e-12);
+  const std::string why = find_result(analyze(shaken(1.2)), "delta_h_cm").absent;
+  EXPECT_NE(why.find("0.045 m g sigma"), std::string::npos) << why;
+}
+
 TEST(Barycentre, WeighsMassesAndSkipsEmptySlots) {
   Frame frame;
   frame.position = {Vec3(0, 0, 1), Vec3(0, 0, 4), Vec3::Constant(std::nan(""))};

@@ -378,7 +378,7 @@ MemoryTrajectory carried(const Field& field, int cycles, double noise = 0) {
 TEST(Convection, SolidRotationHasTheCirculationOfItsRectangle) {
   const double omega = 0.01;
   const auto trajectory =
-      carried([&](const Vec3& r) { return Vec3(-omega * (r.z() - 10), 0, omega * (r.x() - 10)); }, 8);
+      carried([&](const Vec3& r) { return Vec3(-omega * (r.z() - 10), 0, omega * (r.x() - 10)); }, 12);
   const auto results = analyze(trajectory);
   // 2 omega times the area inside the outermost centres, 18 x 18; half of it on each side.
   test::validate({"V5.14", "circulation of solid rotation, left half", 2 * omega * 18 * 9, 1e-10, "Stokes"},

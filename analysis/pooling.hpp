@@ -1,0 +1,35 @@
+#pragma once
+/// \file
+/// Several runs of one bed that differ by chance alone (seeds, repeats of an experiment), as one measurement.
+
+#include <string>
+#include <vector>
+
+#include "analysis/observable.hpp"
+
+namespace twincell {
+
+/// From this many runs on the interval is a bootstrap over runs; Student's t below it, where a resample has
+/// too few runs to choose from. Of normal values t covers 95 % at every number; of exponentially distributed
+/// ones it covers 87 % of the means of 6, the bootstrap 94 %.
+inline constexpr std::size_t kRunsToResample = 6;
+
+/// The results of all runs together, in the order of the first.
+///
+/// A number is the mean over the runs that have it, each counting once: beds are what differs by chance, not
+/// cycles. s_b and s_c are means of squares and pooled as squares; counts (slips, slip_directions) are added;
+/// the orientation is the mean angle of a lattice that 60 degrees bring back. The 95 % interval is that of a
+/// mean of independent runs: Student's t over 2 to 5 runs, bootstrap (studentised) over 6 and more, and not
+/// narrower than the runs' own intervals (over their tracers or cycles) allow when they are taken together.
+/// No slip in any run: exact binomial over the trials of all. A word (phase, drift) is that of most runs,
+/// with the counts; absent if two words tie. Arrays are pooled element by element, those of different length
+/// up to the end of the shortest; values of single beads are not pooled, for they are other beads in each
+/// run. `n` counts runs, `of_runs` holds the value of each (NaN where a run has none). \pre runs is not empty
+std::vector<Result> pool(const std::vector<std::vector<Result>>& runs);
+
+/// Refuses runs that cannot be pooled. \throws ConfigError naming two of them and what tells them apart:
+/// source, dimension, Gamma, omega or width (2 %), number of beads (10 %), phases per cycle, kind of start;
+/// or that both hold the same run, bead for bead \pre every trajectory has frames
+void require_one_condition(const std::vector<const TrajectorySource*>& trajectories);
+
+}  // namespace twincell
