@@ -85,8 +85,8 @@ int main(int argc, char** argv) {
   }
   fmt::print(
       R"({{"seconds": {}, "links": {}, "settled": {}, "bridged": {}, "ambiguous": {}, "births": {}, "losses": {}, )"
-      R"("networks": {}, "largest_network": {}, "unsolved": {}, "unclear_shifts": {}}})"
+      R"("networks": {}, "largest_network": {}, "unsolved": {}, "rematched": {}, "unclear_shifts": {}}})"
       "\n",
       best, report.links, report.settled, report.bridged, report.ambiguous, report.births, report.losses,
-      report.networks, report.largest_network, report.unsolved, report.unclear_shifts);
+      report.networks, report.largest_network, report.unsolved, report.rematched, report.unclear_shifts);
 }

@@ -128,17 +128,23 @@ std::string describe(const TrackedStack& stack) {
   }
   const LinkReport& l = stack.links;
   text += fmt::format(
-      "links: {} made, {} bridge a gap, {} ambiguous; {} births, {} losses; largest sub-network {}\n",
-      l.links, l.bridged, l.ambiguous, l.births, l.losses, l.largest_network);
+      "links: {} made, {} bridge a gap, {} ambiguous; {} births, {} losses; largest sub-network {}; {} "
+      "frames "
+      "matched anew, all beads at once\n",
+      l.links, l.bridged, l.ambiguous, l.births, l.losses, l.largest_network, l.rematched);
   if (l.unsolved > 0)
     text += fmt::format(
         "frames too crowded to be solved exactly: {} beads took their nearest free detection\n", l.unsolved);
-  std::int64_t tracers = 0;
-  for (const TrackSummary& t : stack.tracks) tracers += t.is_tracer() ? 1 : 0;
+  std::int64_t tracers = 0, uncertain = 0;
+  for (const TrackSummary& t : stack.tracks) {
+    tracers += t.is_tracer() ? 1 : 0;
+    uncertain += t.is_tracer() && t.ambiguous > 0 ? 1 : 0;
+  }
   if (tracers > 0) {
     const auto broken = stack.broken_tracers();
-    text += fmt::format("tracers: {} tracks, {} of them not from the first frame to the last", tracers,
-                        broken.size());
+    text += fmt::format(
+        "tracers: {} tracks, {} of them with ambiguous links, {} not from the first frame to the last",
+        tracers, uncertain, broken.size());
     for (std::size_t i = 0; i < std::min<std::size_t>(broken.size(), 5); ++i) {
       const TrackSummary& t = stack.tracks[static_cast<std::size_t>(broken[i])];
       text += fmt::format("{} {} (frames {} to {})", i == 0 ? ": track" : ",", broken[i], t.first, t.last);

@@ -9,6 +9,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "imaging/assignment.hpp"
+#include "imaging/coherent_match.hpp"
 
 namespace twincell {
 
@@ -27,12 +28,24 @@ constexpr double kRough = 0.03;      // share of tracks left open above which se
 constexpr double kAlike = 0.3;       // between neighbours' steps that agree
 constexpr double kSame = 0.1;        // between predictions that say the same
 constexpr double kSlack = 0.05;      // by which a detection must be nearer to be the better one
-constexpr double kThrough = 0.6;  // between centres on their way: nearer, one disc passed through the other
-constexpr double kBeside = 0.8;   // farther, it did not
-constexpr double kPassing = 8;    // dearest exchange for the sake of not passing through
-constexpr double kLikely = 0.5;   // how near the centre of mass leads to the common way
-constexpr double kWidth = 0.12;   // of the core of the density of misses, see `cost`
-constexpr std::size_t kSample = 200;    // tracks on which the rules are tried
+constexpr double kThrough = 0.6;   // between centres on their way: nearer, one disc passed through the other
+constexpr double kBeside = 0.8;    // farther, it did not
+constexpr double kPassing = 8;     // dearest exchange for the sake of not passing through
+constexpr double kLikely = 0.5;    // how near the centre of mass leads to the common way
+constexpr double kWidth = 0.12;    // of the core of the density of misses, see `cost`
+constexpr double kTouching = 1.3;  // whose steps are compared
+constexpr double kPart = 0.8;      // between neighbours' steps: beyond, something is amiss
+constexpr double kAnywhere =
+    1.9;  // how far from where it may be expected a bead is sought when all are matched
+constexpr double kFlight = 0.02;  // width of the density of misses in free flight, and its exponent
+constexpr double kFlightTail = 2.5;
+constexpr double kOfFlight = 2;           // prices, logarithms of odds: to be in free flight,
+constexpr double kOfAnything = 6;         // to be anywhere within reach,
+constexpr double kOfNowhere = 16;         // to be nowhere,
+constexpr double kOfKind = 3;             // to change from tracer to bead
+constexpr std::size_t kSample = 200;      // tracks on which the rules are tried
+constexpr std::size_t kMostChoices = 40;  // the same where all are matched
+constexpr std::size_t kMostOnAverage = 25;
 constexpr std::size_t kMostEdges = 16;  // detections that one track may choose from
 constexpr int kRounds = 12;             // of learning from neighbours
 
@@ -154,6 +167,7 @@ void LinkReport::add(const LinkReport& f) {
   networks += f.networks;
   largest_network = std::max(largest_network, f.largest_network);
   unsolved += f.unsolved;
+  rematched += f.rematched;
   unclear_shifts += f.unclear_shifts;
 }
 
@@ -562,7 +576,7 @@ void Linker::assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers
       double least = std::numeric_limits<double>::infinity();
       for (const auto& [guess, price] : guesses)
         least = std::min(least, cost(square(grid[k] - guess) / (d * d), width) + price);
-      if (!tracers.empty() && tracers[grid.original(k)] != track.tracer) least += 3;
+      if (!tracers.empty() && tracers[grid.original(k)] != track.tracer) least += kOfKind;
       if (least >= alone) return;
       own.push_back({static_cast<std::uint32_t>(rows.size()), static_cast<std::uint32_t>(k), least - alone});
     });
@@ -600,6 +614,86 @@ void Linker::assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers
     detection_of_[static_cast<std::size_t>(rows[i])] = k;
     track_of_[static_cast<std::size_t>(k)] = rows[i];
     if (best.margin[i] >= least_margin) continue;
+    ambiguous_[grid.original(static_cast<std::size_t>(k))] = 1;
+    ++last_.ambiguous;
+  }
+}
+
+// Where touching neighbours stay together, and nobody is lost while a place is left over, the frame is
+// understood.
+bool Linker::neighbours_part(const Grid& grid) const {
+  const double d = options_.diameter_px;
+  std::vector<PixelPoint> places;
+  for (const Track& t : tracks_) places.push_back(t.place);
+  const Grid neighbours(places, 1.1 * d);
+  const bool left_over = std::find(track_of_.begin(), track_of_.end(), -1) != track_of_.end();
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    if (tracks_[t].missed > 0) continue;
+    if (detection_of_[t] < 0) {
+      if (left_over) return true;
+      continue;
+    }
+    const PixelPoint step = grid[static_cast<std::size_t>(detection_of_[t])] - tracks_[t].place;
+    bool parts = false;
+    neighbours.within(tracks_[t].place, kTouching * d, [&](std::size_t k, double) {
+      const std::size_t other = neighbours.original(k);
+      if (tracks_[other].missed > 0 || detection_of_[other] < 0) return;
+      const PixelPoint theirs = grid[static_cast<std::size_t>(detection_of_[other])] - tracks_[other].place;
+      parts = parts || square(theirs - step) > kPart * kPart * d * d;
+    });
+    if (parts) return true;
+  }
+  return false;
+}
+
+void Linker::match_all(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment) {
+  const double d = options_.diameter_px;
+  std::vector<PixelPoint> places, detections;
+  for (std::size_t k = 0; k < grid.size(); ++k) detections.push_back(grid[k]);
+  std::vector<Edge> choices, own;
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    const Track& track = tracks_[t];
+    places.push_back(track.place);
+    own.clear();
+    auto look = [&](PixelPoint about) {
+      grid.within(about, kAnywhere * d, [&](std::size_t k, double) {
+        if (std::any_of(own.begin(), own.end(), [&](const Edge& e) { return e.column == k; })) return;
+        double price = kOfAnything;
+        price = std::min(price, cost(square(grid[k] - expected_[t]) / (d * d), kWidth * (1 + track.missed)));
+        if (track.missed == 0)
+          price = std::min(
+              price, kFlightTail * std::log1p(square(grid[k] - flying_[t]) / (kFlight * kFlight * d * d)) +
+                         2 * std::log(kFlight) + kOfFlight);
+        if (!tracers.empty() && tracers[grid.original(k)] != track.tracer) price += kOfKind;
+        own.push_back({static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(k), price - kOfNowhere});
+      });
+    };
+    look(expected_[t]);
+    if (track.missed == 0) {
+      look(flying_[t]);
+      look(track.place + moment.interval * step_);
+      look(track.place);
+    }
+    if (own.size() > kMostChoices) {
+      std::nth_element(own.begin(), own.begin() + kMostChoices, own.end(), [](const Edge& a, const Edge& b) {
+        return a.cost < b.cost || (a.cost == b.cost && a.column < b.column);
+      });
+      own.resize(kMostChoices);
+    }
+    choices.insert(choices.end(), own.begin(), own.end());
+  }
+  // Discs of one layer leave each bead a dozen choices; what leaves many more is no such layer, and endless.
+  if (choices.size() > kMostOnAverage * std::min(tracks_.size(), grid.size())) return;
+  const CoherentMatch match = match_coherently(places, detections, choices, d);
+  std::fill(detection_of_.begin(), detection_of_.end(), -1);
+  std::fill(ambiguous_.begin(), ambiguous_.end(), std::uint8_t{0});
+  last_.settled = last_.ambiguous = 0;
+  last_.rematched = 1;
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    const std::int64_t k = match.column_of_row[t];
+    if (k < 0) continue;
+    detection_of_[t] = static_cast<std::int32_t>(k);
+    if (match.margin[t] >= std::log(options_.ambiguous_odds)) continue;
     ambiguous_[grid.original(static_cast<std::size_t>(k))] = 1;
     ++last_.ambiguous;
   }
@@ -701,8 +795,11 @@ std::vector<std::int64_t> Linker::next(std::span<const PixelPoint> detections, c
   track_of_.assign(detections.size(), -1);
   predict_all(grid, moment);
   settle(grid, tracers);
+  const std::int64_t open = static_cast<std::int64_t>(tracks_.size()) - last_.settled;
   follow_neighbours(grid);
   assign_rest(grid, tracers, moment);
+  const bool rough = static_cast<double>(open) > kRough * static_cast<double>(tracks_.size());
+  if (rough && neighbours_part(grid)) match_all(grid, tracers, moment);
   for (std::int32_t& k : detection_of_)
     if (k >= 0) k = static_cast<std::int32_t>(grid.original(static_cast<std::size_t>(k)));
   std::vector<std::int64_t> ids(detections.size(), -1);

@@ -51,6 +51,7 @@ struct LinkReport {
   std::int64_t networks = 0;         ///< sub-networks assigned
   std::int64_t largest_network = 0;  ///< tracks in the largest
   std::int64_t unsolved = 0;         ///< tracks left to the fallback because a frame was too crowded
+  std::int64_t rematched = 0;        ///< frames matched anew because neighbours parted
   std::int64_t unclear_shifts = 0;   ///< frames whose common shift had a rival nearly as good
   void add(const LinkReport& frame);
 };
@@ -96,6 +97,8 @@ class Linker {
   void predict_all(const Grid& grid, const FrameMoment& moment);
   void settle(const Grid& grid, std::span<const std::uint8_t> tracers);
   void follow_neighbours(const Grid& grid);
+  [[nodiscard]] bool neighbours_part(const Grid& grid) const;
+  void match_all(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment);
   void assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment);
   void update(std::span<const PixelPoint> detections, std::span<const std::uint8_t> tracers,
               const FrameMoment& moment, std::vector<std::int64_t>& ids);

@@ -265,10 +265,15 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
     }
   }
   const LinkReport& l = stack.links;
-  nlohmann::json tracers = {{"count", 0}, {"broken", nlohmann::json::array()}};
+  nlohmann::json tracers = {
+      {"count", 0}, {"broken", nlohmann::json::array()}, {"uncertain", nlohmann::json::array()}};
   std::int64_t count = 0;
   for (std::size_t t = 0; t < stack.tracks.size(); ++t)
-    if (stack.tracks[t].is_tracer() && plan.slot_of_track[t] >= 0) ++count;
+    if (stack.tracks[t].is_tracer() && plan.slot_of_track[t] >= 0) {
+      ++count;
+      if (const std::int64_t links = stack.tracks[t].ambiguous; links > 0)
+        tracers["uncertain"].push_back({{"slot", plan.slot_of_track[t]}, {"ambiguous", links}});
+    }
   tracers["count"] = count;
   for (const std::int64_t t : stack.broken_tracers())
     if (const std::int64_t slot = plan.slot_of_track[static_cast<std::size_t>(t)]; slot >= 0)
@@ -287,6 +292,7 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
                                {"networks", l.networks},
                                {"largest_network", l.largest_network},
                                {"unsolved", l.unsolved},
+                               {"rematched", l.rematched},
                                {"unclear_shifts", l.unclear_shifts}}},
                              {"tracers", tracers},
                              {"camera",

@@ -52,6 +52,24 @@ TEST(Track, NoLinkIsWrongAtTwentyPhasesPerCycle) {
   }
 }
 
+TEST(Track, AConvectingCellAtTwentyPhasesKeepsItsCrystalTogether) {
+  // The plate moves by up to one diameter between two frames. Single beads of the spray above the bed may go
+  // wrong; a block of the crystal that is taken a lattice vector off would cost dozens of links at once.
+  const TemporaryFolder folder;
+  write(folder / "scene.toml", scene("crystal_a", 3.2));
+  ASSERT_EQ(run_program({"simulate", folder / "scene.toml", "-o", folder / "sim.h5", "-q"}).code, 0);
+  ASSERT_EQ(run_program({"render", folder / "sim.h5", "-o", folder / "frames", "-q"}).code, 0);
+  const Ran ran =
+      run_program({"track", folder / "frames", "-o", folder / "exp.h5", "--cell", folder / "frames/CELL.toml",
+                   "--truth", folder / "frames/truth.csv", "--phase-lock", "20", "--json", "-q"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto said = nlohmann::json::parse(ran.out);
+  std::cout << said["truth"] << ' ' << said["links"] << ' ' << said["tracers"] << '\n';
+  EXPECT_GT(said["truth"]["links"], 5500);
+  EXPECT_LE(said["truth"]["wrong_links"], 20);
+  EXPECT_GT(said["links"]["rematched"], 0);
+}
+
 TEST(Track, RefusesBadPhaseLocks) {
   const TemporaryFolder folder;
   const std::string stack = TWINCELL_SOURCE_DIR "/data_samples/demo/gamma-0.9";

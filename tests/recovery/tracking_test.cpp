@@ -86,6 +86,7 @@ TEST(Tracking, FoundPhasesUncertaintiesAndTracersAreInTheFile) {
   EXPECT_EQ(said["links"]["ambiguous"], 0);
   EXPECT_EQ(said["tracers"]["count"], 1);
   EXPECT_TRUE(said["tracers"]["broken"].empty());
+  EXPECT_TRUE(said["tracers"]["uncertain"].empty());
   Frame frame;
   int off_phase = 0;
   for (std::size_t f = 0; f < reader.n_frames(); ++f) {

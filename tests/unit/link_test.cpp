@@ -164,6 +164,23 @@ TEST(Linker, TheLastCycleForetellsWhatNothingElseCould) {
       << "without phases these steps are not to be foretold: else this test tests nothing";
 }
 
+TEST(Linker, ACrystalThatTurnsAtOnceKeepsItsNames) {
+  // From rest, by 8 degrees in one frame: up to 1.4 d at the corners.
+  const auto start = crystal(14);
+  Linker linker({.diameter_px = 15});
+  for (int f = 0; f < 2; ++f) linker.next(start);
+  EXPECT_EQ(linker.total().rematched, 0);
+  const double angle = 8 * std::acos(-1.0) / 180;
+  std::vector<PixelPoint> turned;
+  for (const PixelPoint p : start) {
+    const double x = p.x_px - 100, y = p.y_px - 85;
+    turned.push_back(
+        {100 + x * std::cos(angle) - y * std::sin(angle), 85 + x * std::sin(angle) + y * std::cos(angle)});
+  }
+  EXPECT_EQ(linker.next(turned), counted(start.size()));
+  EXPECT_EQ(linker.last().rematched, 1);
+}
+
 TEST(Linker, DroppedAndDoubledFramesScaleTheStep) {
   const auto start = crystal(8);
   Linker linker({.diameter_px = 15, .max_shift_diameters = 0});  // the prediction alone

@@ -1,0 +1,52 @@
+#pragma once
+/// \file
+/// Where each bead went, when neighbours move nearly alike.
+///
+/// A block of a crystal looks the same a lattice vector on, so how well each bead alone meets a detection
+/// cannot tell where the block went. But at the rim of a block that is taken a lattice vector off, neighbours
+/// part, one bead too many asks for the same place, and places are left over. So all beads are matched at
+/// once, at the least sum of
+///
+/// - u_t(k) for bead t that goes to detection k, 0 for a bead that goes nowhere;
+/// - 2 ln(1 + r^2 / w^2) for neighbours whose steps differ by r, w = 0.15 d, never more than at 1.2 d, which
+///   is also paid where one of them goes nowhere; less for neighbours that do not touch; and 15 on top where
+///   their straight ways would take one disc through the other;
+/// - 8 for a detection to which nobody goes.
+///
+/// The sum is a negative logarithm of odds. Three steps make it small. Messages between neighbours (min-sum
+/// belief propagation: Pearl, Probabilistic Reasoning in Intelligent Systems, 1988) and between rivals for a
+/// detection (Bayati, Shah & Sharma, IEEE Trans. Inf. Theory 54, 1241 (2008)), twice: plainly, and tempered
+/// as on trees (Kolmogorov, IEEE Trans. PAMI 28, 1568 (2006)). Then proposals grown from one bead outward,
+/// each going where its neighbours lead. Two answers are joined by a least cut, region by region the better
+/// (fusion moves: Lempitsky, Rother, Roth & Blake, IEEE Trans. PAMI 32, 1392 (2010)). At last beads change
+/// places in pairs. None of them alone suffices in a bed that convects, and the sum is not proved to be the
+/// least.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "imaging/assignment.hpp"
+#include "imaging/pixel_point.hpp"
+
+namespace twincell {
+
+/// The cheapest match found.
+struct CoherentMatch {
+  std::vector<std::int64_t> column_of_row;  ///< detection of each bead, Assignment::kAlone: none
+  /// By how much the sum rises at least if the bead goes elsewhere, changing places with whoever is there
+  /// while all others stay: what it costs to be wrong about one bead or two, not about a block. Infinity:
+  /// much.
+  std::vector<double> margin;
+};
+
+/// Matches all beads at once.
+/// \param places where the beads were
+/// \param detections where beads are
+/// \param choices row: bead, column: detection, cost: u_t(k); sorted by row, a row and column meet at most
+///     once
+/// \param diameter_px bead diameter d, > 0
+CoherentMatch match_coherently(std::span<const PixelPoint> places, std::span<const PixelPoint> detections,
+                               std::span<const Edge> choices, double diameter_px);
+
+}  // namespace twincell

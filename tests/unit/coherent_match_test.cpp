@@ -1,0 +1,110 @@
+#include "imaging/coherent_match.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <iostream>
+#include <vector>
+
+using namespace twincell;
+
+namespace {
+
+constexpr double kDiameter = 15;
+
+// n x n beads of a crystal whose lattice constant is 1.1 diameters.
+std::vector<PixelPoint> crystal(int n) {
+  std::vector<PixelPoint> beads;
+  for (int row = 0; row < n; ++row)
+    for (int i = 0; i < n; ++i)
+      beads.push_back({1.1 * kDiameter * (i + 0.5 * (row % 2)), 1.1 * kDiameter * std::sqrt(0.75) * row});
+  return beads;
+}
+
+// Every bead may go to every detection within reach, all at one price.
+std::vector<Edge> all_within(const std::vector<PixelPoint>& places, const std::vector<PixelPoint>& detections,
+                             double reach, double price) {
+  std::vector<Edge> choices;
+  for (std::size_t t = 0; t < places.size(); ++t)
+    for (std::size_t k = 0; k < detections.size(); ++k)
+      if (std::hypot(detections[k].x_px - places[t].x_px, detections[k].y_px - places[t].y_px) <
+          reach * kDiameter)
+        choices.push_back({static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(k), price});
+  return choices;
+}
+
+std::size_t wrong(const std::vector<std::int64_t>& goals) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < goals.size(); ++t) count += goals[t] != static_cast<std::int64_t>(t) ? 1 : 0;
+  return count;
+}
+
+}  // namespace
+
+TEST(CoherentMatch, ACrystalThatTurnsIsFollowedThoughTheNearestBeadIsAnother) {
+  // By 8 degrees about the middle: up to 1.3 diameters at the rim. Only the middle is near enough to be
+  // known; nothing but the neighbours leads outwards.
+  const auto places = crystal(14);
+  const PixelPoint middle{115, 100};
+  std::vector<PixelPoint> detections;
+  const double angle = 8 * std::acos(-1.0) / 180;
+  std::size_t another = 0;
+  for (const PixelPoint p : places) {
+    const double x = p.x_px - middle.x_px, y = p.y_px - middle.y_px;
+    detections.push_back({middle.x_px + x * std::cos(angle) - y * std::sin(angle),
+                          middle.y_px + x * std::sin(angle) + y * std::cos(angle)});
+  }
+  for (std::size_t t = 0; t < places.size(); ++t) {
+    std::size_t nearest = 0;
+    double least = 1e300;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const double r = std::hypot(detections[k].x_px - places[t].x_px, detections[k].y_px - places[t].y_px);
+      if (r < least) {
+        least = r;
+        nearest = k;
+      }
+    }
+    another += nearest != t ? 1 : 0;
+  }
+  const auto match =
+      match_coherently(places, detections, all_within(places, detections, 1.9, -10), kDiameter);
+  std::cout << "nearest is another: " << another << " of " << places.size() << '\n';
+  EXPECT_GT(another, 40U) << "else this tests nothing";
+  EXPECT_EQ(wrong(match.column_of_row), 0U);
+}
+
+TEST(CoherentMatch, ABlockGoesWhereItsRimFits) {
+  // The right half is sheared upwards, its last column by nearly a lattice constant: there the bead below
+  // lies nearer than the own one.
+  const auto places = crystal(12);
+  auto detections = places;
+  const double up = 2 * 1.1 * kDiameter * std::sqrt(0.75);
+  for (std::size_t t = 0; t < places.size(); ++t)
+    if (t % 12 >= 6) detections[t].y_px -= up * 0.5 * (static_cast<double>(t % 12) - 5) / 6;
+  const auto match =
+      match_coherently(places, detections, all_within(places, detections, 1.9, -10), kDiameter);
+  EXPECT_EQ(wrong(match.column_of_row), 0U);
+}
+
+TEST(CoherentMatch, WhatCannotBeToldHasNoMargin) {
+  // Two beads, two detections as near to the one as to the other; a third far off is sure.
+  const std::vector<PixelPoint> places = {{0, 0}, {18, 0}, {200, 0}};
+  const std::vector<PixelPoint> detections = {{9, 12}, {9, -12}, {200, 1}};
+  const auto match =
+      match_coherently(places, detections, all_within(places, detections, 1.5, -10), kDiameter);
+  EXPECT_NEAR(match.margin[0], 0, 1e-6);
+  EXPECT_NEAR(match.margin[1], 0, 1e-6);
+  EXPECT_EQ(match.column_of_row[2], 2);
+  EXPECT_GT(match.margin[2], 3);
+}
+
+TEST(CoherentMatch, BeadsWithoutChoiceAndDetectionsWithoutBead) {
+  EXPECT_TRUE(match_coherently({}, {}, {}, kDiameter).column_of_row.empty());
+  const std::vector<PixelPoint> places = {{0, 0}, {20, 0}, {40, 0}};
+  const std::vector<PixelPoint> detections = {{1, 0}, {100, 0}};
+  const auto match =
+      match_coherently(places, detections, all_within(places, detections, 0.5, -10), kDiameter);
+  EXPECT_EQ(match.column_of_row, (std::vector<std::int64_t>{0, Assignment::kAlone, Assignment::kAlone}));
+  EXPECT_TRUE(match_coherently(places, {}, {}, kDiameter).margin.size() == 3);
+}
