@@ -27,7 +27,7 @@ namespace {
 
 struct LocateOptions {
   std::string stack, output, overlay, truth, candidates, debug_folder;
-  std::vector<double> scored_rows;
+  std::vector<double> scored_rows, diameters;
   std::int64_t overlay_frame = 0;
   bool dark = false;
   LocatorOptions locator;
@@ -107,6 +107,11 @@ void run(LocateOptions& o, const Common& common) {
   std::string text;
   bool drawn = false;
   ProgressBar bar(common, "locate");
+  if (!o.diameters.empty()) {
+    o.locator.diameter_px = o.diameters.front();
+    o.locator.other_diameters_px.assign(o.diameters.begin() + 1, o.diameters.end());
+  }
+  const std::string refine = o.locator.refine.method;
   const bool find_diameter = o.locator.diameter_px <= 0;
   const bool find_polarity = !o.dark && !o.locator.preprocess.bright;
   o.locator.polarity_known = !find_polarity;
@@ -150,11 +155,17 @@ void run(LocateOptions& o, const Common& common) {
   table.commit();
   candidates.commit();
   document["diameter_px"] = o.locator.diameter_px;
+  if (!o.locator.other_diameters_px.empty()) document["other_diameters_px"] = o.locator.other_diameters_px;
+  document["refine"] = o.locator.refine.method;
   document["bright"] = o.locator.preprocess.bright;
   if (n > kShown) text += fmt::format("... {} more frames\n", n - kShown);
-  if (find_diameter)
-    text += fmt::format("bead diameter found from the first frame: {:.2f} px (--diameter)\n",
-                        o.locator.diameter_px);
+  if (find_diameter) {
+    std::string sizes = fmt::format("{:.2f}", o.locator.diameter_px);
+    for (const double other : o.locator.other_diameters_px) sizes += fmt::format(" and {:.2f}", other);
+    text += fmt::format("bead diameter found from the first frame: {} px (--diameter)\n", sizes);
+  }
+  if (refine != o.locator.refine.method)
+    text += "discs differ inside, as the first frame shows: fitted by their rims (--refine edges)\n";
   if (find_polarity)
     text +=
         fmt::format("beads are {} than what lies behind them, as the first frame shows (--dark, --bright)\n",
@@ -189,9 +200,10 @@ void add_locate(CLI::App& program, Common& common) {
                   "Folder for pictures of what each stage made of --overlay-frame");
   verb.add_option("--overlay", o->overlay, "PNG of a frame with its beads marked");
   verb.add_option("--overlay-frame", o->overlay_frame, "Which frame, from 0")->check(CLI::NonNegativeNumber);
-  verb.add_option("--diameter", o->locator.diameter_px,
-                  "Bead diameter, px; absent: found from the first frame")
-      ->check(CLI::Range(3.0, 400.0));
+  verb.add_option("--diameter", o->diameters,
+                  "Bead diameter, px, or, with --refine edges, several; absent: found from the first frame")
+      ->check(CLI::Range(3.0, 400.0))
+      ->expected(1, 8);
   verb.add_option("--locator", o->locator.finder, "Finder")->check(CLI::IsMember(finder_names()));
   verb.add_option("--min-score", o->locator.find.min_score,
                   "Share of a circle's edge that must be seen, 0 .. 1");

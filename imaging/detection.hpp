@@ -9,9 +9,10 @@ namespace twincell {
 
 /// A proposed centre.
 struct Proposal {
-  double x = 0;      ///< px
-  double y = 0;      ///< px
-  double score = 0;  ///< 0 .. about 1
+  double x = 0;       ///< px
+  double y = 0;       ///< px
+  double score = 0;   ///< 0 .. about 1
+  double radius = 0;  ///< that it was sought with, px; 0: the only one
 };
 
 /// Whether a candidate is a bead, and if not, why.

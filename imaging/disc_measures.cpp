@@ -27,8 +27,13 @@ void over_disc(cv::Size size, const Detection& b, double reach, Use&& use) {
 double interior(const Prepared& image, const Detection& b) {
   std::vector<float> inside;
   inside.reserve(static_cast<std::size_t>(b.radius * b.radius) + 16);
-  over_disc(image.darkness.size(), b, std::max(0.5 * b.radius, 1.0), [&](int y, int first, int last) {
-    inside.insert(inside.end(), image.darkness[y] + first, image.darkness[y] + last + 1);
+  // Of larger discs every other pixel, as on a chessboard, tells as much.
+  constexpr double kLarge = 3;
+  const double reach = std::max(0.5 * b.radius, 1.0);
+  const int stride = reach > kLarge ? 2 : 1;
+  over_disc(image.darkness.size(), b, reach, [&](int y, int first, int last) {
+    const float* row = image.darkness[y];
+    for (int x = first + (first + y) % stride; x <= last; x += stride) inside.push_back(row[x]);
   });
   if (inside.empty()) return b.darkness;  // centre outside the frame: the rim speaks for it
   return static_cast<double>(upper_median(std::move(inside)));

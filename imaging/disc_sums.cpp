@@ -324,7 +324,8 @@ PairSums pair(const RingArgs& args, const Disc& a, const Disc& b) {
   const int last_row = std::min(picture.rows - 1, static_cast<int>(std::min(a.y + reach_a, b.y + reach_b)));
   V sums[16];
   for (V& v : sums) v = hn::Zero(tag);
-  for (int y = first_row; y <= last_row; ++y) {
+  const int beside = first_row % args.row_step;
+  for (int y = first_row + (beside > 0 ? args.row_step - beside : 0); y <= last_row; y += args.row_step) {
     const auto half = [&](const Disc& d, double reach) {
       return std::sqrt(static_cast<float>(std::max(0.0, reach * reach - (y - d.y) * (y - d.y))));
     };

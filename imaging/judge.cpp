@@ -14,7 +14,9 @@ namespace {
 
 Verdict verdict_on(const Detection& b, double radius_px, int width, int height, const JudgeOptions& o) {
   if (!std::isfinite(b.x) || !std::isfinite(b.y)) return Verdict::unexplained;
-  if (std::abs(b.radius - radius_px) > o.radius_tolerance * radius_px) return Verdict::wrong_radius;
+  const auto near = [&](double radius) { return std::abs(b.radius - radius) <= o.radius_tolerance * radius; };
+  if (!near(radius_px) && std::none_of(o.other_radii_px.begin(), o.other_radii_px.end(), near))
+    return Verdict::wrong_radius;
   if (b.interior < o.min_interior) return Verdict::bright_inside;
   if (b.score < o.min_score) return Verdict::unexplained;
   if (b.x < -0.5 || b.y < -0.5 || b.x >= width - 0.5 || b.y >= height - 0.5) return Verdict::outside;

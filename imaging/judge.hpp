@@ -10,11 +10,12 @@ namespace twincell {
 
 /// What a bead must show.
 struct JudgeOptions {
-  double radius_tolerance = 0.2;  ///< relative to the given radius, 0 .. 1
-  double min_interior = 0.35;     ///< median darkness inside R/2
-  double min_score = 0.5;         ///< Detection::score
-  double max_overlap = 0.25;      ///< deepest overlap of two discs, in radii; the lesser is dropped
-  double tracer_below = 0.8;      ///< interior below this share of the frame's median: a tracer
+  double radius_tolerance = 0.2;       ///< relative to the given radius, 0 .. 1
+  std::vector<double> other_radii_px;  ///< further sizes of beads
+  double min_interior = 0.35;          ///< median darkness inside R/2
+  double min_score = 0.5;              ///< Detection::score
+  double max_overlap = 0.25;           ///< deepest overlap of two discs, in radii; the lesser is dropped
+  double tracer_below = 0.8;           ///< interior below this share of the frame's median: a tracer
 };
 
 /// What became of the candidates.

@@ -39,9 +39,10 @@ concept CircleFinder = requires(const Prepared& image, const FindOptions& option
 
 /// How beads are located.
 struct LocatorOptions {
-  std::string finder = "vote";  ///< one of finder_names()
-  double diameter_px = 0;       ///< bead diameter, 3 .. 400; 0: found from the first frame
-  bool polarity_known = true;   ///< preprocess.bright was said, not to be found from the first frame
+  std::string finder = "vote";             ///< one of finder_names()
+  double diameter_px = 0;                  ///< bead diameter, 3 .. 400; 0: found from the first frame
+  std::vector<double> other_diameters_px;  ///< further sizes, each likewise; only with refine.method "edges"
+  bool polarity_known = true;  ///< preprocess.bright was said, not to be found from the first frame
   PreprocessOptions preprocess;
   FindOptions find;  ///< its radius is set from the diameter
   RefineOptions refine;
@@ -92,9 +93,19 @@ double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options);
 /// What a frame says of how to locate its beads.
 struct FoundSettings {
   double diameter_px = 0;
-  bool bright = false;   ///< beads are brighter than what lies behind them
-  double explained = 0;  ///< by well explained discs: sum of -R^2 ln(1 - score), px^2
+  bool bright = false;                     ///< beads are brighter than what lies behind them
+  double explained = 0;                    ///< by well explained discs: sum of -R^2 ln(1 - score), px^2
+  std::vector<double> other_diameters_px;  ///< of discs of further sizes
+  bool patterned = false;  ///< only the rims are alike: RefineOptions::method is to be "edges"
 };
+
+/// Large discs (80 px and more, up to two sizes) known by their rims alone, such as photoelastic ones: most
+/// of each rim must be seen and the discs must cover a fifth of the frame. The contrast is found too. None if
+/// there are none.
+std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given);
+
+/// Darkness of a typical disc of a frame, for PreprocessOptions::contrast.
+double find_contrast(const cv::Mat& grey, const LocatorOptions& options);
 
 /// Finds what `given` leaves open: the diameter, first from the votes, then as the median of the fitted beads
 /// until it stands; the polarity that explains more. None if nothing round stands out.

@@ -69,9 +69,13 @@ std::int64_t locate_stack(FrameSource& frames, LocatorOptions& options, int thre
       if (found) {
         options.diameter_px = found->diameter_px;
         options.preprocess.bright = found->bright;
+        if (options.other_diameters_px.empty()) options.other_diameters_px = found->other_diameters_px;
+        if (found->patterned) options.refine.method = "edges";
       }
       options.polarity_known = true;
     }
+    if (done == 0 && options.refine.method == "edges")
+      options.preprocess.contrast = find_contrast(batch.front(), options);
     const std::vector<Located> results = locate_batch(batch, options, threads);
     for (std::size_t i = 0; i < batch.size(); ++i) sink(done++, batch[i], results[i]);
     progress.update(done, static_cast<std::int64_t>(frames.announced()));

@@ -2,8 +2,11 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
+#include <type_traits>
 #include <vector>
 
 #include "imaging/disc_sums.hpp"
@@ -22,23 +25,59 @@ float quantile(std::vector<float> values, double q) {
   return values[static_cast<std::size_t>(at)];
 }
 
+/// Rows of a frame as the beads' darkness wants them: in floats, dark beads on light.
+class Rows {
+ public:
+  Rows(const cv::Mat& grey, bool bright) : grey_(grey), bright_(bright) {
+    double top = 0;
+    if (bright) cv::minMaxLoc(grey, nullptr, &top);
+    top_ = static_cast<float>(top);
+  }
+  [[nodiscard]] cv::Size size() const { return grey_.size(); }
+  void read(int y, float* to) const {
+    if (grey_.depth() == CV_8U)
+      copy(grey_.ptr<std::uint8_t>(y), to);
+    else if (grey_.depth() == CV_16U)
+      copy(grey_.ptr<std::uint16_t>(y), to);
+    else
+      copy(grey_.ptr<float>(y), to);
+    if (!bright_) return;
+    for (int x = 0; x < grey_.cols; ++x) to[x] = top_ - to[x];
+  }
+
+ private:
+  template <class T>
+  void copy(const T* from, float* to) const {
+    for (int x = 0; x < grey_.cols; ++x) to[x] = static_cast<float>(from[x]);
+    if constexpr (std::is_floating_point_v<T>)
+      for (int x = 0; x < grey_.cols; ++x) to[x] = std::isnan(to[x]) ? 0.0F : to[x];
+  }
+  const cv::Mat& grey_;
+  bool bright_;
+  float top_ = 0;
+};
+
 // The light is seen only through the gaps. Starting from a bright quantile, a quadratic is fitted again and
 // again to the pixels that come near it; pixels above count three times as much as those below, which are
 // often gap edges.
-Surface bright_envelope(const cv::Mat1f& image) {
+Surface bright_envelope(const Rows& image) {
   constexpr double kSamples = 5000;
-  const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(image.total()) / kSamples)));
+  const cv::Size size = image.size();
+  const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size.area()) / kSamples)));
   struct Sample {
     float value;
     Surface basis;
   };
   std::vector<Sample> samples;
   std::vector<float> values;
-  for (int y = 0; y < image.rows; y += stride)
-    for (int x = 0; x < image.cols; x += stride) {
-      values.push_back(image(y, x));
-      samples.push_back({image(y, x), surface_basis(x, y, image.size())});
+  std::vector<float> row(static_cast<std::size_t>(size.width));
+  for (int y = 0; y < size.height; y += stride) {
+    image.read(y, row.data());
+    for (int x = 0; x < size.width; x += stride) {
+      values.push_back(row[static_cast<std::size_t>(x)]);
+      samples.push_back({values.back(), surface_basis(x, y, size)});
     }
+  }
   Surface c = Surface::Zero();
   c[0] = static_cast<double>(quantile(std::move(values), 0.99));
   for (const double near : {0.7, 0.8, 0.85, 0.9, 0.9, 0.9}) {
@@ -101,10 +140,43 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double disc_radius_px) {
 
 }  // namespace
 
+double contrast_of(const cv::Mat1f& darkness) {
+  constexpr double kSamples = 40000, kLow = -0.5, kHigh = 1.5;
+  constexpr std::size_t kBins = 200;
+  constexpr double kEnough = 0.6;  // discs as dark as that are well served as they are
+  constexpr double kClear = 6;     // so many times the noise
+  const int stride =
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
+  std::array<double, kBins> share{};
+  double n = 0, sum = 0;
+  const auto value = [&](std::size_t bin) {
+    return kLow + (kHigh - kLow) * (static_cast<double>(bin) + 0.5) / static_cast<double>(kBins);
+  };
+  for (int y = stride / 2; y < darkness.rows; y += stride)
+    for (int x = stride / 2; x < darkness.cols; x += stride) {
+      const double d = std::clamp(static_cast<double>(darkness(y, x)), kLow, kHigh);
+      const auto bin = static_cast<std::size_t>((d - kLow) / (kHigh - kLow) * static_cast<double>(kBins));
+      share[std::min(bin, kBins - 1)] += 1;
+    }
+  for (std::size_t b = 0; b < kBins; ++b) n += share[b], sum += share[b] * value(b);
+  double below = 0, sum_below = 0, best = 0, dark = 0, light = 0;
+  for (std::size_t b = 0; b + 1 < kBins; ++b) {
+    below += share[b];
+    sum_below += share[b] * value(b);
+    if (below == 0 || below == n) continue;
+    const double low = sum_below / below, high = (sum - sum_below) / (n - below);
+    const double between = below * (n - below) * (high - low) * (high - low);
+    if (between > best) best = between, light = low, dark = high;
+  }
+  if (best == 0 || dark > kEnough) return 1;
+  const Noise noise = noise_of(darkness);
+  return dark - light > kClear * std::sqrt(noise.dark + noise.light) ? std::max(dark, 0.02) : 1;
+}
+
 Noise noise_of(const cv::Mat1f& darkness) {
   constexpr float kLight = 0.15F, kDark = 0.85F;
   constexpr std::size_t kEnough = 50;
-  constexpr double kSamples = 60000, kLeast = 1e-6, kLeastShare = 0.1;
+  constexpr double kSamples = 20000, kLeast = 1e-6, kLeastShare = 0.1;
   std::vector<float> light, dark;
   const int stride = std::max(1, static_cast<int>(static_cast<double>(darkness.total()) / kSamples));
   for (int y = stride / 2; y < darkness.rows; y += stride) {
@@ -146,29 +218,25 @@ Surface surface_basis(double x, double y, cv::Size size) {
 }
 
 Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double radius_px) {
-  cv::Mat1f image;
-  grey.convertTo(image, CV_32F);
-  if (grey.depth() == CV_32F) cv::patchNaNs(image, 0);
-  if (options.bright) {
-    double top = 0;
-    cv::minMaxLoc(image, nullptr, &top);
-    image = top - image;
-  }
+  const Rows image(grey, options.bright);
+  const cv::Size size = image.size();
   Prepared p;
   p.light = bright_envelope(image);
-  cv::Mat1f with_spare(image.rows, image.cols + kSpareColumns);
-  with_spare.colRange(image.cols, with_spare.cols).setTo(kUnseen);
-  p.darkness = with_spare.colRange(0, image.cols);
+  cv::Mat1f with_spare(size.height, size.width + kSpareColumns);
+  with_spare.colRange(size.width, with_spare.cols).setTo(kUnseen);
+  p.darkness = with_spare.colRange(0, size.width);
   constexpr float kLeastLight = 1e-20F;
-  std::vector<float> bright(static_cast<std::size_t>(image.cols));
-  for (int y = 0; y < image.rows; ++y) {
-    const SurfaceRow light = surface_row(p.light, y, image.size());
-    const float* i = image[y];
+  const auto gain = static_cast<float>(1 / options.contrast);
+  std::vector<float> bright(static_cast<std::size_t>(size.width)), grey_levels(bright);
+  for (int y = 0; y < size.height; ++y) {
+    const SurfaceRow light = surface_row(p.light, y, size);
+    image.read(y, grey_levels.data());
+    const float* i = grey_levels.data();
     float *d = p.darkness[y], *b = bright.data();
     // In steps of one kind each: of a division and a choice together the compiler makes no vectors.
-    for (int x = 0; x < image.cols; ++x) b[x] = light.at(x);
-    for (int x = 0; x < image.cols; ++x) d[x] = 1 - i[x] / std::max(b[x], kLeastLight);
-    for (int x = 0; x < image.cols; ++x) {
+    for (int x = 0; x < size.width; ++x) b[x] = light.at(x);
+    for (int x = 0; x < size.width; ++x) d[x] = (1 - i[x] / std::max(b[x], kLeastLight)) * gain;
+    for (int x = 0; x < size.width; ++x) {
       const float bounded = std::min(2.0F, std::max(-1.0F, d[x]));
       d[x] = b[x] > 0 ? bounded : 0.0F;
     }

@@ -10,6 +10,7 @@ namespace twincell {
 /// How a frame is made ready.
 struct PreprocessOptions {
   bool bright = false;  ///< discs brighter than what lies behind them (front light), not dark on a back-light
+  double contrast = 1;  ///< darkness of a typical disc, which shall count as 1, 0.02 .. 1
   double opaque_radii = 2.5;  ///< dark regions that hold a disc of this many bead radii are walls, > 1
 };
 
@@ -36,6 +37,10 @@ struct Prepared {
   cv::Mat1b opaque;     ///< 255 on walls, plate and other dark regions too large to be beads and within two
                         ///< pixels of them; empty if there are none
 };
+
+/// Darkness of the discs against what lies behind them: the mean of the darker of the two classes into which
+/// Otsu's threshold parts a frame. 1 if that is within the noise, or near enough to 1 to be left alone.
+double contrast_of(const cv::Mat1f& darkness);
 
 /// Variance of the camera's noise in darkness: v = dark + light (1 - d).
 struct Noise {

@@ -28,8 +28,10 @@ constexpr double kMissedDarkness = 0.35;
 constexpr int kPatient = 12;
 // So far a disc may wander, px or darkness, before what couples it to its neighbours is found anew.
 constexpr double kRestless = 0.1;
-// Of the first step, by which discs take no heed of each other: so much is left to go, in a packing.
-constexpr double kLeftByFirst = 0.5;
+// Of the first step so much is left to go, in a packing: edges are not straight lines in place and blur.
+constexpr double kLeftByFirst = 0.08;
+// The first sweep reads one row in so many: half the pixels do while the places are rough.
+constexpr int kFirstRows = 2;
 // Added to the diagonal, relative: more only while steps make the fit worse.
 constexpr double kDamping = 0.002;
 
@@ -65,8 +67,8 @@ class PictureFit {
         size_(image.darkness.size()),
         noise_(noise_of(image.darkness)),
         beliefs_{Belief{radius, options.radius_spread * radius}, Belief{1, 0.3}} {
-    const double s = options.blur_px > 0 ? options.blur_px : 0.8;
-    blur_.variance = s * s;
+    constexpr double kLens = 0.8, kPixel = 1.0 / 12;  // a sharp lens, px; a pixel's own width, px^2
+    blur_.variance = options.blur_px > 0 ? options.blur_px * options.blur_px : kLens * kLens + kPixel;
     picture_ = image.darkness;
     picture_.adjustROI(0, 0, 0, kSpareColumns);
     if (image.opaque.empty()) return;
@@ -103,6 +105,7 @@ class PictureFit {
   struct Moved {
     double most, rms, sigma;  ///< px; sigma: what a typical bead's place is uncertain by
     bool short_step;          ///< says nothing of how far there is to go
+    bool pruned;              ///< beads were dropped before it
     double blur = 0;          ///< share by which s^2 changed
   };
 
@@ -110,12 +113,13 @@ class PictureFit {
   /// made the fit worse is taken back, and taken again shorter.
   Moved sweep(BlurFit fit) {
     RingArgs args = ring_args();
-    if (sweeps_ == 0) args.row_step = 2;  // half the pixels do while the places are rough
+    if (sweeps_ == 0) args.row_step = kFirstRows;
     std::swap(sums_, sums_before_);
     evaluate(args, fit);
     double squares = 0, pixels = 1;
     for (const RingSums& s : sums_) squares += s.residual_squares, pixels += s.pixels;
     const double misfit = squares / pixels;
+    bool pruned = false;
     if (before_ && misfit > 1.1 * before_->misfit + 1e-7) {
       for (std::size_t k = 0; k < beads_.size(); ++k) put(beads_[k], before_->discs[k]);
       std::swap(sums_, sums_before_);
@@ -129,11 +133,13 @@ class PictureFit {
       before_->blur = blur_;
       before_->misfit = misfit;
       damping_ = std::max(kDamping, damping_ / 4);
-      if (sweeps_ >= 2) prune();
+      if (sweeps_ >= 1) pruned = prune();
     }
-    if (sweeps_ == 2 || sweeps_ == 3) learn_beliefs();
+    if (sweeps_ >= 1 && sweeps_ <= 3) learn_beliefs(sweeps_ == 1 ? kFirstRows : 1);
     ++sweeps_;
-    return step(args, fit);
+    Moved moved = step(args, fit);
+    moved.pruned = pruned;
+    return moved;
   }
 
   /// After a first sweep by which every disc stands alone: most are alike.
@@ -173,15 +179,25 @@ class PictureFit {
     if (n < kEnough) return;
     a.diagonal().tail<5>().array() += 1e-3 * weights;
     const Surface q = a.ldlt().solve(right);
-    own_picture();
+    // What is far below the noise moves no bead.
+    constexpr double kOfNoise = 0.02;
+    if (q.cwiseAbs().sum() < kOfNoise * std::sqrt(noise_.dark + noise_.light)) return;
+    cv::Mat1f to = picture_;
+    if (!owned_) {
+      to = cv::Mat1f(picture_.size());
+      to.colRange(size_.width, to.cols).setTo(kUnseen);
+    }
     std::vector<float> levelled(static_cast<std::size_t>(size_.width));
     for (int y = 0; y < size_.height; ++y) {
-      float *d = picture_[y], *level = levelled.data();
+      const float* from = picture_[y];
+      float *d = to[y], *level = levelled.data();
       const SurfaceRow row = surface_row(q, y, size_);
       // In two steps, for the compiler makes vectors of neither a division nor a choice where both are one.
-      for (int x = 0; x < size_.width; ++x) level[x] = 1 - (1 - d[x]) / (1 - row.at(x));
-      for (int x = 0; x < size_.width; ++x) d[x] = d[x] < kUnseen ? level[x] : kUnseen;
+      for (int x = 0; x < size_.width; ++x) level[x] = 1 - (1 - from[x]) / (1 - row.at(x));
+      for (int x = 0; x < size_.width; ++x) d[x] = from[x] < kUnseen ? level[x] : kUnseen;
     }
+    picture_ = to;
+    owned_ = true;
     before_.reset();
   }
 
@@ -222,10 +238,17 @@ class PictureFit {
     return beads_.size() - before;
   }
 
+  /// The fit ends here, though another step would move each bead by this share of its last.
+  void leave(double share) {
+    for (double& u : unsettled_) u *= share;
+  }
+
   /// The beads, with what is known of each. To be called once, last.
   Refined result() {
+    unsettled_.resize(beads_.size());
     const std::vector<Normal> covariance = covariances();
-    for (std::size_t k = 0; k < beads_.size(); ++k) measure(beads_[k], sums_[k], covariance[k]);
+    for (std::size_t k = 0; k < beads_.size(); ++k)
+      measure(beads_[k], sums_[k], covariance[k], unsettled_[k] / std::numbers::sqrt2);
     return {std::move(beads_), std::move(dropped_), std::sqrt(blur_.variance), sweeps_};
   }
 
@@ -316,8 +339,8 @@ class PictureFit {
   }
 
   /// How much R and a differ from bead to bead, from the beads themselves: the scatter less what the fit
-  /// alone would scatter.
-  void learn_beliefs() {
+  /// alone would scatter. \param rows of which one was read by the fit that they come from
+  void learn_beliefs(int rows) {
     constexpr std::size_t kEnough = 20;
     const std::array<double, 2> least = {0.002 * radius_, 0.003};
     std::array<std::vector<double>, 2> values, variances;
@@ -336,13 +359,14 @@ class PictureFit {
       const double middle = upper_median(values[q]);
       for (double& v : values[q]) v = std::abs(v - middle);
       const double scatter = 1.4826 * upper_median(values[q]);
-      const double own = scatter * scatter - upper_median(variances[q]);
+      const double own = scatter * scatter - rows * upper_median(variances[q]);
       beliefs_[q] = {middle, std::max(least[q], std::sqrt(std::max(0.0, own)))};
     }
   }
 
   /// Drops what has turned out to be no disc, or to lie outside. Left in, it would spoil its neighbours.
-  void prune() {
+  /// \returns whether there was any
+  bool prune() {
     std::size_t kept = 0;
     const double out = 0.9 * radius_;
     for (std::size_t k = 0; k < beads_.size(); ++k) {
@@ -358,12 +382,13 @@ class PictureFit {
         sums_[kept++] = sums_[k];
       }
     }
-    if (kept == beads_.size()) return;
+    if (kept == beads_.size()) return false;
     stale_ = true;
     before_.reset();
     couplings_.clear();
     beads_.resize(kept);
     sums_.resize(kept);
+    return true;
   }
 
   void evaluate(const RingArgs& args, BlurFit fit) {
@@ -384,25 +409,18 @@ class PictureFit {
       believe(beads_[k], blocks[k], right[k]);
       blocks[k].diagonal() *= 1 + damping_;
     }
-    std::vector<Step> steps(n);
-    if (sweeps_ > 1) {
-      couple(args, discs);
-      steps = coupled_step(blocks, couplings_, right);
-    } else {
-      // R and a are not known well enough yet to say what neighbours do to each other.
-      for (std::size_t k = 0; k < n; ++k) {
-        steps[k] = blocks[k].llt().solve(right[k]);
-        steps[k].tail<2>() *= 0.6;  // neighbours do the same: together they would overshoot
-      }
-    }
+    couple(args, discs);
+    std::vector<Step> steps = coupled_step(blocks, couplings_, right);
+    if (sweeps_ == 1) couplings_.clear();
     std::vector<double> far(n), sigma(n);
-    Moved moved{0, 0, 0, damping_ > 0.1};
+    Moved moved{0, 0, 0, damping_ > 0.1, false};
     moved.blur = fit_blur(fit, blocks, steps);
     for (std::size_t k = 0; k < n; ++k) {
       far[k] = apply(beads_[k], steps[k]);
       if (sweeps_ > 1) wandered_[k] += far[k] + std::abs(steps[k][kA]);
       sigma[k] = std::sqrt(excess(sums_[k]) / blocks[k](kX, kX));
     }
+    unsettled_ = far;
     if (n > 0) {
       const std::size_t most = sweeps_ > kPatient ? n - 1 - n / 50 : n - 1;
       std::nth_element(far.begin(), far.begin() + static_cast<std::ptrdiff_t>(most), far.end());
@@ -411,7 +429,8 @@ class PictureFit {
       moved.rms = std::sqrt(moved.rms / static_cast<double>(2 * (most + 1)));
       moved.sigma = upper_median(std::move(sigma));
     }
-    unsettled_ = sweeps_ == 1 ? kLeftByFirst * moved.rms : 0;
+    if (sweeps_ == 1)
+      for (double& u : unsettled_) u = kLeftByFirst * std::hypot(u, moved.rms);
     stale_ = true;
     return moved;
   }
@@ -516,11 +535,12 @@ class PictureFit {
   }
 
   /// Uncertainty, score, interior and moments of a bead.
-  void measure(Detection& b, const RingSums& s, const Normal& by_noise) const {
+  /// \param unsettled  by which either coordinate may be off beside the noise, px
+  void measure(Detection& b, const RingSums& s, const Normal& by_noise, double unsettled) const {
     const double n = s.pixels;
     const Normal covariance = excess(s) * by_noise;
-    b.sigma_x = std::sqrt(covariance(kX, kX) + unsettled_ * unsettled_);
-    b.sigma_y = std::sqrt(covariance(kY, kY) + unsettled_ * unsettled_);
+    b.sigma_x = std::sqrt(covariance(kX, kX) + unsettled * unsettled);
+    b.sigma_y = std::sqrt(covariance(kY, kY) + unsettled * unsettled);
     b.sigma_radius = std::sqrt(covariance(kR, kR));
     b.residual = n > 0 ? std::sqrt(s.residual_squares / n) : std::numeric_limits<double>::infinity();
     const double total = n > 0 ? s.seen_squares - s.seen * s.seen / n : 0;
@@ -551,7 +571,7 @@ class PictureFit {
   std::optional<State> before_;  // the last step; none after the picture or the set of beads was changed
   double damping_ = kDamping;
   int sweeps_ = 0;
-  double unsettled_ = 0;             // px, by which the places may be off beside the noise
+  std::vector<double> unsettled_;    // of each bead, px, by which it may be off beside the noise
   std::vector<Coupling> couplings_;  // empty after the set of beads was changed
   std::optional<bool> moves_;        // whether the blur differs between directions, once asked
   std::vector<double> wandered_;     // of each bead since its couplings were found, px and darkness
@@ -575,8 +595,9 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
   for (const Proposal& p : by_place(proposals, 2 * radius_px)) fit.add(p);
   fit.expect_as_dark_as_seen();
   const BlurFit blur = options.blur_px > 0 ? BlurFit::none : BlurFit::round;
-  constexpr int kLeast = 3;
-  constexpr double kEnough = 0.1;        // of what a place is uncertain by
+  constexpr int kLeast = 2;
+  constexpr double kEnough = 0.5;        // of what a place is uncertain by
+  constexpr double kWorst = 3;           // likewise, of the one that moves most
   constexpr double kBlurSettled = 0.03;  // of s^2: moves no touching bead by more than its error
   // Whether the bed moved during the exposure shows once the discs are in place.
   BlurFit moving = blur == BlurFit::none ? BlurFit::none : BlurFit::motion;
@@ -585,23 +606,30 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
   double before = HUGE_VAL;
   while (sweeps < most_sweeps) {
     // Places that are far off look like blur: the first sweep has none.
-    const auto moved = fit.sweep(blurred || sweeps == 0 ? BlurFit::none
-                                 : sweeps < kLeast - 1  ? blur
-                                                        : moving);
+    const auto moved = fit.sweep(blurred || sweeps == 0 ? BlurFit::none : moving);
     ++sweeps;
-    blurred = blurred || (sweeps > kLeast && !moved.short_step && moved.blur < kBlurSettled);
+    blurred = blurred || (sweeps > kLeast + 1 && !moved.short_step && moved.blur < kBlurSettled);
     if (sweeps == kLeast && moving == BlurFit::motion && !fit.moves()) moving = BlurFit::round;
     if (sweeps == 1) fit.expect_alike();
-    const double shrinks = moved.rms < before ? moved.rms / before : 1;
+    // By as much as a place is uncertain the second sweep moves it because it reads all rows.
+    const double noise = sweeps == 2 ? std::sqrt(kFirstRows - 1.0) * moved.sigma : 0;
+    const double left = std::sqrt(std::max(0.0, moved.rms * moved.rms - noise * noise));
+    const double shrinks = left < before ? left / before : 1;
     before = moved.rms;
     // The next step would be smaller than this one by about as much as this is smaller than the last.
-    if (sweeps >= kLeast && !moved.short_step && moved.blur < kBlurSettled && moving != BlurFit::motion &&
-        shrinks * moved.rms < kEnough * moved.sigma &&
-        shrinks * moved.most < std::max(options.tolerance_px, moved.sigma))
+    if (sweeps >= kLeast && !moved.short_step && !moved.pruned && moved.blur < kBlurSettled &&
+        moving != BlurFit::motion && shrinks * left < kEnough * moved.sigma &&
+        shrinks * moved.most < std::max(options.tolerance_px, kWorst * moved.sigma)) {
+      fit.leave(shrinks);
       break;
-    if (sweeps <= 3 && sweeps < most_sweeps) fit.level();
+    }
+    if (sweeps == most_sweeps) {
+      if (sweeps > 1) fit.leave(shrinks);
+      break;
+    }
+    if (sweeps <= 3) fit.level();
     // Those found now need a sweep of their own.
-    if (sweeps == 2 && sweeps < most_sweeps) fit.add_missed();
+    if (sweeps <= 2) fit.add_missed();
   }
   return fit.result();
 }

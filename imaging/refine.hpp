@@ -11,8 +11,8 @@
 /// beads of one kind need not have each its own darkness fitted from noise. Then the fit is one of maximum
 /// likelihood. Bound (Cramer-Rao, 15 px disc, blur 0.8 px): 0.36/SNR px per coordinate.
 ///
-/// The first sweep, each disc for itself, moves a disc that stands apart to where it belongs and one among
-/// neighbours about three fifths of the way there.
+/// The first sweep reads every other row and leaves a twelfth of the way to go, on average; two sweeps do
+/// where the proposals are good.
 ///
 /// When not to use: translucent discs with bright cores, or discs that overlap in projection.
 

@@ -1,7 +1,9 @@
 #include "imaging/vote_locator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "imaging/votes.hpp"
@@ -24,14 +26,21 @@ std::vector<Proposal> peaks(const cv::Mat1f& sum, int pad, double full_circle, d
   for (int y = 1; y + 1 < sum.rows; ++y) {
     const float *above = sum[y - 1], *row = sum[y], *below = sum[y + 1];
     for (int block = 1; block + 1 < sum.cols; block += kBlock) {
-      const int end = std::min(block + kBlock, sum.cols - 1);
-      int any = 0;
-      for (int x = block; x < end; ++x) any |= row[x] >= least ? 1 : 0;
-      if (any == 0) continue;
-      for (int x = block; x < end; ++x) {
+      const int n = std::min(kBlock, sum.cols - 1 - block);
+      // Without branches first, for the compiler to make vectors of.
+      std::array<std::uint8_t, kBlock> top{};
+      for (int k = 0; k < n; ++k) {
+        const int x = block + k;
         const float v = row[x];
-        if (v < least || v <= above[x - 1] || v <= above[x] || v <= above[x + 1] || v <= row[x - 1] ||
-            v < row[x + 1] || v < below[x - 1] || v < below[x] || v < below[x + 1])
+        top[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(
+            (v >= least) & (v > row[x - 1]) & (v >= row[x + 1]) & (v > above[x]) & (v >= below[x]));
+      }
+      if (std::none_of(top.begin(), top.end(), [](std::uint8_t t) { return t != 0; })) continue;
+      for (int k = 0; k < n; ++k) {
+        const int x = block + k;
+        const float v = row[x];
+        if (top[static_cast<std::size_t>(k)] == 0 || v <= above[x - 1] || v <= above[x + 1] ||
+            v < below[x - 1] || v < below[x + 1])
           continue;
         found.push_back({x - pad + parabola_top(row[x - 1], v, row[x + 1]),
                          y - pad + parabola_top(above[x], v, below[x]),

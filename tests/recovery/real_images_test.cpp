@@ -61,3 +61,38 @@ TEST(RealImages, BedloadIsFoundLinkedAndRepeats) {
   EXPECT_EQ(s.wrong_links, 0U);
   EXPECT_LE(repeat, 0.02);
 }
+
+// One photograph of 29 photoelastic discs of two sizes, bright on dark, with fringes (PEGS, J. Kollmer):
+// counted by eye, centres good to a pixel. Nothing is said but the file's name.
+TEST(RealImages, PhotoelasticDiscsOfTwoSizesAreFoundUnasked) {
+  const std::filesystem::path folder = TWINCELL_SOURCE_DIR "/../shared/real_images/photoelastic_29";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "The real images are not beside the source tree.";
+  const auto truth = read_truth(folder / "truth.csv");
+  ASSERT_EQ(truth.size(), 1U);
+  LocatorOptions locator;
+  locator.polarity_known = false;
+  const auto frames = open_frames(folder / "Step09-0001.jpg");
+  Scorer scorer;
+  locate_stack(*frames, locator, 1, [&](std::int64_t, const cv::Mat&, const Located& located) {
+    std::vector<FoundBead> found;
+    for (const Detection& b : located.beads) {
+      found.push_back({b.x, b.y, -1});
+      EXPECT_FALSE(b.tracer);
+    }
+    scorer.add(truth[0], found);
+  });
+  const Score s = scorer.score();
+  std::cout << "photoelastic: recall " << s.recall() << ", precision " << s.precision() << ", rms " << s.rms
+            << " px, diameters " << locator.diameter_px << " px";
+  for (const double other : locator.other_diameters_px) std::cout << " and " << other << " px";
+  std::cout << '\n';
+  EXPECT_EQ(s.truths, 29U);
+  EXPECT_EQ(s.recall(), 1);
+  EXPECT_EQ(s.precision(), 1);
+  EXPECT_LE(s.rms, 1.0);
+  EXPECT_TRUE(locator.preprocess.bright);
+  EXPECT_EQ(locator.refine.method, "edges");
+  EXPECT_NEAR(locator.diameter_px, 147.2, 1.5);  // of the truth's radii, the mean of either size
+  ASSERT_EQ(locator.other_diameters_px.size(), 1U);
+  EXPECT_NEAR(locator.other_diameters_px[0], 103.2, 1.5);
+}
