@@ -405,7 +405,10 @@ PlateLock lock_plate(const std::vector<double>& heights, const PlateLockOptions&
   const double angle = options.model_error / amplitude;  // of the phase, and of a harmonic
   lock.z0_error = std::hypot(cyclic * report.standard_error("z0"), options.model_error);
   lock.amplitude_error = std::hypot(cyclic * report.standard_error("A"), options.model_error);
-  lock.omega_error = report.standard_error("omega");
+  // Over few cycles what comes back every cycle looks like a drift of the phase too: eps sin(omega t)
+  // regressed on A t cos(omega t) over a time T gives 6 eps/(A omega T^2) at most.
+  const double turned = omega * (ticks.back() - ticks.front());
+  lock.omega_error = std::hypot(report.standard_error("omega"), omega * angle * 6 / (turned * turned));
   if (report.covariance.size() > 0)
     lock.phi_error = std::sqrt(angle * angle + lock.cyclic_factor * report.covariance(2, 2) +
                                t0 * t0 * report.covariance(3, 3) + 2 * t0 * report.covariance(2, 3));

@@ -36,7 +36,7 @@ struct PlateLockOptions {
   int frames_per_cycle = 0;  ///< N_k if known: where the search begins; 0: sought
   bool mend = true;          ///< look for dropped and doubled frames where the heights ask for it
   /// What the heights may be off by in a way that comes back every cycle, at the drive's own frequency too:
-  /// it enters the errors of z0, A, the phase and the second harmonic.
+  /// it enters the errors of z0, A, omega, the phase and the second harmonic.
   double model_error = 0;
 };
 

@@ -122,7 +122,8 @@ TEST(Refine, WhatIsNoBeadIsDroppedWithItsReason) {
   EXPECT_EQ(refined(wall, p, {100, 105, 1}), Verdict::in_wall);
 }
 
-// A bead that nobody proposed is looked for after the second sweep, if there is another to fit it by.
+// A bead that nobody proposed is looked for after the first sweep and the second, if there is another to fit
+// it by.
 TEST(Refine, ABeadFoundLateNeedsASweepOfItsOwn) {
   const rendered::Picture p = row_of_beads();
   std::vector<Proposal> all_but_one;
@@ -132,7 +133,7 @@ TEST(Refine, ABeadFoundLateNeedsASweepOfItsOwn) {
     RefineOptions options;
     options.sweeps = sweeps;
     const Refined r = refine(image, all_but_one, 7.5, options);
-    EXPECT_EQ(r.beads.size(), sweeps > 2 ? 8U : 7U) << sweeps;
+    EXPECT_EQ(r.beads.size(), sweeps > 1 ? 8U : 7U) << sweeps;
   }
 }
 
