@@ -32,9 +32,8 @@ std::vector<int> coarse_rpm() {
 const std::vector<GasSize>& sizes() {
   static const std::vector<GasSize> all = {{0, coarse_rpm(), 0.1, 300},
                                            {10, coarse_rpm(), 0.05, 1000},
-                                           {40, all_rpm(), 0.05, 2000},
-                                           {150, all_rpm(), 0.03, 6000},
-                                           {1e300, all_rpm(), 0.01, 40000}};
+                                           {25, all_rpm(), 0.02, 40000},
+                                           {1e300, all_rpm(), 0.01, 200000}};
   return all;
 }
 
