@@ -38,7 +38,7 @@ Fitted fit_of(int dimension, bool algebraic, const std::vector<GasPoint>& points
   const auto peak = peak_of(points);
   if (!peak) return f;
   for (const GasPoint& p : points)
-    if (const auto t = p.get("T_bar_z"); t && p.at >= peak->grid)
+    if (const auto t = p.get("T_bar_z"); t && p.at >= peak->grid && !p.solid())
       f.points.push_back({.x = p.at, .y = t->value});
   constexpr std::size_t kFewest = 5;  // three parameters and something to judge them by
   // Unweighted, as least squares of a plotting program are; the paper does not say.
