@@ -22,10 +22,10 @@ set key top right
 set xrange [0.4:150]
 set logscale x
 set yrange [0:*]
-set arrow from 0.5,graph 0.05 to 9,graph 0.05 heads size graph 0.01,90 lc rgb '#777777'
-set label 'Warr et al.' at 0.52,graph 0.08 font ',9' tc rgb '#777777'
-set arrow from 44,graph 0.05 to 135,graph 0.05 heads size graph 0.01,90 lc rgb '#777777'
-set label 'Feitosa, Menon' at 44,graph 0.08 font ',9' tc rgb '#777777'
+set arrow from 0.5,graph 0.95 to 9,graph 0.95 heads size graph 0.01,90 lc rgb '#777777'
+set label 'Warr et al.' at 0.52,graph 0.975 font ',9' tc rgb '#777777'
+set arrow from 44,graph 0.48 to 135,graph 0.48 heads size graph 0.01,90 lc rgb '#777777'
+set label 'Feitosa, Menon' at 44,graph 0.505 font ',9' tc rgb '#777777'
 
 plot 'p2-fig2.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title '2D rough', 'p2-fig2.dat' index 1 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title '3D rough', 'p2-fig2.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title '2D smooth', 'p2-fig2.dat' index 3 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 13 lc rgb '#CC79A7' title '3D smooth', 'p2-fig2.dat' index 4 using 1:2 with lines lw 1.3 dt 2 lc rgb '#D55E00' title 'Table III, 2D rough', 'p2-fig2.dat' index 5 using 1:2 with lines lw 1.3 dt 3 lc rgb '#0072B2' title 'Table III, 3D rough'
 unset output
