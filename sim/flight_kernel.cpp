@@ -296,11 +296,21 @@ class FlightKernel : public Kernel {
       const Bead& b = s.beads[i];
       mass_[i] = b.mass;
       turn_[i] = b.radius * b.radius / b.inertia;
-      rim_[i] = s.rim_speeds.size() == n ? Vec3(s.rim_speeds[i])
-                                         : Vec3(b.radius * b.spin_x, -b.radius * b.spin, b.radius * b.spin_z);
-      lines_->put(i, FlightLine::through(centre_of(b), Vec3(b.vx, b.vy, b.vz), now_, gravity_));
-      lines_->valid_from(i) = now_;
+      fly_on(i, s, i, now_);
     }
+  }
+
+  [[nodiscard]] FlightLine line_through(const Bead& b, double t) const {
+    return FlightLine::through(centre_of(b), Vec3(b.vx, b.vy, b.vz), t, gravity_);
+  }
+  /// From t on bead i flies as bead k of `s` is.
+  void fly_on(std::size_t i, const System& s, std::size_t k, double t) {
+    const Bead& b = s.beads[k];
+    rim_[i] = s.rim_speeds.size() == s.beads.size()
+                  ? Vec3(s.rim_speeds[k])
+                  : Vec3(b.radius * b.spin_x, -b.radius * b.spin, b.radius * b.spin_z);
+    lines_->put(i, line_through(b, t));
+    lines_->valid_from(i) = t;
   }
 
   // --- flights ---
@@ -423,7 +433,7 @@ class FlightKernel : public Kernel {
     return (d + t * w).squaredNorm() < reach * reach;
   }
 
-  /// Calls visit(bead, its line before, how far it gets from it, until when) for those that meet others now.
+  /// Calls visit(bead, its line before, how far it gets from it) for those that take part in a meeting.
   template <class Visit>
   static void visit_members(const Contact& c, Visit visit) {
     visit(c.i, c.before[0], c.stray[0]);
@@ -678,8 +688,7 @@ class FlightKernel : public Kernel {
           disperse(c.huddle, contact, static_cast<std::int64_t>(kLongest) * contact, make_steps_);
       if (!end) return false;
       c.until = static_cast<double>(s.step + c.huddle.steps - base_) * dt_;
-      for (const Bead& b : c.huddle.start.beads)
-        c.before.push_back(FlightLine::through(centre_of(b), Vec3(b.vx, b.vy, b.vz), from, gravity_));
+      for (const Bead& b : c.huddle.start.beads) c.before.push_back(line_through(b, from));
       bool alone = true;
       visit_members(c, [&](std::int32_t k, const FlightLine& line, double stray) {
         const double reach = lines_->radius(static_cast<std::size_t>(k)) + stray;
@@ -714,13 +723,8 @@ class FlightKernel : public Kernel {
     std::erase_if(crowds_,
                   [&](const Crowd& c) { return c.until > crowd.from && within(c.huddle.members.front()); });
     for (std::size_t k = 0; k < members.size(); ++k) {
-      const Bead& b = end.beads[k];
       const auto i = static_cast<std::size_t>(members[k]);
-      lines_->put(i, FlightLine::through(centre_of(b), Vec3(b.vx, b.vy, b.vz), crowd.until, gravity_));
-      lines_->valid_from(i) = crowd.until;
-      rim_[i] = end.rim_speeds.size() == members.size()
-                    ? end.rim_speeds[k]
-                    : Vec3(b.radius * b.spin_x, -b.radius * b.spin, b.radius * b.spin_z);
+      fly_on(i, end, k, crowd.until);
       events_[i] = {};
     }
     crowds_.push_back(std::move(crowd));

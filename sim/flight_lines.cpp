@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/cell_grid.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sim/flight_lines.cpp"
 #include <hwy/foreach_target.h>
@@ -172,11 +174,7 @@ FlightLines::FlightLines(const std::vector<double>& radii, int dimension, const 
 }
 
 Vec3 FlightLines::shift(const Vec3& r) const {
-  Vec3 shift = Vec3::Zero();
-  for (Eigen::Index k = 0; k < 3; ++k)
-    if (const double period = period_[static_cast<std::size_t>(k)]; period > 0)
-      shift[k] = -period * std::round(r[k] / period);
-  return shift;
+  return nearest_shift(r, period_);
 }
 
 FlightLines::Hit FlightLines::first_hit(std::size_t i, double now) const {

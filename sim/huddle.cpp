@@ -1,37 +1,29 @@
 #include "sim/huddle.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "analysis/trajectory/error.hpp"
+#include "sim/cell_grid.hpp"
 
 namespace twincell::sim {
 
 namespace {
 
-Vec3 centre(const Bead& b) {
-  return {b.x, b.y, b.z};
-}
 Vec3 velocity(const Bead& b) {
   return {b.vx, b.vy, b.vz};
 }
 
 bool apart(const System& s) {
-  for (std::size_t i = 0; i < s.beads.size(); ++i) {
-    const Bead& a = s.beads[i];
-    for (const Wall& wall : s.walls)
-      if (wall.n.dot(centre(a)) - offset_now(s, wall) < a.radius) return false;
-    for (std::size_t j = i + 1; j < s.beads.size(); ++j) {
-      Vec3 r = centre(a) - centre(s.beads[j]);
-      for (Eigen::Index k = 0; k < 3; ++k)
-        if (const double period = s.period[static_cast<std::size_t>(k)]; period > 0)
-          r[k] -= period * std::round(r[k] / period);
-      const double reach = a.radius + s.beads[j].radius;
-      if (r.squaredNorm() < reach * reach) return false;
-    }
+  for (const Wall& wall : s.walls) {
+    const double offset = offset_now(s, wall);
+    for (const Bead& b : s.beads)
+      if (wall.n.dot(centre_of(b)) - offset < b.radius) return false;
   }
-  return true;
+  bool touch = false;
+  for_each_near_pair(s.beads, s.dimension, s.period, 0,
+                     [&](std::int32_t, std::int32_t, double, const Vec3&) { touch = true; });
+  return !touch;
 }
 
 }  // namespace
@@ -82,10 +74,10 @@ std::optional<System> disperse(Huddle& huddle, std::int64_t contact, std::int64_
       const double t = static_cast<double>(huddle.steps) * s.dt, between = static_cast<double>(every) * s.dt;
       for (std::size_t i = 0; i < s.beads.size(); ++i) {
         const Bead &then = huddle.start.beads[i], &now = s.beads[i];
-        const Vec3 flown = centre(then) + t * (velocity(then) + 0.5 * t * s.gravity);
+        const Vec3 flown = centre_of(then) + t * (velocity(then) + 0.5 * t * s.gravity);
         fastest[i] = std::max(fastest[i], (velocity(now) - velocity(then) - t * s.gravity).norm());
         huddle.stray[i] =
-            std::max(huddle.stray[i], 1.05 * ((centre(now) - flown).norm() + between * fastest[i]));
+            std::max(huddle.stray[i], 1.05 * ((centre_of(now) - flown).norm() + between * fastest[i]));
       }
       if (apart(s)) return s;
     }
