@@ -51,7 +51,7 @@ const std::vector<Entry>& entries() {
       {{"displacement_field", "field_x", "field_z", "circulation_left", "circulation_right", "rolls",
         "convection_sense"},
        make_convection},
-      {{"profile_z", "phi_z", "T_z_z", "T_x_z", "T_z_volume"}, make_profiles},
+      {{"profile_z", "phi_z", "T_z_z", "T_x_z", "T_z_frames_z", "T_z_volume"}, make_profiles},
       {{"phi_top", "phi_cm"}, make_volume_fraction},
       {{"h_cm", "h_cm_k", "h_cm_j", "delta_h_cm", "delta_h_bar"}, make_barycentre},
   };

@@ -32,6 +32,9 @@ struct Spread {
 struct Slab {
   double filled = 0;
   Spread w, u;
+  double now = 0;  ///< of this frame: sum of m (w - w_cm)^2
+  std::size_t n_now = 0;
+  double over_frames = 0;  ///< sum over frames of the mean over beads
 };
 
 class Profiles : public Observable {
@@ -41,6 +44,7 @@ class Profiles : public Observable {
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
     ++frames_;
+    const double drift = centre_of_mass_velocity(frame);
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       if (!frame.present(i) || !frame.position[i].allFinite()) continue;
       const double z = frame.position[i].z();
@@ -60,11 +64,17 @@ class Profiles : public Observable {
       Slab& slab = slabs_[static_cast<std::int64_t>(std::floor(z))];
       slab.w.add(mass, frame.velocity[i].z());
       slab.u.add(mass, frame.velocity[i].x());
+      slab.now += mass * (frame.velocity[i].z() - drift) * (frame.velocity[i].z() - drift);
+      ++slab.n_now;
+    }
+    for (auto& [k, slab] : slabs_) {
+      if (slab.n_now > 0) slab.over_frames += slab.now / static_cast<double>(slab.n_now);
+      slab.now = 0, slab.n_now = 0;
     }
   }
 
   [[nodiscard]] std::vector<Result> results() const override {
-    std::vector<double> z, phi, t_z, t_x;
+    std::vector<double> z, phi, t_z, t_x, t_frames;
     const Vec3 size = info_.box.size();
     const double slab_size = size.x() * (info_.box.dimension == 2 ? 1 : size.y());
     for (const auto& [k, slab] : slabs_) {
@@ -73,6 +83,7 @@ class Profiles : public Observable {
       phi.push_back(slab.filled / slab_size / static_cast<double>(frames_));
       t_z.push_back(slab.w.temperature());
       t_x.push_back(slab.u.temperature());
+      t_frames.push_back(slab.w.n < kProfileSamples ? kNaN : slab.over_frames / static_cast<double>(frames_));
     }
     const std::string none = "no frame holds a bead";
     const std::string cold =
@@ -93,10 +104,27 @@ class Profiles : public Observable {
                                        : "volume of spheres in the slab over its volume, mean over frames",
               none),
         array("T_z_z", t_z, "m g sigma", temperature, cold),
-        array("T_x_z", t_x, "m g sigma", temperature, cold), volume_mean()};
+        array("T_x_z", t_x, "m g sigma", temperature, cold),
+        array("T_z_frames_z", t_frames, "m g sigma",
+              "mean over frames of the mean over beads of m (w - w_cm)^2, a frame in which the slab is empty "
+              "counting as 0; no factor 1/2; NaN with fewer than 100 velocities",
+              cold),
+        volume_mean()};
   }
 
  private:
+  /// Vertical velocity of the centre of mass of the beads that have one.
+  [[nodiscard]] double centre_of_mass_velocity(const Frame& frame) const {
+    double momentum = 0, mass = 0;
+    for (std::size_t i = 0; i < frame.velocity.size(); ++i) {
+      if (!frame.present(i) || !frame.position[i].allFinite() || !frame.velocity[i].allFinite()) continue;
+      const double m = info_.mass.empty() ? 1 : info_.mass[i];
+      momentum += m * frame.velocity[i].z();
+      mass += m;
+    }
+    return mass > 0 ? momentum / mass : 0;
+  }
+
   /// The local temperature averaged over volume, not over beads: with an open top the volume is that of the
   /// lowest slabs that hold kMostOfTheBeads of the velocities.
   [[nodiscard]] Result volume_mean() const {

@@ -20,10 +20,12 @@ inline constexpr std::size_t kProfileSamples = 100;  ///< least number of bead v
 ///
 ///   phi_z   area of discs (2D) or volume of spheres (3D) inside the slab over that of the slab, by exact
 ///           overlap and not by counting centres; the slab is as wide (and deep) as the cell
-///   T_z_z   m <(w - <w>)^2>, w the vertical velocity of beads whose centres are in the slab, <w> the mean of
-///   that
-///           slab over the whole average; absent (NaN) with fewer than kProfileSamples, m g sigma
-///   T_x_z   the same of the horizontal velocity along x
+///   T_z_z   m <(w - <w>)^2>, w the vertical velocity of beads whose centres are in the slab, <w> its mean
+///           over the whole average; absent (NaN) with fewer than kProfileSamples, m g sigma
+///   T_z_frames_z  mean over frames of the mean over the slab's beads of m (w - w_cm)^2, w_cm that of all
+///           beads of the frame; a frame in which the slab is empty counts as 0. It falls to 0 with height,
+///           as the paper's profiles do and T_z_z does not; the paper says only "averaging T_z in a box"
+///   T_x_z   the same as T_z_z of the horizontal velocity along x
 ///   profile_z  centres of the slabs, sigma
 ///   T_z_volume  mean of T_z_z over the lowest slabs that hold 99 % of the beads: an average over volume, as
 ///               the paper's introduction has it, where T_z is one over beads

@@ -13,6 +13,7 @@
 #include "analysis/trajectory/toml_leaves.hpp"
 #include "imaging/frame_source.hpp"
 #include "imaging/pipeline.hpp"
+#include "sim/kernel.hpp"
 #include "sim/simulation.hpp"
 
 namespace twincell {
@@ -82,7 +83,9 @@ void simulate(const sim::Scene& scene, const fs::path& output, const TwinProvena
               Progress& progress) {
   sim::RunState start = sim::placed(scene);
   const std::string said = provenance.of_simulation(scene, start.beads);
-  sim::Simulation run(scene, std::move(start), sim::KernelKind::best, threads);
+  // A small bed on many threads waits for them at every step, without end where others use the processor too.
+  const int worth = std::min(threads, sim::threads_for(start.beads.size(), 0));
+  sim::Simulation run(scene, std::move(start), sim::KernelKind::best, worth);
   run.settle(progress);
   TrajectoryInfo info = run.trajectory_info();
   info.provenance_json = said;

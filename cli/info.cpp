@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <memory>
 
 #include "analysis/trajectory/h5md_file.hpp"
@@ -47,6 +48,7 @@ nlohmann::json describe(const H5mdReader& file) {
               {"boundary",
                {boundary_word(t.box.boundary[0]), boundary_word(t.box.boundary[1]),
                 boundary_word(t.box.boundary[2])}}};
+  if (t.box.side_tilt != std::array<double, 2>{}) d["box"]["side_tilt"] = t.box.side_tilt;
   if (t.drive)
     d["drive"] = {{"amplitude", t.drive->amplitude},
                   {"omega", t.drive->omega},
@@ -86,6 +88,9 @@ std::string as_text(const nlohmann::json& d) {
                    box["boundary"][0].get<std::string>(), box["size"][1].get<double>(),
                    box["boundary"][1].get<std::string>(), box["size"][2].get<double>(),
                    box["boundary"][2].get<std::string>());
+  if (box.contains("side_tilt"))
+    s += fmt::format("  side walls  lean outward by {:g} and {:g} degrees\n",
+                     box["side_tilt"][0].get<double>(), box["side_tilt"][1].get<double>());
   if (d.contains("first"))
     s += fmt::format("  time        {:.6g} to {:.6g} t0, steps {} to {}\n", d["first"]["time"].get<double>(),
                      d["last"]["time"].get<double>(), d["first"]["step"].get<long>(),

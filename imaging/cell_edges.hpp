@@ -6,7 +6,7 @@
 /// dark to the first light. On the step there, at e, light in shares of the local light is
 ///     l_i = T_i Phi((i - e)/s),
 /// with the blur s that all rows (and all columns) of a frame share and T_i the light that the beads let
-/// pass, by their own fitted discs; pixels with T_i < 0.75 are left out. The local light is a quadratic
+/// pass, by their own fitted discs; pixels with T_i < 0.97 are left out. The local light is a quadratic
 /// surface through what is seen past the beads. Without a bead near it the step is symmetric, and e does not
 /// depend on s. Within 4.5 s of a corner there is no point, nor where no light reaches the step. A bead that
 /// touches the wall and was not located hides it: the point then lies on the bead's far side, always further

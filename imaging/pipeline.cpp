@@ -244,6 +244,7 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
       Vec3(cell.width.value_or(stack.width_px / scale), 0.5, cell.height.value_or(stack.height_px / scale));
   info.box.boundary = {cell.width ? cell.sides : Boundary::open, Boundary::open,
                        cell.origin ? Boundary::wall : Boundary::open};
+  if (info.box.boundary[0] == Boundary::wall && cell.side_tilt) info.box.side_tilt = *cell.side_tilt;
   info.scale = cell.scale;
   info.scale.pixels_per_sigma = scale;
   info.source = "experiment";

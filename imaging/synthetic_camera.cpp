@@ -72,6 +72,9 @@ class SyntheticCamera::Discs {
 SyntheticCamera::SyntheticCamera(const CameraOptions& options, const TrajectoryInfo& info)
     : options_(options), info_(info), shutter_(info) {
   options.check();
+  auto& [left_tilt, right_tilt] = info_.box.side_tilt;
+  if (options.left_tilt != 0) left_tilt = options.left_tilt;
+  if (options.right_tilt != 0) right_tilt = options.right_tilt;
   if (options.exposure > 0) Shutter::require_paths(info, "exposure");
   if (options.trigger_jitter > 0) Shutter::require_paths(info, "trigger-jitter");
   if (options.trigger_offset != 0) Shutter::require_paths(info, "trigger-offset");
@@ -95,8 +98,7 @@ SyntheticCamera::SyntheticCamera(const CameraOptions& options, const TrajectoryI
   discs_ = std::make_shared<Discs>(radii, std::min(1.0, corner), std::max(1.0, corner), options.blur_px);
 
   const double s = std::hypot(options.blur_px, std::sqrt(1.0 / 12));
-  const bool walls =
-      info.box.boundary[0] == Boundary::wall && options.left_tilt == 0 && options.right_tilt == 0;
+  const bool walls = info.box.boundary[0] == Boundary::wall && left_tilt == 0 && right_tilt == 0;
   const double left = map_.pixel_from_cell(info.box.lower).x_px,
                right = map_.pixel_from_cell(info.box.upper).x_px;
   backlight_ = glass(size_, options);
@@ -161,7 +163,7 @@ void SyntheticCamera::draw_leaning_walls(const Moment& moment, cv::Mat1f& share)
   const double left = map_.pixel_from_cell(info_.box.lower).x_px,
                right = map_.pixel_from_cell(info_.box.upper).x_px;
   const double floor = map_.pixel_from_cell(Vec3(0, 0, shutter_.plate(moment, moment.late))).y_px;
-  const double l = options_.left_tilt * kDegree, r = options_.right_tilt * kDegree;
+  const double l = info_.box.side_tilt[0] * kDegree, r = info_.box.side_tilt[1] * kDegree;
   for (int y = 0; y < share.rows; ++y)
     for (int x = 0; x < share.cols; ++x) {
       const PixelPoint p =

@@ -14,6 +14,7 @@
 /// 3 k1 R^2 v/u^2, with v the place from the middle and u half the diagonal: 0.006 px for 15 px discs, k1 =
 /// 0.01 and u = 300 px, at the corner.
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -55,6 +56,8 @@ class SyntheticCamera {
   /// The map of the ideal picture, without turn and distortion.
   [[nodiscard]] const PixelFrame& pixel_frame() const { return map_; }
   [[nodiscard]] const Lens& lens() const { return *lens_; }
+  /// Degrees by which the side walls lean outward, left and right: the options', or else the trajectory's.
+  [[nodiscard]] const std::array<double, 2>& side_tilt() const { return info_.box.side_tilt; }
   [[nodiscard]] const Shutter& shutter() const { return shutter_; }
   /// Radius in the ideal picture, px.
   [[nodiscard]] double radius_px(std::size_t slot) const;

@@ -17,7 +17,7 @@ using nlohmann::json;
 /// Results that some figure needs. All figures ask for the same ones, so that their points are the same.
 constexpr const char* kResults =
     R"(["T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar", "T_z_tau", "h_cm", "delta_h_cm", )"
-    R"("delta_h_bar", "profile_z", "phi_z", "T_z_z", "T_z_volume", "phi_top", "phi_cm"])";
+    R"("delta_h_bar", "profile_z", "phi_z", "T_z_z", "T_z_frames_z", "T_z_volume", "phi_top", "phi_cm"])";
 
 constexpr double kSigmaMetres = 0.005, kGravity = 9.81;
 

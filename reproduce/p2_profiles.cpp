@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "reproduce/gas.hpp"
@@ -14,6 +15,16 @@ namespace {
 
 /// W = 5.58, 22.35, 50.3, 68.46, 85.01 of the paper.
 const std::vector<int> kFrequencies = {1000, 2000, 3000, 3500, 3900};
+
+/// The paper averages "the temperature T_z in a box" about z, and does not say about which mean, nor what a
+/// moment counts when the box is empty. Every target and figure is there in both readings.
+struct Reading {
+  const char* result;  ///< array of the observable, analysis/profiles.hpp
+  const char* said;    ///< behind a target
+  const char* figure;  ///< behind a figure's name
+};
+constexpr Reading kReadings[] = {{"T_z_z", "", ""},
+                                 {"T_z_frames_z", " (mean over time, an empty slab counts as 0)", "-time"}};
 
 /// A profile over height with the relative error of each slab, estimated from how many beads it saw in how
 /// many cycles (frames of one cycle know little of each other's fluctuations).
@@ -57,8 +68,8 @@ struct Profile {
   }
 };
 
-std::optional<Profile> profile_of(const GasPoint& p, double floor_area, bool flat) {
-  const auto z = p.arrays.find("profile_z"), t = p.arrays.find("T_z_z"), phi = p.arrays.find("phi_z");
+std::optional<Profile> profile_of(const GasPoint& p, const Reading& reading, double floor_area, bool flat) {
+  const auto z = p.arrays.find("profile_z"), t = p.arrays.find(reading.result), phi = p.arrays.find("phi_z");
   if (z == p.arrays.end() || t == p.arrays.end() || phi == p.arrays.end()) return std::nullopt;
   Profile profile{z->second, t->second, phi->second, {}};
   // Frames of one cycle know little of each other, so that beads are counted once a cycle; a slab that a few
@@ -128,6 +139,50 @@ Fate yes(bool holds) {
 
 // ---------------------------------------------------------------- Figs. 12 and 13
 
+/// The bed at one depth and frequency.
+using ProfileOf = std::function<std::optional<Profile>(std::size_t depth, std::size_t frequency)>;
+
+std::vector<Target> targets_12(const std::vector<double>& depths, const ProfileOf& of,
+                               const std::string& said) {
+  Target low{"W = 5.58: falls with height, low second peak before vanishing" + said, "every N", "",
+             Fate::absent, ""};
+  std::vector<Fate> fates;
+  for (std::size_t d = 0; d < depths.size(); ++d)
+    if (const auto p = of(d, 0); p && p->hottest()) {
+      low.measured +=
+          fmt::format("{}N = {:g}: {}", low.measured.empty() ? "" : "; ", depths[d], described(*p));
+      fates.push_back(p->z[*p->hottest()] > 3 ? Fate::missed : p->second() ? Fate::met : Fate::open);
+    }
+  low.fate = all_of(fates);
+  if (low.fate == Fate::open) low.reason = "a second peak does not stand out of the noise of its slabs";
+
+  Target warm{"W = 22.35, N = 4: no second peak, hottest 7 to 10 d above the base" + said, "7 to 10", "",
+              Fate::absent, ""};
+  if (const auto p = of(0, 1); p && p->hottest()) {
+    const double z = p->z[*p->hottest()];
+    warm.measured = described(*p);
+    warm.fate = z >= 6.5 && z <= 10.5 && !p->second() ? Fate::met : Fate::missed;
+  }
+  Target back{"W = 50.3, N = 4: the second peak is back" + said, "a second peak", "", Fate::absent, ""};
+  if (const auto p = of(0, 2); p && p->hottest()) {
+    back.measured = described(*p);
+    back.fate = p->second() ? Fate::met : Fate::open;
+  }
+  Target equal{"W = 85.01, N = 4: second peak comparable to the first" + said, "0.7 to 1.3 of it", "",
+               Fate::absent, ""};
+  if (const auto p = of(0, 4); p && p->hottest()) {
+    equal.measured = described(*p);
+    const auto second = p->second();
+    equal.fate = !second ? Fate::open : yes(second->over_first >= 0.7 && second->over_first <= 1.3);
+  }
+  Target off{"W = 50.3: hottest off the base for deep beds as well" + said, "z > 1", "", Fate::absent, ""};
+  if (const auto p = of(depths.size() - 1, 2); p && p->hottest()) {
+    off.measured = fmt::format("N = {:g}: {}", depths.back(), described(*p));
+    off.fate = yes(p->z[*p->hottest()] > 1);
+  }
+  return {low, warm, back, equal, off};
+}
+
 Reproduction run_12(const Request& request) {
   const GasSize& size = gas_size_for(request);
   std::vector<double> depths = {4, 8};
@@ -144,65 +199,32 @@ Reproduction run_12(const Request& request) {
   }
   Reproduction r = begun(
       gas, "Bhateja et al. 2016, Figs. 12 and 13: local temperature over height, deep and shallow beds");
-  const auto of = [&](std::size_t depth, std::size_t k) {
-    return profile_of(gas.points(depth)[k], area_of(3), false);
-  };
-  std::string seen;
-  for (std::size_t d = 0; d < depths.size(); ++d)
-    for (std::size_t k = 0; k < kFrequencies.size(); ++k)
-      if (const auto p = of(d, k))
-        seen += fmt::format("  {}, W = {:.4g}: {}\n", gas.curve(d).name, gas.points(d)[k].at, described(*p));
-  r.table = seen + r.table;
-
-  Target low{"W = 5.58: falls with height, low second peak before vanishing", "every N", "", Fate::absent,
-             ""};
-  std::vector<Fate> fates;
-  for (std::size_t d = 0; d < depths.size(); ++d)
-    if (const auto p = of(d, 0); p && p->hottest()) {
-      low.measured +=
-          fmt::format("{}N = {:g}: {}", low.measured.empty() ? "" : "; ", depths[d], described(*p));
-      fates.push_back(p->z[*p->hottest()] > 3 ? Fate::missed : p->second() ? Fate::met : Fate::open);
-    }
-  low.fate = all_of(fates);
-  if (low.fate == Fate::open) low.reason = "a second peak does not stand out of the noise of its slabs";
-
-  Target warm{"W = 22.35, N = 4: no second peak, hottest 7 to 10 d above the base", "7 to 10", "",
-              Fate::absent, ""};
-  if (const auto p = of(0, 1); p && p->hottest()) {
-    const double z = p->z[*p->hottest()];
-    warm.measured = described(*p);
-    warm.fate = z >= 6.5 && z <= 10.5 && !p->second() ? Fate::met : Fate::missed;
-  }
-  Target back{"W = 50.3, N = 4: the second peak is back", "a second peak", "", Fate::absent, ""};
-  if (const auto p = of(0, 2); p && p->hottest()) {
-    back.measured = described(*p);
-    back.fate = p->second() ? Fate::met : Fate::open;
-  }
-  Target equal{"W = 85.01, N = 4: second peak comparable to the first", "0.7 to 1.3 of it", "", Fate::absent,
-               ""};
-  if (const auto p = of(0, 4); p && p->hottest()) {
-    equal.measured = described(*p);
-    const auto second = p->second();
-    equal.fate = !second ? Fate::open : yes(second->over_first >= 0.7 && second->over_first <= 1.3);
-  }
-  Target off{"W = 50.3: hottest off the base for deep beds as well", "z > 1", "", Fate::absent, ""};
-  if (const auto p = of(depths.size() - 1, 2); p && p->hottest()) {
-    off.measured = fmt::format("N = {:g}: {}", depths.back(), described(*p));
-    off.fate = yes(p->z[*p->hottest()] > 1);
-  }
-  r.targets = {low, warm, back, equal, off};
   static constexpr const char* kNames[] = {"p2-fig12a", "p2-fig12b", "p2-fig12c", "p2-fig13a", "p2-fig13b"};
-  for (std::size_t k = 0; k < kFrequencies.size(); ++k) {
-    std::vector<Series> series;
+  std::string seen;
+  for (const Reading& reading : kReadings) {
+    const ProfileOf of = [&](std::size_t depth, std::size_t k) {
+      return profile_of(gas.points(depth)[k], reading, area_of(3), false);
+    };
     for (std::size_t d = 0; d < depths.size(); ++d)
-      if (const auto p = of(d, k)) series.push_back(temperatures(fmt::format("N = {:g}", depths[d]), *p));
-    if (series.empty()) continue;
-    r.figures.push_back(
-        series_figure(kNames[k], fmt::format("Local temperature, W = {:.4g}", w_of_rpm(kFrequencies[k])),
-                      "z/d", "T_z(z)/(m g d)", series, "set xrange [0:*]\nset yrange [0:*]\n",
-                      "3D smooth, slabs of d; bars of two errors. Form of Bhateja et al. 2016, Figs. 12 "
-                      "and 13."));
+      for (std::size_t k = 0; k < kFrequencies.size(); ++k)
+        if (const auto p = of(d, k))
+          seen += fmt::format("  {}, W = {:.4g}{}: {}\n", gas.curve(d).name, gas.points(d)[k].at,
+                              reading.said, described(*p));
+    const std::vector<Target> targets = targets_12(depths, of, reading.said);
+    r.targets.insert(r.targets.end(), targets.begin(), targets.end());
+    for (std::size_t k = 0; k < kFrequencies.size(); ++k) {
+      std::vector<Series> series;
+      for (std::size_t d = 0; d < depths.size(); ++d)
+        if (const auto p = of(d, k)) series.push_back(temperatures(fmt::format("N = {:g}", depths[d]), *p));
+      if (series.empty()) continue;
+      r.figures.push_back(series_figure(
+          std::string(kNames[k]) + reading.figure,
+          fmt::format("Local temperature, W = {:.4g}{}", w_of_rpm(kFrequencies[k]), reading.said), "z/d",
+          "T_z(z)/(m g d)", series, "set xrange [0:*]\nset yrange [0:*]\n",
+          "3D smooth, slabs of d; bars of two errors. Form of Bhateja et al. 2016, Figs. 12 and 13."));
+    }
   }
+  r.table = seen + r.table;
   r.cheaper.push_back(fmt::format("{} depths", depths.size()));
   return r;
 }
@@ -219,16 +241,17 @@ void add_pair(Gas& gas, const Request& request) {
   gas.add(GasSystem{3, true}, size, kFrequencies);
 }
 
-Pair pair_of(const Gas& gas) {
+Pair pair_of(const Gas& gas, const Reading& reading) {
   Pair pair;
   for (std::size_t k = 0; k < kFrequencies.size(); ++k) {
-    pair.smooth.push_back(profile_of(gas.points(0)[k], area_of(3), false));
-    pair.rough.push_back(profile_of(gas.points(1)[k], area_of(3), false));
+    pair.smooth.push_back(profile_of(gas.points(0)[k], reading, area_of(3), false));
+    pair.rough.push_back(profile_of(gas.points(1)[k], reading, area_of(3), false));
   }
   return pair;
 }
 
-std::vector<Figure> pair_figures(const std::string& name, const Pair& pair, bool of_packing) {
+std::vector<Figure> pair_figures(const std::string& name, const Pair& pair, bool of_packing,
+                                 const Reading& reading) {
   std::vector<Figure> figures;
   for (const bool rough : {false, true}) {
     std::vector<Series> series;
@@ -239,22 +262,17 @@ std::vector<Figure> pair_figures(const std::string& name, const Pair& pair, bool
       }
     if (series.empty()) continue;
     figures.push_back(series_figure(
-        name + (rough ? "b" : "a"),
-        fmt::format("{}, 3D {}", of_packing ? "Packing fraction" : "Local temperature",
-                    rough ? "rough" : "smooth"),
+        name + (rough ? "b" : "a") + reading.figure,
+        fmt::format("{}, 3D {}{}", of_packing ? "Packing fraction" : "Local temperature",
+                    rough ? "rough" : "smooth", reading.said),
         "z/d", of_packing ? "phi(z)" : "T_z(z)/(m g d)", series, "set xrange [0:*]\nset yrange [0:*]\n",
         "100 grains, N = 4, slabs of d. Form of Bhateja et al. 2016, Figs. 14 and 15."));
   }
   return figures;
 }
 
-Reproduction run_14(const Request& request) {
-  Gas gas(request);
-  add_pair(gas, request);
-  Reproduction r =
-      begun(gas, "Bhateja et al. 2016, Fig. 14: local temperature over height, 3D smooth and rough");
-  const Pair pair = pair_of(gas);
-  Target rises{"T_z(z) rises with W", "at every height below 10 d", "", Fate::absent, ""};
+std::vector<Target> targets_14(const Pair& pair, const std::string& said) {
+  Target rises{"T_z(z) rises with W" + said, "at every height below 10 d", "", Fate::absent, ""};
   std::vector<Fate> fates;
   for (const auto* side : {&pair.smooth, &pair.rough})
     for (std::size_t k = 1; k < side->size(); ++k) {
@@ -276,14 +294,13 @@ Reproduction run_14(const Request& request) {
                                  : fmt::format("{} pairs of slabs, {} rise", fates.size(),
                                                std::count(fates.begin(), fates.end(), Fate::met));
   rises.fate = all_of(fates);
-  r.targets.push_back(rises);
   const auto last = kFrequencies.size() - 1;
-  Target smooth{"W = 85: second peak for smooth grains", "yes", "", Fate::absent, ""};
+  Target smooth{"W = 85: second peak for smooth grains" + said, "yes", "", Fate::absent, ""};
   if (const auto& p = pair.smooth[last]) {
     smooth.measured = described(*p);
     smooth.fate = p->second() ? Fate::met : Fate::open;
   }
-  Target rough{"no second peak for rough grains", "none at any W", "", Fate::absent, ""};
+  Target rough{"no second peak for rough grains" + said, "none at any W", "", Fate::absent, ""};
   fates.clear();
   for (std::size_t k = 0; k < pair.rough.size(); ++k)
     if (const auto& p = pair.rough[k]; p && p->hottest()) {
@@ -293,7 +310,7 @@ Reproduction run_14(const Request& request) {
     }
   if (!fates.empty() && rough.measured.empty()) rough.measured = fmt::format("none at {} W", fates.size());
   rough.fate = all_of(fates);
-  Target off{"hottest off the base at high W, smooth", "z > 1 at W >= 22", "", Fate::absent, ""};
+  Target off{"hottest off the base at high W, smooth" + said, "z > 1 at W >= 22", "", Fate::absent, ""};
   fates.clear();
   for (std::size_t k = 1; k < pair.smooth.size(); ++k)
     if (const auto& p = pair.smooth[k]; p && p->hottest()) {
@@ -301,8 +318,20 @@ Reproduction run_14(const Request& request) {
       off.measured += fmt::format("{}{}", off.measured.empty() ? "" : ", ", height(p->z[*p->hottest()]));
     }
   off.fate = all_of(fates);
-  r.targets.insert(r.targets.end(), {smooth, rough, off});
-  r.figures = pair_figures("p2-fig14", pair, false);
+  return {rises, smooth, rough, off};
+}
+
+Reproduction run_14(const Request& request) {
+  Gas gas(request);
+  add_pair(gas, request);
+  Reproduction r =
+      begun(gas, "Bhateja et al. 2016, Fig. 14: local temperature over height, 3D smooth and rough");
+  for (const Reading& reading : kReadings) {
+    const Pair pair = pair_of(gas, reading);
+    const std::vector<Target> targets = targets_14(pair, reading.said);
+    r.targets.insert(r.targets.end(), targets.begin(), targets.end());
+    for (Figure& figure : pair_figures("p2-fig14", pair, false, reading)) r.figures.push_back(figure);
+  }
   return r;
 }
 
@@ -311,7 +340,7 @@ Reproduction run_15(const Request& request) {
   add_pair(gas, request);
   Reproduction r =
       begun(gas, "Bhateja et al. 2016, Fig. 15: packing fraction over height, 3D smooth and rough");
-  const Pair pair = pair_of(gas);
+  const Pair pair = pair_of(gas, kReadings[0]);
   Target rough{"phi(z) peaks nearer to the base and higher when rough", "at each W", "", Fate::absent, ""};
   Target moves{"the peak of phi moves up with W", "monotonic", "", Fate::absent, ""};
   Target apart{"phi and T peak at different heights", "at W >= 22", "", Fate::absent, ""};
@@ -343,7 +372,7 @@ Reproduction run_15(const Request& request) {
   moves.fate = all_of(up);
   apart.fate = all_of(different);
   r.targets = {rough, moves, apart};
-  r.figures = pair_figures("p2-fig15", pair, true);
+  r.figures = pair_figures("p2-fig15", pair, true, kReadings[0]);
   return r;
 }
 
@@ -351,48 +380,56 @@ Reproduction run_15(const Request& request) {
 
 constexpr double kStations[] = {0.5, 2.5, 4.5, 7.5, 11.5};
 
+/// T_z(z)/(m V_p^2) of a system at a height, against W.
+Series station(const Gas& gas, std::size_t curve, const Reading& reading, int dimension, double z) {
+  Series s{.title = fmt::format("z = {:g} d", z), .x = {}, .y = {}};
+  for (const GasPoint& point : gas.points(curve)) {
+    const auto p = profile_of(point, reading, area_of(dimension), dimension == 2);
+    if (!p || point.at < 1) continue;
+    for (std::size_t k = 0; k < p->z.size(); ++k)
+      if (p->z[k] == z && std::isfinite(p->t[k])) {
+        const double t = p->t[k] / point.at;  // V_p^2 = W d g
+        s.x.push_back(point.at);
+        s.y.push_back({.value = t, .low = t * (1 - 2 * p->error[k]), .high = t * (1 + 2 * p->error[k])});
+      }
+  }
+  return s;
+}
+
+/// Whether it falls, or rises, from W = 5 to the largest.
+Target trend(const std::string& name, const Series& s, bool falls) {
+  constexpr double kFrom = 5;
+  Target t{name + ", z = " + s.title.substr(4), falls ? "falls with W" : "rises with W", "", Fate::absent,
+           "the paper's heights stand in its legend alone"};
+  std::size_t first = 0;
+  while (first < s.x.size() && s.x[first] < kFrom) ++first;
+  if (first + 1 < s.x.size()) {
+    t.measured = fmt::format("{} at W = {:.3g}, {} at {:.3g}", s.y[first].text(), s.x[first],
+                             s.y.back().text(), s.x.back());
+    t.fate = falls ? above(s.y[first], s.y.back()) : above(s.y.back(), s.y[first]);
+  }
+  return t;
+}
+
 Reproduction run_16(const Request& request) {
   const GasSize& size = gas_size_for(request);
   Gas gas(request);
   for (const GasSystem& system : gas_systems()) gas.add(system, size, size.rpm);
   Reproduction r =
       begun(gas, "Bhateja et al. 2016, Fig. 16: scaled local temperature at fixed heights against W");
-  for (std::size_t c = 0; c < gas_systems().size(); ++c) {
-    const GasSystem& system = gas_systems()[c];
-    std::vector<Series> series;
-    for (const double z : kStations) {
-      Series s{.title = fmt::format("z = {:g} d", z), .x = {}, .y = {}};
-      for (const GasPoint& point : gas.points(c)) {
-        const auto p = profile_of(point, area_of(system.dimension), system.dimension == 2);
-        if (!p || point.at < 1) continue;
-        for (std::size_t k = 0; k < p->z.size(); ++k)
-          if (p->z[k] == z && std::isfinite(p->t[k])) {
-            const double t = p->t[k] / point.at;  // V_p^2 = W d g
-            s.x.push_back(point.at);
-            s.y.push_back({.value = t, .low = t * (1 - 2 * p->error[k]), .high = t * (1 + 2 * p->error[k])});
-          }
-      }
-      series.push_back(s);
+  for (const Reading& reading : kReadings)
+    for (std::size_t c = 0; c < gas_systems().size(); ++c) {
+      const GasSystem& system = gas_systems()[c];
+      std::vector<Series> series;
+      for (const double z : kStations) series.push_back(station(gas, c, reading, system.dimension, z));
+      r.targets.push_back(trend(system.name() + ": low z" + reading.said, series[1], true));
+      r.targets.push_back(trend(system.name() + ": high z" + reading.said, series[4], false));
+      r.figures.push_back(
+          series_figure(fmt::format("p2-fig16{}{}", "bdac"[c], reading.figure),
+                        "Local temperature, " + system.name() + reading.said, "W = V_p^2/(d g)",
+                        "T_z(z)/(m V_p^2)", series, "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
+                        "Slabs of d at fixed heights. Form of Bhateja et al. 2016, Fig. 16."));
     }
-    const auto trend = [&](const char* what, const char* wanted, const Series& s, double from, bool falls) {
-      Target t{fmt::format("{}: {}, z = {}", system.name(), what, s.title.substr(4)), wanted, "",
-               Fate::absent, "the paper's heights stand in its legend alone"};
-      std::size_t first = 0;
-      while (first < s.x.size() && s.x[first] < from) ++first;
-      if (first + 1 < s.x.size()) {
-        t.measured = fmt::format("{} at W = {:.3g}, {} at {:.3g}", s.y[first].text(), s.x[first],
-                                 s.y.back().text(), s.x.back());
-        t.fate = falls ? above(s.y[first], s.y.back()) : above(s.y.back(), s.y[first]);
-      }
-      r.targets.push_back(t);
-    };
-    trend("low z", "falls with W", series[1], 5, true);
-    trend("high z", "rises with W", series[4], 5, false);
-    r.figures.push_back(series_figure(
-        fmt::format("p2-fig16{}", "bdac"[c]), "Local temperature, " + system.name(), "W = V_p^2/(d g)",
-        "T_z(z)/(m V_p^2)", series, "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
-        "Slabs of d at fixed heights. Form of Bhateja et al. 2016, Fig. 16."));
-  }
   return r;
 }
 

@@ -208,6 +208,7 @@ TrajectoryInfo Simulation::trajectory_info() const {
   info.box.boundary = {boundary(scene_.sides),
                        scene_.dimension == 3 ? boundary(scene_.plates) : Boundary::open,
                        boundary(scene_.bottom)};
+  info.box.side_tilt = {scene_.left_tilt, scene_.right_tilt};
   info.drive = scene_.drive;
   info.phases_per_cycle = scene_.phases;
   info.scale = scene_.scale;

@@ -21,14 +21,16 @@ enum class Boundary {
   periodic,  ///< the far end is the near end
 };
 
-/// A cuboid cell in the frame in which the plate's mean height is z = 0 (so z_b(t) = A sin(omega t)); lengths
-/// in sigma.
+/// A cuboid cell, whose side walls may lean, in the frame in which the plate's mean height is z = 0 (so
+/// z_b(t) = A sin(omega t)); lengths in sigma.
 struct Box {
   int dimension = 2;          ///< 2: plane (x, z); 3
   Vec3 lower = Vec3::Zero();  ///< lower corner, sigma
   Vec3 upper =
       Vec3(1, 1, 1);  ///< upper corner, sigma; in 2D upper.y() - lower.y() is the gap of the glass plates
   std::array<Boundary, 3> boundary = {Boundary::wall, Boundary::open, Boundary::wall};
+  /// Degrees by which the left and the right wall lean outward about their feet, which ride on the plate.
+  std::array<double, 2> side_tilt = {0, 0};
 
   [[nodiscard]] Vec3 size() const { return upper - lower; }
   [[nodiscard]] bool periodic(Axis axis) const {

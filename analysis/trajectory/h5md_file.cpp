@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/trajectory/atomic_file.hpp"
@@ -155,6 +156,8 @@ void H5mdWriter::Impl::create_parameters() {
   h5::write_attribute(cell.get(), "boundary", words);
   h5::write_dataset(cell.get(), "lower", info.box.lower.data(), {3});
   h5::write_dataset(cell.get(), "upper", info.box.upper.data(), {3});
+  const auto& tilt = info.box.side_tilt;
+  if (tilt[0] != 0 || tilt[1] != 0) h5::write_dataset(cell.get(), "side_tilt", tilt.data(), {2});
 }
 
 void H5mdWriter::Impl::close() {
@@ -346,6 +349,11 @@ void H5mdReader::Impl::read_box(const std::string& group) {
     info.box.lower = Vec3(lower.data());
     info.box.upper = Vec3(upper.data());
     for (std::size_t a = 0; a < 3; ++a) info.box.boundary[a] = boundary_of(words[a]);
+    if (!h5::exists(cell.get(), "side_tilt")) return;
+    const auto tilt = h5::read_dataset<double>(cell.get(), "side_tilt");
+    if (tilt.size() != 2 || !std::ranges::all_of(tilt, [](double t) { return std::abs(t) < 90; }))
+      refuse("twincell/cell", "side_tilt is two angles below 90 degrees.");
+    info.box.side_tilt = {tilt[0], tilt[1]};
     return;
   }
   // Someone else's file: the box is all there is, its corner at the origin.

@@ -28,7 +28,7 @@ std::vector<CameraOption> camera_option_list(CameraOptions& o) {
        0.2,
        {}},
       {"left-tilt",
-       "Lean of the left wall, degrees outward, about its foot on the plate",
+       "Lean of the left wall, degrees outward, about its foot on the plate; 0: as the trajectory says",
        &o.left_tilt,
        -30,
        30,

@@ -70,9 +70,8 @@ std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info,
                       info.box.boundary[0] == Boundary::wall ? "walls"
                       : info.box.periodic(Axis::x)           ? "periodic"
                                                              : "open");
-  if (options.left_tilt != 0 || options.right_tilt != 0)
-    text += fmt::format("# The side walls lean outward by {} and {} degrees.\n", options.left_tilt,
-                        options.right_tilt);
+  if (const auto [left, right] = camera.side_tilt(); left != 0 || right != 0)
+    text += fmt::format("# The side walls lean outward by {} and {} degrees.\n", left, right);
   if (info.drive)
     text += fmt::format("\n[drive]\namplitude = {:.17g}\nomega = {:.17g}\n", info.drive->amplitude,
                         info.drive->omega);

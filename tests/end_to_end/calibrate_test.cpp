@@ -149,6 +149,65 @@ TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
   EXPECT_EQ(tracked.code, 0) << tracked.err;
 }
 
+// A bed that slips and mixes between leaning walls: the film alone says scale, turn, bend, tilt and drive,
+// the preset what its beads are. Tracking returns the hidden numbers, and the twin's differ by no more than
+// it says they may.
+TEST(Calibrate, TheTwinOfAHiddenCellAgreesInBouncingAndConvection) {
+  const TemporaryFolder folder;
+  write_text_file(folder / "hidden.toml",
+                  "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 12.0\nside_tilt = [0.6, -0.4]\n"
+                  "[beads]\ncount = 120\n[drive]\ngamma = 2.1\n[start]\nkind = \"random\"\nseed = 11\n"
+                  "[time]\nsteps_per_contact = 20\ndiscard = 0\ncycles = 10\nphases = 20\n");
+  const std::string hidden = folder / "hidden.h5", frames = folder / "frames",
+                    file = folder / "cell.calibration.toml", cell = folder / "CELL.toml";
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"simulate", folder / "hidden.toml", "-o", hidden, "-q"},
+           {"render", hidden, "-o", frames, "-q", "--pixels-per-sigma", "13.3", "--rotation", "0.4",
+            "--distortion", "0.008", "--exposure", "0.05", "--trigger-offset", "0.03", "--max-height",
+            "18"}}) {
+    const Ran ran = run_program(words);
+    ASSERT_EQ(ran.code, 0) << ran.err;
+  }
+  const std::string known = "[cell]\nwidth = 12.0\nheight = 30.0\n[drive]\nomega = 1.0\n";
+  write_text_file(folder / "KNOWN.toml", known);
+  write_text_file(cell, known + "[calibration]\nfrom = \"cell.calibration.toml\"\n");
+  const nlohmann::json c =
+      run_json({"calibrate", "camera", frames, "--cell", folder / "KNOWN.toml", "-o", file});
+  expect_within(c, "camera.pixels_per_sigma", 13.3, 0.005);
+  expect_within(c, "camera.rotation_deg", 0.4, 0.01);
+  expect_within(c, "camera.distortion", 0.008, 0.001);
+  expect_within(run_json({"calibrate", "plate", frames, "--cell", cell, "-o", file}), "drive.amplitude", 2.1,
+                0.003);
+  const nlohmann::json w = run_json({"calibrate", "walls", frames, "--cell", cell, "-o", file});
+  const auto& tilt = w["measured"]["cell.side_tilt"];
+  for (int side = 0; side < 2; ++side) {
+    const double truth = side == 0 ? 0.6 : -0.4, value = tilt["value"][side],
+                 error = tilt["standard_error"][side];
+    std::cout << "tilt: " << value << " +- " << error << ", truth " << truth << "\n";
+    EXPECT_LE(std::abs(value - truth), 3 * error);
+    EXPECT_LE(error, 0.01);
+  }
+
+  const std::string twin = folder / "twin";
+  const nlohmann::json m =
+      run_json({"match", frames, cell, "-o", twin, "--no-film", "--set", "time.steps_per_contact=20"});
+  const sim::Scene scene = sim::read_scene(twin + "/scene.toml");
+  EXPECT_NEAR(scene.left_tilt, 0.6, 0.02);
+  const nlohmann::json truth = run_json({"analyze", hidden})["results"];
+  for (const std::string name : {"s_b", "s_c"}) {
+    const auto& list = m["differences"];
+    const auto d = std::find_if(list.begin(), list.end(), [&](const auto& x) { return x["number"] == name; });
+    ASSERT_NE(d, list.end()) << name;
+    const double hid = truth[name]["value"], seen = (*d)["experiment"]["value"],
+                 twins = (*d)["simulation"]["value"], error = (*d)["error"];
+    std::cout << name << ": hidden " << hid << ", tracked " << seen << ", twins " << twins << " +- " << error
+              << "\n";
+    EXPECT_NEAR(seen, hid, 0.01) << name;
+    EXPECT_LE(std::abs(seen - twins), 3 * error) << name;
+    EXPECT_LE(error, 0.5 * hid) << name;
+  }
+}
+
 TEST(Calibrate, DroppedFramesAreCountedAndTheDriveStands) {
   const TemporaryFolder folder;
   const CameraOptions camera{.pixels_per_sigma = 12, .max_height = 8, .drop = 0.02, .seed = 4};

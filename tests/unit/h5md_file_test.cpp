@@ -20,6 +20,7 @@ TrajectoryInfo experiment_info() {
   info.n_beads = 3;
   info.columns = {.velocity = true, .spin = false, .identity = true, .phase = true, .plate_height = true};
   info.box.upper = Vec3(20, 1.15, 110);
+  info.box.side_tilt = {0.6, -0.25};
   info.drive = Drive{Axis::z, 1.8, 1.0};
   info.phases_per_cycle = 20;
   info.scale = {0.002, 9.81, std::nullopt};
@@ -66,6 +67,7 @@ TEST(H5mdFile, WhatIsWrittenIsReadBitForBit) {
   EXPECT_EQ(info.box.upper, Vec3(20, 1.15, 110));
   EXPECT_EQ(info.box.boundary[0], Boundary::wall);
   EXPECT_EQ(info.box.boundary[1], Boundary::open);
+  EXPECT_EQ(info.box.side_tilt, (std::array<double, 2>{0.6, -0.25}));
   ASSERT_TRUE(info.drive);
   EXPECT_EQ(info.drive->amplitude, 1.8);
   EXPECT_EQ(info.phases_per_cycle, 20);

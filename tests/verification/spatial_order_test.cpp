@@ -482,3 +482,25 @@ TEST(Profiles, PackingAndTemperatureOfKnownBeds) {
   EXPECT_TRUE(std::isnan(t.values[10]));  // discs reach into the slab, no centre lies in it
   EXPECT_NEAR(find_result(results, "T_x_z").values[3], 0, 1e-12);
 }
+
+TEST(Profiles, ASlabThatIsEmptyHalfOfTheTimeHasHalfTheTemperatureOverFrames) {
+  // Two beads fly apart with speeds 2 from their centre of mass, which moves itself.
+  std::vector<Frame> frames;
+  Box box;
+  box.upper = Vec3(10, 1, 30);
+  for (int f = 0; f < 400; ++f) {
+    Frame frame;
+    frame.step = f;
+    frame.position = {Vec3(3, 0, 0.5), Vec3(3, 0, f % 2 == 0 ? 5.5 : 7.5)};
+    frame.velocity = {Vec3(0, 0, 5 - 2), Vec3(0, 0, 5 + 2)};
+    frames.push_back(frame);
+  }
+  const auto results = analyze(film(frames, box));
+  const Result &z = find_result(results, "profile_z"), &over = find_result(results, "T_z_frames_z");
+  ASSERT_EQ(z.values, (std::vector<double>{0.5, 5.5, 7.5}));
+  EXPECT_NEAR(over.values[0], 4, 1e-12);
+  EXPECT_NEAR(over.values[1], 2, 1e-12);
+  EXPECT_NEAR(over.values[2], 2, 1e-12);
+  // About the mean of the slab, nothing fluctuates.
+  for (const double t : find_result(results, "T_z_z").values) EXPECT_NEAR(t, 0, 1e-12);
+}
