@@ -159,7 +159,11 @@ std::vector<double> rough_impacts(const std::vector<BounceSample>& s, const Plat
       own.push_back(residual(edges[i], edges[i + 1]));
   if (own.empty()) return {};
   std::sort(own.begin(), own.end());
-  const double noise = own[own.size() / 3];
+  // Heights of a simulation scatter by rounding alone, and no two halves of one flight round alike.
+  constexpr double kFinest = 1e-5;
+  const auto [low, high] = std::minmax_element(
+      s.begin(), s.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
+  const double noise = std::max(own[own.size() / 3], kFinest * (high->height - low->height));
   for (std::size_t i = 1; i + 1 < edges.size();) {
     if (residual(edges[i - 1], edges[i + 1]) <= 1.6 * noise) {
       edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(i));

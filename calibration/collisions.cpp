@@ -26,21 +26,23 @@ std::optional<double> meeting(const Vec3& r, const Vec3& v, double reach, double
 
 class Finder {
  public:
-  Finder(const TrajectorySource& source, const CollisionOptions& options)
-      : info_(source.info()), options_(options), source_(source) {}
+  Finder(const TrajectorySource& source, const CollisionOptions& options, std::size_t stride)
+      : info_(source.info()), options_(options), source_(source), stride_(stride) {
+    found_.stride = stride;
+  }
 
   FoundCollisions find() {
     found_.spins = info_.columns.spin;
     const bool velocities = info_.columns.velocity;
     // Steps need a frame on either side.
-    const std::size_t margin = velocities ? 0 : 1, n = source_.n_frames();
+    const std::size_t margin = velocities ? 0 : 1, n = (source_.n_frames() + stride_ - 1) / stride_;
     if (n < 2 + 2 * margin)
       throw InputError({.file = source_.name(), .key = {}},
                        fmt::format("has {} frames; collisions need {} or more.", n, 2 + 2 * margin));
     std::vector<Frame> frames(2 + 2 * margin);
     for (std::size_t f = 0; f + frames.size() <= n; ++f) {
       for (std::size_t k = 0; k < frames.size(); ++k)
-        if (f == 0 || k + 1 == frames.size()) source_.read(f + k, frames[k]);
+        if (f == 0 || k + 1 == frames.size()) source_.read((f + k) * stride_, frames[k]);
       between(frames[margin], frames[margin + 1], velocities ? nullptr : &frames.front(),
               velocities ? nullptr : &frames.back());
       std::rotate(frames.begin(), frames.begin() + 1, frames.end());
@@ -131,13 +133,24 @@ class Finder {
   const TrajectoryInfo& info_;
   const CollisionOptions& options_;
   const TrajectorySource& source_;
+  std::size_t stride_;
   FoundCollisions found_;
 };
 
 }  // namespace
 
 FoundCollisions find_collisions(const TrajectorySource& trajectory, const CollisionOptions& options) {
-  return Finder(trajectory, options).find();
+  if (options.stride > 0) return Finder(trajectory, options, options.stride).find();
+  constexpr std::size_t kFewestFrames = 16;
+  constexpr double kClearlyMore = 1.25;
+  FoundCollisions best = Finder(trajectory, options, 1).find();
+  for (std::size_t stride = 2; trajectory.n_frames() / stride >= kFewestFrames; stride *= 2) {
+    FoundCollisions found = Finder(trajectory, options, stride).find();
+    const auto before = static_cast<double>(best.impacts.size());
+    if (before > 0 && static_cast<double>(found.impacts.size()) <= kClearlyMore * before) break;
+    best = std::move(found);
+  }
+  return best;
 }
 
 }  // namespace twincell

@@ -16,6 +16,9 @@ struct CollisionOptions {
   /// How far the two beads' common momentum may change between the frames, in speeds of approach: more says
   /// that a third body took part.
   double largest_kick = 0.05;
+  /// Every how manyth frame is looked at; 0: 1, 2, 4 ... while each finds clearly more. A collision that
+  /// lasts longer than half of the time between two frames is not seen between them.
+  std::size_t stride = 0;
 };
 
 /// What was found.
@@ -24,6 +27,7 @@ struct FoundCollisions {
   std::size_t pairs = 0;    ///< that met between two frames
   std::size_t crowded = 0;  ///< of them left out because a third body took part
   bool spins = false;       ///< whether psi_1 and psi_2 are known
+  std::size_t stride = 1;   ///< every how manyth frame was looked at
 };
 
 /// Two beads that are apart in two frames that follow each other, approach in the first, part in the second,

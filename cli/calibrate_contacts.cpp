@@ -181,10 +181,14 @@ void run_collisions(const CollisionFlags& o, const Common& common) {
   d["sticking"] = fit.sticking;
   d["sliding"] = fit.sliding;
   d["spins"] = found.spins;
+  d["stride"] = found.stride;
   if (!found.spins)
     out.notes.emplace_back("the trajectory has no spins, without which friction does not show");
   out.text = fmt::format("{} pairs met between two frames, {} with a third body left out, {} outliers\n",
                          found.pairs, found.crowded, fit.outliers);
+  if (found.stride > 1)
+    out.text += fmt::format("every {}th frame looked at: collisions last longer than the frames are apart\n",
+                            found.stride);
   out.text += fmt::format("e_n scatters by {:.2g} from impact to impact", fit.scatter);
   if (std::isfinite(fit.slope))
     out.text += fmt::format("; de_n/d ln(speed) = {:.2g} +- {:.1g}", fit.slope, fit.slope_error);

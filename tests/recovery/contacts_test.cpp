@@ -142,6 +142,20 @@ TEST(Bounce, VibratingPlate) {
   EXPECT_LE(r.coverage, 0.97);
 }
 
+TEST(Bounce, NoNoiseAndAPlateThatOvertakesFlights) {
+  // Heights without noise: where the plate falls and rises under a flying bead, the height above it has
+  // minima that are no impacts.
+  const Film film{.e = 0.85, .noise = 0, .amplitude = 4, .duration = 60};
+  const BounceOptions options{.gravity = std::nullopt, .drag = false, .plate = [](double t) {
+                                return PlateAt{4 * std::sin(t), 4 * std::cos(t)};
+                              }};
+  std::mt19937_64 generator(1);
+  const BounceFit fit = fit_bounces(bounce(film, generator), options);
+  EXPECT_GE(fit.impacts.size(), 2U);
+  for (const BounceImpact& impact : fit.impacts) EXPECT_NEAR(impact.restitution, 0.85, 1e-3) << impact.time;
+  EXPECT_NEAR(fit.gravity, 1, 1e-4);
+}
+
 TEST(Bounce, WhatCannotBeFitted) {
   EXPECT_THROW(fit_bounces({}), InputError);
   std::vector<BounceSample> fall;
@@ -206,19 +220,29 @@ TEST(Walton, SaysWhatIsUndetermined) {
   EXPECT_THROW(fit_walton({}, 0.5), InputError);
 }
 
-TEST(Collisions, OfTheSimulatorGiveItsRestitutionAndFriction) {
-  // A gas of discs without gravity; linear dashpot e_n = 0.9, mu = 0.2. 1/m_t = 6, MODEL's sticking ratio is
-  // -beta_0.
+namespace {
+
+/// A gas of discs without gravity; linear dashpot e_n = 0.9, mu = 0.2. 1/m_t = 6, MODEL's sticking ratio is
+/// -beta_0.
+MemoryTrajectory gas(int cycles, int phases) {
   const sim::Scene scene = sim::read_scene_text(
       "[cell]\nwidth = 20.0\nheight = 20.0\nlid = \"wall\"\ngravity = 0.0\n[beads]\ncount = "
       "60\n[contact]\nk_n = 1e5\n"
       "restitution = 0.9\nk_t = 28571.0\ngamma_t = 0.0\nmu = 0.2\n[drive]\namplitude = 0.0\nomega = "
       "12.566\n[start]\nkind "
-      "= \"random\"\nseed = 3\nvelocity_scale = 2.0\n[time]\ndiscard = 0\ncycles = 60\nphases = 20\n",
+      "= \"random\"\nseed = 3\nvelocity_scale = 2.0\n[time]\ndiscard = 0\ncycles = " +
+          std::to_string(cycles) + "\nphases = " + std::to_string(phases) + "\n",
       "gas");
   sim::Simulation run(scene);
   MemoryTrajectory trajectory(run.trajectory_info());
   run.run(trajectory);
+  return trajectory;
+}
+
+}  // namespace
+
+TEST(Collisions, OfTheSimulatorGiveItsRestitutionAndFriction) {
+  const MemoryTrajectory trajectory = gas(60, 20);
   const FoundCollisions found = find_collisions(trajectory, {.gravity = 0, .least_speed = 0.2});
   const WaltonFit f = fit_walton(found.impacts, 0.5);
   std::cout << found.impacts.size() << " impacts, " << found.crowded << " crowded; e_n " << f.restitution
@@ -230,6 +254,17 @@ TEST(Collisions, OfTheSimulatorGiveItsRestitutionAndFriction) {
   test::validate(
       {"I6.2", "mu from collisions found in a trajectory", 0.2, 0.01, "Coulomb's law of the scene"},
       f.tangential.value("mu"));
+}
+
+// t_c is 7e-3 t0, the frames are 1.25e-3 t0 apart: no collision fits between two of them.
+TEST(Collisions, LongerThanTheFramesAreApartAreFoundOverSeveral) {
+  const MemoryTrajectory trajectory = gas(20, 400);
+  EXPECT_LT(find_collisions(trajectory, {.gravity = 0, .least_speed = 0.2, .stride = 1}).impacts.size(), 3U);
+  const FoundCollisions found = find_collisions(trajectory, {.gravity = 0, .least_speed = 0.2});
+  std::cout << found.impacts.size() << " impacts in every " << found.stride << "th frame\n";
+  EXPECT_GE(found.stride, 4U);
+  EXPECT_GT(found.impacts.size(), 15U);
+  EXPECT_NEAR(fit_walton(found.impacts, 0.5).restitution, 0.9, 0.003);
 }
 
 TEST(Inference, IntervalsCoverAndWhatDoesNotMatterIsUndetermined) {
