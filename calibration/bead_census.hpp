@@ -54,9 +54,8 @@ struct BeadCensus {
   /// Relative change of the diameters along x and y, 1 over the frames' unit: a camera that looks askew sees
   /// far beads smaller. Errors as if beads did not sort themselves by size.
   Estimate gradient_x, gradient_y;
-  std::vector<double> diameters;  ///< all of one frame's worth, for the picture, sorted
-  std::optional<Estimate>
-      spacing;  ///< distance of touching beads: mode of all near pairs; absent without such
+  std::vector<double> diameters;    ///< all of one frame's worth, for the picture, sorted
+  std::optional<Estimate> spacing;  ///< distance of touching beads; absent where none show
 };
 
 /// \throws InputError for fewer than 3 beads. Beads of one frame count as independent, the same beads in

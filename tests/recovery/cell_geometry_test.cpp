@@ -273,6 +273,39 @@ TEST(BeadCensus, SizesAndSpacingComeBack) {
   EXPECT_THROW(count_beads({}), InputError);
 }
 
+TEST(BeadCensus, TheDistanceOfTouchingBeadsIsFoundAmongThoseThatNearlyTouch) {
+  // Pairs of beads far from all others: every third touches, the others are up to 0.4 px apart; 200 seeds.
+  std::mt19937_64 generator(19);
+  std::normal_distribution<double> normal(0, 1);
+  std::uniform_real_distribution<double> gap(0, 0.4);
+  int covered = 0, found = 0;
+  double bias = 0;
+  const int trials = 200;
+  for (int i = 0; i < trials; ++i) {
+    BeadFrames beads;
+    beads.frames.emplace_back();
+    for (int k = 0; k < 600; ++k) {
+      const double x = 100.0 * (k % 30), y = 100.0 * static_cast<int>(k / 30),
+                   apart = 15 + (k % 3 == 0 ? 0 : gap(generator));
+      beads.frames.back().push_back({x + 0.01 * normal(generator), y + 0.01 * normal(generator), 7.5, 0.01});
+      beads.frames.back().push_back(
+          {x + apart + 0.01 * normal(generator), y + 0.01 * normal(generator), 7.5, 0.01});
+    }
+    beads.counts.push_back(beads.frames.back().size());
+    const BeadCensus c = count_beads(beads);
+    if (!c.spacing) continue;
+    ++found;
+    bias += (c.spacing->value - 15) / trials;
+    covered += std::abs(c.spacing->value - 15) <= 1.96 * c.spacing->error ? 1 : 0;
+  }
+  std::cout << "distance of touching beads: bias " << bias << " px, coverage " << 100.0 * covered / found
+            << " %\n";
+  EXPECT_EQ(found, trials);
+  EXPECT_NEAR(bias, 0, 1e-3);
+  EXPECT_GE(covered, 0.92 * trials);
+  EXPECT_LE(covered, 0.98 * trials);
+}
+
 TEST(BeadCensus, ACameraThatLooksAskewShowsInTheSizes) {
   // Beads grow by 1 % over 300 px downwards and not at all across; 200 seeds.
   std::mt19937_64 generator(14);
