@@ -106,6 +106,12 @@ class Convection : public Observable {
     }
 
     const Circulation circulation = circulation_of(field);
+    if (why.empty() && std::none_of(circulation.plaquettes.begin(), circulation.plaquettes.end(),
+                                    [](double loop) { return std::isfinite(loop); })) {
+      for (const char* name : {"circulation_left", "circulation_right", "rolls", "convection_sense"})
+        add({.name = name}, "no four adjoining cells have enough displacements");
+      return all;
+    }
     const auto left = interval(total, circulation.left, [](const Circulation& c) { return c.left; });
     const auto right = interval(total, circulation.right, [](const Circulation& c) { return c.right; });
     const std::string sign = "counter-clockwise (x right, z up) is positive";

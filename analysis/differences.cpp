@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "analysis/statistics.hpp"
 #include "analysis/tracers.hpp"
 
 namespace twincell {
@@ -14,6 +15,8 @@ namespace {
 
 /// A difference is one if it exceeds this many standard errors.
 constexpr double kSignificant = 2;
+/// Fewer runs of a start than these hardly say how much seeds differ.
+constexpr std::size_t kFewSeeds = 5;
 /// Heights of the lines of tracers over mid-height, sigma.
 constexpr std::array<double, 3> kLines = {-1, 0, 1};
 
@@ -87,7 +90,11 @@ void compare_simulations(const std::vector<Run>& runs, const Match& match, Diffe
     low = std::min(low, mean(values));
     high = std::max(high, mean(values));
     // Crystals hardly differ from each other; the experiment may be of the kind that does.
-    if (values.size() > 1) d.seeds = std::max(d.seeds.value_or(0), deviation(values));
+    if (values.size() < 2) continue;
+    const double spread = deviation(values);
+    if (d.seeds && spread <= *d.seeds) continue;
+    d.seeds = spread;
+    d.seed_runs = values.size();
   }
   if (of_start.size() > 1) d.defects = high - low;
 }
@@ -130,7 +137,13 @@ class Marked : public TrajectorySource {
 }  // namespace
 
 std::optional<double> Difference::error() const {
-  return in_quadrature({statistics, seeds, tracers});
+  return in_quadrature({statistics, seed_error(), tracers});
+}
+
+std::optional<double> Difference::seed_error() const {
+  if (!seeds || seed_runs < 2) return seeds;
+  const auto n = static_cast<double>(seed_runs);
+  return *seeds * std::sqrt(1 + 1 / n) * student_t_95(n - 1) / 1.96;
 }
 
 std::optional<double> Difference::in_errors() const {
@@ -140,26 +153,33 @@ std::optional<double> Difference::in_errors() const {
 }
 
 std::string Difference::attribution() const {
+  const double size = std::abs(difference());
+  if (size == 0 && remainder() == 0) return "none: the same on both sides";
   const auto t = in_errors();
   if (!t) return "no error is known, so nothing can be said";
-  const double size = std::abs(difference());
   std::string by_camera;
   if (camera && std::abs(*camera) > 0.5 * size && *camera * difference() > 0)
-    by_camera = fmt::format("camera and tracking make {:.0f} % of it", 100 * *camera / difference());
+    by_camera = *camera / difference() < 1
+                    ? fmt::format("camera and tracking make {:.0f} % of it", 100 * *camera / difference())
+                    : "camera and tracking make all of it";
   if (std::abs(*t) <= kSignificant) {
     if (!by_camera.empty() && size > kSignificant * *error())
       return by_camera + "; the rest is within its error";
     const std::pair<const char*, std::optional<double>> sources[] = {
-        {"statistics", statistics}, {"seed", seeds}, {"choice of tracers", tracers}};
+        {"statistics", statistics}, {"seeds", seed_error()}, {"choice of tracers", tracers}};
     const auto largest = std::max_element(
         std::begin(sources), std::end(sources),
         [](const auto& a, const auto& b) { return a.second.value_or(0) < b.second.value_or(0); });
-    return fmt::format("within its error, of which most is {}", largest->first);
+    std::string text = fmt::format("within its error, of which most is {}", largest->first);
+    if (largest->second == seed_error() && seeds && seed_runs < kFewSeeds)
+      text += fmt::format(", known from {} runs only", seed_runs);
+    return text;
   }
   if (defects && std::abs(remainder()) <= *defects)
     return fmt::format("{:.1f} errors; no more than starts with other defects differ by", std::abs(*t));
-  return fmt::format("{:.1f} errors: a real difference{}{}", std::abs(*t),
+  return fmt::format("{:.1f} errors: a real difference{}{}{}", std::abs(*t),
                      by_camera.empty() ? "" : ", though " + by_camera,
+                     camera ? "" : ", unless camera and tracking make it: nothing was filmed",
                      defects ? "" : "; whether defects make it, one start alone cannot tell");
 }
 

@@ -378,7 +378,7 @@ void run_gnuplot(const std::filesystem::path& folder, const std::string& script)
 void draw(const Figure& figure, const std::filesystem::path& folder) {
   const bool own_svg = !figure.svg.empty();
   const std::string script = fmt::format(
-      "# {0}\n# gnuplot {1}.gp draws {2}\n"
+      "# {0}\n# gnuplot {1}.gp draws {2}\n{12}"
       "do for [kind in '{3}'] {{\n"
       "if (kind eq 'svg') {{\n"
       "  set terminal svg size {4},{5} dynamic enhanced font 'Arial,15' background 'white'\n"
@@ -400,7 +400,8 @@ void draw(const Figure& figure, const std::filesystem::path& folder) {
       own_svg ? fmt::format("{0}.pdf and {0}.png", figure.name)
               : fmt::format("{0}.svg, {0}.pdf and {0}.png", figure.name),
       own_svg ? "pdf png" : "svg pdf png", figure.width, figure.height, figure.width * 8 / 5,
-      figure.height * 8 / 5, kStyle, figure.plot, figure.width / 90.0, figure.height / 90.0);
+      figure.height * 8 / 5, kStyle, figure.plot, figure.width / 90.0, figure.height / 90.0,
+      colours::for_gnuplot());
   write_text_file(folder / (figure.name + ".dat"), figure.data);
   write_text_file(folder / (figure.name + ".gp"), script);
   if (own_svg) write_text_file(folder / (figure.name + ".svg"), figure.svg);

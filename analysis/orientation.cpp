@@ -11,6 +11,14 @@ namespace {
 
 const char* const kSource = "Fortini & Huang 2015, Fig. 2";
 
+/// 60 degrees bring a lattice back to itself.
+constexpr double kTurn = 60;
+
+/// A lattice turned by exactly the width is near, whatever rounding says.
+bool within_width(double angle, double other) {
+  return misorientation(angle, other) <= kOrientationWidth + 1e-9;
+}
+
 class Orientation : public Observable {
  public:
   explicit Orientation(const AnalysisContext& context)
@@ -29,15 +37,19 @@ class Orientation : public Observable {
       bulk_ordered += enclosed[i];
       ++ordered;
       sum += std::polar(order.psi6[i], 6 * order.angle[i] * std::numbers::pi / 180);
-      a += misorientation(order.angle[i], 0) <= kOrientationWidth ? 1 : 0;
-      b += misorientation(order.angle[i], 30) <= kOrientationWidth ? 1 : 0;
+      a += within_width(order.angle[i], 0) ? 1 : 0;
+      b += within_width(order.angle[i], 30) ? 1 : 0;
     }
     const auto share = [](std::size_t part, std::size_t whole) {
       return static_cast<double>(part) / static_cast<double>(whole);
     };
     if (bulk > 0) ordered_.add(share(bulk_ordered, bulk));
     if (ordered == 0) return;
-    angle_.add(lattice_angle(sum.real(), sum.imag()));
+    // Frames of a lattice near 45 degrees, which is -15, must not cancel each other: each angle is taken on
+    // the side of the first.
+    const double angle = lattice_angle(sum.real(), sum.imag());
+    if (angle_.n() == 0) first_ = angle;
+    angle_.add(first_ + std::remainder(angle - first_, kTurn));
     a_.add(share(a, ordered));
     b_.add(share(b, ordered));
   }
@@ -61,10 +73,11 @@ class Orientation : public Observable {
         mean("ordered_fraction", ordered_, "1",
              fmt::format("share of beads with psi6 > {} among those that are no surface", kOrdered),
              dimension_ != 2 ? planar : "every bead is at a surface"),
-        mean("orientation", angle_, "degrees",
-             fmt::format("arg of the sum of psi_6 over beads with |psi_6| > {}, over 6; -15 to 45: A 0, B 30",
-                         kOrdered),
-             none),
+        back(mean(
+            "orientation", angle_, "degrees",
+            fmt::format("arg of the sum of psi_6 over beads with |psi_6| > {}, over 6; -15 to 45: A 0, B 30",
+                        kOrdered),
+            none)),
         mean("orientation_a", a_, "1", near + "0", none), mean("orientation_b", b_, "1", near + "30", none),
         array_of(
             last_,
@@ -77,8 +90,21 @@ class Orientation : public Observable {
   }
 
  private:
+  /// A mean angle brought back to -15 … 45, its interval with it.
+  static Result back(Result angle) {
+    if (!angle.present()) return angle;
+    const double turns = kTurn * std::floor((angle.value() + kTurn / 4) / kTurn);
+    angle.values[0] -= turns;
+    if (angle.interval) {
+      angle.interval->low -= turns;
+      angle.interval->high -= turns;
+    }
+    return angle;
+  }
+
   std::string rule_;
   int dimension_;
+  double first_ = 0;
   std::vector<double> last_;
   BlockAverage ordered_, angle_, a_, b_;
 };

@@ -446,7 +446,10 @@ std::string page(const Comparison& c, const std::vector<Figure>& figures,
   html += "<h2>Runs</h2>\n" + runs_table(c.runs);
   html += "<details><summary>The same figures, drawn by gnuplot</summary>\n" +
           static_figures(figures, figure_folder) + "</details>\n";
-  html += "<h2>How each number was made</h2>\n" + conventions(c.runs);
+  html +=
+      "<h2>How each number was made</h2>\n<details><summary>Convention, interval and source of every "
+      "number</summary>\n" +
+      conventions(c.runs) + "</details>\n";
   html += "<h2>Provenance</h2>\n<p>" + escape(version_line()) +
           "</p>\n<details><summary>Command, inputs and their digests</summary><pre>" +
           escape(nlohmann::json::parse(provenance_json).dump(2)) +

@@ -48,7 +48,6 @@ class Slip : public Observable {
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
     if (frame.phase != 0 || frame.cycle < 0) return;
-    ++starts_;
     if (have_start_ && frame.cycle == start_.cycle + 1) close_period(frame);
     start_ = frame;
     neighbours_ = view.neighbours();
@@ -138,8 +137,8 @@ class Slip : public Observable {
   [[nodiscard]] std::string why_none() const {
     if (!context_.info.columns.phase) return "the frames are not locked to the drive's phase";
     if (periods_ == 0)
-      return fmt::format(
-          "{} beginnings of cycles, none of them consecutive: slip is counted from one to the next", starts_);
+      return "slip is counted from the beginning of a cycle to that of the next, and no two consecutive ones "
+             "are there";
     if (trials_ == 0)
       return fmt::format(
           "no eligible bead: none lies {:g} sigma below the free surface with two neighbours in {} periods",
@@ -167,7 +166,7 @@ class Slip : public Observable {
     const std::string rule = fmt::format(
         "at least {} neighbours at its start moved relative to the bead by more than {:g} sigma in one "
         "period; beads "
-        "{:g} sigma or more below the 99th percentile of heights; neighbours: {}",
+        "{:g} sigma or more below the 99th percentile of heights; {}",
         kSlipBonds, kSlipDistance, kSlipDepth, neighbour_rule_text(context_));
     Result p_s{
         .name = "p_s", .values = {fraction_.mean()}, .unit = "1", .n = trials_, .n_of = "bead-periods"};
@@ -267,7 +266,6 @@ class Slip : public Observable {
   Frame start_;
   Neighbours neighbours_;
   bool have_start_ = false;
-  std::size_t starts_ = 0;
   std::size_t periods_ = 0;
   std::size_t lost_ = 0;
   std::size_t slips_ = 0;

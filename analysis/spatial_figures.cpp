@@ -25,7 +25,7 @@ struct BeadStyle {
   const char* name;
 };
 constexpr std::array<BeadStyle, 4> kLattice = {{{kSky, "A: rows along the floor"},
-                                                {"#009E73", "between"},
+                                                {colours::kGreen, "between"},
                                                 {kOrange, "B: rows along the walls"},
                                                 {kPale, "ψ6 below 0.9"}}};
 std::size_t style_of(double psi6, double angle) {

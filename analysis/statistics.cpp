@@ -110,7 +110,7 @@ std::size_t BlockAverage::block_length() const {
 
 std::string BlockAverage::why_no_interval(const std::string& of_what) const {
   if (block_length() > 0) return "";
-  if (n_ < 4) return fmt::format("{} {} are too few for an error", n_, of_what);
+  if (n_ < 4) return fmt::format("too few {} for an error: {} of at least 4", of_what, n_);
   return fmt::format("{} {} with a correlation time of {:.3g} do not hold {} independent blocks", n_, of_what,
                      correlation_time(), kMinBlocks);
 }

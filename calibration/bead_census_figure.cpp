@@ -24,8 +24,8 @@ Figure bead_census_figure(const BeadCensus& census, double unit_px) {
   f.plot = fmt::format(
       "set xlabel 'diameter, {}'\nset ylabel 'discs'\nset yrange [0:*]\nset boxwidth {:.6g}\nset style fill "
       "solid 0.6 "
-      "border\nset arrow from {:.6g}, graph 0 to {:.6g}, graph 1 nohead lw 2 lc rgb '#D55E00'\n"
-      "plot 'beads.dat' using 1:2 with boxes lc rgb '#0072B2' notitle\n",
+      "border\nset arrow from {:.6g}, graph 0 to {:.6g}, graph 1 nohead lw 2 lc rgb vermilion\n"
+      "plot 'beads.dat' using 1:2 with boxes lc rgb blue notitle\n",
       px ? "px" : "σ", width, census.diameter.value * unit, census.diameter.value * unit);
   f.caption = fmt::format("{} discs in {} frames; the line is the mean", census.sizes, census.frames);
   return f;

@@ -14,9 +14,9 @@ Figure bounce_figure(const BounceFit& fit) {
     f.data += fmt::format("{:.6g} {:.6g} {:.3g}\n", i.speed, i.restitution, i.error);
   f.plot = fmt::format(
       "set xlabel 'impact speed'\nset ylabel 'e_n'\nset key top left\n"
-      "plot [*:*] {:.8g} with lines lw 2 lc rgb '#0072B2' title 'mean', {:.8g} with lines dt 2 lc rgb "
-      "'#0072B2' title "
-      "'± 95 %', {:.8g} with lines dt 2 lc rgb '#0072B2' notitle, 'bounce.dat' using 1:2:3 with yerrorbars "
+      "plot [*:*] {:.8g} with lines lw 2 lc rgb blue title 'mean', {:.8g} with lines dt 2 lc rgb "
+      "blue title "
+      "'± 95 %', {:.8g} with lines dt 2 lc rgb blue notitle, 'bounce.dat' using 1:2:3 with yerrorbars "
       "pt 7 lc rgb "
       "'#222222' title 'impacts'\n",
       fit.restitution, fit.restitution + 1.96 * fit.restitution_error,
@@ -38,13 +38,13 @@ Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, dou
     const double mu = fit.tangential.values[0], beta = fit.tangential.values[1],
                  reach = (1 + fit.restitution) * (1 + 1 / shape);
     curve = fmt::format(
-        "(-({:.8g})*x > x-({:.8g})) ? -({:.8g})*x : x-({:.8g}) with lines lw 2 lc rgb '#0072B2' title "
+        "(-({:.8g})*x > x-({:.8g})) ? -({:.8g})*x : x-({:.8g}) with lines lw 2 lc rgb blue title "
         "'fit', ",
         beta, mu * reach, beta, mu * reach);
   }
   f.plot = fmt::format(
       "set multiplot layout 1,2\nset xlabel 'impact speed, σ/t_0'\nset ylabel 'e_n'\nset yrange [0:1.1]\n"
-      "plot {:.8g} with lines lw 2 lc rgb '#0072B2' title 'mean', 'collisions.dat' using 1:2 with points pt "
+      "plot {:.8g} with lines lw 2 lc rgb blue title 'mean', 'collisions.dat' using 1:2 with points pt "
       "7 ps 0.4 lc "
       "rgb '#222222' title 'collisions'\n"
       "set xlabel 'Ψ_1'\nset ylabel 'Ψ_2'\nset yrange [*:*]\nset xrange [0:{:.6g}]\nset key top left\nset "
@@ -76,7 +76,7 @@ Figure profile_figure(const Inference& inference) {
     f.plot += fmt::format(
         "set xlabel '{}'\nset xrange [{:.6g}:{:.6g}]\nplot 'profile.dat' index {} using 1:2 with lines lw 2 "
         "lc rgb "
-        "'#0072B2', 3.84 with lines dt 2 lc rgb '#D55E00'\n",
+        "blue, 3.84 with lines dt 2 lc rgb vermilion\n",
         label, p.sought.lower, p.sought.upper, i);
   }
   f.plot += "unset multiplot\n";

@@ -19,6 +19,8 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSuspicious = 0.05;
 constexpr double kCorrelated = 0.99;
+/// Residual squares below this share of the ordinates' own are rounding.
+constexpr double kExact = 1e-26;
 
 struct Selected {
   std::vector<FitPoint> points;
@@ -69,6 +71,11 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
   const std::string data =
       low > high ? "there is no valid point among the data"
                  : fmt::format("the data span [{:g}, {:g}], {} of them zero", low, high, result.n_zero);
+  const FitWindow everything;
+  if (selected.points.empty() && window.low == everything.low && window.high == everything.high)
+    throw InputError({.file = {}, .key = "points"},
+                     fmt::format("none of {} can be fitted: {} zero, {} invalid for {}", points.size(),
+                                 result.n_zero, result.n_invalid, law.name));
   if (selected.points.empty())
     throw InputError({.file = {}, .key = "window"},
                      fmt::format("no point to fit lies in [{:g}, {:g}]; {}", window.low, window.high, data));
@@ -124,6 +131,13 @@ double correlation_of(const std::vector<FitPoint>& points, const std::vector<dou
   return yy > 0 && ff > 0 ? yf / std::sqrt(yy * ff) : kNaN;
 }
 
+/// Half of the squares of the ordinates in units of their errors.
+double squares_of(const Selected& selected) {
+  double total = 0;
+  for (const FitPoint& p : selected.points) total += p.y * p.y / (p.error * p.error) / 2;
+  return total;
+}
+
 /// Probability of reducing the squares so far with `extra` parameters that do nothing.
 double chance_of_gain(double nested_squares, double squares, std::size_t points, std::size_t parameters,
                       std::size_t extra, bool weighted) {
@@ -144,10 +158,7 @@ void compare_with_nested(CurveFit& result, const Selected& selected) {
   const Law& simple = law_named(law.nested);
   const FitReport nested = best_of_starts(simple, selected);
   const std::size_t n = selected.points.size(), parameters = law.parameters.size();
-  // Squares below rounding are no gain.
-  double total = 0;
-  for (const FitPoint& p : selected.points) total += p.y * p.y / (p.error * p.error);
-  const bool exact = 2 * nested.cost_after <= 1e-26 * total;
+  const bool exact = nested.cost_after <= kExact * squares_of(selected);
   result.p_nested = exact ? 1
                           : chance_of_gain(2 * nested.cost_after, 2 * result.fit.cost_after, n, parameters,
                                            parameters - simple.parameters.size(), result.weighted);
@@ -207,6 +218,11 @@ void add_intervals(CurveFit& result, const Selected& selected) {
                                    fit.values[p] + reach * fit.standard_errors[p], 0.95, method};
   if (result.law->squares_bent_at && fit.values.back() > 0)
     result.intervals.back() = interval_of_bend(result, selected, reach);
+  // Data without scatter would make an error of 0 even of what they leave undetermined.
+  if (!result.weighted && result.fit.cost_after <= kExact * squares_of(selected))
+    for (std::size_t p = 0; p < fit.values.size(); ++p)
+      if (std::find(fit.undetermined.begin(), fit.undetermined.end(), fit.names[p]) != fit.undetermined.end())
+        result.intervals[p].reset();
 }
 
 void add_notes(CurveFit& result, const Selected& selected) {

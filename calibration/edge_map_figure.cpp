@@ -25,7 +25,7 @@ Figure edge_map_figure(const CellGeometry& geometry) {
   f.plot = fmt::format(
       "set size ratio {:.5f}\nset xrange [0:{}]\nset yrange [{}:0]\nset xlabel 'x, px'\nset ylabel 'y, px'\n"
       "set cblabel 'residual, px'\nset cbrange [{:.3f}:{:.3f}]\n"
-      "set palette defined (-1 '#0072B2', 0 '#DDDDDD', 1 '#D55E00')\n"
+      "set palette defined (-1 blue, 0 '#DDDDDD', 1 vermilion)\n"
       "plot 'edges.dat' using 1:2:3 with points pt 7 ps 0.5 palette notitle\n",
       static_cast<double>(geometry.size.height) / geometry.size.width, geometry.size.width,
       geometry.size.height, -reach, reach);

@@ -81,14 +81,14 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
   if (!left_out.empty()) {
     f.data += "\n\n# points outside the window: x, y\n" + left_out;
     more += fmt::format(
-        ", 'fit.dat' index {} using 1:2 with points pt 6 ps 1.1 lw 1.5 lc rgb '#9A9A9A' title "
+        ", 'fit.dat' index {} using 1:2 with points pt 6 ps 1.1 lw 1.5 lc rgb grey title "
         "'outside the window'",
         index++);
   }
   if (!limits.empty()) {
     f.data += "\n\n# zeros: x, 95 % upper limit\n" + limits;
     more += fmt::format(
-        ", 'fit.dat' index {} using 1:2 with points pt 11 ps 1.3 lc rgb '#D55E00' title "
+        ", 'fit.dat' index {} using 1:2 with points pt 11 ps 1.3 lc rgb vermilion title "
         "'zero: 95 % upper limit'",
         index++);
   }
@@ -104,15 +104,15 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
       "set multiplot\nset lmargin at screen 0.19\nset rmargin at screen 0.95\nset xrange {}\n"
       "{}{}set tmargin at screen 0.95\nset bmargin at screen 0.40\nset format x ''\nset ylabel '{}'\n"
       "set key top {} samplen 2\n"
-      "plot 'fit.dat' index 1 using 1:3:4 with filledcurves fc rgb '#56B4E9' fs transparent solid 0.35 "
+      "plot 'fit.dat' index 1 using 1:3:4 with filledcurves fc rgb sky fs transparent solid 0.35 "
       "noborder "
-      "title '95 % band', 'fit.dat' index 1 using 1:2 with lines lw 2 lc rgb '#0072B2' title '{}', 'fit.dat' "
+      "title '95 % band', 'fit.dat' index 1 using 1:2 with lines lw 2 lc rgb blue title '{}', 'fit.dat' "
       "index 0 using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1.3 lc rgb '#222222' title 'points'{}\n"
       "unset logscale y\nset ytics autofreq\nunset key\nset tmargin at screen 0.35\nset bmargin at screen "
       "0.12\nset format x '%g'\n"
       "set format y '%g'\nset xlabel '{}'\nset ylabel '{}'\nset yrange [*:*]\n"
-      "plot 0 with lines lw 1.5 lc rgb '#0072B2', 'fit.dat' index 0 using 1:5 with impulses lw 1.3 lc rgb "
-      "'#9A9A9A', 'fit.dat' index 0 using 1:5 with points pt 7 ps 0.9 lc rgb '#222222'\nunset multiplot\n",
+      "plot 0 with lines lw 1.5 lc rgb blue, 'fit.dat' index 0 using 1:5 with impulses lw 1.3 lc rgb "
+      "grey, 'fit.dat' index 0 using 1:5 with points pt 7 ps 0.9 lc rgb '#222222'\nunset multiplot\n",
       x_range, ratio ? "set logscale x\n" : "",
       law.logarithmic ? "set logscale y\nset format y '10^{%T}'\n" : "", label(y_name),
       law.axis == Law::Axis::reciprocal || (law.logarithmic && fit.at(high) < fit.at(low)) || !law.logarithmic

@@ -31,15 +31,15 @@ Figure plate_lock_figure(const PlateLock& lock) {
   f.plot = fmt::format(
       "set multiplot\nset lmargin at screen 0.14\nset rmargin at screen 0.96\nset xrange [0:1]\n"
       "set tmargin at screen 0.95\nset bmargin at screen 0.42\nset format x ''\nset ylabel 'height, px'\n"
-      "plot 'plate.dat' index 1 using 1:2 with lines lw 2 lc rgb '#0072B2' title 'fit', 'plate.dat' index 0 "
+      "plot 'plate.dat' index 1 using 1:2 with lines lw 2 lc rgb blue title 'fit', 'plate.dat' index 0 "
       "using 1:2 "
       "with points pt 7 ps 0.5 lc rgb '#222222' title 'frames'{}\n"
       "unset key\nset tmargin at screen 0.37\nset bmargin at screen 0.12\nset format x '%g'\n"
       "set xlabel 'phase of the drive, cycles'\nset ylabel 'residual, px'\n"
-      "plot 0 with lines lw 1.5 lc rgb '#0072B2', 'plate.dat' index 0 using 1:3 with points pt 7 ps 0.5 lc "
+      "plot 0 with lines lw 1.5 lc rgb blue, 'plate.dat' index 0 using 1:3 with points pt 7 ps 0.5 lc "
       "rgb "
       "'#222222'\nunset multiplot\n",
-      others ? ", 'plate.dat' index 2 using 1:2 with points pt 2 ps 0.9 lc rgb '#D55E00' title 'out of lock'"
+      others ? ", 'plate.dat' index 2 using 1:2 with points pt 2 ps 0.9 lc rgb vermilion title 'out of lock'"
              : "");
   f.caption = fmt::format("{} frames locked, {} out of lock", lock.locked, lock.out_of_lock);
   return f;

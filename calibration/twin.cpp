@@ -11,6 +11,7 @@
 #include "analysis/trajectory/h5md_file.hpp"
 #include "analysis/trajectory/median.hpp"
 #include "analysis/trajectory/toml_leaves.hpp"
+#include "calibration/plate_drive.hpp"
 #include "imaging/frame_source.hpp"
 #include "imaging/pipeline.hpp"
 #include "sim/kernel.hpp"
@@ -32,8 +33,6 @@ void require_known(const CellDescription& cell, const fs::path& file) {
   };
   need(cell.origin.has_value(), "camera.origin_px", "to place the beads over the plate");
   need(cell.width.has_value(), "cell.width", "to place the side walls");
-  need(cell.phase_lock.locked(), "camera.frames_per_cycle", "to know the plate's height in each frame");
-  need(cell.drive().has_value(), "drive", "to shake the simulation as the cell was");
 }
 
 const char* word_of_sides(const CellDescription& cell, const fs::path& file) {
@@ -128,11 +127,17 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
 
 Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinProvenance& provenance,
                const ProgressOf& progress) {
-  const CellDescription cell = read_cell(options.cell_file);
+  CellDescription cell = read_cell(options.cell_file);
   require_known(cell, options.cell_file);
   (void)word_of_sides(cell, options.cell_file);
+  std::string drive;
+  if (lacks_drive(cell)) {
+    const auto bar = progress("the plate's edge");
+    drive = complete_drive(cell, options.cell_file, options.stack, options.threads, *bar);
+  }
   const std::string base = options.scene.empty() ? std::string() : read_text_file(options.scene);
   Twin twin{.experiment = folder / "experiment.h5", .scene = folder / "scene.toml"};
+  twin.drive = drive;
   const auto scene_text = [&](std::size_t frame, std::int64_t cycles) {
     return twin_scene(base, options.scene.string(), cell, twin.experiment, frame, cycles);
   };

@@ -43,6 +43,7 @@ struct Twin {
   double position_error = 0;    ///< median uncertainty of a coordinate in the first frame at phase 0, sigma
   std::size_t beads = 0;        ///< in that frame
   std::int64_t cycles = 0;
+  std::string drive;  ///< how what the cell does not say of the drive was measured; empty: it says all
 };
 
 /// The scene of the twin as TOML: `base` (text of a scene, or empty) with width, sides, drive and scale of
@@ -52,9 +53,10 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
                        const std::filesystem::path& experiment, std::size_t frame, std::int64_t cycles);
 
 /// Writes experiment.h5, scene.toml and simulation-1.h5 … into `folder`, which is made if it is not there.
-/// \throws ConfigError if the cell description lacks origin, width, drive or frames per cycle, the scene
-/// cannot be, or the folder cannot be written to: all before the work; InputError, RunError as track_stack
-/// and Simulation
+/// What the cell does not say of drive and phases is measured on the plate (plate_drive.hpp).
+/// \throws ConfigError if the cell description lacks origin or width, the drive is neither stated nor seen,
+/// the scene cannot be, or the folder cannot be written to: all before the work; InputError, RunError as
+/// track_stack and Simulation
 Twin make_twin(const TwinOptions& options, const std::filesystem::path& folder,
                const TwinProvenance& provenance, const ProgressOf& progress);
 

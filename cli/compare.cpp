@@ -21,7 +21,10 @@ void run(const Common& common, CompareOptions& o) {
   const ComparingOptions& options = o.flags.options;
   if (options.experiments.empty() && options.simulations.empty())
     throw ConfigError({.file = {}, .key = "compare"},
-                      "there is nothing to compare: give --experiment and --simulation trajectories");
+                      options.sweeps.empty()
+                          ? "there is nothing to compare: give --experiment and --simulation trajectories"
+                          : "a sweep's results hold no bed to look at: give --simulation or --experiment "
+                            "trajectories too, as sweep run --keep-trajectories leaves them in points/");
   { const AtomicPath probe(o.output, AtomicPath::Kind::folder); }  // found before the work, not after
   compare_and_report(common, options, o.output, nlohmann::json::object(), "");
 }

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 
+#include "analysis/colours.hpp"
 #include "analysis/figures.hpp"
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
@@ -250,9 +251,9 @@ Figure figure(const Measured& m) {
     const char* colour;
     int point;
   };
-  // Okabe and Ito's colours, as in all figures; each has a shape of its own as well.
+  // Each colour has a shape of its own as well.
   constexpr std::array<Style, 3> kStyles = {
-      {{"verlet", "#0072B2", 7}, {"predicted", "#E69F00", 5}, {"split", "#D55E00", 9}}};
+      {{"verlet", colours::kBlue, 7}, {"predicted", colours::kOrange, 5}, {"split", colours::kVermilion, 9}}};
   Figure f{.name = "work_precision", .title = "What accuracy costs in time", .width = 960, .height = 460};
   std::vector<double> stiffnesses;
   for (const WorkPrecision& w : m.all)

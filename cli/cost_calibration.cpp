@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/colours.hpp"
 #include "calibration/calibration_cost.hpp"
 #include "cli/calibrate.hpp"
 
@@ -69,9 +70,6 @@ std::string as_text(const CalibrationCost& cost) {
 }
 
 Figure figure(const CalibrationCost& cost) {
-  // Okabe and Ito's colours, as in all figures.
-  constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                      "#E69F00", "#56B4E9", "#000000"};
   Figure f{.name = "calibrating", .title = "What accuracy of calibration costs", .width = 760, .height = 460};
   std::string clauses;
   int index = 0;
@@ -88,7 +86,8 @@ Figure figure(const CalibrationCost& cost) {
     std::replace(title.begin(), title.end(), '_', ' ');
     clauses += fmt::format(
         "{}'calibrating.dat' index {} using 1:2 with linespoints pt {} ps 0.9 lw 2 lc rgb '{}' title '{}'",
-        index > 0 ? ", " : "", index, 4 + index, kColours[index % 7], title);
+        index > 0 ? ", " : "", index, 4 + index,
+        colours::kCurves[static_cast<std::size_t>(index) % colours::kCurves.size()], title);
     ++index;
   }
   f.plot = fmt::format(

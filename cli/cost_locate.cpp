@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "analysis/colours.hpp"
 #include "imaging/locating_cost.hpp"
 
 namespace twincell::cli {
@@ -216,9 +217,8 @@ class Panels {
 };
 
 Figure figure(const Measured& m) {
-  // Okabe and Ito's colours, as in all figures; each has a shape of its own as well.
-  constexpr std::array<const char*, 7> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                   "#E69F00", "#56B4E9", "#000000"};
+  // Each colour has a shape of its own as well.
+  constexpr auto kColours = colours::kCurves;
   constexpr std::array<int, 7> kShapes = {7, 9, 5, 11, 13, 6, 4};
   Figure f{.name = "locating", .title = "What accuracy costs in time", .width = 1260, .height = 440};
   Panels panels(f.name);
@@ -266,7 +266,7 @@ Figure figure(const Measured& m) {
       "set title 'pixels per bead, SNR 51'\nset yrange [*:*]\nset key outside right\nset ylabel 'rms error "
       "per coordinate, σ'\nplot {}, 1./30 with "
       "lines lc rgb "
-      "'#999999' title 'σ/30'\nunset multiplot\n",
+      "grey title 'σ/30'\nunset multiplot\n",
       m.scene.beads, panels.clauses(0), panels.clauses(1), panels.clauses(2));
   return f;
 }

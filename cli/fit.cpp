@@ -49,6 +49,26 @@ std::vector<DataPoint> points_of(const Table& table, FitOptions& o) {
   return points;
 }
 
+/// Frequencies lie between 0 and 1; anything else is the wrong column.
+void check_frequencies(const std::vector<DataPoint>& points, const FitOptions& o) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].y < 0 || points[i].y > 1)
+      throw InputError(
+          {.file = o.table, .key = o.y},
+          fmt::format("row {} holds {:g}; with --trials it is a frequency, from 0 to 1", i + 1, points[i].y));
+}
+
+/// Errors were named, and yet all points count alike: why.
+std::string why_not_weighted(const CurveFit& fit, const std::vector<DataPoint>& points) {
+  std::size_t without = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool binomial = points[i].trials > 0 && points[i].y * (1 - points[i].y) > 0;
+    without += fit.use[i] == PointUse::used && !(points[i].sigma > 0) && !binomial ? 1 : 0;
+  }
+  return fmt::format("not weighted: the errors named are not above 0 at {} of {} points", without,
+                     fit.n_used);
+}
+
 /// InputError's sentence with the file in front.
 CurveFit fit_of(const Law& law, const std::vector<DataPoint>& points, const FitOptions& o) {
   FitWindow window;
@@ -153,7 +173,10 @@ void run(const Common& common, FitOptions o) {
   if (!o.output.empty()) folder.emplace(o.output, AtomicPath::Kind::folder);
   const Table table = read_table(o.table);
   const std::vector<DataPoint> points = points_of(table, o);
-  const CurveFit fit = fit_of(law, points, o);
+  if (!o.trials.empty()) check_frequencies(points, o);
+  CurveFit fit = fit_of(law, points, o);
+  if (!fit.weighted && !(o.sigma.empty() && o.trials.empty()))
+    fit.notes.push_back(why_not_weighted(fit, points));
 
   Provenance provenance = common.provenance();
   provenance.inputs = {o.table};

@@ -51,15 +51,17 @@ void run(const Common& common, MatchOptions& o) {
                                {"scene", twin.scene.string()},
                                {"twins", simulations},
                                {"pixels_per_sigma", twin.pixels_per_sigma},
+                               {"drive", twin.drive.empty() ? "as the cell states it" : twin.drive},
                                {"position_error", twin.position_error},
                                {"beads", twin.beads},
                                {"cycles", twin.cycles}};
   compare_and_report(
       common, o.flags.options, folder / "report", said,
-      fmt::format("{} beads in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} twins "
-                  "over {} cycles; {}\n",
-                  twin.beads, twin.pixels_per_sigma, twin.position_error, twin.simulations.size(),
-                  twin.cycles, twin.scene.string()));
+      (twin.drive.empty() ? "" : "drive " + twin.drive + "\n") +
+          fmt::format("{} beads in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} twins "
+                      "over {} cycles; {}\n",
+                      twin.beads, twin.pixels_per_sigma, twin.position_error, twin.simulations.size(),
+                      twin.cycles, twin.scene.string()));
 }
 
 }  // namespace
@@ -73,7 +75,9 @@ void add_match(CLI::App& program, Common& common) {
                   "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
       ->required();
   verb.add_option("cell", o->twin.cell_file,
-                  "CELL.toml: origin, size, frames per cycle and drive of the cell; scale")
+                  "CELL.toml: origin and size of the cell; scale, frames per cycle and drive, which are "
+                  "measured where it "
+                  "does not say them")
       ->required();
   verb.add_option("-o,--output", o->output, "Folder: experiment.h5, scene.toml, simulation-N.h5, report/")
       ->required();

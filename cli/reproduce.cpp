@@ -90,7 +90,7 @@ void run(const ReproduceOptions& options, const Common& common) {
   if ((options.window || !options.data.empty()) && !what.takes_data)
     throw ConfigError(
         {"", 0, 0, options.window ? "window" : "data"},
-        fmt::format("says nothing to {}; p2-fig2, p2-table1 and p2-table2 compare with your own.",
+        fmt::format("says nothing to {}; p1-fig3, p2-fig2, p2-table1 and p2-table2 compare with your own.",
                     options.name));
   if (options.window && !(options.window->first < options.window->second))
     throw ConfigError({"", 0, 0, "window"}, fmt::format("goes from {:g} to {:g}; it must rise.",
@@ -140,7 +140,8 @@ void add_reproduce(CLI::App& program, Common& common) {
       ->delimiter(',')
       ->type_name("LOW,HIGH");
   verb.add_option("--data", options->data,
-                  "p2-fig2, -table1, -table2: your own points, CSV with W and T_bar_z (or delta_h_bar)");
+                  "your own points, CSV; p1-fig3: N_l, bouncing, convection (Gamma); p2-fig2, -table1, "
+                  "-table2: W and T_bar_z (or delta_h_bar)");
   verb.add_flag("--full", options->full, "All that the paper shows, however long it takes")->excludes(budget);
   verb.callback([options, &common] { run(*options, common); });
 }

@@ -88,10 +88,12 @@ void run_plan(const SweepOptions& options, const Common& common) {
   const Counts counts = schedule.counts();
   print_result(
       common, as_json(counts, store.folder(), schedule.all()),
-      fmt::format(
-          "{} points{}, {} done, {:.3g} particle-steps to go\n{}\n", counts.known,
-          plan.search ? fmt::format(" in the first round of {} searches", schedule.curves().size()) : "",
-          counts.done, counts.work_left, store.folder().string()));
+      fmt::format("{} point{}{}, {} done, {:.3g} particle-steps to go\n{}\n", counts.known,
+                  counts.known == 1 ? "" : "s",
+                  plan.search ? fmt::format(" in the first round of {} search{}", schedule.curves().size(),
+                                            schedule.curves().size() == 1 ? "" : "es")
+                              : "",
+                  counts.done, counts.work_left, store.folder().string()));
 }
 
 void run_run(const SweepOptions& options, const Common& common) {
@@ -136,8 +138,8 @@ void run_status(const SweepOptions& options, const Common& common) {
   std::string text = collected_text(schedule);
   text += fmt::format("{} running", now);
   if (work > 0 && counts.work_left > 0)
-    text += fmt::format(", about {:.3g} min on one core left for the known points",
-                        counts.work_left * seconds / work / 60);
+    text += fmt::format(", about {} of one core left for the known points",
+                        time_text(counts.work_left * seconds / work));
   print_result(common, document, text + "\n");
 }
 

@@ -10,15 +10,11 @@
 
 namespace twincell::cli {
 
-namespace {
-
-std::string span(double seconds) {
+std::string time_text(double seconds) {
   if (seconds < 90) return fmt::format("{:.0f} s", seconds);
   if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
   return fmt::format("{:.1f} h", seconds / 3600);
 }
-
-}  // namespace
 
 SweepWatch::SweepWatch(const Common& common, double seconds)
     : quiet_(common.quiet),
@@ -44,7 +40,7 @@ void SweepWatch::look(const sweep::Counts& counts, double seconds_left) {
   if (quiet_) return;
   std::string line = fmt::format("{} of {} points done, {} running", counts.done, counts.known, counts.here);
   if (counts.failed > 0) line += fmt::format(", {} went wrong", counts.failed);
-  if (std::isfinite(seconds_left)) line += fmt::format(", about {} left", span(seconds_left));
+  if (std::isfinite(seconds_left)) line += fmt::format(", about {} left", time_text(seconds_left));
   if (line == last_) return;
   last_ = line;
   if (terminal_) {

@@ -10,6 +10,9 @@
 
 namespace twincell::cli {
 
+/// A time as people say it: "40 s", "12 min", "3.5 h".
+std::string time_text(double seconds);
+
 /// "12 of 40 points done, 2 running, about 3 min left": a line that is written over on a terminal, a new one
 /// for every tenth of the points elsewhere. Ends the sweep at a signal.
 class SweepWatch : public sweep::Watch {

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "analysis/colours.hpp"
+
 namespace twincell::reproduce {
 
 namespace {
@@ -297,8 +299,9 @@ Series series_of(const std::string& title, const std::vector<GasPoint>& points, 
 Figure series_figure(const std::string& name, const std::string& title, const std::string& x_label,
                      const std::string& y_label, const std::vector<Series>& all, const std::string& setup,
                      const std::string& caption) {
-  static constexpr std::array<const char*, 8> kColours = {"#D55E00", "#0072B2", "#009E73", "#CC79A7",
-                                                          "#E69F00", "#56B4E9", "#000000", "#999999"};
+  static constexpr std::array<const char*, 8> kColours = {
+      colours::kVermilion, colours::kBlue, colours::kGreen, colours::kPurple,
+      colours::kOrange,    colours::kSky,  colours::kBlack, colours::kGrey};
   static constexpr std::array<int, 6> kPoints = {7, 9, 5, 13, 11, 6};
   Figure f{.name = name, .title = title, .caption = caption, .width = 640, .height = 460};
   std::string plot;

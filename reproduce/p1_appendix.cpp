@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "analysis/colours.hpp"
 #include "analysis/observable.hpp"
 #include "analysis/phase_thresholds.hpp"
 #include "reproduce/estimate.hpp"
@@ -139,7 +140,7 @@ void add_contacts(Reproduction& r, json& measured) {
     const std::string wave = fmt::format("exp(-{0:.9g}*x)*sin({1:.9g}*x)", form.beta * 1e-3, w * 1e-3);
     const std::string slope = fmt::format("exp(-{0:.9g}*x)*({1:.9g}*cos({1:.9g}*x)-{0:.9g}*sin({1:.9g}*x))",
                                           form.beta * 1e-3, w * 1e-3);
-    const std::string look = fmt::format("lc rgb '{}'", pair ? "#0072B2" : "#D55E00");
+    const std::string look = fmt::format("lc rgb '{}'", pair ? colours::kBlue : colours::kVermilion);
     const std::string range = fmt::format("[0:{:.6g}]", 1e3 * c.t_c);
     const auto clause = [&](std::string& clauses, int column, const std::string& curve) {
       clauses += fmt::format(
@@ -182,17 +183,17 @@ Figure contact_sketch() {
       "set size ratio -1\nunset tics\nunset border\nunset grid\nunset key\nset xrange [-2.1:2.1]\nset yrange "
       "[-1.5:1.5]\n"
       "set style arrow 1 head filled size 0.1,18 lw 2 lc rgb '#222222'\n"
-      "set style arrow 2 head filled size 0.1,18 lw 2 lc rgb '#0072B2'\n"
-      "set style arrow 3 heads size 0.05,90 lw 1.5 lc rgb '#D55E00'\n"
+      "set style arrow 2 head filled size 0.1,18 lw 2 lc rgb blue\n"
+      "set style arrow 3 heads size 0.05,90 lw 1.5 lc rgb vermilion\n"
       "set arrow 1 from 0.84,0.24 to 1.513,0.432 arrowstyle 1 front\nset label 1 'n_{ij}' at 1.5,0.56\n"
       "set arrow 2 from 0,0 to -0.192,0.673 arrowstyle 1 front\nset label 2 't_{ij}' at -0.52,0.86 front\n"
       "set arrow 3 from 0.84,0.24 to 0.45,0.95 arrowstyle 2 front\nset label 3 'v_{ij}' at 0.55,1.02 front "
-      "tc rgb '#0072B2'\n"
+      "tc rgb blue\n"
       "set arrow 4 from -0.122,-0.035 to 0.122,0.035 arrowstyle 3 front\n"
-      "set label 4 'δ_{n}' at 0.14,-0.12 tc rgb '#D55E00' front\n"
+      "set label 4 'δ_{n}' at 0.14,-0.12 tc rgb vermilion front\n"
       "set label 5 'j' at -0.9,-0.24 front\nset label 6 'i' at 0.8,0.05 front\n"
       "plot 'p1-fig6.dat' using 1:2:3 with circles fs transparent solid 0.35 border lc rgb '#555555' fc rgb "
-      "'#56B4E9'\n";
+      "sky\n";
   f.caption =
       "Two beads that overlap by δ_n: unit vectors n_ij from j to i and t_ij along the tangential part of "
       "the "
@@ -274,14 +275,14 @@ void add_measures(Reproduction& r, json& measured) {
   f.plot = fmt::format(
       "set logscale y\nset xrange [1.03:2.03]\nset yrange [0.002:2]\nset xlabel 'Γ'\nset ylabel 's_b / "
       "σ'\nset key bottom right\n"
-      "set arrow 1 from first {0:.5f},graph 0 to first {0:.5f},first {1:.6f} nohead dt 2 lc rgb '#0072B2'\n"
+      "set arrow 1 from first {0:.5f},graph 0 to first {0:.5f},first {1:.6f} nohead dt 2 lc rgb blue\n"
       "set label 1 'Γ = {0:.4f}' at first {0:.5f},graph 0.05 offset 0.7,0\n"
       "plot {1:.6f} with lines dt 4 lw 1.5 lc rgb '#666666' title 'σ/30', '{2}.dat' using 1:4 with lines lw "
       "1.3 "
-      "lc rgb '#0072B2' notitle, '' using 1:2 with points pt 7 ps 0.9 lc rgb '#0072B2' title 'variance over "
+      "lc rgb blue notitle, '' using 1:2 with points pt 7 ps 0.9 lc rgb blue title 'variance over "
       "phases', "
-      "'' using 1:5 with lines lw 1.3 lc rgb '#D55E00' notitle, '' using 1:3 with points pt 6 ps 0.9 lc rgb "
-      "'#D55E00' title 'about the height at rest'\n",
+      "'' using 1:5 with lines lw 1.3 lc rgb vermilion notitle, '' using 1:3 with points pt 6 ps 0.9 lc rgb "
+      "vermilion title 'about the height at rest'\n",
       gamma, kBouncingThreshold, f.name);
   f.caption =
       "s_b (eq. B4) of a completely inelastic rigid bed, found by the analysis of a synthetic trajectory "

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "analysis/colours.hpp"
 #include "reproduce/p1_packings.hpp"
 
 namespace twincell::reproduce {
@@ -18,7 +19,8 @@ struct Orientation {
   const char *start, *name, *colour;
   double angle;  ///< of close-packed rows, degrees; 60 brings the lattice back
 };
-constexpr Orientation kA = {"crystal_a", "A", "#56B4E9", 0}, kB = {"crystal_b", "B", "#E69F00", 30};
+constexpr Orientation kA = {"crystal_a", "A", colours::kSky, 0},
+                      kB = {"crystal_b", "B", colours::kOrange, 30};
 
 double share(const Packing& p, const char* name) {
   return p.scalars.at(name);
@@ -113,10 +115,10 @@ Figure figure_of(const Packings& all) {
         "1,0\nset key at screen 0.965,0.9 vertical samplen 1.2 spacing 0.95\nset boxwidth 0.8\nset style "
         "fill "
         "solid border lc rgb '#333333'\n"
-        "plot '{1}.dat' index {2} using 1:($2+$3+$4) with boxes lc rgb '#E69F00' title 'B', '' index {2} "
+        "plot '{1}.dat' index {2} using 1:($2+$3+$4) with boxes lc rgb orange title 'B', '' index {2} "
         "using "
         "1:($2+$3) with boxes lc rgb '#DDDDDD' title 'between', '' index {2} using 1:2 with boxes lc rgb "
-        "'#56B4E9' title 'A'\n",
+        "sky title 'A'\n",
         static_cast<double>(all.random.size()) + 0.7, f.name, index);
   }
   f.plot += "unset multiplot\n";

@@ -10,7 +10,11 @@
 #include <deque>
 #include <nlohmann/json.hpp>
 
+#include "analysis/colours.hpp"
 #include "analysis/observable.hpp"
+#include "analysis/trajectory/error.hpp"
+#include "calibration/table.hpp"
+#include "reproduce/estimate.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/reproduction.hpp"
 
@@ -156,8 +160,52 @@ const Boundary* find(const std::deque<Boundary>& all, int layers, bool random, b
   return found == all.end() || !found->begun() ? nullptr : &*found;
 }
 
+/// Onsets that an experiment found at one height of the bed; NaN where it found none.
+struct Filmed {
+  double layers, bouncing, convection;
+};
+
+/// The experiment's points from a table with the columns N_l and bouncing, convection (Gamma), by height.
+std::vector<Filmed> filmed_in(const std::filesystem::path& file) {
+  if (file.empty()) return {};
+  const Table table = read_table(file);
+  const auto& layers = table.column("N_l");
+  const auto& bouncing = table.column("bouncing");
+  const auto& convection = table.column("convection");
+  std::vector<Filmed> points;
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    if (std::isfinite(layers[i])) points.push_back({layers[i], bouncing[i], convection[i]});
+  std::sort(points.begin(), points.end(),
+            [](const Filmed& a, const Filmed& b) { return a.layers < b.layers; });
+  return points;
+}
+
+/// The paper's random beds begin to convect below the experiment where N_l is 60 and 80.
+Target below_experiment(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
+  Target t{"onset of convection, random, below the experiment at N_l = 60, 80", "below", "", Fate::absent,
+           ""};
+  if (filmed.empty())
+    t.reason = "the paper gives the experiment's numbers only as a drawing; --data takes yours";
+  std::vector<Fate> fates;
+  for (const Filmed& point : filmed) {
+    if (point.layers < 60 || !std::isfinite(point.convection)) continue;
+    const Boundary* b = find(all, static_cast<int>(std::lround(point.layers)), true, true);
+    if (b == nullptr) continue;
+    const Onset& o = b->onset();
+    t.measured += fmt::format("{}N_l = {}: {}; experiment {:.4g}", t.measured.empty() ? "" : ", ", b->layers,
+                              o.text(), point.convection);
+    fates.push_back(o.high && *o.high < point.convection ? Fate::met
+                    : o.low && *o.low > point.convection ? Fate::missed
+                                                         : Fate::open);
+  }
+  if (!filmed.empty() && fates.empty())
+    t.reason = "no N_l from 60 on has a random bed here and a point in the data";
+  t.fate = all_of(fates);
+  return t;
+}
+
 std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all,
-                               const std::optional<Crystals>& crystals) {
+                               const std::optional<Crystals>& crystals, const std::vector<Filmed>& filmed) {
   std::vector<Target> targets;
   constexpr double kBounceLow = 1.10, kBounceHigh = 1.35;
   for (const int layers : size.layers)
@@ -225,24 +273,23 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
     }
     targets.push_back(t);
   }
-  targets.push_back({"simulation below experiment at N_l = 60, 80", "below", "", Fate::absent,
-                     "the experiment's numbers are printed in the figure alone"});
+  targets.push_back(below_experiment(all, filmed));
   return targets;
 }
 
 /// Values with bars where the interval is closed, arrows where it is a limit; random and crystal a little to
 /// the left and right of their N_l, that bars stay apart.
-Figure figure_of(const std::deque<Boundary>& all) {
+Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
   Figure f{.name = "p1-fig3", .title = "Onsets of bouncing and convection", .width = 620, .height = 480};
   struct Style {
     bool random, convecting;
     int point;
     const char *colour, *title;
   };
-  static constexpr std::array<Style, 4> kStyles = {{{true, true, 7, "#D55E00", "convection, random"},
-                                                    {false, true, 9, "#0072B2", "convection, crystal"},
-                                                    {true, false, 6, "#D55E00", "bouncing, random"},
-                                                    {false, false, 8, "#0072B2", "bouncing, crystal"}}};
+  static constexpr std::array<Style, 4> kStyles = {{{true, true, 9, colours::kGreen, "convection, random"},
+                                                    {false, true, 7, colours::kBlue, "convection, crystal"},
+                                                    {true, false, 8, colours::kGreen, "bouncing, random"},
+                                                    {false, false, 6, colours::kBlue, "bouncing, crystal"}}};
   std::string plot;
   int index = 0;
   for (const Style& style : kStyles) {
@@ -267,6 +314,18 @@ Figure figure_of(const std::deque<Boundary>& all) {
         fmt::format("title '{}'", style.title));
     add(limits, "vectors head filled lw 1.5", "notitle");
   }
+  const auto add_filmed = [&](double Filmed::*onset, int point, const char* title) {
+    std::string block;
+    for (const Filmed& p : filmed)
+      if (std::isfinite(p.*onset)) block += fmt::format("{} {}\n", p.layers, p.*onset);
+    if (block.empty()) return;
+    f.data += fmt::format("# {}\n{}\n\n", title, block);
+    plot +=
+        fmt::format(", '{}.dat' index {} using 1:2 with linespoints lw 1 ps 1 pt {} lc rgb '{}' title '{}'",
+                    f.name, index++, point, colours::kBlack, title);
+  };
+  add_filmed(&Filmed::convection, 5, "convection, experiment");
+  add_filmed(&Filmed::bouncing, 4, "bouncing, experiment");
   // K_m = Gamma^2 at omega = 1: its ticks stand where Gamma is the root.
   std::vector<std::string> ticks;
   for (const double k_m : {1.0, 2.0, 4.0, 6.0, 9.0, 12.0, 16.0, 20.0, 25.0})
@@ -277,9 +336,9 @@ Figure figure_of(const std::deque<Boundary>& all) {
       fmt::join(ticks, ", "), plot);
   f.caption =
       "Onset of bouncing (open) and of convection (filled) against the height of the bed, from random starts "
-      "(circles) and "
-      "from crystals (triangles), with 95 % intervals; arrows are one-sided limits. Form of Fortini & Huang "
-      "2015, Fig. 3.";
+      "(triangles) and "
+      "from crystals (circles), with 95 % intervals; arrows are one-sided limits; connected squares: "
+      "experiment, where --data gave one. Form of Fortini & Huang 2015, Fig. 3.";
   return f;
 }
 
@@ -307,6 +366,9 @@ std::vector<std::string> cheaper_of(const Size& size, const std::deque<Boundary>
 }
 
 Reproduction run(const Request& request) {
+  if (request.window)
+    throw ConfigError({.file = {}, .key = "window"}, "says nothing to p1-fig3, which has no W.");
+  const std::vector<Filmed> filmed = filmed_in(request.data);
   const Size& size = size_for(request);
   const sweep::Store store(request.folder);
   std::deque<Boundary> boundaries;  // schedules point to their plans: nothing may move
@@ -334,7 +396,7 @@ Reproduction run(const Request& request) {
       if ((b.layers == kLayersOfA1) == first) schedules.push_back(&*b.schedule);
     r.complete = run_here(schedules, store, {request.threads, false}, *request.watch) && r.complete;
   }
-  r.targets = targets_of(size, boundaries, crystals);
+  r.targets = targets_of(size, boundaries, crystals, filmed);
   r.cheaper = cheaper_of(size, boundaries);
   r.conditions = p1_conditions(run_of(kLayersOfA1, false, size.convect_cycles));
   r.conditions.push_back(fmt::format("seeds of all runs drawn from the master seed {}", request.seed));
@@ -346,15 +408,18 @@ Reproduction run(const Request& request) {
                            b.schedule->all() ? "" : " (unfinished)");
   }
   r.measured = measured.dump();
-  r.figures = {figure_of(boundaries)};
+  r.figures = {figure_of(boundaries, filmed)};
   return r;
 }
 
 }  // namespace
 
 Reproducible p1_fig3() {
-  return {"p1-fig3", "phase diagram: onsets of bouncing and convection, random and crystal, against N_l",
-          run};
+  return {"p1-fig3",
+          "phase diagram: onsets of bouncing and convection, random and crystal, against N_l",
+          run,
+          {},
+          true};
 }
 
 }  // namespace twincell::reproduce

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/colours.hpp"
 #include "reproduce/p1_ladder.hpp"
 
 namespace twincell::reproduce {
@@ -174,7 +175,7 @@ Figure figure_of(const Ladders& all, const std::optional<CurveFit>& bend) {
                             parameter(*bend, "s_1").value, parameter(*bend, "s_2").value, x);
       law = ", [1.4:*] f(x) with lines lw 1.5 lc rgb '#333333' notitle";
     }
-    const char* colour = l->is_random() ? "#D55E00" : "#0072B2";
+    const char* colour = l->is_random() ? colours::kGreen : colours::kBlue;
     f.plot += l->rungs.empty()
                   ? std::string("plot NaN notitle\n")
                   : fmt::format(

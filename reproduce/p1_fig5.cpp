@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "analysis/colours.hpp"
 #include "reproduce/p1_ladder.hpp"
 
 namespace twincell::reproduce {
@@ -192,7 +193,7 @@ Figure figure_of(const Ladders& all, const Barriers& fits) {
         name("A_1", l->first_slips->value, first);
       }
     }
-    const char* colour = l->is_random() ? "#D55E00" : "#0072B2";
+    const char* colour = l->is_random() ? colours::kGreen : colours::kBlue;
     std::string clauses = "NaN notitle";
     if (!counted.empty())
       clauses += fmt::format(", '{}.dat' index {} using 1:2 with points pt {} ps 1.1 lc rgb '{}' notitle",

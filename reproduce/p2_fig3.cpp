@@ -69,7 +69,7 @@ Figure snapshot_figure(const std::string& name, double w, const Frame& frame, co
   }
   f.plot = fmt::format(
       "set xrange [0:10]\nset yrange [-1:9]\nset size ratio -1\nset style fill solid 0.9 border -1\n"
-      "set palette defined (0 '#F0F0F0', 1 '#D55E00')\nset cbrange [0:1]\nset cblabel 'speed about the "
+      "set palette defined (0 '#F0F0F0', 1 vermilion)\nset cbrange [0:1]\nset cblabel 'speed about the "
       "centre of mass/V_p'\n"
       "set xlabel 'x/d'\nset ylabel 'z/d'\nunset key\n"
       "plot '{}.dat' using 1:2:3:4 with circles fc palette, {} lw 3 lc rgb '#222222'\n",

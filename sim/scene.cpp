@@ -437,8 +437,28 @@ std::size_t count_drive_words(const Config& config) {
                                                 [&](const std::string& word) { return drive.has(word); }));
 }
 
-Scene resolve(Config config, const std::string& name, const std::vector<std::string>& assignments) {
+/// Removes from `lower` what `upper` says in other words: restitution displaces gamma_n, layers the count, f
+/// omega.
+void displace(Config& lower, const Config& upper) {
+  for (const char* section : {"contact", "contact.wall"})
+    for (const auto& group : {normal_damping_keys(), tangential_damping_keys()})
+      lower.yield_to(upper, section, group);
+  lower.yield_to(upper, "beads", {"count", "layers"});
+  lower.yield_to(upper, "drive", {"omega", "frequency"});
+}
+
+/// Lays assignments over a scene. K_m displaces a stated Gamma; two assignments that contradict each other
+/// still do.
+void assign(Config& config, const std::vector<std::string>& assignments) {
+  Config upper = Config::from_text("", "--set");
+  for (const auto& assignment : assignments) upper.assign(assignment);
+  displace(config, upper);
+  config.yield_to(upper, "drive", {"gamma", "k_m", "peak_velocity"});
   for (const auto& assignment : assignments) config.assign(assignment);
+}
+
+Scene resolve(Config config, const std::string& name, const std::vector<std::string>& assignments) {
+  assign(config, assignments);
   const Included included = include_calibration(config, name, Includer::scene);
   const Section root = config.root();
   const auto preset = root.word("preset", preset_names());
@@ -446,10 +466,7 @@ Scene resolve(Config config, const std::string& name, const std::vector<std::str
   const auto& all = presets();
   const auto chosen = std::find_if(all.begin(), all.end(), [&](const auto& p) { return p.first == *preset; });
   Config base = Config::from_text(chosen->second, "preset " + *preset);
-  for (const char* section : {"contact", "contact.wall"})
-    for (const auto& group : {normal_damping_keys(), tangential_damping_keys()})
-      base.yield_to(config, section, group);
-  base.yield_to(config, "beads", {"count", "layers"});
+  displace(base, config);
   // Two measured numbers, or a stated and a measured one, are a whole drive.
   if (std::any_of(included.taken.begin(), included.taken.end(),
                   [](const std::string& taken) { return taken.starts_with("drive."); }) &&

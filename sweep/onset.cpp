@@ -93,7 +93,7 @@ Onset estimate_onset(const std::vector<Trial>& trials, double low, double high, 
 
 std::string Onset::text() const {
   const std::string of = fmt::format("yes in {} of {} runs", yes, n);
-  if (n == 0) return "no run";
+  if (n == 0) return "no answer yet";
   if (value && low && high) return fmt::format("{:.4g} [{:.4g}, {:.4g}], {}", *value, *low, *high, of);
   if (low && high) return fmt::format("in [{:.4g}, {:.4g}], {}", *low, *high, of);
   if (low) return fmt::format("above {:.4g}, {}", *low, of);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "analysis/observable.hpp"
 #include "analysis/phase_thresholds.hpp"
@@ -108,8 +109,22 @@ void read_scene_of(Plan& plan, const ConfigSection& root, const fs::path& folder
   plan.scene_name = path.string();
 }
 
+void check_axis(const Plan& plan, const Where& where, const TomlLeaf& leaf) {
+  if (leaf.items.empty()) throw ConfigError(where, "has no values.");
+  if (plan.search && leaf.path == plan.search->key)
+    throw ConfigError(where, "is the key that [search] varies.");
+  const std::set<std::string> different(leaf.items.begin(), leaf.items.end());
+  if (different.size() < leaf.items.size())
+    throw ConfigError(where, "names a value twice; it would be the same run, counted twice.");
+  if (leaf.path == "start.seed" && (plan.search || plan.seeds > 1))
+    throw ConfigError(where,
+                      "fixes the seed, and the runs that differ in nothing else would be the same run; "
+                      "leave out start.seed, or axes.seeds and [search].");
+}
+
 void read_axes(Plan& plan, const ConfigSection& root) {
   const ConfigSection table = root.section("axes");
+  std::vector<TomlLeaf> leaves;
   for (const TomlLeaf& leaf : toml_leaves(plan.text, "axes")) {
     know(table, leaf.path);
     if (leaf.path == "seeds") {
@@ -119,11 +134,10 @@ void read_axes(Plan& plan, const ConfigSection& root) {
                           "a search chooses by itself how many seeds it runs; search.runs bounds them.");
       continue;
     }
-    if (leaf.items.empty()) throw ConfigError(table.where(leaf.path), "has no values.");
-    if (plan.search && leaf.path == plan.search->key)
-      throw ConfigError(table.where(leaf.path), "is the key that [search] varies.");
-    plan.axes.push_back({leaf.path, leaf.items});
+    plan.axes.push_back({leaf.path, leaf.items, table.where(leaf.path).line});
+    leaves.push_back(leaf);
   }
+  for (const TomlLeaf& leaf : leaves) check_axis(plan, table.where(leaf.path), leaf);
   std::size_t points = static_cast<std::size_t>(plan.seeds);
   for (const Axis& axis : plan.axes) {
     points *= axis.values.size();
@@ -169,6 +183,20 @@ Plan interpret(const Config& config, const std::string& name, const fs::path& fo
   return plan;
 }
 
+/// The scene of a point. A complaint about what an axis says points to the plan.
+sim::Scene scene_of(const Plan& plan, const std::vector<std::string>& assignments) {
+  try {
+    return sim::read_scene_text(plan.scene, plan.scene_name, assignments);
+  } catch (const ConfigError& e) {
+    const std::string complaint = e.what();
+    for (const Axis& axis : plan.axes)
+      if (const std::string from = "--set " + axis.key + ":"; complaint.starts_with(from))
+        throw ConfigError({.file = plan.file, .line = axis.line, .column = 0, .key = "axes"},
+                          complaint.substr(complaint.find(": ", from.size()) + 2));
+    throw;
+  }
+}
+
 }  // namespace
 
 Plan read_plan_text(const std::string& text, const std::string& name, const fs::path& folder) {
@@ -189,7 +217,7 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
     seeded = seeded || plan.axes[a].key == "start.seed";
   }
   if (at) assignments.push_back(fmt::format("{}={}", plan.search->key, *at));
-  sim::Scene scene = sim::read_scene_text(plan.scene, plan.scene_name, assignments);
+  sim::Scene scene = scene_of(plan, assignments);
 
   Point point;
   point.values = values;
@@ -201,7 +229,7 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
     const std::string drawn = sha256_text(fmt::format("{}\n{}\n{}", plan.seed, replica, scene.resolved));
     point.seed = std::stoull(drawn.substr(0, 14), nullptr, 16) >> 3U;
     assignments.push_back(fmt::format("start.seed={}", point.seed));
-    scene = sim::read_scene_text(plan.scene, plan.scene_name, assignments);
+    scene = scene_of(plan, assignments);
   }
   point.scene = scene.resolved;
   std::string content = point.scene;

@@ -15,6 +15,7 @@ namespace twincell::sweep {
 struct Axis {
   std::string key;                  ///< "drive.gamma"
   std::vector<std::string> values;  ///< as TOML
+  long line = 0;                    ///< of the plan, for messages
 };
 
 /// A question with the answers yes and no: is the scalar `result` of the analysis above `above`?

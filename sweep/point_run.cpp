@@ -1,5 +1,7 @@
 #include "sweep/point_run.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -9,6 +11,7 @@
 
 #include "analysis/observable.hpp"
 #include "analysis/results.hpp"
+#include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "analysis/trajectory/provenance.hpp"
 #include "sim/simulation.hpp"
@@ -70,6 +73,16 @@ sim::RunState placed_in_turn(const sim::Scene& scene) {
   return sim::placed(scene);
 }
 
+/// The number that the plan's verdict is about; NaN where the run has none.
+double asked_of(const Plan& plan, const std::vector<Result>& results) {
+  const Result& result = find_result(results, plan.verdict->result);
+  if (!result.shape.empty() || !result.text.empty())
+    throw ConfigError({.file = plan.file, .key = "search.result"},
+                      fmt::format("'{}' is {}; a search compares one number", result.name,
+                                  result.text.empty() ? "an array" : "a word"));
+  return result.value();
+}
+
 }  // namespace
 
 std::string run_point(const Plan& plan, const Point& point, const std::filesystem::path& trajectory,
@@ -113,7 +126,7 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
     if (measured.contact_fraction) document["contact_fraction"] = *measured.contact_fraction;
     if (rule && !rule->reason().empty()) document["stopped"] = rule->reason();
     if (plan.verdict)
-      if (const double value = find_result(results, plan.verdict->result).value(); std::isfinite(value))
+      if (const double value = asked_of(plan, results); std::isfinite(value))
         document["answer"] = value > plan.verdict->above;
   } catch (const RunError& e) {
     document["failed"] = e.what();

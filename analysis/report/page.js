@@ -52,7 +52,7 @@
       for (const phase of Object.keys(phaseColour)) {
         const of = data.sweep.filter(p => p.start === start && p.phase === phase);
         if (of.length) traces.push({x: of.map(p => p.n_l), y: of.map(p => p.gamma), mode: 'markers', name: `sweep ${start}, ${phase}`,
-          hovertemplate: `sweep, ${start}: ${phase}<br>N_l σ %{x:.3g}, Γ %{y:.4g}<extra></extra>`,
+          hovertemplate: `sweep, ${start}: ${phase}<br>Nₗσ %{x:.3g}, Γ %{y:.4g}<extra></extra>`,
           marker: {size: 8, symbol: phaseSymbol[phase] + (start.startsWith('crystal') ? '' : '-dot'), color: phaseColour[phase], opacity: 0.6}});
       }
     for (const side of ['experiment', 'simulation'])
@@ -133,7 +133,7 @@
     $('moment').max = Math.max(0, lead.moments.length - 1);
     $('moment').value = state.moment;
     $('which').value = String(run);
-    $('point-title').textContent = `Γ = ${+match.gamma.toPrecision(4)}, N_l σ = ${+lead.n_l.toPrecision(4)}: ` +
+    $('point-title').textContent = `Γ = ${+match.gamma.toPrecision(4)}, Nₗσ = ${+lead.n_l.toPrecision(4)}: ` +
       shown().map(i => `${runs[i].side} ${runs[i].phase}`).join(', ');
     drawMoment();
     drawSeries();
@@ -283,11 +283,16 @@
     s_j.push({x: [0, length], y: [1, 1], mode: 'lines', name: 'σ', hoverinfo: 'skip', line: {color: '#D55E00', dash: 'dash', width: 1.5}});
     graph('series-s_k', s_k, {height: 300, xaxis: axis('phase k / N<sub>k</sub>', {range: [-0.02, 1]}), yaxis: axis('s(k) / σ')});
     graph('series-s_j', s_j, {height: 300, xaxis: axis('cycle j'), yaxis: axis('s<sub>j</sub> / σ', {rangemode: 'tozero'})});
-    for (const side of ['experiment', 'simulation']) drawConvection(side, state[side]);
+    const longest = Math.max(1e-12, ...shown().map(i => longestStep(runs[i].convection)));
+    for (const side of ['experiment', 'simulation']) drawConvection(side, state[side], longest);
   }
 
+  const speedAt = (field, k) => field.u[k] === null ? 0 : Math.hypot(field.u[k], field.w[k]);
+  const longestStep = field => field ? field.u.reduce((most, u, k) => Math.max(most, speedAt(field, k)), 0) : 0;
+
   // Mean displacement per cycle and cell as arrows, where the results hold it: [rows][columns][x, z], NaN where no bead passed.
-  function drawConvection(side, index) {
+  // `longest`, of both sides, is as long as a cell allows, so that arrows of one length mean the same on both.
+  function drawConvection(side, index, longest) {
     const box = $('convection-' + side), field = index === null ? null : runs[index].convection;
     box.hidden = !field;
     if (!field) return;
@@ -297,21 +302,19 @@
     svg.setAttribute('viewBox', `${x0 - 0.5} ${-z1 - 0.5} ${width + 1} ${height + 1}`);
     make('rect', {x: x0, y: -z1, width, height, fill: '#fff', stroke: '#444', 'stroke-width': 0.08}, svg);
     const dx = width / field.columns, dz = height / field.rows;
-    let longest = 1e-12;
-    for (let k = 0; k < field.u.length; ++k) if (field.u[k] !== null) longest = Math.max(longest, Math.hypot(field.u[k], field.w[k]));
     const gain = 0.9 * Math.min(dx, dz) / longest;
     for (let row = 0; row < field.rows; ++row)
       for (let column = 0; column < field.columns; ++column) {
         const k = row * field.columns + column;
         if (field.u[k] === null) continue;
         const u = gain * field.u[k], w = gain * field.w[k], cx = x0 + (column + 0.5) * dx, cz = z0 + (row + 0.5) * dz;
-        const speed = Math.hypot(field.u[k], field.w[k]) / longest, length = Math.hypot(u, w);
+        const speed = speedAt(field, k) / longest, length = Math.hypot(u, w);
         const ex = cx + u / 2, ez = cz + w / 2, h = 0.35 * length, angle = Math.atan2(w, u);
         const wing = turn => `${(ex - h * Math.cos(angle + turn)).toFixed(3)} ${(-(ez - h * Math.sin(angle + turn))).toFixed(3)}`;
         make('path', {d: `M${(cx - u / 2).toFixed(3)} ${(-(cz - w / 2)).toFixed(3)}L${ex.toFixed(3)} ${(-ez).toFixed(3)}M${wing(0.5)}L${ex.toFixed(3)} ${(-ez).toFixed(3)}L${wing(-0.5)}`,
           fill: 'none', stroke: viridisAt(0.85 * speed), 'stroke-width': Math.min(dx, dz) * 0.07, 'stroke-linecap': 'round'}, svg);
       }
-    box.querySelector('figcaption').textContent = `${side}: mean displacement per cycle; the longest arrow is ${longest.toPrecision(3)} σ.`;
+    box.querySelector('figcaption').textContent = `${side}: mean displacement per cycle; the longest arrow is ${longestStep(field).toPrecision(3)} σ${shown().length > 1 ? ', both sides on one scale' : ''}.`;
   }
 
   // ---- zoom: the wheel, a drag; a double click goes back ----

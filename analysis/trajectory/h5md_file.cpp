@@ -238,6 +238,7 @@ struct H5mdReader::Impl {
   void open();
   void open_columns(const std::string& group);
   void read_box(const std::string& group);
+  bool is_planar() const;
   void read_parameters();
 };
 
@@ -357,7 +358,7 @@ void H5mdReader::Impl::read_box(const std::string& group) {
     return;
   }
   // Someone else's file: the box is all there is, its corner at the origin.
-  info.box.dimension = 3;
+  info.box.dimension = is_planar() ? 2 : 3;
   info.box.boundary = {Boundary::open, Boundary::open, Boundary::open};
   if (!h5::exists(file.get(), group + "/box")) return;
   const h5::Handle box = open_object(file.get(), group + "/box");
@@ -369,6 +370,15 @@ void H5mdReader::Impl::read_box(const std::string& group) {
     edges = h5::read_dataset<double>(box.get(), "edges/value");
   if (edges.size() == 3) info.box.upper = Vec3(edges.data());
   if (edges.size() >= 9) info.box.upper = Vec3(edges[0], edges[4], edges[8]);
+}
+
+/// Do all beads of the first frame lie at one y?
+bool H5mdReader::Impl::is_planar() const {
+  if (position.size() == 0 || info.n_beads == 0) return false;
+  std::vector<Vec3> first(info.n_beads);
+  position.read(0, h5::native<double>(), first.data());
+  return std::all_of(first.begin(), first.end(),
+                     [&](const Vec3& r) { return r.y() == first.front().y() || !std::isfinite(r.y()); });
 }
 
 void H5mdReader::Impl::read_parameters() {
@@ -396,6 +406,14 @@ void H5mdReader::Impl::read_parameters() {
   if (h5::exists(file.get(), "parameters/phases_per_cycle") &&
       h5::read_scalar(file.get(), "parameters/phases_per_cycle", value))
     info.phases_per_cycle = static_cast<int>(value);
+  else if (info.columns.phase) {
+    // What a file does not state, its phases show.
+    for (std::size_t f = 0; f < position.size(); ++f) {
+      int k = -1;
+      phase.read(f, h5::native<int>(), &k);
+      info.phases_per_cycle = std::max(info.phases_per_cycle, k + 1);
+    }
+  }
   auto scale = [&](const char* name, std::optional<double>& out) {
     if (h5::exists(file.get(), std::string("parameters/scale/") + name) &&
         h5::read_scalar(file.get(), std::string("parameters/scale/") + name, value))

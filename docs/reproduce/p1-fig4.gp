@@ -31,7 +31,7 @@ set arrow 1 from first 5.4639,graph 0 to first 5.4639,graph 1 nohead dt 2 lw 1.3
 set label 1 'B' at first 14.025,graph 0.06 center
 set label 2 'A' at first 2.7159,graph 0.06 center
 f(x) = exp(-1.3036464 + (x < 4.5398707 ? 4.208833 : 0.66905413)*log(x/4.5398707))
-plot 'p1-fig4.dat' index 0 using 1:2:3:4 with yerrorbars pt 9 ps 1 lw 1.3 lc rgb '#D55E00' notitle, [1.4:*] f(x) with lines lw 1.5 lc rgb '#333333' notitle
+plot 'p1-fig4.dat' index 0 using 1:2:3:4 with yerrorbars pt 9 ps 1 lw 1.3 lc rgb '#009E73' notitle, [1.4:*] f(x) with lines lw 1.5 lc rgb '#333333' notitle
 unset arrow
 unset label
 set title '(b) crystal, N_l = 20'

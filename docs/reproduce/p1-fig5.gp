@@ -31,7 +31,7 @@ set title '(a) random, N_l = 20'
 set arrow from first 0.18302,graph 0 to first 0.18302,graph 1 nohead dt 2 lw 1.3 lc rgb '#666666'
 set label 'B' at first 0.09201,graph 0.06 center
 set label 'A' at first 0.46464,graph 0.06 center
-plot NaN notitle, 'p1-fig5.dat' index 0 using 1:2 with points pt 9 ps 1.1 lc rgb '#D55E00' notitle, 'p1-fig5.dat' index 1 using 1:2 with points pt 10 ps 1 lw 1.3 lc rgb '#D55E00' title 'no slip: 95 % limit', [0.0330579:0.826446] exp(-1.0208956 - 11.494184*x) with lines lw 1.6 dt 1 lc rgb '#333333' title 'E_b = 11.5'
+plot NaN notitle, 'p1-fig5.dat' index 0 using 1:2 with points pt 9 ps 1.1 lc rgb '#009E73' notitle, 'p1-fig5.dat' index 1 using 1:2 with points pt 10 ps 1 lw 1.3 lc rgb '#009E73' title 'no slip: 95 % limit', [0.0330579:0.826446] exp(-1.0208956 - 11.494184*x) with lines lw 1.6 dt 1 lc rgb '#333333' title 'E_b = 11.5'
 unset arrow
 unset label
 set title '(b) crystal, N_l = 20'

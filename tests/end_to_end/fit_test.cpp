@@ -62,11 +62,35 @@ TEST(Fit, Refusals) {
   refused({"fit", table, "--law", "arrhenius", "--window", "30,20", "-q"}, 2, "window");
   refused({"fit", folder / "no.csv", "--law", "line", "-q"}, 3, "no.csv");
   refused({"fit", table, "--law", "line", "-q", "-o", folder / "no/fit"}, 2, "no");
+  write_text_file(folder / "zeros.csv", "x,y\n1,0\n2,0\n3,0\n");
+  refused({"fit", folder / "zeros.csv", "--law", "power", "-q"}, 3, "3 zero");
+  refused({"fit", folder / "zeros.csv", "--law", "arrhenius", "--y", "x", "--trials", "x", "-q"}, 3,
+          "row 2 holds 2");
   write_text_file(folder / "bad.csv", "x,y\n1,2\n3,four\n");
   refused({"fit", folder / "bad.csv", "--law", "line", "-q"}, 3, "bad.csv:3");
   write_text_file(folder / "short.csv", "x,y\n1,2\n3\n");
   refused({"fit", folder / "short.csv", "--law", "line", "-q"}, 3, "short.csv:3");
-  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"bad.csv", "p_s.csv", "short.csv"}));
+  EXPECT_EQ(names_in(folder.path()),
+            (std::vector<std::string>{"bad.csv", "p_s.csv", "short.csv", "zeros.csv"}));
+}
+
+TEST(Fit, ErrorsThatAreNoneAreSaid) {
+  const TemporaryFolder folder;
+  write_text_file(folder / "flat.csv", "x,y,s\n1,2,0\n2,2,0\n4,2,0.1\n8,2,0\n16,2,0\n");
+  const Ran line = run_program({"fit", folder / "flat.csv", "--law", "line", "--sigma", "s", "-q"});
+  EXPECT_EQ(line.code, 0) << line.err;
+  EXPECT_NE(line.out.find("not weighted: the errors named are not above 0 at 4 of 5 points"),
+            std::string::npos)
+      << line.out;
+  // Without scatter and without a decay: the plateau is known, how it decays is not, and has no error of 0.
+  const Ran flat = run_program({"fit", folder / "flat.csv", "--law", "algebraic", "--json"});
+  EXPECT_EQ(flat.code, 0) << flat.err;
+  const auto document = nlohmann::json::parse(flat.out);
+  EXPECT_EQ(document["undetermined"], (nlohmann::json{"b", "c"}));
+  EXPECT_NEAR(document["parameters"]["a"]["value"].get<double>(), 2, 1e-12);
+  EXPECT_TRUE(document["parameters"]["a"].contains("interval"));
+  EXPECT_FALSE(document["parameters"]["b"].contains("interval"));
+  EXPECT_FALSE(document["parameters"]["c"].contains("interval"));
 }
 
 }  // namespace twincell

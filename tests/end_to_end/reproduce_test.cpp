@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/support/program.hpp"
 
@@ -15,9 +16,10 @@ namespace fs = std::filesystem;
 TEST(Reproduce, ASmallBudgetEndsInTimeAndNamesEveryTarget) {
   const TemporaryFolder folder;
   const std::string out = folder / "fig3";
+  std::ofstream(folder / "own.csv") << "N_l,bouncing,convection\n60,1.2,2.9\n20,1.15,2.1\n40,1.18,\n";
   const auto begin = std::chrono::steady_clock::now();
-  const Ran ran =
-      run_program({"reproduce", "p1-fig3", "--budget", "0.02", "--json", "-q", "--threads", "1", "-o", out});
+  const Ran ran = run_program({"reproduce", "p1-fig3", "--budget", "0.02", "--json", "-q", "--threads", "1",
+                               "-o", out, "--data", folder / "own.csv"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   EXPECT_LT(std::chrono::steady_clock::now() - begin,
             std::chrono::minutes(4));  // the point that was begun is finished
@@ -40,6 +42,20 @@ TEST(Reproduce, ASmallBudgetEndsInTimeAndNamesEveryTarget) {
   EXPECT_FALSE(document["cheaper"].empty());
   for (const char* name : {"p1-fig3.svg", "p1-fig3.gp", "p1-fig3.dat", "p1-fig3.json", "p1-fig3.txt"})
     EXPECT_TRUE(fs::exists(fs::path(out) / name)) << name;
+  // The experiment's onsets, by height; a field that is empty is no point.
+  std::ostringstream data;
+  data << std::ifstream(fs::path(out) / "p1-fig3.dat").rdbuf();
+  EXPECT_NE(data.str().find("# convection, experiment\n20 2.1\n60 2.9\n"), std::string::npos) << data.str();
+  EXPECT_NE(data.str().find("# bouncing, experiment\n20 1.15\n40 1.18\n60 1.2\n"), std::string::npos);
+}
+
+TEST(Reproduce, AnExperimentsTableNeedsItsColumns) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "bad.csv") << "N_l,gamma\n60,1.2\n";
+  const Ran bad =
+      run_program({"reproduce", "p1-fig3", "-q", "-o", folder / "bad", "--data", folder / "bad.csv"});
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_NE(bad.err.find("bouncing"), std::string::npos) << bad.err;
 }
 
 /// Runs one with the smallest budget, and checks what all have in common.

@@ -319,8 +319,11 @@ TEST_F(Sweeps, WrongPlansAreRefusedInOneSentence) {
   const std::string scene = kScene;
   refused("seed = 1\n", {"bad.toml", "scene"});
   refused("scene = \"none.toml\"\n", {"none.toml"}, kInput);
-  refused(scene + "[axes]\ndrive.gama = [1.0]\n", {"drive.gama", "drive.gamma"});
-  refused(scene + "[axes]\ndrive.gamma = [-1.0]\n", {"-1"});
+  refused(scene + "[axes]\ndrive.gama = [1.0]\n", {"bad.toml:8", "axes", "drive.gama", "drive.gamma"});
+  refused(scene + "[axes]\ndrive.gamma = [-1.0]\n", {"bad.toml:8", "-1"});
+  refused(scene + "[axes]\ndrive.gamma = [1.0]\ndrive.k_m = [2.0]\n", {"contradicts"});
+  refused(scene + "[axes]\ndrive.gamma = [1.5, 1.5]\n", {"bad.toml:8", "twice"});
+  refused(scene + "[axes]\nstart.seed = [1, 2]\nseeds = 2\n", {"bad.toml:8", "start.seed"});
   refused(scene + "[axes]\ndrive.gamma = []\n", {"bad.toml", "no values"});
   refused(scene + "[search]\nrange = [1.0, 2.0]\nwidth = 0.1\n", {"verdict"});
   refused(scene + "[search]\nverdict = \"flying\"\nrange = [1.0, 2.0]\nwidth = 0.1\n",
@@ -328,6 +331,9 @@ TEST_F(Sweeps, WrongPlansAreRefusedInOneSentence) {
   refused(scene + "[search]\nverdict = \"bouncing\"\nrange = [2.0, 1.0]\nwidth = 0.1\n",
           {"bad.toml", "range"});
   refused(scene + "[search]\nresult = \"q7\"\nabove = 1\nrange = [1.0, 2.0]\nwidth = 0.1\n", {"q7", "q6"});
+  for (const char* several : {"s_k", "phase"})
+    refused(scene + "[search]\nresult = \"" + several + "\"\nabove = 1\nrange = [1.0, 2.0]\nwidth = 0.1\n",
+            {"bad.toml", several, "one number"});
   refused("stop_early = true\n" + scene, {"stop_early"});
   refused("sedd = 3\n" + scene, {"sedd", "seed"});
   for (const char* shard : {"0/3", "4/3", "1/0", "x", "1/2/3"}) {
@@ -335,6 +341,24 @@ TEST_F(Sweeps, WrongPlansAreRefusedInOneSentence) {
     EXPECT_EQ(ran.code, kUsage) << shard;
     EXPECT_NE(ran.err.find("--shard"), std::string::npos) << ran.err;
   }
+}
+
+// The base scene names Gamma and layers; an axis says both in other words.
+TEST_F(Sweeps, AnAxisDisplacesWhatTheSceneSaysInOtherWords) {
+  write(at("km.toml"), "results = [\"s_b\"]\n" + std::string(kScene) +
+                           "drive.gamma = 1.2\n[axes]\ndrive.k_m = [2.25]\nbeads.count = [12]\n");
+  write(at("gamma.toml"), "results = [\"s_b\"]\n" + std::string(kScene) + "[axes]\ndrive.gamma = [1.5]\n");
+  const auto scene_in = [&](const std::string& plan) {
+    const Ran ran = run_program({"sweep", "plan", at(plan), "-o", at(plan) + ".d", "-q"});
+    EXPECT_EQ(ran.code, kDone) << ran.err;
+    return bytes_of(fs::directory_iterator(at(plan) + ".d/points")->path() / "point.json");
+  };
+  const std::string by_k_m = scene_in("km.toml");
+  EXPECT_NE(by_k_m.find("k_m = 2.25"), std::string::npos) << by_k_m;
+  EXPECT_EQ(by_k_m.find("gamma = 1.2"), std::string::npos) << by_k_m;
+  EXPECT_NE(by_k_m.find("count = 12"), std::string::npos) << by_k_m;
+  EXPECT_EQ(by_k_m.find("layers"), std::string::npos) << by_k_m;
+  ASSERT_EQ(run(at("km.toml"), at("km.toml.d")).code, kDone);
 }
 
 TEST_F(Sweeps, PlanAndStatusSayHowFarItIs) {

@@ -61,7 +61,25 @@ TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
   const Difference d = only(runs);
   EXPECT_NEAR(d.seeds.value(), 0.2082, 1e-4);  // of 0.8, 1.2, 1.1
   EXPECT_FALSE(d.camera);
-  EXPECT_NE(d.attribution().find("most is seed"), std::string::npos) << d.attribution();
+  EXPECT_NE(d.attribution().find("most is seeds"), std::string::npos) << d.attribution();
+}
+
+// Two runs 0.02 apart: s = 0.01414, and two of the errors built from it are the 95 % of Student's t with one
+// degree of freedom, 12.706 s sqrt(3/2).
+TEST(Differences, AFewSeedsAreNoCertainty) {
+  const Runs runs = {run(Side::experiment, 1.0, 1e-6), run(Side::simulation, 0.81, 1e-6),
+                     run(Side::simulation, 0.83, 1e-6)};
+  const Difference d = only(runs);
+  EXPECT_EQ(d.seed_runs, 2U);
+  EXPECT_NEAR(1.96 * d.seed_error().value(), 12.706 * std::sqrt(1.5) * 0.02 / std::sqrt(2), 1e-4);
+  EXPECT_NE(d.attribution().find("within its error"), std::string::npos) << d.attribution();
+  EXPECT_NE(d.attribution().find("2 runs only"), std::string::npos) << d.attribution();
+}
+
+TEST(Differences, WhatIsTheSameIsSaidToBe) {
+  EXPECT_NE(
+      only({run(Side::experiment, 1.0, 0.01), run(Side::simulation, 1.0, 0.01)}).attribution().find("same"),
+      std::string::npos);
 }
 
 TEST(Differences, AStartWithOtherDefectsMayBeTheReason) {

@@ -184,6 +184,29 @@ TEST(H5mdFile, ADamagedChunkNamesTheFrame) {
   EXPECT_FALSE(validate_h5md(folder / "run.h5").empty());
 }
 
+// Files of others: what they leave out is taken from what they hold.
+TEST(H5mdFile, ThePlaneAndThePhasesShowInTheFrames) {
+  const TemporaryFolder folder;
+  for (const bool planar : {true, false}) {
+    const std::string file = folder / (planar ? "plane.h5" : "space.h5");
+    {
+      H5mdWriter writer(file, experiment_info());
+      for (int f = 0; f < 45; ++f) {
+        Frame frame = frame_number(f);
+        if (!planar) frame.position[1].y() = 0.5;
+        writer.append(frame);
+      }
+      writer.finish();
+      const h5::Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+      H5Ldelete(opened.get(), "twincell/cell", H5P_DEFAULT);
+      H5Ldelete(opened.get(), "parameters/phases_per_cycle", H5P_DEFAULT);
+    }
+    const H5mdReader reader(file);
+    EXPECT_EQ(reader.info().box.dimension, planar ? 2 : 3);
+    EXPECT_EQ(reader.info().phases_per_cycle, 20);
+  }
+}
+
 TEST(H5mdFile, ValidateFindsBrokenLinksAndWrongAttributes) {
   const TemporaryFolder folder;
   write(folder / "run.h5", 5);

@@ -223,6 +223,31 @@ TEST(Orientation, CrystalsAAndB) {
   }
 }
 
+// 45 degrees are -15: frames on either side of the seam must not make 15 of it.
+TEST(Orientation, FramesOnBothSidesOfTheSeamKeepTheirMean) {
+  for (const double first : {44.9, 45.1}) {
+    std::vector<Frame> frames;
+    for (const double degrees : {first, 45.1, 44.9, 45.1, 44.9, 45.1, 44.9, 90 - first}) {
+      std::vector<Vec3> beads = lattice(degrees, 0, 20, 0, 20);
+      beads.resize(380);
+      frames.push_back(frame_of(beads));
+    }
+    const Result orientation = find_result(analyze(film(frames)), "orientation");
+    EXPECT_NEAR(misorientation(orientation.value(), 45), 0, 1e-9);
+    EXPECT_GE(orientation.value(), -15);
+    EXPECT_LT(orientation.value(), 45);
+    ASSERT_TRUE(orientation.interval);
+    EXPECT_LE(orientation.interval->low, orientation.value());
+    EXPECT_GE(orientation.interval->high, orientation.value());
+    EXPECT_LT(orientation.interval->high - orientation.interval->low, 1);
+  }
+}
+
+TEST(Orientation, ALatticeTurnedByTheWidthIsWithinIt) {
+  EXPECT_EQ(value(analyze(film({frame_of(lattice(-10, 0, 20, 0, 20))})), "orientation_a"), 1);
+  EXPECT_EQ(value(analyze(film({frame_of(lattice(20, 0, 20, 0, 20))})), "orientation_b"), 1);
+}
+
 TEST(Orientation, LatticesLyingAnyhowAreAThirdEach) {
   std::mt19937_64 generator(3);
   std::uniform_real_distribution<double> angle(0, 360);
@@ -427,6 +452,10 @@ TEST(Convection, TooFewCyclesAreSaid) {
   const auto one = analyze(carried([](const Vec3&) { return Vec3(0.1, 0, 0); }, 2));
   EXPECT_TRUE(find_result(one, "displacement_field").present());
   EXPECT_NE(find_result(one, "rolls").absent.find("blocks"), std::string::npos);
+  // One displacement of each bead: no cell has five, and what has no cells has no circulation.
+  const auto two = analyze(carried([](const Vec3&) { return Vec3(0.1, 0, 0); }, 1));
+  EXPECT_FALSE(find_result(two, "circulation_left").present());
+  EXPECT_FALSE(find_result(two, "circulation_right").present());
   Frame still = frame_of(lattice(0, 0, 20, 0, 20));
   EXPECT_EQ(find_result(analyze(film({still})), "displacement_field").absent,
             "the frames have no cycle number");

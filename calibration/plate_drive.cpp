@@ -1,0 +1,113 @@
+#include "calibration/plate_drive.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "analysis/trajectory/error.hpp"
+#include "calibration/cell_geometry.hpp"
+#include "calibration/plate_lock.hpp"
+#include "imaging/frame_source.hpp"
+#include "imaging/locator.hpp"
+
+namespace twincell {
+namespace {
+
+/// Numbers of the drive that are stated, amplitude apart.
+int stated(const DriveSpec& s) {
+  int n = 0;
+  for (const auto& number : {s.omega, s.frequency, s.gamma, s.k_m, s.peak_velocity}) n += number ? 1 : 0;
+  return n;
+}
+
+bool is_whole(const DriveSpec& s) {
+  return stated(s) + (s.amplitude ? 1 : 0) >= 2;
+}
+
+StackEdges edges_of(const std::filesystem::path& stack, const CellDescription& cell, int threads,
+                    Progress& progress) {
+  constexpr double kUsualDiameter_px = 15;
+  double diameter = cell.pixels_per_sigma.value_or(0);
+  if (cv::Mat first; diameter <= 0 && open_frames(stack)->next(first))
+    diameter = estimate_diameter(first, {.bright = cell.bright});
+  const auto frames = open_frames(stack);
+  return read_stack_edges(*frames, cell.bright, diameter > 0 ? diameter : kUsualDiameter_px, threads,
+                          progress);
+}
+
+/// Pixels per sigma: as stated, else by the walls.
+double scale_of(const CellDescription& cell, const CellGeometry& geometry, const Where& where) {
+  if (cell.pixels_per_sigma) return *cell.pixels_per_sigma;
+  if (cell.width && geometry.has_left && geometry.has_right) return geometry.width_px() / *cell.width;
+  throw ConfigError(where,
+                    "is not stated, and the plate's motion gives it in pixels alone: say "
+                    "camera.pixels_per_sigma, or cell.width where both walls are in the picture.");
+}
+
+std::optional<double> frame_rate(const StackEdges& edges, const std::filesystem::path& stack) {
+  const auto& t = edges.time_s;
+  if (t.size() > 1 && t.back() > t.front()) return static_cast<double>(t.size() - 1) / (t.back() - t.front());
+  return open_frames(stack)->info().frame_rate_hz;
+}
+
+}  // namespace
+
+bool lacks_drive(const CellDescription& cell) {
+  return !is_whole(cell.drive_spec) || !cell.phase_lock.locked();
+}
+
+std::string complete_drive(CellDescription& cell, const std::filesystem::path& cell_file,
+                           const std::filesystem::path& stack, int threads, Progress& progress) {
+  const auto where = [&](const char* key) { return Where{.file = cell_file.string(), .key = key}; };
+  const StackEdges edges = edges_of(stack, cell, threads, progress);
+  const auto seen = [&] {
+    try {
+      const CellGeometry geometry = fit_cell_geometry(edges);
+      return std::pair(
+          geometry, lock_plate(geometry.heights_px(), {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
+                                                       .mend = true,
+                                                       .model_error = kHeightModelError_px}));
+    } catch (const InputError& e) {
+      throw InputError({.file = stack.string()},
+                       fmt::format("the drive is not stated, and cannot be seen on the plate: {}", e.what()));
+    }
+  }();
+  const auto& [geometry, lock] = seen;
+  std::string said = "by the plate's edge:";
+  DriveSpec& spec = cell.drive_spec;
+  if (!is_whole(spec)) {
+    if (!spec.amplitude) {
+      const double scale = scale_of(cell, geometry, where("drive.amplitude"));
+      spec.amplitude = lock.amplitude / scale;
+      said += fmt::format(" A = {:.5g} +- {:.2g} sigma", *spec.amplitude, lock.amplitude_error / scale);
+    }
+    if (stated(spec) == 0) {
+      const auto rate = frame_rate(edges, stack);
+      const auto t0 = cell.scale.t0_s();
+      if (!rate || !t0)
+        throw ConfigError(
+            where("drive.omega"),
+            fmt::format("is not stated, and the plate's motion gives it per frame alone: say omega, or {}.",
+                        !rate ? "take a stack that says its frame rate" : "scale.sigma_m and gravity_m_s2"));
+      spec.omega = lock.omega * *rate * *t0;
+      said += fmt::format("{} omega = {:.6g} +- {:.2g} /t0", said.back() == ':' ? "" : ",", *spec.omega,
+                          lock.omega_error * *rate * *t0);
+    }
+  }
+  if (!cell.phase_lock.locked()) {
+    if (lock.frames_per_cycle == 0)
+      throw ConfigError(
+          where("camera.frames_per_cycle"),
+          fmt::format("is missing, and {:.5g} frames per cycle, as the plate moves, is no whole "
+                      "number that lasts: the frames keep no phase.",
+                      lock.period));
+    cell.phase_lock = {lock.frames_per_cycle, lock.first_phase, lock.phase_offset};
+    said += fmt::format("{} {} frames per cycle, the first at phase {}", said.back() == ':' ? "" : ",",
+                        lock.frames_per_cycle, lock.first_phase);
+  }
+  return said;
+}
+
+}  // namespace twincell
