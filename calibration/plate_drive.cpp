@@ -10,7 +10,7 @@
 #include "calibration/cell_geometry.hpp"
 #include "calibration/plate_lock.hpp"
 #include "imaging/frame_source.hpp"
-#include "imaging/locator.hpp"
+#include "imaging/settings.hpp"
 
 namespace twincell {
 namespace {

@@ -17,6 +17,7 @@
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "imaging/locator.hpp"
+#include "imaging/settings.hpp"
 
 namespace twincell::cli {
 namespace {

@@ -164,8 +164,12 @@ void run(LocateOptions& o, const Common& common) {
     for (const double other : o.locator.other_diameters_px) sizes += fmt::format(" and {:.2f}", other);
     text += fmt::format("bead diameter found from the first frame: {} px (--diameter)\n", sizes);
   }
-  if (refine != o.locator.refine.method)
+  if (refine != o.locator.refine.method && o.locator.refine.method == "edges")
     text += "discs differ inside, as the first frame shows: fitted by their rims (--refine edges)\n";
+  if (refine != o.locator.refine.method && o.locator.refine.method == "profile")
+    text +=
+        "discs are alike but not plain, as the first frame shows: fitted by their common profile (--refine "
+        "profile)\n";
   if (find_polarity)
     text +=
         fmt::format("beads are {} than what lies behind them, as the first frame shows (--dark, --bright)\n",
@@ -208,8 +212,10 @@ void add_locate(CLI::App& program, Common& common) {
   verb.add_option("--min-score", o->locator.find.min_score,
                   "Share of a circle's edge that must be seen, 0 .. 1");
   verb.add_option("--refine", o->locator.refine.method,
-                  "exact: fit of the picture; fast: its first step; edges: circles through the edges")
-      ->check(CLI::IsMember({"exact", "fast", "edges"}));
+                  "exact: fit of the picture; fast: its first step; edges: circles through the edges; "
+                  "profile: fit with "
+                  "the radial profile that the discs share")
+      ->check(CLI::IsMember({"exact", "fast", "edges", "profile"}));
   CLI::Option* bright = verb.add_flag("--bright", o->locator.preprocess.bright,
                                       "Beads are brighter than what lies behind them");
   verb.add_flag("--dark", o->dark, "Beads are darker; with neither, found from the first frame")

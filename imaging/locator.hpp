@@ -17,6 +17,7 @@
 
 #include "imaging/judge.hpp"
 #include "imaging/preprocess.hpp"
+#include "imaging/profile_fit.hpp"
 #include "imaging/refine.hpp"
 
 namespace twincell {
@@ -78,6 +79,7 @@ struct LocatorStages {
   std::vector<Proposal> proposals;
   Refined refined;
   Judged judged;
+  DiscProfile profile;  ///< with refine.method "profile"
   std::vector<StageReport> reports;
 };
 LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options);
@@ -85,30 +87,5 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options);
 /// Locates the beads in one grey frame, turned as orientation.hpp says. Pure; needs diameter_px > 0. \throws
 /// ConfigError as `check`
 Located locate(const cv::Mat& grey, const LocatorOptions& options);
-
-/// Bead diameter (px) at which the gradient votes of a frame meet most sharply, sought between 6 and 80 px.
-/// Good to a few per cent for beads of one size. Returns 0 if nothing round stands out.
-double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options);
-
-/// What a frame says of how to locate its beads.
-struct FoundSettings {
-  double diameter_px = 0;
-  bool bright = false;                     ///< beads are brighter than what lies behind them
-  double explained = 0;                    ///< by well explained discs: sum of -R^2 ln(1 - score), px^2
-  std::vector<double> other_diameters_px;  ///< of discs of further sizes
-  bool patterned = false;  ///< only the rims are alike: RefineOptions::method is to be "edges"
-};
-
-/// Large discs (80 px and more, up to two sizes) known by their rims alone, such as photoelastic ones: most
-/// of each rim must be seen and the discs must cover a fifth of the frame. The contrast is found too. None if
-/// there are none.
-std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given);
-
-/// Darkness of a typical disc of a frame, for PreprocessOptions::contrast.
-double find_contrast(const cv::Mat& grey, const LocatorOptions& options);
-
-/// Finds what `given` leaves open: the diameter, first from the votes, then as the median of the fitted beads
-/// until it stands; the polarity that explains more. None if nothing round stands out.
-std::optional<FoundSettings> find_settings(const cv::Mat& grey, const LocatorOptions& given);
 
 }  // namespace twincell

@@ -111,9 +111,11 @@ void LocatorOptions::check() const {
   if (!other_diameters_px.empty() && refine.method != "edges")
     throw ConfigError(Where{.file = {}, .key = "diameter"},
                       "has several values; discs of several sizes are located with --refine edges.");
-  if (refine.method != "exact" && refine.method != "fast" && refine.method != "edges")
-    throw ConfigError(Where{.file = {}, .key = "refine"},
-                      fmt::format("is '{}'; it is \"exact\", \"fast\" or \"edges\".", refine.method));
+  if (refine.method != "exact" && refine.method != "fast" && refine.method != "edges" &&
+      refine.method != "profile")
+    throw ConfigError(
+        Where{.file = {}, .key = "refine"},
+        fmt::format("is '{}'; it is \"exact\", \"fast\", \"edges\" or \"profile\".", refine.method));
   range("contrast", preprocess.contrast, 0.01, 2);
   range("sweeps", refine.sweeps, 1, 100);
   range("tolerance", refine.tolerance_px, 1e-9, 1);
@@ -157,13 +159,17 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   result.reports.push_back({"prepare", watch.lap(), 0});
   result.proposals = propose_all(result.image, options);
   result.reports.push_back({"find", watch.lap(), result.proposals.size()});
-  result.refined = options.refine.method == "edges"
-                       ? refine_by_edges(result.image, result.proposals, radius)
-                       : refine(result.image, result.proposals, radius, options.refine);
+  const std::string& method = options.refine.method;
+  result.refined = method == "edges"     ? refine_by_edges(result.image, result.proposals, radius)
+                   : method == "profile" ? refine_by_profile(result.image, result.proposals, radius,
+                                                             options.refine.sweeps, &result.profile)
+                                         : refine(result.image, result.proposals, radius, options.refine);
   result.reports.push_back({"refine", watch.lap(), result.refined.beads.size()});
   JudgeOptions judged = options.judge;
   // Patterned discs differ in brightness without being tracers.
-  if (options.preprocess.contrast != 1) judged.tracer_below = 0;
+  if (options.preprocess.contrast != 1 || method == "profile") judged.tracer_below = 0;
+  // A disc may look like anything inside if all do.
+  if (method == "profile") judged.min_interior = -HUGE_VAL;
   for (const double other : options.other_diameters_px) judged.other_radii_px.push_back(other / 2);
   result.judged = judge(result.refined.beads, radius, grey.cols, grey.rows, judged);
   result.reports.push_back({"judge", watch.lap(), result.judged.beads.size()});
@@ -184,138 +190,6 @@ Located locate(const cv::Mat& picture, const LocatorOptions& options) {
   }
   result.stages = std::move(stages.reports);
   return result;
-}
-
-double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options) {
-  const double smallest = 3, largest = std::min(40.0, 0.5 * std::min(grey.cols, grey.rows));
-  if (largest < smallest) return 0;
-  const Prepared image = prepare(grey, options, largest);
-  constexpr double kRatio = 1.03;
-  std::vector<double> sharpness;
-  const int steps = static_cast<int>(std::log(largest / smallest) / std::log(kRatio));
-  for (int k = 0; k <= steps; ++k)
-    sharpness.push_back(vote_sharpness(image.darkness, smallest * std::pow(kRatio, k)));
-  const auto peak = std::max_element(sharpness.begin(), sharpness.end());
-  if (*peak <= 0) return 0;
-  // The top of the parabola through the best and its neighbours.
-  double k = static_cast<double>(peak - sharpness.begin());
-  if (peak != sharpness.begin() && peak + 1 != sharpness.end()) {
-    const double curvature = peak[-1] - 2 * peak[0] + peak[1];
-    if (curvature < 0) k += 0.5 * (peak[-1] - peak[1]) / curvature;
-  }
-  return 2 * smallest * std::pow(kRatio, k);
-}
-
-double find_contrast(const cv::Mat& grey, const LocatorOptions& options) {
-  PreprocessOptions plain = options.preprocess;
-  plain.contrast = 1;
-  return contrast_of(prepare(grey, plain, options.diameter_px / 2).darkness);
-}
-
-std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given) {
-  constexpr double kLeast = 80, kMost = 400, kRatio = 1.04;  // px
-  constexpr double kShrink = 4;
-  constexpr double kApart = 1.15, kComparable = 0.7;  // of a second size: ratio to the first; sharpness
-  constexpr double kCovered = 0.2;                    // share of the frame
-  constexpr double kNoise = 0.035;  // of a disc's contrast: makes no edges where there are none
-  constexpr double kSeen = 0.7;     // mean share of the rims
-  constexpr std::ptrdiff_t kEnough = 3;
-  const double largest = std::min(kMost, 0.5 * std::min(grey.cols, grey.rows));
-  std::optional<FoundSettings> best;
-  for (const bool bright : {false, true}) {
-    if (largest < kLeast || (given.polarity_known && bright != given.preprocess.bright)) continue;
-    LocatorOptions options = given;
-    options.refine.method = "edges";
-    options.preprocess.bright = bright;
-    options.diameter_px = kLeast;
-    options.preprocess.contrast = find_contrast(grey, options);
-    const Prepared image = prepare(grey, options.preprocess, largest / 2);
-    const Noise noise = noise_of(image.darkness);
-    if (noise.dark + noise.light > kNoise * kNoise) continue;
-    cv::Mat1f small;
-    cv::resize(image.darkness, small, {}, 1 / kShrink, 1 / kShrink, cv::INTER_AREA);
-    std::vector<std::pair<double, double>> tops;  // sharpness, diameter
-    double before = 0, last = 0;
-    for (double d = kLeast; d <= largest; d *= kRatio) {
-      const double now = vote_sharpness(small, 0.5 * d / kShrink);
-      if (last > before && last >= now) tops.emplace_back(last, d / kRatio);
-      before = std::exchange(last, now);
-    }
-    if (tops.empty()) continue;
-    std::sort(tops.rbegin(), tops.rend());
-    options.diameter_px = tops[0].second;
-    for (const auto& [sharp, d] : tops)
-      if (options.other_diameters_px.empty() && sharp > kComparable * tops[0].first &&
-          std::max(d / tops[0].second, tops[0].second / d) > kApart)
-        options.other_diameters_px = {d};
-    std::vector<Detection> beads = locate(grey, options).beads;
-    // Each size as the median of its discs; a size of which there are hardly any is none.
-    const auto settle = [&](double d) {
-      std::vector<double> radii;
-      for (const Detection& b : beads)
-        if (std::abs(2 * b.radius / d - 1) < kApart - 1) radii.push_back(b.radius);
-      return std::ssize(radii) < kEnough ? 0.0 : 2 * upper_median(std::move(radii));
-    };
-    const double first = settle(options.diameter_px);
-    if (first == 0) continue;
-    options.diameter_px = first;
-    if (!options.other_diameters_px.empty()) {
-      const double second = settle(options.other_diameters_px[0]);
-      options.other_diameters_px.clear();
-      if (second > 0) options.other_diameters_px.push_back(second);
-    }
-    beads = locate(grey, options).beads;
-    double covered = 0, explained = 0, rims = 0;
-    for (const Detection& b : beads) {
-      rims += b.score;
-      covered += std::numbers::pi * b.radius * b.radius;
-      explained -= b.radius * b.radius * std::log(std::max(1 - b.score, 1e-6));
-    }
-    if (covered < kCovered * grey.cols * grey.rows || std::ssize(beads) < kEnough ||
-        rims < kSeen * static_cast<double>(beads.size()))
-      continue;
-    if (!best || explained > best->explained)
-      best = FoundSettings{options.diameter_px, bright, explained, options.other_diameters_px, true};
-  }
-  return best;
-}
-
-std::optional<FoundSettings> find_settings(const cv::Mat& grey, const LocatorOptions& given) {
-  if (given.diameter_px <= 0)
-    if (auto found = find_patterned(grey, given)) return found;
-  constexpr int kRounds = 4;
-  constexpr double kClose = 0.01;  // relative change of the diameter at which it stands
-  constexpr double kGood = 0.8;    // score of a bead that tells of its size
-  constexpr std::size_t kEnough = 3;
-  std::optional<FoundSettings> best;
-  for (const bool bright : {false, true}) {
-    if (given.polarity_known && bright != given.preprocess.bright) continue;
-    LocatorOptions options = given;
-    options.preprocess.bright = bright;
-    options.diameter_px =
-        given.diameter_px > 0 ? given.diameter_px : estimate_diameter(grey, options.preprocess);
-    if (options.diameter_px < 3) continue;
-    double explained = 0;
-    for (int round = 0; round < kRounds; ++round) {
-      std::vector<double> radii;
-      explained = 0;
-      for (const Detection& b : locate(grey, options).beads) {
-        if (b.score < kGood) continue;
-        // The logarithm of the likelihood gained. Areas times scores did not do: discs put into the gaps
-        // between dark ones explain nineteen twentieths of their own rings.
-        explained -= b.radius * b.radius * std::log(std::max(1 - b.score, 1e-6));
-        if (!b.edge) radii.push_back(b.radius);
-      }
-      if (given.diameter_px > 0 || radii.size() < kEnough) break;
-      const double found = std::clamp(2 * upper_median(std::move(radii)), 3.0, 400.0),
-                   change = found / options.diameter_px - 1;
-      options.diameter_px = found;
-      if (std::abs(change) < kClose) break;
-    }
-    if (!best || explained > best->explained)
-      best = FoundSettings{options.diameter_px, bright, explained, {}, false};
-  }
-  return best;
 }
 
 }  // namespace twincell

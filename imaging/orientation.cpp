@@ -39,8 +39,12 @@ Moments moments_of(const cv::Mat& picture) {
 }  // namespace
 
 cv::Mat Orientation::turned(const cv::Mat& picture) const {
-  cv::Mat stood = picture, result;
-  if (transpose) cv::transpose(picture, stood);
+  cv::Mat stood, result;
+  // Into a picture of its own: OpenCV would transpose a square one in place.
+  if (transpose)
+    cv::transpose(picture, stood);
+  else
+    stood = picture;
   if (!flip_x && !flip_y) return stood;
   cv::flip(stood, result, flip_x && flip_y ? -1 : flip_x ? 1 : 0);
   return result;

@@ -10,6 +10,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "imaging/found_phase.hpp"
+#include "imaging/settings.hpp"
 #include "imaging/trigger_list.hpp"
 
 namespace twincell {
@@ -70,7 +71,7 @@ std::int64_t locate_stack(FrameSource& frames, LocatorOptions& options, int thre
         options.diameter_px = found->diameter_px;
         options.preprocess.bright = found->bright;
         if (options.other_diameters_px.empty()) options.other_diameters_px = found->other_diameters_px;
-        if (found->patterned) options.refine.method = "edges";
+        if (!found->method.empty()) options.refine.method = found->method;
       }
       options.polarity_known = true;
     }

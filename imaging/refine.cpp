@@ -227,12 +227,26 @@ class PictureFit {
     std::stable_sort(missed.begin(), missed.end(),
                      [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
     const std::size_t before = beads_.size();
+    // Opaque discs do not overlap: a centre within 1.3 R of a known one is that one's own misfit. A map of
+    // what is known, for in noise there are ten thousands of either.
+    cv::Mat1b known = cv::Mat1b::zeros(blocks.size());
+    const double reach = 1.3 * radius_;
+    const auto block_of = [&](double at) { return (at + 0.5) / side - 0.5; };
+    const auto mark = [&](const Detection& b) {
+      const int last_y = std::min(known.rows - 1, cvFloor(block_of(b.y + reach))),
+                last_x = std::min(known.cols - 1, cvFloor(block_of(b.x + reach)));
+      for (int y = std::max(0, cvCeil(block_of(b.y - reach))); y <= last_y; ++y)
+        for (int x = std::max(0, cvCeil(block_of(b.x - reach))); x <= last_x; ++x) {
+          const double dx = side * (x + 0.5) - 0.5 - b.x, dy = side * (y + 0.5) - 0.5 - b.y;
+          if (dx * dx + dy * dy < reach * reach) known(y, x) = 1;
+        }
+    };
+    for (const Detection& b : beads_) mark(b);
     for (const Proposal& p : missed) {
-      // Opaque discs do not overlap: a centre within 1.3 R of a known one is that one's own misfit.
-      const bool known = std::any_of(beads_.begin(), beads_.end(), [&](const Detection& b) {
-        return std::hypot(b.x - p.x, b.y - p.y) < 1.3 * radius_;
-      });
-      if (!known) add(p);
+      if (known(cvRound(block_of(p.y)), cvRound(block_of(p.x))) != 0) continue;
+      const std::size_t had = beads_.size();
+      add(p);
+      if (beads_.size() > had) mark(beads_.back());
     }
     if (beads_.size() > before) stale_ = true, before_.reset(), couplings_.clear();
     return beads_.size() - before;

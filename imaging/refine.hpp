@@ -27,7 +27,8 @@ namespace twincell {
 
 /// How the fit is done.
 struct RefineOptions {
-  std::string method = "exact";  ///< "exact": this fit; "fast": its first sweep; "edges": edge_fit.hpp
+  std::string method = "exact";  ///< "exact": this fit; "fast": its first sweep; "edges": edge_fit.hpp;
+                                 ///< "profile": profile_fit.hpp
   int sweeps = 30;               ///< at most, 1 .. 1000
   double tolerance_px = 2e-3;    ///< a sweep that moves no bead further is the last, > 0
   double ring_px = 0;            ///< half width of the ring, 1 .. 50; 0: three times the blur, 2.5 .. 6

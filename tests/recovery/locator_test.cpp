@@ -10,6 +10,7 @@
 #include <random>
 
 #include "imaging/score.hpp"
+#include "imaging/settings.hpp"
 #include "imaging/synthetic_camera.hpp"
 
 using namespace twincell;

@@ -1,0 +1,380 @@
+#include "imaging/profile_fit.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <opencv2/imgproc.hpp>
+
+#include "analysis/trajectory/median.hpp"
+#include "imaging/coupled_step.hpp"
+#include "imaging/disc_measures.hpp"
+
+namespace twincell {
+
+namespace {
+
+constexpr double kReach = 3;            // px beyond the radius: where the outer rim has ended
+constexpr int kRounds = 3;              // of learning and fitting
+constexpr int kSweeps = 4;              // of a round
+constexpr double kSettled = 2e-3;       // px
+constexpr double kMinScore = 0.5;       // as the judge asks
+constexpr double kMinLevel = 0.4;       // of a, as the opaque fit asks
+constexpr double kRadiusSpread = 0.04;  // prior of R_k, of R
+constexpr double kLevelSpread = 0.1;    // prior of a_k
+constexpr double kDoubled = 0.5;        // of R: centres nearer than that are of one disc
+
+/// f and its slope at a distance, R = that of the profile.
+struct Level {
+  double value, slope;
+};
+Level level_at(const DiscProfile& f, double r) {
+  const double t = r * DiscProfile::kPerPixel;
+  const auto k = static_cast<std::size_t>(t);
+  if (k + 1 >= f.levels.size()) return {0, 0};
+  const double part = t - static_cast<double>(k), a = static_cast<double>(f.levels[k]),
+               b = static_cast<double>(f.levels[k + 1]);
+  return {a + part * (b - a), (b - a) * DiscProfile::kPerPixel};
+}
+
+class ProfileFit {
+ public:
+  ProfileFit(const Prepared& image, double radius)
+      : image_(image), radius_(radius), noise_(noise_of(image.darkness)) {
+    const double deviation = std::sqrt(noise_.dark + noise_.light);
+    huber_ = std::max(0.1, 4 * deviation);
+    shared_.radius_px = radius;
+    shared_.levels.assign(static_cast<std::size_t>(std::ceil((radius + kReach) * DiscProfile::kPerPixel)) + 1,
+                          0.0F);
+    model_ = cv::Mat1f::zeros(image.darkness.size());
+  }
+
+  void start(const std::vector<Proposal>& proposals) {
+    for (const Proposal& p : proposals) {
+      Detection b;
+      b.x = p.x, b.y = p.y, b.radius = radius_, b.darkness = 1, b.score = p.score;
+      if (in_wall(image_, b)) {
+        b.verdict = Verdict::in_wall;
+        dropped_.push_back(b);
+      } else {
+        beads_.push_back(b);
+      }
+    }
+  }
+
+  /// f and g from the discs whose score is no less than `least`; the model follows.
+  void learn(double least) {
+    const auto n = static_cast<Eigen::Index>(shared_.levels.size());  // the last is g
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+    // Which discs a pixel sees: at most a few.
+    struct Share {
+      double at[2];
+      Eigen::Index index[2];
+    };
+    std::vector<std::vector<std::pair<int, double>>> rows;
+    cv::Mat1i of_pixel(image_.darkness.size(), -1);
+    std::vector<cv::Point> pixels;
+    for (const Detection& b : beads_) {
+      if (b.score < least) continue;
+      over(b, [&](int x, int y, double r) {
+        const double t = r * radius_ / b.radius * DiscProfile::kPerPixel;
+        const auto k = static_cast<int>(t);
+        if (k + 1 >= n) return;
+        int& row = of_pixel(y, x);
+        if (row < 0) {
+          row = static_cast<int>(rows.size());
+          rows.emplace_back();
+          pixels.emplace_back(x, y);
+        }
+        const double part = t - k;
+        auto& terms = rows[static_cast<std::size_t>(row)];
+        terms.emplace_back(k, b.darkness * (1 - part));
+        if (k + 2 < n) terms.emplace_back(k + 1, b.darkness * part);
+      });
+    }
+    const bool known = learnt_;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      auto& terms = rows[i];
+      terms.emplace_back(static_cast<int>(n) - 1, 1.0);
+      const double d = static_cast<double>(image_.darkness(pixels[i]));
+      double weight = 1;
+      if (known) {
+        double now = 0;
+        for (const auto& [k, share] : terms)
+          now += share * (k + 1 == n ? shared_.ground
+                                     : static_cast<double>(shared_.levels[static_cast<std::size_t>(k)]));
+        weight = std::min(1.0, huber_ / std::max(1e-9, std::abs(d - now)));
+      }
+      for (const auto& [k, share] : terms) {
+        right[k] += weight * share * d;
+        for (const auto& [l, other] : terms) a(k, l) += weight * share * other;
+      }
+    }
+    // Levels that few pixels see, as at the centre, go on like their neighbours.
+    const double smooth = 0.02 * static_cast<double>(rows.size()) / static_cast<double>(n);
+    for (Eigen::Index k = 1; k + 2 < n; ++k) {
+      a(k - 1, k - 1) += smooth, a(k, k) += smooth;
+      a(k - 1, k) -= smooth, a(k, k - 1) -= smooth;
+    }
+    a(n - 2, n - 2) += 100 * smooth;  // 0 where the disc has ended
+    a.diagonal().array() += 1e-9 * static_cast<double>(rows.size() + 1);
+    const Eigen::VectorXd solved = a.ldlt().solve(right);
+    for (Eigen::Index k = 0; k + 1 < n; ++k)
+      shared_.levels[static_cast<std::size_t>(k)] = static_cast<float>(solved[k]);
+    shared_.levels.back() = 0;
+    shared_.ground = solved[n - 1];
+    learnt_ = true;
+    render();
+  }
+
+  /// One step of each disc, all others as they stand. \returns how far the farthest of all but the worst
+  /// fiftieth moved, px
+  double sweep() {
+    std::vector<double> far;
+    far.reserve(beads_.size());
+    covariance_.resize(beads_.size());
+    for (std::size_t k = 0; k < beads_.size(); ++k) far.push_back(step(beads_[k], covariance_[k]));
+    if (far.empty()) return 0;
+    const auto most = static_cast<std::ptrdiff_t>(far.size() - 1 - far.size() / 50);
+    std::nth_element(far.begin(), far.begin() + most, far.end());
+    return far[static_cast<std::size_t>(most)];
+  }
+
+  /// Drops what the profile does not explain, and of two centres in one disc the lesser.
+  void prune() {
+    std::vector<Disc> discs;
+    std::vector<bool> stays(beads_.size(), true);
+    for (std::size_t k = 0; k < beads_.size(); ++k) {
+      Detection& b = beads_[k];
+      b.score = explained(b);
+      discs.push_back({b.x, b.y, b.radius, 1});
+      const bool inside = b.x > -radius_ && b.y > -radius_ && b.x < image_.darkness.cols - 1 + radius_ &&
+                          b.y < image_.darkness.rows - 1 + radius_;
+      if (b.darkness < kMinLevel) stays[k] = false, b.verdict = Verdict::pale;
+      if (b.score < kMinScore) stays[k] = false, b.verdict = Verdict::unexplained;
+      if (!inside) stays[k] = false, b.verdict = Verdict::outside;
+    }
+    for (const auto& [i, j] : near_pairs(discs, 0)) {
+      const auto p = static_cast<std::size_t>(i), q = static_cast<std::size_t>(j);
+      if (!stays[p] || !stays[q] ||
+          std::hypot(discs[p].x - discs[q].x, discs[p].y - discs[q].y) > 2 * radius_ * (1 - kDoubled / 2))
+        continue;
+      const std::size_t lesser = beads_[p].score < beads_[q].score ? p : q;
+      stays[lesser] = false;
+      beads_[lesser].verdict = Verdict::overlaps;
+    }
+    std::vector<Detection> kept;
+    for (std::size_t k = 0; k < beads_.size(); ++k) (stays[k] ? kept : dropped_).push_back(beads_[k]);
+    if (kept.size() == beads_.size()) return;
+    beads_ = std::move(kept);
+    render();
+  }
+
+  /// Discs that the vote did not propose: where the frame looks like the profile.
+  void add_missed() {
+    constexpr double kLike = 0.5;  // correlation
+    const int reach = cvCeil(radius_) + 1;
+    const cv::Size size = image_.darkness.size();
+    if (size.width < 2 * reach || size.height < 2 * reach) return;
+    cv::Mat1f pattern(2 * reach + 1, 2 * reach + 1), seen, like;
+    for (int y = -reach; y <= reach; ++y)
+      for (int x = -reach; x <= reach; ++x)
+        pattern(y + reach, x + reach) = static_cast<float>(level_at(shared_, std::hypot(x, y)).value);
+    cv::copyMakeBorder(image_.darkness, seen, reach, reach, reach, reach, cv::BORDER_CONSTANT,
+                       cv::Scalar(shared_.ground));
+    cv::matchTemplate(seen, pattern, like, cv::TM_CCOEFF_NORMED);
+    std::vector<Proposal> missed;
+    for (int y = 1; y + 1 < like.rows; ++y)
+      for (int x = 1; x + 1 < like.cols; ++x) {
+        const float v = like(y, x);
+        if (static_cast<double>(v) < kLike || v < like(y, x - 1) || v < like(y, x + 1) ||
+            v < like(y - 1, x) || v < like(y + 1, x))
+          continue;
+        missed.push_back({static_cast<double>(x), static_cast<double>(y), static_cast<double>(v), radius_});
+      }
+    std::stable_sort(missed.begin(), missed.end(),
+                     [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
+    const std::size_t before = beads_.size();
+    for (const Proposal& p : missed) {
+      Detection b;
+      b.x = p.x, b.y = p.y, b.radius = radius_, b.darkness = 1, b.score = p.score;
+      const bool known = std::any_of(beads_.begin(), beads_.end(), [&](const Detection& c) {
+        return std::hypot(c.x - b.x, c.y - b.y) < 1.5 * radius_;
+      });
+      if (!known && !in_wall(image_, b)) beads_.push_back(b);
+    }
+    if (beads_.size() > before) render();
+  }
+
+  [[nodiscard]] double typical_score() const {
+    std::vector<double> scores;
+    for (const Detection& b : beads_) scores.push_back(b.score);
+    return scores.empty() ? 0 : upper_median(std::move(scores));
+  }
+
+  Refined result(int sweeps) {
+    for (std::size_t k = 0; k < beads_.size(); ++k) {
+      Detection& b = beads_[k];
+      const Normal& c = covariance_[k];
+      b.sigma_x = std::sqrt(c(0, 0));
+      b.sigma_y = std::sqrt(c(1, 1));
+      b.sigma_radius = std::sqrt(c(2, 2));
+      measure_disc(image_, b);
+    }
+    return {std::move(beads_), std::move(dropped_), 0, sweeps};
+  }
+  [[nodiscard]] const DiscProfile& profile() const { return shared_; }
+  [[nodiscard]] bool empty() const { return beads_.empty(); }
+
+ private:
+  /// Calls use(x, y, r) for the pixels of the frame that a disc reaches.
+  template <class Use>
+  void over(const Detection& b, Use&& use, double beyond = kReach) const {
+    const double reach = b.radius + beyond;
+    const int last_row = std::min(image_.darkness.rows - 1, cvFloor(b.y + reach));
+    for (int y = std::max(0, cvCeil(b.y - reach)); y <= last_row; ++y) {
+      const double dy = y - b.y, half = std::sqrt(std::max(0.0, reach * reach - dy * dy));
+      const int last = std::min(image_.darkness.cols - 1, cvFloor(b.x + half));
+      for (int x = std::max(0, cvCeil(b.x - half)); x <= last; ++x) use(x, y, std::hypot(x - b.x, dy));
+    }
+  }
+
+  void add(const Detection& b, double sign) {
+    over(b, [&](int x, int y, double r) {
+      model_(y, x) += static_cast<float>(sign * b.darkness * level_at(shared_, r * radius_ / b.radius).value);
+    });
+  }
+  void render() {
+    model_.setTo(static_cast<float>(shared_.ground));
+    for (const Detection& b : beads_) add(b, 1);
+  }
+
+  double step(Detection& b, Normal& covariance) {
+    Normal a = Normal::Zero();
+    Step right = Step::Zero();
+    double squares = 0, pixels = 0;
+    over(b, [&](int x, int y, double r) {
+      const double scale = radius_ / b.radius;
+      const Level f = level_at(shared_, r * scale);
+      const double slope = b.darkness * f.slope * scale, far = std::max(r, 1e-6);
+      const double t = static_cast<double>(model_(y, x)),
+                   left = static_cast<double>(image_.darkness(y, x)) - t;
+      const Step j(-slope * (x - b.x) / far, -slope * (y - b.y) / far, -slope * r / b.radius, f.value);
+      const double v = noise_.dark + noise_.light * std::clamp(1 - t, 0.0, 1.0);
+      const double w = std::min(1.0, huber_ / std::max(1e-9, std::abs(left))) / v;
+      a += w * j * j.transpose();
+      right += w * left * j;
+      squares += w * left * left;
+      ++pixels;
+    });
+    const double by_radius = 1 / std::pow(kRadiusSpread * radius_, 2), by_level = std::pow(kLevelSpread, -2);
+    a(2, 2) += by_radius, right[2] += by_radius * (radius_ - b.radius);
+    a(3, 3) += by_level, right[3] += by_level * (1 - b.darkness);
+    a(0, 0) += 0.25, a(1, 1) += 0.25;
+    const Normal inverse = a.inverse();
+    covariance = std::max(1.0, squares / std::max(1.0, pixels - kFitted)) * inverse;
+    const Step step = inverse * right;
+    add(b, -1);
+    const double dx = std::clamp(step[0], -1.0, 1.0), dy = std::clamp(step[1], -1.0, 1.0);
+    b.x += dx, b.y += dy;
+    b.radius = std::clamp(b.radius + std::clamp(step[2], -0.5, 0.5), 0.7 * radius_, 1.4 * radius_);
+    b.darkness = std::clamp(b.darkness + step[3], 0.0, 2.0);
+    add(b, 1);
+    return std::hypot(dx, dy);
+  }
+
+  /// Share of the variance of its own pixels that a disc explains, neighbours subtracted.
+  [[nodiscard]] double explained(const Detection& b) const {
+    double n = 0, sum = 0, squares = 0, left_squares = 0;
+    const double bound = 3 * huber_;
+    over(
+        b,
+        [&](int x, int y, double r) {
+          const double left = std::clamp(
+              static_cast<double>(image_.darkness(y, x)) - static_cast<double>(model_(y, x)), -bound, bound);
+          const double own = left + b.darkness * level_at(shared_, r * radius_ / b.radius).value;
+          ++n, sum += own, squares += own * own, left_squares += left * left;
+        },
+        1.0);
+    const double total = n > 0 ? squares - sum * sum / n : 0;
+    return total > 0 ? std::clamp(1 - left_squares / total, 0.0, 1.0) : 0;
+  }
+
+  const Prepared& image_;
+  double radius_;
+  Noise noise_;
+  double huber_ = 0.1;
+  DiscProfile shared_;
+  bool learnt_ = false;
+  cv::Mat1f model_;
+  std::vector<Detection> beads_, dropped_;
+  std::vector<Normal> covariance_;
+};
+
+}  // namespace
+
+double DiscProfile::at(double r) const {
+  return level_at(*this, r).value;
+}
+
+double DiscProfile::rim() const {
+  const auto high = static_cast<float>(0.5 * largest());
+  if (high == 0) return 0;
+  // From outside to the first top that is high enough, from there out to its half.
+  std::size_t top = levels.size() - 1;
+  while (top > 0 && !(std::abs(levels[top]) > high && std::abs(levels[top]) >= std::abs(levels[top - 1])))
+    --top;
+  // The steepest place out from there, as the top of a parabola.
+  std::vector<float> fall;
+  for (std::size_t k = top; k + 1 < levels.size(); ++k)
+    fall.push_back((levels[k] - levels[k + 1]) * (levels[top] < 0 ? -1.0F : 1.0F));
+  if (fall.empty()) return radius_px;
+  const auto most = static_cast<std::size_t>(std::max_element(fall.begin(), fall.end()) - fall.begin());
+  double at = static_cast<double>(top + most) + 0.5;
+  if (most > 0 && most + 1 < fall.size()) {
+    const double before = static_cast<double>(fall[most - 1]), after = static_cast<double>(fall[most + 1]),
+                 curvature = before - 2 * static_cast<double>(fall[most]) + after;
+    if (curvature < 0) at += 0.5 * (before - after) / curvature;
+  }
+  return at / kPerPixel;
+}
+
+double DiscProfile::largest() const {
+  float most = 0;
+  for (const float f : levels) most = std::max(most, std::abs(f));
+  return static_cast<double>(most);
+}
+
+bool DiscProfile::plain(double edge) const {
+  const double out = rim() - edge;
+  double lowest = HUGE_VAL, highest = -HUGE_VAL;
+  // The rim's own level too: a clear disc with a thin dark rim is even inside.
+  for (double r = 0; r <= rim() - 0.5; r += 1 / kPerPixel) {
+    if (r > out && std::abs(at(r)) < std::abs(at(std::max(0.0, out)))) continue;  // the blurred edge
+    lowest = std::min(lowest, at(r));
+    highest = std::max(highest, at(r));
+  }
+  return highest - lowest <= 0.5 * largest();
+}
+
+Refined refine_by_profile(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
+                          int most_sweeps, DiscProfile* learnt) {
+  ProfileFit fit(image, radius_px);
+  fit.start(proposals);
+  int sweeps = 0;
+  for (int round = 0; round < kRounds && !fit.empty(); ++round) {
+    // The first time from the better half of the proposals; then from what explains itself.
+    fit.learn(round == 0 ? fit.typical_score() : kMinScore);
+    const int most = round + 1 == kRounds ? most_sweeps : std::min(kSweeps, most_sweeps);
+    for (int k = 0; k < most; ++k, ++sweeps)
+      if (fit.sweep() < kSettled) break;
+    fit.prune();
+    if (round + 1 < kRounds) fit.add_missed();
+  }
+  if (!fit.empty()) fit.sweep();
+  if (learnt != nullptr) *learnt = fit.profile();
+  return fit.result(sweeps);
+}
+
+}  // namespace twincell

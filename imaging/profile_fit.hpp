@@ -1,0 +1,46 @@
+#pragma once
+/// \file
+/// Discs that are alike but not plain (clear ones with dark rims, discs with rings printed on them): the
+/// radial profile that they share is learnt from the frame, then fitted.
+///
+/// Model, in darkness d = 1 - I/B:  d(x, y) = g + sum_k a_k f(|(x, y) - c_k| R/R_k), with f linear between
+/// levels half a pixel apart and 0 from the outer rim on, g the ground. By turns f and g are found by linear
+/// least squares from all discs that explain themselves, neighbours included, and c_k, R_k, a_k by
+/// Gauss-Newton steps, one disc at a time, all others subtracted. Residuals beyond Huber's bound are weighted
+/// down.
+///
+/// When not to use: plain discs, for which refine.hpp is as good and ten times faster; discs that look
+/// different from each other (edge_fit.hpp).
+
+#include <vector>
+
+#include "imaging/refine.hpp"
+
+namespace twincell {
+
+/// What discs of one look share.
+struct DiscProfile {
+  static constexpr double kPerPixel = 2;
+  double radius_px = 0;       ///< R that it was learnt for; 0: none was
+  double ground = 0;          ///< g, darkness between the discs
+  std::vector<float> levels;  ///< f at r = k/kPerPixel; 0 behind the last
+  /// f at a distance from the centre of a disc of radius R.
+  [[nodiscard]] double at(double r) const;
+  /// Radius at which f falls most steeply outward of its first extreme, from outside, that is half as large
+  /// as its largest: the outer rim, px.
+  [[nodiscard]] double rim() const;
+  /// The largest |f|.
+  [[nodiscard]] double largest() const;
+  /// Whether a plain disc may have such a profile: further than `edge` px inside its rim it nowhere differs
+  /// by half of its largest level from what it has just there. A bright spot on each disc does no harm.
+  [[nodiscard]] bool plain(double edge) const;
+};
+
+/// Fits all proposals with the profile that they share. Detection::score is the share of the variance of the
+/// disc's own pixels (r < R + 1) that it explains, Detection::darkness is a. Discs that explain less than
+/// half are dropped. Pure. \param sweeps at most, in the last round \param learnt receives the profile, where
+/// not null
+Refined refine_by_profile(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
+                          int sweeps, DiscProfile* learnt = nullptr);
+
+}  // namespace twincell

@@ -1,0 +1,46 @@
+#pragma once
+/// \file
+/// What a frame says of how to locate its beads: size, polarity, and by which model.
+///
+/// Hypotheses are the radii at which the gradient votes of either polarity meet most sharply. Of those, the
+/// one whose fitted discs explain most of the picture wins: the sum of -R^2 ln(1 - share explained), the
+/// logarithm of the likelihood gained. Plain discs are tried first; discs with a common radial profile
+/// (profile_fit.hpp) take their place if they explain clearly more. All is done on the part of the frame
+/// that has most edges, some hundred discs wide.
+
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "imaging/locator.hpp"
+#include "imaging/preprocess.hpp"
+
+namespace twincell {
+
+/// Bead diameter (px) at which the gradient votes of a frame meet most sharply, sought between 6 and 80 px.
+/// Good to a few per cent for beads of one size. Returns 0 if nothing round stands out.
+double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options);
+
+/// What was found.
+struct FoundSettings {
+  double diameter_px = 0;
+  bool bright = false;                     ///< beads are brighter than what lies behind them
+  double explained = 0;                    ///< sum of -R^2 ln(1 - score), px^2
+  std::vector<double> other_diameters_px;  ///< of discs of further sizes
+  std::string method;                      ///< RefineOptions::method is to be that; empty: as it was
+};
+
+/// Large discs (80 px and more, up to two sizes) known by their rims alone, such as photoelastic ones: most
+/// of each rim must be seen and the discs must cover a fifth of the frame. The contrast is found too. None if
+/// there are none.
+std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given);
+
+/// Darkness of a typical disc of a frame, for PreprocessOptions::contrast.
+double find_contrast(const cv::Mat& grey, const LocatorOptions& options);
+
+/// Finds what `given` leaves open: the diameter, the polarity, and, where the refinement is the default one,
+/// the model. None if nothing round stands out.
+std::optional<FoundSettings> find_settings(const cv::Mat& grey, const LocatorOptions& given);
+
+}  // namespace twincell
