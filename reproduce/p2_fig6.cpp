@@ -98,7 +98,7 @@ Reproduction run(const Request& request) {
   Reproduction r;
   r.title = "Bhateja et al. 2016, Fig. 6: alpha without gravity, lid at 10 d";
   r.complete = gas.run();
-  Series scaled{.title = "k_n ~ V_p^2", .x = {}, .y = {}}, fixed{.title = "one k_n", .x = {}, .y = {}};
+  Series scaled{.title = "k_n ∝ V_p^2", .x = {}, .y = {}}, fixed{.title = "one k_n", .x = {}, .y = {}};
   for (std::size_t k = 0; k < settings.size(); ++k) {
     const Setting& s = settings[k];
     r.targets.push_back(bitwise(gas, s));

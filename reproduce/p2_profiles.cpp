@@ -252,21 +252,27 @@ Pair pair_of(const Gas& gas, const Reading& reading) {
 
 std::vector<Figure> pair_figures(const std::string& name, const Pair& pair, bool of_packing,
                                  const Reading& reading) {
+  // A bead that once flew far above the bed would leave the bed a corner of the picture.
+  constexpr double kShown = 1e-3;
   std::vector<Figure> figures;
   for (const bool rough : {false, true}) {
     std::vector<Series> series;
+    double top = 0;
     for (std::size_t k = 0; k < kFrequencies.size(); ++k)
       if (const auto& p = (rough ? pair.rough : pair.smooth)[k]) {
         const std::string title = fmt::format("W = {:.4g}", w_of_rpm(kFrequencies[k]));
         series.push_back(of_packing ? packing(title, *p) : temperatures(title, *p));
+        for (std::size_t i = 0; i < p->z.size(); ++i)
+          if (p->phi[i] > kShown) top = std::max(top, p->z[i] + 0.5);
       }
     if (series.empty()) continue;
-    figures.push_back(series_figure(
-        name + (rough ? "b" : "a") + reading.figure,
-        fmt::format("{}, 3D {}{}", of_packing ? "Packing fraction" : "Local temperature",
-                    rough ? "rough" : "smooth", reading.said),
-        "z/d", of_packing ? "phi(z)" : "T_z(z)/(m g d)", series, "set xrange [0:*]\nset yrange [0:*]\n",
-        "100 grains, N = 4, slabs of d. Form of Bhateja et al. 2016, Figs. 14 and 15."));
+    figures.push_back(
+        series_figure(name + (rough ? "b" : "a") + reading.figure,
+                      fmt::format("{}, 3D {}{}", of_packing ? "Packing fraction" : "Local temperature",
+                                  rough ? "rough" : "smooth", reading.said),
+                      "z/d", of_packing ? "phi(z)" : "T_z(z)/(m g d)", series,
+                      fmt::format("set xrange [0:{:g}]\nset yrange [0:*]\n", top),
+                      "100 grains, N = 4, slabs of d. Form of Bhateja et al. 2016, Figs. 14 and 15."));
   }
   return figures;
 }
