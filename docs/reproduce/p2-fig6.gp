@@ -1,5 +1,12 @@
 # alpha without gravity
 # gnuplot p2-fig6.gp draws p2-fig6.svg, p2-fig6.pdf and p2-fig6.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 640,460 dynamic enhanced font 'Arial,15' background 'white'
@@ -19,10 +26,10 @@ set datafile missing '?'
 set xlabel 'setting'
 set ylabel 'alpha'
 set key top right
-set xrange [0.5:3.5]
+set xrange [0.5:5.5]
 set yrange [1.5:2.5]
 
-plot 'p2-fig6.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'k_n ~ V_p^2', 'p2-fig6.dat' index 1 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'one k_n'
+plot 'p2-fig6.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'k_n ∝ V_p^2', 'p2-fig6.dat' index 1 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'one k_n'
 unset output
 reset
 }
