@@ -26,7 +26,23 @@ cv::Mat3b grey_of(const cv::Mat1f& values) {
   return picture;
 }
 
+/// Discs with the profile that they share, on its ground.
+cv::Mat1f model_of(const DiscProfile& profile, const std::vector<Detection>& beads, cv::Size size) {
+  cv::Mat1f model(size, static_cast<float>(profile.ground));
+  const double behind = static_cast<double>(profile.levels.size()) / DiscProfile::kPerPixel;
+  for (const Detection& b : beads) {
+    const double shrink = profile.radius_px / b.radius;
+    const int reach = cvCeil(behind / shrink);
+    for (int y = std::max(0, cvFloor(b.y) - reach); y <= std::min(size.height - 1, cvCeil(b.y) + reach); ++y)
+      for (int x = std::max(0, cvFloor(b.x) - reach); x <= std::min(size.width - 1, cvCeil(b.x) + reach); ++x)
+        model(y, x) += static_cast<float>(b.darkness * profile.at(std::hypot(x - b.x, y - b.y) * shrink));
+  }
+  return model;
+}
+
 cv::Mat1f model_of(const LocatorStages& stages) {
+  if (stages.profile.radius_px > 0)
+    return model_of(stages.profile, stages.refined.beads, stages.image.darkness.size());
   const cv::Size size = stages.image.darkness.size();
   cv::Mat1f model = cv::Mat1f::zeros(size.height, size.width + kSpareColumns);
   const EdgeBlur blur{.variance = std::pow(std::max(0.3, stages.refined.blur_px), 2)};
