@@ -106,10 +106,11 @@ class Convection : public Observable {
     }
 
     const Circulation circulation = circulation_of(field);
-    if (why.empty() && std::none_of(circulation.plaquettes.begin(), circulation.plaquettes.end(),
-                                    [](double loop) { return std::isfinite(loop); })) {
+    const bool knows_left = std::isfinite(circulation.left), knows_right = std::isfinite(circulation.right);
+    const std::string no_cells = "no four adjoining cells have enough displacements";
+    if (why.empty() && !knows_left && !knows_right) {
       for (const char* name : {"circulation_left", "circulation_right", "rolls", "convection_sense"})
-        add({.name = name}, "no four adjoining cells have enough displacements");
+        add({.name = name}, no_cells);
       return all;
     }
     const auto left = interval(total, circulation.left, [](const Circulation& c) { return c.left; });
@@ -122,16 +123,19 @@ class Convection : public Observable {
          .interval = left,
          .no_interval = left ? "" : few,
          .convention = sign},
-        why);
+        why.empty() && !knows_left ? no_cells + " in this half" : why);
     add({.name = "circulation_right",
          .values = {circulation.right},
          .unit = "sigma^2 per cycle",
          .interval = right,
          .no_interval = right ? "" : few,
          .convention = sign},
-        why);
+        why.empty() && !knows_right ? no_cells + " in this half" : why);
     const bool enough = blocks_.size() >= kFewestRollBlocks;
-    const std::string untold = why.empty() && !left ? few + ": the sense cannot be told from chance" : why;
+    const std::string untold = !why.empty()                   ? why
+                               : !(knows_left && knows_right) ? no_cells + " in one half"
+                               : !left                        ? few + ": the sense cannot be told from chance"
+                                                              : "";
     const double least = kLeastCarried * cell_ / static_cast<double>(total.cycles);
     add({.name = "rolls",
          .values = {why.empty() && enough ? static_cast<double>(count_rolls(shares(total), least)) : kNaN},
@@ -241,7 +245,8 @@ class Convection : public Observable {
   [[nodiscard]] std::optional<Interval> interval(const FieldSums& total, double value,
                                                  const Part& part) const {
     const auto values = left_out(total, [&](const DisplacementField& f) { return part(circulation_of(f)); });
-    if (values.empty()) return std::nullopt;
+    if (values.empty() || !std::ranges::all_of(values, [](double v) { return std::isfinite(v); }))
+      return std::nullopt;
     const double half = student_t_95(values.size() - 1) * spread(values);
     return Interval{value - half, value + half, 0.95,
                     fmt::format("jackknife over {} blocks of cycles", values.size())};
@@ -308,8 +313,8 @@ Circulation circulation_of(const DisplacementField& field) {
       // Plaquette k lies on the border of columns k and k + 1.
       const std::size_t twice = 2 * (k + 1);
       const double to_left = twice < field.columns ? 1 : twice == field.columns ? 0.5 : 0;
-      c.left += to_left * loop;
-      c.right += (1 - to_left) * loop;
+      if (to_left > 0) c.left = (std::isfinite(c.left) ? c.left : 0) + to_left * loop;
+      if (to_left < 1) c.right = (std::isfinite(c.right) ? c.right : 0) + (1 - to_left) * loop;
     }
   return c;
 }

@@ -2,6 +2,7 @@
 /// \file
 /// The convection field: how far beads move in one cycle, where, and in which sense they go round.
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -25,8 +26,9 @@ struct Circulation {
   /// cells, by the trapezoid rule; NaN where a cell is empty. By Stokes' theorem the sum over a region is the
   /// line integral round it.
   std::vector<double> plaquettes;
-  std::size_t columns = 0;     ///< plaquettes in a row
-  double left = 0, right = 0;  ///< of the halves; plaquettes on the middle line count half to each
+  std::size_t columns = 0;  ///< plaquettes in a row
+  /// Of the halves; plaquettes on the middle line count half to each. NaN where a half has none.
+  double left = std::numeric_limits<double>::quiet_NaN(), right = left;
 };
 Circulation circulation_of(const DisplacementField& field);
 

@@ -442,6 +442,20 @@ TEST(Convection, RollsOfAStreamFunction) {
   }
 }
 
+TEST(Convection, AHalfWithoutCellsHasNoCirculation) {
+  // Solid rotation by 0.1, seen in the three left columns of six.
+  DisplacementField field;
+  field.columns = 6, field.rows = 2, field.dx = field.dz = 2;
+  for (std::size_t r = 0; r < 2; ++r)
+    for (std::size_t k = 0; k < 6; ++k) {
+      field.ux.push_back(k < 3 ? -0.1 * 2 * static_cast<double>(r) : std::nan(""));
+      field.uz.push_back(k < 3 ? 0.1 * 2 * static_cast<double>(k) : std::nan(""));
+    }
+  const Circulation c = circulation_of(field);
+  EXPECT_NEAR(c.left, 2 * 0.1 * 2 * 4, 1e-12);  // Stokes: twice the rate times the area of two loops
+  EXPECT_TRUE(std::isnan(c.right));
+}
+
 TEST(Convection, NoiseHasNoRolls) {
   const auto results = analyze(carried([](const Vec3&) { return Vec3(0, 0, 0); }, 16, 0.05));
   EXPECT_EQ(value(results, "rolls"), 0);
