@@ -1,5 +1,12 @@
 # Onsets of bouncing and convection
 # gnuplot p1-fig3.gp draws p1-fig3.svg, p1-fig3.pdf and p1-fig3.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 620,480 dynamic enhanced font 'Arial,15' background 'white'
