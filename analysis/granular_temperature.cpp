@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 
+#include "analysis/trajectory/centre_of_mass.hpp"
+
 namespace twincell {
 namespace {
 
@@ -197,20 +199,15 @@ class GranularTemperature : public Observable {
 Vec3 temperature_components(const Frame& frame, const std::vector<double>& mass) {
   const auto counts = [&](std::size_t i) { return frame.present(i) && frame.velocity[i].allFinite(); };
   const auto mass_of = [&](std::size_t i) { return mass.empty() ? 1.0 : mass[i]; };
-  Vec3 momentum = Vec3::Zero();
-  double total_mass = 0;
+  const auto v_cm = centre_of_mass_velocity(frame, mass);
+  if (!v_cm) return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  Vec3 sum = Vec3::Zero();
   std::size_t n = 0;
   for (std::size_t i = 0; i < frame.velocity.size(); ++i)
     if (counts(i)) {
-      momentum += mass_of(i) * frame.velocity[i];
-      total_mass += mass_of(i);
+      sum += mass_of(i) * (frame.velocity[i] - *v_cm).cwiseAbs2();
       ++n;
     }
-  if (n == 0) return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  const Vec3 v_cm = momentum / total_mass;
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < frame.velocity.size(); ++i)
-    if (counts(i)) sum += mass_of(i) * (frame.velocity[i] - v_cm).cwiseAbs2();
   return sum / static_cast<double>(n);
 }
 

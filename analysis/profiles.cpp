@@ -6,6 +6,8 @@
 #include <map>
 #include <numbers>
 
+#include "analysis/trajectory/centre_of_mass.hpp"
+
 namespace twincell {
 namespace {
 
@@ -44,7 +46,7 @@ class Profiles : public Observable {
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
     ++frames_;
-    const double drift = centre_of_mass_velocity(frame);
+    const double drift = centre_of_mass_velocity(frame, info_.mass).value_or(Vec3::Zero()).z();
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       if (!frame.present(i) || !frame.position[i].allFinite()) continue;
       const double z = frame.position[i].z();
@@ -113,18 +115,6 @@ class Profiles : public Observable {
   }
 
  private:
-  /// Vertical velocity of the centre of mass of the beads that have one.
-  [[nodiscard]] double centre_of_mass_velocity(const Frame& frame) const {
-    double momentum = 0, mass = 0;
-    for (std::size_t i = 0; i < frame.velocity.size(); ++i) {
-      if (!frame.present(i) || !frame.position[i].allFinite() || !frame.velocity[i].allFinite()) continue;
-      const double m = info_.mass.empty() ? 1 : info_.mass[i];
-      momentum += m * frame.velocity[i].z();
-      mass += m;
-    }
-    return mass > 0 ? momentum / mass : 0;
-  }
-
   /// The local temperature averaged over volume, not over beads: with an open top the volume is that of the
   /// lowest slabs that hold kMostOfTheBeads of the velocities.
   [[nodiscard]] Result volume_mean() const {

@@ -15,6 +15,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/median.hpp"
+#include "imaging/settings.hpp"
 
 namespace twincell {
 namespace {
@@ -325,6 +326,20 @@ double CellGeometry::width_error_px() const {
   };
   const auto l = place("x_left"), r = place("x_right");
   return std::sqrt(fit.covariance(l, l) + fit.covariance(r, r) - 2 * fit.covariance(l, r));
+}
+
+double diameter_for_edges(const std::filesystem::path& stack, bool bright, double known_px) {
+  constexpr double kUsual_px = 15;
+  if (known_px > 0) return known_px;
+  cv::Mat first;
+  const double found = open_frames(stack)->next(first) ? estimate_diameter(first, {.bright = bright}) : 0;
+  return found > 0 ? found : kUsual_px;
+}
+
+std::optional<double> frame_rate_of(const StackEdges& edges, const std::filesystem::path& stack) {
+  const auto& t = edges.time_s;
+  if (t.size() > 1 && t.back() > t.front()) return static_cast<double>(t.size() - 1) / (t.back() - t.front());
+  return open_frames(stack)->info().frame_rate_hz;
 }
 
 StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px, int threads,

@@ -9,6 +9,7 @@
 /// tilts outward, as a scene's cell.side_tilt; their feet ride on the plate. The turn is the plate's; the
 /// bend k1 shows in all three.
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,10 @@ struct StackEdges {
   double blur_px = 0;          ///< median over frames
   double diameter_px = 15;     ///< of a bead: so far along an edge its points may err together
 };
+/// Diameter to read edges with: the known one, else that of the first frame's beads, else a usual one, px.
+double diameter_for_edges(const std::filesystem::path& stack, bool bright, double known_px);
+/// Frames per second, by the camera's stamps, else as the stack says; nothing where neither does.
+std::optional<double> frame_rate_of(const StackEdges& edges, const std::filesystem::path& stack);
 /// Reads the stack once. \throws InputError as FrameSource
 StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px, int threads,
                             Progress& progress = Progress::none());

@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "analysis/trajectory/error.hpp"
 #include "calibration/cell_geometry.hpp"
 #include "calibration/plate_lock.hpp"
 #include "imaging/frame_source.hpp"
-#include "imaging/settings.hpp"
 
 namespace twincell {
 namespace {
@@ -26,17 +23,6 @@ bool is_whole(const DriveSpec& s) {
   return stated(s) + (s.amplitude ? 1 : 0) >= 2;
 }
 
-StackEdges edges_of(const std::filesystem::path& stack, const CellDescription& cell, int threads,
-                    Progress& progress) {
-  constexpr double kUsualDiameter_px = 15;
-  double diameter = cell.pixels_per_sigma.value_or(0);
-  if (cv::Mat first; diameter <= 0 && open_frames(stack)->next(first))
-    diameter = estimate_diameter(first, {.bright = cell.bright});
-  const auto frames = open_frames(stack);
-  return read_stack_edges(*frames, cell.bright, diameter > 0 ? diameter : kUsualDiameter_px, threads,
-                          progress);
-}
-
 /// Pixels per sigma: as stated, else by the walls.
 double scale_of(const CellDescription& cell, const CellGeometry& geometry, const Where& where) {
   if (cell.pixels_per_sigma) return *cell.pixels_per_sigma;
@@ -44,12 +30,6 @@ double scale_of(const CellDescription& cell, const CellGeometry& geometry, const
   throw ConfigError(where,
                     "is not stated, and the plate's motion gives it in pixels alone: say "
                     "camera.pixels_per_sigma, or cell.width where both walls are in the picture.");
-}
-
-std::optional<double> frame_rate(const StackEdges& edges, const std::filesystem::path& stack) {
-  const auto& t = edges.time_s;
-  if (t.size() > 1 && t.back() > t.front()) return static_cast<double>(t.size() - 1) / (t.back() - t.front());
-  return open_frames(stack)->info().frame_rate_hz;
 }
 
 }  // namespace
@@ -61,7 +41,8 @@ bool lacks_drive(const CellDescription& cell) {
 std::string complete_drive(CellDescription& cell, const std::filesystem::path& cell_file,
                            const std::filesystem::path& stack, int threads, Progress& progress) {
   const auto where = [&](const char* key) { return Where{.file = cell_file.string(), .key = key}; };
-  const StackEdges edges = edges_of(stack, cell, threads, progress);
+  const double diameter = diameter_for_edges(stack, cell.bright, cell.pixels_per_sigma.value_or(0));
+  const StackEdges edges = read_stack_edges(*open_frames(stack), cell.bright, diameter, threads, progress);
   const auto seen = [&] {
     try {
       const CellGeometry geometry = fit_cell_geometry(edges);
@@ -84,7 +65,7 @@ std::string complete_drive(CellDescription& cell, const std::filesystem::path& c
       said += fmt::format(" A = {:.5g} +- {:.2g} sigma", *spec.amplitude, lock.amplitude_error / scale);
     }
     if (stated(spec) == 0) {
-      const auto rate = frame_rate(edges, stack);
+      const auto rate = frame_rate_of(edges, stack);
       const auto t0 = cell.scale.t0_s();
       if (!rate || !t0)
         throw ConfigError(

@@ -16,8 +16,6 @@
 #include "analysis/trajectory/sha256.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
-#include "imaging/locator.hpp"
-#include "imaging/settings.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -95,18 +93,13 @@ CellDescription cell_of(const CalibrateFlags& flags) {
 
 CellGeometry geometry_of(const CalibrateFlags& flags, const CellDescription& cell, const Common& common,
                          StackEdges& edges) {
-  constexpr double kUsualDiameter_px = 15;
   const bool bright = flags.bright || cell.bright;
-  double diameter = flags.diameter_px > 0 ? flags.diameter_px : cell.pixels_per_sigma.value_or(0);
-  if (diameter <= 0) {
-    cv::Mat first;
-    if (open_frames(flags.stack)->next(first)) diameter = estimate_diameter(first, {.bright = bright});
-  }
+  const double diameter = diameter_for_edges(
+      flags.stack, bright, flags.diameter_px > 0 ? flags.diameter_px : cell.pixels_per_sigma.value_or(0));
   const auto frames = open_stack(flags.stack, common);
   {
     ProgressBar bar(common, "edges");
-    edges = read_stack_edges(*frames, bright, diameter > 0 ? diameter : kUsualDiameter_px, common.n_threads(),
-                             bar);
+    edges = read_stack_edges(*frames, bright, diameter, common.n_threads(), bar);
   }
   try {
     return fit_cell_geometry(edges);

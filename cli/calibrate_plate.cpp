@@ -97,10 +97,7 @@ void run(const PlateOptions& o, const Common& common) {
         "calibrate camera first");
   }
   // A frame's length in t0 makes frames per cycle an omega.
-  std::optional<double> rate = o.frame_rate_hz;
-  if (!rate && edges.time_s.size() > 1 && edges.time_s.back() > edges.time_s.front())
-    rate = static_cast<double>(edges.time_s.size() - 1) / (edges.time_s.back() - edges.time_s.front());
-  if (!rate) rate = open_frames(o.flags.stack)->info().frame_rate_hz;
+  const std::optional<double> rate = o.frame_rate_hz ? o.frame_rate_hz : frame_rate_of(edges, o.flags.stack);
   const auto t0 = cell.scale.t0_s();
   if (rate && t0)
     add("drive.omega", lock.omega * *rate * *t0, lock.omega_error * *rate * *t0,
