@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "analysis/barycentre.hpp"
+#include "analysis/bed_flight.hpp"
 #include "analysis/convection.hpp"
 #include "analysis/defects.hpp"
 #include "analysis/grains.hpp"
@@ -54,6 +55,7 @@ const std::vector<Entry>& entries() {
       {{"profile_z", "phi_z", "T_z_z", "T_x_z", "T_z_frames_z", "T_z_volume"}, make_profiles},
       {{"phi_top", "phi_cm"}, make_volume_fraction},
       {{"h_cm", "h_cm_k", "h_cm_j", "delta_h_cm", "delta_h_bar"}, make_barycentre},
+      {{"flight_time", "flight_share"}, make_bed_flight},
   };
   return list;
 }

@@ -84,4 +84,21 @@ Figure profile_figure(const Inference& inference) {
   return f;
 }
 
+Figure curve_figure(const std::string& name, const std::vector<double>& measured,
+                    const std::vector<double>& predicted) {
+  Figure f{.name = name, .title = name + ", measured and of the best parameters"};
+  f.data = "# element, measured, of the best parameters\n";
+  for (std::size_t k = 0; k < measured.size(); ++k)
+    f.data += fmt::format("{} {:.8g} {:.8g}\n", k, measured[k], predicted[k]);
+  std::string label = name;
+  std::replace(label.begin(), label.end(), '_', ' ');
+  f.plot = fmt::format(
+      "set xlabel 'element'\nset ylabel '{0}'\nset key top right\n"
+      "plot '{1}.dat' using 1:2 with points pt 7 lc rgb '#222222' title 'measured', '{1}.dat' using 1:3 with "
+      "lines lw 2 lc rgb blue title 'best parameters'\n",
+      label, name);
+  f.caption = "The curve of the best parameters is made of the forms in which the curves of the runs differ";
+  return f;
+}
+
 }  // namespace twincell

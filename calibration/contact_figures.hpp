@@ -2,6 +2,9 @@
 /// \file
 /// Pictures of what collisions say.
 
+#include <string>
+#include <vector>
+
 #include "analysis/figures.hpp"
 #include "calibration/bounce.hpp"
 #include "calibration/collisions.hpp"
@@ -16,5 +19,8 @@ Figure bounce_figure(const BounceFit& fit);
 Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, double shape);
 /// "profile": chi^2 of each parameter above its least, with the 95 % line.
 Figure profile_figure(const Inference& inference);
+/// NAME: a measured curve and that of the best parameters, element by element.
+Figure curve_figure(const std::string& name, const std::vector<double>& measured,
+                    const std::vector<double>& predicted);
 
 }  // namespace twincell

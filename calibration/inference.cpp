@@ -19,11 +19,11 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSteps = 60;  // of a profile
 
 /// 1, x_i, x_i x_k with x from -1 to 1 over the ranges.
-Eigen::VectorXd terms(const std::vector<Sought>& sought, const std::vector<double>& theta) {
-  const std::size_t n = sought.size();
+Eigen::VectorXd terms(const std::vector<Sought>& ranges, const std::vector<double>& theta) {
+  const std::size_t n = ranges.size();
   std::vector<double> x(n);
   for (std::size_t i = 0; i < n; ++i)
-    x[i] = 2 * (theta[i] - sought[i].lower) / (sought[i].upper - sought[i].lower) - 1;
+    x[i] = 2 * (theta[i] - ranges[i].lower) / (ranges[i].upper - ranges[i].lower) - 1;
   Eigen::VectorXd out(static_cast<Eigen::Index>(1 + n + n * (n + 1) / 2));
   Eigen::Index k = 0;
   out[k++] = 1;
@@ -33,42 +33,138 @@ Eigen::VectorXd terms(const std::vector<Sought>& sought, const std::vector<doubl
   return out;
 }
 
-struct Surface {
-  Eigen::VectorXd c;
-  Eigen::MatrixXd covariance;  // of c
-  double scatter = 0;
-  double freedom = 0;  // runs beyond the coefficients: how well the scatter is known
+/// One observable as a function of the parameters, with its condition as the last of them.
+class Surface {
+ public:
+  Surface(std::vector<Sought> sought, const std::vector<SimulatedPoint>& runs, std::size_t o,
+          const MeasuredObservable& measured)
+      : ranges_(std::move(sought)), condition_(measured.at), residual_(runs.size(), kNaN) {
+    if (condition_) ranges_.push_back(condition_->tried);
+    const auto place = [&](const SimulatedPoint& run) {
+      std::vector<double> x = run.theta;
+      if (condition_) x.push_back(run.at[o]);
+      return terms(ranges_, x);
+    };
+    std::vector<std::size_t> used;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      if (std::isfinite(runs[i].y[o])) used.push_back(i);
+    const Eigen::Index n = place(runs.front()).size();
+    if (static_cast<Eigen::Index>(used.size()) < n + 2)
+      throw InputError({.file = {}, .key = "runs"},
+                       fmt::format("{} of {} runs have a value of {}; its quadratic surface needs {}.",
+                                   used.size(), runs.size(), measured.name, n + 2));
+    Eigen::MatrixXd basis(static_cast<Eigen::Index>(used.size()), n);
+    Eigen::VectorXd y(static_cast<Eigen::Index>(used.size()));
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      basis.row(static_cast<Eigen::Index>(i)) = place(runs[used[i]]).transpose();
+      y[static_cast<Eigen::Index>(i)] = runs[used[i]].y[o];
+    }
+    c_ = basis.colPivHouseholderQr().solve(y);
+    const Eigen::VectorXd left = y - basis * c_;
+    for (std::size_t i = 0; i < used.size(); ++i) residual_[used[i]] = left[static_cast<Eigen::Index>(i)];
+    freedom_ = static_cast<double>(basis.rows() - n);
+    scatter_ = std::sqrt(left.squaredNorm() / freedom_);
+    spread_ = (basis.transpose() * basis).inverse();
+  }
+
+  struct Value {
+    double y, leverage, slope;  ///< slope: against the condition
+  };
+  [[nodiscard]] Value at(const std::vector<double>& theta) const {
+    if (!condition_) return value(theta, 0);
+    const double step = 0.01 * (condition_->tried.upper - condition_->tried.lower);
+    Value v = value(theta, 0);
+    v.slope = (value(theta, step).y - value(theta, -step).y) / (2 * step);
+    return v;
+  }
+  [[nodiscard]] double scatter() const { return scatter_; }
+  [[nodiscard]] double freedom() const { return freedom_; }
+  [[nodiscard]] bool shares_runs() const { return !condition_; }
+  [[nodiscard]] const std::vector<double>& residual() const { return residual_; }
+
+ private:
+  [[nodiscard]] Value value(std::vector<double> x, double away) const {
+    if (condition_) x.push_back(condition_->value + away);
+    const Eigen::VectorXd t = terms(ranges_, x);
+    return {t.dot(c_), t.dot(spread_ * t), 0};
+  }
+
+  std::vector<Sought> ranges_;
+  std::optional<Condition> condition_;
+  std::vector<double> residual_;  ///< of each run; NaN where it has no value
+  Eigen::VectorXd c_;
+  Eigen::MatrixXd spread_;  ///< covariance of c over the scatter squared
+  double scatter_ = 0, freedom_ = 0;
 };
 
-Surface fit_surface(const std::vector<Sought>& sought, const std::vector<SimulatedPoint>& runs,
-                    std::size_t o) {
-  std::vector<const SimulatedPoint*> used;
-  for (const SimulatedPoint& r : runs)
-    if (std::isfinite(r.y[o])) used.push_back(&r);
-  const Eigen::Index n = terms(sought, runs.front().theta).size();
-  if (static_cast<Eigen::Index>(used.size()) < n + 2)
-    throw InputError({.file = {}, .key = "runs"},
-                     fmt::format("{} of {} runs have a value; a quadratic surface needs {}.", used.size(),
-                                 runs.size(), n + 2));
-  Eigen::MatrixXd basis(static_cast<Eigen::Index>(used.size()), n);
-  Eigen::VectorXd y(static_cast<Eigen::Index>(used.size()));
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    basis.row(static_cast<Eigen::Index>(i)) = terms(sought, used[i]->theta).transpose();
-    y[static_cast<Eigen::Index>(i)] = used[i]->y[o];
+/// How the residuals of two observables go together in the runs that have both.
+double correlation(const Surface& a, const Surface& b) {
+  if (!a.shares_runs() || !b.shares_runs()) return 0;
+  double ab = 0, aa = 0, bb = 0;
+  for (std::size_t i = 0; i < a.residual().size(); ++i) {
+    const double x = a.residual()[i], y = b.residual()[i];
+    if (!std::isfinite(x) || !std::isfinite(y)) continue;
+    ab += x * y, aa += x * x, bb += y * y;
   }
-  Surface s;
-  s.c = basis.colPivHouseholderQr().solve(y);
-  const double variance = (y - basis * s.c).squaredNorm() / static_cast<double>(basis.rows() - n);
-  s.scatter = std::sqrt(variance);
-  s.freedom = static_cast<double>(basis.rows() - n);
-  s.covariance = variance * (basis.transpose() * basis).inverse();
-  return s;
+  // Short of 1, so that two names of one observable do not make the covariance singular.
+  return aa > 0 && bb > 0 ? std::clamp(ab / std::sqrt(aa * bb), -1 + 1e-6, 1 - 1e-6) : 0;
+}
+
+/// chi^2 of the docstring.
+class ChiSquared {
+ public:
+  ChiSquared(const std::vector<Surface>& surfaces, const std::vector<MeasuredObservable>& measured)
+      : surfaces_(surfaces), measured_(measured) {
+    const auto n = static_cast<Eigen::Index>(surfaces.size());
+    correlation_ = Eigen::MatrixXd::Identity(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < i; ++j)
+        correlation_(i, j) = correlation_(j, i) =
+            correlation(surfaces[static_cast<std::size_t>(i)], surfaces[static_cast<std::size_t>(j)]);
+  }
+  [[nodiscard]] double operator()(const std::vector<double>& theta) const {
+    const auto n = static_cast<Eigen::Index>(surfaces_.size());
+    Eigen::VectorXd d(n), s(n), own(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Surface& surface = surfaces_[static_cast<std::size_t>(i)];
+      const MeasuredObservable& m = measured_[static_cast<std::size_t>(i)];
+      const Surface::Value v = surface.at(theta);
+      d[i] = v.y - m.value;
+      s[i] = surface.scatter() * std::sqrt(1 + v.leverage);
+      own[i] = std::max(m.error * m.error - surface.scatter() * surface.scatter(), 0.0) +
+               (m.at ? std::pow(v.slope * m.at->error, 2) : 0);
+    }
+    Eigen::MatrixXd covariance = s.asDiagonal() * correlation_ * s.asDiagonal();
+    covariance.diagonal() += own.cwiseMax(1e-24 * (1 + d.array().square()).matrix());
+    return d.dot(covariance.ldlt().solve(d));
+  }
+
+ private:
+  const std::vector<Surface>& surfaces_;
+  const std::vector<MeasuredObservable>& measured_;
+  Eigen::MatrixXd correlation_;
+};
+
+/// By how much chi^2 may exceed its least within the 95 % interval.
+double drop_of(const std::vector<Surface>& surfaces) {
+  double freedom = HUGE_VAL, together = 0;
+  for (const Surface& s : surfaces) {
+    freedom = std::min(freedom, s.freedom());
+    together += s.shares_runs() ? 1 : 0;
+  }
+  const double left = freedom - std::max(together, 1.0) + 1;
+  if (left < 2)
+    throw InputError(
+        {.file = {}, .key = "runs"},
+        fmt::format("{:g} observables of the same runs need {:g} runs more.", together, 2 - left));
+  const double t95 = boost::math::quantile(boost::math::students_t(left), 0.975);
+  return t95 * t95 * freedom / left;
 }
 
 }  // namespace
 
 std::vector<std::vector<double>> spread_points(const std::vector<Sought>& sought, int n) {
-  constexpr std::array kPrimes = {2, 3, 5, 7};
+  constexpr std::array kPrimes = {2, 3, 5, 7, 11, 13};
   std::vector<std::vector<double>> points;
   for (int i = 1; i <= n; ++i) {
     std::vector<double> theta;
@@ -92,26 +188,11 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
   Inference out;
   std::vector<Surface> surfaces;
   for (std::size_t o = 0; o < measured.size(); ++o) {
-    surfaces.push_back(fit_surface(sought, runs, o));
-    out.scatter.push_back(surfaces.back().scatter);
+    surfaces.emplace_back(sought, runs, o, measured[o]);
+    out.scatter.push_back(surfaces.back().scatter());
   }
-  const auto chi2 = [&](const std::vector<double>& theta) {
-    const Eigen::VectorXd t = terms(sought, theta);
-    double sum = 0;
-    for (std::size_t o = 0; o < measured.size(); ++o) {
-      const Surface& s = surfaces[o];
-      // The measurement is one run too: where its own error is smaller than what runs scatter, the scatter
-      // counts.
-      const double e2 =
-          std::max(measured[o].error * measured[o].error, s.scatter * s.scatter) + t.dot(s.covariance * t);
-      sum += std::pow(t.dot(s.c) - measured[o].value, 2) / std::max(e2, 1e-300);
-    }
-    return sum;
-  };
-  // The scatter is itself known from so many runs only: Student's t in place of 1.96.
-  double freedom = HUGE_VAL;
-  for (const Surface& s : surfaces) freedom = std::min(freedom, s.freedom);
-  const double t95 = boost::math::quantile(boost::math::students_t(freedom), 0.975), drop = t95 * t95;
+  const ChiSquared chi2(surfaces, measured);
+  const double drop = drop_of(surfaces);
   // A grid over all parameters: few, and chi^2 costs nothing.
   const int steps = sought.size() == 1 ? 20 * kSteps : sought.size() == 2 ? kSteps * 2 : 24;
   std::vector<std::vector<double>> least(sought.size(),
@@ -155,7 +236,7 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     }
     p.open_low = p.low == sought[i].lower;
     p.open_high = p.high == p.at.back();
-    p.standard_error = p.open_low || p.open_high ? kNaN : (p.high - p.low) / (2 * t95);
+    p.standard_error = p.open_low || p.open_high ? kNaN : (p.high - p.low) / (2 * std::sqrt(drop));
     if (p.undetermined())
       out.notes.push_back(
           fmt::format("{} is undetermined: nothing between {:g} and {:g} contradicts what was measured",
@@ -166,8 +247,11 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
                       sought[i].name, p.open_low ? "below" : "above", p.open_low ? p.high : p.low));
     out.profiles.push_back(std::move(p));
   }
-  const Eigen::VectorXd t = terms(sought, best);
-  for (const Surface& s : surfaces) out.predicted.push_back(t.dot(s.c));
+  for (const Surface& s : surfaces) {
+    const Surface::Value v = s.at(best);
+    out.predicted.push_back(v.y);
+    out.slope.push_back(v.slope);
+  }
   if (out.freedom > 0 && out.chi2 > out.freedom + 3 * std::sqrt(2 * out.freedom) + 4)
     out.notes.push_back(fmt::format(
         "no parameters looked at describe the measurement: chi^2 = {:.3g} of {:g}", out.chi2, out.freedom));

@@ -76,5 +76,7 @@ void add_calibrate_walls(CLI::App& calibrate, Common& common);
 void add_calibrate_beads(CLI::App& calibrate, Common& common);
 void add_calibrate_camera(CLI::App& calibrate, Common& common);
 void add_calibrate_contacts(CLI::App& calibrate, Common& common);
+/// A kind of `calibrate contacts`.
+void add_calibrate_infer(CLI::App& contacts, Common& common);
 
 }  // namespace twincell::cli

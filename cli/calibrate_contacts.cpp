@@ -1,39 +1,27 @@
-// twincell calibrate contacts bounce|collisions|infer|numbers: restitution and friction from what was
-// measured.
+// twincell calibrate contacts bounce|collisions|numbers: restitution and friction from what was measured;
+// infer is in calibrate_infer.cpp.
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <limits>
 #include <memory>
-#include <mutex>
-#include <thread>
 
-#include "analysis/observable.hpp"
-#include "analysis/results.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "calibration/bounce.hpp"
 #include "calibration/collisions.hpp"
 #include "calibration/contact_figures.hpp"
 #include "calibration/contact_numbers.hpp"
-#include "calibration/inference.hpp"
 #include "calibration/table.hpp"
 #include "calibration/walton.hpp"
 #include "cli/calibrate.hpp"
 #include "cli/stack_info.hpp"
 #include "sim/laws/linear_collision.hpp"
-#include "sim/simulation.hpp"
 
 namespace twincell::cli {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // ---- bounce
 
@@ -199,152 +187,6 @@ void run_collisions(const CollisionFlags& o, const Common& common) {
   finish_calibration(o.out, common, std::move(out));
 }
 
-// ---- infer
-
-struct InferFlags {
-  CalibrateFlags out;
-  std::string measured, scene;
-  std::vector<std::string> vary, assignments;
-  std::vector<std::string> observables = {"s_b", "T_g"};
-  int runs = 24;
-  std::int64_t discard = 0;
-};
-
-Sought sought_of(const std::string& said) {
-  const auto equals = said.find('='), colon = said.find(':', equals == std::string::npos ? 0 : equals);
-  Sought s;
-  try {
-    if (equals == std::string::npos || colon == std::string::npos) throw std::invalid_argument("form");
-    s = {said.substr(0, equals), std::stod(said.substr(equals + 1)), std::stod(said.substr(colon + 1))};
-  } catch (const std::exception&) {
-    throw ConfigError({.file = {}, .key = "--vary"}, fmt::format("'{}' is not key=low:high.", said));
-  }
-  if (!(s.lower < s.upper))
-    throw ConfigError({.file = {}, .key = "--vary"}, fmt::format("'{}': low must be below high.", said));
-  return s;
-}
-
-std::vector<double> observe(const TrajectorySource& trajectory, const std::vector<std::string>& names,
-                            std::int64_t discard, std::vector<double>* errors) {
-  constexpr double kReach = 1.96;
-  AnalysisOptions options;
-  options.discard_cycles = discard;
-  options.only = names;
-  const std::vector<Result> results = analyze(trajectory, options);
-  std::vector<double> values;
-  for (const std::string& name : names) {
-    const auto r =
-        std::find_if(results.begin(), results.end(), [&](const Result& x) { return x.name == name; });
-    if (r == results.end() || (!r->shape.empty() && r->present()))
-      throw ConfigError({.file = {}, .key = "--observables"},
-                        fmt::format("'{}' is no number that analyze gives of {}.", name, trajectory.name()));
-    values.push_back(r->present() ? r->value() : kNaN);
-    if (errors) errors->push_back(r->interval ? (r->interval->high - r->interval->low) / (2 * kReach) : 0);
-  }
-  return values;
-}
-
-void run_infer(const InferFlags& o, const Common& common) {
-  std::vector<Sought> sought;
-  for (const std::string& said : o.vary) sought.push_back(sought_of(said));
-  if (sought.size() > 3)
-    throw ConfigError({.file = {}, .key = "--vary"},
-                      fmt::format("names {} parameters; at most 3 can be told apart.", sought.size()));
-  const H5mdReader experiment(o.measured);
-  std::vector<double> errors;
-  const std::vector<double> values = observe(experiment, o.observables, o.discard, &errors);
-  std::vector<MeasuredObservable> measured;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i]))
-      throw InputError({.file = o.measured, .key = o.observables[i]},
-                       "has no value there; --observables names others.");
-    measured.push_back({o.observables[i], values[i], errors[i]});
-  }
-  const auto points = spread_points(sought, o.runs);
-  const auto assignments_of = [&](std::size_t i) {
-    std::vector<std::string> all = o.assignments;
-    for (std::size_t k = 0; k < sought.size(); ++k)
-      all.push_back(fmt::format("{}={:.9g}", sought[k].name, points[i][k]));
-    all.push_back(fmt::format("start.seed={}", common.seed.value_or(1) + i));
-    return all;
-  };
-  (void)sim::read_scene(o.scene, assignments_of(0));  // refused before the work, not after
-  std::vector<SimulatedPoint> runs(points.size());
-  {
-    ProgressBar bar(common, "runs");
-    std::atomic<std::size_t> next{0}, done{0};
-    std::exception_ptr failure;
-    std::mutex mutex;
-    const auto work = [&](bool shows) {
-      for (std::size_t i = next++; i < points.size(); i = next++) try {
-          sim::Simulation run(sim::read_scene(o.scene, assignments_of(i)));
-          MemoryTrajectory trajectory(run.trajectory_info());
-          run.run(trajectory);
-          runs[i] = {points[i], observe(trajectory, o.observables, o.discard, nullptr)};
-          ++done;
-          if (shows)
-            bar.update(static_cast<std::int64_t>(done.load()), static_cast<std::int64_t>(points.size()));
-        } catch (...) {
-          const std::scoped_lock lock(mutex);
-          failure = std::current_exception();
-          next = points.size();
-        }
-    };
-    {
-      std::vector<std::jthread> others;
-      for (int t = 1; t < common.n_threads(); ++t) others.emplace_back(work, false);
-      work(true);
-    }
-    if (failure) std::rethrow_exception(failure);
-  }
-  const Inference inference = infer_parameters(sought, runs, measured);
-  CalibrationResult out;
-  out.notes = inference.notes;
-  nlohmann::json& d = out.document;
-  d["measured_from"] = o.measured;
-  d["chi2"] = inference.chi2;
-  d["freedom"] = inference.freedom;
-  out.text = "profile likelihood, 95 %\n";
-  const auto& known = quantities();
-  for (const Profile& p : inference.profiles) {
-    d["profiles"].push_back({{"parameter", p.sought.name},
-                             {"best", p.best},
-                             {"low", p.low},
-                             {"high", p.high},
-                             {"open_low", p.open_low},
-                             {"open_high", p.open_high},
-                             {"undetermined", p.undetermined()},
-                             {"at", p.at},
-                             {"chi2", p.chi2}});
-    out.text += fmt::format("  {:<24} {:<9.4g} [{:.4g}, {:.4g}]{}\n", p.sought.name, p.best, p.low, p.high,
-                            p.undetermined()            ? "  undetermined"
-                            : p.open_low || p.open_high ? "  bounded on one side"
-                                                        : "");
-    const bool writable =
-        std::any_of(known.begin(), known.end(), [&](const Quantity& q) { return q.name == p.sought.name; });
-    if (writable && std::isfinite(p.standard_error))
-      out.measured.push_back(
-          {.name = p.sought.name,
-           .value = {p.best},
-           .standard_error = {p.standard_error},
-           .method = fmt::format("{} simulations matched in {}", o.runs, fmt::join(o.observables, ", ")),
-           .data = data_hash(o.measured)});
-  }
-  out.text += "observable        measured      of the best   scatter of a run\n";
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    d["observables"].push_back({{"name", measured[i].name},
-                                {"measured", measured[i].value},
-                                {"error", measured[i].error},
-                                {"predicted", inference.predicted[i]},
-                                {"scatter", inference.scatter[i]}});
-    out.text += fmt::format("{:<16}  {:<12.5g}  {:<12.5g}  {:.2g}\n", measured[i].name, measured[i].value,
-                            inference.predicted[i], inference.scatter[i]);
-  }
-  out.text += fmt::format("chi^2 = {:.3g}, {:g} degrees of freedom\n", inference.chi2, inference.freedom);
-  out.figures = {profile_figure(inference)};
-  finish_calibration(o.out, common, std::move(out));
-}
-
 // ---- numbers
 
 struct NumberFlags {
@@ -414,25 +256,7 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
     add_output_flags(kind, o->out);
     kind.callback([o, &common] { run_collisions(*o, common); });
   }
-  {
-    auto o = std::make_shared<InferFlags>();
-    CLI::App& kind =
-        add_verb(verb, common, "infer", "Contact parameters with which the simulator gives what was measured",
-                 "twincell calibrate contacts infer exp.h5 --scene scene.toml --vary "
-                 "contact.restitution=0.7:0.95 --observables s_b,T_g");
-    kind.add_option("measured", o->measured, "Trajectory of the experiment (H5MD)")->required();
-    kind.add_option("--scene", o->scene, "The same cell as a scene")->required();
-    kind.add_option("--vary", o->vary, "section.key=low:high; up to three")->required()->take_all();
-    kind.add_option("--observables", o->observables, "Numbers that analyze gives, comma separated")
-        ->delimiter(',')
-        ->capture_default_str();
-    kind.add_option("--runs", o->runs, "Simulations")->check(CLI::Range(5, 100000))->capture_default_str();
-    kind.add_option("--discard", o->discard, "Cycles left out at the beginning, of both")
-        ->capture_default_str();
-    kind.add_option("--set", o->assignments, "section.key=value of the scene; may be repeated")->take_all();
-    add_output_flags(kind, o->out);
-    kind.callback([o, &common] { run_infer(*o, common); });
-  }
+  add_calibrate_infer(verb, common);
   {
     auto o = std::make_shared<NumberFlags>();
     CLI::App& kind = add_verb(verb, common, "numbers", "k_n and gamma_n from e_n and t_c, and back",

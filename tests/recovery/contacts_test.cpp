@@ -10,6 +10,7 @@
 #include "calibration/bounce.hpp"
 #include "calibration/collisions.hpp"
 #include "calibration/contact_numbers.hpp"
+#include "calibration/curve_components.hpp"
 #include "calibration/inference.hpp"
 #include "calibration/walton.hpp"
 #include "sim/laws/linear_collision.hpp"
@@ -294,4 +295,80 @@ TEST(Inference, IntervalsCoverAndWhatDoesNotMatterIsUndetermined) {
   EXPECT_GE(open, 0.9 * trials);
   EXPECT_NEAR(bias, 0, 0.005);
   EXPECT_THROW(infer_parameters(sought, {{{0.7, 0.5}, {1, 1}}}, {{"a", 1, 0}, {"b", 1, 0}}), InputError);
+}
+
+TEST(Inference, ObservablesThatScatterTogetherCountAsWhatTheyAre) {
+  // The second observable is the first with as much noise again of its own: taken for independent, the two
+  // would narrow the interval by a third too much.
+  std::mt19937_64 generator(52);
+  std::normal_distribution<double> normal(0, 1);
+  const std::vector<Sought> sought = {{"e", 0.6, 0.95}};
+  const auto simulate = [&](const std::vector<double>& t) {
+    const double shared = 0.02 * normal(generator);
+    return std::vector<double>{2 - t[0] + shared, 3 - t[0] + shared + 0.004 * normal(generator),
+                               1 + t[0] + 0.02 * normal(generator)};
+  };
+  const int trials = 1500;
+  int covered = 0;
+  for (int i = 0; i < trials; ++i) {
+    std::vector<SimulatedPoint> runs;
+    for (const auto& theta : spread_points(sought, 24)) runs.push_back({theta, simulate(theta)});
+    const auto y = simulate({0.8});
+    const Inference f = infer_parameters(sought, runs, {{"a", y[0], 0}, {"b", y[1], 0}, {"c", y[2], 0}});
+    covered += f.profiles[0].low <= 0.8 && 0.8 <= f.profiles[0].high ? 1 : 0;
+  }
+  std::cout << "coverage of e " << 100.0 * covered / trials << " %\n";
+  EXPECT_GE(covered, 0.93 * trials);
+  EXPECT_LE(covered, 0.975 * trials);
+}
+
+TEST(Inference, AnOnsetIsTheDriveAtWhichALevelIsCrossed) {
+  // y = 4 (G - G_on(e)), G_on = 1 + e: a measured onset of 1.8 +- 0.03 says e = 0.8 +- 0.03, with what runs
+  // scatter on top.
+  std::mt19937_64 generator(53);
+  std::normal_distribution<double> normal(0, 1);
+  const std::vector<Sought> sought = {{"e", 0.4, 1.2}};
+  const Sought drive{"drive.gamma", 1.5, 2.1};
+  const int trials = 400;
+  int covered = 0;
+  double error = 0;
+  for (int i = 0; i < trials; ++i) {
+    std::vector<SimulatedPoint> runs;
+    for (const auto& p : spread_points({sought[0], drive}, 30))
+      runs.push_back({{p[0]}, {4 * (p[1] - 1 - p[0]) + 0.05 * normal(generator)}, {p[1]}});
+    const double onset = 1.8 + 0.03 * normal(generator) + 0.05 / 4 * normal(generator);
+    const Inference f = infer_parameters(sought, runs, {{"onset", 0, 0, Condition{drive, onset, 0.03}}});
+    covered += f.profiles[0].low <= 0.8 && 0.8 <= f.profiles[0].high ? 1 : 0;
+    error += f.profiles[0].standard_error / trials;
+    EXPECT_NEAR(f.slope[0], 4, 0.5);
+  }
+  std::cout << "coverage of e " << 100.0 * covered / trials << " %, standard error " << error << "\n";
+  EXPECT_GE(covered, 0.93 * trials);
+  EXPECT_LE(covered, 0.97 * trials);
+  EXPECT_NEAR(error, std::hypot(0.03, 0.05 / 4), 0.004);
+}
+
+TEST(CurveComponents, OfTwoFormsAreTwoNumbers) {
+  std::mt19937_64 generator(54);
+  std::normal_distribution<double> normal(0, 1);
+  std::vector<std::vector<double>> curves;
+  const auto curve = [](double a, double b) {
+    std::vector<double> c;
+    for (int k = 0; k < 20; ++k) c.push_back(3 + a * std::sin(0.314 * k) + b * k / 20.0);
+    return c;
+  };
+  for (int i = 0; i < 12; ++i) curves.push_back(curve(normal(generator), normal(generator)));
+  curves.push_back(std::vector<double>(20, std::nan("")));  // a run without a curve
+  curves.emplace_back();
+  const CurveComponents c = components_of(curves);
+  EXPECT_EQ(c.forms.size(), 2U);
+  const std::vector<double> other = curve(0.3, -1.2);
+  EXPECT_LT(c.misfit(other), 1e-12);
+  const std::vector<double> back = c.curve(c.numbers(other));
+  for (std::size_t k = 0; k < 20; ++k) EXPECT_NEAR(back[k], other[k], 1e-12);
+  std::vector<double> strange = other;
+  strange[7] += 1;
+  EXPECT_GT(c.misfit(strange), 0.15);
+  EXPECT_TRUE(std::isnan(c.numbers(curves[12])[0]));
+  EXPECT_THROW(components_of({curves[0], curves[1]}), InputError);
 }

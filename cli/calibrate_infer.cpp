@@ -1,0 +1,453 @@
+// twincell calibrate contacts infer: parameters of a simulator from observables that it shares with a film.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "analysis/observable.hpp"
+#include "analysis/phase_thresholds.hpp"
+#include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
+#include "calibration/contact_figures.hpp"
+#include "calibration/curve_components.hpp"
+#include "calibration/inference.hpp"
+#include "cli/calibrate.hpp"
+#include "sim/simulation.hpp"
+
+namespace twincell::cli {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+struct InferFlags {
+  CalibrateFlags out;
+  std::string measured, scene;
+  std::vector<std::string> vary, assignments, onsets;
+  std::vector<std::string> observables = {"s_b", "T_g"};
+  int runs = 24;
+  std::int64_t discard = 0;
+};
+
+Sought sought_of(const std::string& said) {
+  const auto equals = said.find('='), colon = said.find(':', equals == std::string::npos ? 0 : equals);
+  Sought s;
+  try {
+    if (equals == std::string::npos || colon == std::string::npos) throw std::invalid_argument("form");
+    s = {said.substr(0, equals), std::stod(said.substr(equals + 1)), std::stod(said.substr(colon + 1))};
+  } catch (const std::exception&) {
+    throw ConfigError({.file = {}, .key = "--vary"}, fmt::format("'{}' is not key=low:high.", said));
+  }
+  if (!(s.lower < s.upper))
+    throw ConfigError({.file = {}, .key = "--vary"}, fmt::format("'{}': low must be below high.", said));
+  return s;
+}
+
+/// The drive at which a bed begins to bounce or to convect, as measured.
+struct MeasuredOnset {
+  BedPhase phase = BedPhase::bouncing;
+  double gamma = 0, error = 0;
+  [[nodiscard]] std::string name() const { return "onset of " + phase_name(phase); }
+  /// The number whose crossing of its threshold is the onset.
+  [[nodiscard]] std::string observable() const { return phase == BedPhase::bouncing ? "s_b" : "s_c"; }
+  [[nodiscard]] double threshold() const {
+    return phase == BedPhase::bouncing ? kBouncingThreshold : kConvectionThreshold;
+  }
+  /// Strengths at which runs look for it: three errors, and at least 15 %, to both sides.
+  [[nodiscard]] Sought tried() const {
+    const double reach = std::max(3 * error, 0.15 * gamma);
+    return {"drive.gamma", std::max(gamma - reach, 0.1 * gamma), gamma + reach};
+  }
+};
+
+/// Below and above its threshold a number differs by factors, and far below it is nothing but noise: what the
+/// surface describes is ln(1/10 + s/threshold).
+double level(double s, double threshold) {
+  return std::log(0.1 + s / threshold);
+}
+
+MeasuredOnset onset_of(const std::string& said) {
+  const auto bad = [&](const std::string& why) {
+    return ConfigError({.file = {}, .key = "--onset"}, fmt::format("'{}' {}.", said, why));
+  };
+  const auto equals = said.find('='), error = said.find("+-");
+  if (equals == std::string::npos || error == std::string::npos || error < equals)
+    throw bad("is not bouncing=GAMMA+-ERROR or convecting=GAMMA+-ERROR");
+  MeasuredOnset o;
+  o.phase = phase_named(said.substr(0, equals));
+  if (o.phase != BedPhase::bouncing && o.phase != BedPhase::convecting)
+    throw bad("names neither bouncing nor convecting");
+  try {
+    o.gamma = std::stod(said.substr(equals + 1, error - equals - 1));
+    o.error = std::stod(said.substr(error + 2));
+  } catch (const std::exception&) {
+    throw bad("is not bouncing=GAMMA+-ERROR or convecting=GAMMA+-ERROR");
+  }
+  if (!(o.gamma > 0) || !(o.error >= 0) || !std::isfinite(o.gamma) || !std::isfinite(o.error))
+    throw bad("needs a strength above 0 and an error that is not negative");
+  return o;
+}
+
+/// One result of analyze: a number, or a curve.
+struct Observed {
+  std::string name;
+  std::vector<double> values;  ///< NaN, once, where there is none
+  double error = 0;
+  bool curve = false;
+  std::string absent = {};
+};
+
+std::vector<Observed> observe(const TrajectorySource& trajectory, const std::vector<std::string>& names,
+                              std::int64_t discard) {
+  constexpr double kReach = 1.96;
+  AnalysisOptions options;
+  options.discard_cycles = discard;
+  options.only = names;
+  std::vector<Result> results;
+  try {
+    results = analyze(trajectory, options);
+  } catch (const ConfigError& e) {
+    // The message is of analyze's own option.
+    throw ConfigError({.file = {}, .key = "--observables"}, e.what());
+  }
+  std::vector<Observed> all;
+  for (const std::string& name : names) {
+    const Result& r = find_result(results, name);
+    if (!r.text.empty())
+      throw ConfigError({.file = {}, .key = "--observables"},
+                        fmt::format("'{}' is a word, neither a number nor a curve.", name));
+    Observed o{.name = name, .values = {kNaN}, .curve = !r.shape.empty(), .absent = r.absent};
+    if (r.present()) o.values = r.values;
+    if (r.present() && r.interval) o.error = (r.interval->high - r.interval->low) / (2 * kReach);
+    all.push_back(std::move(o));
+  }
+  return all;
+}
+
+/// What was measured of the film. \throws InputError for what is not there
+std::vector<Observed> of_film(const InferFlags& o) {
+  const H5mdReader film(o.measured);
+  std::vector<Observed> measured = observe(film, o.observables, o.discard);
+  for (const Observed& m : measured) {
+    if (!m.absent.empty())
+      throw InputError({.file = o.measured, .key = m.name},
+                       fmt::format("has no value there ({}); --observables names others.", m.absent));
+    const auto holes =
+        std::count_if(m.values.begin(), m.values.end(), [](double v) { return !std::isfinite(v); });
+    if (holes > 0)
+      throw InputError({.file = o.measured, .key = m.name},
+                       fmt::format("has no value in {} of {} elements; --observables names others.", holes,
+                                   m.values.size()));
+  }
+  return measured;
+}
+
+/// All runs of the simulator: with the film's drive, and with drives about each onset.
+class Runs {
+ public:
+  Runs(const InferFlags& o, const Common& common, std::vector<Sought> sought,
+       const std::vector<Observed>& measured, const std::vector<MeasuredOnset>& onsets)
+      : o_(o), common_(common), sought_(std::move(sought)), measured_(measured), onsets_(onsets) {
+    std::vector<Sought> ranges = sought_;
+    for (const MeasuredOnset& onset : onsets_) ranges.push_back(onset.tried());
+    places_ = spread_points(ranges, o.runs);
+    of_film.resize(places_.size());
+    of_onset.assign(onsets_.size(), std::vector<double>(places_.size(), kNaN));
+  }
+
+  /// \throws as read_scene, before any work
+  void simulate() {
+    const std::size_t kinds = onsets_.size() + 1, first = o_.measured.empty() ? 1 : 0,
+                      jobs = places_.size() * (kinds - first);
+    for (std::size_t kind = first; kind < kinds; ++kind) (void)scene(0, kind);
+    ProgressBar bar(common_, "runs");
+    std::atomic<std::size_t> next{0}, done{0};
+    std::exception_ptr failure;
+    std::mutex mutex;
+    const auto work = [&](bool shows) {
+      for (std::size_t job = next++; job < jobs; job = next++) try {
+          run(job % places_.size(), first + job / places_.size());
+          ++done;
+          if (shows) bar.update(static_cast<std::int64_t>(done.load()), static_cast<std::int64_t>(jobs));
+        } catch (...) {
+          const std::scoped_lock lock(mutex);
+          failure = std::current_exception();
+          next = jobs;
+        }
+    };
+    {
+      std::vector<std::jthread> others;
+      for (int t = 1; t < common_.n_threads(); ++t) others.emplace_back(work, false);
+      work(true);
+    }
+    if (failure) std::rethrow_exception(failure);
+  }
+
+  [[nodiscard]] std::size_t size() const { return places_.size(); }
+  [[nodiscard]] std::vector<double> theta(std::size_t i) const {
+    return {places_[i].begin(), places_[i].begin() + static_cast<std::ptrdiff_t>(sought_.size())};
+  }
+  /// Gamma at which run i looked for an onset.
+  [[nodiscard]] double drive(std::size_t i, std::size_t onset) const {
+    return places_[i][sought_.size() + onset];
+  }
+
+  std::vector<std::vector<Observed>> of_film;  ///< [runs][observables]
+  std::vector<std::vector<double>> of_onset;   ///< [onsets][runs], level()
+
+ private:
+  /// Kind 0: the film's drive; k: that of onset k - 1.
+  [[nodiscard]] sim::Scene scene(std::size_t i, std::size_t kind) const {
+    std::vector<std::string> all = o_.assignments;
+    for (std::size_t k = 0; k < sought_.size(); ++k)
+      all.push_back(fmt::format("{}={:.9g}", sought_[k].name, places_[i][k]));
+    if (kind > 0) all.push_back(fmt::format("drive.gamma={:.9g}", drive(i, kind - 1)));
+    all.push_back(fmt::format("start.seed={}", common_.seed.value_or(1) + kind * places_.size() + i));
+    return sim::read_scene(o_.scene, all);
+  }
+
+  void run(std::size_t i, std::size_t kind) {
+    sim::Simulation simulation(scene(i, kind));
+    MemoryTrajectory trajectory(simulation.trajectory_info());
+    simulation.run(trajectory);
+    if (kind == 0) {
+      of_film[i] = observe(trajectory, o_.observables, o_.discard);
+      for (std::size_t k = 0; k < measured_.size(); ++k) refuse_other_length(of_film[i][k], measured_[k]);
+      return;
+    }
+    const MeasuredOnset& onset = onsets_[kind - 1];
+    const Observed s = observe(trajectory, {onset.observable()}, o_.discard).front();
+    of_onset[kind - 1][i] = level(s.values.front(), onset.threshold());
+  }
+
+  /// \throws ConfigError for a curve that cannot be compared, at the first run and not after all
+  static void refuse_other_length(const Observed& run, const Observed& film) {
+    if (!film.curve || !run.absent.empty() || run.values.size() == film.values.size()) return;
+    throw ConfigError({.file = {}, .key = "--observables"},
+                      fmt::format("{} has {} elements in the film and {} in the scene; the scene's "
+                                  "time.phases and cell must be the film's.",
+                                  film.name, film.values.size(), run.values.size()));
+  }
+
+  const InferFlags& o_;
+  const Common& common_;
+  std::vector<Sought> sought_;
+  const std::vector<Observed>& measured_;
+  const std::vector<MeasuredOnset>& onsets_;
+  std::vector<std::vector<double>> places_;  ///< parameters, then a strength for each onset
+};
+
+/// A measured curve and its runs, as numbers.
+struct ComparedCurve {
+  Observed measured;
+  CurveComponents components;
+  std::size_t first = 0;  ///< of its numbers among the observables
+};
+
+/// What infer_parameters() is asked.
+struct Question {
+  std::vector<MeasuredObservable> measured;
+  std::vector<SimulatedPoint> runs;
+  std::vector<ComparedCurve> curves;
+
+  /// Another number of the measurement, and of each run.
+  void add(MeasuredObservable number, const std::vector<double>& of_runs, const std::vector<double>& at) {
+    measured.push_back(std::move(number));
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      runs[i].y.push_back(of_runs[i]);
+      runs[i].at.push_back(at.empty() ? kNaN : at[i]);
+    }
+  }
+};
+
+/// A curve becomes as many numbers as there are forms in which the runs' curves differ.
+void add_curve(Question& question, const Runs& runs, std::size_t k, const Observed& measured) {
+  std::vector<std::vector<double>> curves;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Observed& run = runs.of_film[i][k];
+    curves.push_back(run.absent.empty() ? run.values : std::vector<double>{});
+  }
+  ComparedCurve c{measured, components_of(curves), question.measured.size()};
+  const std::vector<double> numbers = c.components.numbers(measured.values);
+  for (std::size_t form = 0; form < numbers.size(); ++form) {
+    std::vector<double> of_runs;
+    for (const auto& curve : curves)
+      of_runs.push_back(curve.empty() ? kNaN : c.components.numbers(curve)[form]);
+    question.add({fmt::format("{} form {}", measured.name, form + 1), numbers[form], 0}, of_runs, {});
+  }
+  question.curves.push_back(std::move(c));
+}
+
+Question question_of(const Runs& runs, const std::vector<Observed>& measured,
+                     const std::vector<MeasuredOnset>& onsets) {
+  Question question;
+  for (std::size_t i = 0; i < runs.size(); ++i) question.runs.push_back({.theta = runs.theta(i), .y = {}});
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    if (measured[k].curve) {
+      add_curve(question, runs, k, measured[k]);
+      continue;
+    }
+    std::vector<double> of_runs;
+    for (std::size_t i = 0; i < runs.size(); ++i) of_runs.push_back(runs.of_film[i][k].values.front());
+    question.add({measured[k].name, measured[k].values.front(), measured[k].error}, of_runs, {});
+  }
+  for (std::size_t k = 0; k < onsets.size(); ++k) {
+    std::vector<double> at;
+    for (std::size_t i = 0; i < runs.size(); ++i) at.push_back(runs.drive(i, k));
+    question.add({.name = onsets[k].name(),
+                  .value = level(onsets[k].threshold(), onsets[k].threshold()),
+                  .error = 0,
+                  .at = Condition{onsets[k].tried(), onsets[k].gamma, onsets[k].error}},
+                 runs.of_onset[k], at);
+  }
+  return question;
+}
+
+/// Measured, of the best parameters, and what a run scatters; an onset as a strength of drive.
+void tell_observables(const Question& question, const Inference& inference, CalibrationResult& out) {
+  out.text += "observable            measured      of the best   scatter of a run\n";
+  for (std::size_t i = 0; i < question.measured.size(); ++i) {
+    const MeasuredObservable& m = question.measured[i];
+    double value = m.value, error = m.error, predicted = inference.predicted[i],
+           scatter = inference.scatter[i];
+    if (m.at) {
+      const double slope = inference.slope[i];
+      value = m.at->value;
+      error = m.at->error;
+      predicted = value + (m.value - predicted) / slope;
+      scatter = std::abs(scatter / slope);
+    }
+    out.document["observables"].push_back({{"name", m.name},
+                                           {"measured", value},
+                                           {"error", error},
+                                           {"predicted", finite(predicted)},
+                                           {"scatter", finite(scatter)}});
+    out.text += fmt::format("{:<20}  {:<12.5g}  {:<12.5g}  {:.2g}\n", m.name, value, predicted, scatter);
+  }
+}
+
+void tell_curves(const Question& question, const Inference& inference, CalibrationResult& out) {
+  constexpr double kFar = 3;
+  for (const ComparedCurve& c : question.curves) {
+    const auto first = inference.predicted.begin() + static_cast<std::ptrdiff_t>(c.first);
+    const std::vector<double> predicted = c.components.curve(
+        std::vector<double>(first, first + static_cast<std::ptrdiff_t>(c.components.forms.size())));
+    const double misfit = c.components.misfit(c.measured.values);
+    out.document["curves"].push_back({{"name", c.measured.name},
+                                      {"measured", c.measured.values},
+                                      {"predicted", predicted},
+                                      {"forms", c.components.forms},
+                                      {"mean", c.components.mean},
+                                      {"misfit", misfit},
+                                      {"misfit_of_runs", c.components.left_out}});
+    if (misfit > kFar * c.components.left_out)
+      out.notes.push_back(fmt::format(
+          "{} has a form that no run has: {:.2g} of it is left, of the runs' own curves {:.2g} (rms)",
+          c.measured.name, misfit, c.components.left_out));
+    out.figures.push_back(curve_figure(c.measured.name, c.measured.values, predicted));
+  }
+}
+
+void tell_profiles(const InferFlags& o, const Question& question, const Inference& inference,
+                   CalibrationResult& out) {
+  const auto& known = quantities();
+  std::vector<std::string> by = o.measured.empty() ? std::vector<std::string>{} : o.observables;
+  for (const MeasuredObservable& m : question.measured)
+    if (m.at) by.push_back(m.name);
+  out.text = "profile likelihood, 95 %\n";
+  for (const Profile& p : inference.profiles) {
+    out.document["profiles"].push_back({{"parameter", p.sought.name},
+                                        {"best", p.best},
+                                        {"low", p.low},
+                                        {"high", p.high},
+                                        {"open_low", p.open_low},
+                                        {"open_high", p.open_high},
+                                        {"undetermined", p.undetermined()},
+                                        {"at", p.at},
+                                        {"chi2", p.chi2}});
+    out.text += fmt::format("  {:<24} {:<9.4g} [{:.4g}, {:.4g}]{}\n", p.sought.name, p.best, p.low, p.high,
+                            p.undetermined()            ? "  undetermined"
+                            : p.open_low || p.open_high ? "  bounded on one side"
+                                                        : "");
+    const bool writable =
+        std::any_of(known.begin(), known.end(), [&](const Quantity& q) { return q.name == p.sought.name; });
+    if (writable && std::isfinite(p.standard_error))
+      out.measured.push_back(
+          {.name = p.sought.name,
+           .value = {p.best},
+           .standard_error = {p.standard_error},
+           .method = fmt::format("{} simulations matched in {}", o.runs, fmt::join(by, ", ")),
+           .data = data_hash(o.measured.empty() ? o.scene : o.measured)});
+  }
+}
+
+void run_infer(const InferFlags& o, const Common& common) {
+  std::vector<Sought> sought;
+  for (const std::string& said : o.vary) sought.push_back(sought_of(said));
+  if (sought.size() > 3)
+    throw ConfigError({.file = {}, .key = "--vary"},
+                      fmt::format("names {} parameters; at most 3 can be told apart.", sought.size()));
+  std::vector<MeasuredOnset> onsets;
+  for (const std::string& said : o.onsets) onsets.push_back(onset_of(said));
+  if (o.measured.empty() && onsets.empty())
+    throw ConfigError({.file = {}, .key = "--onset"}, "or a trajectory of the experiment is needed.");
+  if (std::find(o.observables.begin(), o.observables.end(), "onset") != o.observables.end())
+    throw ConfigError(
+        {.file = {}, .key = "--observables"},
+        "'onset' is not seen in one film; --onset bouncing=GAMMA+-ERROR says what was measured.");
+  const std::vector<Observed> measured = o.measured.empty() ? std::vector<Observed>{} : of_film(o);
+  Runs runs(o, common, sought, measured, onsets);
+  runs.simulate();
+  const Question question = question_of(runs, measured, onsets);
+  const Inference inference = infer_parameters(sought, question.runs, question.measured);
+
+  CalibrationResult out;
+  out.notes = inference.notes;
+  out.document["measured_from"] = o.measured;
+  out.document["chi2"] = inference.chi2;
+  out.document["freedom"] = inference.freedom;
+  tell_profiles(o, question, inference, out);
+  tell_observables(question, inference, out);
+  out.text += fmt::format("chi^2 = {:.3g}, {:g} degrees of freedom\n", inference.chi2, inference.freedom);
+  out.figures = {profile_figure(inference)};
+  tell_curves(question, inference, out);
+  finish_calibration(o.out, common, std::move(out));
+}
+
+}  // namespace
+
+void add_calibrate_infer(CLI::App& contacts, Common& common) {
+  auto o = std::make_shared<InferFlags>();
+  CLI::App& kind = add_verb(
+      contacts, common, "infer", "Contact parameters with which the simulator gives what was measured",
+      "twincell calibrate contacts infer exp.h5 --scene scene.toml --vary "
+      "contact.restitution=0.7:0.95 --observables s_k,flight_time,T_g --onset convecting=2.3+-0.1");
+  kind.add_option("measured", o->measured, "Trajectory of the experiment (H5MD); not needed for --onset");
+  kind.add_option("--scene", o->scene, "The same cell as a scene")->required();
+  kind.add_option("--vary", o->vary, "section.key=low:high; up to three")->required()->take_all();
+  kind.add_option("--observables", o->observables, "Numbers and curves that analyze gives, comma separated")
+      ->delimiter(',')
+      ->capture_default_str();
+  kind.add_option("--onset", o->onsets,
+                  "bouncing=GAMMA+-ERROR or convecting=GAMMA+-ERROR, as measured; may be repeated")
+      ->take_all();
+  kind.add_option("--runs", o->runs, "Simulations; as many again for each onset")
+      ->check(CLI::Range(5, 100000))
+      ->capture_default_str();
+  kind.add_option("--discard", o->discard, "Cycles left out at the beginning, of both")
+      ->capture_default_str();
+  kind.add_option("--set", o->assignments, "section.key=value of the scene; may be repeated")->take_all();
+  add_output_flags(kind, o->out);
+  kind.callback([o, &common] { run_infer(*o, common); });
+}
+
+}  // namespace twincell::cli
