@@ -51,6 +51,17 @@ class Parabola {
   double origin_, a_ = 0, b_ = 0;
 };
 
+/// Where between `holds`, at which it does, and `not_any_more` a condition ceases to hold.
+template <class Condition>
+double boundary(double holds, double not_any_more, const Condition& condition) {
+  constexpr int kHalvings = 30;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = (holds + not_any_more) / 2;
+    (condition(middle) ? holds : not_any_more) = middle;
+  }
+  return not_any_more;
+}
+
 class BedFlight : public Observable {
  public:
   explicit BedFlight(const AnalysisContext& context)
@@ -141,7 +152,7 @@ class BedFlight : public Observable {
   /// The flight has ended before `carried`, the first moment at which the plate carries the bed again.
   void land(double carried) {
     const double frame = carried - flight_.back().time, reach = static_cast<double>(stride_) * frame,
-                 fine = frame / 256;
+                 fine = frame / 32;
     Parabola way(flight_, -HUGE_VAL);
     auto take_off = taken_off(way, reach, frame);
     if (!take_off) return;
@@ -154,6 +165,8 @@ class BedFlight : public Observable {
     const double least = above(way, *take_off), latest = carried + reach;
     double landing = std::max(*take_off + 2 * fine, flight_.back().time - reach);
     while (landing < latest && above(way, landing) > least) landing += fine;
+    if (landing < latest)
+      landing = boundary(landing - fine, landing, [&](double t) { return above(way, t) > least; });
     durations_.add(landing - *take_off);
     in_cycle_ += landing - *take_off;
     landed_ = landing;
@@ -165,7 +178,7 @@ class BedFlight : public Observable {
   }
 
   [[nodiscard]] std::optional<double> taken_off(const Parabola& way, double reach, double frame) const {
-    const double first = flight_.front().time, fine = frame / 256;
+    const double first = flight_.front().time, fine = frame / 32;
     const Drive& drive = *info_.drive;
     // A bed that rested has h' = h'' = 0 where it leaves. Noise parts the two zeros, or lifts h' above its
     // own: the later of both is then nearest.
@@ -179,6 +192,7 @@ class BedFlight : public Observable {
       while (inside < flight_.back().time && !leaves(inside)) inside += fine;
     double take_off = inside;
     while (take_off > earliest && leaves(take_off)) take_off -= fine;
+    if (take_off < inside) take_off = boundary(take_off + fine, take_off, leaves);
     const bool fast = thrown_ && rises(take_off) > kThrownSpeed * drive.peak_velocity();
     if (take_off < inside && take_off > earliest && !fast) return take_off;
     // A plate that falls away by less than g is never left. Thrown, a bed leaves at any phase: the throw is
