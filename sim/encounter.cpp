@@ -26,6 +26,7 @@ concept PresentTangential = !T::kActs || (!T::kHistory && requires(const double*
   { T::slack(c, x, x) } -> std::same_as<double>;
 });
 
+constexpr double kBeyond = 0.01;
 constexpr double kLongestStep = 0.35;  // of the contact time: a bead is not to part and come back in one
 
 template <class N, class T, int D>
@@ -60,6 +61,9 @@ class Encounter {
     double h = kLongestStep * scale * std::min(1.0, std::sqrt(std::sqrt(std::sqrt(tolerance / 1e-6)))),
            t = time;
     while (t < last && !end.parted) {
+      // A step that would go far beyond the parting is refused there, where the force of the law changes its
+      // sign, and says less well where they part: it ends a little after a contact time.
+      if (const double left = time + scale - t; left > 0) h = std::min(h, left + kBeyond * scale);
       h = std::min(h, last - t);
       const Kinks regime = kinks(y);
       Step step(*this, regime, t, y);
@@ -389,6 +393,27 @@ class Encounter {
   std::array<double, D> n_{}, pull_{}, swing_{};
 };
 
+/// The plane of r and u, in which two beads stay between which only F_n acts: two numbers for each instead of
+/// three.
+class OrbitPlane {
+ public:
+  explicit OrbitPlane(const RelativeMotion& m) : along_(m.r.normalized()) {
+    const Vec3 rest = m.u - m.u.dot(along_) * along_;
+    // Head on, any direction will do.
+    across_ = rest.norm() > 1e-300 ? Vec3(rest.normalized()) : along_.unitOrthogonal();
+  }
+  [[nodiscard]] RelativeMotion into(const RelativeMotion& m) const { return {flat(m.r), flat(m.u), m.s}; }
+  [[nodiscard]] EncounterEnd back(EncounterEnd end, const RelativeMotion& start) const {
+    end.motion = {space(end.motion.r), space(end.motion.u), start.s};
+    return end;
+  }
+
+ private:
+  [[nodiscard]] Vec3 flat(const Vec3& v) const { return {v.dot(along_), 0, v.dot(across_)}; }
+  [[nodiscard]] Vec3 space(const Vec3& v) const { return v.x() * along_ + v.z() * across_; }
+  Vec3 along_, across_;
+};
+
 /// Calls visit(normal, tangential) if both can meet alone.
 template <class Visit>
 bool visit_laws(const ContactLaws& laws, Visit visit) {
@@ -423,9 +448,14 @@ EncounterEnd meet(const EncounterSetting& setting, const RelativeMotion& motion,
   EncounterEnd end;
   const double scale = encounter_time(setting, motion.u.norm());
   visit_laws(*setting.laws, [&]<class N, class T>(const N& normal, const T& tangential) {
-    end = setting.dimension == 2
-              ? Encounter<N, T, 2>(setting, normal, tangential).run(motion, time, last, scale, tolerance)
-              : Encounter<N, T, 3>(setting, normal, tangential).run(motion, time, last, scale, tolerance);
+    if (setting.dimension == 2)
+      end = Encounter<N, T, 2>(setting, normal, tangential).run(motion, time, last, scale, tolerance);
+    else if (const OrbitPlane plane(motion); !T::kActs && !setting.wall)
+      end = plane.back(Encounter<N, T, 2>(setting, normal, tangential)
+                           .run(plane.into(motion), time, last, scale, tolerance),
+                       motion);
+    else
+      end = Encounter<N, T, 3>(setting, normal, tangential).run(motion, time, last, scale, tolerance);
   });
   return end;
 }

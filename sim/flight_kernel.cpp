@@ -484,8 +484,10 @@ class FlightKernel : public Kernel {
   }
 
   [[nodiscard]] bool in_wall(std::size_t i, const Wall& wall, double t) const {
-    return wall.n.dot((*lines_)[i].position(t, gravity_) - surface(wall, t).first) <
-           lines_->radius(i) - 1e-12;
+    const double above =
+        wall.n.dot((*lines_)[i].position(t, gravity_)) - wall.offset - lines_->radius(i) + 1e-12;
+    if (!wall.moves || above > std::abs(amplitude_)) return above < 0;
+    return above < wall.n.dot(plate(t));
   }
   /// When a bead on its line first touches a wall, from a time on; never: infinite. What lies between them is
   /// a parabola less a sine, h(t); since its curvature is bounded below by -m, h + h' x - m x^2/2 = 0 gives a
@@ -505,7 +507,8 @@ class FlightKernel : public Kernel {
         if (down == HUGE_VAL) return HUGE_VAL;
         t += down;
       }
-      const double sine = most > 0 ? std::sin(omega_ * t) : 0, cosine = most > 0 ? std::cos(omega_ * t) : 0;
+      double sine = 0, cosine = 0;
+      if (most > 0) sine = std::sin(omega_ * t), cosine = std::cos(omega_ * t);
       const double h = height + t * (speed + 0.5 * t * fall) - swing * sine;
       const double rate = speed + t * fall - swing * omega_ * cosine;
       if (h < 1e-14 && rate <= 0) return t;

@@ -62,7 +62,9 @@ FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
   const Tag tag;
   const V infinite = set(HUGE_VAL), zero = hn::Zero(tag);
   const V start = set(std::max(now, f.from[i])), own_radius = set(f.radius[i]);
-  V best = infinite, partner = set(-1), until = infinite;
+  V best = infinite, partner = set(-1);
+  // Times at which images meet are kept as fractions: a division for each would cost more than all else here.
+  V until = set(1), until_over = zero;
   M overlap = hn::FirstN(tag, 0);
   for (std::size_t j = 0; j < f.n; j += hn::Lanes(tag)) {
     const M counts = others(j, f, i, i);
@@ -78,8 +80,11 @@ FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
         d = nearest(d, f.period[k]);
         // The next image is a period away, and touches at `reach`.
         const V way = hn::Sub(hn::Mul(hn::Sub(set(f.period[k]), reach), hn::Abs(w)), hn::Mul(d, w));
-        const V time = hn::Add(from, hn::Div(way, ww));
-        until = hn::IfThenElse(hn::And(counts, hn::Gt(ww, zero)), hn::Min(until, time), until);
+        const V time = hn::Add(way, hn::Mul(from, ww));  // over ww
+        const M sooner =
+            hn::And(hn::And(counts, hn::Gt(ww, zero)), hn::Lt(hn::Mul(time, until_over), hn::Mul(until, ww)));
+        until = hn::IfThenElse(sooner, time, until);
+        until_over = hn::IfThenElse(sooner, ww, until_over);
       }
       square = hn::Add(square, hn::Mul(d, d));
       closing = hn::Add(closing, hn::Mul(d, w));
@@ -90,6 +95,7 @@ FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
     // Beads that have just parted lie at `reach` but for rounding.
     overlap = hn::Or(overlap, hn::And(counts, hn::Lt(c, hn::Mul(set(-1e-12), hn::Mul(reach, reach)))));
     const M hits = hn::And(counts, hn::And(hn::Lt(closing, zero), hn::Gt(inside, zero)));
+    if (hn::AllFalse(tag, hits)) continue;
     const V after = hn::Div(c, hn::Sub(hn::Sqrt(hn::Max(inside, zero)), closing));
     const V time = hn::IfThenElse(hits, hn::Add(from, hn::Max(after, zero)), infinite);
     const M sooner = hn::Lt(time, best);
@@ -100,7 +106,7 @@ FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
   alignas(64) double times[flight::kSpare], partners[flight::kSpare], untils[flight::kSpare];
   hn::Store(best, tag, times);
   hn::Store(partner, tag, partners);
-  hn::Store(until, tag, untils);
+  hn::Store(hn::Div(until, until_over), tag, untils);  // 1/0: never
   for (std::size_t k = 0; k < hn::Lanes(tag); ++k) {
     hit.until = std::min(hit.until, untils[k]);
     const auto with = static_cast<std::int32_t>(partners[k]);

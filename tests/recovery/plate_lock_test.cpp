@@ -11,6 +11,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "calibration/accelerometer.hpp"
+#include "tests/support/complaint.hpp"
 
 using namespace twincell;
 
@@ -189,6 +190,9 @@ TEST(PlateLock, AnAccelerometerIsFittedTheSameWay) {
   const VibrationFit v = fit_vibration(t);
   EXPECT_NEAR(v.frequency_hz, 23.4, 1e-6);
   EXPECT_NEAR(v.acceleration, 25, 1e-6);
+  expect_refusal<InputError>(
+      [] { (void)fit_vibration({.file = "a.csv", .time_s = {0, 1}, .acceleration = {1, 2}}); },
+      "a.csv: acceleration_m_s2: holds 2 values");
   t.time_s[100] = 3;
   EXPECT_THROW(fit_vibration(t), InputError);
 }
