@@ -59,12 +59,15 @@ Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, dou
 
 Figure profile_figure(const Inference& inference) {
   const std::size_t n = inference.profiles.size();
+  double highest = 0;
+  for (const Profile& p : inference.profiles) highest = std::max(highest, p.drop);
   Figure f{.name = "profile",
            .title = "What the measurement determines",
            .width = static_cast<int>(420 * n),
            .height = 400};
   f.plot = fmt::format(
-      "set multiplot layout 1,{}\nset yrange [0:12]\nset ylabel 'χ^2 above its least'\nunset key\n", n);
+      "set multiplot layout 1,{}\nset yrange [0:{:.6g}]\nset ylabel 'χ^2 above its least'\nunset key\n", n,
+      3 * highest);
   for (std::size_t i = 0; i < n; ++i) {
     const Profile& p = inference.profiles[i];
     f.data += fmt::format("# {}, chi^2 above its least\n", p.sought.name);
@@ -76,8 +79,8 @@ Figure profile_figure(const Inference& inference) {
     f.plot += fmt::format(
         "set xlabel '{}'\nset xrange [{:.6g}:{:.6g}]\nplot 'profile.dat' index {} using 1:2 with lines lw 2 "
         "lc rgb "
-        "blue, 3.84 with lines dt 2 lc rgb vermilion\n",
-        label, p.sought.lower, p.sought.upper, i);
+        "blue, {:.6g} with lines dt 2 lc rgb vermilion\n",
+        label, p.sought.lower, p.sought.upper, i, p.drop);
   }
   f.plot += "unset multiplot\n";
   f.caption = "The dashed line cuts the 95 % interval";

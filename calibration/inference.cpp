@@ -17,20 +17,55 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSteps = 60;  // of a profile
+constexpr double kReach = 1.96;
 
-/// 1, x_i, x_i x_k with x from -1 to 1 over the ranges.
-Eigen::VectorXd terms(const std::vector<Sought>& ranges, const std::vector<double>& theta) {
-  const std::size_t n = ranges.size();
-  std::vector<double> x(n);
-  for (std::size_t i = 0; i < n; ++i)
-    x[i] = 2 * (theta[i] - ranges[i].lower) / (ranges[i].upper - ranges[i].lower) - 1;
-  Eigen::VectorXd out(static_cast<Eigen::Index>(1 + n + n * (n + 1) / 2));
-  Eigen::Index k = 0;
-  out[k++] = 1;
-  for (std::size_t i = 0; i < n; ++i) out[k++] = x[i];
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i; j < n; ++j) out[k++] = x[i] * x[j];
-  return out;
+/// All products of at most `degree` of the x_i, from -1 to 1 over the ranges: 1, x_i, x_i x_k, ...
+Eigen::VectorXd terms(const std::vector<Sought>& ranges, const std::vector<double>& theta, int degree) {
+  std::vector<double> out = {1};
+  std::vector<std::size_t> newest(1, 0);  // the largest i of each term, so that none comes twice
+  for (std::size_t begin = 0, d = 0; d < static_cast<std::size_t>(degree); ++d) {
+    const std::size_t end = out.size();
+    for (std::size_t k = begin; k < end; ++k)
+      for (std::size_t i = newest[k]; i < ranges.size(); ++i) {
+        const Sought& r = ranges[i];
+        out.push_back(out[k] * (2 * (theta[i] - r.lower) / (r.upper - r.lower) - 1));
+        newest.push_back(i);
+      }
+    begin = end;
+  }
+  return Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
+}
+
+/// A surface of one degree through values.
+struct Polynomial {
+  int degree = 0;
+  Eigen::VectorXd c;
+  Eigen::MatrixXd spread;  ///< covariance of c over the scatter squared
+  Eigen::VectorXd left;    ///< residuals
+  double left_out = 0;     ///< rms of what is predicted of each value by the others
+};
+
+/// The surface of degree 2 or 3 that better predicts values that it was not fitted to. What changes little
+/// over most of a range and much at its end (beds of nearly elastic beads) no parabola describes.
+Polynomial best_surface(const std::vector<Sought>& ranges, const std::vector<std::vector<double>>& places,
+                        const Eigen::VectorXd& y) {
+  constexpr double kClearly = 0.95;  // better by less is chance
+  Polynomial best;
+  for (const int degree : {2, 3}) {
+    Polynomial p{.degree = degree, .c = {}, .spread = {}, .left = {}};
+    const Eigen::Index n = terms(ranges, places.front(), degree).size();
+    if (y.size() < n + 2) break;
+    Eigen::MatrixXd basis(y.size(), n);
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      basis.row(i) = terms(ranges, places[static_cast<std::size_t>(i)], degree).transpose();
+    p.c = basis.colPivHouseholderQr().solve(y);
+    p.left = y - basis * p.c;
+    p.spread = (basis.transpose() * basis).inverse();
+    const Eigen::ArrayXd leverage = (basis * p.spread).cwiseProduct(basis).rowwise().sum().array();
+    p.left_out = std::sqrt((p.left.array() / (1 - leverage).max(1e-6)).square().mean());
+    if (degree == 2 || p.left_out < kClearly * best.left_out) best = p;
+  }
+  return best;
 }
 
 /// One observable as a function of the parameters, with its condition as the last of them.
@@ -40,31 +75,25 @@ class Surface {
           const MeasuredObservable& measured)
       : ranges_(std::move(sought)), condition_(measured.at), residual_(runs.size(), kNaN) {
     if (condition_) ranges_.push_back(condition_->tried);
-    const auto place = [&](const SimulatedPoint& run) {
-      std::vector<double> x = run.theta;
-      if (condition_) x.push_back(run.at[o]);
-      return terms(ranges_, x);
-    };
     std::vector<std::size_t> used;
-    for (std::size_t i = 0; i < runs.size(); ++i)
-      if (std::isfinite(runs[i].y[o])) used.push_back(i);
-    const Eigen::Index n = place(runs.front()).size();
-    if (static_cast<Eigen::Index>(used.size()) < n + 2)
+    std::vector<std::vector<double>> places;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (!std::isfinite(runs[i].y[o])) continue;
+      used.push_back(i);
+      places.push_back(runs[i].theta);
+      if (condition_) places.back().push_back(runs[i].at[o]);
+    }
+    const std::size_t fewest = (ranges_.size() + 1) * (ranges_.size() + 2) / 2 + 2;
+    if (used.size() < fewest)
       throw InputError({.file = {}, .key = "runs"},
                        fmt::format("{} of {} runs have a value of {}; its quadratic surface needs {}.",
-                                   used.size(), runs.size(), measured.name, n + 2));
-    Eigen::MatrixXd basis(static_cast<Eigen::Index>(used.size()), n);
+                                   used.size(), runs.size(), measured.name, fewest));
     Eigen::VectorXd y(static_cast<Eigen::Index>(used.size()));
-    for (std::size_t i = 0; i < used.size(); ++i) {
-      basis.row(static_cast<Eigen::Index>(i)) = place(runs[used[i]]).transpose();
-      y[static_cast<Eigen::Index>(i)] = runs[used[i]].y[o];
-    }
-    c_ = basis.colPivHouseholderQr().solve(y);
-    const Eigen::VectorXd left = y - basis * c_;
-    for (std::size_t i = 0; i < used.size(); ++i) residual_[used[i]] = left[static_cast<Eigen::Index>(i)];
-    freedom_ = static_cast<double>(basis.rows() - n);
-    scatter_ = std::sqrt(left.squaredNorm() / freedom_);
-    spread_ = (basis.transpose() * basis).inverse();
+    for (std::size_t i = 0; i < used.size(); ++i) y[static_cast<Eigen::Index>(i)] = runs[used[i]].y[o];
+    p_ = best_surface(ranges_, places, y);
+    for (std::size_t i = 0; i < used.size(); ++i) residual_[used[i]] = p_.left[static_cast<Eigen::Index>(i)];
+    freedom_ = static_cast<double>(y.size() - p_.c.size());
+    scatter_ = std::sqrt(p_.left.squaredNorm() / freedom_);
   }
 
   struct Value {
@@ -85,15 +114,14 @@ class Surface {
  private:
   [[nodiscard]] Value value(std::vector<double> x, double away) const {
     if (condition_) x.push_back(condition_->value + away);
-    const Eigen::VectorXd t = terms(ranges_, x);
-    return {t.dot(c_), t.dot(spread_ * t), 0};
+    const Eigen::VectorXd t = terms(ranges_, x, p_.degree);
+    return {t.dot(p_.c), t.dot(p_.spread * t), 0};
   }
 
   std::vector<Sought> ranges_;
   std::optional<Condition> condition_;
   std::vector<double> residual_;  ///< of each run; NaN where it has no value
-  Eigen::VectorXd c_;
-  Eigen::MatrixXd spread_;  ///< covariance of c over the scatter squared
+  Polynomial p_;
   double scatter_ = 0, freedom_ = 0;
 };
 
@@ -161,6 +189,90 @@ double drop_of(const std::vector<Surface>& surfaces) {
   return t95 * t95 * freedom / left;
 }
 
+/// chi^2 on a grid over all parameters: few, and it costs nothing.
+struct GridSearch {
+  int steps = 0;
+  std::vector<std::vector<double>> least;  ///< [parameters][steps + 1], over all others
+  std::vector<double> best;
+  double chi2 = HUGE_VAL;  ///< there
+};
+GridSearch search(const std::vector<Sought>& sought, const ChiSquared& chi2, int coarser) {
+  GridSearch g;
+  g.steps = (sought.size() == 1 ? 20 * kSteps : sought.size() == 2 ? kSteps * 2 : 24) / coarser;
+  g.least.assign(sought.size(), std::vector<double>(static_cast<std::size_t>(g.steps) + 1, HUGE_VAL));
+  std::vector<double> theta(sought.size());
+  std::vector<int> at(sought.size(), 0);
+  const std::function<void(std::size_t)> walk = [&](std::size_t k) {
+    if (k == sought.size()) {
+      const double c = chi2(theta);
+      for (std::size_t i = 0; i < sought.size(); ++i) {
+        double& slot = g.least[i][static_cast<std::size_t>(at[i])];
+        slot = std::min(slot, c);
+      }
+      if (c < g.chi2) {
+        g.chi2 = c;
+        g.best = theta;
+      }
+      return;
+    }
+    for (at[k] = 0; at[k] <= g.steps; ++at[k]) {
+      theta[k] = sought[k].lower + (sought[k].upper - sought[k].lower) * at[k] / g.steps;
+      walk(k + 1);
+    }
+  };
+  walk(0);
+  return g;
+}
+
+/// How far above its least the profile of each parameter is where a run's own parameter lies, the run taken
+/// for the measurement and its surfaces made of all others.
+std::vector<double> excess_of(const std::vector<Sought>& sought, const std::vector<SimulatedPoint>& runs,
+                              std::vector<MeasuredObservable> measured, std::size_t run) {
+  std::vector<SimulatedPoint> others = runs;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(run));
+  std::vector<Surface> surfaces;
+  for (std::size_t o = 0; o < measured.size(); ++o) {
+    measured[o].value = runs[run].y[o];
+    measured[o].error = 0;
+    if (measured[o].at) measured[o].at->value = runs[run].at[o], measured[o].at->error = 0;
+    surfaces.emplace_back(sought, others, o, measured[o]);
+  }
+  const GridSearch g = search(sought, ChiSquared(surfaces, measured), 2);
+  std::vector<double> excess;
+  for (std::size_t i = 0; i < sought.size(); ++i) {
+    const double x = (runs[run].theta[i] - sought[i].lower) / (sought[i].upper - sought[i].lower) * g.steps;
+    const auto slot =
+        static_cast<std::size_t>(std::clamp(std::llround(x), 0LL, static_cast<long long>(g.steps)));
+    excess.push_back(g.least[i][slot] - g.chi2);
+  }
+  return excess;
+}
+
+/// By how much chi^2 of each parameter may exceed its least: what Student's t says, and so much more that, of
+/// the runs in the measurement's place, 95 % hold their own parameter. Beds scatter with long tails, and more
+/// at one end of a range than at the other: t alone held 25 of 30 of them.
+std::vector<double> drops_of(const std::vector<Sought>& sought, const std::vector<SimulatedPoint>& runs,
+                             const std::vector<MeasuredObservable>& measured, double by_t) {
+  std::vector<std::vector<double>> excess(sought.size());
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (!std::all_of(runs[k].y.begin(), runs[k].y.end(), [](double y) { return std::isfinite(y); })) continue;
+    const std::vector<double> own = excess_of(sought, runs, measured, k);
+    for (std::size_t i = 0; i < sought.size(); ++i) excess[i].push_back(own[i]);
+  }
+  std::vector<double> drops;
+  for (std::vector<double>& e : excess) {
+    std::sort(e.begin(), e.end());
+    if (e.empty()) e = {by_t};
+    const double rank = 0.95 * static_cast<double>(e.size() + 1) - 1;  // between two of them
+    const auto below = std::min(static_cast<std::size_t>(std::max(rank, 0.0)), e.size() - 1);
+    const double own = std::lerp(e[below], e[std::min(below + 1, e.size() - 1)],
+                                 std::min(1.0, rank - static_cast<double>(below)));
+    // Never less: the runs that judge are those that made the surfaces, and few.
+    drops.push_back(std::max(by_t, own));
+  }
+  return drops;
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> spread_points(const std::vector<Sought>& sought, int n) {
@@ -192,36 +304,16 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     out.scatter.push_back(surfaces.back().scatter());
   }
   const ChiSquared chi2(surfaces, measured);
-  const double drop = drop_of(surfaces);
-  // A grid over all parameters: few, and chi^2 costs nothing.
-  const int steps = sought.size() == 1 ? 20 * kSteps : sought.size() == 2 ? kSteps * 2 : 24;
-  std::vector<std::vector<double>> least(sought.size(),
-                                         std::vector<double>(static_cast<std::size_t>(steps) + 1, HUGE_VAL));
-  std::vector<double> theta(sought.size()), best(sought.size());
-  std::vector<int> at(sought.size(), 0);
-  out.chi2 = HUGE_VAL;
-  const std::function<void(std::size_t)> walk = [&](std::size_t k) {
-    if (k == sought.size()) {
-      const double c = chi2(theta);
-      for (std::size_t i = 0; i < sought.size(); ++i) {
-        double& slot = least[i][static_cast<std::size_t>(at[i])];
-        slot = std::min(slot, c);
-      }
-      if (c < out.chi2) {
-        out.chi2 = c;
-        best = theta;
-      }
-      return;
-    }
-    for (at[k] = 0; at[k] <= steps; ++at[k]) {
-      theta[k] = sought[k].lower + (sought[k].upper - sought[k].lower) * at[k] / steps;
-      walk(k + 1);
-    }
-  };
-  walk(0);
+  const GridSearch all = search(sought, chi2, 1);
+  const std::vector<std::vector<double>>& least = all.least;
+  const std::vector<double>& best = all.best;
+  const int steps = all.steps;
+  out.chi2 = all.chi2;
+  const std::vector<double> drops = drops_of(sought, runs, measured, drop_of(surfaces));
   out.freedom = static_cast<double>(measured.size()) - static_cast<double>(sought.size());
   for (std::size_t i = 0; i < sought.size(); ++i) {
-    Profile p{.sought = sought[i], .best = best[i]};
+    const double drop = drops[i];
+    Profile p{.sought = sought[i], .best = best[i], .drop = drop};
     bool inside = false;
     for (int k = 0; k <= steps; ++k) {
       const double x = sought[i].lower + (sought[i].upper - sought[i].lower) * k / steps;
@@ -236,7 +328,7 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     }
     p.open_low = p.low == sought[i].lower;
     p.open_high = p.high == p.at.back();
-    p.standard_error = p.open_low || p.open_high ? kNaN : (p.high - p.low) / (2 * std::sqrt(drop));
+    p.standard_error = p.open_low || p.open_high ? kNaN : (p.high - p.low) / (2 * kReach);
     if (p.undetermined())
       out.notes.push_back(
           fmt::format("{} is undetermined: nothing between {:g} and {:g} contradicts what was measured",

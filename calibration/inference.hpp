@@ -3,17 +3,21 @@
 /// Parameters of a simulator from observables that it shares with a measurement, and what the measurement
 /// leaves open.
 ///
-/// The simulator is noisy, so it is run at scattered points and each observable is fitted by a quadratic
-/// surface y_o(theta), whose residuals are what one run scatters. With the measured y*_o and its error e_o
+/// The simulator is noisy, so it is run at scattered points and each observable is fitted by a surface
+/// y_o(theta) of second or third degree, whichever predicts left-out runs better; its residuals are what one
+/// run scatters. With the measured y*_o and its error e_o
 ///     chi^2(theta) = d^T V^-1 d,    d_o = y_o(theta) - y*_o,
 ///     V = S (1 + h(theta)) + diag(max(e_o^2 - S_oo, 0))
 /// S is the covariance of the residuals of one run, which observables of the same run share, and h what the
 /// surface itself is uncertain by. The measurement is one run too: where its own error is smaller than what
 /// runs scatter, the scatter counts.
-///     The 95 % interval of a parameter is where chi^2, smallest over all others, is within t^2 nu/nu' of its
-/// least: t Student's 97.5 % quantile at nu' = nu - p + 1, nu the runs from which S is known and p the
-/// observables that share runs (Hotelling's correction; 3.84 for very many runs). A parameter whose interval
-/// reaches both ends of what was looked at is undetermined.
+///     The 95 % interval of a parameter is where chi^2, smallest over all others, is within a `drop` of its
+///     least.
+/// That is at least t^2 nu/nu': t Student's 97.5 % quantile at nu' = nu - p + 1, nu the runs from which S is
+/// known and p the observables that share runs (Hotelling's correction; 3.84 for very many runs). It is more
+/// where the runs say so: each in turn takes the measurement's place, the surfaces made of all others, and 95
+/// % of them have to lie within (rank 0.95 (n + 1) of n, as in conformal prediction). A parameter whose
+/// interval reaches both ends of what was looked at is undetermined.
 
 #include <optional>
 #include <string>
@@ -51,6 +55,7 @@ struct MeasuredObservable {
 struct Profile {
   Sought sought;
   double best = 0;
+  double drop = 0;                           ///< of chi^2 at the ends of the interval
   double low = 0, high = 0;                  ///< of the 95 % interval
   bool open_low = false, open_high = false;  ///< it reaches the end that was looked at
   double standard_error = 0;     ///< (high - low)/2 over the root of the drop; NaN where an end is
