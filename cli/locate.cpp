@@ -123,8 +123,14 @@ void run(LocateOptions& o, const Common& common) {
         for (const std::vector<Detection>* list : {&located.beads, &located.dropped})
           for (const Detection& b : *list) candidates << candidate_row(b, frame);
         nlohmann::json f = {{"frame", frame}, {"beads", located.beads.size()}, {"blur_px", located.blur_px}};
-        std::string line = fmt::format("frame {}: {} beads, edge blur {:.2f} px;", frame,
-                                       located.beads.size(), located.blur_px);
+        std::string line = fmt::format("frame {}: {} beads, edge blur {:.2f} px", frame, located.beads.size(),
+                                       located.blur_px);
+        if (located.path_px != std::array<double, 2>{}) {
+          f["path_px"] = located.path_px;
+          line += fmt::format(", moved by {:.2f} px during the exposure",
+                              std::hypot(located.path_px[0], located.path_px[1]));
+        }
+        line += ';';
         for (const StageReport& stage : located.stages) {
           f["stages"][stage.stage] = {{"ms", 1000 * stage.seconds}, {"beads", stage.beads}};
           line += fmt::format(" {} {:.1f} ms", stage.stage, 1000 * stage.seconds);

@@ -54,7 +54,7 @@ void renew(Coupling& c, const RingArgs& args, const std::vector<Disc>& discs) {
   // what pixels say there leaves the whole as positive as it was, since they still count in both blocks.
   constexpr double kFar = 3;
   RingArgs narrow = args;
-  narrow.ring = std::min(args.ring, kFar * std::sqrt(args.blur.variance));
+  narrow.ring = std::min(args.ring, args.blur.reach(kFar));
   const PairSums sums =
       pair_sums(narrow, discs[static_cast<std::size_t>(c.i)], discs[static_cast<std::size_t>(c.j)]);
   c.sums = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(sums.data());
@@ -62,7 +62,7 @@ void renew(Coupling& c, const RingArgs& args, const std::vector<Disc>& discs) {
 
 std::vector<Coupling> couplings_of(const RingArgs& args, const std::vector<Disc>& discs) {
   constexpr double kFar = 4;  // edges so many widths of blur apart share next to nothing
-  const auto pairs = near_pairs(discs, std::min(2 * args.ring, kFar * std::sqrt(args.blur.variance)));
+  const auto pairs = near_pairs(discs, std::min(2 * args.ring, args.blur.reach(kFar)));
   std::vector<Coupling> couplings;
   couplings.reserve(pairs.size());
   for (const auto& [i, j] : pairs) {

@@ -45,7 +45,8 @@ cv::Mat1f model_of(const LocatorStages& stages) {
     return model_of(stages.profile, stages.refined.beads, stages.image.darkness.size());
   const cv::Size size = stages.image.darkness.size();
   cv::Mat1f model = cv::Mat1f::zeros(size.height, size.width + kSpareColumns);
-  const EdgeBlur blur{.variance = std::pow(std::max(0.3, stages.refined.blur_px), 2)};
+  const EdgeBlur blur{.variance = std::pow(std::max(0.3, stages.refined.blur_px), 2),
+                      .path = stages.refined.path_px};
   for (const Detection& b : stages.refined.beads) add_disc(model, {b.x, b.y, b.radius, b.darkness}, blur);
   return model.colRange(0, size.width).clone();
 }

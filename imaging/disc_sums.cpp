@@ -2,6 +2,52 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+// This file is read once for each kind of vectors.
+#ifndef TWINCELL_DISC_SUMS_ONCE
+#define TWINCELL_DISC_SUMS_ONCE
+namespace twincell::disc_sums {
+
+/// Of Gauss and Legendre, on -1/2 .. 1/2.
+struct GaussNode {
+  double at, weight;
+};
+
+/// By Newton's method on the Legendre polynomial of that degree.
+inline std::vector<GaussNode> gauss_nodes(int n) {
+  std::vector<GaussNode> nodes;
+  for (int k = 0; k < n; ++k) {
+    double x = std::cos(std::numbers::pi * (k + 0.75) / (n + 0.5)), slope = 1;
+    for (int step = 0; step < 10; ++step) {
+      double before = 1, p = x;
+      for (int m = 2; m <= n; ++m) before = std::exchange(p, ((2 * m - 1) * x * p - (m - 1) * before) / m);
+      slope = n * (x * p - before) / (x * x - 1);
+      x -= p / slope;
+    }
+    nodes.push_back({0.5 * x, 1 / ((1 - x * x) * slope * slope)});
+  }
+  return nodes;
+}
+
+/// As many as a path takes that is so many s long: two, and one more for each s.
+inline std::span<const GaussNode> nodes_of(const EdgeBlur& blur) {
+  constexpr int kLeast = 2, kMost = 12;
+  if (blur.path == std::array<double, 2>{}) return {};
+  static const std::vector<std::vector<GaussNode>> kNodes = [] {
+    std::vector<std::vector<GaussNode>> all;
+    for (int n = kLeast; n <= kMost; ++n) all.push_back(gauss_nodes(n));
+    return all;
+  }();
+  const double widths = std::hypot(blur.path[0], blur.path[1]) / std::sqrt(blur.variance);
+  return kNodes[static_cast<std::size_t>(std::min(widths, 1.0 * (kMost - kLeast)))];
+}
+
+}  // namespace twincell::disc_sums
+#endif
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "imaging/disc_sums.cpp"
@@ -12,6 +58,7 @@ HWY_BEFORE_NAMESPACE();
 namespace twincell::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using disc_sums::GaussNode, disc_sums::nodes_of;
 
 // Rows of a ring are some twenty pixels: with wider vectors more lanes would idle.
 using Tag = hn::CappedTag<float, 8>;
@@ -73,52 +120,100 @@ HWY_INLINE cv::Size frame_of(const cv::Mat1f& picture) {
   return {picture.cols - kSpareColumns, picture.rows};
 }
 
+/// What a pixel says of a disc's edge: P, and the slopes of a P by x, y, R and the blur's unknowns.
+template <int kBlurs>
+struct Slopes {
+  V p, x, y, radius;
+  V blur[kBlurs > 0 ? kBlurs : 1];
+};
+
+constexpr int blurs_of(BlurFit fit) {
+  return fit == BlurFit::none ? 0 : fit == BlurFit::round ? 1 : RingSums::kBlurs;
+}
+
 /// A disc in the coordinates of the bordered picture, with what the pixels of a ring need.
 struct Ring {
   int base_x, base_y;
   float x, y;  // centre from the base pixel
-  double radius;
-  V radius_v, variance, qxx, qxy, qyy, half_over_radius;
-  V round_inv_s, round_shift;  // 1/s and s^2/2R where nothing moved
-  bool moved;
+  V half_over_radius, inv_s, shift, steepest;
+  std::span<const GaussNode> nodes;  // of the path; none where nothing moved
+  std::array<double, 2> path;
 
   Ring(const Disc& disc, const EdgeBlur& blur)
       : base_x(static_cast<int>(std::lround(disc.x))),
         base_y(static_cast<int>(std::lround(disc.y))),
         x(static_cast<float>(disc.x - base_x)),
         y(static_cast<float>(disc.y - base_y)),
-        radius(disc.radius),
-        radius_v(set(disc.radius)),
-        variance(set(blur.variance)),
-        qxx(set(blur.motion[0])),
-        qxy(set(2 * blur.motion[1])),
-        qyy(set(blur.motion[2])),
         half_over_radius(set(0.5 / disc.radius)),
-        round_inv_s(set(1 / std::sqrt(blur.variance))),
-        round_shift(set(0.5 * blur.variance / disc.radius - disc.radius)),
-        moved(blur.motion != std::array<double, 3>{}) {}
+        inv_s(set(1 / std::sqrt(blur.variance))),
+        shift(set(0.5 * blur.variance / disc.radius - disc.radius)),
+        steepest(set(disc.darkness / std::sqrt(2 * std::numbers::pi * blur.variance))),
+        nodes(nodes_of(blur)),
+        path(blur.path) {}
 
   struct Point {
-    V r, nx, ny, inv_s, z;
+    V nx, ny, z;
   };
   HWY_INLINE Point at(V dx, V dy) const {
-    Point q;
     const V r2 = hn::Max(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), set(1e-6));
     const V inv_r = inverse_sqrt(r2);
-    q.r = hn::Mul(r2, inv_r);
-    q.nx = hn::Mul(dx, inv_r);
-    q.ny = hn::Mul(dy, inv_r);
-    if (!moved) {
-      q.inv_s = round_inv_s;
-      q.z = hn::Mul(hn::Add(q.r, round_shift), round_inv_s);
+    return {hn::Mul(dx, inv_r), hn::Mul(dy, inv_r), hn::Mul(hn::MulAdd(r2, inv_r, shift), inv_s)};
+  }
+  /// dP/d(s^2) = density (z/2s - 1/2R) / s: the half level moves along.
+  HWY_INLINE V by_variance(V z, V slope) const {
+    return hn::Mul(slope, hn::Sub(hn::Mul(hn::Mul(set(0.5), z), inv_s), half_over_radius));
+  }
+
+  HWY_INLINE V value(V dx, V dy) const {
+    if (nodes.empty()) return edge_at(at(dx, dy).z).p;
+    V p = hn::Zero(Tag());
+    for (const GaussNode& node : nodes)
+      p = hn::MulAdd(set(node.weight), edge_at(passed(node, dx, dy).z).p, p);
+    return p;
+  }
+  template <BlurFit kBlur>
+  HWY_INLINE Slopes<blurs_of(kBlur)> slopes(V dx, V dy) const {
+    Slopes<blurs_of(kBlur)> q;
+    if (nodes.empty()) {
+      const Point here = at(dx, dy);
+      const Edge e = edge_at(here.z);
+      q.p = e.p;
+      q.radius = hn::Mul(e.density, steepest);
+      q.x = hn::Mul(q.radius, here.nx);
+      q.y = hn::Mul(q.radius, here.ny);
+      if constexpr (kBlur != BlurFit::none) q.blur[0] = by_variance(here.z, q.radius);
+      if constexpr (kBlur == BlurFit::uneven) {
+        const V by_s2 = q.blur[0];
+        q.blur[0] = hn::Mul(by_s2, hn::Mul(here.nx, here.nx));
+        q.blur[1] = hn::Mul(by_s2, hn::Mul(set(2), hn::Mul(here.nx, here.ny)));
+        q.blur[2] = hn::Mul(by_s2, hn::Mul(here.ny, here.ny));
+      } else if constexpr (kBlur == BlurFit::path) {
+        q.blur[1] = q.blur[2] = hn::Zero(Tag());
+      }
       return q;
     }
-    const V across = hn::MulAdd(hn::Mul(qxx, q.nx), q.nx,
-                                hn::MulAdd(hn::Mul(qyy, q.ny), q.ny, hn::Mul(hn::Mul(qxy, q.nx), q.ny)));
-    const V s2 = hn::Max(hn::Add(variance, across), set(0.02));
-    q.inv_s = inverse_sqrt(s2);
-    q.z = hn::Mul(hn::MulAdd(s2, half_over_radius, hn::Sub(q.r, radius_v)), q.inv_s);
+    q.p = q.x = q.y = q.radius = hn::Zero(Tag());
+    for (V& v : q.blur) v = hn::Zero(Tag());
+    for (const GaussNode& node : nodes) {
+      const Point here = passed(node, dx, dy);
+      const Edge e = edge_at(here.z);
+      const V slope = hn::Mul(hn::Mul(set(node.weight), steepest), e.density);
+      const V by_x = hn::Mul(slope, here.nx), by_y = hn::Mul(slope, here.ny);
+      q.p = hn::MulAdd(set(node.weight), e.p, q.p);
+      q.radius = hn::Add(q.radius, slope);
+      q.x = hn::Add(q.x, by_x);
+      q.y = hn::Add(q.y, by_y);
+      if constexpr (kBlur != BlurFit::none) q.blur[0] = hn::Add(q.blur[0], by_variance(here.z, slope));
+      if constexpr (kBlur == BlurFit::path) {
+        q.blur[1] = hn::MulAdd(set(node.at), by_x, q.blur[1]);
+        q.blur[2] = hn::MulAdd(set(node.at), by_y, q.blur[2]);
+      }
+    }
     return q;
+  }
+  /// A pixel as a disc on its way sees it.
+  HWY_INLINE Point passed(const GaussNode& node, V dx, V dy) const {
+    return at(hn::Sub(dx, set(node.at * path[0])), hn::Sub(dy, set(node.at * path[1])));
   }
 
   /// Calls use(row, column, dx, dy^2 or dy, inside) for runs of pixels that touch low < r < high; inside: all
@@ -158,14 +253,15 @@ struct RingPixels {
   static constexpr std::size_t kMost = 512;
   using Row = std::array<float, kMost + kSpareColumns>;
   alignas(64) Row dx, dy, d, t;  // from the centre; picture; model
-  alignas(64) Row w, residual, nx, ny, slope, p, by_s2;
+  // What they say of a disc takes the place of what was read, for all of it to stay in the nearest cache.
+  Row &x = dx, &y = dy, &radius = d, &p = t;
+  alignas(64) Row w, residual;
+  alignas(64) Row blur[RingSums::kBlurs];
 };
 
 template <BlurFit kBlur>
 struct Sums {
-  static constexpr int kF = RingSums::kFitted, kB = kBlur == BlurFit::none    ? 0
-                                                    : kBlur == BlurFit::round ? 1
-                                                                              : 3;
+  static constexpr int kF = RingSums::kFitted, kB = blurs_of(kBlur);
   static constexpr int kSome = kB > 0 ? kB : 1;
 
   /// What each pixel says.
@@ -174,30 +270,24 @@ struct Sums {
     const Tag tag;
     const V zero = hn::Zero(tag), one = set(1);
     const V a = set(disc.darkness), huber = set(args.huber);
-    const V scale = set(disc.darkness / std::sqrt(2 * 3.14159265358979323846));
     V squares = zero, seen = zero, seen_squares = zero, tamed_squares = zero;
     for (std::size_t k = 0; k < n; k += hn::MaxLanes(tag)) {
       const Mask counts = hn::FirstN(tag, n - k);
-      const Ring::Point at = ring.at(hn::Load(tag, &q.dx[k]), hn::Load(tag, &q.dy[k]));
+      const auto e = ring.slopes<kBlur>(hn::Load(tag, &q.dx[k]), hn::Load(tag, &q.dy[k]));
       const V d = hn::Load(tag, &q.d[k]), t = hn::Load(tag, &q.t[k]);
-      const Edge e = edge_at(at.z);
       const V bright = hn::Max(hn::Sub(one, t), zero);
       const V residual = hn::Sub(d, t), size = hn::Abs(residual);
       // Huber's weight, min(1, k/|residual|).
       const V cut = hn::Min(one, hn::Mul(huber, inverse(hn::Max(size, set(1e-6)))));
       const V variance = hn::MulAdd(set(args.light_variance), hn::Min(bright, one), set(args.dark_variance));
       const V w = hn::IfThenElseZero(counts, hn::Mul(cut, inverse(variance)));
-      const V slope = hn::Mul(hn::Mul(scale, e.density), at.inv_s);  // a times -dP/dr
       hn::Store(w, tag, &q.w[k]);
       hn::Store(residual, tag, &q.residual[k]);
-      hn::Store(at.nx, tag, &q.nx[k]);
-      hn::Store(at.ny, tag, &q.ny[k]);
-      hn::Store(slope, tag, &q.slope[k]);
+      hn::Store(e.x, tag, &q.x[k]);
+      hn::Store(e.y, tag, &q.y[k]);
+      hn::Store(e.radius, tag, &q.radius[k]);
       hn::Store(e.p, tag, &q.p[k]);
-      // dP/d(s^2) = density (z/2s - 1/2R) / s: the half level moves along.
-      if constexpr (kB > 0)
-        hn::Store(hn::Mul(slope, hn::Sub(hn::Mul(hn::Mul(set(0.5), at.z), at.inv_s), ring.half_over_radius)),
-                  tag, &q.by_s2[k]);
+      for (int b = 0; b < kB; ++b) hn::Store(e.blur[b], tag, &q.blur[b][k]);
       squares = hn::MulAdd(hn::Mul(w, residual), residual, squares);
       const V rest = hn::IfThenElseZero(counts, hn::MulAdd(a, e.p, residual));
       seen = hn::Add(seen, rest);
@@ -219,10 +309,9 @@ struct Sums {
     for (V& v : jj) v = hn::Zero(tag);
     for (V& v : jr) v = hn::Zero(tag);
     for (std::size_t k = 0; k < n; k += hn::MaxLanes(tag)) {
-      const V w = hn::Load(tag, &q.w[k]), residual = hn::Load(tag, &q.residual[k]),
-              slope = hn::Load(tag, &q.slope[k]);
-      const V j[kF] = {hn::Mul(slope, hn::Load(tag, &q.nx[k])), hn::Mul(slope, hn::Load(tag, &q.ny[k])),
-                       slope, hn::Load(tag, &q.p[k])};
+      const V w = hn::Load(tag, &q.w[k]), residual = hn::Load(tag, &q.residual[k]);
+      const V j[kF] = {hn::Load(tag, &q.x[k]), hn::Load(tag, &q.y[k]), hn::Load(tag, &q.radius[k]),
+                       hn::Load(tag, &q.p[k])};
       int at = 0;
       for (int m = 0; m < kF; ++m) {
         const V wj = hn::Mul(w, j[m]);
@@ -242,17 +331,11 @@ struct Sums {
     for (V& v : bb) v = hn::Zero(tag);
     for (V& v : br) v = hn::Zero(tag);
     for (std::size_t k = 0; k < n; k += hn::MaxLanes(tag)) {
-      const V w = hn::Load(tag, &q.w[k]), residual = hn::Load(tag, &q.residual[k]),
-              slope = hn::Load(tag, &q.slope[k]);
-      const V nx = hn::Load(tag, &q.nx[k]), ny = hn::Load(tag, &q.ny[k]), by_s2 = hn::Load(tag, &q.by_s2[k]);
-      const V j[kF] = {hn::Mul(slope, nx), hn::Mul(slope, ny), slope, hn::Load(tag, &q.p[k])};
+      const V w = hn::Load(tag, &q.w[k]), residual = hn::Load(tag, &q.residual[k]);
+      const V j[kF] = {hn::Load(tag, &q.x[k]), hn::Load(tag, &q.y[k]), hn::Load(tag, &q.radius[k]),
+                       hn::Load(tag, &q.p[k])};
       V b[kSome];
-      b[0] = by_s2;
-      if constexpr (kB == 3) {
-        b[0] = hn::Mul(by_s2, hn::Mul(nx, nx));
-        b[1] = hn::Mul(by_s2, hn::Mul(set(2), hn::Mul(nx, ny)));
-        b[2] = hn::Mul(by_s2, hn::Mul(ny, ny));
-      }
+      for (int m = 0; m < kSome; ++m) b[m] = hn::Load(tag, &q.blur[m][k]);
       int at = 0;
       for (int m = 0; m < kSome; ++m) {
         const V wb = hn::Mul(w, b[m]);
@@ -311,11 +394,10 @@ PairSums pair(const RingArgs& args, const Disc& a, const Disc& b) {
   const Tag tag;
   const std::array<const Disc*, 2> discs = {&a, &b};
   const std::array<Ring, 2> rings = {Ring(a, args.blur), Ring(b, args.blur)};
-  V low2[2], high2[2], scale[2];
+  V low2[2], high2[2];
   for (std::size_t q = 0; q < 2; ++q) {
     const double low = std::max(0.0, discs[q]->radius - args.ring), high = discs[q]->radius + args.ring;
     low2[q] = set(low * low), high2[q] = set(high * high);
-    scale[q] = set(discs[q]->darkness / std::sqrt(2 * 3.14159265358979323846));
   }
   const double reach_a = a.radius + args.ring, reach_b = b.radius + args.ring;
   const cv::Mat1f& picture = *args.picture;
@@ -347,12 +429,10 @@ PairSums pair(const RingArgs& args, const Disc& a, const Disc& b) {
       if (hn::AllFalse(tag, counts)) continue;
       V j[2][4];
       for (std::size_t q = 0; q < 2; ++q) {
-        const Ring::Point at = rings[q].at(dx[q], dy[q]);
-        const Edge e = edge_at(at.z);
-        const V slope = hn::Mul(hn::Mul(scale[q], e.density), at.inv_s);
-        j[q][0] = hn::Mul(slope, at.nx);
-        j[q][1] = hn::Mul(slope, at.ny);
-        j[q][2] = slope;
+        const auto e = rings[q].slopes<BlurFit::none>(dx[q], dy[q]);
+        j[q][0] = e.x;
+        j[q][1] = e.y;
+        j[q][2] = e.radius;
         j[q][3] = e.p;
       }
       const V bright = hn::Max(hn::Sub(set(1), t), hn::Zero(tag)), size = hn::Abs(hn::Sub(d, t));
@@ -378,23 +458,26 @@ RingSums fixed_blur(const RingArgs& args, const Disc& disc) {
 RingSums round_blur(const RingArgs& args, const Disc& disc) {
   return Sums<BlurFit::round>::of(args, disc);
 }
-RingSums motion_blur(const RingArgs& args, const Disc& disc) {
-  return Sums<BlurFit::motion>::of(args, disc);
+RingSums uneven_blur(const RingArgs& args, const Disc& disc) {
+  return Sums<BlurFit::uneven>::of(args, disc);
+}
+RingSums path_blur(const RingArgs& args, const Disc& disc) {
+  return Sums<BlurFit::path>::of(args, disc);
 }
 
 void add(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, int row_step) {
   const Ring ring(disc, blur);
   const Tag tag;
-  const double s = std::sqrt(blur.variance + std::max(0.0, blur.motion[0] + blur.motion[2]));
   const V a = set(disc.darkness);
-  ring.over<true>(frame_of(model), disc.radius - kFar * s, disc.radius + kFar * s, row_step,
+  const double reach = blur.reach(kFar);
+  ring.over<true>(frame_of(model), disc.radius - reach, disc.radius + reach, row_step,
                   [&](int row, int column, V dx, V dy, bool inside) HWY_ATTR {
                     float* at = model.ptr<float>(ring.base_y + row) + ring.base_x + column;
                     const V old = hn::LoadU(tag, at);
                     if (inside) {
                       hn::StoreU(hn::Add(old, a), tag, at);
                     } else {
-                      hn::StoreU(hn::MulAdd(a, edge_at(ring.at(dx, dy).z).p, old), tag, at);
+                      hn::StoreU(hn::MulAdd(a, ring.value(dx, dy), old), tag, at);
                     }
                   });
 }
@@ -436,7 +519,8 @@ namespace twincell {
 
 HWY_EXPORT(fixed_blur);
 HWY_EXPORT(round_blur);
-HWY_EXPORT(motion_blur);
+HWY_EXPORT(uneven_blur);
+HWY_EXPORT(path_blur);
 HWY_EXPORT(pair);
 HWY_EXPORT(add);
 HWY_EXPORT(moments);
@@ -444,7 +528,8 @@ HWY_EXPORT(moments);
 RingSums ring_sums(const RingArgs& args, const Disc& disc, BlurFit fit) {
   if (fit == BlurFit::none) return HWY_DYNAMIC_DISPATCH(fixed_blur)(args, disc);
   if (fit == BlurFit::round) return HWY_DYNAMIC_DISPATCH(round_blur)(args, disc);
-  return HWY_DYNAMIC_DISPATCH(motion_blur)(args, disc);
+  if (fit == BlurFit::uneven) return HWY_DYNAMIC_DISPATCH(uneven_blur)(args, disc);
+  return HWY_DYNAMIC_DISPATCH(path_blur)(args, disc);
 }
 
 PairSums pair_sums(const RingArgs& args, const Disc& i, const Disc& j) {

@@ -4,12 +4,14 @@
 /// wide as the processor has.
 ///
 /// A disc blurred by a Gaussian darkens the pixel at distance r from its centre by a P(r),
-///     P = 1/2 erfc(u / (sqrt 2 s)),  u = r - R + s^2/2R,
-/// where s is the blur across the edge there: s^2 = s_0^2 + n.Q n with the direction n from the centre; Q is
-/// what motion during the exposure adds, the same for a whole frame. The term s^2/2R is what blur does to the
-/// half level of a curved edge. P errs by less than 2e-7 (Abramowitz & Stegun 7.1.26).
+///     P = 1/2 erfc(u / (sqrt 2 s)),  u = r - R + s^2/2R.
+/// The term s^2/2R is what blur does to the half level of a curved edge. Where the bed moved straight by L
+/// during the exposure, P is the mean over t = -1/2 .. 1/2 of that of discs at c + t L, by as many of Gauss's
+/// nodes as make it exact to 1e-4. Blur and L are those of the whole frame. P itself errs by less than 2e-7
+/// (Abramowitz & Stegun 7.1.26).
 
 #include <array>
+#include <cmath>
 #include <opencv2/core.hpp>
 
 namespace twincell {
@@ -23,8 +25,13 @@ struct Disc {
 
 /// The edge of all discs of a frame.
 struct EdgeBlur {
-  double variance = 0.64;             ///< s_0^2, px^2
-  std::array<double, 3> motion = {};  ///< Q_xx, Q_xy, Q_yy, px^2
+  double variance = 0.64;           ///< s^2, px^2
+  std::array<double, 2> path = {};  ///< L, px; -L is the same
+
+  /// Where an edge is next to nothing, or next to all: so many s from R, px.
+  [[nodiscard]] double reach(double widths) const {
+    return widths * std::sqrt(variance) + 0.5 * std::hypot(path[0], path[1]);
+  }
 };
 
 /// Pictures have so many more columns at the right, so that a vector may reach past the last.
@@ -47,7 +54,7 @@ struct RingArgs {
 /// Sums over the ring of one disc, of weights w = huber/v.
 struct RingSums {
   static constexpr int kFitted = 4;                    ///< x, y, R, a
-  static constexpr int kBlurs = 3;                     ///< s_0^2; or Q_xx, Q_xy, Q_yy
+  static constexpr int kBlurs = 3;                     ///< as BlurFit says
   std::array<double, kFitted*(kFitted + 1) / 2> jj{};  ///< w J_i J_j, rows of the lower triangle
   std::array<double, kFitted> jr{};                    ///< w J_i residual
   std::array<double, kFitted * kBlurs> jb{};           ///< w J_i B_k
@@ -59,8 +66,14 @@ struct RingSums {
   double residual_squares = 0;        ///< unweighted, residuals cut at Huber's bound
 };
 
-/// Which blur is fitted along.
-enum class BlurFit { none, round, motion };
+/// What of the blur is fitted along.
+enum class BlurFit {
+  none,
+  round,   ///< s^2
+  uneven,  ///< Q_xx, Q_xy, Q_yy of a Gaussian blur s^2 + n.Q n across an edge that lies in the direction n; Q
+           ///< = 0
+  path     ///< s^2, L_x, L_y
+};
 
 /// Normal equations of one disc's ring; the model must contain the disc itself.
 RingSums ring_sums(const RingArgs& args, const Disc& disc, BlurFit fit);

@@ -8,6 +8,7 @@
 /// To add a finder: a class that satisfies CircleFinder in a header of its own, its .cpp, and one word in the
 /// list in locators.cpp. Nothing else names it.
 
+#include <array>
 #include <concepts>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -61,9 +62,10 @@ struct StageReport {
 
 /// One frame located.
 struct Located {
-  std::vector<Detection> beads;    ///< ordered by y, then x
-  std::vector<Detection> dropped;  ///< candidates that are none, each with its verdict
-  double blur_px = 0;              ///< standard deviation of the edge found by the fit
+  std::vector<Detection> beads;        ///< ordered by y, then x
+  std::vector<Detection> dropped;      ///< candidates that are none, each with its verdict
+  double blur_px = 0;                  ///< standard deviation of the edge found by the fit
+  std::array<double, 2> path_px = {};  ///< by which the bed moved during the exposure, x >= 0; 0: not seen to
   std::vector<StageReport> stages;
 };
 

@@ -181,6 +181,7 @@ Located locate(const cv::Mat& picture, const LocatorOptions& options) {
   LocatorStages stages = locate_stages(way.turned(picture), options);
   Located result;
   result.blur_px = stages.refined.blur_px;
+  result.path_px = way.back(stages.refined.path_px);
   result.beads = std::move(stages.judged.beads);
   result.dropped = std::move(stages.refined.dropped);
   result.dropped.insert(result.dropped.end(), stages.judged.dropped.begin(), stages.judged.dropped.end());

@@ -61,6 +61,12 @@ Detection Orientation::back(Detection d, cv::Size size) const {
   return d;
 }
 
+std::array<double, 2> Orientation::back(std::array<double, 2> way) const {
+  if (flip_x != flip_y) way[1] = -way[1];
+  if (transpose) std::swap(way[0], way[1]);
+  return way[0] < 0 ? std::array{-way[0], -way[1]} : way;
+}
+
 Orientation canonical_orientation(const cv::Mat& picture) {
   const Moments m = picture.depth() == CV_8U    ? moments_of<std::uint8_t>(picture)
                     : picture.depth() == CV_16U ? moments_of<std::uint16_t>(picture)

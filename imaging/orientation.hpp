@@ -7,6 +7,7 @@
 /// that only its content decides, located there, and the beads turned back: flipping or turning a picture
 /// flips or turns the result, to the bit up to the rounding of n - 1 - x.
 
+#include <array>
 #include <opencv2/core.hpp>
 
 #include "imaging/detection.hpp"
@@ -20,6 +21,8 @@ struct Orientation {
   [[nodiscard]] cv::Mat turned(const cv::Mat& picture) const;
   /// A detection in the turned picture, in the original. \param size of the original
   [[nodiscard]] Detection back(Detection d, cv::Size size) const;
+  /// Likewise a way whose sense does not matter; x >= 0.
+  [[nodiscard]] std::array<double, 2> back(std::array<double, 2> way) const;
 };
 
 /// The way in which a picture's upper left is its brighter side, and the way down the more uneven one. A

@@ -122,6 +122,19 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double disc_radius_px) {
   }
   const int pad = cvCeil(2 * reach);
   cv::copyMakeBorder(dark, dark, pad, pad, pad, pad, cv::BORDER_REPLICATE);
+  // In a corner it goes on only where a wall leads there, dark along one of the borders: not a bead.
+  for (const bool right : {false, true})
+    for (const bool low : {false, true}) {
+      const int x = right ? pad + size.width - 1 : pad, y = low ? pad + size.height - 1 : pad;
+      const auto dark_along = [&](cv::Point step) {
+        const int far = std::min(pad, (step.x != 0 ? size.width : size.height) - 1);
+        for (int k = 0; k <= far; ++k)
+          if (dark(cv::Point(x, y) + k * step) == 0) return false;
+        return true;
+      };
+      if (dark_along({right ? -1 : 1, 0}) || dark_along({0, low ? -1 : 1})) continue;
+      dark(cv::Rect(right ? x + 1 : 0, low ? y + 1 : 0, pad, pad)).setTo(0);
+    }
   if (cv::countNonZero(dark) == static_cast<int>(dark.total())) return {};
   cv::Mat1f inside;
   cv::distanceTransform(dark, inside, cv::DIST_L2, cv::DIST_MASK_5);

@@ -222,7 +222,7 @@ class ProfileFit {
       b.sigma_radius = std::sqrt(c(2, 2));
       measure_disc(image_, b);
     }
-    return {std::move(beads_), std::move(dropped_), 0, sweeps};
+    return {std::move(beads_), std::move(dropped_), 0, {}, sweeps};
   }
   [[nodiscard]] const DiscProfile& profile() const { return shared_; }
   [[nodiscard]] bool empty() const { return beads_.empty(); }

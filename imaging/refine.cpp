@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "analysis/trajectory/median.hpp"
+#include "imaging/beyond_frame.hpp"
 #include "imaging/coupled_step.hpp"
 #include "imaging/disc_measures.hpp"
 #include "imaging/disc_sums.hpp"
@@ -28,6 +29,8 @@ constexpr double kMissedDarkness = 0.35;
 constexpr int kPatient = 12;
 // So far a disc may wander, px or darkness, before what couples it to its neighbours is found anew.
 constexpr double kRestless = 0.1;
+// Likewise the blur, as a share of s^2.
+constexpr double kBlurry = 0.05;
 // Of the first step so much is left to go, in a packing: edges are not straight lines in place and blur.
 constexpr double kLeftByFirst = 0.08;
 // The first sweep reads one row in so many: half the pixels do while the places are rough.
@@ -106,7 +109,7 @@ class PictureFit {
     double most, rms, sigma;  ///< px; sigma: what a typical bead's place is uncertain by
     bool short_step;          ///< says nothing of how far there is to go
     bool pruned;              ///< beads were dropped before it
-    double blur = 0;          ///< share by which s^2 changed
+    double blur = 0;          ///< share by which s^2, or 0.7 px^2, changed
   };
 
   /// One Gauss-Newton step of all discs, and of the blur. The order of the beads does not matter. A step that
@@ -202,8 +205,8 @@ class PictureFit {
   }
 
   /// A disc that nobody proposed leaves a dark disc in the residual picture: blocks of pixels, three by three
-  /// of them about as wide as a disc, are looked through for it. \returns how many were added
-  std::size_t add_missed() {
+  /// of them about as wide as a disc, are looked through for it.
+  void add_missed() {
     if (stale_) render();
     const int side = std::max(1, cvRound(0.4 * radius_));
     cv::Mat1f blocks = cv::Mat1f::zeros(size_.height / side, size_.width / side);
@@ -216,7 +219,7 @@ class PictureFit {
       for (int x = 0; x < blocks.cols; ++x)
         for (int k = x * side; k < (x + 1) * side; ++k) block[x] += left[static_cast<std::size_t>(k)];
     }
-    if (blocks.empty()) return 0;
+    if (blocks.empty()) return;
     cv::boxFilter(blocks, blocks, CV_32F, {3, 3}, {-1, -1}, false, cv::BORDER_CONSTANT);
     std::vector<Proposal> missed;
     for (int y = 0; y < blocks.rows; ++y)
@@ -249,7 +252,21 @@ class PictureFit {
       if (beads_.size() > had) mark(beads_.back());
     }
     if (beads_.size() > before) stale_ = true, before_.reset(), couplings_.clear();
-    return beads_.size() - before;
+  }
+
+  /// Adds discs beyond the frame that pull at those inside it. While the blur is not known, a rim that is
+  /// more blurred than thought looks like one of which no more than the blur is seen.
+  void add_beyond(bool blur_known) {
+    if (stale_) render();
+    // Nearer to a known one it is that one's own misfit.
+    const double reach = 1.5 * radius_, radius = beliefs_[0].mean, blur = std::sqrt(blur_.variance);
+    const std::size_t before = beads_.size();
+    for (const Proposal& p : discs_beyond(ring_args(), radius, blur_known ? radius + blur : radius - blur))
+      if (std::none_of(beads_.begin(), beads_.end(), [&](const Detection& b) {
+            return (b.x - p.x) * (b.x - p.x) + (b.y - p.y) * (b.y - p.y) < reach * reach;
+          }))
+        add(p);
+    if (beads_.size() > before) stale_ = true, before_.reset(), couplings_.clear();
   }
 
   /// The fit ends here, though another step would move each bead by this share of its last.
@@ -263,21 +280,21 @@ class PictureFit {
     const std::vector<Normal> covariance = covariances();
     for (std::size_t k = 0; k < beads_.size(); ++k)
       measure(beads_[k], sums_[k], covariance[k], unsettled_[k] / std::numbers::sqrt2);
-    return {std::move(beads_), std::move(dropped_), std::sqrt(blur_.variance), sweeps_};
+    return {std::move(beads_), std::move(dropped_), std::sqrt(blur_.variance), blur_.path, sweeps_};
   }
 
-  /// Whether the blur was found to differ between directions.
-  [[nodiscard]] bool moves() const { return moves_.value_or(false); }
+  /// Whether the blur was found to differ between directions; absent while that could not be told.
+  [[nodiscard]] std::optional<bool> moves() const { return moves_; }
 
  private:
-  /// What all discs' equations share with those of the blur: one unknown (s_0^2) or three (Q).
+  /// What all discs' equations share with those of the blur: one unknown (s^2) or three.
   struct BlurEquations {
     std::vector<std::vector<Step>> shared;  // for each unknown, of each disc
     Eigen::MatrixXd normal;
     Eigen::VectorXd right;
   };
   [[nodiscard]] BlurEquations blur_equations(BlurFit fit) const {
-    const int n = fit == BlurFit::none ? 0 : fit == BlurFit::round ? 1 : RingSums::kBlurs;
+    const int n = fit == BlurFit::round ? 1 : RingSums::kBlurs;
     BlurEquations e{std::vector(static_cast<std::size_t>(n), std::vector<Step>(sums_.size())),
                     Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
     for (std::size_t k = 0; k < sums_.size(); ++k) {
@@ -329,27 +346,57 @@ class PictureFit {
     return step;
   }
 
-  /// Fits the blur along with the discs. Whether it differs clearly between directions is seen once, by the
-  /// first step that asks; if not, it is taken for round. \returns by what share of s^2 it changed
+  /// A blur that is not round: of a mean variance, and of so much more along one direction than across it.
+  struct Uneven {
+    double mean, more, angle;
+    explicit Uneven(const Eigen::VectorXd& q)
+        : mean(0.5 * (q[0] + q[2])),
+          more(std::hypot(q[0] - q[2], 2 * q[1])),
+          angle(0.5 * std::atan2(2 * q[1], q[0] - q[2])) {}
+  };
+
+  /// Fits the blur along with the discs. If it is seen to differ clearly between directions, the bed moved,
+  /// and a path is fitted that begins with that of the variance found. \returns by what share of s^2 it
+  /// changed
   double fit_blur(BlurFit fit, const std::vector<Normal>& blocks, std::vector<Step>& steps) {
-    constexpr double kClear = 0.1;  // of s^2
-    constexpr double kLeast = 0.09, kMost = 9;
+    constexpr double kClear = 0.04, kNear = 0.1;             // of s^2
+    constexpr double kLeast = 0.09, kMost = 9, kWide = 0.7;  // px^2
     if (fit == BlurFit::none) return 0;
     BlurEquations equations = blur_equations(fit);
-    if (fit == BlurFit::motion && !moves_) {
+    if (fit == BlurFit::uneven) {
       std::vector<Step> alone = steps;
-      const Eigen::VectorXd q = blur_step(equations, blocks, {}, alone);
-      moves_ = std::hypot(q[0] - q[2], 2 * q[1]) > kClear * blur_.variance;
+      const Uneven seen(blur_step(equations, blocks, {}, alone));
+      // A blur that is still far off all round seems to differ too.
+      const bool moved = seen.more > std::max(kClear * blur_.variance, std::abs(seen.mean));
+      if (moved || std::abs(seen.mean) < kNear * blur_.variance) moves_ = moved;
+      if (!moved) equations = rounded(equations);
     }
-    if (fit == BlurFit::motion && !*moves_) equations = rounded(equations);
     const double old = blur_.variance;
     const Eigen::VectorXd step = blur_step(equations, blocks, couplings_, steps);
-    if (step.size() == 1) {
-      blur_.variance = std::clamp(old + step[0], kLeast, kMost);
-      return std::abs(blur_.variance / old - 1);
+    double widened = std::abs(step[0]);
+    if (fit == BlurFit::path) {
+      const Eigen::Vector2d path(blur_.path[0], blur_.path[1]), longer = path + step.tail<2>();
+      widened += std::abs(longer.squaredNorm() - path.squaredNorm()) / 12;
+      put_path(longer);
+      blur_.variance = old + step[0];
+    } else if (step.size() > 1) {
+      const Uneven seen(step);
+      // Of an even density over L the variance is L^2/12.
+      put_path(std::sqrt(12 * seen.more) * Eigen::Vector2d(std::cos(seen.angle), std::sin(seen.angle)));
+      blur_.variance = old + seen.mean - seen.more / 2;
+      widened = std::abs(seen.mean) + seen.more / 2;
+    } else {
+      blur_.variance = old + step[0];
     }
-    for (Eigen::Index q = 0; q < step.size(); ++q) blur_.motion[static_cast<std::size_t>(q)] += step[q];
-    return step.cwiseAbs().maxCoeff() / old;
+    blur_.variance = std::clamp(blur_.variance, kLeast, kMost);
+    // Of a wide blur the same share moves the discs further.
+    return widened / std::min(old, kWide);
+  }
+  void put_path(const Eigen::Vector2d& path) {
+    // One longer than that leaves nothing of a disc that is dark throughout.
+    const double most = radius_, length = path.norm();
+    const Eigen::Vector2d bounded = length > most ? Eigen::Vector2d(most / length * path) : path;
+    blur_.path = {bounded.x(), bounded.y()};
   }
 
   /// How much R and a differ from bead to bead, from the beads themselves: the scatter less what the fit
@@ -382,7 +429,7 @@ class PictureFit {
   /// \returns whether there was any
   bool prune() {
     std::size_t kept = 0;
-    const double out = 0.9 * radius_;
+    const double out = radius_ + std::sqrt(blur_.variance);
     for (std::size_t k = 0; k < beads_.size(); ++k) {
       const Detection& b = beads_[k];
       if (b.darkness < kMinDarkness) {
@@ -429,6 +476,7 @@ class PictureFit {
     std::vector<double> far(n), sigma(n);
     Moved moved{0, 0, 0, damping_ > 0.1, false};
     moved.blur = fit_blur(fit, blocks, steps);
+    if (moved.blur > kBlurry) couplings_.clear();
     for (std::size_t k = 0; k < n; ++k) {
       far[k] = apply(beads_[k], steps[k]);
       if (sweeps_ > 1) wandered_[k] += far[k] + std::abs(steps[k][kA]);
@@ -494,8 +542,7 @@ class PictureFit {
   [[nodiscard]] double ring() const {
     constexpr double kFar = 3, kLeast = 2.5, kMost = 6;
     if (options_.ring_px > 0) return options_.ring_px;
-    return std::clamp(kFar * std::sqrt(blur_.variance + std::max({0.0, blur_.motion[0], blur_.motion[2]})),
-                      kLeast, kMost);
+    return std::clamp(blur_.reach(kFar), kLeast, kMost);
   }
   [[nodiscard]] double full_ring() const { return 4 * std::numbers::pi * radius_ * ring(); }
   /// The picture is the frame's own until it is to be changed.
@@ -587,7 +634,7 @@ class PictureFit {
   int sweeps_ = 0;
   std::vector<double> unsettled_;    // of each bead, px, by which it may be off beside the noise
   std::vector<Coupling> couplings_;  // empty after the set of beads was changed
-  std::optional<bool> moves_;        // whether the blur differs between directions, once asked
+  std::optional<bool> moves_;        // whether the blur differs between directions
   std::vector<double> wandered_;     // of each bead since its couplings were found, px and darkness
 };
 
@@ -608,22 +655,21 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
   const int most_sweeps = options.method == "fast" ? 1 : options.sweeps;
   for (const Proposal& p : by_place(proposals, 2 * radius_px)) fit.add(p);
   fit.expect_as_dark_as_seen();
-  const BlurFit blur = options.blur_px > 0 ? BlurFit::none : BlurFit::round;
   constexpr int kLeast = 2;
   constexpr double kEnough = 0.5;        // of what a place is uncertain by
   constexpr double kWorst = 3;           // likewise, of the one that moves most
   constexpr double kBlurSettled = 0.03;  // of s^2: moves no touching bead by more than its error
   // Whether the bed moved during the exposure shows once the discs are in place.
-  BlurFit moving = blur == BlurFit::none ? BlurFit::none : BlurFit::motion;
+  BlurFit blur = options.blur_px > 0 ? BlurFit::none : BlurFit::uneven;
   int sweeps = 0;
   bool blurred = false;
   double before = HUGE_VAL;
   while (sweeps < most_sweeps) {
     // Places that are far off look like blur: the first sweep has none.
-    const auto moved = fit.sweep(blurred || sweeps == 0 ? BlurFit::none : moving);
+    const auto moved = fit.sweep(blurred || sweeps == 0 ? BlurFit::none : blur);
     ++sweeps;
     blurred = blurred || (sweeps > kLeast + 1 && !moved.short_step && moved.blur < kBlurSettled);
-    if (sweeps == kLeast && moving == BlurFit::motion && !fit.moves()) moving = BlurFit::round;
+    if (blur == BlurFit::uneven && fit.moves()) blur = *fit.moves() ? BlurFit::path : BlurFit::round;
     if (sweeps == 1) fit.expect_alike();
     // By as much as a place is uncertain the second sweep moves it because it reads all rows.
     const double noise = sweeps == 2 ? std::sqrt(kFirstRows - 1.0) * moved.sigma : 0;
@@ -632,7 +678,7 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
     before = moved.rms;
     // The next step would be smaller than this one by about as much as this is smaller than the last.
     if (sweeps >= kLeast && !moved.short_step && !moved.pruned && moved.blur < kBlurSettled &&
-        moving != BlurFit::motion && shrinks * left < kEnough * moved.sigma &&
+        shrinks * left < kEnough * moved.sigma &&
         shrinks * moved.most < std::max(options.tolerance_px, kWorst * moved.sigma)) {
       fit.leave(shrinks);
       break;
@@ -642,7 +688,9 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
       break;
     }
     if (sweeps <= 3) fit.level();
-    // Those found now need a sweep of their own.
+    // Those found now need a sweep of their own. Beyond the frame first: a block of pixels at the border
+    // would place such a disc inside it.
+    if (sweeps <= 3) fit.add_beyond(sweeps > 1 && moved.blur < kBlurSettled);
     if (sweeps <= 2) fit.add_missed();
   }
   return fit.result();

@@ -5,17 +5,20 @@
 /// Model, in darkness d = 1 - I/B:  d(x, y) = sum_k a_k P(|(x, y) - c_k| - R_k), with the
 /// blurred edge P of disc_sums.hpp. Opaque discs do not overlap, so the sum is exact. Per bead c, R and a
 /// are fitted on the ring |r - R| <= ring_px alone (glare and tracers inside do no harm), all beads of a
-/// frame together (coupled_step.hpp), and with them the blur they share and a quadratic correction of the
-/// light B. Noise is Gaussian with the variance of camera noise, v = v_d + v_l (1 - d), found from the
-/// picture; residuals are weighted after Huber. What R and a scatter by is found too, and serves as prior:
-/// beads of one kind need not have each its own darkness fitted from noise. Then the fit is one of maximum
-/// likelihood. Bound (Cramer-Rao, 15 px disc, blur 0.8 px): 0.36/SNR px per coordinate.
+/// frame together (coupled_step.hpp), and with them the blur they share, the straight way by which the bed
+/// moved during the exposure, if the blur differs between directions, and a quadratic correction of the light
+/// B. Discs beyond the frame that darken its border (beyond_frame.hpp) are fitted along. Noise is Gaussian
+/// with the variance of camera noise, v = v_d + v_l (1 - d), found from the picture; residuals are weighted
+/// after Huber. What R and a scatter by is found too, and serves as prior: beads of one kind need not have
+/// each its own darkness fitted from noise. Then the fit is one of maximum likelihood. Bound (Cramer-Rao, 15
+/// px disc, blur 0.8 px): 0.36/SNR px per coordinate.
 ///
 /// The first sweep reads every other row and leaves a twelfth of the way to go, on average; two sweeps do
 /// where the proposals are good.
 ///
 /// When not to use: translucent discs with bright cores, or discs that overlap in projection.
 
+#include <array>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -41,6 +44,7 @@ struct Refined {
   std::vector<Detection> beads;    ///< what may be beads
   std::vector<Detection> dropped;  ///< what turned out to be none, with its verdict
   double blur_px = 0;
+  std::array<double, 2> path_px = {};  ///< by which the bed moved during the exposure, either way round
   int sweeps = 0;
 };
 

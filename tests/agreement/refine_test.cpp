@@ -22,10 +22,11 @@ namespace {
 
 constexpr double kRing = 3;
 
-/// Darkness of a pixel less T + (1 - T) q, in standard deviations of the noise: T of all discs near it, q the
-/// quadratic surface by which the light is off. The first block is q's.
+/// Darkness of a pixel less T + (1 - T) q, in standard deviations of the noise: T of all discs near it, mean
+/// over their path, q the quadratic surface by which the light is off. The first block is q's.
 struct Pixel {
   double x, y, darkness, weight, variance;  // s^2
+  std::array<double, 2> path;
   Surface basis;
   std::size_t near = 0;
 
@@ -33,12 +34,15 @@ struct Pixel {
   bool operator()(T const* const* blocks, T* residual) const {
     using std::erfc, std::sqrt;
     T dark(0), light(0);
-    for (std::size_t k = 1; k <= near; ++k) {
-      const T* disc = blocks[k];
-      const T dx = x - disc[0], dy = y - disc[1];
-      const T u = sqrt(dx * dx + dy * dy) - disc[2] + variance / (2.0 * disc[2]);
-      dark += disc[3] * 0.5 * erfc(u / sqrt(2 * variance));
-    }
+    const int steps = path == std::array<double, 2>{} ? 1 : 24;
+    for (std::size_t k = 1; k <= near; ++k)
+      for (int i = 0; i < steps; ++i) {
+        const T* disc = blocks[k];
+        const double t = (i + 0.5) / steps - 0.5;
+        const T dx = x - t * path[0] - disc[0], dy = y - t * path[1] - disc[1];
+        const T u = sqrt(dx * dx + dy * dy) - disc[2] + variance / (2.0 * disc[2]);
+        dark += disc[3] * (0.5 / steps) * erfc(u / sqrt(2 * variance));
+      }
     for (int q = 0; q < 6; ++q) light += blocks[0][q] * basis[q];
     residual[0] = weight * (darkness - dark - (1.0 - dark) * light);
     return true;
@@ -63,7 +67,8 @@ double largest_difference(const rendered::Picture& picture, double snr) {
   for (const Detection& b : refined.beads)
     discs.push_back({b.x + 0.2, b.y - 0.1, b.radius + 0.1, b.darkness});
   cv::Mat1f model = cv::Mat1f::zeros(frame.rows, frame.cols + kSpareColumns);
-  for (const Detection& b : refined.beads) add_disc(model, {b.x, b.y, b.radius, b.darkness}, {variance, {}});
+  for (const Detection& b : refined.beads)
+    add_disc(model, {b.x, b.y, b.radius, b.darkness}, {variance, refined.path_px});
 
   ceres::Problem problem;
   Surface surface = Surface::Zero();
@@ -82,7 +87,7 @@ double largest_difference(const rendered::Picture& picture, double snr) {
       const double v = noise.dark + noise.light * (1 - double(model(y, x)));
       auto* cost = new ceres::DynamicAutoDiffCostFunction<Pixel, 4>(
           new Pixel{double(x), double(y), double(image.darkness(y, x)), 1 / std::sqrt(v), variance,
-                    surface_basis(x, y, frame.size()), blocks.size() - 1});
+                    refined.path_px, surface_basis(x, y, frame.size()), blocks.size() - 1});
       cost->AddParameterBlock(6);
       for (std::size_t k = 1; k < blocks.size(); ++k) cost->AddParameterBlock(4);
       cost->SetNumResiduals(1);
@@ -102,8 +107,10 @@ double largest_difference(const rendered::Picture& picture, double snr) {
     radius = std::max(radius, std::abs(discs[k][2] - b.radius));
     sigma = std::max(sigma, b.sigma_x);
   }
-  std::printf("%zu discs, SNR %g: centres agree with Ceres to %.1e px (sigma_x %.4f), radii to %.1e px\n",
-              discs.size(), snr, largest, sigma, radius);
+  std::printf(
+      "%zu discs, SNR %g, path %.2f %.2f px: centres agree with Ceres to %.1e px (sigma_x %.4f), radii to "
+      "%.1e px\n",
+      discs.size(), snr, refined.path_px[0], refined.path_px[1], largest, sigma, radius);
   return largest;
 }
 
@@ -132,6 +139,17 @@ TEST(Refine, TouchingIsCeres) {
   std::mt19937_64 random(9);
   p.discs = rendered::deposited(radii(25), {10.3, 5, 85, 104.6}, random);
   spread_contrast(p);
+  EXPECT_LE(largest_difference(p, 164), 1e-3);
+  EXPECT_LE(largest_difference(p, 51), 1e-3);
+}
+
+TEST(Refine, MovedIsCeres) {
+  rendered::Picture p;
+  p.width = p.height = 120;
+  std::mt19937_64 random(10);
+  p.discs = rendered::deposited(radii(25), {10.3, 5, 85, 104.6}, random);
+  spread_contrast(p);
+  for (rendered::Disc& d : p.discs) d.path_x = 1.5, d.path_y = -2.6;
   EXPECT_LE(largest_difference(p, 164), 1e-3);
   EXPECT_LE(largest_difference(p, 51), 1e-3);
 }
