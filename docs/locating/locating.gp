@@ -1,5 +1,12 @@
 # What accuracy costs in time
 # gnuplot locating.gp draws locating.svg, locating.pdf and locating.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 1260,440 dynamic enhanced font 'Arial,15' background 'white'
@@ -31,7 +38,7 @@ set title 'pixels per bead, SNR 51'
 set yrange [*:*]
 set key outside right
 set ylabel 'rms error per coordinate, σ'
-plot 'locating.dat' index 8 using 1:2 with linespoints pt 7 ps 0.9 lw 2 lc rgb '#0072B2' title '6 px', 'locating.dat' index 8 using 1:3 with lines lw 1 dt 2 lc rgb '#0072B2' notitle, 'locating.dat' index 9 using 1:2 with linespoints pt 9 ps 0.9 lw 2 lc rgb '#D55E00' title '8 px', 'locating.dat' index 9 using 1:3 with lines lw 1 dt 2 lc rgb '#D55E00' notitle, 'locating.dat' index 10 using 1:2 with linespoints pt 5 ps 0.9 lw 2 lc rgb '#009E73' title '10 px', 'locating.dat' index 10 using 1:3 with lines lw 1 dt 2 lc rgb '#009E73' notitle, 'locating.dat' index 11 using 1:2 with linespoints pt 11 ps 0.9 lw 2 lc rgb '#CC79A7' title '15 px', 'locating.dat' index 11 using 1:3 with lines lw 1 dt 2 lc rgb '#CC79A7' notitle, 'locating.dat' index 12 using 1:2 with linespoints pt 13 ps 0.9 lw 2 lc rgb '#E69F00' title '20 px', 'locating.dat' index 12 using 1:3 with lines lw 1 dt 2 lc rgb '#E69F00' notitle, 'locating.dat' index 13 using 1:2 with linespoints pt 6 ps 0.9 lw 2 lc rgb '#56B4E9' title '30 px', 'locating.dat' index 13 using 1:3 with lines lw 1 dt 2 lc rgb '#56B4E9' notitle, 'locating.dat' index 14 using 1:2 with linespoints pt 4 ps 0.9 lw 2 lc rgb '#000000' title '40 px', 'locating.dat' index 14 using 1:3 with lines lw 1 dt 2 lc rgb '#000000' notitle, 1./30 with lines lc rgb '#999999' title 'σ/30'
+plot 'locating.dat' index 8 using 1:2 with linespoints pt 7 ps 0.9 lw 2 lc rgb '#0072B2' title '6 px', 'locating.dat' index 8 using 1:3 with lines lw 1 dt 2 lc rgb '#0072B2' notitle, 'locating.dat' index 9 using 1:2 with linespoints pt 9 ps 0.9 lw 2 lc rgb '#D55E00' title '8 px', 'locating.dat' index 9 using 1:3 with lines lw 1 dt 2 lc rgb '#D55E00' notitle, 'locating.dat' index 10 using 1:2 with linespoints pt 5 ps 0.9 lw 2 lc rgb '#009E73' title '10 px', 'locating.dat' index 10 using 1:3 with lines lw 1 dt 2 lc rgb '#009E73' notitle, 'locating.dat' index 11 using 1:2 with linespoints pt 11 ps 0.9 lw 2 lc rgb '#CC79A7' title '15 px', 'locating.dat' index 11 using 1:3 with lines lw 1 dt 2 lc rgb '#CC79A7' notitle, 'locating.dat' index 12 using 1:2 with linespoints pt 13 ps 0.9 lw 2 lc rgb '#E69F00' title '20 px', 'locating.dat' index 12 using 1:3 with lines lw 1 dt 2 lc rgb '#E69F00' notitle, 'locating.dat' index 13 using 1:2 with linespoints pt 6 ps 0.9 lw 2 lc rgb '#56B4E9' title '30 px', 'locating.dat' index 13 using 1:3 with lines lw 1 dt 2 lc rgb '#56B4E9' notitle, 'locating.dat' index 14 using 1:2 with linespoints pt 4 ps 0.9 lw 2 lc rgb '#000000' title '40 px', 'locating.dat' index 14 using 1:3 with lines lw 1 dt 2 lc rgb '#000000' notitle, 1./30 with lines lc rgb grey title 'σ/30'
 unset multiplot
 unset output
 reset
