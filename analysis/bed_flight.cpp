@@ -6,13 +6,14 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <vector>
 
-#include "analysis/barycentre.hpp"
-
 namespace twincell {
 namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const char* const kSource = "Mehta & Luck 1990, the completely inelastic case";
 const char* const kNoCycle = "no whole cycle after a moment on the plate";
@@ -79,9 +80,8 @@ class BedFlight : public Observable {
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
     if (!reason_.empty() || frame.phase < 0 || frame.cycle < 0) return;
-    const double height = barycentre_height(frame, info_.mass);
-    if (!std::isfinite(height)) return;
-    const Moment now{frame.cycle * info_.phases_per_cycle + frame.phase, frame.time, height};
+    if (!rise(frame)) return;
+    const Moment now{frame.cycle * info_.phases_per_cycle + frame.phase, frame.time, height_};
     // A gap in the film: what flew before it is cut off.
     if (!last_.empty() && now.tick != last_.back().tick + 1) {
       last_.clear();
@@ -124,6 +124,23 @@ class BedFlight : public Observable {
   }
 
  private:
+  /// Adds to the height how far the beads that were there in the frame before have risen: a bead that is seen
+  /// in one frame and not in the next shifts the centre of mass of those seen, and no bead. \returns whether
+  /// there was any, or this is the first
+  bool rise(const Frame& frame) {
+    double moment = 0, mass = 0;
+    const bool first = before_.empty();
+    before_.resize(frame.position.size(), kNaN);
+    for (std::size_t i = 0; i < frame.position.size(); ++i) {
+      const double z = frame.present(i) ? frame.position[i].z() : kNaN;
+      const double m = info_.mass.empty() ? 1 : info_.mass[i];
+      if (std::isfinite(z - before_[i])) moment += m * (z - before_[i]), mass += m;
+      before_[i] = z;
+    }
+    if (mass > 0) height_ += moment / mass;
+    return first || mass > 0;
+  }
+
   /// A moment and what carries the bed then, in weights of the bed.
   void judge(const Moment& m, double support) {
     if (support < kFlyingSupport) {
@@ -204,6 +221,8 @@ class BedFlight : public Observable {
   const TrajectoryInfo& info_;
   std::int64_t stride_;
   std::string reason_;
+  double height_ = 0;           ///< of the centre of mass, from where it was in the first frame
+  std::vector<double> before_;  ///< of each bead in the last frame; NaN where it was not seen
   std::deque<Moment> last_;
   std::optional<std::int64_t> since_;  ///< first tick of the cycle that is being counted
   double in_cycle_ = 0;                ///< time of flights that ended in it

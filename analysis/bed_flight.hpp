@@ -21,9 +21,10 @@ inline constexpr double kFlyingSupport = 0.25;
 ///     take-off: where h begins to rise and to rise faster and faster, as of a bed that left with the plate's
 ///               velocity (thrown off: between the moments before and after)
 ///     landing:  the first later t with h(t) = h(take-off)
-/// so that no height at rest is needed. Exact for a bed that does not rebound (the completely inelastic ball
-/// of Mehta & Luck 1990). Not seen: flights shorter than three moments, and those that the film cuts off.
-/// Gravity is the unit of acceleration, along -z.
+/// so that no height at rest is needed. Beads that are not seen in every frame count where they are seen
+/// twice in a row, so that z_cm does not jump with them. Exact for a bed that does not rebound (the
+/// completely inelastic ball of Mehta & Luck 1990). Not seen: flights shorter than three moments, and those
+/// that the film cuts off. Gravity is the unit of acceleration, along -z.
 ///
 /// Absent without a drive along z or with fewer than 8 frames per cycle; flight_time also where nothing
 /// flies.

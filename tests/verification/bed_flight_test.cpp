@@ -99,6 +99,25 @@ TEST(BedFlight, AFilmWithGapsLosesFlightsAndNothingElse) {
   EXPECT_GT(flight.n, 20U);
 }
 
+TEST(BedFlight, BeadsThatComeAndGoDoNotBreakFlights) {
+  // Every frame misses one bead in ten, another ten each time: the mean height of those seen jumps by 0.1
+  // sigma.
+  const auto whole = test::rigid_bed({.gamma = 2.0, .columns = 10, .rows = 8, .cycles = 20});
+  MemoryTrajectory seen(whole.info());
+  seen.info().columns.identity = true;
+  for (Frame frame : whole.frames()) {
+    frame.id.resize(frame.position.size());
+    for (std::size_t i = 0; i < frame.id.size(); ++i) {
+      const bool missed = (i / 8 + static_cast<std::size_t>(frame.step) * 7) % 10 == 0;
+      frame.id[i] = missed ? -1 : static_cast<std::int64_t>(i);
+      if (missed) frame.position[i] = Vec3::Constant(std::nan(""));
+    }
+    seen.append(frame);
+  }
+  EXPECT_NEAR(measured(seen), measured(whole), 1e-6);
+  EXPECT_NEAR(measured(seen, "flight_share"), measured(whole, "flight_share"), 1e-6);
+}
+
 TEST(BedFlight, WhatItCannotTell) {
   const auto absent = [](MemoryTrajectory film) {
     const auto results = analyze(film, {.only = {"flight_time", "flight_share"}});
