@@ -71,6 +71,9 @@ Polynomial best_surface(const std::vector<Sought>& ranges, const std::vector<std
 /// One observable as a function of the parameters, with its condition as the last of them.
 class Surface {
  public:
+  /// Runs that a surface of second degree over so many ranges needs, and two to say how far they scatter.
+  static std::size_t fewest(std::size_t ranges) { return (ranges + 1) * (ranges + 2) / 2 + 2; }
+
   Surface(std::vector<Sought> sought, const std::vector<SimulatedPoint>& runs, std::size_t o,
           const MeasuredObservable& measured)
       : ranges_(std::move(sought)), condition_(measured.at), residual_(runs.size(), kNaN) {
@@ -83,11 +86,11 @@ class Surface {
       places.push_back(runs[i].theta);
       if (condition_) places.back().push_back(runs[i].at[o]);
     }
-    const std::size_t fewest = (ranges_.size() + 1) * (ranges_.size() + 2) / 2 + 2;
-    if (used.size() < fewest)
+    const std::size_t least = fewest(ranges_.size());
+    if (used.size() < least)
       throw InputError({.file = {}, .key = "runs"},
                        fmt::format("{} of {} runs have a value of {}; its quadratic surface needs {}.",
-                                   used.size(), runs.size(), measured.name, fewest));
+                                   used.size(), runs.size(), measured.name, least));
     Eigen::VectorXd y(static_cast<Eigen::Index>(used.size()));
     for (std::size_t i = 0; i < used.size(); ++i) y[static_cast<Eigen::Index>(i)] = runs[used[i]].y[o];
     p_ = best_surface(ranges_, places, y);
@@ -254,7 +257,15 @@ std::vector<double> excess_of(const std::vector<Sought>& sought, const std::vect
 std::vector<double> drops_of(const std::vector<Sought>& sought, const std::vector<SimulatedPoint>& runs,
                              const std::vector<MeasuredObservable>& measured, double by_t) {
   std::vector<std::vector<double>> excess(sought.size());
-  for (std::size_t k = 0; k < runs.size(); ++k) {
+  // Judged by the others only where these are enough for surfaces of their own.
+  const auto spare = [&](std::size_t o) {
+    const auto have = std::count_if(runs.begin(), runs.end(),
+                                    [&](const SimulatedPoint& r) { return std::isfinite(r.y[o]); });
+    return static_cast<std::size_t>(have) > Surface::fewest(sought.size() + (measured[o].at ? 1 : 0));
+  };
+  bool enough = true;
+  for (std::size_t o = 0; o < measured.size(); ++o) enough = enough && spare(o);
+  for (std::size_t k = 0; enough && k < runs.size(); ++k) {
     if (!std::all_of(runs[k].y.begin(), runs[k].y.end(), [](double y) { return std::isfinite(y); })) continue;
     const std::vector<double> own = excess_of(sought, runs, measured, k);
     for (std::size_t i = 0; i < sought.size(); ++i) excess[i].push_back(own[i]);
@@ -305,19 +316,16 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
   }
   const ChiSquared chi2(surfaces, measured);
   const GridSearch all = search(sought, chi2, 1);
-  const std::vector<std::vector<double>>& least = all.least;
-  const std::vector<double>& best = all.best;
-  const int steps = all.steps;
   out.chi2 = all.chi2;
   const std::vector<double> drops = drops_of(sought, runs, measured, drop_of(surfaces));
   out.freedom = static_cast<double>(measured.size()) - static_cast<double>(sought.size());
   for (std::size_t i = 0; i < sought.size(); ++i) {
     const double drop = drops[i];
-    Profile p{.sought = sought[i], .best = best[i], .drop = drop};
+    Profile p{.sought = sought[i], .best = all.best[i], .drop = drop};
     bool inside = false;
-    for (int k = 0; k <= steps; ++k) {
-      const double x = sought[i].lower + (sought[i].upper - sought[i].lower) * k / steps;
-      const double c = least[i][static_cast<std::size_t>(k)];
+    for (int k = 0; k <= all.steps; ++k) {
+      const double x = sought[i].lower + (sought[i].upper - sought[i].lower) * k / all.steps;
+      const double c = all.least[i][static_cast<std::size_t>(k)];
       p.at.push_back(x);
       p.chi2.push_back(c);
       if (c <= out.chi2 + drop) {
@@ -340,7 +348,7 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     out.profiles.push_back(std::move(p));
   }
   for (const Surface& s : surfaces) {
-    const Surface::Value v = s.at(best);
+    const Surface::Value v = s.at(all.best);
     out.predicted.push_back(v.y);
     out.slope.push_back(v.slope);
   }

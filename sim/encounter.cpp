@@ -448,14 +448,17 @@ EncounterEnd meet(const EncounterSetting& setting, const RelativeMotion& motion,
   EncounterEnd end;
   const double scale = encounter_time(setting, motion.u.norm());
   visit_laws(*setting.laws, [&]<class N, class T>(const N& normal, const T& tangential) {
-    if (setting.dimension == 2)
-      end = Encounter<N, T, 2>(setting, normal, tangential).run(motion, time, last, scale, tolerance);
-    else if (const OrbitPlane plane(motion); !T::kActs && !setting.wall)
-      end = plane.back(Encounter<N, T, 2>(setting, normal, tangential)
-                           .run(plane.into(motion), time, last, scale, tolerance),
-                       motion);
-    else
-      end = Encounter<N, T, 3>(setting, normal, tangential).run(motion, time, last, scale, tolerance);
+    const auto in = [&]<int D>(const RelativeMotion& start) {
+      return Encounter<N, T, D>(setting, normal, tangential).run(start, time, last, scale, tolerance);
+    };
+    if (setting.dimension == 2) {
+      end = in.template operator()<2>(motion);
+    } else if (T::kActs || setting.wall) {
+      end = in.template operator()<3>(motion);
+    } else {
+      const OrbitPlane plane(motion);
+      end = plane.back(in.template operator()<2>(plane.into(motion)), motion);
+    }
   });
   return end;
 }

@@ -133,22 +133,23 @@ TEST(Refine, AloneIsCeres) {
   EXPECT_LE(largest_difference(p, 51), 1e-3);
 }
 
-TEST(Refine, TouchingIsCeres) {
+rendered::Picture touching(std::uint64_t seed) {
   rendered::Picture p;
   p.width = p.height = 120;
-  std::mt19937_64 random(9);
+  std::mt19937_64 random(seed);
   p.discs = rendered::deposited(radii(25), {10.3, 5, 85, 104.6}, random);
   spread_contrast(p);
+  return p;
+}
+
+TEST(Refine, TouchingIsCeres) {
+  const rendered::Picture p = touching(9);
   EXPECT_LE(largest_difference(p, 164), 1e-3);
   EXPECT_LE(largest_difference(p, 51), 1e-3);
 }
 
 TEST(Refine, MovedIsCeres) {
-  rendered::Picture p;
-  p.width = p.height = 120;
-  std::mt19937_64 random(10);
-  p.discs = rendered::deposited(radii(25), {10.3, 5, 85, 104.6}, random);
-  spread_contrast(p);
+  rendered::Picture p = touching(10);
   for (rendered::Disc& d : p.discs) d.path_x = 1.5, d.path_y = -2.6;
   EXPECT_LE(largest_difference(p, 164), 1e-3);
   EXPECT_LE(largest_difference(p, 51), 1e-3);

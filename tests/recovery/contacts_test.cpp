@@ -350,6 +350,18 @@ TEST(Inference, AnOnsetIsTheDriveAtWhichALevelIsCrossed) {
   EXPECT_NEAR(slope, 4, 0.05);
 }
 
+TEST(Inference, AsFewRunsAsASurfaceNeedsAreEnough) {
+  std::vector<SimulatedPoint> runs;
+  const std::vector<Sought> sought = {{"e", 0.6, 0.95}};
+  for (const auto& theta : spread_points(sought, 5))
+    runs.push_back({theta, {2 - theta[0] + 0.001 * std::sin(40 * theta[0])}});
+  const Inference f = infer_parameters(sought, runs, {{"a", 1.2, 0}});
+  EXPECT_NEAR(f.profiles[0].best, 0.8, 0.01);
+  EXPECT_GE(f.profiles[0].drop, 4.30265 * 4.30265 * (1 - 1e-5)) << "Student's t of 2 degrees";
+  runs.pop_back();
+  EXPECT_THROW(infer_parameters(sought, runs, {{"a", 1.2, 0}}), InputError);
+}
+
 TEST(CurveComponents, OfTwoFormsAreTwoNumbers) {
   std::mt19937_64 generator(54);
   std::normal_distribution<double> normal(0, 1);
