@@ -98,13 +98,13 @@ class FlightKernel : public Kernel {
     if (steps_) steps_->restore(std::move(contacts));
   }
   [[nodiscard]] std::vector<double> memory() const override {
-    Archive out;
-    const_cast<FlightKernel*>(this)->pass(out);  // which puts back what it read
+    Writer out;
+    pass(*this, out);
     return out.numbers;
   }
   void recall(const System& s, const std::vector<double>& memory) override {
     if (memory.empty()) return;
-    Archive in{memory, true, 0};
+    Reader in{memory};
     if (memory.front() != 0) {
       begin_flights(s);
       steps_.reset();
@@ -112,7 +112,7 @@ class FlightKernel : public Kernel {
       left_step_ = s.step;
       left_amplitude_ = s.drive.amplitude;
     }
-    pass(in);
+    pass(*this, in);
   }
   [[nodiscard]] std::string description() const override {
     return "flights between contacts; where three bodies meet " + make_steps_()->description();
@@ -139,79 +139,96 @@ class FlightKernel : public Kernel {
 
   // --- checkpoints ---
 
-  /// Numbers, one after the other, in or out.
-  struct Archive {
+  /// Numbers, one after the other, out ...
+  struct Writer {
+    static constexpr bool kReads = false;
     std::vector<double> numbers;
-    bool in = false;
-    std::size_t at = 0;
+    void operator()(const Vec3& v) {
+      for (Eigen::Index k = 0; k < 3; ++k) (*this)(v[k]);
+    }
+    void operator()(const FlightLine& line) { (*this)(line.a), (*this)(line.b); }
     template <class T>
-    void operator()(T& x) {
-      if constexpr (std::is_same_v<T, Vec3>) {
-        for (Eigen::Index k = 0; k < 3; ++k) (*this)(x[k]);
-      } else if constexpr (std::is_same_v<T, FlightLine>) {
-        (*this)(x.a), (*this)(x.b);
-      } else if (!in) {
-        numbers.push_back(static_cast<double>(x));
-      } else {
-        x = static_cast<T>(at < numbers.size() ? numbers[at++] : 0.0);
-      }
-    }
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    void operator()(T x) { numbers.push_back(static_cast<double>(x)); }
   };
-  /// Everything that a flight, or the wait for one, depends on beyond the beads.
-  void pass(Archive& a) {
-    double in_flight = flying() ? 1 : 0;
-    a(in_flight);
-    a(next_look_), a(wait_);
-    if (!flying()) return;
-    a(base_), a(now_);
-    for (std::size_t i = 0; i < lines_->size(); ++i) {
-      FlightLine line = (*lines_)[i];
-      a(line);
-      lines_->put(i, line);
-      a(lines_->valid_from(i)), a(rim_[i]);
-      a(events_[i].time), a(events_[i].kind), a(events_[i].partner);
+  /// ... and in.
+  struct Reader {
+    static constexpr bool kReads = true;
+    const std::vector<double>& numbers;
+    std::size_t at = 0;
+    void operator()(Vec3& v) {
+      for (Eigen::Index k = 0; k < 3; ++k) (*this)(v[k]);
     }
-    std::size_t open = open_.size();
-    a(open);
-    open_.resize(open);
-    for (Contact& c : open_) {
+    void operator()(FlightLine& line) { (*this)(line.a), (*this)(line.b); }
+    template <class T>
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    void operator()(T& x) { x = static_cast<T>(at < numbers.size() ? numbers[at++] : 0.0); }
+  };
+  /// How many a list has; one that is read gets as many.
+  template <class List, class Archive>
+  static void pass_size(List& list, Archive& a) {
+    std::size_t n = list.size();
+    a(n);
+    if constexpr (Archive::kReads) list.resize(n);
+  }
+  /// Everything that a flight, or the wait for one, depends on beyond the beads: written and read in the same
+  /// order. \param k a kernel, const if it is written
+  template <class Self, class Archive>
+  static void pass(Self& k, Archive& a) {
+    double in_flight = k.flying() ? 1 : 0;
+    a(in_flight);
+    a(k.next_look_), a(k.wait_);
+    if (!k.flying()) return;
+    a(k.base_), a(k.now_);
+    for (std::size_t i = 0; i < k.lines_->size(); ++i) {
+      FlightLine line = (*k.lines_)[i];
+      a(line);
+      if constexpr (Archive::kReads) k.lines_->put(i, line);
+      a(k.lines_->valid_from(i)), a(k.rim_[i]);
+      a(k.events_[i].time), a(k.events_[i].kind), a(k.events_[i].partner);
+    }
+    pass_size(k.open_, a);
+    for (auto& c : k.open_) {
       a(c.i), a(c.j), a(c.begin), a(c.end), a(c.from), a(c.until), a(c.motion.r), a(c.motion.u),
           a(c.motion.s);
       a(c.shift);
       for (std::size_t q = 0; q < 2; ++q) a(c.stray[q]), a(c.before[q]), a(c.rim[q]);
     }
-    std::size_t crowds = crowds_.size();
-    a(crowds);
-    crowds_.resize(crowds);
-    for (Crowd& c : crowds_) pass(a, c);
+    pass_size(k.crowds_, a);
+    for (auto& c : k.crowds_) pass(k, c, a);
   }
 
-  void pass(Archive& a, Crowd& c) {
-    Huddle& h = c.huddle;
-    std::size_t n = h.members.size(), remembered = h.memories.size();
-    a(c.from), a(c.until), a(n), a(remembered), a(h.steps);
-    std::int64_t since = base_ - h.start.step;
-    a(since);
-    if (a.in) {
-      h.members.resize(n), h.stray.resize(n), c.before.resize(n), h.memories.resize(remembered);
-      h.start = frame_;
-      h.start.beads.resize(n), h.start.forces.resize(n);
+  template <class Self, class Meeting, class Archive>
+  static void pass(Self& k, Meeting& c, Archive& a) {
+    auto& h = c.huddle;
+    a(c.from), a(c.until);
+    if constexpr (Archive::kReads) {
+      h.start = k.frame_;
       h.start.forces_known = true;
-      h.start.step = base_ - since;
+    }
+    pass_size(h.members, a);
+    pass_size(h.memories, a);
+    a(h.steps);
+    std::int64_t since = k.base_ - h.start.step;
+    a(since);
+    const std::size_t n = h.members.size();
+    if constexpr (Archive::kReads) {
+      h.stray.resize(n), c.before.resize(n);
+      h.start.beads.resize(n), h.start.forces.resize(n);
+      h.start.step = k.base_ - since;
     }
     for (std::size_t i = 0; i < n; ++i) {
-      Bead& b = h.start.beads[i];
-      Force& f = h.start.forces[i];
+      auto& b = h.start.beads[i];
+      auto& f = h.start.forces[i];
       a(h.members[i]), a(h.stray[i]), a(c.before[i]);
       a(b.x), a(b.y), a(b.z), a(b.vx), a(b.vy), a(b.vz), a(b.spin_x), a(b.spin), a(b.spin_z);
       a(b.radius), a(b.mass), a(b.inertia);
       a(f.x), a(f.y), a(f.z), a(f.q_x), a(f.q), a(f.q_z);
     }
-    for (ContactMemory& m : h.memories) {
-      std::size_t values = m.values.size();
-      a(m.i), a(m.j), a(values);
-      m.values.resize(values);
-      for (double& v : m.values) a(v);
+    for (auto& m : h.memories) {
+      a(m.i), a(m.j);
+      pass_size(m.values, a);
+      for (auto& v : m.values) a(v);
     }
   }
 
