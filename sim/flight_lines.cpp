@@ -62,34 +62,37 @@ FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
   const Tag tag;
   const V infinite = set(HUGE_VAL), zero = hn::Zero(tag);
   const V start = set(std::max(now, f.from[i])), own_radius = set(f.radius[i]);
-  V best = infinite, partner = set(-1);
-  // Times at which images meet are kept as fractions: a division for each would cost more than all else here.
-  V until = set(1), until_over = zero;
+  V best = infinite, partner = set(-1), until = infinite;
   M overlap = hn::FirstN(tag, 0);
   for (std::size_t j = 0; j < f.n; j += hn::Lanes(tag)) {
     const M counts = others(j, f, i, i);
     const V reach = hn::Add(own_radius, hn::LoadU(tag, f.radius + j));
     const V from = hn::Max(start, hn::LoadU(tag, f.from + j));
     V square = zero, closing = zero, speed = zero;
+    // Along directions without images, two are within reach of each other from `enter` to `leave`, after
+    // `from`; their next images do not matter before or beyond.
+    V enter = zero, leave = infinite, image = infinite;
     for (int k = 0; k < 3; ++k) {
       if (k == 1 && f.dimension == 2) continue;
       const V w = hn::Sub(set(f.b[k][i]), hn::LoadU(tag, f.b[k] + j));
       V d = hn::Add(hn::Sub(set(f.a[k][i]), hn::LoadU(tag, f.a[k] + j)), hn::Mul(w, from));
-      const V ww = hn::Mul(w, w);
-      if (f.period[k] > 0) {
-        d = nearest(d, f.period[k]);
+      const bool periodic = f.period[k] > 0;
+      if (periodic) d = nearest(d, f.period[k]);
+      const V slowness = hn::Div(set(1), hn::Max(hn::Abs(w), set(1e-300))),
+              along = hn::Mul(d, hn::CopySign(set(1), w));
+      if (periodic) {
         // The next image is a period away, and touches at `reach`.
-        const V way = hn::Sub(hn::Mul(hn::Sub(set(f.period[k]), reach), hn::Abs(w)), hn::Mul(d, w));
-        const V time = hn::Add(way, hn::Mul(from, ww));  // over ww
-        const M sooner =
-            hn::And(hn::And(counts, hn::Gt(ww, zero)), hn::Lt(hn::Mul(time, until_over), hn::Mul(until, ww)));
-        until = hn::IfThenElse(sooner, time, until);
-        until_over = hn::IfThenElse(sooner, ww, until_over);
+        image = hn::Min(image, hn::Mul(hn::Sub(hn::Sub(set(f.period[k]), reach), along), slowness));
+      } else {
+        enter = hn::Max(enter, hn::Mul(hn::Neg(hn::Add(along, reach)), slowness));
+        leave = hn::Min(leave, hn::Mul(hn::Sub(reach, along), slowness));
       }
       square = hn::Add(square, hn::Mul(d, d));
       closing = hn::Add(closing, hn::Mul(d, w));
-      speed = hn::Add(speed, ww);
+      speed = hn::Add(speed, hn::Mul(w, w));
     }
+    const M matters = hn::And(counts, hn::Lt(image, leave));
+    until = hn::Min(until, hn::IfThenElse(matters, hn::Add(from, hn::Max(image, enter)), infinite));
     const V c = hn::Sub(square, hn::Mul(reach, reach));
     const V inside = hn::Sub(hn::Mul(closing, closing), hn::Mul(speed, c));
     // Beads that have just parted lie at `reach` but for rounding.
@@ -106,7 +109,7 @@ FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
   alignas(64) double times[flight::kSpare], partners[flight::kSpare], untils[flight::kSpare];
   hn::Store(best, tag, times);
   hn::Store(partner, tag, partners);
-  hn::Store(hn::Div(until, until_over), tag, untils);  // 1/0: never
+  hn::Store(until, tag, untils);
   for (std::size_t k = 0; k < hn::Lanes(tag); ++k) {
     hit.until = std::min(hit.until, untils[k]);
     const auto with = static_cast<std::int32_t>(partners[k]);
