@@ -417,6 +417,40 @@ Target trend(const std::string& name, const Series& s, bool falls) {
   return t;
 }
 
+/// The smallest W from which on every interval reaches within 5 % of the last value, which is the rule of W_2
+/// with errors counted; empty for fewer than three points.
+std::optional<double> flat_from(const Series& s) {
+  constexpr double kNearly = 0.05;
+  if (s.x.size() < 3) return std::nullopt;
+  const double last = s.y.back().value;
+  double from = s.x.back();
+  for (std::size_t k = s.x.size(); k-- > 0; from = s.x[k]) {
+    const Estimate& e = s.y[k];
+    if (e.low.value_or(e.value) > (1 + kNearly) * last || e.high.value_or(e.value) < (1 - kNearly) * last)
+      break;
+  }
+  return from;
+}
+
+/// Whether the temperature of all beads is flat in W before that at any height is.
+Target volume_first(const std::string& name, const Series& volume, const std::vector<Series>& stations) {
+  Target t{name + ": the mean over the volume flattens before those at fixed heights",
+           "from a smaller W on than at any height", "", Fate::absent,
+           "flat: within 5 % of the last value, errors counted"};
+  const auto whole = flat_from(volume);
+  std::vector<Fate> fates;
+  std::string at_heights;
+  for (const Series& s : stations)
+    if (const auto local = flat_from(s); local && whole) {
+      fates.push_back(*local > *whole ? Fate::met : *local < *whole ? Fate::missed : Fate::open);
+      at_heights += fmt::format("{}{:.3g} ({})", at_heights.empty() ? "" : ", ", *local, s.title);
+    }
+  if (fates.empty()) return t;
+  t.measured = fmt::format("flat from W = {:.3g} on, at heights from {}", *whole, at_heights);
+  t.fate = all_of(fates);
+  return t;
+}
+
 Reproduction run_16(const Request& request) {
   const GasSize& size = gas_size_for(request);
   Gas gas(request);
@@ -430,11 +464,13 @@ Reproduction run_16(const Request& request) {
       for (const double z : kStations) series.push_back(station(gas, c, reading, system.dimension, z));
       r.targets.push_back(trend(system.name() + ": low z" + reading.said, series[1], true));
       r.targets.push_back(trend(system.name() + ": high z" + reading.said, series[4], false));
-      r.figures.push_back(
-          series_figure(fmt::format("p2-fig16{}{}", "bdac"[c], reading.figure),
-                        "Local temperature, " + system.name() + reading.said, "W = V_p^2/(d g)",
-                        "T_z(z)/(m V_p^2)", series, "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
-                        "Slabs of d at fixed heights. Form of Bhateja et al. 2016, Fig. 16."));
+      r.targets.push_back(
+          volume_first(system.name() + reading.said, series_of("", gas.points(c), "T_bar_z"), series));
+      r.figures.push_back(series_figure(
+          fmt::format("p2-fig16{}{}", "bdac"[c], reading.figure),
+          "Local temperature, " + system.name() + reading.said, "W = V_p^2/(d g)", "T_z(z)/(m V_p^2)", series,
+          "set key outside right top\nset logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
+          "Slabs of d at fixed heights. Form of Bhateja et al. 2016, Fig. 16."));
     }
   return r;
 }
