@@ -391,7 +391,7 @@ Series station(const Gas& gas, std::size_t curve, const Reading& reading, int di
   Series s{.title = fmt::format("z = {:g} d", z), .x = {}, .y = {}};
   for (const GasPoint& point : gas.points(curve)) {
     const auto p = profile_of(point, reading, area_of(dimension), dimension == 2);
-    if (!p || point.at < 1) continue;
+    if (!p || point.at < 1 || point.solid()) continue;  // a block has no temperature
     for (std::size_t k = 0; k < p->z.size(); ++k)
       if (p->z[k] == z && std::isfinite(p->t[k])) {
         const double t = p->t[k] / point.at;  // V_p^2 = W d g
