@@ -462,6 +462,7 @@ Reproduction run_16(const Request& request) {
       const GasSystem& system = gas_systems()[c];
       std::vector<Series> series;
       for (const double z : kStations) series.push_back(station(gas, c, reading, system.dimension, z));
+      r.targets.push_back(trend(system.name() + ": lowest z" + reading.said, series[0], true));
       r.targets.push_back(trend(system.name() + ": low z" + reading.said, series[1], true));
       r.targets.push_back(trend(system.name() + ": high z" + reading.said, series[4], false));
       r.targets.push_back(
