@@ -16,7 +16,10 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kCoarse = 4096;
-constexpr std::size_t kMaxBlocks = 20;
+/// Few long blocks: a shaken gas breathes, and what it was 18 cycles ago it is again when the first zero of
+/// its correlation is long past. With 20 blocks, disjoint, 81 to 87 % of intervals of such series (N = 2,
+/// W = 22, 143 to 600 cycles) held the mean.
+constexpr std::size_t kMaxBlocks = 8;
 constexpr std::size_t kMinBlocks = 5;
 constexpr double kBlockTimes = 5;
 /// Below this a short series shows no correlation; its values are blocks of their own.
@@ -118,27 +121,32 @@ std::string BlockAverage::why_no_interval(const std::string& of_what) const {
 std::optional<Interval> BlockAverage::interval(const std::string& of_what) const {
   const std::size_t length = block_length();
   if (length == 0) return std::nullopt;
-  const std::size_t count = coarse_.size() / length;
-  std::vector<double> blocks(count);
-  for (std::size_t b = 0; b < count; ++b) {
-    const auto first = coarse_.begin() + static_cast<std::ptrdiff_t>(b * length);
-    blocks[b] = std::accumulate(first, first + static_cast<std::ptrdiff_t>(length), 0.0) /
-                static_cast<double>(length);
-  }
-  const double centre = mean_of(blocks);
+  const std::size_t n = coarse_.size(), count = n / length;
+  const double centre = mean_of(coarse_);
+  double block = std::accumulate(coarse_.begin(), coarse_.begin() + static_cast<std::ptrdiff_t>(length), 0.0);
   double squares = 0;
-  for (const double block : blocks) squares += (block - centre) * (block - centre);
-  const std::size_t values = length * coarse_length_;
+  for (std::size_t b = 0;; ++b) {
+    const double off = block / static_cast<double>(length) - centre;
+    squares += off * off;
+    if (b + length == n) break;
+    block += coarse_[b + length] - coarse_[b];
+  }
+  const auto m = static_cast<double>(length), all = static_cast<double>(n);
+  const double of_coarse = m * squares / ((all - m + 1) * (all - m));
   // Neighbouring blocks still share a little: for exponential correlation the variance of their means falls
   // short by (tau - 1/(4 tau))/length.
+  const std::size_t values = length * coarse_length_;
   const double tau = correlation_time();
   const double shared = (tau - 1 / (4 * tau)) / static_cast<double>(values);
-  const double error = std::sqrt(squares / static_cast<double>(count - 1) * static_cast<double>(values) /
+  const double error = std::sqrt(of_coarse * all * static_cast<double>(coarse_length_) /
                                  static_cast<double>(n_) / (1 - shared));
-  const double half = student_t_95(static_cast<double>(count - 1)) * error;
+  // What overlapping blocks tell beyond disjoint ones: half as much again for long ones, nothing for blocks
+  // of one.
+  const double degrees = static_cast<double>(count - 1) * 3 * m * m / (2 * m * m + 1);
+  const double half = student_t_95(degrees) * error;
   return Interval{mean() - half, mean() + half, 0.95,
-                  fmt::format("block averages over {}: {} blocks of {}, correlation time {:.3g} {}", of_what,
-                              count, values, tau, of_what)};
+                  fmt::format("overlapping block averages over {}: {} times {}, correlation time {:.3g} {}",
+                              of_what, count, values, tau, of_what)};
 }
 
 std::optional<Interval> bootstrap_interval(

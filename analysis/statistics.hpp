@@ -36,8 +36,11 @@ double correlation_time(const std::vector<double>& series);
 /// Mean of a series of any length in constant memory, with the error of a correlated series.
 ///
 /// The series is kept as at most 4096 means of equally many consecutive values (one each for a short series).
-/// From it come the integrated correlation time tau and blocks: at most 20 of equal length, each at least 5
-/// tau long. What neighbouring blocks still share is corrected for as if the correlation fell exponentially.
+/// From it come the integrated correlation time tau and blocks at all places, each at least 5 tau and an
+/// eighth of the series long: with n values and blocks of m, whose means are b_j, the variance of the mean is
+///   m sum_j (b_j - mean)^2/((n - m + 1)(n - m))
+/// (Meketon & Schmeiser 1984), with (n/m - 1) 3 m^2/(2 m^2 + 1) degrees of freedom. What a block shares with
+/// the next is corrected for as if the correlation fell exponentially.
 class BlockAverage {
  public:
   void add(double value);
@@ -48,7 +51,7 @@ class BlockAverage {
   [[nodiscard]] double variance() const;
   /// Integrated correlation time (see above), in values.
   [[nodiscard]] double correlation_time() const;
-  /// 95 % interval of the mean by Student's t over the blocks. Absent for fewer than 4 values, or if fewer
+  /// 95 % interval of the mean by Student's t. Absent for fewer than 4 values, or if fewer
   /// than 5 blocks of 5 correlation times fit into the series (one block per value where no correlation is
   /// to be seen, tau < 0.65).
   [[nodiscard]] std::optional<Interval> interval(const std::string& of_what) const;

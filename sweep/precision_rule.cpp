@@ -15,7 +15,7 @@ namespace twincell::sweep {
 namespace {
 
 constexpr double kBetweenLooks = 1.2;
-constexpr double kFewestCycles = 100, kFewestFlights = 20;
+constexpr double kFewestCycles = 100, kFewestFlights = 40;
 
 std::int64_t first_look(const sim::Scene& scene) {
   // A flight of 2 V_p/g takes Gamma/pi periods.
