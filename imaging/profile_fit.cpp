@@ -15,7 +15,8 @@ namespace twincell {
 namespace {
 
 constexpr double kReach = 3;            // px beyond the radius: where the outer rim has ended
-constexpr int kRounds = 3;              // of learning and fitting
+constexpr int kLessons = 2;             // of learning and looking for what is alike
+constexpr int kRounds = 3;              // of fitting and learning
 constexpr int kSweeps = 4;              // of a round
 constexpr double kSettled = 2e-3;       // px
 constexpr double kMinScore = 0.5;       // as the judge asks
@@ -23,6 +24,8 @@ constexpr double kMinLevel = 0.4;       // of a, as the opaque fit asks
 constexpr double kRadiusSpread = 0.04;  // prior of R_k, of R
 constexpr double kLevelSpread = 0.1;    // prior of a_k
 constexpr double kDoubled = 0.5;        // of R: centres nearer than that are of one disc
+constexpr double kLike = 0.4;           // correlation of what may be a disc with the profile
+constexpr double kApart = 1.6;          // of R: no disc is looked for nearer to another, as in the vote
 
 /// f and its slope at a distance, R = that of the profile.
 struct Level {
@@ -47,6 +50,7 @@ class ProfileFit {
     shared_.levels.assign(static_cast<std::size_t>(std::ceil((radius + kReach) * DiscProfile::kPerPixel)) + 1,
                           0.0F);
     model_ = cv::Mat1f::zeros(image.darkness.size());
+    taken_.create(image.darkness.rows + 2 * reach(), image.darkness.cols + 2 * reach());
   }
 
   void start(const std::vector<Proposal>& proposals) {
@@ -67,58 +71,66 @@ class ProfileFit {
     const auto n = static_cast<Eigen::Index>(shared_.levels.size());  // the last is g
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-    // Which discs a pixel sees: at most a few.
-    struct Share {
-      double at[2];
-      Eigen::Index index[2];
+    // What each pixel sees of each level, of all discs that reach it; first as it comes, then by pixel.
+    struct Term {
+      std::size_t row;
+      int level;
+      double share;
     };
-    std::vector<std::vector<std::pair<int, double>>> rows;
+    std::vector<Term> seen;
     cv::Mat1i of_pixel(image_.darkness.size(), -1);
     std::vector<cv::Point> pixels;
+    const int last = static_cast<int>(n) - 1;
     for (const Detection& b : beads_) {
       if (b.score < least) continue;
       over(b, [&](int x, int y, double r) {
         const double t = r * radius_ / b.radius * DiscProfile::kPerPixel;
         const auto k = static_cast<int>(t);
-        if (k + 1 >= n) return;
+        if (k >= last) return;
         int& row = of_pixel(y, x);
         if (row < 0) {
-          row = static_cast<int>(rows.size());
-          rows.emplace_back();
+          row = static_cast<int>(pixels.size());
           pixels.emplace_back(x, y);
         }
         const double part = t - k;
-        auto& terms = rows[static_cast<std::size_t>(row)];
-        terms.emplace_back(k, b.darkness * (1 - part));
-        if (k + 2 < n) terms.emplace_back(k + 1, b.darkness * part);
+        seen.push_back({static_cast<std::size_t>(row), k, b.darkness * (1 - part)});
+        if (k + 1 < last) seen.push_back({static_cast<std::size_t>(row), k + 1, b.darkness * part});
       });
     }
-    const bool known = learnt_;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      auto& terms = rows[i];
-      terms.emplace_back(static_cast<int>(n) - 1, 1.0);
-      const double d = static_cast<double>(image_.darkness(pixels[i]));
+    std::vector<std::size_t> first(pixels.size() + 1, 0);
+    for (const Term& t : seen) ++first[t.row + 1];
+    for (std::size_t row = 0; row < pixels.size(); ++row) first[row + 1] += first[row];
+    std::vector<Term> terms(seen.size());
+    std::vector<std::size_t> at(first.begin(), first.end());
+    for (const Term& t : seen) terms[at[t.row]++] = t;
+    std::vector<Term> of_one;
+    for (std::size_t row = 0; row < pixels.size(); ++row) {
+      of_one.assign(terms.begin() + static_cast<std::ptrdiff_t>(first[row]),
+                    terms.begin() + static_cast<std::ptrdiff_t>(first[row + 1]));
+      of_one.push_back({row, last, 1});
+      const double d = static_cast<double>(image_.darkness(pixels[row]));
       double weight = 1;
-      if (known) {
+      if (learnt_) {
         double now = 0;
-        for (const auto& [k, share] : terms)
-          now += share * (k + 1 == n ? shared_.ground
-                                     : static_cast<double>(shared_.levels[static_cast<std::size_t>(k)]));
+        for (const Term& t : of_one)
+          now += t.share * (t.level == last
+                                ? shared_.ground
+                                : static_cast<double>(shared_.levels[static_cast<std::size_t>(t.level)]));
         weight = std::min(1.0, huber_ / std::max(1e-9, std::abs(d - now)));
       }
-      for (const auto& [k, share] : terms) {
-        right[k] += weight * share * d;
-        for (const auto& [l, other] : terms) a(k, l) += weight * share * other;
+      for (const Term& t : of_one) {
+        right[t.level] += weight * t.share * d;
+        for (const Term& u : of_one) a(t.level, u.level) += weight * t.share * u.share;
       }
     }
     // Levels that few pixels see, as at the centre, go on like their neighbours.
-    const double smooth = 0.02 * static_cast<double>(rows.size()) / static_cast<double>(n);
+    const double smooth = 0.02 * static_cast<double>(pixels.size()) / static_cast<double>(n);
     for (Eigen::Index k = 1; k + 2 < n; ++k) {
       a(k - 1, k - 1) += smooth, a(k, k) += smooth;
       a(k - 1, k) -= smooth, a(k, k - 1) -= smooth;
     }
     a(n - 2, n - 2) += 100 * smooth;  // 0 where the disc has ended
-    a.diagonal().array() += 1e-9 * static_cast<double>(rows.size() + 1);
+    a.diagonal().array() += 1e-9 * static_cast<double>(pixels.size() + 1);
     const Eigen::VectorXd solved = a.ldlt().solve(right);
     for (Eigen::Index k = 0; k + 1 < n; ++k)
       shared_.levels[static_cast<std::size_t>(k)] = static_cast<float>(solved[k]);
@@ -171,39 +183,29 @@ class ProfileFit {
     render();
   }
 
-  /// Discs that the vote did not propose: where the frame looks like the profile.
-  void add_missed() {
-    constexpr double kLike = 0.5;  // correlation
-    const int reach = cvCeil(radius_) + 1;
-    const cv::Size size = image_.darkness.size();
-    if (size.width < 2 * reach || size.height < 2 * reach) return;
-    cv::Mat1f pattern(2 * reach + 1, 2 * reach + 1), seen, like;
-    for (int y = -reach; y <= reach; ++y)
-      for (int x = -reach; x <= reach; ++x)
-        pattern(y + reach, x + reach) = static_cast<float>(level_at(shared_, std::hypot(x, y)).value);
-    cv::copyMakeBorder(image_.darkness, seen, reach, reach, reach, reach, cv::BORDER_CONSTANT,
-                       cv::Scalar(shared_.ground));
-    cv::matchTemplate(seen, pattern, like, cv::TM_CCOEFF_NORMED);
-    std::vector<Proposal> missed;
-    for (int y = 1; y + 1 < like.rows; ++y)
-      for (int x = 1; x + 1 < like.cols; ++x) {
-        const float v = like(y, x);
-        if (static_cast<double>(v) < kLike || v < like(y, x - 1) || v < like(y, x + 1) ||
-            v < like(y - 1, x) || v < like(y + 1, x))
-          continue;
-        missed.push_back({static_cast<double>(x), static_cast<double>(y), static_cast<double>(v), radius_});
-      }
-    std::stable_sort(missed.begin(), missed.end(),
-                     [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
-    const std::size_t before = beads_.size();
-    for (const Proposal& p : missed) {
-      Detection b;
-      b.x = p.x, b.y = p.y, b.radius = radius_, b.darkness = 1, b.score = p.score;
-      const bool known = std::any_of(beads_.begin(), beads_.end(), [&](const Detection& c) {
-        return std::hypot(c.x - b.x, c.y - b.y) < 1.5 * radius_;
-      });
-      if (!known && !in_wall(image_, b)) beads_.push_back(b);
+  /// Replaces the discs by the places that look like the profile. In a packing votes lie a pixel or two off,
+  /// from where no step leads home, and miss discs of which little more than the rims of their neighbours is
+  /// beside them; of these places all of a disc's pixels speak. A disc stays where nothing looks like one, as
+  /// beyond the frame, but teaches nothing.
+  void propose_alike() {
+    std::vector<Detection> voted;
+    std::swap(voted, beads_);
+    taken_.setTo(0);
+    add_alike(image_.darkness);
+    for (Detection& b : voted) {
+      if (taken(b)) continue;
+      b.score = 0;
+      beads_.push_back(b);
     }
+    render();
+  }
+
+  /// Adds the places where what is left of the picture looks like the profile.
+  void add_missed() {
+    taken_.setTo(0);
+    for (const Detection& b : beads_) take(b);
+    const std::size_t before = beads_.size();
+    add_alike(image_.darkness - model_);
     if (beads_.size() > before) render();
   }
 
@@ -228,6 +230,73 @@ class ProfileFit {
   [[nodiscard]] bool empty() const { return beads_.empty(); }
 
  private:
+  /// Pixels to each side of a disc's centre that show it.
+  [[nodiscard]] int reach() const { return cvCeil(radius_) + 1; }
+  [[nodiscard]] cv::Point pixel_of(const Detection& b) const {
+    return {std::clamp(cvRound(b.x) + reach(), 0, taken_.cols - 1),
+            std::clamp(cvRound(b.y) + reach(), 0, taken_.rows - 1)};
+  }
+  [[nodiscard]] bool taken(const Detection& b) const { return taken_(pixel_of(b)) != 0; }
+  void take(const Detection& b) {
+    cv::circle(taken_, pixel_of(b), cvRound(kApart * radius_), 255, cv::FILLED);
+  }
+
+  /// Adds discs where the picture looks like the profile, the most like first, where there is room.
+  void add_alike(const cv::Mat1f& picture) {
+    const cv::Mat1f like = likeness(picture);
+    std::vector<Detection> tops;
+    for (int y = 0; y < like.rows; ++y)
+      for (int x = 0; x < like.cols; ++x) {
+        const float v = like(y, x);
+        if (static_cast<double>(v) < kLike) continue;
+        const cv::Rect around = cv::Rect(x - 1, y - 1, 3, 3) & cv::Rect({}, like.size());
+        double most = 0;
+        cv::minMaxLoc(like(around), nullptr, &most);
+        if (static_cast<double>(v) < most) continue;
+        Detection b;
+        b.x = x, b.y = y, b.radius = radius_, b.darkness = 1, b.score = static_cast<double>(v);
+        tops.push_back(b);
+      }
+    std::stable_sort(tops.begin(), tops.end(),
+                     [](const Detection& a, const Detection& b) { return a.score > b.score; });
+    for (const Detection& b : tops) {
+      if (taken(b) || in_wall(image_, b)) continue;
+      beads_.push_back(b);
+      take(b);
+    }
+  }
+
+  /// Correlation of the picture around each pixel with the profile, over r < R: what is outside belongs to
+  /// neighbours as well. 0 where the profile fits best with a level that no disc has. Beyond its border the
+  /// picture goes on as at the border.
+  [[nodiscard]] cv::Mat1f likeness(const cv::Mat1f& picture) const {
+    const int side = 2 * reach() + 1;
+    cv::Mat1f disc = cv::Mat1f::zeros(side, side), profile = disc.clone();
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        const double r = std::hypot(x - reach(), y - reach());
+        if (r >= radius_) continue;
+        disc(y, x) = 1;
+        profile(y, x) = static_cast<float>(level_at(shared_, r).value);
+      }
+    profile -= disc * (cv::sum(profile)[0] / cv::sum(disc)[0]);
+    const double n = cv::sum(disc)[0], of_profile = profile.dot(profile);
+    cv::Mat1f wide, both, sum, squares;
+    cv::copyMakeBorder(picture, wide, reach(), reach(), reach(), reach(), cv::BORDER_REPLICATE);
+    cv::matchTemplate(wide, profile, both, cv::TM_CCORR);
+    cv::matchTemplate(wide, disc, sum, cv::TM_CCORR);
+    cv::matchTemplate(wide.mul(wide), disc, squares, cv::TM_CCORR);
+    cv::Mat1f like = cv::Mat1f::zeros(picture.size());
+    for (int y = 0; y < like.rows; ++y)
+      for (int x = 0; x < like.cols; ++x) {
+        const double s = static_cast<double>(sum(y, x)), common = static_cast<double>(both(y, x)),
+                     of_picture = static_cast<double>(squares(y, x)) - s * s / n;
+        if (common > kMinLevel * of_profile && of_picture > 0)
+          like(y, x) = static_cast<float>(common / std::sqrt(of_profile * of_picture));
+      }
+    return like;
+  }
+
   /// Calls use(x, y, r) for the pixels of the frame that a disc reaches.
   template <class Use>
   void over(const Detection& b, Use&& use, double beyond = kReach) const {
@@ -236,7 +305,8 @@ class ProfileFit {
     for (int y = std::max(0, cvCeil(b.y - reach)); y <= last_row; ++y) {
       const double dy = y - b.y, half = std::sqrt(std::max(0.0, reach * reach - dy * dy));
       const int last = std::min(image_.darkness.cols - 1, cvFloor(b.x + half));
-      for (int x = std::max(0, cvCeil(b.x - half)); x <= last; ++x) use(x, y, std::hypot(x - b.x, dy));
+      for (int x = std::max(0, cvCeil(b.x - half)); x <= last; ++x)
+        use(x, y, std::sqrt((x - b.x) * (x - b.x) + dy * dy));
     }
   }
 
@@ -308,6 +378,7 @@ class ProfileFit {
   DiscProfile shared_;
   bool learnt_ = false;
   cv::Mat1f model_;
+  cv::Mat1b taken_;  // by the discs that there are: no other has its centre there
   std::vector<Detection> beads_, dropped_;
   std::vector<Normal> covariance_;
 };
@@ -362,15 +433,19 @@ Refined refine_by_profile(const Prepared& image, const std::vector<Proposal>& pr
                           int most_sweeps, DiscProfile* learnt) {
   ProfileFit fit(image, radius_px);
   fit.start(proposals);
+  fit.learn(fit.typical_score());  // from the better half of the proposals
+  for (int k = 0; k < kLessons && !fit.empty(); ++k) {
+    fit.propose_alike();
+    fit.learn(kLike);
+  }
   int sweeps = 0;
   for (int round = 0; round < kRounds && !fit.empty(); ++round) {
-    // The first time from the better half of the proposals; then from what explains itself.
-    fit.learn(round == 0 ? fit.typical_score() : kMinScore);
     const int most = round + 1 == kRounds ? most_sweeps : std::min(kSweeps, most_sweeps);
     for (int k = 0; k < most; ++k, ++sweeps)
       if (fit.sweep() < kSettled) break;
     fit.prune();
-    if (round + 1 < kRounds) fit.add_missed();
+    if (round + 1 < kRounds) fit.learn(kMinScore);
+    if (round == 0) fit.add_missed();
   }
   if (!fit.empty()) fit.sweep();
   if (learnt != nullptr) *learnt = fit.profile();

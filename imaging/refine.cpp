@@ -14,6 +14,7 @@
 #include "imaging/coupled_step.hpp"
 #include "imaging/disc_measures.hpp"
 #include "imaging/disc_sums.hpp"
+#include "imaging/light_ripple.hpp"
 
 namespace twincell {
 
@@ -154,54 +155,23 @@ class PictureFit {
                 Belief{upper_median(std::move(darkness)), 0.02}};
   }
 
-  /// Divides the light by a quadratic surface, so that what is left in the gaps between the discs vanishes. A
-  /// rim that is not yet in its place leaves something too: taken for light, it moved touching beads by 0.004
-  /// px, so pixels count by the sixteenth power of the light that the model leaves them.
+  /// Divides the light by a quadratic surface, so that what is left in the gaps between the discs vanishes.
   void level() {
-    constexpr double kSamples = 10000;
-    constexpr int kEnough = 200;
     if (stale_) render();
-    Eigen::Matrix<double, 6, 6> a = Eigen::Matrix<double, 6, 6>::Zero();
-    Surface right = Surface::Zero();
-    const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size_.area()) / kSamples)));
-    const double far = ring_args().huber;
-    int n = 0;
-    double weights = 0;
-    for (int y = 0; y < size_.height; y += stride)
-      for (int x = y / stride % 2; x < size_.width; x += stride) {
-        const double t = static_cast<double>(model_(y, x)), left = static_cast<double>(picture_(y, x)) - t;
-        if (t > 0.7 || std::abs(left) > far) continue;
-        const double light = std::max(0.0, 1 - t), light4 = light * light * light * light;
-        const double weight = light4 * light4 * light4 * light4;
-        const Surface f = light * surface_basis(x, y, size_);
-        a += weight * f * f.transpose();
-        right += weight * left * f;
-        weights += weight;
-        ++n;
-      }
-    if (n < kEnough) return;
-    a.diagonal().tail<5>().array() += 1e-3 * weights;
-    const Surface q = a.ldlt().solve(right);
+    const std::optional<Surface> q = quadratic_left();
     // What is far below the noise moves no bead.
     constexpr double kOfNoise = 0.02;
-    if (q.cwiseAbs().sum() < kOfNoise * std::sqrt(noise_.dark + noise_.light)) return;
-    cv::Mat1f to = picture_;
-    if (!owned_) {
-      to = cv::Mat1f(picture_.size());
-      to.colRange(size_.width, to.cols).setTo(kUnseen);
-    }
-    std::vector<float> levelled(static_cast<std::size_t>(size_.width));
-    for (int y = 0; y < size_.height; ++y) {
-      const float* from = picture_[y];
-      float *d = to[y], *level = levelled.data();
-      const SurfaceRow row = surface_row(q, y, size_);
-      // In two steps, for the compiler makes vectors of neither a division nor a choice where both are one.
-      for (int x = 0; x < size_.width; ++x) level[x] = 1 - (1 - from[x]) / (1 - row.at(x));
-      for (int x = 0; x < size_.width; ++x) d[x] = from[x] < kUnseen ? level[x] : kUnseen;
-    }
-    picture_ = to;
-    owned_ = true;
-    before_.reset();
+    if (q && q->cwiseAbs().sum() >= kOfNoise * std::sqrt(noise_.dark + noise_.light)) divide_light(*q, {});
+  }
+  /// Likewise by a smooth surface, if what a quadratic leaves shows a ripple. For discs in place: edges that
+  /// are not yet blurred as they should be look like one. The last step may be missing in the model: it was
+  /// small. \returns whether there was one
+  bool level_ripple() {
+    const std::optional<Surface> q = quadratic_left();
+    if (!q) return false;
+    const cv::Mat1f ripple = ripple_beside(*q);
+    if (!ripple.empty()) divide_light(*q, ripple);
+    return !ripple.empty();
   }
 
   /// A disc that nobody proposed leaves a dark disc in the residual picture: blocks of pixels, three by three
@@ -287,6 +257,103 @@ class PictureFit {
   [[nodiscard]] std::optional<bool> moves() const { return moves_; }
 
  private:
+  /// Calls use(x, y, light, left, weight) for about so many pixels, those in the gaps between the discs: the
+  /// share of the light that the model leaves them, and what it leaves of the picture. A rim that is not yet
+  /// in its place leaves something too: taken for light, it moved touching beads by 0.004 px, so pixels count
+  /// by the sixteenth power of the light.
+  template <class Use>
+  void over_gaps(double samples, Use&& use) const {
+    const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size_.area()) / samples)));
+    const double far = ring_args().huber;
+    for (int y = 0; y < size_.height; y += stride)
+      for (int x = y / stride % 2; x < size_.width; x += stride) {
+        const double t = static_cast<double>(model_(y, x)), left = static_cast<double>(picture_(y, x)) - t;
+        if (t > 0.7 || std::abs(left) > far) continue;
+        const double light = std::max(0.0, 1 - t), light4 = light * light * light * light;
+        use(x, y, light, left, light4 * light4 * light4 * light4);
+      }
+  }
+
+  /// The quadratic surface through what is left in the gaps.
+  [[nodiscard]] std::optional<Surface> quadratic_left() const {
+    constexpr double kSamples = 10000;
+    constexpr int kEnough = 200;
+    Eigen::Matrix<double, 6, 6> a = Eigen::Matrix<double, 6, 6>::Zero();
+    Surface right = Surface::Zero();
+    int n = 0;
+    double weights = 0;
+    over_gaps(kSamples, [&](int x, int y, double light, double left, double weight) {
+      const Surface f = light * surface_basis(x, y, size_);
+      a += weight * f * f.transpose();
+      right += weight * left * f;
+      weights += weight;
+      ++n;
+    });
+    if (n < kEnough) return std::nullopt;
+    a.diagonal().tail<5>().array() += 1e-3 * weights;
+    return a.ldlt().solve(right);
+  }
+  /// \param ripple  beside the quadratic surface, pixel by pixel; empty: none
+  void divide_light(const Surface& q, const cv::Mat1f& ripple) {
+    cv::Mat1f to = picture_;
+    if (!owned_) {
+      to = cv::Mat1f(picture_.size());
+      to.colRange(size_.width, to.cols).setTo(kUnseen);
+    }
+    std::vector<float> levelled(static_cast<std::size_t>(size_.width));
+    for (int y = 0; y < size_.height; ++y) {
+      const float* from = picture_[y];
+      float *d = to[y], *level = levelled.data();
+      const SurfaceRow row = surface_row(q, y, size_);
+      // In steps, for the compiler makes vectors of neither a division nor a choice where both are one.
+      for (int x = 0; x < size_.width; ++x) level[x] = 1 - row.at(x);
+      if (!ripple.empty())
+        for (int x = 0; x < size_.width; ++x) level[x] -= ripple(y, x);
+      for (int x = 0; x < size_.width; ++x) level[x] = 1 - (1 - from[x]) / level[x];
+      for (int x = 0; x < size_.width; ++x) d[x] = from[x] < kUnseen ? level[x] : kUnseen;
+    }
+    picture_ = to;
+    owned_ = true;
+    before_.reset();
+  }
+
+  /// What a quadratic surface leaves of the light, tile by tile. One more all round tells nothing: between
+  /// them and their neighbours lies the frame's border.
+  struct Tiles {
+    cv::Mat1d mean, variance;
+  };
+  [[nodiscard]] Tiles tiles_beside(const Surface& q, int side, double samples) const {
+    const cv::Size count(size_.width / side + 3, size_.height / side + 3);
+    cv::Mat1d sum = cv::Mat1d::zeros(count), weights = sum.clone(), squares = sum.clone();
+    over_gaps(samples, [&](int x, int y, double light, double left, double weight) {
+      const int at_x = x / side + 1, at_y = y / side + 1;
+      sum(at_y, at_x) += weight * light * (left - light * q.dot(surface_basis(x, y, size_)));
+      weights(at_y, at_x) += weight * light * light;
+      squares(at_y, at_x) += weight * weight * light * light;
+    });
+    const double variance = noise_.dark + noise_.light;
+    Tiles tiles{cv::Mat1d::zeros(count), cv::Mat1d(count, HUGE_VAL)};
+    for (int y = 0; y < count.height; ++y)
+      for (int x = 0; x < count.width; ++x)
+        if (const double w = weights(y, x); w > 0) {
+          tiles.mean(y, x) = sum(y, x) / w;
+          tiles.variance(y, x) = variance * squares(y, x) / (w * w);
+        }
+    return tiles;
+  }
+  /// The light's ripple beside a quadratic surface, pixel by pixel; empty where none is seen.
+  [[nodiscard]] cv::Mat1f ripple_beside(const Surface& q) const {
+    constexpr double kSeen = 10000, kFound = 400000;  // samples that tell of one, and what it is
+    constexpr int kMost = 32;                         // tiles
+    const int side = std::max(cvCeil(6 * radius_), std::max(size_.width, size_.height) / kMost);
+    if (const Tiles seen = tiles_beside(q, side, kSeen); !has_ripple(seen.mean, seen.variance)) return {};
+    const Tiles found = tiles_beside(q, side, kFound);
+    const cv::Mat1f map = smooth_ripple(found.mean, found.variance);
+    cv::Mat1f wide;
+    cv::resize(map, wide, map.size() * side, 0, 0, cv::INTER_CUBIC);
+    return wide(cv::Rect({side, side}, size_));
+  }
+
   /// What all discs' equations share with those of the blur: one unknown (s^2) or three.
   struct BlurEquations {
     std::vector<std::vector<Step>> shared;  // for each unknown, of each disc
@@ -661,7 +728,8 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
   constexpr double kBlurSettled = 0.03;  // of s^2: moves no touching bead by more than its error
   // Whether the bed moved during the exposure shows once the discs are in place.
   BlurFit blur = options.blur_px > 0 ? BlurFit::none : BlurFit::uneven;
-  int sweeps = 0;
+  constexpr int kMostRipples = 2;  // of the light, one beside the other
+  int sweeps = 0, ripples = 0;
   bool blurred = false;
   double before = HUGE_VAL;
   while (sweeps < most_sweeps) {
@@ -680,6 +748,10 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
     if (sweeps >= kLeast && !moved.short_step && !moved.pruned && moved.blur < kBlurSettled &&
         shrinks * left < kEnough * moved.sigma &&
         shrinks * moved.most < std::max(options.tolerance_px, kWorst * moved.sigma)) {
+      if (ripples < kMostRipples && sweeps < most_sweeps && fit.level_ripple()) {
+        ++ripples;
+        continue;
+      }
       fit.leave(shrinks);
       break;
     }

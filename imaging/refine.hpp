@@ -7,11 +7,12 @@
 /// are fitted on the ring |r - R| <= ring_px alone (glare and tracers inside do no harm), all beads of a
 /// frame together (coupled_step.hpp), and with them the blur they share, the straight way by which the bed
 /// moved during the exposure, if the blur differs between directions, and a quadratic correction of the light
-/// B. Discs beyond the frame that darken its border (beyond_frame.hpp) are fitted along. Noise is Gaussian
-/// with the variance of camera noise, v = v_d + v_l (1 - d), found from the picture; residuals are weighted
-/// after Huber. What R and a scatter by is found too, and serves as prior: beads of one kind need not have
-/// each its own darkness fitted from noise. Then the fit is one of maximum likelihood. Bound (Cramer-Rao, 15
-/// px disc, blur 0.8 px): 0.36/SNR px per coordinate.
+/// B; of a ripple that this leaves, a smooth map (light_ripple.hpp). Discs beyond the frame that darken its
+/// border (beyond_frame.hpp) are fitted along. Noise is Gaussian with the variance of camera noise,
+/// v = v_d + v_l (1 - d), found from the picture; residuals are weighted after Huber. What R and a scatter by
+/// is found too, and serves as prior: beads of one kind need not have each its own darkness fitted from
+/// noise. Then the fit is one of maximum likelihood. Bound (Cramer-Rao, 15 px disc, blur 0.8 px): 0.36/SNR px
+/// per coordinate.
 ///
 /// The first sweep reads every other row and leaves a twelfth of the way to go, on average; two sweeps do
 /// where the proposals are good.

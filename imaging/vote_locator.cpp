@@ -89,17 +89,19 @@ std::vector<Proposal> suppress_near(const std::vector<Proposal>& sorted, double 
 std::vector<Proposal> VoteFinder::find(const Prepared& image, const FindOptions& options) {
   const double r = options.radius_px;
   const int pad = static_cast<int>(std::ceil(r)) + 2;
-  const cv::Mat1f sum = smoothed_votes(image.darkness, image.opaque, r, pad);
+  // Wider, the votes for touching discs of 6 px ran into each other: their tops lay a pixel off, and kept the
+  // fit from seeking those discs where they are.
+  const double smoothing = std::min(kVoteSmoothing, r / 3);
+  const cv::Mat1f sum = smoothed_votes(image.darkness, image.opaque, r, smoothing, pad);
   // 2 pi R pixels of edge, each of integral 1, meet in a spot of the smoothing plus about a pixel of scatter.
-  const double full_circle =
-      2 * std::numbers::pi * r / (2 * std::numbers::pi * (kVoteSmoothing * kVoteSmoothing + 1));
+  const double full_circle = 2 * std::numbers::pi * r / (2 * std::numbers::pi * (smoothing * smoothing + 1));
   return suppress_near(peaks(sum, pad, full_circle, options.min_score), 0.8 * 2 * r, image.darkness.size(),
                        pad);
 }
 
 double vote_sharpness(const cv::Mat1f& darkness, double radius_px) {
   const int pad = static_cast<int>(std::ceil(radius_px)) + 2;
-  const cv::Mat1f sum = smoothed_votes(darkness, {}, radius_px, pad);
+  const cv::Mat1f sum = smoothed_votes(darkness, {}, radius_px, kVoteSmoothing, pad);
   const double total = cv::sum(sum)[0];
   return total > 0 ? sum.dot(sum) / total : 0.0;
 }

@@ -136,7 +136,8 @@ void with_neighbour_rows(const cv::Mat1f& frame, Use&& use) {
 
 }  // namespace
 
-cv::Mat1f smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, double radius_px, int pad) {
+cv::Mat1f smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, double radius_px,
+                         double smoothing, int pad) {
   constexpr int kTail = 4;  // pixels of the smoothing to each side
   const auto n = static_cast<std::size_t>(darkness.cols);
   const int border = pad + kTail;
@@ -155,7 +156,7 @@ cv::Mat1f smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, dou
   std::array<float, kTail + 1> weights{};
   double sum = 0;
   for (int k = 0; k <= kTail; ++k) {
-    const double w = std::exp(-0.5 * k * k / (kVoteSmoothing * kVoteSmoothing));
+    const double w = std::exp(-0.5 * k * k / (smoothing * smoothing));
     weights[static_cast<std::size_t>(k)] = static_cast<float>(w);
     sum += k == 0 ? w : 2 * w;
   }

@@ -150,6 +150,11 @@ const std::vector<Case> kCases{
        for (std::size_t k = 0; k < p.discs.size(); k += 20) p.discs[k].contrast = 0.6;
        return p;
      }},
+    {"beads_6px", "random, beads of 6 px", 6, kOne,
+     [](std::uint64_t seed) {
+       Random random(seed);
+       return bed(random, 6);
+     }},
     {"beads_8px", "random, beads of 8 px", 8, kOne,
      [](std::uint64_t seed) {
        Random random(seed);
