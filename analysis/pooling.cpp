@@ -113,12 +113,7 @@ std::optional<Interval> interval_over_runs(const Values& v) {
   const double half_own = kStandardErrors * std::sqrt(own) / count;
   if (scatter <= 1e-12 * std::abs(centre) && half_own <= 1e-12 * std::abs(centre)) return std::nullopt;
   const std::string of = fmt::format("{} runs", n);
-  std::optional<Interval> interval;
-  if (n >= kRunsToResample) interval = mean_interval(v.values, of);
-  if (!interval) {
-    const double half = student_t_95(count - 1) * scatter;
-    interval = Interval{centre - half, centre + half, 0.95, "Student's t over " + of};
-  }
+  std::optional<Interval> interval = mean_interval(v.values, of);
   if (interval->low <= centre - half_own && interval->high >= centre + half_own) return interval;
   interval->low = std::min(interval->low, centre - half_own);
   interval->high = std::max(interval->high, centre + half_own);

@@ -9,11 +9,6 @@
 
 namespace twincell {
 
-/// From this many runs on the interval is a bootstrap over runs; Student's t below it, where a resample has
-/// too few runs to choose from. Of normal values t covers 95 % at every number; of exponentially distributed
-/// ones it covers 87 % of the means of 6, the bootstrap 94 %.
-inline constexpr std::size_t kRunsToResample = 6;
-
 /// The results of all runs together, in the order of the first.
 ///
 /// A number is the mean over the runs that have it, each counting once: beds are what differs by chance, not

@@ -79,7 +79,7 @@ std::optional<Interval> bootstrap_interval(
 
 /// 95 % interval of the mean of independent items from a skewed distribution: bootstrap of Student's t (Efron
 /// & Tibshirani 1993, ch. 12.5), widened by sqrt(n/(n - 2)) for what n items do not show of the skewness.
-/// Same seed, same interval. Absent for fewer than 3 items.
+/// Same seed, same interval. Of 2 to 5 items, whose resamples show too little: Student's t. Absent for fewer.
 std::optional<Interval> mean_interval(const std::vector<double>& items, const std::string& of_what,
                                       std::uint64_t seed = 1, std::size_t resamples = 1000);
 

@@ -166,7 +166,14 @@ TEST(Statistics, BootstrapCoversMeanAndSpreadOfAFewItems) {
   test::validate(
       {"V5.12", "coverage, %, of the studentised bootstrap: variance of 20 items", 95, 2, "binomial"},
       coverage(1000, 1, skewed));
-  EXPECT_FALSE(mean_interval({1, 2}, "values").has_value());
+  EXPECT_FALSE(mean_interval({1}, "values").has_value());
+  const auto of_two = mean_interval({1, 2}, "values");
+  ASSERT_TRUE(of_two.has_value());
+  EXPECT_NEAR(of_two->high, 1.5 + 12.706 * 0.5, 1e-3);  // Student's t
+  // The studentised bootstrap of these three would reach to 2: two of them are alike.
+  const auto of_three = mean_interval({0.1435, 0.1436, 0.15}, "values");
+  ASSERT_TRUE(of_three.has_value());
+  EXPECT_NEAR(of_three->high - of_three->low, 2 * 4.303 * 0.0021502, 1e-5);
   draw();
   const auto once = bootstrap_interval(sample.size(), mean, "values"),
              again = bootstrap_interval(20, mean, "values");
