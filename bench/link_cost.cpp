@@ -58,6 +58,14 @@ int main(int argc, char** argv) {
   if (argc > 5) options.memory = std::stoi(argv[5]);
   const int repetitions = argc > 6 ? std::stoi(argv[6]) : 1;
 
+  auto moment_of = [&](std::size_t f) {
+    FrameMoment moment;
+    if (phases > 0) {
+      moment.phase = static_cast<std::int32_t>(f % static_cast<std::size_t>(phases));
+      moment.cycle = static_cast<std::int64_t>(f / static_cast<std::size_t>(phases));
+    }
+    return moment;
+  };
   double best = 1e300;
   LinkReport report;
   for (int r = 0; r < repetitions; ++r) {
@@ -66,13 +74,11 @@ int main(int argc, char** argv) {
     Linker linker(options, phases);
     double seconds = 0;
     for (std::size_t f = 0; f < frames.size(); ++f) {
-      FrameMoment moment;
-      if (phases > 0) {
-        moment.phase = static_cast<std::int32_t>(f % static_cast<std::size_t>(phases));
-        moment.cycle = static_cast<std::int64_t>(f / static_cast<std::size_t>(phases));
-      }
+      const FrameAhead ahead =
+          f + 1 < frames.size() ? FrameAhead{frames[f + 1], moment_of(f + 1), {}} : FrameAhead{};
       const double start = cpu_seconds();
-      const std::vector<std::int64_t> ids = linker.next(frames[f], moment);
+      const std::vector<std::int64_t> ids =
+          linker.next(frames[f], moment_of(f), {}, f + 1 < frames.size() ? &ahead : nullptr);
       seconds += cpu_seconds() - start;
       if (r > 0) continue;
       for (std::size_t k = 0; k < ids.size(); ++k) {

@@ -1,6 +1,7 @@
 #include "imaging/coherent_match.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -17,25 +18,29 @@ namespace twincell {
 namespace {
 
 // Lengths in diameters, costs in logarithms of odds. Chosen on the cells of `bench link`.
-constexpr double kReach = 1.6;              // of neighbours,
-constexpr std::size_t kMostNeighbours = 7;  // the nearest so many
-constexpr double kTouch = 1.2;              // up to which they count in full,
-constexpr double kLoose = 0.6;              // and what the farthest count
-constexpr double kWidth = 0.15;             // of the core of the density of the difference of two steps
-constexpr double kScale = 2;                // its exponent
-constexpr double kAlike = 1.2;              // difference of steps beyond which nothing gets dearer
-constexpr double kThrough =
-    0.65;  // between centres on straight ways: nearer, one disc passes through the other
+constexpr double kReach = 1.6;                  // of neighbours,
+constexpr std::size_t kMostNeighbours = 7;      // the nearest so many
+constexpr double kTouch = 1.2;                  // up to which they count in full,
+constexpr double kLoose = 0.6;                  // and what the farthest count
+constexpr double kWidth = 0.15;                 // of the core of the density of the difference of two steps
+constexpr double kScale = 2;                    // its exponent
+constexpr double kAlike = 1.2;                  // difference of steps beyond which nothing gets dearer
+constexpr double kBeside = 0.9;                 // between centres on straight ways: nearer, discs overlap,
+constexpr double kThrough = 0.75;               // and one passes through the other
 constexpr double kPassing = 15;                 // for that
+constexpr double kMeeting = 3;                  // beads farther apart do not meet within a frame
 constexpr double kVoid = 8;                     // for a detection to which nobody goes
 constexpr double kTwice = 100;                  // for a detection to which two go; they never do
 constexpr int kSweeps = 20;                     // of messages, fewer where nobody changes his mind,
 constexpr int kSure = 4;                        // so many times on end
 constexpr double kPlain = 1, kTempered = 0.34;  // share of a belief that is sent on
 constexpr int kSeeds = 5;                       // beads from which a proposal is grown
-constexpr double kTrust = 0.1;  // distance that a settled neighbour is worth in who goes first
-constexpr double kMuch = 10;    // rise of the sum that is not worked out
-constexpr double kLess = 1e-6;  // what counts as cheaper
+constexpr double kTrust = 0.1;       // distance that a settled neighbour is worth in who goes first
+constexpr std::size_t kLongest = 4;  // beads that change places together
+constexpr double kHope = 0.1;        // share of what they pay for neighbours that they hope to save by it
+constexpr int kRounds = 5;           // of changing places
+constexpr double kMuch = 10;         // rise of the sum that is not worked out
+constexpr double kLess = 1e-6;       // what counts as cheaper
 
 constexpr std::int64_t kAlone = Assignment::kAlone;
 constexpr std::int64_t kSame = -2;  // in a proposal: as it is
@@ -90,6 +95,8 @@ class Matching {
   }
   [[nodiscard]] double own_cost(std::size_t t, std::int64_t k) const;
   [[nodiscard]] double pair_cost(const Pair& p, std::int64_t ka, std::int64_t kb) const;
+  [[nodiscard]] double overlap(PixelPoint before, PixelPoint change) const;
+  [[nodiscard]] double overlap(std::size_t a, std::int64_t ka, std::size_t b, std::int64_t kb) const;
   [[nodiscard]] double total() const;
   [[nodiscard]] double around(std::size_t t, std::size_t but) const;
   void find_neighbours();
@@ -102,8 +109,11 @@ class Matching {
   void adopt(Goals goals);
   void fuse(Goals proposal);
   [[nodiscard]] double standing(std::size_t t);
-  double change(std::size_t t, std::int64_t k, bool keep);
+  double change(std::size_t t, std::int64_t k);
   void change_places();
+  [[nodiscard]] double shared() const;
+  bool close(std::int64_t k, double own);
+  bool extend(double own);
 
   std::span<const PixelPoint> places_, detections_;
   std::span<const Edge> choices_;
@@ -111,7 +121,7 @@ class Matching {
   std::vector<std::size_t> first_;         // choice of each bead
   std::vector<std::size_t> order_, rank_;  // from the top downwards
   std::vector<Pair> pairs_;
-  std::vector<std::vector<std::size_t>> pairs_of_;
+  std::vector<std::vector<std::size_t>> pairs_of_, far_of_;
   std::vector<Like> likes_;
   // Of the messages. Beliefs of a bead: its choices, then going nowhere.
   std::vector<float> message_, belief_, claim_;
@@ -119,6 +129,9 @@ class Matching {
   // The match.
   Goals goal_;
   std::vector<std::int64_t> owner_;  // bead per detection
+  std::vector<double> least_own_;    // cheapest choice of a bead
+  std::vector<std::size_t> chain_;   // beads that change places,
+  std::vector<std::size_t> turn_;    // and where in it each bead is
   std::vector<double> standing_;     // what a bead pays for its neighbours
 };
 
@@ -147,15 +160,25 @@ void Matching::find_neighbours() {
   }
   std::sort(near_pairs.begin(), near_pairs.end());
   near_pairs.erase(std::unique(near_pairs.begin(), near_pairs.end()), near_pairs.end());
+  far_of_.resize(n());
+  const double far = kMeeting * d_;
+  for (std::size_t i = 0; i < n(); ++i)
+    for (std::size_t j = i + 1; j < n() && places_[order_[j]].y_px - places_[order_[i]].y_px < far; ++j) {
+      if (square(places_[order_[j]] - places_[order_[i]]) >= far * far ||
+          std::binary_search(near_pairs.begin(), near_pairs.end(), std::pair{i, j}))
+        continue;
+      far_of_[order_[i]].push_back(order_[j]);
+      far_of_[order_[j]].push_back(order_[i]);
+    }
   pairs_of_.resize(n());
   for (const auto& [i, j] : near_pairs) {
     const std::size_t a = order_[i], b = order_[j];
     if (first_[a] == first_[a + 1] || first_[b] == first_[b + 1]) continue;
     const double r = std::sqrt(square(places_[b] - places_[a])) / d_;
-    const double far = std::max(0.0, (r - kTouch) / (kReach - kTouch));
+    const double loose = std::max(0.0, (r - kTouch) / (kReach - kTouch));
     pairs_of_[a].push_back(pairs_.size());
     pairs_of_[b].push_back(pairs_.size());
-    pairs_.push_back({a, b, 1 - (1 - kLoose) * far, 0, 0, 0, 0});
+    pairs_.push_back({a, b, 1 - (1 - kLoose) * loose, 0, 0, 0, 0});
   }
 }
 
@@ -200,16 +223,30 @@ double Matching::pair_cost(const Pair& p, std::int64_t ka, std::int64_t kb) cons
       detections_[static_cast<std::size_t>(kb)] - detections_[static_cast<std::size_t>(ka)] - before;
   const double c2 = square(change);
   const double cost = p.weight * (c2 < kAlike * kAlike * d_ * d_ ? apart(c2 / (d_ * d_)) : most());
-  const double dot = before.x_px * change.x_px + before.y_px * change.y_px;
-  const double when = c2 > 0 ? std::clamp(-dot / c2, 0.0, 1.0) : 0;
-  const PixelPoint nearest{before.x_px + when * change.x_px, before.y_px + when * change.y_px};
-  return square(nearest) < kThrough * kThrough * d_ * d_ ? cost + kPassing : cost;
+  return cost + overlap(before, change);
+}
+
+// Discs of one layer do not pass through each other: the price of straight ways on which two would overlap.
+double Matching::overlap(PixelPoint before, PixelPoint change) const {
+  const double c2 = square(change), dot = -(before.x_px * change.x_px + before.y_px * change.y_px);
+  if (dot <= 0 || dot >= c2) return 0;  // nearest where they begin or end, which is as it is
+  const double r2 = (square(before) - dot * dot / c2) / (d_ * d_);
+  if (r2 >= kBeside * kBeside) return 0;
+  return kPassing * std::min(1.0, (kBeside - std::sqrt(std::max(r2, 0.0))) / (kBeside - kThrough));
+}
+
+double Matching::overlap(std::size_t a, std::int64_t ka, std::size_t b, std::int64_t kb) const {
+  if (ka < 0 || kb < 0) return 0;
+  return overlap(places_[b] - places_[a], step(b, kb) - step(a, ka));
 }
 
 double Matching::total() const {
   double sum = 0;
   for (std::size_t t = 0; t < n(); ++t) sum += own_cost(t, goal_[t]);
   for (const Pair& p : pairs_) sum += pair_cost(p, goal_[p.a], goal_[p.b]);
+  for (std::size_t t = 0; t < n(); ++t)
+    for (const std::size_t o : far_of_[t])
+      if (o > t) sum += overlap(t, goal_[t], o, goal_[o]);
   for (const std::int64_t t : owner_) sum += t < 0 ? kVoid : 0;
   return sum;
 }
@@ -401,18 +438,23 @@ void Matching::fuse(Goals proposal) {
   };
   for (std::size_t v = 0; v < who.size(); ++v)
     move[v] = own_cost(who[v], proposal[who[v]]) - own_cost(who[v], goal_[who[v]]);
-  for (const Pair& p : pairs_) {
-    const std::size_t a = node[p.a], b = node[p.b];
-    if (a == kNone && b == kNone) continue;
-    const double stay = pair_cost(p, goal_[p.a], goal_[p.b]);
+  auto meet = [&](std::size_t ta, std::size_t tb, auto&& cost) {
+    const std::size_t a = node[ta], b = node[tb];
+    if (a == kNone && b == kNone) return;
+    const double stay = cost(goal_[ta], goal_[tb]);
     if (b == kNone)
-      move[a] += pair_cost(p, proposal[p.a], goal_[p.b]) - stay;
+      move[a] += cost(proposal[ta], goal_[tb]) - stay;
     else if (a == kNone)
-      move[b] += pair_cost(p, goal_[p.a], proposal[p.b]) - stay;
+      move[b] += cost(goal_[ta], proposal[tb]) - stay;
     else
-      two(a, b, stay, pair_cost(p, goal_[p.a], proposal[p.b]), pair_cost(p, proposal[p.a], goal_[p.b]),
-          pair_cost(p, proposal[p.a], proposal[p.b]));
-  }
+      two(a, b, stay, cost(goal_[ta], proposal[tb]), cost(proposal[ta], goal_[tb]),
+          cost(proposal[ta], proposal[tb]));
+  };
+  for (const Pair& p : pairs_)
+    meet(p.a, p.b, [&](std::int64_t ka, std::int64_t kb) { return pair_cost(p, ka, kb); });
+  for (std::size_t t = 0; t < n(); ++t)
+    for (const std::size_t o : far_of_[t])
+      if (o > t) meet(t, o, [&](std::int64_t kt, std::int64_t ko) { return overlap(t, kt, o, ko); });
   for (std::size_t k = 0; k < detections_.size(); ++k) {
     const std::int64_t from = owner_[k], to = claimant[k];
     if (from < 0 && to >= 0) move[node[static_cast<std::size_t>(to)]] -= kVoid;
@@ -435,12 +477,14 @@ void Matching::fuse(Goals proposal) {
   if (total() > before - kLess) adopt(old);
 }
 
-// --- pairs ---
+// --- places that are changed ---
 
 double Matching::around(std::size_t t, std::size_t but) const {
   double sum = 0;
   for (const std::size_t q : pairs_of_[t])
     if (other_of(pairs_[q], t) != but) sum += pair_cost(pairs_[q], goal_[pairs_[q].a], goal_[pairs_[q].b]);
+  for (const std::size_t o : far_of_[t])
+    if (o != but) sum += overlap(t, goal_[t], o, goal_[o]);
   return sum;
 }
 
@@ -450,7 +494,7 @@ double Matching::standing(std::size_t t) {
 }
 
 // What it costs that t goes to k and whoever is there goes where t was; infinity if that is much.
-double Matching::change(std::size_t t, std::int64_t k, bool keep) {
+double Matching::change(std::size_t t, std::int64_t k) {
   const std::int64_t was = goal_[t], rival = owner_[static_cast<std::size_t>(k)];
   const std::size_t o = rival < 0 ? kNone : static_cast<std::size_t>(rival);
   double rise = own_cost(t, k) - own_cost(t, was), most_gain = standing(t);
@@ -471,25 +515,100 @@ double Matching::change(std::size_t t, std::int64_t k, bool keep) {
   put(t, k);
   if (o != kNone) put(o, was);
   rise += pairs();
-  if (keep && rise < -kLess) {
-    for (const std::size_t moved : {t, o}) {
-      if (moved == kNone) continue;
-      standing_[moved] = kUnknown;
-      for (const std::size_t q : pairs_of_[moved]) standing_[other_of(pairs_[q], moved)] = kUnknown;
-    }
-    return rise;
-  }
   if (o == kNone) owner_[static_cast<std::size_t>(k)] = kAlone;
   put(t, was);
   if (o != kNone) put(o, k);
   return rise;
 }
 
+// What the beads of the chain pay for each other and for their neighbours.
+double Matching::shared() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < chain_.size(); ++i) {
+    const std::size_t t = chain_[i];
+    for (const std::size_t q : pairs_of_[t])
+      if (turn_[other_of(pairs_[q], t)] >= i)
+        sum += pair_cost(pairs_[q], goal_[pairs_[q].a], goal_[pairs_[q].b]);
+    for (const std::size_t o : far_of_[t])
+      if (turn_[o] >= i) sum += overlap(t, goal_[t], o, goal_[o]);
+  }
+  return sum;
+}
+
+// Each bead of the chain takes the place of the next and the last goes to k, if that is cheaper. `own`: what
+// they pay more by themselves and for places left over.
+bool Matching::close(std::int64_t k, double own) {
+  const double before = shared();
+  std::array<std::int64_t, kLongest> old{};
+  for (std::size_t i = 0; i < chain_.size(); ++i) old[i] = goal_[chain_[i]];
+  for (std::size_t i = 0; i < chain_.size(); ++i) goal_[chain_[i]] = i + 1 < chain_.size() ? old[i + 1] : k;
+  if (own + shared() - before > -kLess) {
+    for (std::size_t i = 0; i < chain_.size(); ++i) goal_[chain_[i]] = old[i];
+    return false;
+  }
+  if (old[0] >= 0) owner_[static_cast<std::size_t>(old[0])] = kAlone;
+  for (const std::size_t t : chain_) {
+    if (goal_[t] >= 0) owner_[static_cast<std::size_t>(goal_[t])] = static_cast<std::int64_t>(t);
+    standing_[t] = kUnknown;
+    for (const std::size_t q : pairs_of_[t]) standing_[other_of(pairs_[q], t)] = kUnknown;
+    for (const std::size_t o : far_of_[t]) standing_[o] = kUnknown;
+  }
+  return true;
+}
+
+// The last of the chain goes where the first was, or to a place left over, or to where somebody is, who
+// becomes the last. All of it is tried whose first steps promise a gain without much help of neighbours.
+bool Matching::extend(double own) {
+  const std::size_t last = chain_.back();
+  const std::int64_t was = goal_[chain_.front()];
+  const double filled = was >= 0 ? 0 : kVoid;
+  double save = 0;
+  for (const std::size_t t : chain_) save += standing(t);
+  own -= own_cost(last, goal_[last]);
+  if (chain_.size() > 1) {
+    const double rise = own + own_cost(last, was);
+    if (rise - save < -kLess && close(was, rise)) return true;
+  }
+  for (std::size_t e = first_[last]; e < first_[last + 1]; ++e) {
+    const std::int64_t k = choices_[e].column, rival = owner_[static_cast<std::size_t>(k)];
+    const double rise = own + choices_[e].cost;
+    if (rival < 0) {
+      if (rise - filled - save < -kLess && close(k, rise - filled)) return true;
+      continue;
+    }
+    const auto o = static_cast<std::size_t>(rival);
+    if (turn_[o] != kNone || chain_.size() == kLongest) continue;
+    const double best = rise - (own_cost(o, k) - least_own_[o]) - filled;
+    if (best - kHope * (save + standing(o)) > 0) continue;
+    turn_[o] = chain_.size();
+    chain_.push_back(o);
+    const bool changed = extend(rise);
+    chain_.pop_back();
+    turn_[o] = kNone;
+    if (changed) return true;
+  }
+  return false;
+}
+
 void Matching::change_places() {
   standing_.assign(n(), kUnknown);
-  for (std::size_t t = 0; t < n(); ++t)
-    for (std::size_t e = first_[t]; e < first_[t + 1]; ++e)
-      if (goal_[t] != choices_[e].column) change(t, choices_[e].column, true);
+  turn_.assign(n(), kNone);
+  least_own_.assign(n(), 0);
+  for (const Edge& e : choices_) least_own_[e.row] = std::min(least_own_[e.row], e.cost);
+  auto change_from = [&](std::size_t t) {
+    chain_.assign(1, t);
+    turn_[t] = 0;
+    const bool changed = extend(0);
+    turn_[t] = kNone;
+    return changed;
+  };
+  std::size_t left = 4 * n();  // each change gains, yet tiny gains shall not go on for ever
+  bool any = true;
+  for (int round = 0; round < kRounds && any; ++round) {
+    any = false;
+    for (std::size_t t = 0; t < n(); ++t)
+      for (; left > 0 && change_from(t); --left) any = true;
+  }
 }
 
 CoherentMatch Matching::solve() {
@@ -506,7 +625,7 @@ CoherentMatch Matching::solve() {
     if (plain[t] != goal_[t] || tempered[t] != goal_[t]) match.margin[t] = 0;
     for (std::size_t e = first_[t]; goal_[t] >= 0 && e < first_[t + 1]; ++e)
       if (goal_[t] != choices_[e].column)
-        match.margin[t] = std::min(match.margin[t], change(t, choices_[e].column, false));
+        match.margin[t] = std::min(match.margin[t], change(t, choices_[e].column));
   }
   return match;
 }

@@ -11,6 +11,10 @@
 /// one look. The rest is assigned so that the summed cost is least (assignment.hpp), and the cost by which
 /// the next best assignment is dearer says which links are ambiguous.
 ///
+/// Frames in which neighbours part are matched anew, all beads at once (coherent_match.hpp), and once more
+/// with what the frame ahead tells: a bead that is hit once between two frames has gone part of the step that
+/// free flight repeats and the rest of the step back from where it goes next.
+///
 /// Pictures have gravity downwards: y grows in a fall, and nothing is expected below the lowest detection.
 
 #include <cstdint>
@@ -39,6 +43,13 @@ struct FrameMoment {
   std::int64_t cycle = -1;  ///< cycle of the drive
 };
 
+/// The frame after the one that is linked.
+struct FrameAhead {
+  std::span<const PixelPoint> detections;
+  FrameMoment moment;
+  std::span<const std::uint8_t> tracers;  ///< as for `Linker::next`
+};
+
 /// What the linker did, in one frame or summed over frames.
 struct LinkReport {
   std::int64_t frames = 0;
@@ -65,9 +76,13 @@ class Linker {
   explicit Linker(const LinkOptions& options, int phases_per_cycle = 0);
   /// Gives each detection of the next frame its track: old numbers go on, new ones are counted from 0.
   /// \param tracers 1 for a tracer bead, or empty; a track prefers detections of its own kind
+  /// \param ahead the frame after, where it is known: in a frame that is matched anew, a link is also judged
+  /// by
+  ///     how its bead goes on. Beads that collide between two frames are told by nothing else
   /// \throws RunError if a place is not finite or lies 10^9 px away
   std::vector<std::int64_t> next(std::span<const PixelPoint> detections, const FrameMoment& moment = {},
-                                 std::span<const std::uint8_t> tracers = {});
+                                 std::span<const std::uint8_t> tracers = {},
+                                 const FrameAhead* ahead = nullptr);
   /// Of the last frame, per detection: 1 if its link is ambiguous.
   [[nodiscard]] const std::vector<std::uint8_t>& ambiguous() const { return ambiguous_; }
   /// Tracks so far.
@@ -87,7 +102,12 @@ class Linker {
     PixelPoint step;   // per frame interval
     PixelPoint drift;  // against the same phase of the cycle before; 0 where that is unknown
     std::int32_t missed = 0;
+    std::int32_t detection = -1;  // in the frame last seen
     std::uint8_t tracer = 0;
+  };
+  struct Way {
+    double miss2;   // squared distance from it, diameters squared
+    double length;  // diameters
   };
   enum class Rule { still, step, cycle };
   class Grid;
@@ -97,8 +117,17 @@ class Linker {
   void predict_all(const Grid& grid, const FrameMoment& moment);
   void settle(const Grid& grid, std::span<const std::uint8_t> tracers);
   void follow_neighbours(const Grid& grid);
+  void link(std::span<const PixelPoint> detections, const FrameMoment& moment,
+            std::span<const std::uint8_t> tracers, const FrameAhead* ahead);
   [[nodiscard]] bool neighbours_part(const Grid& grid) const;
-  void match_all(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment);
+  [[nodiscard]] std::vector<PixelPoint> steps_back(const Grid& grid, std::span<const PixelPoint> detections,
+                                                   const FrameMoment& moment,
+                                                   std::span<const std::uint8_t> tracers,
+                                                   const FrameAhead& ahead) const;
+  [[nodiscard]] Way way(std::size_t track, PixelPoint to, PixelPoint step_back) const;
+  [[nodiscard]] bool flies_on(const Grid& grid, const std::vector<PixelPoint>& steps_back) const;
+  void match_all(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment,
+                 const std::vector<PixelPoint>& steps_back);
   void assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment);
   void update(std::span<const PixelPoint> detections, std::span<const std::uint8_t> tracers,
               const FrameMoment& moment, std::vector<std::int64_t>& ids);

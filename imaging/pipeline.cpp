@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 
 #include "analysis/trajectory/error.hpp"
 #include "imaging/found_phase.hpp"
@@ -148,19 +149,32 @@ TrackedStack link_spool(const BeadSpool& located, LinkOptions link, const CellDe
     link.fall_px = dt * dt * *cell.pixels_per_sigma;
   }
   Linker linker(link, stack.phases.frames_per_cycle);
-  std::vector<PixelPoint> places;
-  std::vector<std::uint8_t> tracers;
-  for (std::size_t f = 0; f < located.size(); ++f) {
-    std::vector<TrackedBead> beads = located[f];
-    places.clear();
-    tracers.clear();
-    for (const TrackedBead& b : beads) {
-      places.push_back(place_of(b));
-      tracers.push_back(b.tracer ? 1 : 0);
+  // A frame and the one after it, by which its links are judged too.
+  struct Seen {
+    std::vector<TrackedBead> beads;
+    std::vector<PixelPoint> places;
+    std::vector<std::uint8_t> tracers;
+    FrameMoment moment;
+  };
+  auto read = [&](std::size_t f) {
+    Seen frame;
+    if (f >= located.size()) return frame;
+    frame.beads = located[f];
+    for (const TrackedBead& b : frame.beads) {
+      frame.places.push_back(place_of(b));
+      frame.tracers.push_back(b.tracer ? 1 : 0);
     }
     const FramePhase at = stack.phases.at(static_cast<std::int64_t>(f));
+    frame.moment = {.interval = at.interval, .phase = at.phase, .cycle = at.cycle};
+    return frame;
+  };
+  Seen next = read(0);
+  for (std::size_t f = 0; f < located.size(); ++f) {
+    Seen frame = std::exchange(next, read(f + 1));
+    std::vector<TrackedBead>& beads = frame.beads;
+    const FrameAhead ahead{next.places, next.moment, next.tracers};
     const std::vector<std::int64_t> ids =
-        linker.next(places, {.interval = at.interval, .phase = at.phase, .cycle = at.cycle}, tracers);
+        linker.next(frame.places, frame.moment, frame.tracers, f + 1 < located.size() ? &ahead : nullptr);
     stack.tracks.resize(static_cast<std::size_t>(linker.n_tracks()));
     for (std::size_t k = 0; k < beads.size(); ++k) {
       beads[k].track = ids[k];

@@ -87,6 +87,29 @@ TEST(CoherentMatch, ABlockGoesWhereItsRimFits) {
   EXPECT_EQ(wrong(match.column_of_row), 0U);
 }
 
+TEST(CoherentMatch, DiscsFarApartDoNotPassThroughEachOther) {
+  // Two beads 2.2 d apart, one above the other, hit and go back; to exchange them costs less by itself. They
+  // are too far apart to be neighbours.
+  const std::vector<PixelPoint> places = {{0, 0}, {1, 33}};
+  const std::vector<PixelPoint> detections = {{0, 5}, {1, 28}};
+  auto match = [&](double cheaper) {
+    const std::vector<Edge> choices = {
+        {0, 0, -10}, {0, 1, -10 - cheaper}, {1, 0, -10 - cheaper}, {1, 1, -10}};
+    return match_coherently(places, detections, choices, kDiameter).column_of_row;
+  };
+  EXPECT_EQ(match(3), (std::vector<std::int64_t>{0, 1}));
+  EXPECT_EQ(match(8), (std::vector<std::int64_t>{1, 0})) << "16 is more than the price of passing, 15";
+}
+
+TEST(CoherentMatch, ThreeBeadsChangePlacesWhereTwoWouldNotGain) {
+  // Of six ways to place three beads the cheapest is a ring; every exchange of two is dearer than none.
+  const std::vector<PixelPoint> places = {{0, 0}, {60, 0}, {30, 52}};
+  const std::vector<Edge> choices = {{0, 0, -10}, {0, 1, -12}, {0, 2, -1}, {1, 0, -1}, {1, 1, -10},
+                                     {1, 2, -12}, {2, 0, -12}, {2, 1, -1}, {2, 2, -10}};
+  EXPECT_EQ(match_coherently(places, places, choices, kDiameter).column_of_row,
+            (std::vector<std::int64_t>{1, 2, 0}));
+}
+
 TEST(CoherentMatch, WhatCannotBeToldHasNoMargin) {
   // Two beads, two detections as near to the one as to the other; a third far off is sure.
   const std::vector<PixelPoint> places = {{0, 0}, {18, 0}, {200, 0}};
