@@ -1,5 +1,12 @@
 # Granular temperature
 # gnuplot p1-fig4.gp draws p1-fig4.svg, p1-fig4.pdf and p1-fig4.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 820,400 dynamic enhanced font 'Arial,15' background 'white'
@@ -27,10 +34,10 @@ set lmargin 9
 unset arrow
 unset label
 set title '(a) random, N_l = 20'
-set arrow 1 from first 5.4639,graph 0 to first 5.4639,graph 1 nohead dt 2 lw 1.3 lc rgb '#666666'
-set label 1 'B' at first 14.025,graph 0.06 center
-set label 2 'A' at first 2.7159,graph 0.06 center
-f(x) = exp(-1.3036464 + (x < 4.5398707 ? 4.208833 : 0.66905413)*log(x/4.5398707))
+set arrow 1 from first 4.7852,graph 0 to first 4.7852,graph 1 nohead dt 2 lw 1.3 lc rgb '#666666'
+set label 1 'B' at first 13.125,graph 0.06 center
+set label 2 'A' at first 2.5416,graph 0.06 center
+f(x) = exp(-1.1092056 + (x < 5.0769107 ? 3.7772562 : 0.57845163)*log(x/5.0769107))
 plot 'p1-fig4.dat' index 0 using 1:2:3:4 with yerrorbars pt 9 ps 1 lw 1.3 lc rgb '#009E73' notitle, [1.4:*] f(x) with lines lw 1.5 lc rgb '#333333' notitle
 unset arrow
 unset label
