@@ -166,7 +166,7 @@ TEST(Slip, TheIntervalCoversAlthoughBeadsSlipTogether) {
   std::mt19937_64 generator(4);
   std::bernoulli_distribution event(0.3);
   const double truth = 0.3 * 2 * kColumns / eligible;
-  int covered = 0, seeds = 250;
+  int covered = 0, seeds = 1000;
   for (int s = 0; s < seeds; ++s) {
     std::vector<int> shift = {0};
     for (int j = 1; j < 61; ++j) shift.push_back(shift.back() + (event(generator) ? 1 : 0));
