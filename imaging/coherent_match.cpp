@@ -37,8 +37,8 @@ constexpr double kPlain = 1, kTempered = 0.34;  // share of a belief that is sen
 constexpr int kSeeds = 5;                       // beads from which a proposal is grown
 constexpr double kTrust = 0.1;       // distance that a settled neighbour is worth in who goes first
 constexpr std::size_t kLongest = 4;  // beads that change places together
-// Chains tried that begin with one bead. Around lost beads there are many: without a limit a frame took up to
-// twice as long and nothing was gained in the tables of `./run bench link`; with 300, 14 of 16000 were lost.
+// Chains tried that begin with one bead. Around lost beads there are many: without a limit frames took up to
+// twice as long, and fewer links were wrong only where a seventieth was; with 300, 14 more of 16000 were.
 constexpr std::size_t kMostChains = 1000;
 constexpr double kHope = 0.1;   // share of what they pay for neighbours that they hope to save by it
 constexpr int kRounds = 5;      // of changing places
