@@ -39,8 +39,8 @@ double correlation_time(const std::vector<double>& series);
 /// From it come the integrated correlation time tau and blocks at all places, each at least 5 tau and an
 /// eighth of the series long: with n values and blocks of m, whose means are b_j, the variance of the mean is
 ///   m sum_j (b_j - mean)^2/((n - m + 1)(n - m))
-/// (Meketon & Schmeiser 1984), with (n/m - 1) 3 m^2/(2 m^2 + 1) degrees of freedom. What a block shares with
-/// the next is corrected for as if the correlation fell exponentially.
+/// (Meketon & Schmeiser 1984), with (floor(n/m) - 1) 3 m^2/(2 m^2 + 1) degrees of freedom. What a block
+/// shares with the next is corrected for as if the correlation fell exponentially.
 class BlockAverage {
  public:
   void add(double value);

@@ -77,8 +77,7 @@ class Linker {
   /// Gives each detection of the next frame its track: old numbers go on, new ones are counted from 0.
   /// \param tracers 1 for a tracer bead, or empty; a track prefers detections of its own kind
   /// \param ahead the frame after, where it is known: in a frame that is matched anew, a link is also judged
-  /// by
-  ///     how its bead goes on. Beads that collide between two frames are told by nothing else
+  ///     by how its bead goes on. Beads that collide between two frames are told by nothing else
   /// \throws RunError if a place is not finite or lies 10^9 px away
   std::vector<std::int64_t> next(std::span<const PixelPoint> detections, const FrameMoment& moment = {},
                                  std::span<const std::uint8_t> tracers = {},

@@ -351,18 +351,22 @@ std::optional<Peak> peak_of(const std::vector<GasPoint>& points) {
   return peak;
 }
 
-std::optional<double> w_2_of(const std::vector<GasPoint>& points) {
+std::optional<double> flat_from(const Series& s, bool errors_count) {
   constexpr double kNearly = 0.05;
-  std::optional<double> w_2;
-  double last = 0;
-  for (auto p = points.rbegin(); p != points.rend(); ++p) {
-    const auto e = p->get("T_bar_z");
-    if (!e) continue;
-    if (last == 0) last = e->value;
-    if (std::abs(e->value - last) > kNearly * last) break;
-    w_2 = p->at;
+  std::optional<double> from;
+  for (std::size_t k = s.x.size(); k-- > 0;) {
+    const double last = s.y.back().value;
+    const Estimate& e = s.y[k];
+    const double nearest =
+        errors_count ? std::clamp(last, e.low.value_or(e.value), e.high.value_or(e.value)) : e.value;
+    if (std::abs(nearest - last) > kNearly * last) break;
+    from = s.x[k];
   }
-  return w_2;
+  return from;
+}
+
+std::optional<double> w_2_of(const std::vector<GasPoint>& points) {
+  return flat_from(series_of("", points, "T_bar_z"), false);
 }
 
 double table_3(int dimension, bool algebraic, double w) {

@@ -137,6 +137,9 @@ struct Peak {
   bool inside = false;  ///< a point on either side is lower
 };
 std::optional<Peak> peak_of(const std::vector<GasPoint>& points);
+/// The smallest x from which on a series stays within 5 % of its last value; empty for none.
+/// \param errors_count  an interval that reaches there is enough
+std::optional<double> flat_from(const Series& s, bool errors_count);
 /// W_2: the smallest W beyond which T_bar_z stays within 5 % of its value at the largest W.
 std::optional<double> w_2_of(const std::vector<GasPoint>& points);
 

@@ -417,31 +417,16 @@ Target trend(const std::string& name, const Series& s, bool falls) {
   return t;
 }
 
-/// The smallest W from which on every interval reaches within 5 % of the last value, which is the rule of W_2
-/// with errors counted; empty for fewer than three points.
-std::optional<double> flat_from(const Series& s) {
-  constexpr double kNearly = 0.05;
-  if (s.x.size() < 3) return std::nullopt;
-  const double last = s.y.back().value;
-  double from = s.x.back();
-  for (std::size_t k = s.x.size(); k-- > 0; from = s.x[k]) {
-    const Estimate& e = s.y[k];
-    if (e.low.value_or(e.value) > (1 + kNearly) * last || e.high.value_or(e.value) < (1 - kNearly) * last)
-      break;
-  }
-  return from;
-}
-
 /// Whether the temperature of all beads is flat in W before that at any height is.
 Target volume_first(const std::string& name, const Series& volume, const std::vector<Series>& stations) {
   Target t{name + ": the mean over the volume flattens before those at fixed heights",
            "from a smaller W on than at any height", "", Fate::absent,
            "flat: within 5 % of the last value, errors counted"};
-  const auto whole = flat_from(volume);
+  const auto whole = flat_from(volume, true);
   std::vector<Fate> fates;
   std::string at_heights;
   for (const Series& s : stations)
-    if (const auto local = flat_from(s); local && whole) {
+    if (const auto local = flat_from(s, true); local && whole && s.x.size() > 2) {
       fates.push_back(*local > *whole ? Fate::met : *local < *whole ? Fate::missed : Fate::open);
       at_heights += fmt::format("{}{:.3g} ({})", at_heights.empty() ? "" : ", ", *local, s.title);
     }
