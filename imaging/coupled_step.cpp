@@ -65,10 +65,7 @@ std::vector<Coupling> couplings_of(const RingArgs& args, const std::vector<Disc>
   const auto pairs = near_pairs(discs, std::min(2 * args.ring, args.blur.reach(kFar)));
   std::vector<Coupling> couplings;
   couplings.reserve(pairs.size());
-  for (const auto& [i, j] : pairs) {
-    couplings.push_back({i, j, Normal::Zero()});
-    renew(couplings.back(), args, discs);
-  }
+  for (const auto& [i, j] : pairs) couplings.push_back({i, j, Normal::Zero()});
   return couplings;
 }
 

@@ -30,8 +30,9 @@ struct Coupling {
   std::int32_t i, j;
   Normal sums;  ///< rows: x, y, R, a of i; columns: of j
 };
+/// All pairs, by their first disc; their sums are yet to be found.
 std::vector<Coupling> couplings_of(const RingArgs& args, const std::vector<Disc>& discs);
-/// The same for one pair, after its discs have moved.
+/// Finds the sums of one pair, as its discs are now.
 void renew(Coupling& coupling, const RingArgs& args, const std::vector<Disc>& discs);
 
 /// Solves (blocks + couplings) step = right for all discs. \param blocks positive definite

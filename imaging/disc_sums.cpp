@@ -54,6 +54,8 @@ inline std::span<const GaussNode> nodes_of(const EdgeBlur& blur) {
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "imaging/front_lanes.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace twincell::HWY_NAMESPACE {
 
@@ -377,11 +379,12 @@ struct Sums {
           const V d = hn::LoadU(tag, args.picture->ptr<float>(ring.base_y + row) + ring.base_x + column);
           const V t = hn::LoadU(tag, args.model->ptr<float>(ring.base_y + row) + ring.base_x + column);
           const Mask counts = hn::And(hn::And(hn::Gt(r2, low2), hn::Lt(r2, high2)), hn::Lt(d, unseen));
-          hn::StoreU(hn::Compress(dx, counts), tag, &q.dx[n]);
-          hn::StoreU(hn::Compress(dy, counts), tag, &q.dy[n]);
-          hn::StoreU(hn::Compress(d, counts), tag, &q.d[n]);
-          hn::StoreU(hn::Compress(t, counts), tag, &q.t[n]);
-          n += hn::CountTrue(tag, counts);
+          const FrontLanes front(counts);
+          hn::StoreU(front(dx), tag, &q.dx[n]);
+          hn::StoreU(front(dy), tag, &q.dy[n]);
+          hn::StoreU(front(d), tag, &q.d[n]);
+          hn::StoreU(front(t), tag, &q.t[n]);
+          n += front.count();
           if (n + hn::MaxLanes(tag) > RingPixels::kMost) flush();
         });
     if (n > 0) flush();

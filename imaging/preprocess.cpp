@@ -111,14 +111,23 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double disc_radius_px) {
   const cv::Size size((darkness.cols + shrink - 1) / shrink, (darkness.rows + shrink - 1) / shrink);
   const double reach = disc_radius_px / shrink;
   // A block is dark if all of it is: the gaps between beads are narrow.
-  cv::Mat1b dark(size, uchar{255});
-  for (int y = 0; y < darkness.rows; ++y) {
-    const float* row = darkness[y];
-    uchar* block = dark[y / shrink];
-    int x = 0;
-    for (int b = 0; b < size.width; ++b)
-      for (const int end = std::min(darkness.cols, (b + 1) * shrink); x < end; ++x)
-        block[b] = row[x] > kDark ? block[b] : uchar{0};
+  const cv::Mat1b dark_pixels = darkness > kDark;
+  cv::Mat1b dark = dark_pixels;
+  if (shrink > 1) {
+    dark = cv::Mat1b(size, uchar{255});
+    // Copies, or the compiler thinks that what is written might be the number itself, and makes no vectors.
+    const int columns = darkness.cols, blocks = size.width;
+    std::vector<uchar> dark_down(static_cast<std::size_t>(blocks * shrink));
+    for (int block = 0; block < size.height; ++block) {
+      std::fill(dark_down.begin(), dark_down.end(), uchar{255});
+      uchar *all = dark_down.data(), *to = dark[block];
+      for (int y = block * shrink; y < std::min(darkness.rows, (block + 1) * shrink); ++y) {
+        const uchar* pixel = dark_pixels[y];
+        for (int x = 0; x < columns; ++x) all[x] &= pixel[x];
+      }
+      for (int k = 0; k < shrink; ++k)
+        for (int b = 0; b < blocks; ++b) to[b] &= all[b * shrink + k];
+    }
   }
   const int pad = cvCeil(2 * reach);
   cv::copyMakeBorder(dark, dark, pad, pad, pad, pad, cv::BORDER_REPLICATE);
@@ -146,7 +155,7 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double disc_radius_px) {
       to_core(cv::Rect(pad, pad, size.width, size.height)) < reach + (shrink > 1 ? 1 : 0);
   cv::Mat1b regions;
   cv::resize(coarse, regions, cv::Size(), shrink, shrink, cv::INTER_NEAREST);
-  regions = regions(cv::Rect(0, 0, darkness.cols, darkness.rows)) & (darkness > kDark);
+  regions = regions(cv::Rect(0, 0, darkness.cols, darkness.rows)) & dark_pixels;
   cv::dilate(regions, regions, cv::Mat(), cv::Point(-1, -1), 2);  // their blurred edge
   return regions;
 }
@@ -250,7 +259,7 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
     for (int x = 0; x < size.width; ++x) b[x] = light.at(x);
     for (int x = 0; x < size.width; ++x) d[x] = (1 - i[x] / std::max(b[x], kLeastLight)) * gain;
     for (int x = 0; x < size.width; ++x) {
-      const float bounded = std::min(2.0F, std::max(-1.0F, d[x]));
+      const float above = d[x] > -1 ? d[x] : -1.0F, bounded = above > 2 ? 2.0F : above;
       d[x] = b[x] > 0 ? bounded : 0.0F;
     }
   }

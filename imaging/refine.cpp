@@ -132,8 +132,7 @@ class PictureFit {
       couplings_.clear();
     } else {
       if (!before_) before_ = State{};
-      before_->discs.clear();
-      for (const Detection& b : beads_) before_->discs.push_back(disc_of(b));
+      before_->discs = discs();
       before_->blur = blur_;
       before_->misfit = misfit;
       damping_ = std::max(kDamping, damping_ / 4);
@@ -180,14 +179,16 @@ class PictureFit {
     if (stale_) render();
     const int side = std::max(1, cvRound(0.4 * radius_));
     cv::Mat1f blocks = cv::Mat1f::zeros(size_.height / side, size_.width / side);
-    std::vector<float> left(static_cast<std::size_t>(size_.width));
-    for (int y = 0; y < blocks.rows * side; ++y) {
-      const float *d = picture_[y], *t = model_[y];
-      for (int x = 0; x < size_.width; ++x)
-        left[static_cast<std::size_t>(x)] = d[x] < kUnseen ? d[x] - t[x] : 0.0F;
-      float* block = blocks[y / side];
-      for (int x = 0; x < blocks.cols; ++x)
-        for (int k = x * side; k < (x + 1) * side; ++k) block[x] += left[static_cast<std::size_t>(k)];
+    std::vector<float> columns(static_cast<std::size_t>(size_.width));
+    for (int row = 0; row < blocks.rows; ++row) {
+      std::fill(columns.begin(), columns.end(), 0.0F);
+      float *left = columns.data(), *block = blocks[row];
+      for (int y = row * side; y < (row + 1) * side; ++y) {
+        const float *d = picture_[y], *t = model_[y];
+        for (int x = 0; x < size_.width; ++x) left[x] += d[x] < kUnseen ? d[x] - t[x] : 0.0F;
+      }
+      for (int k = 0; k < side; ++k)
+        for (int x = 0; x < blocks.cols; ++x) block[x] += left[x * side + k];
     }
     if (blocks.empty()) return;
     cv::boxFilter(blocks, blocks, CV_32F, {3, 3}, {-1, -1}, false, cv::BORDER_CONSTANT);
@@ -519,25 +520,49 @@ class PictureFit {
     return true;
   }
 
+  [[nodiscard]] std::vector<Disc> discs() const {
+    std::vector<Disc> all;
+    all.reserve(beads_.size());
+    for (const Detection& b : beads_) all.push_back(disc_of(b));
+    return all;
+  }
+  /// The sums of each disc and those that couple it to its neighbours, in one pass: their pixels are then in
+  /// the cache. What couples two discs stays what it was until one of them has moved.
   void evaluate(const RingArgs& args, BlurFit fit) {
     if (stale_) render(args.row_step);
     sums_.resize(beads_.size());
-    for (std::size_t k = 0; k < beads_.size(); ++k) sums_[k] = ring_sums(args, disc_of(beads_[k]), fit);
+    const std::vector<Disc> all = discs();
+    if (couplings_.empty()) begin_couplings(args, all);
+    auto c = couplings_.begin();
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      sums_[k] = ring_sums(args, all[k], fit);
+      for (; c != couplings_.end() && static_cast<std::size_t>(c->i) == k; ++c)
+        if (std::max(wandered_[k], wandered_[static_cast<std::size_t>(c->j)]) > kRestless)
+          renew(*c, args, all);
+    }
+    for (double& w : wandered_) w = w > kRestless ? 0 : w;
+  }
+  void begin_couplings(const RingArgs& args, const std::vector<Disc>& all) {
+    couplings_ = couplings_of(args, all);
+    wandered_.assign(all.size(), HUGE_VAL);
   }
 
   Moved step(const RingArgs& args, BlurFit fit) {
     const std::size_t n = beads_.size();
-    std::vector<Disc> discs(n);
     std::vector<Normal> blocks(n);
     std::vector<Step> right(n);
     for (std::size_t k = 0; k < n; ++k) {
-      discs[k] = disc_of(beads_[k]);
       blocks[k] = normal_of(sums_[k]);
       right[k] = right_side(sums_[k]);
       believe(beads_[k], blocks[k], right[k]);
       blocks[k].diagonal() *= 1 + damping_;
     }
-    couple(args, discs);
+    if (couplings_.empty()) {  // the last step was taken back, or beads were dropped
+      const std::vector<Disc> all = discs();
+      begin_couplings(args, all);
+      for (Coupling& c : couplings_) renew(c, args, all);
+      wandered_.assign(n, 0.0);
+    }
     std::vector<Step> steps = coupled_step(blocks, couplings_, right);
     if (sweeps_ == 1) couplings_.clear();
     std::vector<double> far(n), sigma(n);
@@ -562,20 +587,6 @@ class PictureFit {
       for (double& u : unsettled_) u = kLeftByFirst * std::hypot(u, moved.rms);
     stale_ = true;
     return moved;
-  }
-
-  /// What couples two discs stays what it was until one of them has moved.
-  void couple(const RingArgs& args, const std::vector<Disc>& discs) {
-    if (couplings_.empty()) {
-      couplings_ = couplings_of(args, discs);
-      wandered_.assign(discs.size(), 0.0);
-      return;
-    }
-    for (Coupling& c : couplings_)
-      if (std::max(wandered_[static_cast<std::size_t>(c.i)], wandered_[static_cast<std::size_t>(c.j)]) >
-          kRestless)
-        renew(c, args, discs);
-    for (double& w : wandered_) w = w > kRestless ? 0 : w;
   }
 
   /// Of each disc's x, y, R, a by the noise, with what its neighbours' uncertainty adds: of the inverse of

@@ -35,7 +35,9 @@ std::vector<Proposal> peaks(const cv::Mat1f& sum, int pad, double full_circle, d
         top[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(
             (v >= least) & (v > row[x - 1]) & (v >= row[x + 1]) & (v > above[x]) & (v >= below[x]));
       }
-      if (std::none_of(top.begin(), top.end(), [](std::uint8_t t) { return t != 0; })) continue;
+      std::uint8_t any = 0;
+      for (const std::uint8_t t : top) any |= t;
+      if (any == 0) continue;
       for (int k = 0; k < n; ++k) {
         const int x = block + k;
         const float v = row[x];

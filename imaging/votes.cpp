@@ -11,6 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "imaging/front_lanes.hpp"
+
 #ifndef TWINCELL_VOTES_ONCE
 #define TWINCELL_VOTES_ONCE
 namespace twincell::votes {
@@ -75,9 +77,10 @@ std::size_t votes_of_row(const float* HWY_RESTRICT smooth, const float* HWY_REST
     const V column = hn::Add(hn::Iota(tag, static_cast<float>(x)), hn::Mul(far, gx)),
             row = hn::Add(of(y), hn::Mul(far, gy));
     const auto at = hn::Add(hn::NearestInt(column), hn::Mul(hn::NearestInt(row), hn::Set(whole, stride)));
-    hn::StoreU(hn::Compress(at, hn::RebindMask(whole, clear)), whole, place + found);
-    hn::StoreU(hn::Compress(g, clear), tag, weight + found);
-    found += hn::CountTrue(tag, clear);
+    const FrontLanes front(clear);
+    hn::StoreU(hn::BitCast(whole, front(hn::BitCast(tag, at))), whole, place + found);
+    hn::StoreU(front(g), tag, weight + found);
+    found += front.count();
   }
   return found;
 }

@@ -1,0 +1,86 @@
+/// \file
+/// Chosen lanes of vectors of eight floats moved to the front, once for each kind of vectors that the
+/// including file is read for.
+
+#include <hwy/highway.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+// Read again for each kind of vectors.
+#if defined(TWINCELL_FRONT_LANES) == defined(HWY_TARGET_TOGGLE)
+#ifdef TWINCELL_FRONT_LANES
+#undef TWINCELL_FRONT_LANES
+#else
+#define TWINCELL_FRONT_LANES
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace twincell::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The order that brings the lanes of a mask to the front; it is found once, and serves several vectors.
+class FrontLanes {
+ public:
+  using Tag = hn::CappedTag<float, 8>;
+  using Vector = hn::Vec<Tag>;
+  using Mask = hn::Mask<Tag>;
+
+#if HWY_TARGET == HWY_AVX2
+  // Highway 1.0 copies its own table of a kilobyte onto the stack in each function that asks for it: an
+  // eighth of the time in which a frame is located.
+  HWY_INLINE explicit FrontLanes(Mask mask) {
+    std::uint8_t bits[8];
+    hn::StoreMaskBits(Tag(), mask, bits);
+    const hn::Rebind<std::int32_t, Tag> whole;
+    const hn::Rebind<std::uint8_t, Tag> small;
+    order_ = hn::IndicesFromVec(Tag(), hn::PromoteTo(whole, hn::Load(small, kOrders[bits[0]].data())));
+    count_ = hn::CountTrue(Tag(), mask);
+  }
+  [[nodiscard]] HWY_INLINE Vector operator()(Vector v) const {
+    return hn::TableLookupLanes(v, order_);
+  }
+#else
+  HWY_INLINE explicit FrontLanes(Mask mask) : mask_(mask), count_(hn::CountTrue(Tag(), mask)) {}
+  [[nodiscard]] HWY_INLINE Vector operator()(Vector v) const {
+    return hn::Compress(v, mask_);
+  }
+#endif
+  /// How many lanes there are at the front.
+  [[nodiscard]] HWY_INLINE std::size_t count() const {
+    return count_;
+  }
+
+ private:
+#if HWY_TARGET == HWY_AVX2
+  static constexpr std::size_t kLanes = 8;
+  using Order = std::array<std::uint8_t, kLanes>;
+  /// For each pattern of bits: the lanes whose bit is set, in turn, then the others.
+  static constexpr std::array<Order, 256> orders() {
+    std::array<Order, 256> all{};
+    for (std::size_t pattern = 0; pattern < all.size(); ++pattern) {
+      std::size_t at = 0;
+      for (const std::size_t wanted : {std::size_t{1}, std::size_t{0}})
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+          if ((pattern >> lane & 1) == wanted) all[pattern][at++] = static_cast<std::uint8_t>(lane);
+    }
+    return all;
+  }
+  alignas(64) static const std::array<Order, 256> kOrders;
+  decltype(hn::IndicesFromVec(Tag(), hn::Zero(hn::Rebind<std::int32_t, Tag>()))) order_;
+#else
+  Mask mask_;
+#endif
+  std::size_t count_;
+};
+
+#if HWY_TARGET == HWY_AVX2
+inline constexpr std::array<FrontLanes::Order, 256> FrontLanes::kOrders = FrontLanes::orders();
+#endif
+
+}  // namespace twincell::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
