@@ -28,11 +28,11 @@ const Result* scalar(const std::vector<Result>& results, const std::string& name
   return usable ? found : nullptr;
 }
 
-/// Standard error behind a 95 % interval, taken as 1.96 of them on either side. A number that never changed
-/// has an interval of rounding errors, which says nothing of how well it is known.
+/// Standard error behind a result's interval. A number that never changed has an interval of rounding errors,
+/// which says nothing of how well it is known.
 std::optional<double> standard_error(const Result& r) {
   if (!r.interval || !std::isfinite(r.interval->high - r.interval->low)) return std::nullopt;
-  const double error = (r.interval->high - r.interval->low) / (2 * 1.96);
+  const double error = standard_error(*r.interval);
   return error > 1e-12 * std::abs(r.value()) ? std::optional(error) : std::nullopt;
 }
 

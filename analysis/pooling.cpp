@@ -22,8 +22,6 @@ namespace twincell {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-/// 95 % of a normal distribution lie within this many standard errors.
-constexpr double kStandardErrors = 1.96;
 /// Degrees that bring a hexagonal lattice back.
 constexpr double kTurn = 60;
 

@@ -22,6 +22,14 @@ struct Interval {
   std::string method;  ///< "block averages over cycles: …", "bootstrap over tracers", "exact binomial …"
 };
 
+/// 95 % of a normal distribution lie within so many standard errors.
+inline constexpr double kStandardErrors = 1.96;
+/// The standard error behind a 95 % interval, taken as that of a normal distribution: half of it over
+/// kStandardErrors.
+[[nodiscard]] inline double standard_error(const Interval& interval) {
+  return (interval.high - interval.low) / (2 * kStandardErrors);
+}
+
 /// Two-sided 95 % point of Student's t: P(|t| < value) = 0.95 for `degrees` of freedom >= 1 (1: 12.706; 1.960
 /// in the limit); infinite for 0.
 double student_t_95(double degrees);

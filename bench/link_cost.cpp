@@ -74,11 +74,10 @@ int main(int argc, char** argv) {
     Linker linker(options, phases);
     double seconds = 0;
     for (std::size_t f = 0; f < frames.size(); ++f) {
-      const FrameAhead ahead =
-          f + 1 < frames.size() ? FrameAhead{frames[f + 1], moment_of(f + 1), {}} : FrameAhead{};
+      const bool more = f + 1 < frames.size();
+      const FrameAhead ahead = more ? FrameAhead{frames[f + 1], moment_of(f + 1), {}} : FrameAhead{};
       const double start = cpu_seconds();
-      const std::vector<std::int64_t> ids =
-          linker.next(frames[f], moment_of(f), {}, f + 1 < frames.size() ? &ahead : nullptr);
+      const std::vector<std::int64_t> ids = linker.next(frames[f], moment_of(f), {}, more ? &ahead : nullptr);
       seconds += cpu_seconds() - start;
       if (r > 0) continue;
       for (std::size_t k = 0; k < ids.size(); ++k) {

@@ -5,15 +5,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <map>
 #include <numbers>
-#include <thread>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/in_parallel.hpp"
 #include "analysis/trajectory/median.hpp"
 #include "imaging/settings.hpp"
 
@@ -362,23 +360,8 @@ StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px
         stamped = false;
     }
     std::vector<CellEdges> found(batch.size());
-    std::vector<std::exception_ptr> failures(batch.size());
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      for (std::size_t i = next++; i < batch.size(); i = next++) try {
-          found[i] = find_cell_edges(batch[i], bright, diameter_px);
-        } catch (...) {
-          failures[i] = std::current_exception();
-        }
-    };
-    {
-      std::vector<std::jthread> others;
-      for (int t = 1; t < threads && static_cast<std::size_t>(t) < batch.size(); ++t)
-        others.emplace_back(work);
-      work();
-    }
-    for (const auto& failure : failures)
-      if (failure) std::rethrow_exception(failure);
+    in_parallel(batch.size(), threads,
+                [&](std::size_t i) { found[i] = find_cell_edges(batch[i], bright, diameter_px); });
     for (std::size_t i = 0; i < batch.size(); ++i, ++done) {
       out.size = batch[i].size();
       if (done % stride == 0) {

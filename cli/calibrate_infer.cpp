@@ -7,10 +7,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -18,6 +16,7 @@
 #include "analysis/phase_thresholds.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/in_parallel.hpp"
 #include "calibration/contact_figures.hpp"
 #include "calibration/curve_components.hpp"
 #include "calibration/inference.hpp"
@@ -108,7 +107,6 @@ struct Observed {
 
 std::vector<Observed> observe(const TrajectorySource& trajectory, const std::vector<std::string>& names,
                               std::int64_t discard) {
-  constexpr double kReach = 1.96;
   AnalysisOptions options;
   options.discard_cycles = discard;
   options.only = names;
@@ -127,7 +125,7 @@ std::vector<Observed> observe(const TrajectorySource& trajectory, const std::vec
                         fmt::format("'{}' is a word, neither a number nor a curve.", name));
     Observed o{.name = name, .values = {kNaN}, .curve = !r.shape.empty(), .absent = r.absent};
     if (r.present()) o.values = r.values;
-    if (r.present() && r.interval) o.error = (r.interval->high - r.interval->low) / (2 * kReach);
+    if (r.present() && r.interval) o.error = standard_error(*r.interval);
     all.push_back(std::move(o));
   }
   return all;
@@ -170,26 +168,13 @@ class Runs {
                       jobs = places_.size() * (kinds - first);
     for (std::size_t kind = first; kind < kinds; ++kind) (void)scene(0, kind);
     ProgressBar bar(common_, "runs");
-    std::atomic<std::size_t> next{0}, done{0};
-    std::exception_ptr failure;
-    std::mutex mutex;
-    const auto work = [&](bool shows) {
-      for (std::size_t job = next++; job < jobs; job = next++) try {
-          run(job % places_.size(), first + job / places_.size());
-          ++done;
-          if (shows) bar.update(static_cast<std::int64_t>(done.load()), static_cast<std::int64_t>(jobs));
-        } catch (...) {
-          const std::scoped_lock lock(mutex);
-          failure = std::current_exception();
-          next = jobs;
-        }
-    };
-    {
-      std::vector<std::jthread> others;
-      for (int t = 1; t < common_.n_threads(); ++t) others.emplace_back(work, false);
-      work(true);
-    }
-    if (failure) std::rethrow_exception(failure);
+    std::atomic<std::int64_t> done{0};
+    const auto shows = std::this_thread::get_id();
+    in_parallel(jobs, common_.n_threads(), [&](std::size_t job) {
+      run(job % places_.size(), first + job / places_.size());
+      ++done;
+      if (std::this_thread::get_id() == shows) bar.update(done, static_cast<std::int64_t>(jobs));
+    });
   }
 
   [[nodiscard]] std::size_t size() const { return places_.size(); }

@@ -21,8 +21,8 @@
 /// as on trees (Kolmogorov, IEEE Trans. PAMI 28, 1568 (2006)). Then proposals grown from one bead outward,
 /// each going where its neighbours lead. Two answers are joined by a least cut, region by region the better
 /// (fusion moves: Lempitsky, Rother, Roth & Blake, IEEE Trans. PAMI 32, 1392 (2010)). At last up to
-/// four beads change places in a ring or a row. None of them alone suffices in a bed that convects, and the
-/// sum is not proved to be the least.
+/// four beads change places in a ring or a row, at most a thousand such being tried from each. None of them
+/// alone suffices in a bed that convects, and the sum is not proved to be the least.
 
 #include <cstdint>
 #include <span>

@@ -1,15 +1,13 @@
 #include "imaging/pipeline.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <thread>
 #include <utility>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/in_parallel.hpp"
 #include "imaging/found_phase.hpp"
 #include "imaging/settings.hpp"
 #include "imaging/trigger_list.hpp"
@@ -24,23 +22,7 @@ constexpr std::size_t kMostNamed = 1000;  // dropped or doubled frames that are 
 std::vector<Located> locate_batch(const std::vector<cv::Mat>& batch, const LocatorOptions& options,
                                   int threads) {
   std::vector<Located> results(batch.size());
-  std::vector<std::exception_ptr> failures(batch.size());
-  std::atomic<std::size_t> next{0};
-  auto work = [&] {
-    for (std::size_t i = next++; i < batch.size(); i = next++) try {
-        results[i] = locate(batch[i], options);
-      } catch (...) {
-        failures[i] = std::current_exception();
-      }
-  };
-  {
-    std::vector<std::jthread> others;
-    const auto n = std::min(static_cast<std::size_t>(std::max(threads, 1)), batch.size());
-    for (std::size_t t = 1; t < n; ++t) others.emplace_back(work);
-    work();
-  }
-  for (const std::exception_ptr& failure : failures)
-    if (failure) std::rethrow_exception(failure);
+  in_parallel(batch.size(), threads, [&](std::size_t i) { results[i] = locate(batch[i], options); });
   return results;
 }
 

@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
-#include <thread>
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/in_parallel.hpp"
 #include "imaging/camera/movie.hpp"
 #include "imaging/camera/random.hpp"
 #include "imaging/synthetic_camera.hpp"
@@ -152,23 +150,7 @@ class Filming {
       if (moves_ && i > 0) take.moment.before = &frames[i - 1];
       if (moves_ && i + 1 < frames.size()) take.moment.after = &frames[i + 1];
     }
-    std::vector<std::exception_ptr> failures(takes.size());
-    std::atomic<std::size_t> next{0};
-    auto work = [&] {
-      for (std::size_t i = next++; i < takes.size(); i = next++) try {
-          shoot(takes[i], folder, keep);
-        } catch (...) {
-          failures[i] = std::current_exception();
-        }
-    };
-    {
-      std::vector<std::jthread> others;
-      for (std::size_t t = 1; t < std::min(static_cast<std::size_t>(std::max(threads, 1)), takes.size()); ++t)
-        others.emplace_back(work);
-      work();
-    }
-    for (const std::exception_ptr& failure : failures)
-      if (failure) std::rethrow_exception(failure);
+    in_parallel(takes.size(), threads, [&](std::size_t i) { shoot(takes[i], folder, keep); });
   }
 
  private:
