@@ -137,11 +137,10 @@ std::size_t Gas::add(const GasSystem& system, const GasSize& size, const std::ve
 }
 
 bool Gas::run() {
-  bool complete = true;
-  for (Runs& runs : runs_) {
-    complete = run_here({&*runs.schedule}, store_, {request_.threads, false}, *request_.watch) && complete;
-    read(runs);
-  }
+  std::vector<sweep::Schedule*> schedules;
+  for (Runs& runs : runs_) schedules.push_back(&*runs.schedule);
+  const bool complete = run_here(schedules, store_, {request_.threads, false}, *request_.watch);
+  for (Runs& runs : runs_) read(runs);
   return complete;
 }
 

@@ -85,7 +85,7 @@ class Gas {
   std::size_t add(const GasCurve& curve);
   /// A canonical system of Fig. 2 at these frequencies.
   std::size_t add(const GasSystem& system, const GasSize& size, const std::vector<int>& rpm);
-  /// Computes what is open, curve by curve as far as the time goes. \returns whether all is done
+  /// Computes what is open as far as the time goes, all curves equally far. \returns whether all is done
   bool run();
   [[nodiscard]] const GasCurve& curve(std::size_t k) const { return runs_[k].curve; }
   /// All points, in order of the key's values.
