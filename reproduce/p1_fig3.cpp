@@ -14,6 +14,7 @@
 #include "analysis/observable.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "calibration/table.hpp"
+#include "reproduce/at_rest.hpp"
 #include "reproduce/estimate.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/reproduction.hpp"
@@ -82,6 +83,37 @@ struct Boundary {
   [[nodiscard]] bool begun() const { return schedule->curves().front().onset && onset().n > 0; }
   [[nodiscard]] std::string start() const { return random ? "random" : "crystal"; }
   [[nodiscard]] std::string verdict() const { return convecting ? "convecting" : "bouncing"; }
+
+  /// Of the runs with s_c > sigma so many had come to rest: the bed had rearranged, which the paper's rule
+  /// does not tell from convection.
+  struct Rest {
+    std::size_t convecting = 0, at_rest = 0;
+    Onset moving;  ///< of s_c > sigma in beds that go on moving, from the same runs
+  };
+  [[nodiscard]] Rest rest() const {
+    Rest all;
+    std::vector<sweep::Trial> trials;
+    const sweep::Curve& curve = schedule->curves().front();
+    for (std::size_t k = 0; k < curve.points.size(); ++k) {
+      const auto& result = curve.results[k];
+      const std::optional<bool> answer = result ? sweep::answer_of(*result) : std::nullopt;
+      if (!answer) continue;
+      bool moves = false;
+      if (*answer) {
+        const json found =
+            json::parse(*result)["results"].value("s_j", json::object()).value("value", json());
+        std::vector<double> s_j;
+        for (const json& x : found) s_j.push_back(x.is_number() ? x.get<double>() : std::nan(""));
+        moves = !came_to_rest(s_j);
+        ++all.convecting;
+        all.at_rest += moves ? 0 : 1;
+      }
+      trials.push_back({*curve.points[k].at, moves});
+    }
+    const sweep::Search& search = *plan.search;
+    all.moving = sweep::estimate_onset(trials, search.low, search.high, search.width);
+    return all;
+  }
 };
 
 sweep::Plan plan_of(const Size& size, int layers, bool random, bool convecting, std::uint64_t seed) {
@@ -114,6 +146,14 @@ json as_json(const Boundary& b) {
   j["yes"] = o.yes;
   j["complete"] = b.schedule->all();
   j["text"] = o.text();
+  if (b.convecting) {
+    const Boundary::Rest rest = b.rest();
+    j["at_rest"] = rest.at_rest;
+    j["moving"] = {{"value", number(rest.moving.value)},
+                   {"low", number(rest.moving.low)},
+                   {"high", number(rest.moving.high)},
+                   {"level", rest.moving.level}};
+  }
   return j;
 }
 
@@ -403,10 +443,20 @@ Reproduction run(const Request& request) {
   json measured = json::array();
   for (const Boundary& b : boundaries) {
     measured.push_back(as_json(b));
-    r.table += fmt::format("  N_l = {:<3} {:<11} {:<8} {}{}\n", b.layers, b.verdict(), b.start(),
+    r.table += fmt::format("  N_l = {:<3} {:<11} {:<8} {}{}", b.layers, b.verdict(), b.start(),
                            b.begun() ? "Gamma " + b.onset().text() : "not begun",
                            b.schedule->all() ? "" : " (unfinished)");
+    if (b.convecting && b.begun()) {
+      const Boundary::Rest rest = b.rest();
+      if (rest.at_rest > 0)
+        r.table += fmt::format("; at rest {}, moving from {}", rest.at_rest, rest.moving.text());
+    }
+    r.table += '\n';
   }
+  r.table +=
+      "  at rest: of the runs with s_c > sigma those whose s_j changed by less than 0.1 sigma in the second "
+      "half of\n  their cycles: they had rearranged and came to rest; moving: the onset without them. Runs "
+      "end early, so that\n  one that rearranges slowly counts as moving\n";
   r.measured = measured.dump();
   r.figures = {figure_of(boundaries, filmed)};
   return r;

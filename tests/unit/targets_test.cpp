@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reproduce/at_rest.hpp"
 #include "reproduce/estimate.hpp"
 #include "reproduce/p1_ladder.hpp"
 #include "reproduce/reproduction.hpp"
@@ -19,6 +20,26 @@ sweep::Onset onset(std::optional<double> value, std::optional<double> low, std::
   o.high = high;
   o.n = 10;
   return o;
+}
+
+TEST(Targets, ABedThatRearrangedOnceCameToRest) {
+  // Of 20 layers at Gamma = 2.2: tracers part during the first cycles, and stay.
+  std::vector<double> once(200, 1.44);
+  for (std::size_t j = 0; j < 10; ++j) once[j] = 0.14 * static_cast<double>(j);
+  EXPECT_TRUE(came_to_rest(once));
+  once[150] = 1.53;
+  EXPECT_TRUE(came_to_rest(once));
+  once[150] = 1.55;
+  EXPECT_FALSE(came_to_rest(once));
+  once[150] = std::nan("");
+  EXPECT_TRUE(came_to_rest(once));
+  // One that convects: tracers part as diffusing ones do.
+  std::vector<double> on;
+  for (int j = 0; j < 200; ++j) on.push_back(std::sqrt(0.1 * j));
+  EXPECT_FALSE(came_to_rest(on));
+  EXPECT_FALSE(came_to_rest({1, 1, 1}));
+  EXPECT_FALSE(came_to_rest({}));
+  EXPECT_FALSE(came_to_rest(std::vector<double>(10, std::nan(""))));
 }
 
 TEST(Targets, AValueInsideIsMetAnIntervalOutsideIsMissed) {
