@@ -25,10 +25,10 @@ from pathlib import Path
 DIAMETER = 15.0  # px
 NOISE = 0.05  # px, rms per coordinate
 
-# Name, beads, start, Gamma, cycles[, seed]. The preset has omega = 1, so that the plate moves up to 2 pi Gamma / N_k sigma per
-# frame. A crystal bounces; what began at random rearranges; Gamma = 2.5 is just above the onset of convection from
-# a random start (2.2 at 20 layers); the beds at Gamma = 3.2 convect. Beds
-# differ: those of seeds 11 to 13 are there because one bed says little about how many links go wrong.
+# Name, beads, start, Gamma, cycles[, seed]. The preset has omega = 1, so that the plate moves up to
+# 2 pi Gamma / N_k sigma per frame. A crystal bounces; what began at random rearranges; Gamma = 2.5 is just above the
+# onset of convection from a random start (2.2 at 20 layers); the beds at Gamma = 3.2 convect. Beds differ: those of
+# seeds 11 to 13 are there because one bed says little about how many links go wrong.
 CELLS = [
     ("bouncing_1.5", 400, "crystal_a", 1.5, 5),
     ("bouncing_2.0", 400, "crystal_a", 2.0, 5),

@@ -14,6 +14,7 @@
 
 #include "analysis/observable.hpp"
 #include "analysis/phase_thresholds.hpp"
+#include "analysis/statistics.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "analysis/trajectory/in_parallel.hpp"

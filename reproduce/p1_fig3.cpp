@@ -87,7 +87,7 @@ struct Boundary {
   /// Of the runs with s_c > sigma so many had come to rest: the bed had rearranged, which the paper's rule
   /// does not tell from convection.
   struct Rest {
-    std::size_t convecting = 0, at_rest = 0;
+    std::size_t at_rest = 0;
     Onset moving;  ///< of s_c > sigma in beds that go on moving, from the same runs
   };
   [[nodiscard]] Rest rest() const {
@@ -105,7 +105,6 @@ struct Boundary {
         std::vector<double> s_j;
         for (const json& x : found) s_j.push_back(x.is_number() ? x.get<double>() : std::nan(""));
         moves = !came_to_rest(s_j);
-        ++all.convecting;
         all.at_rest += moves ? 0 : 1;
       }
       trials.push_back({*curve.points[k].at, moves});
@@ -132,7 +131,7 @@ json number(const std::optional<double>& value) {
   return value ? json(*value) : json(nullptr);
 }
 
-json as_json(const Boundary& b) {
+json as_json(const Boundary& b, const std::optional<Boundary::Rest>& rest) {
   json j = {{"layers", b.layers}, {"start", b.start()}, {"verdict", b.verdict()}};
   if (!b.begun()) return j;
   const Onset& o = b.onset();
@@ -146,13 +145,13 @@ json as_json(const Boundary& b) {
   j["yes"] = o.yes;
   j["complete"] = b.schedule->all();
   j["text"] = o.text();
-  if (b.convecting) {
-    const Boundary::Rest rest = b.rest();
-    j["at_rest"] = rest.at_rest;
-    j["moving"] = {{"value", number(rest.moving.value)},
-                   {"low", number(rest.moving.low)},
-                   {"high", number(rest.moving.high)},
-                   {"level", rest.moving.level}};
+  if (rest) {
+    const Onset& moving = rest->moving;
+    j["at_rest"] = rest->at_rest;
+    j["moving"] = {{"value", number(moving.value)},
+                   {"low", number(moving.low)},
+                   {"high", number(moving.high)},
+                   {"level", moving.level}};
   }
   return j;
 }
@@ -442,15 +441,13 @@ Reproduction run(const Request& request) {
   r.conditions.push_back(fmt::format("seeds of all runs drawn from the master seed {}", request.seed));
   json measured = json::array();
   for (const Boundary& b : boundaries) {
-    measured.push_back(as_json(b));
+    const auto rest = b.convecting && b.begun() ? std::optional(b.rest()) : std::nullopt;
+    measured.push_back(as_json(b, rest));
     r.table += fmt::format("  N_l = {:<3} {:<11} {:<8} {}{}", b.layers, b.verdict(), b.start(),
                            b.begun() ? "Gamma " + b.onset().text() : "not begun",
                            b.schedule->all() ? "" : " (unfinished)");
-    if (b.convecting && b.begun()) {
-      const Boundary::Rest rest = b.rest();
-      if (rest.at_rest > 0)
-        r.table += fmt::format("; at rest {}, moving from {}", rest.at_rest, rest.moving.text());
-    }
+    if (rest && rest->at_rest > 0)
+      r.table += fmt::format("; at rest {}, moving from {}", rest->at_rest, rest->moving.text());
     r.table += '\n';
   }
   r.table +=

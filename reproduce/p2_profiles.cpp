@@ -426,7 +426,7 @@ Target volume_first(const std::string& name, const Series& volume, const std::ve
   std::vector<Fate> fates;
   std::string at_heights;
   for (const Series& s : stations)
-    if (const auto local = flat_from(s, true); local && whole && s.x.size() > 2) {
+    if (const auto local = flat_from(s, true); local && whole && std::min(volume.x.size(), s.x.size()) > 2) {
       fates.push_back(*local > *whole ? Fate::met : *local < *whole ? Fate::missed : Fate::open);
       at_heights += fmt::format("{}{:.3g} ({})", at_heights.empty() ? "" : ", ", *local, s.title);
     }
