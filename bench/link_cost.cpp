@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   }
   LinkOptions options{.diameter_px = std::stod(argv[2])};
   const int phases = std::stoi(argv[3]);
+  options.closed = true;
   if (argc > 4) options.fall_px = std::stod(argv[4]);
   if (argc > 5) options.memory = std::stoi(argv[5]);
   const int repetitions = argc > 6 ? std::stoi(argv[6]) : 1;

@@ -30,6 +30,8 @@ constexpr double kThrough = 0.75;               // and one passes through the ot
 constexpr double kPassing = 15;                 // for that
 constexpr double kMeeting = 3;                  // beads farther apart do not meet within a frame
 constexpr double kVoid = 8;                     // for a detection to which nobody goes
+constexpr double kLost = 300;                   // the same where nobody can be lost,
+constexpr int kLongestChain = 40;               // and how many may hand on places then
 constexpr double kTwice = 100;                  // for a detection to which two go; they never do
 constexpr int kSweeps = 20;                     // of messages, fewer where nobody changes his mind,
 constexpr int kSure = 4;                        // so many times on end
@@ -70,7 +72,7 @@ class Matching {
     find_neighbours();
     find_likes();
   }
-  CoherentMatch solve();
+  CoherentMatch solve(const MatchKnowledge& known);
 
  private:
   struct Pair {
@@ -117,6 +119,8 @@ class Matching {
   [[nodiscard]] double shared() const;
   bool close(std::int64_t k, double own);
   bool extend(double own);
+  [[nodiscard]] double paid(std::size_t t, std::int64_t k, std::size_t but, std::size_t before) const;
+  bool find_place(std::size_t lost);
 
   std::span<const PixelPoint> places_, detections_;
   std::span<const Edge> choices_;
@@ -130,6 +134,7 @@ class Matching {
   std::vector<float> message_, belief_, claim_;
   std::vector<std::size_t> favourite_;
   // The match.
+  double void_ = kVoid;
   Goals goal_;
   std::vector<std::int64_t> owner_;  // bead per detection
   std::vector<double> least_own_;    // cheapest choice of a bead
@@ -251,7 +256,7 @@ double Matching::total() const {
   for (std::size_t t = 0; t < n(); ++t)
     for (const std::size_t o : far_of_[t])
       if (o > t) sum += overlap(t, goal_[t], o, goal_[o]);
-  for (const std::int64_t t : owner_) sum += t < 0 ? kVoid : 0;
+  for (const std::int64_t t : owner_) sum += t < 0 ? void_ : 0;
   return sum;
 }
 
@@ -503,7 +508,7 @@ double Matching::change(std::size_t t, std::int64_t k) {
   const std::size_t o = rival < 0 ? kNone : static_cast<std::size_t>(rival);
   double rise = own_cost(t, k) - own_cost(t, was), most_gain = standing(t);
   if (o == kNone) {
-    rise += (was >= 0 ? kVoid : 0) - kVoid;
+    rise += (was >= 0 ? void_ : 0) - void_;
   } else {
     rise += own_cost(o, was) - own_cost(o, k);
     most_gain += standing(o);
@@ -565,7 +570,7 @@ bool Matching::close(std::int64_t k, double own) {
 bool Matching::extend(double own) {
   const std::size_t last = chain_.back();
   const std::int64_t was = goal_[chain_.front()];
-  const double filled = was >= 0 ? 0 : kVoid;
+  const double filled = was >= 0 ? 0 : void_;
   double save = 0;
   for (const std::size_t t : chain_) save += standing(t);
   own -= own_cost(last, goal_[last]);
@@ -617,18 +622,103 @@ void Matching::change_places() {
   }
 }
 
-CoherentMatch Matching::solve() {
+// --- places for those that have none ---
+
+// What t pays at k while all others stay, but for `but`, which moves like it, and `before`, which has taken
+// the place of t.
+double Matching::paid(std::size_t t, std::int64_t k, std::size_t but, std::size_t before) const {
+  double sum = own_cost(t, k);
+  for (const std::size_t q : pairs_of_[t]) {
+    const Pair& p = pairs_[q];
+    const std::size_t o = other_of(p, t);
+    const std::int64_t mine = o == but ? goal_[t] : k, theirs = o == before ? goal_[t] : goal_[o];
+    sum += p.a == t ? pair_cost(p, mine, theirs) : pair_cost(p, theirs, mine);
+  }
+  return sum;
+}
+
+// The lost bead takes somebody's place, who takes the next one's, until there is one that nobody has. Chains
+// are compared as if only the next in the chain moved along; whether the cheapest makes the sum less is
+// worked out.
+bool Matching::find_place(std::size_t lost) {
+  struct Label {
+    double cost = std::numeric_limits<double>::infinity();
+    std::size_t from = kNone;  // who takes the place
+  };
+  std::vector<Label> label(n());
+  label[lost].cost = 0;
+  Label last;  // of the chain, and where it goes
+  std::int64_t place = kAlone;
+  auto in_chain_of = [&](std::size_t t, std::size_t o) {
+    while (t != kNone && t != o) t = label[t].from;
+    return t == o;
+  };
+  std::vector<std::size_t> changed{lost}, next;
+  std::vector<std::uint8_t> waits(n(), 0);
+  for (int length = 0; length < kLongestChain && !changed.empty(); ++length) {
+    for (const std::size_t t : changed) waits[t] = 0;
+    next.clear();
+    for (const std::size_t t : changed) {
+      const std::size_t from = label[t].from;
+      const double now = paid(t, goal_[t], kNone, kNone);
+      for (std::size_t e = first_[t]; e < first_[t + 1]; ++e) {
+        const std::int64_t k = choices_[e].column, rival = owner_[static_cast<std::size_t>(k)];
+        const std::size_t o = rival < 0 ? kNone : static_cast<std::size_t>(rival);
+        if (o != kNone && in_chain_of(t, o)) continue;
+        const double cost = label[t].cost + paid(t, k, o, from) - now;
+        if (o == kNone) {
+          if (cost < last.cost) {
+            last = {cost, t};
+            place = k;
+          }
+        } else if (cost < std::min(label[o].cost, void_) - kLess) {
+          label[o] = {cost, t};
+          if (std::exchange(waits[o], std::uint8_t{1}) == 0) next.push_back(o);
+        }
+      }
+    }
+    changed.swap(next);
+  }
+  if (last.from == kNone) return false;
+  const double before = total();
+  const Goals old = goal_;
+  Goals goals = goal_;
+  for (std::size_t t = last.from; t != kNone; t = label[t].from) goals[t] = std::exchange(place, old[t]);
+  adopt(goals);
+  if (total() < before - kLess) return true;
+  adopt(old);
+  return false;
+}
+
+CoherentMatch Matching::solve(const MatchKnowledge& known) {
   const Goals plain = exchange_messages(kPlain), tempered = exchange_messages(kTempered);
   adopt(plain);
+  if (!known.guess.empty()) {
+    Goals guessed(known.guess.begin(), known.guess.end());
+    for (std::size_t t = 0; t < n(); ++t)
+      if (std::isinf(own_cost(t, guessed[t]))) guessed[t] = kAlone;
+    const double cost = total();
+    adopt(guessed);
+    if (total() > cost) std::swap(goal_, guessed);
+    adopt(goal_);
+    fuse(std::move(guessed));
+  }
   fuse(tempered);
   for (std::size_t i = 0; i < kSeeds && n() > 0; ++i) {
     const std::size_t seed = order_[(2 * i + 1) * n() / (2 * kSeeds)];
     if (goal_[seed] >= 0) fuse(grown_from(seed));
   }
   change_places();
+  const Goals unforced = goal_;
+  if (known.nobody_lost) {
+    void_ = kLost;
+    bool any = false;
+    for (std::size_t t = 0; t < n(); ++t) any = (goal_[t] < 0 && find_place(t)) || any;
+    if (any) change_places();
+  }
   CoherentMatch match{goal_, std::vector<double>(n(), std::numeric_limits<double>::infinity())};
   for (std::size_t t = 0; t < n(); ++t) {
-    if (plain[t] != goal_[t] || tempered[t] != goal_[t]) match.margin[t] = 0;
+    if (plain[t] != goal_[t] || tempered[t] != goal_[t] || unforced[t] != goal_[t]) match.margin[t] = 0;
     for (std::size_t e = first_[t]; goal_[t] >= 0 && e < first_[t + 1]; ++e)
       if (goal_[t] != choices_[e].column)
         match.margin[t] = std::min(match.margin[t], change(t, choices_[e].column));
@@ -639,8 +729,9 @@ CoherentMatch Matching::solve() {
 }  // namespace
 
 CoherentMatch match_coherently(std::span<const PixelPoint> places, std::span<const PixelPoint> detections,
-                               std::span<const Edge> choices, double diameter_px) {
-  return Matching(places, detections, choices, diameter_px).solve();
+                               std::span<const Edge> choices, double diameter_px,
+                               const MatchKnowledge& known) {
+  return Matching(places, detections, choices, diameter_px).solve(known);
 }
 
 }  // namespace twincell

@@ -23,6 +23,11 @@
 /// (fusion moves: Lempitsky, Rother, Roth & Blake, IEEE Trans. PAMI 32, 1392 (2010)). At last up to
 /// four beads change places in a ring or a row, at most a thousand such being tried from each. None of them
 /// alone suffices in a bed that convects, and the sum is not proved to be the least.
+///
+/// Where nobody can be lost, a detection to which nobody goes costs 300 in the end: a column of beads may
+/// slide along a wall by a lattice vector within a frame, and but for the beads at its ends, all of it looks
+/// cheaper at rest. From each bead that goes nowhere the cheapest chain is sought in which each bead takes
+/// the place of the next and the last one that nobody has (label-correcting shortest path).
 
 #include <cstdint>
 #include <span>
@@ -38,8 +43,14 @@ struct CoherentMatch {
   std::vector<std::int64_t> column_of_row;  ///< detection of each bead, Assignment::kAlone: none
   /// By how much the sum rises at least if the bead goes elsewhere, changing places with whoever is there
   /// while all others stay: what it costs to be wrong about one bead or two, not about a block. Infinity:
-  /// much.
+  /// much. 0 where two ways to search disagree, or the bead goes there only because nobody can be lost.
   std::vector<double> margin;
+};
+
+/// What is known beforehand.
+struct MatchKnowledge {
+  std::span<const std::int32_t> guess;  ///< detection of each bead in an answer worth trying, < 0: none
+  bool nobody_lost = false;             ///< each bead is known to be at one of the detections
 };
 
 /// Matches all beads at once.
@@ -49,6 +60,7 @@ struct CoherentMatch {
 ///     once
 /// \param diameter_px bead diameter d, > 0
 CoherentMatch match_coherently(std::span<const PixelPoint> places, std::span<const PixelPoint> detections,
-                               std::span<const Edge> choices, double diameter_px);
+                               std::span<const Edge> choices, double diameter_px,
+                               const MatchKnowledge& known = {});
 
 }  // namespace twincell

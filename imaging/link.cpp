@@ -37,6 +37,7 @@ constexpr double kTouching = 1.3;  // whose steps are compared
 constexpr double kPart = 0.8;      // between neighbours' steps: beyond, something is amiss
 constexpr double kAnywhere =
     1.9;  // how far from where it may be expected a bead is sought when all are matched
+constexpr double kFarthest = 8;   // how far the last beads and detections left over may lie apart
 constexpr double kFlight = 0.02;  // width of the density of misses in free flight, and its exponent
 constexpr double kFlightTail = 2.5;
 // Width of the density of misses of a way with a collision on it, and its exponent: fitted to links of
@@ -653,6 +654,12 @@ bool Linker::neighbours_part(const Grid& grid) const {
   return false;
 }
 
+// As many detections as tracks, none of which was missing.
+bool Linker::all_there(const Grid& grid) const {
+  return grid.size() == tracks_.size() &&
+         std::all_of(tracks_.begin(), tracks_.end(), [](const Track& t) { return t.missed == 0; });
+}
+
 // By detection in the order of the grid, the step that would have led there in free flight, to go on as the
 // bead there does; NaN where it is not known. A copy of the linker goes ahead by the links found so far.
 std::vector<PixelPoint> Linker::steps_back(const Grid& grid, std::span<const PixelPoint> detections,
@@ -753,7 +760,8 @@ void Linker::match_all(const Grid& grid, std::span<const std::uint8_t> tracers, 
   }
   // Discs of one layer leave each bead a dozen choices; what leaves many more is no such layer, and endless.
   if (choices.size() > kMostOnAverage * std::min(tracks_.size(), grid.size())) return;
-  const CoherentMatch match = match_coherently(places, detections, choices, d);
+  const CoherentMatch match =
+      match_coherently(places, detections, choices, d, {detection_of_, options_.closed && all_there(grid)});
   std::fill(detection_of_.begin(), detection_of_.end(), -1);
   std::fill(ambiguous_.begin(), ambiguous_.end(), std::uint8_t{0});
   last_.settled = last_.ambiguous = 0;
@@ -765,6 +773,43 @@ void Linker::match_all(const Grid& grid, std::span<const std::uint8_t> tracers, 
     if (match.margin[t] >= std::log(options_.ambiguous_odds)) continue;
     ambiguous_[grid.original(static_cast<std::size_t>(k))] = 1;
     ++last_.ambiguous;
+  }
+}
+
+// A bead that is hit hard may go farther than is looked. Where all are there, the detections that are left
+// over are the beads that are; nothing foretold it, so it is said to be ambiguous. (To look farther for all
+// beads instead gives as many of them a wrong place as it gives a right one.)
+void Linker::link_left_over(const Grid& grid) {
+  if (!options_.closed || !all_there(grid)) return;
+  const double farthest = kFarthest * options_.diameter_px;
+  std::vector<std::size_t> tracks, left;
+  std::vector<std::uint8_t> taken(grid.size(), 0);
+  for (std::size_t t = 0; t < tracks_.size(); ++t)
+    if (detection_of_[t] < 0)
+      tracks.push_back(t);
+    else
+      taken[static_cast<std::size_t>(detection_of_[t])] = 1;
+  for (std::size_t k = 0; k < grid.size(); ++k)
+    if (taken[k] == 0) left.push_back(k);
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    for (std::size_t j = 0; j < left.size(); ++j) {
+      const std::size_t t = tracks[i];
+      const PixelPoint p = grid[left[j]];
+      const double r2 =
+          std::min({square(p - expected_[t]), square(p - flying_[t]), square(p - tracks_[t].place)});
+      if (r2 < farthest * farthest)  // as many as can be
+        edges.push_back(
+            {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), std::sqrt(r2) - 2 * farthest});
+    }
+  const Assignment best = assign(tracks.size(), left.size(), edges);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (best.column_of_row[i] < 0) continue;
+    const std::size_t k = left[static_cast<std::size_t>(best.column_of_row[i])];
+    detection_of_[tracks[i]] = static_cast<std::int32_t>(k);
+    std::uint8_t& mark = ambiguous_[grid.original(k)];
+    last_.ambiguous += mark == 0 ? 1 : 0;
+    mark = 1;
   }
 }
 
@@ -868,10 +913,7 @@ void Linker::link(std::span<const PixelPoint> detections, const FrameMoment& mom
   const bool rough = static_cast<double>(open) > kRough * static_cast<double>(tracks_.size());
   // One ambiguous link among beads that are all there is worth a second look; where some are missing there is
   // one in nearly every frame, and it is mostly right.
-  const bool complete =
-      grid.size() == tracks_.size() &&
-      std::all_of(tracks_.begin(), tracks_.end(), [](const Track& t) { return t.missed == 0; });
-  if ((last_.ambiguous > 0 && (rough || complete)) || (rough && neighbours_part(grid)))
+  if ((last_.ambiguous > 0 && (rough || all_there(grid))) || (rough && neighbours_part(grid)))
     match_all(grid, tracers, moment, {});
   if (last_.rematched > 0 && ahead != nullptr) {
     const std::vector<PixelPoint> back = steps_back(grid, detections, moment, tracers, *ahead);
@@ -887,6 +929,7 @@ void Linker::link(std::span<const PixelPoint> detections, const FrameMoment& mom
       }
     }
   }
+  link_left_over(grid);
   for (std::int32_t& k : detection_of_)
     if (k >= 0) k = static_cast<std::int32_t>(grid.original(static_cast<std::size_t>(k)));
 }

@@ -33,6 +33,8 @@ struct LinkOptions {
   double max_shift_diameters = 1.5;  ///< largest common departure from the prediction sought, diameters,
                                      ///< 0 .. 10; 0: none
   double fall_px = 0;  ///< by which a step downwards grows per frame interval in free flight: g dt^2; >= 0
+  bool closed =
+      false;  ///< no bead comes or goes: as many detections as tracks, none missing, are all of them
   double ambiguous_odds = 20;  ///< a link is ambiguous below these odds against the next best, >= 1
 };
 
@@ -119,6 +121,7 @@ class Linker {
   void link(std::span<const PixelPoint> detections, const FrameMoment& moment,
             std::span<const std::uint8_t> tracers, const FrameAhead* ahead);
   [[nodiscard]] bool neighbours_part(const Grid& grid) const;
+  [[nodiscard]] bool all_there(const Grid& grid) const;
   [[nodiscard]] std::vector<PixelPoint> steps_back(const Grid& grid, std::span<const PixelPoint> detections,
                                                    const FrameMoment& moment,
                                                    std::span<const std::uint8_t> tracers,
@@ -127,6 +130,7 @@ class Linker {
   [[nodiscard]] bool flies_on(const Grid& grid, const std::vector<PixelPoint>& steps_back) const;
   void match_all(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment,
                  const std::vector<PixelPoint>& steps_back);
+  void link_left_over(const Grid& grid);
   void assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment);
   void update(std::span<const PixelPoint> detections, std::span<const std::uint8_t> tracers,
               const FrameMoment& moment, std::vector<std::int64_t>& ids);

@@ -185,6 +185,7 @@ TrackedStack track_stack(FrameSource& frames, LocatorOptions& locator, LinkOptio
   BeadSpool located(spool_folder);
   int width = 0, height = 0;
   std::size_t outside_cell = 0;
+  link.closed = cell.sides == Boundary::wall;
   std::vector<TrackedBead> beads;
   locate_stack(
       frames, locator, threads,
@@ -197,6 +198,7 @@ TrackedStack track_stack(FrameSource& frames, LocatorOptions& locator, LinkOptio
             ++outside_cell;
             continue;
           }
+          if (b.edge) link.closed = false;  // where one is cut by the frame, others come and go
           beads.push_back({.x_px = b.x,
                            .y_px = b.y,
                            .radius_px = b.radius,

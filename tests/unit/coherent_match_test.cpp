@@ -110,6 +110,49 @@ TEST(CoherentMatch, ThreeBeadsChangePlacesWhereTwoWouldNotGain) {
             (std::vector<std::int64_t>{1, 2, 0}));
 }
 
+TEST(CoherentMatch, WhereNobodyIsLostARowSlidesByALatticeVector) {
+  // The top row of a crystal slides by a lattice vector. All of it but the first bead looks the same at rest,
+  // and to part from the row below is dear: only that the first bead must be somewhere tells. 16.2 (two
+  // pairs, each 2 ln(1 + 1.1^2 / 0.15^2) = 8.0) for each of 12 beads is less than what a lost one costs.
+  const auto places = crystal(12);
+  auto detections = places;
+  for (std::size_t t = 0; t < 12; ++t) detections[t].x_px += 1.1 * kDiameter;
+  const auto choices = all_within(places, detections, 1.9, -10);
+  const auto at_rest = match_coherently(places, detections, choices, kDiameter).column_of_row;
+  EXPECT_EQ(at_rest[0], Assignment::kAlone);
+  EXPECT_EQ(at_rest[1], 0) << "where the first bead is now";
+  const auto match =
+      match_coherently(places, detections, choices, kDiameter, {.guess = {}, .nobody_lost = true});
+  EXPECT_EQ(wrong(match.column_of_row), 0U);
+  EXPECT_EQ(match.margin[5], 0) << "nothing but the count says so";
+}
+
+TEST(CoherentMatch, NobodyIsFoundAPlaceAcrossTheBed) {
+  // 30 beads would have to move on: rather one is missed, and something else is taken for a bead.
+  const auto places = crystal(30);
+  auto detections = places;
+  detections[29 * 30 + 15] = {places[15].x_px, -1.1 * kDiameter};
+  const auto match = match_coherently(places, detections, all_within(places, detections, 1.9, -10), kDiameter,
+                                      {.guess = {}, .nobody_lost = true});
+  EXPECT_EQ(match.column_of_row[29 * 30 + 15], Assignment::kAlone);
+  EXPECT_EQ(wrong(match.column_of_row), 1U);
+}
+
+TEST(CoherentMatch, AGuessHelpsOrIsDropped) {
+  // A ring of six, each of whom gains by taking the next one's place, while two, three or four that do lose.
+  // The guess is the ring; or nonsense, which changes nothing.
+  std::vector<PixelPoint> places;
+  for (int i = 0; i < 6; ++i) places.push_back({60 * std::cos(i * 1.0472), 60 * std::sin(i * 1.0472)});
+  std::vector<Edge> choices;
+  for (std::uint32_t t = 0; t < 6; ++t)
+    for (std::uint32_t k = 0; k < 6; ++k)
+      choices.push_back({t, k, k == t ? -10.0 : k == (t + 1) % 6 ? -12.0 : -1.0});
+  const std::vector<std::int64_t> ring = {1, 2, 3, 4, 5, 0};
+  const std::vector<std::int32_t> told = {1, 2, 3, 4, 5, 0}, nonsense = {3, 3, -1, 90, 0, 0};
+  EXPECT_EQ(match_coherently(places, places, choices, kDiameter, {.guess = told}).column_of_row, ring);
+  EXPECT_EQ(match_coherently(places, places, choices, kDiameter, {.guess = nonsense}).column_of_row, ring);
+}
+
 TEST(CoherentMatch, WhatCannotBeToldHasNoMargin) {
   // Two beads, two detections as near to the one as to the other; a third far off is sure.
   const std::vector<PixelPoint> places = {{0, 0}, {18, 0}, {200, 0}};

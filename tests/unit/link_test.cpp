@@ -235,6 +235,20 @@ TEST(Linker, TheFrameAheadTellsWhoIsWhoAfterACollision) {
   EXPECT_LE(3 * seeing, blind);
 }
 
+TEST(Linker, InAClosedCellTheBeadThatIsLeftIsTheOneThatWasLost) {
+  // One bead flies off, farther than is looked; where beads may come and go, it is another one.
+  for (const bool closed : {true, false}) {
+    auto beads = crystal(6);
+    beads.push_back({200, 40});
+    Linker linker({.diameter_px = 15, .closed = closed});
+    linker.next(beads);
+    beads.back() = {200, -40};
+    EXPECT_EQ(linker.next(beads).back(), closed ? 36 : 37);
+    EXPECT_EQ(linker.ambiguous().back(), closed ? 1 : 0);
+    EXPECT_EQ(linker.total().births, closed ? 37 : 38);
+  }
+}
+
 TEST(Linker, DroppedAndDoubledFramesScaleTheStep) {
   const auto start = crystal(8);
   Linker linker({.diameter_px = 15, .max_shift_diameters = 0});  // the prediction alone
