@@ -326,7 +326,7 @@ Figure series_figure(const std::string& name, const std::string& title, const st
         "plot -1 notitle\n";
     return f;
   }
-  f.plot = fmt::format("set xlabel '{}'\nset ylabel '{}'\nset key top right\n{}\nplot {}\n", x_label, y_label,
+  f.plot = fmt::format("set xlabel '{}'\nset ylabel '{}'\nset key above\n{}\nplot {}\n", x_label, y_label,
                        setup, plot);
   return f;
 }
