@@ -71,11 +71,11 @@ Reproduction run(const Request& request) {
   r.conditions = gas.conditions();
   r.cheaper = gas.cheaper();
   r.cheaper.emplace_back("the height at rest is that of each run's own bed, settled at A = 0");
-  r.figures = {
-      series_figure("p2-fig7", "T_bar_z over dh_bar against W", "W = V_p^2/(d g)", "T_bar_z/dh_bar", all,
-                    "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
-                    "T_z = m <w'^2> over m g times the lift of the barycentre above its height at rest. Form "
-                    "of Bhateja et al. 2016, Fig. 7.")};
+  r.figures = {series_figure(
+      "p2-fig7", "T_z over the lift of the barycentre against W", "W = V_p^2/(d g)",
+      "T_z/(m V_p^2) over Δh_{cm} g/V_p^2", all, "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
+      "T_z = m <w'^2> over m g times the lift of the barycentre above its height at rest. Form "
+      "of Bhateja et al. 2016, Fig. 7.")};
   return r;
 }
 

@@ -238,9 +238,10 @@ Reproduction run_10(const Request& request) {
       r.targets.push_back(t);
       r.targets.push_back(deep);
     }
-    r.figures.push_back(series_figure("p2-fig10-" + p.symbol, "alpha over [W_f, W_2] with " + p.symbol,
-                                      p.symbol, "alpha", {s}, "set yrange [0:2.5]\nunset key\n",
-                                      "Form of Bhateja et al. 2016, Fig. 10."));
+    r.figures.push_back(
+        series_figure("p2-fig10-" + p.symbol, "alpha over [W_f, W_2] with " + p.symbol, p.symbol, "α", {s},
+                      "set yrange [0:2.5]\nset offsets graph 0.05, graph 0.05, 0, 0\nunset key\n",
+                      "Form of Bhateja et al. 2016, Fig. 10."));
   }
   r.table += gas.table();
   return r;
