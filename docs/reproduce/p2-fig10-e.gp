@@ -24,9 +24,10 @@ set tics textcolor rgb '#222222'
 set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
 set xlabel 'e'
-set ylabel 'alpha'
-set key top right
+set ylabel 'α'
+set key above
 set yrange [0:2.5]
+set offsets graph 0.05, graph 0.05, 0, 0
 unset key
 
 plot 'p2-fig10-e.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'alpha'

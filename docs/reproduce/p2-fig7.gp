@@ -1,5 +1,12 @@
-# T_bar_z over dh_bar against W
+# T_z over the lift of the barycentre against W
 # gnuplot p2-fig7.gp draws p2-fig7.svg, p2-fig7.pdf and p2-fig7.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 640,460 dynamic enhanced font 'Arial,15' background 'white'
@@ -17,8 +24,8 @@ set tics textcolor rgb '#222222'
 set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
 set xlabel 'W = V_p^2/(d g)'
-set ylabel 'T_bar_z/dh_bar'
-set key top right
+set ylabel 'T_z/(m V_p^2) over Δh_{cm} g/V_p^2'
+set key above
 set logscale x
 set xrange [1:150]
 set yrange [0:*]

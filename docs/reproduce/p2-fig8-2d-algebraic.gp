@@ -1,5 +1,12 @@
 # 2D rough, algebraic
 # gnuplot p2-fig8-2d-algebraic.gp draws p2-fig8-2d-algebraic.svg, p2-fig8-2d-algebraic.pdf and p2-fig8-2d-algebraic.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 560,640 dynamic enhanced font 'Arial,15' background 'white'
@@ -26,7 +33,7 @@ set bmargin at screen 0.40
 set format x ''
 set ylabel 'T_{bar_z}'
 set key top right samplen 2
-plot 'p2-fig8-2d-algebraic.dat' index 1 using 1:3:4 with filledcurves fc rgb '#56B4E9' fs transparent solid 0.35 noborder title '95 % band', 'p2-fig8-2d-algebraic.dat' index 1 using 1:2 with lines lw 2 lc rgb '#0072B2' title 'algebraic', 'p2-fig8-2d-algebraic.dat' index 0 using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1.3 lc rgb '#222222' title 'points'
+plot 'p2-fig8-2d-algebraic.dat' index 1 using 1:3:4 with filledcurves fc rgb sky fs transparent solid 0.35 noborder title '95 % band', 'p2-fig8-2d-algebraic.dat' index 1 using 1:2 with lines lw 2 lc rgb blue title 'algebraic', 'p2-fig8-2d-algebraic.dat' index 0 using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1.3 lc rgb '#222222' title 'points'
 unset logscale y
 set ytics autofreq
 unset key
@@ -37,7 +44,7 @@ set format y '%g'
 set xlabel 'W'
 set ylabel 'residual'
 set yrange [*:*]
-plot 0 with lines lw 1.5 lc rgb '#0072B2', 'p2-fig8-2d-algebraic.dat' index 0 using 1:5 with impulses lw 1.3 lc rgb '#9A9A9A', 'p2-fig8-2d-algebraic.dat' index 0 using 1:5 with points pt 7 ps 0.9 lc rgb '#222222'
+plot 0 with lines lw 1.5 lc rgb blue, 'p2-fig8-2d-algebraic.dat' index 0 using 1:5 with impulses lw 1.3 lc rgb grey, 'p2-fig8-2d-algebraic.dat' index 0 using 1:5 with points pt 7 ps 0.9 lc rgb '#222222'
 unset multiplot
 unset output
 reset

@@ -25,7 +25,7 @@ set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
 set xlabel 'W = V_p^2/(d g)'
 set ylabel 'T_z/(m V_p^2)'
-set key top right
+set key above
 set logscale x
 set xrange [1:150]
 set yrange [0:*]

@@ -1,5 +1,12 @@
 # T_z against V_p
 # gnuplot p2-table1.gp draws p2-table1.svg, p2-table1.pdf and p2-table1.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 640,460 dynamic enhanced font 'Arial,15' background 'white'
@@ -18,11 +25,11 @@ set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
 set xlabel 'V_p/(g d)^{1/2}'
 set ylabel 'T_z/(m g d)'
-set key top right
+set key above
 set logscale xy
 set key outside right top
 
-plot 'p2-table1.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'Warr et al., 2D rough', 'p2-table1.dat' index 1 using 1:2 with lines lw 1.3 dt 1 lc rgb '#D55E00' title 'alpha = 1.518', 'p2-table1.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'Feitosa and Menon, 2D rough', 'p2-table1.dat' index 3 using 1:2 with lines lw 1.3 dt 1 lc rgb '#0072B2' title 'alpha = 1.972', 'p2-table1.dat' index 4 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title '2D rough, [W_f, W_2]', 'p2-table1.dat' index 5 using 1:2 with lines lw 1.3 dt 1 lc rgb '#009E73' title 'alpha = 1.593', 'p2-table1.dat' index 6 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 13 lc rgb '#CC79A7' title '3D rough, [W_f, W_2]', 'p2-table1.dat' index 7 using 1:2 with lines lw 1.3 dt 1 lc rgb '#CC79A7' title 'alpha = 1.251'
+plot 'p2-table1.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'Warr et al., 2D rough', 'p2-table1.dat' index 1 using 1:2 with lines lw 1.3 dt 1 lc rgb '#D55E00' title 'alpha = 1.522', 'p2-table1.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'Feitosa and Menon, 2D rough', 'p2-table1.dat' index 3 using 1:2 with lines lw 1.3 dt 1 lc rgb '#0072B2' title 'alpha = 1.962', 'p2-table1.dat' index 4 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title '2D rough, [W_f, W_2]', 'p2-table1.dat' index 5 using 1:2 with lines lw 1.3 dt 1 lc rgb '#009E73' title 'alpha = 1.628', 'p2-table1.dat' index 6 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 13 lc rgb '#CC79A7' title '3D rough, [W_f, W_2]', 'p2-table1.dat' index 7 using 1:2 with lines lw 1.3 dt 1 lc rgb '#CC79A7' title 'alpha = 1.290'
 unset output
 reset
 }
