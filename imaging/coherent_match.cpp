@@ -18,23 +18,25 @@ namespace twincell {
 namespace {
 
 // Lengths in diameters, costs in logarithms of odds. Chosen on the cells of `bench link`.
-constexpr double kReach = 1.6;                  // of neighbours,
-constexpr std::size_t kMostNeighbours = 7;      // the nearest so many
-constexpr double kTouch = 1.2;                  // up to which they count in full,
-constexpr double kLoose = 0.6;                  // and what the farthest count
-constexpr double kWidth = 0.15;                 // of the core of the density of the difference of two steps
-constexpr double kScale = 2;                    // its exponent
-constexpr double kAlike = 1.2;                  // difference of steps beyond which nothing gets dearer
-constexpr double kBeside = 0.9;                 // between centres on straight ways: nearer, discs overlap,
-constexpr double kThrough = 0.75;               // and one passes through the other
-constexpr double kPassing = 15;                 // for that
-constexpr double kMeeting = 3;                  // beads farther apart do not meet within a frame
-constexpr double kVoid = 8;                     // for a detection to which nobody goes
-constexpr double kLost = 300;                   // the same where nobody can be lost,
-constexpr int kLongestChain = 40;               // and how many may hand on places then
-constexpr double kTwice = 100;                  // for a detection to which two go; they never do
-constexpr int kSweeps = 20;                     // of messages, fewer where nobody changes his mind,
-constexpr int kSure = 4;                        // so many times on end
+constexpr double kReach = 1.6;               // of neighbours,
+constexpr std::size_t kMostNeighbours = 7;   // the nearest so many
+constexpr double kTouch = 1.2;               // up to which they count in full,
+constexpr double kLoose = 0.6;               // and what the farthest count
+constexpr double kWidth = 0.15;              // of the core of the density of the difference of two steps
+constexpr double kScale = 2;                 // its exponent
+constexpr double kAlike = 1.2;               // difference of steps beyond which nothing gets dearer
+constexpr double kBeside = 0.9;              // between centres on straight ways: nearer, discs overlap,
+constexpr double kThrough = 0.75;            // and one passes through the other
+constexpr double kPassing = 15;              // for that
+constexpr double kMeeting = 3;               // beads farther apart do not meet within a frame
+constexpr double kVoid = 8;                  // for a detection to which nobody goes
+constexpr double kLost = 300;                // the same where nobody can be lost,
+constexpr std::size_t kFew = 20;             // one in so many of whom may be without a place,
+constexpr int kLongestChain = 40;            // how many may hand on places then,
+constexpr std::size_t kMostTries = 1000000;  // and places tried in all, each in some tenths of a microsecond
+constexpr double kTwice = 100;               // for a detection to which two go; they never do
+constexpr int kSweeps = 20;                  // of messages, fewer where nobody changes his mind,
+constexpr int kSure = 4;                     // so many times on end
 constexpr double kPlain = 1, kTempered = 0.34;  // share of a belief that is sent on
 constexpr int kSeeds = 5;                       // beads from which a proposal is grown
 constexpr double kTrust = 0.1;       // distance that a settled neighbour is worth in who goes first
@@ -142,6 +144,7 @@ class Matching {
   std::vector<std::size_t> turn_;    // and where in it each bead is
   std::size_t chains_ = 0;           // tried that begin with its first
   std::vector<double> standing_;     // what a bead pays for its neighbours
+  std::size_t tries_ = 0;            // of places for beads that have none
 };
 
 void Matching::find_neighbours() {
@@ -655,7 +658,7 @@ bool Matching::find_place(std::size_t lost) {
   };
   std::vector<std::size_t> changed{lost}, next;
   std::vector<std::uint8_t> waits(n(), 0);
-  for (int length = 0; length < kLongestChain && !changed.empty(); ++length) {
+  for (int length = 0; length < kLongestChain && !changed.empty() && tries_ < kMostTries; ++length) {
     for (const std::size_t t : changed) waits[t] = 0;
     next.clear();
     for (const std::size_t t : changed) {
@@ -665,6 +668,7 @@ bool Matching::find_place(std::size_t lost) {
         const std::int64_t k = choices_[e].column, rival = owner_[static_cast<std::size_t>(k)];
         const std::size_t o = rival < 0 ? kNone : static_cast<std::size_t>(rival);
         if (o != kNone && in_chain_of(t, o)) continue;
+        ++tries_;
         const double cost = label[t].cost + paid(t, k, o, from) - now;
         if (o == kNone) {
           if (cost < last.cost) {
@@ -710,7 +714,9 @@ CoherentMatch Matching::solve(const MatchKnowledge& known) {
   }
   change_places();
   const Goals unforced = goal_;
-  if (known.nobody_lost) {
+  // Where many have no place the frame is not understood, and to find each of them one takes long.
+  const auto lost = static_cast<std::size_t>(std::count(goal_.begin(), goal_.end(), kAlone));
+  if (known.nobody_lost && lost <= 1 + n() / kFew) {
     void_ = kLost;
     bool any = false;
     for (std::size_t t = 0; t < n(); ++t) any = (goal_[t] < 0 && find_place(t)) || any;

@@ -138,7 +138,7 @@ Reproduction run(const Request& request, bool coefficients) {
       }
       all.push_back(s);
       Figure residuals =
-          fit_figure(*f.fit, f.points, "W", "T_bar_z",
+          fit_figure(*f.fit, f.points, "W", "T̄_z",
                      fmt::format("p2-fig8-{}d-{}", dimension, algebraic ? "algebraic" : "exponential"));
       residuals.title = f.name();
       r.figures.push_back(residuals);
@@ -160,7 +160,7 @@ Reproduction run(const Request& request, bool coefficients) {
   r.figures.insert(
       r.figures.begin(),
       series_figure("p2-fig8", "Fits of T_z/(m V_p^2)", "W = V_p^2/(d g)", "T_z/(m V_p^2)", all,
-                    "set logscale xy\nset xrange [1:150]\nset yrange [0.05:1]\nset key inside bottom left\n",
+                    "set logscale xy\nset xrange [1:150]\nset yrange [0.03:1]\nset key inside vertical bottom left\n",
                     "Algebraic and exponential fits from W_f on. Form of Bhateja et al. 2016, Fig. 8(b); "
                     "residuals in the figures beside it."));
   return r;
