@@ -30,7 +30,7 @@ set xrange [-0.728846083:92.8965755]
 set tmargin at screen 0.95
 set bmargin at screen 0.40
 set format x ''
-set ylabel 'T_{bar_z}'
+set ylabel 'T̄_{z}'
 set key top right samplen 2
 plot 'p2-fig8-3d-exponential.dat' index 1 using 1:3:4 with filledcurves fc rgb sky fs transparent solid 0.35 noborder title '95 % band', 'p2-fig8-3d-exponential.dat' index 1 using 1:2 with lines lw 2 lc rgb blue title 'exponential', 'p2-fig8-3d-exponential.dat' index 0 using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1.3 lc rgb '#222222' title 'points'
 unset logscale y
