@@ -701,11 +701,7 @@ CoherentMatch Matching::solve(const MatchKnowledge& known) {
     Goals guessed(known.guess.begin(), known.guess.end());
     for (std::size_t t = 0; t < n(); ++t)
       if (std::isinf(own_cost(t, guessed[t]))) guessed[t] = kAlone;
-    const double cost = total();
-    adopt(guessed);
-    if (total() > cost) std::swap(goal_, guessed);
-    adopt(goal_);
-    fuse(std::move(guessed));
+    adopt(std::move(guessed));
   }
   fuse(tempered);
   for (std::size_t i = 0; i < kSeeds && n() > 0; ++i) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "analysis/trajectory/error.hpp"
 #include "imaging/assignment.hpp"
@@ -557,6 +558,10 @@ void exchange_passers(Assignment& best, const std::vector<Edge>& edges, const st
 
 }  // namespace
 
+void Linker::say_ambiguous(std::size_t detection) {
+  if (std::exchange(ambiguous_[detection], std::uint8_t{1}) == 0) ++last_.ambiguous;
+}
+
 void Linker::assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment) {
   const double d = options_.diameter_px;
   const double alone = cost(options_.range_diameters * options_.range_diameters, kWidth);
@@ -622,8 +627,7 @@ void Linker::assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers
     detection_of_[static_cast<std::size_t>(rows[i])] = k;
     track_of_[static_cast<std::size_t>(k)] = rows[i];
     if (best.margin[i] >= least_margin) continue;
-    ambiguous_[grid.original(static_cast<std::size_t>(k))] = 1;
-    ++last_.ambiguous;
+    say_ambiguous(grid.original(static_cast<std::size_t>(k)));
   }
 }
 
@@ -771,8 +775,7 @@ void Linker::match_all(const Grid& grid, std::span<const std::uint8_t> tracers, 
     if (k < 0) continue;
     detection_of_[t] = static_cast<std::int32_t>(k);
     if (match.margin[t] >= std::log(options_.ambiguous_odds)) continue;
-    ambiguous_[grid.original(static_cast<std::size_t>(k))] = 1;
-    ++last_.ambiguous;
+    say_ambiguous(grid.original(static_cast<std::size_t>(k)));
   }
 }
 
@@ -807,9 +810,7 @@ void Linker::link_left_over(const Grid& grid) {
     if (best.column_of_row[i] < 0) continue;
     const std::size_t k = left[static_cast<std::size_t>(best.column_of_row[i])];
     detection_of_[tracks[i]] = static_cast<std::int32_t>(k);
-    std::uint8_t& mark = ambiguous_[grid.original(k)];
-    last_.ambiguous += mark == 0 ? 1 : 0;
-    mark = 1;
+    say_ambiguous(grid.original(k));
   }
 }
 
@@ -923,9 +924,7 @@ void Linker::link(std::span<const PixelPoint> detections, const FrameMoment& mom
       // What the frame ahead has changed is said to be ambiguous, whatever the odds are now.
       for (std::size_t t = 0; t < tracks_.size(); ++t) {
         if (detection_of_[t] < 0 || detection_of_[t] == first[t]) continue;
-        std::uint8_t& mark = ambiguous_[grid.original(static_cast<std::size_t>(detection_of_[t]))];
-        last_.ambiguous += mark == 0 ? 1 : 0;
-        mark = 1;
+        say_ambiguous(grid.original(static_cast<std::size_t>(detection_of_[t])));
       }
     }
   }

@@ -131,6 +131,7 @@ class Linker {
   void match_all(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment,
                  const std::vector<PixelPoint>& steps_back);
   void link_left_over(const Grid& grid);
+  void say_ambiguous(std::size_t detection);
   void assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment);
   void update(std::span<const PixelPoint> detections, std::span<const std::uint8_t> tracers,
               const FrameMoment& moment, std::vector<std::int64_t>& ids);

@@ -138,7 +138,7 @@ TEST(CoherentMatch, NobodyIsFoundAPlaceAcrossTheBed) {
   EXPECT_EQ(wrong(match.column_of_row), 1U);
 }
 
-TEST(CoherentMatch, AGuessHelpsOrIsDropped) {
+TEST(CoherentMatch, AGuessDoesNoHarm) {
   // A ring of six, each of whom gains by taking the next one's place, while two, three or four that do lose.
   // The guess is the ring; or nonsense, which changes nothing.
   std::vector<PixelPoint> places;
