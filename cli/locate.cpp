@@ -176,7 +176,11 @@ void run(LocateOptions& o, const Common& common) {
     text +=
         "discs are alike but not plain, as the first frame shows: fitted by their common profile (--refine "
         "profile)\n";
-  if (find_polarity)
+  if (find_polarity && o.locator.refine.method == "profile")  // they may have rings of both kinds
+    text +=
+        fmt::format("frames are read as with --{}, which explains the first one better (--dark, --bright)\n",
+                    o.locator.preprocess.bright ? "bright" : "dark");
+  else if (find_polarity)
     text +=
         fmt::format("beads are {} than what lies behind them, as the first frame shows (--dark, --bright)\n",
                     o.locator.preprocess.bright ? "brighter" : "darker");

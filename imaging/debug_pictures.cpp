@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/trajectory/atomic_file.hpp"
@@ -17,10 +18,22 @@ namespace twincell {
 
 namespace {
 
-/// 0 .. 1 as grey.
-cv::Mat3b grey_of(const cv::Mat1f& values) {
+/// Darkness that is shown black and white: 0 and 1, or what all but the farthest 200th to either side have,
+/// as discs with rings lighter than what lies behind them have less than 0.
+std::pair<double, double> shades_of(const cv::Mat1f& darkness) {
+  std::vector<float> levels(darkness.begin(), darkness.end());
+  if (levels.empty()) return {0, 1};
+  const auto far = static_cast<std::ptrdiff_t>(levels.size() / 200);
+  std::nth_element(levels.begin(), levels.begin() + far, levels.end());
+  const double low = static_cast<double>(levels[static_cast<std::size_t>(far)]);
+  std::nth_element(levels.begin(), levels.end() - 1 - far, levels.end());
+  return {std::min(0.0, low), std::max(1.0, static_cast<double>(*(levels.end() - 1 - far)))};
+}
+
+cv::Mat3b grey_of(const cv::Mat1f& values, std::pair<double, double> shades = {0, 1}) {
+  const double steps = 255 / (shades.second - shades.first);
   cv::Mat1b byte;
-  values.convertTo(byte, CV_8U, 255);
+  values.convertTo(byte, CV_8U, steps, -steps * shades.first);
   cv::Mat3b picture;
   cv::cvtColor(byte, picture, cv::COLOR_GRAY2BGR);
   return picture;
@@ -87,7 +100,8 @@ void write_debug_pictures(const std::filesystem::path& folder, const cv::Mat& gr
   const LocatorStages stages = locate_stages(grey, options);
   const int enlarge = std::max(1, 1200 / std::max(1, std::max(grey.cols, grey.rows)));
 
-  cv::Mat3b darkness = grey_of(stages.image.darkness);
+  const auto shades = shades_of(stages.image.darkness);
+  cv::Mat3b darkness = grey_of(stages.image.darkness, shades);
   if (!stages.image.opaque.empty()) darkness.setTo(cv::Vec3b(160, 60, 60), stages.image.opaque);
   write_png(folder / "1_darkness.png", darkness);
 
@@ -100,7 +114,7 @@ void write_debug_pictures(const std::filesystem::path& folder, const cv::Mat& gr
   write_png(folder / "2_proposals.png", draw_overlay(grey, proposed, enlarge));
 
   const cv::Mat1f model = model_of(stages);
-  write_png(folder / "3_model.png", grey_of(model));
+  write_png(folder / "3_model.png", grey_of(model, shades));
   const cv::Mat1f residual = 0.5 + (stages.image.darkness - model) / 0.4;
   write_png(folder / "4_residual.png", grey_of(residual));
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 
 #include "analysis/trajectory/median.hpp"
@@ -25,6 +26,7 @@ constexpr double kRadiusSpread = 0.04;  // prior of R_k, of R
 constexpr double kLevelSpread = 0.1;    // prior of a_k
 constexpr double kDoubled = 0.5;        // of R: centres nearer than that are of one disc
 constexpr double kLike = 0.4;           // correlation of what may be a disc with the profile
+constexpr double kRim = 0.2;            // of the largest level: a ring that is the rim has more
 constexpr double kApart = 1.6;          // of R: no disc is looked for nearer to another, as in the vote
 
 /// f and its slope at a distance, R = that of the profile.
@@ -390,7 +392,7 @@ double DiscProfile::at(double r) const {
 }
 
 double DiscProfile::rim() const {
-  const auto high = static_cast<float>(0.5 * largest());
+  const auto high = static_cast<float>(kRim * largest());
   if (high == 0) return 0;
   // From outside to the first top that is high enough, from there out to its half.
   std::size_t top = levels.size() - 1;
@@ -417,16 +419,25 @@ double DiscProfile::largest() const {
   return static_cast<double>(most);
 }
 
-bool DiscProfile::plain(double edge) const {
-  const double out = rim() - edge;
-  double lowest = HUGE_VAL, highest = -HUGE_VAL;
-  // The rim's own level too: a clear disc with a thin dark rim is even inside.
-  for (double r = 0; r <= rim() - 0.5; r += 1 / kPerPixel) {
-    if (r > out && std::abs(at(r)) < std::abs(at(std::max(0.0, out)))) continue;  // the blurred edge
-    lowest = std::min(lowest, at(r));
-    highest = std::max(highest, at(r));
+double DiscProfile::unlike_plain() const {
+  constexpr double kSharpest = 0.4, kSoftest = 3.2, kRatio = 1.2;  // blur, px
+  const double out = rim();
+  double all = 0;
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    all += static_cast<double>(k) * std::pow(static_cast<double>(levels[k]), 2);
+  if (all <= 0) return 0;
+  double least = 1;
+  for (double blur = kSharpest; blur < kSoftest; blur *= kRatio) {
+    double common = 0, of_plain = 0;
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+      const double r = static_cast<double>(k) / kPerPixel,
+                   plain = 0.5 * std::erfc((r - out) / (blur * std::numbers::sqrt2));
+      common += static_cast<double>(k) * plain * static_cast<double>(levels[k]);
+      of_plain += static_cast<double>(k) * plain * plain;
+    }
+    least = std::min(least, 1 - common * common / (of_plain * all));
   }
-  return highest - lowest <= 0.5 * largest();
+  return least;
 }
 
 Refined refine_by_profile(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,

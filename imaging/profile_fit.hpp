@@ -27,14 +27,15 @@ struct DiscProfile {
   std::vector<float> levels;  ///< f at r = k/kPerPixel; 0 behind the last
   /// f at a distance from the centre of a disc of radius R.
   [[nodiscard]] double at(double r) const;
-  /// Radius at which f falls most steeply outward of its first extreme, from outside, that is half as large
-  /// as its largest: the outer rim, px.
+  /// Radius at which f falls most steeply outward of its first extreme, from outside, that is a fifth as
+  /// large as its largest: the outer rim, px.
   [[nodiscard]] double rim() const;
   /// The largest |f|.
   [[nodiscard]] double largest() const;
-  /// Whether a plain disc may have such a profile: further than `edge` px inside its rim it nowhere differs
-  /// by half of its largest level from what it has just there. A bright spot on each disc does no harm.
-  [[nodiscard]] bool plain(double edge) const;
+  /// Share of the sum of f^2 over the disc's area that a plain disc with this rim, of the blur that does
+  /// best, leaves unexplained: below 0.01 for opaque discs, of which a small bright spot on each makes no
+  /// others.
+  [[nodiscard]] double unlike_plain() const;
 };
 
 /// Fits all discs that look alike with the profile that they share; the proposals need be right for most of

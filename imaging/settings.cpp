@@ -234,12 +234,13 @@ ProfileTrial try_profile(const cv::Mat& grey, LocatorOptions options, const Hypo
 /// that is by what plain discs were found.
 std::optional<FoundSettings> find_alike(const cv::Mat& frame, const LocatorOptions& given,
                                         const std::vector<Hypothesis>& all, const FoundSettings& plain) {
-  constexpr double kClearly = 1.25;
+  constexpr double kClearly = 1.25, kBetter = 1.1;
+  constexpr double kWider = 1.12, kWiderRim = 1.05;
   constexpr int kRounds = 2;
   constexpr double kClose = 0.02, kTolerance = 0.2;  // of the diameter
   constexpr int kDiscs = 14;                         // across the part that is looked at
   constexpr double kDark = 0.5;                      // paler discs the plain fit calls none
-  constexpr double kEdge = 3;                        // px inside the rim: as far as its blur reaches
+  constexpr double kUnlike = 0.012;                  // of a plain disc's profile
   double largest = plain.diameter_px;
   for (const Hypothesis& h : all) largest = std::max(largest, h.diameter_px);
   const cv::Mat grey = busiest(frame, std::clamp(static_cast<int>(kDiscs * largest), 160, 360));
@@ -248,10 +249,7 @@ std::optional<FoundSettings> find_alike(const cv::Mat& frame, const LocatorOptio
            (given.diameter_px <= 0 || std::abs(h.diameter_px / given.diameter_px - 1) <= kTolerance) &&
            (!given.polarity_known || h.bright == given.preprocess.bright);
   };
-  Hypothesis best{plain.bright, plain.diameter_px};
-  ProfileTrial of_best = try_profile(grey, given, best);
-  double to_beat = kClearly * of_best.explained;
-  for (Hypothesis h : all) {
+  const auto led_out = [&](Hypothesis& h) {
     ProfileTrial trial = try_profile(grey, given, h);
     for (int round = 0; round < kRounds && trial.explained > 0; ++round) {
       const double rim = trial.profile.rim();
@@ -263,14 +261,41 @@ std::optional<FoundSettings> find_alike(const cv::Mat& frame, const LocatorOptio
       h = next;
       trial = std::move(out);
     }
+    return trial;
+  };
+  Hypothesis best{plain.bright, plain.diameter_px};
+  ProfileTrial of_best = try_profile(grey, given, best);
+  double to_beat = kClearly * of_best.explained;
+  for (Hypothesis h : all) {
+    ProfileTrial trial = led_out(h);
     if (trial.explained <= to_beat) continue;
     to_beat = trial.explained;
     best = h;
     of_best = std::move(trial);
   }
   if (of_best.explained <= 0) return std::nullopt;
-  const bool is_plain = of_best.profile.plain(kEdge) && of_best.profile.largest() > kDark;
+  const bool is_plain = of_best.profile.unlike_plain() < kUnlike && of_best.profile.largest() > kDark;
   if (is_plain && best.bright == plain.bright && best.diameter_px == plain.diameter_px) return std::nullopt;
+  if (!is_plain) {
+    // A ring may hide the one that is outside it, of which votes say nothing.
+    for (const double ratio : {kWider, kWider * kWider}) {
+      Hypothesis wider{best.bright, ratio * best.diameter_px};
+      if (!allowed(wider)) break;
+      ProfileTrial trial = led_out(wider);
+      if (trial.explained <= of_best.explained || trial.profile.rim() <= kWiderRim * of_best.profile.rim())
+        continue;
+      best = wider, of_best = std::move(trial);
+      break;
+    }
+    // Of discs with both dark and bright rings, what lies behind is seen more evenly by one of the
+    // polarities.
+    if (const Hypothesis other{!best.bright, best.diameter_px}; allowed(other)) {
+      ProfileTrial trial = try_profile(grey, given, other);
+      if (trial.explained > kBetter * of_best.explained &&
+          std::abs(trial.profile.rim() / of_best.profile.rim() - 1) < kClose)
+        best = other, of_best = std::move(trial);
+    }
+  }
   const Hypothesis rim{best.bright, 2 * of_best.profile.rim()};
   if (allowed(rim) && given.diameter_px <= 0) best.diameter_px = rim.diameter_px;
   return FoundSettings{best.diameter_px, best.bright, of_best.explained, {}, is_plain ? "" : "profile"};
