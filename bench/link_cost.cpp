@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "imaging/first_steps.hpp"
 #include "imaging/link.hpp"
 
 using namespace twincell;
@@ -73,7 +74,11 @@ int main(int argc, char** argv) {
     std::ofstream out;
     if (r == 0) out.open(path + ".ids", std::ios::binary);
     Linker linker(options, phases);
-    double seconds = 0;
+    const double begun = cpu_seconds();
+    linker.begin(first_steps(options, phases, frames.size(), [&](std::size_t f) {
+      return FrameOfBeads{frames[f], {}, moment_of(f)};
+    }));
+    double seconds = cpu_seconds() - begun;
     for (std::size_t f = 0; f < frames.size(); ++f) {
       const bool more = f + 1 < frames.size();
       const FrameAhead ahead = more ? FrameAhead{frames[f + 1], moment_of(f + 1), {}} : FrameAhead{};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -827,6 +828,10 @@ void Linker::update(std::span<const PixelPoint> detections, std::span<const std:
     if (detection_of_[t] >= 0 && tracks_[t].missed == 0)
       steps.push_back(detections[static_cast<std::size_t>(detection_of_[t])] - tracks_[t].place);
   const double per_interval = moment.interval > 0 ? 1 / moment.interval : 0;
+  const bool first = total_.frames == 0;
+  if (first)
+    std::copy_if(first_steps_.begin(), first_steps_.end(), std::back_inserter(steps),
+                 [](PixelPoint step) { return std::isfinite(step.x_px); });
   mean_step_ = {};
   for (const PixelPoint step : steps) mean_step_ = mean_step_ + step;
   if (!steps.empty()) mean_step_ = (1.0 / static_cast<double>(steps.size())) * mean_step_;
@@ -834,7 +839,10 @@ void Linker::update(std::span<const PixelPoint> detections, std::span<const std:
   for (std::size_t i = 1; i * stride < steps.size(); ++i) steps[i] = steps[i * stride];
   steps.resize((steps.size() + stride - 1) / stride);
   const PixelPoint moved = median(steps);  // in this frame
-  if (moment.interval > 0) step_ = per_interval * moved;
+  if (first)
+    step_ = moved;  // which is per interval
+  else if (moment.interval > 0)
+    step_ = per_interval * moved;
 
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     Track& track = tracks_[t];
@@ -886,9 +894,10 @@ void Linker::update(std::span<const PixelPoint> detections, std::span<const std:
     if (ids[k] >= 0) continue;
     ids[k] = n_tracks_++;
     ++last_.births;
+    const bool known = k < first_steps_.size() && std::isfinite(first_steps_[k].x_px);
     tracks_.push_back({.id = ids[k],
                        .place = detections[k],
-                       .step = step_,
+                       .step = known ? first_steps_[k] : step_,
                        .drift = {},
                        .missed = 0,
                        .detection = static_cast<std::int32_t>(k),
@@ -897,6 +906,23 @@ void Linker::update(std::span<const PixelPoint> detections, std::span<const std:
     if (in_cycle) cycle_places_[(tracks_.size() - 1) * phases + phase] = detections[k];
   }
   if (in_cycle) cycle_of_phase_[phase] = moment.cycle;
+  first_steps_.clear();
+}
+
+// A step back of free flight is the step that led here, with the fall that it lacked.
+Linker Linker::turned() const {
+  Linker back = *this;
+  const PixelPoint fall{0, options_.fall_px};
+  for (Track& track : back.tracks_) {
+    track.step = -1.0 * (track.step + fall);
+    track.drift = {};
+  }
+  back.step_ = -1.0 * (step_ + fall);
+  back.mean_step_ = -1.0 * (mean_step_ + fall);
+  std::fill(back.cycle_of_phase_.begin(), back.cycle_of_phase_.end(),
+            std::numeric_limits<std::int64_t>::min());
+  std::fill(back.cycle_places_.begin(), back.cycle_places_.end(), PixelPoint{kNaN, kNaN});
+  return back;
 }
 
 // Leaves the links in detection_of_ and what they are in ambiguous_ and last_.

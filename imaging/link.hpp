@@ -19,6 +19,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "imaging/pixel_frame.hpp"
@@ -84,6 +85,12 @@ class Linker {
   std::vector<std::int64_t> next(std::span<const PixelPoint> detections, const FrameMoment& moment = {},
                                  std::span<const std::uint8_t> tracers = {},
                                  const FrameAhead* ahead = nullptr);
+  /// Steps, px per frame interval, with which the beads of the first frame come into it, in its order; NaN
+  /// where it is not known. To be said before that frame (first_steps.hpp finds them).
+  void begin(std::vector<PixelPoint> steps) { first_steps_ = std::move(steps); }
+  /// The same tracks on their way back, to link the frames before the last one in falling order; what they
+  /// were a cycle ago is forgotten.
+  [[nodiscard]] Linker turned() const;
   /// Of the last frame, per detection: 1 if its link is ambiguous.
   [[nodiscard]] const std::vector<std::uint8_t>& ambiguous() const { return ambiguous_; }
   /// Tracks so far.
@@ -143,6 +150,7 @@ class Linker {
   std::vector<std::int64_t> cycle_of_phase_;  // when that was
   std::int64_t n_tracks_ = 0;
   PixelPoint step_, mean_step_;
+  std::vector<PixelPoint> first_steps_;  // of the detections of the first frame; empty: not known
   std::vector<std::uint8_t> ambiguous_;
   LinkReport last_, total_;
 

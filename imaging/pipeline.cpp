@@ -8,6 +8,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/in_parallel.hpp"
+#include "imaging/first_steps.hpp"
 #include "imaging/found_phase.hpp"
 #include "imaging/settings.hpp"
 #include "imaging/trigger_list.hpp"
@@ -132,11 +133,8 @@ TrackedStack link_spool(const BeadSpool& located, LinkOptions link, const CellDe
   }
   Linker linker(link, stack.phases.frames_per_cycle);
   // A frame and the one after it, by which its links are judged too.
-  struct Seen {
+  struct Seen : FrameOfBeads {
     std::vector<TrackedBead> beads;
-    std::vector<PixelPoint> places;
-    std::vector<std::uint8_t> tracers;
-    FrameMoment moment;
   };
   auto read = [&](std::size_t f) {
     Seen frame;
@@ -150,6 +148,7 @@ TrackedStack link_spool(const BeadSpool& located, LinkOptions link, const CellDe
     frame.moment = {.interval = at.interval, .phase = at.phase, .cycle = at.cycle};
     return frame;
   };
+  linker.begin(first_steps(link, stack.phases.frames_per_cycle, located.size(), read));
   Seen next = read(0);
   for (std::size_t f = 0; f < located.size(); ++f) {
     Seen frame = std::exchange(next, read(f + 1));
