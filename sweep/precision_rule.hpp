@@ -14,8 +14,8 @@ namespace twincell::sweep {
 
 /// Follows the scene's `until.quantity` frame by frame and ends the run once half of its 95 % interval is at
 /// most the larger of until.relative_error times the mean and until.absolute_error. The interval is that of
-/// `analyze`: means of whole cycles, blocks of five correlation times (BlockAverage), of which at least five
-/// must fit into the run. It is first looked at after 100 cycles and after forty flights of a bead thrown
+/// `analyze`: means of whole cycles, overlapping blocks (BlockAverage); five of five correlation times must
+/// fit into the run. It is first looked at after 100 cycles and after forty flights of a bead thrown
 /// at V_p into an open cell (2 V_p/g each), for in less a gas does not show how slowly its height fluctuates;
 /// then each time the run has become a fifth longer, so that it is not ended at the first lucky look of many;
 /// and at the cap.
