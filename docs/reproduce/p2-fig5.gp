@@ -1,5 +1,12 @@
 # A channel shaken sideways
 # gnuplot p2-fig5.gp draws p2-fig5.svg, p2-fig5.pdf and p2-fig5.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 640,460 dynamic enhanced font 'Arial,15' background 'white'
@@ -18,7 +25,7 @@ set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
 set xlabel 'W = V_p^2/(d g)'
 set ylabel 'T_z/(m V_p^2)'
-set key top right
+set key above
 set logscale x
 set xrange [0.5:600]
 set yrange [0:*]

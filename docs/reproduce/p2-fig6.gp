@@ -25,7 +25,7 @@ set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
 set xlabel 'setting'
 set ylabel 'alpha'
-set key top right
+set key above
 set xrange [0.5:5.5]
 set yrange [1.5:2.5]
 
