@@ -30,6 +30,7 @@ std::pair<double, double> shades_of(const cv::Mat1f& darkness) {
   return {std::min(0.0, low), std::max(1.0, static_cast<double>(*(levels.end() - 1 - far)))};
 }
 
+/// Values as grey, the first of the shades black, the second white.
 cv::Mat3b grey_of(const cv::Mat1f& values, std::pair<double, double> shades = {0, 1}) {
   const double steps = 255 / (shades.second - shades.first);
   cv::Mat1b byte;

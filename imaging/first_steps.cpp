@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <unordered_map>
-#include <utility>
 
 namespace twincell {
 
@@ -73,6 +72,8 @@ std::vector<PixelPoint> first_steps(const LinkOptions& options, int phases_per_c
     if (calm && f == 1) return {};
   }
   seen.resize(static_cast<std::size_t>(linker.total().frames));
+  const double interval = seen[1].moment.interval;
+  if (interval <= 0) return {};  // the first frame, taken twice
   // Back, each frame as long after the one before as it lay ahead of it.
   const auto moment_back = [&](std::size_t f) {
     return FrameMoment{.interval = seen[f + 1].moment.interval,
@@ -90,8 +91,6 @@ std::vector<PixelPoint> first_steps(const LinkOptions& options, int phases_per_c
   if (roughness(options, seen, again) >= roughness(options, seen, there)) return {};
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   std::vector<PixelPoint> steps(seen[0].places.size(), {kNaN, kNaN});
-  const double interval = seen[1].moment.interval;
-  if (interval <= 0) return {};
   std::unordered_map<std::int64_t, PixelPoint> second;
   for (std::size_t k = 0; k < before.size(); ++k) second[before[k]] = seen[1].places[k];
   for (std::size_t k = 0; k < ids.size(); ++k)

@@ -24,9 +24,9 @@ struct FrameOfBeads {
 };
 
 /// Steps for `Linker::begin`, px per frame interval, in the order of the first frame's places; NaN for beads
-/// that are not followed back to it; none if the second frame is calm, or there is none.
-/// \param frames of the stack \param read gives each; those up to the first calm one are read, at most 41
-/// \throws RunError as `Linker::next`
+/// that are not followed back to it, or not without doubt; none if the second frame is calm, or there is
+/// none. \param frames of the stack \param read gives each; those up to the first calm one are read, at most
+/// 42 \throws RunError as `Linker::next`
 std::vector<PixelPoint> first_steps(const LinkOptions& options, int phases_per_cycle, std::size_t frames,
                                     const std::function<FrameOfBeads(std::size_t)>& read);
 
