@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 
+#include "analysis/statistics.hpp"
 #include "analysis/trajectory/error.hpp"
 
 namespace twincell {
@@ -17,7 +18,6 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSteps = 60;  // of a profile
-constexpr double kReach = 1.96;
 
 /// All products of at most `degree` of the x_i, from -1 to 1 over the ranges: 1, x_i, x_i x_k, ...
 Eigen::VectorXd terms(const std::vector<Sought>& ranges, const std::vector<double>& theta, int degree) {
@@ -336,7 +336,7 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     }
     p.open_low = p.low == sought[i].lower;
     p.open_high = p.high == p.at.back();
-    p.standard_error = p.open_low || p.open_high ? kNaN : (p.high - p.low) / (2 * kReach);
+    p.standard_error = p.open_low || p.open_high ? kNaN : (p.high - p.low) / (2 * kStandardErrors);
     if (p.undetermined())
       out.notes.push_back(
           fmt::format("{} is undetermined: nothing between {:g} and {:g} contradicts what was measured",
