@@ -163,8 +163,79 @@ struct Hypothesis {
   double diameter_px = 0;
 };
 
-/// Sizes that the votes of one or both polarities propose; the given one where one was given.
-std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& given) {
+/// Lattice constant of a crystal that fills most of a picture, px, at most some 40; 0 if there is none: the
+/// first maximum of the autocorrelation, averaged over directions, that stands out from the minima beside it
+/// nearly as much as any other. In such a crystal votes of neighbours meet at many radii, few of them the
+/// discs'.
+double lattice_constant(const cv::Mat& grey) {
+  constexpr double kBroad = 10;       // px; walls and the bed's shape are broader
+  constexpr double kStandsOut = 0.2;  // of the fall to the first minimum; random packings stay below
+  constexpr double kRing = 0.12;
+  constexpr double kNearly = 0.6;  // gaps are nearer to each other than discs, and stand out less
+  constexpr double smallest = 1.9 * kSmallest;
+  const double largest = std::min(4 * kBroad, static_cast<double>(std::min(grey.cols, grey.rows)));
+  cv::Mat1f levels;
+  grey.convertTo(levels, CV_32F);
+  cv::Mat1f broad;
+  cv::GaussianBlur(levels, broad, {0, 0}, kBroad);
+  levels -= broad;
+  const auto reach = static_cast<int>(std::ceil(1.5 * largest));
+  const cv::Size size(cv::getOptimalDFTSize(levels.cols + reach), cv::getOptimalDFTSize(levels.rows + reach));
+  const auto correlated = [&](const cv::Mat1f& picture) {
+    cv::Mat1f padded = cv::Mat1f::zeros(size);
+    picture.copyTo(padded(cv::Rect({0, 0}, picture.size())));
+    cv::Mat2f waves;
+    cv::dft(padded, waves, cv::DFT_COMPLEX_OUTPUT);
+    cv::mulSpectrums(waves, waves, waves, 0, true);
+    cv::Mat1f out;
+    cv::dft(waves, out, cv::DFT_INVERSE | cv::DFT_REAL_OUTPUT | cv::DFT_SCALE);
+    return out;
+  };
+  const cv::Mat1f products = correlated(levels), pairs = correlated(cv::Mat1f::ones(levels.size()));
+  const auto each = [&](auto&& use) {  // half the plane, the other is the same
+    for (int y = -reach; y <= reach; ++y)
+      for (int x = 0; x <= reach; ++x) {
+        if (x >= levels.cols || std::abs(y) >= levels.rows) continue;
+        const cv::Point at(x, y < 0 ? y + size.height : y);
+        use(std::hypot(x, y), static_cast<double>(products(at)), static_cast<double>(pairs(at)));
+      }
+  };
+  std::vector<double> sum(static_cast<std::size_t>(reach) + 1), count(sum.size());
+  each([&](double distance, double product, double pair) {
+    const auto r = static_cast<std::size_t>(std::lround(distance));
+    if (r < sum.size()) sum[r] += product, count[r] += pair;
+  });
+  std::vector<double> mean;
+  for (std::size_t r = 0; r < sum.size(); ++r) mean.push_back(sum[r] / std::max(count[r], 1.0));
+  std::vector<std::pair<double, double>> tops;  // distance, and by how much it stands out
+  std::size_t low = 0, first = 0;               // the minimum before, and of all
+  for (std::size_t r = 1; r + 1 < mean.size() && static_cast<double>(r) <= largest; ++r) {
+    if (mean[r] < mean[r - 1] && mean[r] <= mean[r + 1]) low = r, first = first > 0 ? first : r;
+    if (low == 0 || mean[r] < mean[r - 1] || mean[r] <= mean[r + 1] || static_cast<double>(r) < smallest)
+      continue;
+    std::size_t next = r + 1;
+    while (next + 1 < mean.size() && mean[next + 1] < mean[next]) ++next;
+    tops.emplace_back(static_cast<double>(r), mean[r] - 0.5 * (mean[low] + mean[next]));
+  }
+  double most = 0;
+  for (const auto& [at, stands_out] : tops) most = std::max(most, stands_out);
+  if (most < kStandsOut * (mean[0] - mean[first])) return 0;
+  const double about = std::find_if(tops.begin(), tops.end(), [&](const auto& top) {
+                         return top.second >= kNearly * most;
+                       })->first;
+  // Where discs are nearest neighbours the average is broad; the spots it is made of are not.
+  double highest = 0, constant = about;
+  each([&](double distance, double product, double pair) {
+    if (std::abs(distance / about - 1) > kRing || product <= highest * pair) return;
+    highest = product / pair;
+    constant = distance;
+  });
+  return constant;
+}
+
+/// Sizes that the votes of one or both polarities propose, and the lattice constant; the given one where one
+/// was given.
+std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& given, double lattice) {
   constexpr double kNoisy = 0.04, kSmooth = 1;  // darkness; px
   std::vector<Hypothesis> all;
   const double largest = std::min(kLargest, 0.5 * std::min(grey.cols, grey.rows));
@@ -183,6 +254,7 @@ std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& gi
     if (noise.dark + noise.light > kNoisy * kNoisy)
       cv::GaussianBlur(darkness.clone(), darkness, {0, 0}, kSmooth);
     for (const double radius : sharp_radii(darkness, kSmallest, largest)) all.push_back({bright, 2 * radius});
+    if (lattice > 0) all.push_back({bright, lattice});
   }
   return all;
 }
@@ -193,8 +265,22 @@ double gained(const Detection& b) {
 
 struct Trial {
   double explained = 0;
-  double diameter_px = 0;  // median of what was found; 0: too few
+  double diameter_px = 0;  // median of what was found; 0: too few. Or what was settled on
 };
+
+/// Whether most discs lie too near to another one for discs of that diameter in one layer. Where they are no
+/// discs of that size they explain much, of a crystal all, each with a share of its neighbours.
+bool overlap(const std::vector<Detection>& beads, double diameter_px) {
+  constexpr double kOverlap = 0.85;  // of the diameter between centres
+  std::vector<double> nearest;
+  for (const Detection& b : beads) {
+    double least = HUGE_VAL;
+    for (const Detection& o : beads)
+      if (&o != &b) least = std::min(least, (o.x - b.x) * (o.x - b.x) + (o.y - b.y) * (o.y - b.y));
+    nearest.push_back(std::sqrt(least));
+  }
+  return !nearest.empty() && upper_median(std::move(nearest)) < kOverlap * diameter_px;
+}
 
 /// What plain discs explain. Areas times scores did not do for the sum: discs put into the gaps between dark
 /// ones explain nineteen twentieths of their own rings.
@@ -203,7 +289,9 @@ Trial try_plain(const cv::Mat& grey, const LocatorOptions& options) {
   constexpr std::size_t kEnough = 3;
   Trial trial;
   std::vector<double> radii;
-  for (const Detection& b : locate(grey, options).beads) {
+  const std::vector<Detection> beads = locate(grey, options).beads;
+  if (overlap(beads, options.diameter_px)) return trial;
+  for (const Detection& b : beads) {
     if (b.score < kGood) continue;
     trial.explained += gained(b);
     if (!b.edge) radii.push_back(b.radius);
@@ -212,8 +300,29 @@ Trial try_plain(const cv::Mat& grey, const LocatorOptions& options) {
   return trial;
 }
 
+/// Likewise with the size that the discs found have, and so on until it stands; a given one stays.
+Trial settle_plain(const cv::Mat& grey, const LocatorOptions& given, const Hypothesis& h) {
+  constexpr int kTrialSweeps = 3;  // tell discs from what is none; a wrong hypothesis never settles
+  constexpr int kRounds = 4;
+  constexpr double kClose = 0.01;  // relative change of the diameter at which it stands
+  LocatorOptions options = given;
+  options.refine.sweeps = std::min(options.refine.sweeps, kTrialSweeps);
+  options.preprocess.bright = h.bright;
+  options.diameter_px = h.diameter_px;
+  Trial trial = try_plain(grey, options);
+  for (int round = 1; round < kRounds && given.diameter_px <= 0 && trial.diameter_px > 0; ++round) {
+    const double change = trial.diameter_px / options.diameter_px - 1;
+    options.diameter_px = trial.diameter_px;
+    if (std::abs(change) < kClose) break;
+    trial = try_plain(grey, options);
+  }
+  trial.diameter_px = options.diameter_px;
+  return trial;
+}
+
 struct ProfileTrial {
   double explained = 0;
+  bool overlaps = false;  // and nothing is explained
   DiscProfile profile;
 };
 
@@ -225,22 +334,31 @@ ProfileTrial try_profile(const cv::Mat& grey, LocatorOptions options, const Hypo
   options.diameter_px = h.diameter_px;
   ProfileTrial trial;
   const LocatorStages stages = locate_stages(grey, options);
+  trial.overlaps = overlap(stages.judged.beads, std::max(h.diameter_px, 2 * stages.profile.rim()));
+  if (trial.overlaps) return trial;
   for (const Detection& b : stages.judged.beads) trial.explained += gained(b);
   trial.profile = stages.profile;
   return trial;
 }
 
+constexpr double kUnlike = 0.012;  // of a plain disc's profile; in a common one found in haste, twice that
+
+bool looks_plain(const ProfileTrial& trial, double unlike = kUnlike) {
+  return trial.explained > 0 && trial.profile.unlike_plain() < unlike;
+}
+
 /// The best of the hypotheses by a common profile, each led out to the rim that its profile shows; none if
 /// that is by what plain discs were found.
 std::optional<FoundSettings> find_alike(const cv::Mat& frame, const LocatorOptions& given,
-                                        const std::vector<Hypothesis>& all, const FoundSettings& plain) {
+                                        const std::vector<Hypothesis>& all, const FoundSettings& plain,
+                                        double lattice) {
   constexpr double kClearly = 1.25, kBetter = 1.1;
   constexpr double kWider = 1.12, kWiderRim = 1.05;
   constexpr int kRounds = 2;
   constexpr double kClose = 0.02, kTolerance = 0.2;  // of the diameter
   constexpr int kDiscs = 14;                         // across the part that is looked at
-  constexpr double kDark = 0.5;                      // paler discs the plain fit calls none
-  constexpr double kUnlike = 0.012;                  // of a plain disc's profile
+  constexpr double kNear = 0.15;                     // relative
+  constexpr double kAsGood = 0.6;                    // a profile is freer, and what is no disc easier to miss
   double largest = plain.diameter_px;
   for (const Hypothesis& h : all) largest = std::max(largest, h.diameter_px);
   const cv::Mat grey = busiest(frame, std::clamp(static_cast<int>(kDiscs * largest), 160, 360));
@@ -263,20 +381,33 @@ std::optional<FoundSettings> find_alike(const cv::Mat& frame, const LocatorOptio
     }
     return trial;
   };
+  // Plain discs as the profiles show them, or as wide as they lie apart. Where discs fill the frame as a
+  // crystal nothing tells a profile what is disc and what is ground: it may fail at the discs, and not at the
+  // gaps.
+  FoundSettings as_plain;
+  const auto try_as_plain = [&](const Hypothesis& h) {
+    const Trial trial = settle_plain(grey, given, {h.bright, std::max(h.diameter_px, 2 * kSmallest)});
+    if (trial.explained > as_plain.explained)
+      as_plain = {trial.diameter_px, h.bright, trial.explained, {}, {}};
+  };
   Hypothesis best{plain.bright, plain.diameter_px};
   ProfileTrial of_best = try_profile(grey, given, best);
+  const auto near = [&](double d) { return std::abs(best.diameter_px - d) < kNear * d; };
+  if (of_best.overlaps || near(lattice) || looks_plain(of_best, 2 * kUnlike)) try_as_plain(best);
   double to_beat = kClearly * of_best.explained;
   for (Hypothesis h : all) {
     ProfileTrial trial = led_out(h);
+    if (looks_plain(trial)) try_as_plain({h.bright, 2 * trial.profile.rim()});
     if (trial.explained <= to_beat) continue;
     to_beat = trial.explained;
     best = h;
     of_best = std::move(trial);
   }
-  if (of_best.explained <= 0) return std::nullopt;
-  const bool is_plain = of_best.profile.unlike_plain() < kUnlike && of_best.profile.largest() > kDark;
-  if (is_plain && best.bright == plain.bright && best.diameter_px == plain.diameter_px) return std::nullopt;
-  if (!is_plain) {
+  if (of_best.explained <= 0 && as_plain.explained <= 0) return std::nullopt;
+  const auto plain_does = [&] {
+    return as_plain.explained > (looks_plain(of_best) ? kAsGood : 1) * of_best.explained;
+  };
+  if (!plain_does()) {
     // A ring may hide the one that is outside it, of which votes say nothing.
     for (const double ratio : {kWider, kWider * kWider}) {
       Hypothesis wider{best.bright, ratio * best.diameter_px};
@@ -295,10 +426,16 @@ std::optional<FoundSettings> find_alike(const cv::Mat& frame, const LocatorOptio
           std::abs(trial.profile.rim() / of_best.profile.rim() - 1) < kClose)
         best = other, of_best = std::move(trial);
     }
+    for (const double d : {best.diameter_px, 2 * of_best.profile.rim()}) try_as_plain({best.bright, d});
+  }
+  if (plain_does()) {
+    const bool same =
+        as_plain.bright == plain.bright && std::abs(as_plain.diameter_px / plain.diameter_px - 1) < kClose;
+    return same ? std::nullopt : std::optional(as_plain);
   }
   const Hypothesis rim{best.bright, 2 * of_best.profile.rim()};
   if (allowed(rim) && given.diameter_px <= 0) best.diameter_px = rim.diameter_px;
-  return FoundSettings{best.diameter_px, best.bright, of_best.explained, {}, is_plain ? "" : "profile"};
+  return FoundSettings{best.diameter_px, best.bright, of_best.explained, {}, "profile"};
 }
 
 }  // namespace
@@ -308,33 +445,21 @@ std::optional<FoundSettings> find_settings(const cv::Mat& picture, const Locator
   const cv::Mat frame = canonical_orientation(picture).turned(picture);
   std::optional<FoundSettings> patterned;
   if (given.diameter_px <= 0) patterned = find_patterned(frame, given);
-  constexpr int kSide = 600;       // px
-  constexpr int kTrialSweeps = 3;  // tell discs from what is none; a wrong hypothesis never settles
-  constexpr int kRounds = 4;
-  constexpr double kClose = 0.01;  // relative change of the diameter at which it stands
+  constexpr int kSide = 600;  // px
   const cv::Mat grey = busiest(frame, kSide);
-  const std::vector<Hypothesis> all = hypotheses(grey, given);
+  const double lattice = lattice_constant(grey);
+  const std::vector<Hypothesis> all = hypotheses(grey, given, lattice);
   std::optional<FoundSettings> best;
-  LocatorOptions options = given;
-  options.refine.sweeps = std::min(options.refine.sweeps, kTrialSweeps);
   for (const Hypothesis& h : all) {
-    options.preprocess.bright = h.bright;
-    options.diameter_px = h.diameter_px;
-    Trial trial = try_plain(grey, options);
-    for (int round = 1; round < kRounds && given.diameter_px <= 0 && trial.diameter_px > 0; ++round) {
-      const double change = trial.diameter_px / options.diameter_px - 1;
-      options.diameter_px = trial.diameter_px;
-      if (std::abs(change) < kClose) break;
-      trial = try_plain(grey, options);
-    }
+    const Trial trial = settle_plain(grey, given, h);
     if (!best || trial.explained > best->explained)
-      best = FoundSettings{options.diameter_px, h.bright, trial.explained, {}, {}};
+      best = FoundSettings{trial.diameter_px, h.bright, trial.explained, {}, {}};
   }
   // Rims of large circles are seen in a packing of small discs, too, but explain less of it.
   const double part = static_cast<double>(grey.total()) / static_cast<double>(frame.total());
   if (patterned && (!best || part * patterned->explained > best->explained)) return patterned;
   if (best && given.refine.method == "exact")
-    if (auto alike = find_alike(frame, given, all, *best)) return alike;
+    if (auto alike = find_alike(frame, given, all, *best, lattice)) return alike;
   return best;
 }
 
