@@ -82,6 +82,35 @@ class TableFile {
   std::ofstream out_;
 };
 
+/// What a reader should know before trusting the table: frames without beads, and candidates that were left
+/// out if they are many. Empty if there is nothing to doubt.
+std::string doubts(const std::map<std::string, std::size_t>& left_out, std::size_t beads, std::size_t bare,
+                   std::size_t frames) {
+  constexpr double kMany = 0.02;  // of the beads
+  std::string text;
+  if (bare > 0) text += fmt::format("no bead in {} of {} frames\n", bare, frames);
+  std::size_t all = 0, wrong_radius = 0;
+  std::string reasons;
+  for (const auto& [why, count] : left_out) {
+    if (why == word_of(Verdict::outside) || why == word_of(Verdict::in_wall)) continue;  // no beads in sight
+    if (why == word_of(Verdict::wrong_radius)) wrong_radius = count;
+    all += count;
+    reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, why);
+  }
+  const double many = kMany * static_cast<double>(beads);
+  if (static_cast<double>(all) > many)
+    text += fmt::format(
+        "beside {} beads, candidates were left out: {} (--candidates lists them, --overlay shows the "
+        "beads)\n",
+        beads, reasons);
+  if (static_cast<double>(wrong_radius) > many && wrong_radius > 1)
+    text += "beads of several sizes are found with --diameter D1 D2 ... --refine edges\n";
+  if (all > beads)
+    text +=
+        "more was left out than found: look at --overlay; --diameter with --dark or --bright may do better\n";
+  return text;
+}
+
 void run(LocateOptions& o, const Common& common) {
   // A folder's name may end with a slash.
   if (o.output.empty()) {
@@ -116,7 +145,9 @@ void run(LocateOptions& o, const Common& common) {
   const bool find_polarity = !o.dark && !o.locator.preprocess.bright;
   o.locator.polarity_known = !find_polarity;
   constexpr std::int64_t kShown = 20;  // frames with a line of their own
-  const std::int64_t n = locate_stack(
+  std::map<std::string, std::size_t> left_out;
+  std::size_t beads = 0, bare = 0;  // frames without a bead
+  const LocatedStack stack = locate_stack(
       *frames, o.locator, common.n_threads(),
       [&](std::int64_t frame, const cv::Mat& grey, const Located& located) {
         for (const Detection& b : located.beads) table << row(b, frame);
@@ -140,6 +171,9 @@ void run(LocateOptions& o, const Common& common) {
         std::map<std::string, std::size_t> reasons;
         for (const Detection& b : located.dropped) ++reasons[std::string(word_of(b.verdict))];
         f["dropped"] = reasons;
+        for (const auto& [why, count] : reasons) left_out[why] += count;
+        beads += located.beads.size();
+        bare += located.beads.empty() ? 1 : 0;
         document["frames"].push_back(f);
         if (truth && static_cast<std::size_t>(frame) < truth->size()) {
           std::vector<FoundBead> found;
@@ -154,6 +188,7 @@ void run(LocateOptions& o, const Common& common) {
           write_debug_pictures(o.debug_folder, grey, o.locator);
       },
       bar);
+  const std::int64_t n = stack.frames;
   if (!o.overlay.empty() && !drawn)
     throw ConfigError(
         Where{.file = {}, .key = "--overlay-frame"},
@@ -165,25 +200,28 @@ void run(LocateOptions& o, const Common& common) {
   document["refine"] = o.locator.refine.method;
   document["bright"] = o.locator.preprocess.bright;
   if (n > kShown) text += fmt::format("... {} more frames\n", n - kShown);
+  const std::string shown =
+      stack.settings_frame == 0 ? "the first frame" : fmt::format("frame {}", stack.settings_frame);
+  if (find_diameter || find_polarity) document["settings_frame"] = stack.settings_frame;
   if (find_diameter) {
     std::string sizes = fmt::format("{:.2f}", o.locator.diameter_px);
     for (const double other : o.locator.other_diameters_px) sizes += fmt::format(" and {:.2f}", other);
-    text += fmt::format("bead diameter found from the first frame: {} px (--diameter)\n", sizes);
+    text += fmt::format("bead diameter found from {}: {} px (--diameter)\n", shown, sizes);
   }
   if (refine != o.locator.refine.method && o.locator.refine.method == "edges")
-    text += "discs differ inside, as the first frame shows: fitted by their rims (--refine edges)\n";
+    text += fmt::format("discs differ inside, as {} shows: fitted by their rims (--refine edges)\n", shown);
   if (refine != o.locator.refine.method && o.locator.refine.method == "profile")
-    text +=
-        "discs are alike but not plain, as the first frame shows: fitted by their common profile (--refine "
-        "profile)\n";
+    text += fmt::format(
+        "discs are alike but not plain, as {} shows: fitted by their common profile (--refine profile)\n",
+        shown);
   if (find_polarity && o.locator.refine.method == "profile")  // they may have rings of both kinds
-    text +=
-        fmt::format("frames are read as with --{}, which explains the first one better (--dark, --bright)\n",
-                    o.locator.preprocess.bright ? "bright" : "dark");
+    text += fmt::format("frames are read as with --{}, which explains {} better (--dark, --bright)\n",
+                        o.locator.preprocess.bright ? "bright" : "dark", shown);
   else if (find_polarity)
-    text +=
-        fmt::format("beads are {} than what lies behind them, as the first frame shows (--dark, --bright)\n",
-                    o.locator.preprocess.bright ? "brighter" : "darker");
+    text += fmt::format("beads are {} than what lies behind them, as {} shows (--dark, --bright)\n",
+                        o.locator.preprocess.bright ? "brighter" : "darker", shown);
+  document["left_out"] = left_out;
+  text += doubts(left_out, beads, bare, static_cast<std::size_t>(n));
   text += o.output + "\n";
   if (truth) {
     const Score s = scorer.score();

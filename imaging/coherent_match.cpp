@@ -29,7 +29,8 @@ constexpr double kBeside = 0.9;              // between centres on straight ways
 constexpr double kThrough = 0.75;            // and one passes through the other
 constexpr double kPassing = 15;              // for that
 constexpr double kMeeting = 3;               // beads farther apart do not meet within a frame
-constexpr double kVoid = 8;                  // for a detection to which nobody goes
+constexpr double kVoid = 8;                  // for a detection to which nobody goes,
+constexpr double kNewcomer = 2;              // and for one that may be of a bead not seen before
 constexpr double kLost = 300;                // the same where nobody can be lost,
 constexpr std::size_t kFew = 20;             // one in so many of whom may be without a place,
 constexpr int kLongestChain = 40;            // how many may hand on places then,
@@ -67,8 +68,11 @@ PixelPoint operator+(PixelPoint a, PixelPoint b) {
 class Matching {
  public:
   Matching(std::span<const PixelPoint> places, std::span<const PixelPoint> detections,
-           std::span<const Edge> choices, double d)
+           std::span<const Edge> choices, double d, std::span<const std::uint8_t> newcomers)
       : places_(places), detections_(detections), choices_(choices), d_(d), first_(places.size() + 1, 0) {
+    void_.assign(detections.size(), kVoid);
+    for (std::size_t k = 0; k < newcomers.size(); ++k)
+      if (newcomers[k] != 0) void_[k] = kNewcomer;
     for (const Edge& e : choices) ++first_[e.row + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     find_neighbours();
@@ -136,7 +140,7 @@ class Matching {
   std::vector<float> message_, belief_, claim_;
   std::vector<std::size_t> favourite_;
   // The match.
-  double void_ = kVoid;
+  std::vector<double> void_;  // per detection, if nobody goes there
   Goals goal_;
   std::vector<std::int64_t> owner_;  // bead per detection
   std::vector<double> least_own_;    // cheapest choice of a bead
@@ -259,7 +263,7 @@ double Matching::total() const {
   for (std::size_t t = 0; t < n(); ++t)
     for (const std::size_t o : far_of_[t])
       if (o > t) sum += overlap(t, goal_[t], o, goal_[o]);
-  for (const std::int64_t t : owner_) sum += t < 0 ? void_ : 0;
+  for (std::size_t k = 0; k < owner_.size(); ++k) sum += owner_[k] < 0 ? void_[k] : 0;
   return sum;
 }
 
@@ -302,10 +306,11 @@ void Matching::send(std::size_t from, const Pair& p, float share) {
 // keenest rival gains, or as it costs that nobody goes there. True: no bead has changed its mind.
 bool Matching::let_rivals_speak() {
   struct Rivals {
-    float best = static_cast<float>(kVoid), second = static_cast<float>(kVoid);
+    float best, second;
     std::size_t who = std::numeric_limits<std::size_t>::max();
   };
-  std::vector<Rivals> rivals(detections_.size());
+  std::vector<Rivals> rivals;
+  for (const double empty : void_) rivals.push_back({static_cast<float>(empty), static_cast<float>(empty)});
   bool same = true;
   for (std::size_t t = 0; t < n(); ++t) {
     gather(t);
@@ -469,11 +474,11 @@ void Matching::fuse(Goals proposal) {
       if (o > t) meet(t, o, [&](std::int64_t kt, std::int64_t ko) { return overlap(t, kt, o, ko); });
   for (std::size_t k = 0; k < detections_.size(); ++k) {
     const std::int64_t from = owner_[k], to = claimant[k];
-    if (from < 0 && to >= 0) move[node[static_cast<std::size_t>(to)]] -= kVoid;
+    if (from < 0 && to >= 0) move[node[static_cast<std::size_t>(to)]] -= void_[k];
     if (from >= 0 && to < 0 && node[static_cast<std::size_t>(from)] != kNone)
-      move[node[static_cast<std::size_t>(from)]] += kVoid;
+      move[node[static_cast<std::size_t>(from)]] += void_[k];
     if (from >= 0 && to >= 0)
-      two(node[static_cast<std::size_t>(from)], node[static_cast<std::size_t>(to)], 0, kTwice, kVoid, 0);
+      two(node[static_cast<std::size_t>(from)], node[static_cast<std::size_t>(to)], 0, kTwice, void_[k], 0);
   }
   for (std::size_t v = 0; v < who.size(); ++v) cut.move(v, move[v]);
   const std::vector<std::uint8_t> moves = cut.solve();
@@ -511,7 +516,7 @@ double Matching::change(std::size_t t, std::int64_t k) {
   const std::size_t o = rival < 0 ? kNone : static_cast<std::size_t>(rival);
   double rise = own_cost(t, k) - own_cost(t, was), most_gain = standing(t);
   if (o == kNone) {
-    rise += (was >= 0 ? void_ : 0) - void_;
+    rise += (was >= 0 ? void_[static_cast<std::size_t>(was)] : 0) - void_[static_cast<std::size_t>(k)];
   } else {
     rise += own_cost(o, was) - own_cost(o, k);
     most_gain += standing(o);
@@ -573,7 +578,11 @@ bool Matching::close(std::int64_t k, double own) {
 bool Matching::extend(double own) {
   const std::size_t last = chain_.back();
   const std::int64_t was = goal_[chain_.front()];
-  const double filled = was >= 0 ? 0 : void_;
+  // What is saved if the chain ends at a place that nobody had.
+  const auto filled = [&](std::int64_t k) {
+    return void_[static_cast<std::size_t>(k)] - (was >= 0 ? void_[static_cast<std::size_t>(was)] : 0);
+  };
+  const double most_filled = was >= 0 ? 0 : kVoid;
   double save = 0;
   for (const std::size_t t : chain_) save += standing(t);
   own -= own_cost(last, goal_[last]);
@@ -585,12 +594,12 @@ bool Matching::extend(double own) {
     const std::int64_t k = choices_[e].column, rival = owner_[static_cast<std::size_t>(k)];
     const double rise = own + choices_[e].cost;
     if (rival < 0) {
-      if (rise - filled - save < -kLess && close(k, rise - filled)) return true;
+      if (const double total = rise - filled(k); total - save < -kLess && close(k, total)) return true;
       continue;
     }
     const auto o = static_cast<std::size_t>(rival);
     if (turn_[o] != kNone || chain_.size() == kLongest || chains_ == kMostChains) continue;
-    const double best = rise - (own_cost(o, k) - least_own_[o]) - filled;
+    const double best = rise - (own_cost(o, k) - least_own_[o]) - most_filled;
     if (best - kHope * (save + standing(o)) > 0) continue;
     turn_[o] = chain_.size();
     chain_.push_back(o);
@@ -675,7 +684,7 @@ bool Matching::find_place(std::size_t lost) {
             last = {cost, t};
             place = k;
           }
-        } else if (cost < std::min(label[o].cost, void_) - kLess) {
+        } else if (cost < std::min(label[o].cost, kLost) - kLess) {
           label[o] = {cost, t};
           if (std::exchange(waits[o], std::uint8_t{1}) == 0) next.push_back(o);
         }
@@ -713,7 +722,7 @@ CoherentMatch Matching::solve(const MatchKnowledge& known) {
   // Where many have no place the frame is not understood, and to find each of them one takes long.
   const auto lost = static_cast<std::size_t>(std::count(goal_.begin(), goal_.end(), kAlone));
   if (known.nobody_lost && lost <= 1 + n() / kFew) {
-    void_ = kLost;
+    std::fill(void_.begin(), void_.end(), kLost);
     bool any = false;
     for (std::size_t t = 0; t < n(); ++t) any = (goal_[t] < 0 && find_place(t)) || any;
     if (any) change_places();
@@ -733,7 +742,7 @@ CoherentMatch Matching::solve(const MatchKnowledge& known) {
 CoherentMatch match_coherently(std::span<const PixelPoint> places, std::span<const PixelPoint> detections,
                                std::span<const Edge> choices, double diameter_px,
                                const MatchKnowledge& known) {
-  return Matching(places, detections, choices, diameter_px).solve(known);
+  return Matching(places, detections, choices, diameter_px, known.newcomers).solve(known);
 }
 
 }  // namespace twincell

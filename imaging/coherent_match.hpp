@@ -13,7 +13,7 @@
 /// - up to 15 for beads within 3 d of each other whose straight ways would take one disc through the other:
 ///   nothing down to 0.9 d between centres on the way, all at 0.75 d. (Of 0.57 million pairs in a simulated
 ///   cell that convects, 20 frames per cycle, one came nearer than 0.9 d, none nearer than 0.85 d.)
-/// - 8 for a detection to which nobody goes.
+/// - 8 for a detection to which nobody goes, 2 where beads come into sight.
 ///
 /// The sum is a negative logarithm of odds. Three steps make it small. Messages between neighbours (min-sum
 /// belief propagation: Pearl, Probabilistic Reasoning in Intelligent Systems, 1988) and between rivals for a
@@ -51,6 +51,8 @@ struct CoherentMatch {
 struct MatchKnowledge {
   std::span<const std::int32_t> guess;  ///< detection of each bead in an answer worth trying, < 0: none
   bool nobody_lost = false;             ///< each bead is known to be at one of the detections
+  std::span<const std::uint8_t>
+      newcomers;  ///< detections that may well be beads not seen before; empty: none
 };
 
 /// Matches all beads at once.

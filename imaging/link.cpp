@@ -52,11 +52,14 @@ constexpr double kOfWay = -4;
 constexpr double kOfFlight = 2;           // to be in free flight,
 constexpr double kOfAnything = 6;         // to be anywhere within reach,
 constexpr double kOfNowhere = 16;         // to be nowhere,
+constexpr double kOfVanishing = 0;        // the same for what was seen once, or leaves the picture,
 constexpr double kOfKind = 3;             // to change from tracer to bead
 constexpr std::size_t kSample = 200;      // tracks on which the rules are tried
 constexpr std::size_t kMostChoices = 40;  // the same where all are matched
 constexpr std::size_t kMostOnAverage = 25;
 constexpr std::size_t kMostEdges = 16;  // detections that one track may choose from
+constexpr double kOutward = 0.1;        // step of a bead that leaves
+constexpr double kCome = 1;             // from the border: where beads come into sight
 constexpr int kRounds = 12;             // of learning from neighbours
 
 PixelPoint operator+(PixelPoint a, PixelPoint b) {
@@ -659,10 +662,49 @@ bool Linker::neighbours_part(const Grid& grid) const {
   return false;
 }
 
-// As many detections as tracks, none of which was missing.
+// What came one frame ago may be no bead: a speck of dust, there for one frame, must not take a bead's place.
+bool Linker::stranger(const Track& track) const {
+  return track.seen == 1 && total_.frames > 1;
+}
+
+// As many detections as tracks, none of which was missing or came just now.
 bool Linker::all_there(const Grid& grid) const {
-  return grid.size() == tracks_.size() &&
-         std::all_of(tracks_.begin(), tracks_.end(), [](const Track& t) { return t.missed == 0; });
+  return grid.size() == tracks_.size() && std::all_of(tracks_.begin(), tracks_.end(), [&](const Track& t) {
+           return t.missed == 0 && !stranger(t);
+         });
+}
+
+// A bead in sight does not vanish, unless it flies out of an open picture: beyond all that was ever seen.
+double Linker::price_of_nowhere(std::size_t t) const {
+  if (stranger(tracks_[t])) return kOfVanishing;
+  if (options_.closed) return kOfNowhere;
+  if (tracks_[t].missed > 0) return kOfVanishing;
+  const PixelPoint from = tracks_[t].place, to = from + tracks_[t].step;
+  const double least = kOutward * options_.diameter_px;
+  const auto leaves = [&](double x, double was, double low, double high) {
+    return (x < low && was - x > least) || (x > high && x - was > least);
+  };
+  return leaves(to.x_px, from.x_px, low_.x_px, high_.x_px) ||
+                 leaves(to.y_px, from.y_px, low_.y_px, high_.y_px)
+             ? kOfVanishing
+             : kOfNowhere;
+}
+
+// By detection in the order of the grid, whether it may be a bead that came into an open picture: near the
+// border of all that was ever seen, where no track leads.
+std::vector<std::uint8_t> Linker::newcomers(const Grid& grid) const {
+  std::vector<std::uint8_t> new_there(grid.size(), 0);
+  if (options_.closed) return new_there;
+  const double d = options_.diameter_px, margin = kCome * d;
+  for (std::size_t k = 0; k < grid.size(); ++k) {
+    const PixelPoint p = grid[k];
+    new_there[k] = p.x_px < low_.x_px + margin || p.y_px < low_.y_px + margin ||
+                   p.x_px > high_.x_px - margin || p.y_px > high_.y_px - margin;
+  }
+  for (std::size_t t = 0; t < tracks_.size(); ++t)
+    for (const PixelPoint p : {expected_[t], flying_[t]})
+      grid.within(p, kLook * d, [&](std::size_t k, double) { new_there[k] = 0; });
+  return new_there;
 }
 
 // By detection in the order of the grid, the step that would have led there in free flight, to go on as the
@@ -731,8 +773,10 @@ void Linker::match_all(const Grid& grid, std::span<const std::uint8_t> tracers, 
     const Track& track = tracks_[t];
     places.push_back(track.place);
     own.clear();
+    const double nowhere = price_of_nowhere(t);
+    const double reach = std::min(kAnywhere, options_.range_diameters) * d;
     auto look = [&](PixelPoint about) {
-      grid.within(about, kAnywhere * d, [&](std::size_t k, double) {
+      grid.within(about, reach, [&](std::size_t k, double) {
         if (std::any_of(own.begin(), own.end(), [&](const Edge& e) { return e.column == k; })) return;
         double price = kOfAnything;
         price = std::min(price, cost(square(grid[k] - expected_[t]) / (d * d), kWidth * (1 + track.missed)));
@@ -746,7 +790,7 @@ void Linker::match_all(const Grid& grid, std::span<const std::uint8_t> tracers, 
                                       std::log(kWay * (kWay + w.length)) + kOfWay);
         }
         if (!tracers.empty() && tracers[grid.original(k)] != track.tracer) price += kOfKind;
-        own.push_back({static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(k), price - kOfNowhere});
+        own.push_back({static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(k), price - nowhere});
       });
     };
     look(expected_[t]);
@@ -765,8 +809,9 @@ void Linker::match_all(const Grid& grid, std::span<const std::uint8_t> tracers, 
   }
   // Discs of one layer leave each bead a dozen choices; what leaves many more is no such layer, and endless.
   if (choices.size() > kMostOnAverage * std::min(tracks_.size(), grid.size())) return;
-  const CoherentMatch match =
-      match_coherently(places, detections, choices, d, {detection_of_, options_.closed && all_there(grid)});
+  const std::vector<std::uint8_t> new_there = newcomers(grid);
+  const CoherentMatch match = match_coherently(
+      places, detections, choices, d, {detection_of_, options_.closed && all_there(grid), new_there});
   std::fill(detection_of_.begin(), detection_of_.end(), -1);
   std::fill(ambiguous_.begin(), ambiguous_.end(), std::uint8_t{0});
   last_.settled = last_.ambiguous = 0;
@@ -864,6 +909,7 @@ void Linker::update(std::span<const PixelPoint> detections, std::span<const std:
       track.step = per_interval * (p - track.place);
     track.place = p;
     track.missed = 0;
+    ++track.seen;
     track.detection = static_cast<std::int32_t>(k);
     if (!tracers.empty()) track.tracer = tracers[k];
     if (in_cycle) {
@@ -904,6 +950,10 @@ void Linker::update(std::span<const PixelPoint> detections, std::span<const std:
                        .tracer = tracers.empty() ? std::uint8_t{0} : tracers[k]});
     cycle_places_.resize(tracks_.size() * phases, {kNaN, kNaN});
     if (in_cycle) cycle_places_[(tracks_.size() - 1) * phases + phase] = detections[k];
+  }
+  for (const PixelPoint p : detections) {
+    low_ = {std::min(low_.x_px, p.x_px), std::min(low_.y_px, p.y_px)};
+    high_ = {std::max(high_.x_px, p.x_px), std::max(high_.y_px, p.y_px)};
   }
   if (in_cycle) cycle_of_phase_[phase] = moment.cycle;
   first_steps_.clear();

@@ -110,6 +110,7 @@ class Linker {
     PixelPoint step;   // per frame interval
     PixelPoint drift;  // against the same phase of the cycle before; 0 where that is unknown
     std::int32_t missed = 0;
+    std::int32_t seen = 1;        // frames
     std::int32_t detection = -1;  // in the frame last seen
     std::uint8_t tracer = 0;
   };
@@ -128,6 +129,9 @@ class Linker {
   void link(std::span<const PixelPoint> detections, const FrameMoment& moment,
             std::span<const std::uint8_t> tracers, const FrameAhead* ahead);
   [[nodiscard]] bool neighbours_part(const Grid& grid) const;
+  [[nodiscard]] bool stranger(const Track& track) const;
+  [[nodiscard]] double price_of_nowhere(std::size_t track) const;
+  [[nodiscard]] std::vector<std::uint8_t> newcomers(const Grid& grid) const;
   [[nodiscard]] bool all_there(const Grid& grid) const;
   [[nodiscard]] std::vector<PixelPoint> steps_back(const Grid& grid, std::span<const PixelPoint> detections,
                                                    const FrameMoment& moment,
@@ -150,7 +154,8 @@ class Linker {
   std::vector<std::int64_t> cycle_of_phase_;  // when that was
   std::int64_t n_tracks_ = 0;
   PixelPoint step_, mean_step_;
-  std::vector<PixelPoint> first_steps_;  // of the detections of the first frame; empty: not known
+  PixelPoint low_{1e9, 1e9}, high_{-1e9, -1e9};  // corners of where detections have been
+  std::vector<PixelPoint> first_steps_;          // of the detections of the first frame; empty: not known
   std::vector<std::uint8_t> ambiguous_;
   LinkReport last_, total_;
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "analysis/trajectory/error.hpp"
@@ -33,40 +35,91 @@ bool outside(const CellDescription& cell, cv::Size picture, const Detection& b) 
   return (cell.width && (r.x() < 0 || r.x() > *cell.width)) || (cell.height && r.z() > *cell.height + 0.5);
 }
 
+/// Frames that were looked at before their turn, then those that follow.
+class ReadAhead {
+ public:
+  explicit ReadAhead(FrameSource& frames) : frames_(frames) {}
+  /// The frame after so many others; none if there are fewer.
+  const cv::Mat* look(std::size_t ahead) {
+    while (waiting_.size() <= ahead) {
+      cv::Mat frame;
+      if (!frames_.next(frame)) return nullptr;
+      waiting_.push_back(frame);
+    }
+    return &waiting_[ahead];
+  }
+  bool next(cv::Mat& frame) {
+    if (waiting_.empty()) return frames_.next(frame);
+    frame = waiting_.front();
+    waiting_.pop_front();
+    return true;
+  }
+
+ private:
+  FrameSource& frames_;
+  std::deque<cv::Mat> waiting_;
+};
+
+void take(const FoundSettings& found, LocatorOptions& options) {
+  options.diameter_px = found.diameter_px;
+  options.preprocess.bright = found.bright;
+  if (options.other_diameters_px.empty()) options.other_diameters_px = found.other_diameters_px;
+  if (!found.method.empty()) options.refine.method = found.method;
+  options.polarity_known = true;
+}
+
+/// Finds what the options leave open from the first frame that shows a bead then, of those looked at; more
+/// and more are passed over, for each look takes as long as locating many. \returns its number
+std::int64_t settle(ReadAhead& frames, const FrameSource& source, LocatorOptions& options) {
+  constexpr std::size_t kLast = 32;
+  std::optional<LocatorOptions> first;  // found where no bead was seen
+  for (std::size_t k = 0; k <= kLast; k = std::max<std::size_t>(2 * k, k + 1)) {
+    const cv::Mat* frame = frames.look(k);
+    if (frame == nullptr) break;
+    const auto found = find_settings(*frame, options);
+    if (!found) continue;
+    LocatorOptions settled = options;
+    take(*found, settled);
+    if (settled.refine.method == "edges") settled.preprocess.contrast = find_contrast(*frame, settled);
+    if (!first) first = settled;
+    if (locate(*frame, settled).beads.empty()) continue;
+    options = settled;
+    return static_cast<std::int64_t>(k);
+  }
+  if (!first && options.diameter_px <= 0)
+    throw InputError(
+        Where{.file = source.current(), .key = {}},
+        "shows no discs from which a bead diameter could be estimated; give it with --diameter.");
+  if (first) options = *first;
+  options.polarity_known = true;
+  return 0;
+}
+
 }  // namespace
 
-std::int64_t locate_stack(FrameSource& frames, LocatorOptions& options, int threads, const LocatedSink& sink,
+LocatedStack locate_stack(FrameSource& source, LocatorOptions& options, int threads, const LocatedSink& sink,
                           Progress& progress) {
   cv::setNumThreads(1);  // one pool only: ours
+  ReadAhead frames(source);
+  LocatedStack stack;
+  if (const cv::Mat* first = frames.look(0)) {
+    if (options.diameter_px <= 0 || !options.polarity_known)
+      stack.settings_frame = settle(frames, source, options);
+    else if (options.refine.method == "edges")
+      options.preprocess.contrast = find_contrast(*first, options);
+  }
   const std::size_t batch_size = 2 * static_cast<std::size_t>(std::max(threads, 1));
-  std::int64_t done = 0;
   for (bool more = true; more;) {
     std::vector<cv::Mat> batch;
     for (cv::Mat frame; batch.size() < batch_size && (more = frames.next(frame)); frame = cv::Mat())
       batch.push_back(frame);
     if (batch.empty()) break;
-    if (done == 0 && (options.diameter_px <= 0 || !options.polarity_known)) {
-      const auto found = find_settings(batch.front(), options);
-      if (!found && options.diameter_px <= 0)
-        throw InputError(
-            Where{.file = frames.current(), .key = {}},
-            "shows no discs from which a bead diameter could be estimated; give it with --diameter.");
-      if (found) {
-        options.diameter_px = found->diameter_px;
-        options.preprocess.bright = found->bright;
-        if (options.other_diameters_px.empty()) options.other_diameters_px = found->other_diameters_px;
-        if (!found->method.empty()) options.refine.method = found->method;
-      }
-      options.polarity_known = true;
-    }
-    if (done == 0 && options.refine.method == "edges")
-      options.preprocess.contrast = find_contrast(batch.front(), options);
     const std::vector<Located> results = locate_batch(batch, options, threads);
-    for (std::size_t i = 0; i < batch.size(); ++i) sink(done++, batch[i], results[i]);
-    progress.update(done, static_cast<std::int64_t>(frames.announced()));
+    for (std::size_t i = 0; i < batch.size(); ++i) sink(stack.frames++, batch[i], results[i]);
+    progress.update(stack.frames, static_cast<std::int64_t>(source.announced()));
   }
-  if (done == 0) throw InputError(Where{.file = frames.current(), .key = {}}, "holds no frame.");
-  return done;
+  if (stack.frames == 0) throw InputError(Where{.file = source.current(), .key = {}}, "holds no frame.");
+  return stack;
 }
 
 namespace {

@@ -23,12 +23,18 @@ namespace twincell {
 /// Takes one located frame: its number from 0, the grey frame, what was found.
 using LocatedSink = std::function<void(std::int64_t frame, const cv::Mat& grey, const Located& located)>;
 
+/// What became of a stack.
+struct LocatedStack {
+  std::int64_t frames = 0;
+  std::int64_t settings_frame = 0;  ///< from which what the options left open was found
+};
+
 /// Locates every frame of a stack, `threads` frames at a time; the sink is called in the order of the frames,
 /// by the calling thread, and sees the same whatever the number of threads. What options leave open
-/// (diameter, polarity) is found from the first frame and written there. Memory: a few frames. \returns the
-/// number of frames \throws InputError if the stack holds no frame, cannot be read, or shows no discs to
-/// estimate a diameter from
-std::int64_t locate_stack(FrameSource& frames, LocatorOptions& options, int threads, const LocatedSink& sink,
+/// (diameter, polarity) is found from the first of frames 0, 1, 2, 4, ... 32 that shows beads, and written
+/// there. Memory: a few frames, and those without beads at the beginning. \throws InputError if the stack
+/// holds no frame, cannot be read, or shows no discs to estimate a diameter from
+LocatedStack locate_stack(FrameSource& frames, LocatorOptions& options, int threads, const LocatedSink& sink,
                           Progress& progress = Progress::none());
 
 /// How a stack's phases are learnt. With neither: from the cell's frames per cycle.

@@ -28,7 +28,7 @@ std::vector<double> sharp_radii(const cv::Mat1f& darkness, double smallest, doub
   for (std::size_t k = 0; k < sharpness.size(); ++k) {
     const double before = k > 0 ? sharpness[k - 1] : 0,
                  after = k + 1 < sharpness.size() ? sharpness[k + 1] : 0, here = sharpness[k];
-    if (here <= 0 || here < before || here <= after) continue;
+    if (here <= 0 || here < before || here <= after || k + 1 == sharpness.size()) continue;
     // What is sharpest at the smallest radius of all may be texture: only if nothing else is.
     if (k == 0 && here < *std::max_element(sharpness.begin(), sharpness.end())) continue;
     // The top of the parabola through it and its neighbours.
@@ -446,20 +446,33 @@ std::optional<FoundSettings> find_settings(const cv::Mat& picture, const Locator
   std::optional<FoundSettings> patterned;
   if (given.diameter_px <= 0) patterned = find_patterned(frame, given);
   constexpr int kSide = 600;  // px
+  constexpr double kShrink = 4;
   const cv::Mat grey = busiest(frame, kSide);
   const double lattice = lattice_constant(grey);
   const std::vector<Hypothesis> all = hypotheses(grey, given, lattice);
   std::optional<FoundSettings> best;
-  for (const Hypothesis& h : all) {
-    const Trial trial = settle_plain(grey, given, h);
-    if (!best || trial.explained > best->explained)
-      best = FoundSettings{trial.diameter_px, h.bright, trial.explained, {}, {}};
+  const auto try_all = [&](const std::vector<Hypothesis>& some) {
+    for (const Hypothesis& h : some) {
+      const Trial trial = settle_plain(grey, given, h);
+      if (!best || trial.explained > best->explained)
+        best = FoundSettings{trial.diameter_px, h.bright, trial.explained, {}, {}};
+    }
+  };
+  try_all(all);
+  if (given.diameter_px <= 0 && (!best || best->explained <= 0)) {
+    // A few large discs.
+    cv::Mat small;
+    cv::resize(grey, small, {}, 1 / kShrink, 1 / kShrink, cv::INTER_AREA);
+    std::vector<Hypothesis> larger = hypotheses(small, given, 0);
+    for (Hypothesis& h : larger) h.diameter_px *= kShrink;
+    try_all(larger);
   }
   // Rims of large circles are seen in a packing of small discs, too, but explain less of it.
   const double part = static_cast<double>(grey.total()) / static_cast<double>(frame.total());
   if (patterned && (!best || part * patterned->explained > best->explained)) return patterned;
   if (best && given.refine.method == "exact")
     if (auto alike = find_alike(frame, given, all, *best, lattice)) return alike;
+  if (best && best->explained <= 0 && given.diameter_px <= 0) return std::nullopt;
   return best;
 }
 
