@@ -268,18 +268,21 @@ struct Trial {
   double diameter_px = 0;  // median of what was found; 0: too few. Or what was settled on
 };
 
-/// Whether most discs lie too near to another one for discs of that diameter in one layer. Where they are no
-/// discs of that size they explain much, of a crystal all, each with a share of its neighbours.
-bool overlap(const std::vector<Detection>& beads, double diameter_px) {
-  constexpr double kOverlap = 0.85;  // of the diameter between centres
+/// Whether most discs lie too near to another one for discs of one layer, were all wider by a factor. Where
+/// they are no discs of that size they explain much, of a crystal all, each with a share of its neighbours.
+bool overlap(const std::vector<Detection>& beads, double wider = 1) {
+  constexpr double kOverlap = 0.85;  // of R_i + R_j between centres
   std::vector<double> nearest;
   for (const Detection& b : beads) {
     double least = HUGE_VAL;
     for (const Detection& o : beads)
-      if (&o != &b) least = std::min(least, (o.x - b.x) * (o.x - b.x) + (o.y - b.y) * (o.y - b.y));
+      if (&o != &b) {
+        const double dx = o.x - b.x, dy = o.y - b.y, reach = o.radius + b.radius;
+        least = std::min(least, (dx * dx + dy * dy) / (reach * reach));
+      }
     nearest.push_back(std::sqrt(least));
   }
-  return !nearest.empty() && upper_median(std::move(nearest)) < kOverlap * diameter_px;
+  return !nearest.empty() && upper_median(std::move(nearest)) < kOverlap * wider;
 }
 
 /// What plain discs explain. Areas times scores did not do for the sum: discs put into the gaps between dark
@@ -290,7 +293,7 @@ Trial try_plain(const cv::Mat& grey, const LocatorOptions& options) {
   Trial trial;
   std::vector<double> radii;
   const std::vector<Detection> beads = locate(grey, options).beads;
-  if (overlap(beads, options.diameter_px)) return trial;
+  if (overlap(beads)) return trial;
   for (const Detection& b : beads) {
     if (b.score < kGood) continue;
     trial.explained += gained(b);
@@ -334,17 +337,18 @@ ProfileTrial try_profile(const cv::Mat& grey, LocatorOptions options, const Hypo
   options.diameter_px = h.diameter_px;
   ProfileTrial trial;
   const LocatorStages stages = locate_stages(grey, options);
-  trial.overlaps = overlap(stages.judged.beads, std::max(h.diameter_px, 2 * stages.profile.rim()));
+  trial.overlaps = overlap(stages.judged.beads, std::max(1.0, 2 * stages.profile.rim() / h.diameter_px));
   if (trial.overlaps) return trial;
   for (const Detection& b : stages.judged.beads) trial.explained += gained(b);
   trial.profile = stages.profile;
   return trial;
 }
 
-constexpr double kUnlike = 0.012;  // of a plain disc's profile; in a common one found in haste, twice that
+constexpr double kUnlike = 0.012;  // of a plain disc's profile
+constexpr double kDark = 0.5;      // paler discs the plain fit calls none
 
-bool looks_plain(const ProfileTrial& trial, double unlike = kUnlike) {
-  return trial.explained > 0 && trial.profile.unlike_plain() < unlike;
+bool looks_plain(const ProfileTrial& trial) {
+  return trial.explained > 0 && trial.profile.unlike_plain() < kUnlike && trial.profile.largest() > kDark;
 }
 
 /// The best of the hypotheses by a common profile, each led out to the rim that its profile shows; none if
@@ -392,12 +396,11 @@ std::optional<FoundSettings> find_alike(const cv::Mat& frame, const LocatorOptio
   };
   Hypothesis best{plain.bright, plain.diameter_px};
   ProfileTrial of_best = try_profile(grey, given, best);
-  const auto near = [&](double d) { return std::abs(best.diameter_px - d) < kNear * d; };
-  if (of_best.overlaps || near(lattice) || looks_plain(of_best, 2 * kUnlike)) try_as_plain(best);
+  if (of_best.overlaps || std::abs(best.diameter_px - lattice) < kNear * lattice) try_as_plain(best);
   double to_beat = kClearly * of_best.explained;
   for (Hypothesis h : all) {
     ProfileTrial trial = led_out(h);
-    if (looks_plain(trial)) try_as_plain({h.bright, 2 * trial.profile.rim()});
+    if (lattice > 0 && looks_plain(trial)) try_as_plain({h.bright, 2 * trial.profile.rim()});
     if (trial.explained <= to_beat) continue;
     to_beat = trial.explained;
     best = h;
@@ -428,14 +431,18 @@ std::optional<FoundSettings> find_alike(const cv::Mat& frame, const LocatorOptio
     }
     for (const double d : {best.diameter_px, 2 * of_best.profile.rim()}) try_as_plain({best.bright, d});
   }
-  if (plain_does()) {
-    const bool same =
-        as_plain.bright == plain.bright && std::abs(as_plain.diameter_px / plain.diameter_px - 1) < kClose;
-    return same ? std::nullopt : std::optional(as_plain);
-  }
   const Hypothesis rim{best.bright, 2 * of_best.profile.rim()};
-  if (allowed(rim) && given.diameter_px <= 0) best.diameter_px = rim.diameter_px;
-  return FoundSettings{best.diameter_px, best.bright, of_best.explained, {}, "profile"};
+  FoundSettings found{best.diameter_px, best.bright, of_best.explained, {}, {}};
+  if (plain_does()) {
+    found = as_plain;
+  } else if (!looks_plain(of_best)) {
+    found.method = "profile";
+  }
+  if (found.method.empty() && found.bright == plain.bright &&
+      std::abs(found.diameter_px / plain.diameter_px - 1) < kTolerance)
+    return std::nullopt;
+  if (!plain_does() && allowed(rim) && given.diameter_px <= 0) found.diameter_px = rim.diameter_px;
+  return found;
 }
 
 }  // namespace
