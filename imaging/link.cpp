@@ -52,7 +52,8 @@ constexpr double kOfWay = -4;
 constexpr double kOfFlight = 2;           // to be in free flight,
 constexpr double kOfAnything = 6;         // to be anywhere within reach,
 constexpr double kOfNowhere = 16;         // to be nowhere,
-constexpr double kOfVanishing = 0;        // the same for what was seen once, or leaves the picture,
+constexpr double kOfStranger = 0;         // the same for what was seen once,
+constexpr double kOfLeaving = 0;          // and for what flies out of an open picture or is missing in it,
 constexpr double kOfKind = 3;             // to change from tracer to bead
 constexpr std::size_t kSample = 200;      // tracks on which the rules are tried
 constexpr std::size_t kMostChoices = 40;  // the same where all are matched
@@ -676,9 +677,9 @@ bool Linker::all_there(const Grid& grid) const {
 
 // A bead in sight does not vanish, unless it flies out of an open picture: beyond all that was ever seen.
 double Linker::price_of_nowhere(std::size_t t) const {
-  if (stranger(tracks_[t])) return kOfVanishing;
+  if (stranger(tracks_[t])) return kOfStranger;
   if (options_.closed) return kOfNowhere;
-  if (tracks_[t].missed > 0) return kOfVanishing;
+  if (tracks_[t].missed > 0) return kOfLeaving;
   const PixelPoint from = tracks_[t].place, to = from + tracks_[t].step;
   const double least = kOutward * options_.diameter_px;
   const auto leaves = [&](double x, double was, double low, double high) {
@@ -686,7 +687,7 @@ double Linker::price_of_nowhere(std::size_t t) const {
   };
   return leaves(to.x_px, from.x_px, low_.x_px, high_.x_px) ||
                  leaves(to.y_px, from.y_px, low_.y_px, high_.y_px)
-             ? kOfVanishing
+             ? kOfLeaving
              : kOfNowhere;
 }
 

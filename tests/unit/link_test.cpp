@@ -216,7 +216,7 @@ TEST(Linker, TheFrameAheadTellsWhoIsWhoAfterACollision) {
     }
   }
   auto wrong = [&](bool looks_ahead) {
-    Linker linker({.diameter_px = kD});
+    Linker linker({.diameter_px = kD, .closed = true});
     std::size_t count = 0;
     std::vector<std::int64_t> before = counted(kBeads);
     for (std::size_t f = 0; f < frames.size(); ++f) {
@@ -247,6 +247,86 @@ TEST(Linker, InAClosedCellTheBeadThatIsLeftIsTheOneThatWasLost) {
     EXPECT_EQ(linker.ambiguous().back(), closed ? 1 : 0);
     EXPECT_EQ(linker.total().births, closed ? 37 : 38);
   }
+}
+
+// Three beads far apart fly straight. A speck lies near one of them for a frame, another on its other side in
+// the next: as many detections as tracks, but no bead goes to a speck.
+TEST(Linker, SpecksOfDustTakeNoBeadsPlace) {
+  for (const bool closed : {false, true})
+    for (const double off : {1.5, 1.8, 2.2}) {
+      Linker linker({.diameter_px = 15, .closed = closed});
+      for (int f = 0; f < 16; ++f) {
+        std::vector<PixelPoint> seen = {
+            {75 + 6.0 * f, 75 + 1.5 * f}, {300 - 4.5 * f, 75 + 3.0 * f}, {180 + 1.5 * f, 300 - 6.0 * f}};
+        const PixelPoint next = {75 + 6.0 * 8, 75 + 1.5 * 8};
+        if (f == 7) seen.push_back({next.x_px, next.y_px + 15 * off});
+        if (f == 8) seen.push_back({next.x_px, next.y_px - 15 * off});
+        auto ids = linker.next(seen);
+        ids.resize(3);
+        EXPECT_EQ(ids, counted(3)) << "frame " << f << ", specks " << off << " d off, closed " << closed;
+      }
+    }
+}
+
+// Lanes that flow against each other through an open picture: beads leave and enter side by side, none of
+// which is the other.
+TEST(Linker, BeadsThatLeaveAnOpenPictureAreNotThoseThatEnter) {
+  constexpr int kLanes = 6, kEach = 12;
+  constexpr double kPitch = 25, kStep = 6, kLength = 300;  // px
+  Linker linker({.diameter_px = 15});
+  std::vector<std::int64_t> name(kLanes * kEach, -1);
+  std::size_t wrong = 0, links = 0, births = 0;
+  for (int f = 0; f < 60; ++f) {
+    std::vector<PixelPoint> seen;
+    std::vector<std::size_t> who;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      for (std::size_t i = 0; i < kEach; ++i) {
+        // Around a loop twice as long as the picture; the nth time round it is another bead.
+        const double start = kPitch * static_cast<double>(2 * i) + 7.0 * static_cast<double>(lane);
+        const double way = std::fmod(start + kStep * f, 2 * kLength);
+        if (way >= kLength) {
+          name[lane * kEach + i] = -1;
+          continue;
+        }
+        seen.push_back({lane % 2 == 0 ? way : kLength - way, 18.0 * static_cast<double>(lane)});
+        who.push_back(lane * kEach + i);
+      }
+    const auto ids = linker.next(seen);
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+      std::int64_t& known = name[who[k]];
+      if (known >= 0) ++links, wrong += ids[k] != known ? 1 : 0;
+      if (known < 0 && f > 0) ++births;
+      known = ids[k];
+    }
+  }
+  EXPECT_GT(links, 1500U);
+  EXPECT_GT(births, 30U);
+  EXPECT_LE(wrong, 2U);
+}
+
+// The range holds in frames that are matched anew, too.
+TEST(Linker, NoStepIsLongerThanTheRange) {
+  std::mt19937_64 generator(3);
+  std::uniform_real_distribution<double> step(-15, 15);
+  auto beads = crystal(12);
+  auto places = beads;
+  std::size_t links = 0, rematched = 0;
+  for (int f = 0; f < 5; ++f) {
+    for (PixelPoint& p : beads) p = {p.x_px + step(generator), p.y_px + step(generator)};
+    Linker at_rest({.diameter_px = 15, .range_diameters = 0.5, .max_shift_diameters = 0});
+    at_rest.next(places);
+    const auto ids = at_rest.next(beads);
+    rematched += static_cast<std::size_t>(at_rest.last().rematched);
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+      if (ids[k] >= static_cast<std::int64_t>(places.size())) continue;
+      const PixelPoint from = places[static_cast<std::size_t>(ids[k])];
+      EXPECT_LE(std::hypot(beads[k].x_px - from.x_px, beads[k].y_px - from.y_px), 7.5 + 1e-9);
+      ++links;
+    }
+    places = beads;
+  }
+  EXPECT_GT(rematched, 0U);
+  EXPECT_GT(links, 100U);
 }
 
 TEST(Linker, DroppedAndDoubledFramesScaleTheStep) {
