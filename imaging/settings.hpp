@@ -2,11 +2,14 @@
 /// \file
 /// What a frame says of how to locate its beads: size, polarity, and by which model.
 ///
-/// Hypotheses are the radii at which the gradient votes of either polarity meet most sharply. Of those, the
-/// one whose fitted discs explain most of the picture wins: the sum of -R^2 ln(1 - share explained), the
-/// logarithm of the likelihood gained. Plain discs are tried first; discs with a common radial profile
-/// (profile_fit.hpp) take their place if they explain clearly more. All is done on the part of the frame
-/// that has most edges, some hundred discs wide.
+/// Hypotheses are the radii at which the gradient votes of either polarity meet most sharply, and the lattice
+/// constant of a crystal (lattice_constant.hpp). Of those, the one whose fitted discs explain most of the
+/// picture wins: the sum of -R^2 ln(1 - share explained), the logarithm of the likelihood gained; discs most
+/// of which overlap explain nothing. Plain discs are tried first; discs with a common radial profile
+/// (profile_fit.hpp) take their place if they explain clearly more, and give it back to plain ones of the
+/// size that the profile shows if those explain as much. All is done on the part of the frame that has most
+/// edges, some hundred discs wide. Where nothing is found so, a frame of a quarter the size is asked for
+/// larger discs.
 
 #include <opencv2/core.hpp>
 #include <optional>
