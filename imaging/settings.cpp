@@ -26,16 +26,16 @@ std::vector<double> sharp_radii(const cv::Mat1f& darkness, double smallest, doub
   for (int k = 0; k <= steps; ++k)
     sharpness.push_back(vote_sharpness(darkness, smallest * std::pow(kRatio, k)));
   std::vector<std::pair<double, double>> tops;
-  for (std::size_t k = 0; k < sharpness.size(); ++k) {
-    const double before = k > 0 ? sharpness[k - 1] : 0,
-                 after = k + 1 < sharpness.size() ? sharpness[k + 1] : 0, here = sharpness[k];
-    if (here <= 0 || here < before || here <= after || k + 1 == sharpness.size()) continue;
+  // A rise that goes on to the last one is no top.
+  for (std::size_t k = 0; k + 1 < sharpness.size(); ++k) {
+    const double before = k > 0 ? sharpness[k - 1] : 0, here = sharpness[k], after = sharpness[k + 1];
+    if (here <= 0 || here < before || here <= after) continue;
     // What is sharpest at the smallest radius of all may be texture: only if nothing else is.
     if (k == 0 && here < *std::max_element(sharpness.begin(), sharpness.end())) continue;
     // The top of the parabola through it and its neighbours.
     double at = static_cast<double>(k);
     const double curvature = before - 2 * here + after;
-    if (k > 0 && k + 1 < sharpness.size() && curvature < 0) at += 0.5 * (before - after) / curvature;
+    if (k > 0 && curvature < 0) at += 0.5 * (before - after) / curvature;
     tops.emplace_back(here, smallest * std::pow(kRatio, at));
   }
   std::sort(tops.rbegin(), tops.rend());

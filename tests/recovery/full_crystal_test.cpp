@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <string>
@@ -17,6 +15,7 @@
 #include "imaging/pipeline.hpp"
 #include "imaging/rendered/marks.hpp"
 #include "imaging/rendered/picture.hpp"
+#include "tests/support/hexagonal_sites.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace twincell {
@@ -44,19 +43,16 @@ Picture picture_of(const Crystal& c) {
   if (c.bright) p.light = 22;
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal(0, c.jitter * c.diameter);
-  const int rows = static_cast<int>(2 * p.width / c.diameter);
-  const double height = 0.5 * std::numbers::sqrt3;
-  for (int row = -rows; row <= rows; ++row)
-    for (int column = -rows; column <= rows; ++column) {
-      const double u = c.diameter * (column + 0.5 * (row % 2)), v = c.diameter * height * row;
-      Disc d;
-      d.x = 0.5 * p.width + 0.3 + u * std::cos(c.turned) - v * std::sin(c.turned) + normal(random);
-      d.y = 0.5 * p.height + 0.2 + u * std::sin(c.turned) + v * std::cos(c.turned) + normal(random);
-      d.radius = 0.5 * c.diameter * (1 - 3 * c.jitter);
-      d.contrast = c.bright ? -8 : 1;
-      if (d.x > -c.diameter && d.y > -c.diameter && d.x < p.width + c.diameter && d.y < p.height + c.diameter)
-        p.discs.push_back(d);
-    }
+  for (const cv::Point2d& site :
+       hexagonal_sites(c.diameter, c.turned, static_cast<int>(2 * p.width / c.diameter))) {
+    Disc d;
+    d.x = 0.5 * p.width + 0.3 + site.x + normal(random);
+    d.y = 0.5 * p.height + 0.2 + site.y + normal(random);
+    d.radius = 0.5 * c.diameter * (1 - 3 * c.jitter);
+    d.contrast = c.bright ? -8 : 1;
+    if (d.x > -c.diameter && d.y > -c.diameter && d.x < p.width + c.diameter && d.y < p.height + c.diameter)
+      p.discs.push_back(d);
+  }
   return p;
 }
 
@@ -78,7 +74,6 @@ TEST_P(FullCrystal, IsFoundUnasked) {
   Marks marks;
   const auto frames = open_frames(name);
   locate_stack(*frames, options, 1, [&](std::int64_t, const cv::Mat&, const Located& located) {
-    // Half discs at the frame's sides are no worse than others, but nobody knows how many there are.
     std::vector<cv::Point2d> centres;
     for (const Detection& b : located.beads) centres.emplace_back(b.x, b.y);
     marks.add(truth, centres, rendered::cramer_rao_bound(light, truth, kSnr));

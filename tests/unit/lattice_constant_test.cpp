@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
 #include <random>
 #include <vector>
 
 #include "imaging/rendered/packing.hpp"
 #include "imaging/rendered/picture.hpp"
+#include "tests/support/hexagonal_sites.hpp"
 
 using namespace twincell;
 
@@ -27,17 +26,14 @@ rendered::Picture empty() {
 // Discs of that diameter on a hexagonal lattice, all over the picture.
 cv::Mat1b crystal(double constant, double diameter, double turned) {
   rendered::Picture p = empty();
-  const int n = static_cast<int>(2 * p.width / constant);
-  for (int row = -n; row <= n; ++row)
-    for (int i = -n; i <= n; ++i) {
-      const double u = constant * (i + 0.5 * (row % 2)), v = 0.5 * std::numbers::sqrt3 * constant * row;
-      rendered::Disc d;
-      d.x = 150 + u * std::cos(turned) - v * std::sin(turned);
-      d.y = 130 + u * std::sin(turned) + v * std::cos(turned);
-      d.radius = 0.5 * diameter;
-      if (d.x > -constant && d.y > -constant && d.x < p.width + constant && d.y < p.height + constant)
-        p.discs.push_back(d);
-    }
+  for (const cv::Point2d& site :
+       hexagonal_sites(constant, turned, static_cast<int>(2 * p.width / constant))) {
+    rendered::Disc d;
+    d.x = 150 + site.x, d.y = 130 + site.y;
+    d.radius = 0.5 * diameter;
+    if (d.x > -constant && d.y > -constant && d.x < p.width + constant && d.y < p.height + constant)
+      p.discs.push_back(d);
+  }
   return exposed(p);
 }
 

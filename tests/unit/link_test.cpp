@@ -216,7 +216,7 @@ TEST(Linker, TheFrameAheadTellsWhoIsWhoAfterACollision) {
     }
   }
   auto wrong = [&](bool looks_ahead) {
-    Linker linker({.diameter_px = kD, .closed = true});
+    Linker linker({.diameter_px = kD});
     std::size_t count = 0;
     std::vector<std::int64_t> before = counted(kBeads);
     for (std::size_t f = 0; f < frames.size(); ++f) {
