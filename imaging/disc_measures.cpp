@@ -25,18 +25,27 @@ void over_disc(cv::Size size, const Detection& b, double reach, Use&& use) {
 }
 
 double interior(const Prepared& image, const Detection& b) {
-  std::vector<float> inside;
-  inside.reserve(static_cast<std::size_t>(b.radius * b.radius) + 16);
+  constexpr std::size_t kFew = 64;
+  std::array<float, kFew> few{};
+  std::vector<float> many;
+  std::size_t n = 0;
   // Of larger discs every other pixel, as on a chessboard, tells as much.
   constexpr double kLarge = 3;
   const double reach = std::max(0.5 * b.radius, 1.0);
   const int stride = reach > kLarge ? 2 : 1;
   over_disc(image.darkness.size(), b, reach, [&](int y, int first, int last) {
     const float* row = image.darkness[y];
-    for (int x = first + (first + y) % stride; x <= last; x += stride) inside.push_back(row[x]);
+    for (int x = first + ((first + y) & (stride - 1)); x <= last; x += stride, ++n) {
+      if (n < kFew) {
+        few[n] = row[x];
+        continue;
+      }
+      if (n == kFew) many.assign(few.begin(), few.end());
+      many.push_back(row[x]);
+    }
   });
-  if (inside.empty()) return b.darkness;  // centre outside the frame: the rim speaks for it
-  return static_cast<double>(upper_median(std::move(inside)));
+  if (n == 0) return b.darkness;  // centre outside the frame: the rim speaks for it
+  return static_cast<double>(n > kFew ? upper_median(std::move(many)) : upper_median_of_few(few, n));
 }
 
 /// Sum of v B: B is a quadratic surface, so that its values around the centre and the moments say it exactly.
@@ -66,18 +75,17 @@ void measure_disc(const Prepared& image, Detection& b) {
 }
 
 double rough_interior(const Prepared& image, const Detection& b) {
-  std::array<float, 9> v{};
-  std::ptrdiff_t n = 0;
+  std::array<float, 16> v{};
+  std::size_t n = 0;
   const int away = std::max(1, cvFloor(0.4 * b.radius));
   for (int dy = -away; dy <= away; dy += away)
     for (int dx = -away; dx <= away; dx += away) {
       const int x = cvRound(b.x) + dx, y = cvRound(b.y) + dy;
       if (x >= 0 && y >= 0 && x < image.darkness.cols && y < image.darkness.rows)
-        v[static_cast<std::size_t>(n++)] = image.darkness(y, x);
+        v[n++] = image.darkness(y, x);
     }
   if (n == 0) return 1;
-  std::nth_element(v.begin(), v.begin() + n / 2, v.begin() + n);
-  return static_cast<double>(v[static_cast<std::size_t>(n / 2)]);
+  return static_cast<double>(upper_median_of_few(v, n));
 }
 
 bool in_wall(const Prepared& image, const Detection& b) {

@@ -392,67 +392,108 @@ struct Sums {
   }
 };
 
+/// What the pixels that two rings share say of both discs.
+class SharedPixels {
+ public:
+  SharedPixels(const RingArgs& args, const Disc& a, const Disc& b)
+      : args_(args), rings_{Ring(a, args.blur), Ring(b, args.blur)} {
+    for (V& v : sums_) v = hn::Zero(Tag());
+    const std::array<const Disc*, 2> discs = {&a, &b};
+    for (std::size_t q = 0; q < 2; ++q) {
+      const double low = std::max(0.0, discs[q]->radius - args.ring), high = discs[q]->radius + args.ring;
+      low2_[q] = set(low * low), high2_[q] = set(high * high);
+    }
+    beside_x_ = static_cast<float>(rings_[0].base_x - rings_[1].base_x) + rings_[0].x - rings_[1].x;
+    beside_y_ = static_cast<float>(rings_[0].base_y - rings_[1].base_y) + rings_[0].y - rings_[1].y;
+  }
+
+  /// Takes those of a vector of pixels that both rings have; most rows of a lens are narrow, so they are
+  /// put side by side first.
+  HWY_INLINE void take(int x, int y) {
+    const Tag tag;
+    const Ring& ring = rings_[0];
+    const V d = hn::LoadU(tag, args_.picture->ptr<float>(y) + x);
+    const V dx = hn::Sub(hn::Iota(tag, static_cast<float>(x - ring.base_x)), hn::Set(tag, ring.x)),
+            dy = hn::Set(tag, static_cast<float>(y - ring.base_y) - ring.y);
+    const V other_dx = hn::Add(dx, hn::Set(tag, beside_x_)), other_dy = hn::Add(dy, hn::Set(tag, beside_y_));
+    const V r2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy)),
+            other_r2 = hn::MulAdd(other_dx, other_dx, hn::Mul(other_dy, other_dy));
+    const Mask counts = hn::And(hn::Lt(d, set(static_cast<double>(kUnseen))),
+                                hn::And(hn::And(hn::Gt(r2, low2_[0]), hn::Lt(r2, high2_[0])),
+                                        hn::And(hn::Gt(other_r2, low2_[1]), hn::Lt(other_r2, high2_[1]))));
+    if (hn::AllFalse(tag, counts)) return;
+    const FrontLanes front(counts);
+    hn::StoreU(front(dx), tag, &dx_[n_]);
+    hn::StoreU(front(dy), tag, &dy_[n_]);
+    hn::StoreU(front(d), tag, &d_[n_]);
+    hn::StoreU(front(hn::LoadU(tag, args_.model->ptr<float>(y) + x)), tag, &t_[n_]);
+    n_ += front.count();
+    if (n_ + hn::MaxLanes(tag) > kMost) add();
+  }
+
+  PairSums sums() {
+    if (n_ > 0) add();
+    PairSums total;
+    for (std::size_t m = 0; m < total.size(); ++m)
+      total[m] = static_cast<double>(hn::GetLane(hn::SumOfLanes(Tag(), sums_[m])));
+    return total;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 128;
+  using Row = std::array<float, kMost + kSpareColumns>;
+
+  HWY_INLINE void add() {
+    const Tag tag;
+    // What stands behind the last pixel counts for nothing, but must be numbers.
+    for (Row* row : {&dx_, &dy_, &d_, &t_}) hn::StoreU(hn::Zero(tag), tag, row->data() + n_);
+    for (std::size_t k = 0; k < n_; k += hn::MaxLanes(tag)) {
+      const V dx = hn::Load(tag, &dx_[k]), dy = hn::Load(tag, &dy_[k]), d = hn::Load(tag, &d_[k]),
+              t = hn::Load(tag, &t_[k]);
+      const auto one = rings_[0].template slopes<BlurFit::none>(dx, dy);
+      const auto other = rings_[1].template slopes<BlurFit::none>(hn::Add(dx, hn::Set(tag, beside_x_)),
+                                                                  hn::Add(dy, hn::Set(tag, beside_y_)));
+      const V bright = hn::Max(hn::Sub(set(1), t), hn::Zero(tag)), size = hn::Abs(hn::Sub(d, t));
+      const V cut = hn::Min(set(1), hn::Mul(set(args_.huber), inverse(hn::Max(size, set(1e-6)))));
+      const V variance =
+          hn::MulAdd(set(args_.light_variance), hn::Min(bright, set(1)), set(args_.dark_variance));
+      const V w = hn::IfThenElseZero(hn::FirstN(tag, n_ - k), hn::Mul(cut, inverse(variance)));
+      const std::array<V, 4> j = {hn::Mul(w, one.x), hn::Mul(w, one.y), hn::Mul(w, one.radius),
+                                  hn::Mul(w, one.p)},
+                             i = {other.x, other.y, other.radius, other.p};
+      for (std::size_t m = 0; m < 4; ++m)
+        for (std::size_t c = 0; c < 4; ++c) sums_[4 * m + c] = hn::MulAdd(j[m], i[c], sums_[4 * m + c]);
+    }
+    n_ = 0;
+  }
+
+  const RingArgs& args_;
+  std::array<Ring, 2> rings_;
+  V low2_[2], high2_[2], sums_[16];
+  float beside_x_, beside_y_;        // from the second disc to the first
+  alignas(64) Row dx_, dy_, d_, t_;  // from the first disc; picture; model
+  std::size_t n_ = 0;
+};
+
 PairSums pair(const RingArgs& args, const Disc& a, const Disc& b) {
   constexpr int n = static_cast<int>(hn::MaxLanes(Tag()));
-  const Tag tag;
-  const std::array<const Disc*, 2> discs = {&a, &b};
-  const std::array<Ring, 2> rings = {Ring(a, args.blur), Ring(b, args.blur)};
-  V low2[2], high2[2];
-  for (std::size_t q = 0; q < 2; ++q) {
-    const double low = std::max(0.0, discs[q]->radius - args.ring), high = discs[q]->radius + args.ring;
-    low2[q] = set(low * low), high2[q] = set(high * high);
-  }
+  SharedPixels shared(args, a, b);
   const double reach_a = a.radius + args.ring, reach_b = b.radius + args.ring;
-  const cv::Mat1f& picture = *args.picture;
-  const int last_column = picture.cols - kSpareColumns - 1;
+  const cv::Size frame = frame_of(*args.picture);
   const int first_row = std::max(0, static_cast<int>(std::ceil(std::max(a.y - reach_a, b.y - reach_b))));
-  const int last_row = std::min(picture.rows - 1, static_cast<int>(std::min(a.y + reach_a, b.y + reach_b)));
-  V sums[16];
-  for (V& v : sums) v = hn::Zero(tag);
+  const int last_row = std::min(frame.height - 1, static_cast<int>(std::min(a.y + reach_a, b.y + reach_b)));
   const int beside = first_row % args.row_step;
   for (int y = first_row + (beside > 0 ? args.row_step - beside : 0); y <= last_row; y += args.row_step) {
     const auto half = [&](const Disc& d, double reach) {
-      return std::sqrt(static_cast<float>(std::max(0.0, reach * reach - (y - d.y) * (y - d.y))));
+      return static_cast<double>(
+          std::sqrt(static_cast<float>(std::max(0.0, reach * reach - (y - d.y) * (y - d.y)))));
     };
-    const auto half_a = static_cast<double>(half(a, reach_a)), half_b = static_cast<double>(half(b, reach_b));
+    const double half_a = half(a, reach_a), half_b = half(b, reach_b);
     const int first = std::max(0, static_cast<int>(std::max(a.x - half_a, b.x - half_b)));
-    const int last = std::min(last_column, static_cast<int>(std::min(a.x + half_a, b.x + half_b)));
-    for (int x = first; x <= last; x += n) {
-      const V d = hn::LoadU(tag, picture.ptr<float>(y) + x),
-              t = hn::LoadU(tag, args.model->ptr<float>(y) + x);
-      Mask counts = hn::Lt(d, set(static_cast<double>(kUnseen)));
-      V dx[2], dy[2];
-      for (std::size_t q = 0; q < 2; ++q) {
-        const Ring& ring = rings[q];
-        dx[q] = hn::Sub(hn::Iota(tag, static_cast<float>(x - ring.base_x)), hn::Set(tag, ring.x));
-        dy[q] = hn::Set(tag, static_cast<float>(y - ring.base_y) - ring.y);
-        const V r2 = hn::MulAdd(dx[q], dx[q], hn::Mul(dy[q], dy[q]));
-        counts = hn::And(counts, hn::And(hn::Gt(r2, low2[q]), hn::Lt(r2, high2[q])));
-      }
-      if (hn::AllFalse(tag, counts)) continue;
-      V j[2][4];
-      for (std::size_t q = 0; q < 2; ++q) {
-        const auto e = rings[q].slopes<BlurFit::none>(dx[q], dy[q]);
-        j[q][0] = e.x;
-        j[q][1] = e.y;
-        j[q][2] = e.radius;
-        j[q][3] = e.p;
-      }
-      const V bright = hn::Max(hn::Sub(set(1), t), hn::Zero(tag)), size = hn::Abs(hn::Sub(d, t));
-      const V cut = hn::Min(set(1), hn::Mul(set(args.huber), inverse(hn::Max(size, set(1e-6)))));
-      const V variance =
-          hn::MulAdd(set(args.light_variance), hn::Min(bright, set(1)), set(args.dark_variance));
-      const V w = hn::IfThenElseZero(counts, hn::Mul(cut, inverse(variance)));
-      for (int m = 0; m < 4; ++m) {
-        const V wj = hn::Mul(w, j[0][m]);
-        for (int k = 0; k < 4; ++k) sums[4 * m + k] = hn::MulAdd(wj, j[1][k], sums[4 * m + k]);
-      }
-    }
+    const int last = std::min(frame.width - 1, static_cast<int>(std::min(a.x + half_a, b.x + half_b)));
+    for (int x = first; x <= last; x += n) shared.take(x, y);
   }
-  PairSums total;
-  for (std::size_t m = 0; m < 16; ++m)
-    total[m] = static_cast<double>(hn::GetLane(hn::SumOfLanes(tag, sums[m])));
-  return total;
+  return shared.sums();
 }
 
 RingSums fixed_blur(const RingArgs& args, const Disc& disc) {

@@ -64,36 +64,54 @@ Surface bright_envelope(const Rows& image) {
   constexpr double kSamples = 5000;
   const cv::Size size = image.size();
   const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size.area()) / kSamples)));
-  struct Sample {
-    float value;
-    Surface basis;
-  };
-  std::vector<Sample> samples;
+  const auto columns = static_cast<std::size_t>((size.width + stride - 1) / stride);
   std::vector<float> values;
   std::vector<float> row(static_cast<std::size_t>(size.width));
   for (int y = 0; y < size.height; y += stride) {
     image.read(y, row.data());
-    for (int x = 0; x < size.width; x += stride) {
-      values.push_back(row[static_cast<std::size_t>(x)]);
-      samples.push_back({values.back(), surface_basis(x, y, size)});
-    }
+    for (int x = 0; x < size.width; x += stride) values.push_back(row[static_cast<std::size_t>(x)]);
   }
+  std::vector<double> across;
+  for (int x = 0; x < size.width; x += stride) across.push_back(scaled(x, size.width));
   Surface c = Surface::Zero();
-  c[0] = static_cast<double>(quantile(std::move(values), 0.99));
+  c[0] = static_cast<double>(quantile(values, 0.99));
   for (const double near : {0.7, 0.8, 0.85, 0.9, 0.9, 0.9}) {
-    Eigen::Matrix<double, 6, 6> a = Eigen::Matrix<double, 6, 6>::Zero();
-    Surface rhs = Surface::Zero();
+    // Sums of w u^p v^q, p + q <= 4, and of w value u^p v^q, p + q <= 2; those over u row by row.
+    std::array<std::array<double, 5>, 5> moment{};
+    std::array<std::array<double, 3>, 3> of_value{};
     int used = 0;
-    for (const Sample& s : samples) {
-      const double value = static_cast<double>(s.value), level = c.dot(s.basis);
-      if (value < near * level) continue;
-      const double w = value > level ? 3 : 1;
-      const Surface weighted = w * s.basis;
-      a.noalias() += weighted * s.basis.transpose();
-      rhs += value * weighted;
-      ++used;
+    for (std::size_t first = 0; first < values.size(); first += columns) {
+      const double v = scaled(static_cast<int>(first / columns) * stride, size.height);
+      const double flat = c[0] + c[2] * v + c[5] * v * v, slope = c[1] + c[4] * v, curve = c[3];
+      std::array<double, 5> sums{};
+      std::array<double, 3> value_sums{};
+      for (std::size_t k = 0; k < columns; ++k) {
+        const auto value = static_cast<double>(values[first + k]);
+        const double u = across[k], level = flat + u * (slope + u * curve);
+        const double w = value < near * level ? 0.0 : value > level ? 3.0 : 1.0;
+        const double wu = w * u, wuu = wu * u;
+        used += w > 0 ? 1 : 0;
+        sums[0] += w, sums[1] += wu, sums[2] += wuu, sums[3] += wuu * u, sums[4] += wuu * u * u;
+        value_sums[0] += w * value, value_sums[1] += wu * value, value_sums[2] += wuu * value;
+      }
+      double power = 1;
+      for (std::size_t q = 0; q < 5; ++q, power *= v) {
+        for (std::size_t p = 0; p + q < 5; ++p) moment[p][q] += power * sums[p];
+        for (std::size_t p = 0; p + q < 3; ++p) of_value[p][q] += power * value_sums[p];
+      }
     }
     if (used < 60) break;  // too little light to see a slope: the level stands
+    constexpr std::array<std::array<std::size_t, 2>, 6> kPowers = {
+        {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};  // as surface_basis has them
+    Eigen::Matrix<double, 6, 6> a;
+    Surface rhs;
+    for (std::size_t m = 0; m < kPowers.size(); ++m) {
+      const auto [p, q] = kPowers[m];
+      rhs[static_cast<Eigen::Index>(m)] = of_value[p][q];
+      for (std::size_t n = 0; n < kPowers.size(); ++n)
+        a(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(n)) =
+            moment[p + kPowers[n][0]][q + kPowers[n][1]];
+    }
     a.diagonal().tail<5>().array() += 1e-3 * used;
     c = a.ldlt().solve(rhs);
   }
@@ -145,6 +163,13 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double disc_radius_px) {
       dark(cv::Rect(right ? x + 1 : 0, low ? y + 1 : 0, pad, pad)).setTo(0);
     }
   if (cv::countNonZero(dark) == static_cast<int>(dark.total())) return {};
+  // A square that lies in the disc, whichever way its distances are rounded, is sought much faster: most
+  // frames have not even that.
+  constexpr double kSquare = 0.65;
+  const int side = 2 * static_cast<int>(kSquare * reach) + 1;
+  cv::Mat1b squares;
+  cv::erode(dark, squares, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+  if (cv::countNonZero(squares) == 0) return {};
   cv::Mat1f inside;
   cv::distanceTransform(dark, inside, cv::DIST_L2, cv::DIST_MASK_5);
   const cv::Mat1b core = inside > reach;
@@ -249,18 +274,16 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
   p.darkness = with_spare.colRange(0, size.width);
   constexpr float kLeastLight = 1e-20F;
   const auto gain = static_cast<float>(1 / options.contrast);
-  std::vector<float> bright(static_cast<std::size_t>(size.width)), grey_levels(bright);
+  std::vector<float> grey_levels(static_cast<std::size_t>(size.width));
   for (int y = 0; y < size.height; ++y) {
     const SurfaceRow light = surface_row(p.light, y, size);
     image.read(y, grey_levels.data());
     const float* i = grey_levels.data();
-    float *d = p.darkness[y], *b = bright.data();
-    // In steps of one kind each: of a division and a choice together the compiler makes no vectors.
-    for (int x = 0; x < size.width; ++x) b[x] = light.at(x);
-    for (int x = 0; x < size.width; ++x) d[x] = (1 - i[x] / std::max(b[x], kLeastLight)) * gain;
+    float* d = p.darkness[y];
     for (int x = 0; x < size.width; ++x) {
-      const float above = d[x] > -1 ? d[x] : -1.0F, bounded = above > 2 ? 2.0F : above;
-      d[x] = b[x] > 0 ? bounded : 0.0F;
+      const float bright = light.at(x), dark = (1 - i[x] / std::max(bright, kLeastLight)) * gain;
+      const float above = dark > -1 ? dark : -1.0F, bounded = above > 2 ? 2.0F : above;
+      d[x] = bright > 0 ? bounded : 0.0F;
     }
   }
   p.opaque = large_dark_regions(p.darkness, options.opaque_radii * radius_px);

@@ -630,7 +630,7 @@ class PictureFit {
   }
   void render(int row_step = 1) {
     model_.create(picture_.size());
-    model_.setTo(0);
+    for (int y = 0; y < model_.rows; y += row_step) std::fill_n(model_[y], model_.cols, 0.0F);
     for (const Detection& b : beads_) add_disc(model_, disc_of(b), blur_, row_step);
     stale_ = false;
   }
@@ -718,11 +718,18 @@ class PictureFit {
 
 /// In bands as high as a disc, each from left to right: a disc's pixels are then in the cache from its
 /// neighbours. By score, as they come, half of the time went into waiting for memory.
-std::vector<Proposal> by_place(std::vector<Proposal> proposals, double band) {
-  std::sort(proposals.begin(), proposals.end(), [&](const Proposal& a, const Proposal& b) {
-    return std::tuple(std::floor(a.y / band), a.x, a.y) < std::tuple(std::floor(b.y / band), b.x, b.y);
-  });
-  return proposals;
+std::vector<Proposal> by_place(const std::vector<Proposal>& proposals, double band) {
+  std::vector<std::tuple<double, double, double, std::size_t>> order;
+  order.reserve(proposals.size());
+  for (std::size_t k = 0; k < proposals.size(); ++k) {
+    const Proposal& p = proposals[k];
+    order.emplace_back(std::floor(p.y / band), p.x, p.y, k);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<Proposal> sorted;
+  sorted.reserve(order.size());
+  for (const auto& entry : order) sorted.push_back(proposals[std::get<3>(entry)]);
+  return sorted;
 }
 
 }  // namespace

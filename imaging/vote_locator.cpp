@@ -1,10 +1,10 @@
 #include "imaging/vote_locator.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <span>
 
 #include "imaging/votes.hpp"
 
@@ -19,37 +19,21 @@ double parabola_top(float left, float middle, float right) {
                        : 0.0;
 }
 
-std::vector<Proposal> peaks(const cv::Mat1f& sum, int pad, double full_circle, double min_score) {
-  constexpr int kBlock = 16;  // most blocks of so many pixels hold nothing, which is seen at once
+/// The tops of the votes, best first.
+std::vector<Proposal> peaks(const Prepared& image, const VoteOptions& options, double full_circle,
+                            double min_score) {
   std::vector<Proposal> found;
   const auto least = static_cast<float>(min_score * full_circle);
-  for (int y = 1; y + 1 < sum.rows; ++y) {
-    const float *above = sum[y - 1], *row = sum[y], *below = sum[y + 1];
-    for (int block = 1; block + 1 < sum.cols; block += kBlock) {
-      const int n = std::min(kBlock, sum.cols - 1 - block);
-      // Without branches first, for the compiler to make vectors of.
-      std::array<std::uint8_t, kBlock> top{};
-      for (int k = 0; k < n; ++k) {
-        const int x = block + k;
-        const float v = row[x];
-        top[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(
-            (v >= least) & (v > row[x - 1]) & (v >= row[x + 1]) & (v > above[x]) & (v >= below[x]));
-      }
-      std::uint8_t any = 0;
-      for (const std::uint8_t t : top) any |= t;
-      if (any == 0) continue;
-      for (int k = 0; k < n; ++k) {
-        const int x = block + k;
-        const float v = row[x];
-        if (top[static_cast<std::size_t>(k)] == 0 || v <= above[x - 1] || v <= above[x + 1] ||
-            v < below[x - 1] || v < below[x + 1])
-          continue;
-        found.push_back({x - pad + parabola_top(row[x - 1], v, row[x + 1]),
-                         y - pad + parabola_top(above[x], v, below[x]),
-                         static_cast<double>(v) / full_circle});
-      }
-    }
-  }
+  const auto n = static_cast<std::size_t>(image.darkness.cols + 2 * options.pad);
+  std::vector<std::int32_t> room;
+  over_smoothed_votes(image.darkness, image.opaque, options, [&](int y, const VoteLines& lines) {
+    if (y < 2) return;
+    const auto& [above, row, below] = lines;
+    for (const std::int32_t x : tops_of_votes(lines, n, least, room))
+      found.push_back({x - options.pad + parabola_top(row[x - 1], row[x], row[x + 1]),
+                       y - 1 - options.pad + parabola_top(above[x], row[x], below[x]),
+                       static_cast<double>(row[x]) / full_circle});
+  });
   std::stable_sort(found.begin(), found.end(),
                    [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
   return found;
@@ -94,18 +78,23 @@ std::vector<Proposal> VoteFinder::find(const Prepared& image, const FindOptions&
   // Wider, the votes for touching discs of 6 px ran into each other: their tops lay a pixel off, and kept the
   // fit from seeking those discs where they are.
   const double smoothing = std::min(kVoteSmoothing, r / 3);
-  const cv::Mat1f sum = smoothed_votes(image.darkness, image.opaque, r, smoothing, pad);
   // 2 pi R pixels of edge, each of integral 1, meet in a spot of the smoothing plus about a pixel of scatter.
   const double full_circle = 2 * std::numbers::pi * r / (2 * std::numbers::pi * (smoothing * smoothing + 1));
-  return suppress_near(peaks(sum, pad, full_circle, options.min_score), 0.8 * 2 * r, image.darkness.size(),
-                       pad);
+  return suppress_near(peaks(image, {r, smoothing, pad}, full_circle, options.min_score), 0.8 * 2 * r,
+                       image.darkness.size(), pad);
 }
 
 double vote_sharpness(const cv::Mat1f& darkness, double radius_px) {
   const int pad = static_cast<int>(std::ceil(radius_px)) + 2;
-  const cv::Mat1f sum = smoothed_votes(darkness, {}, radius_px, kVoteSmoothing, pad);
-  const double total = cv::sum(sum)[0];
-  return total > 0 ? sum.dot(sum) / total : 0.0;
+  const auto n = static_cast<std::size_t>(darkness.cols + 2 * pad);
+  double total = 0, squares = 0;
+  over_smoothed_votes(darkness, {}, {radius_px, kVoteSmoothing, pad}, [&](int, const VoteLines& lines) {
+    for (const float v : std::span(lines[2], n)) {
+      total += static_cast<double>(v);
+      squares += static_cast<double>(v) * static_cast<double>(v);
+    }
+  });
+  return total > 0 ? squares / total : 0.0;
 }
 
 }  // namespace twincell
