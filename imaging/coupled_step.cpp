@@ -16,6 +16,7 @@ constexpr double kRelative = 1e-2;
 std::vector<std::array<std::int32_t, 2>> near_pairs(const std::vector<Disc>& discs, double reach) {
   std::vector<std::array<std::int32_t, 2>> pairs;
   if (discs.empty()) return pairs;
+  pairs.reserve(3 * discs.size());  // as many as a crystal of equal discs has that touch
   double largest = 0, left = HUGE_VAL, right = -HUGE_VAL, top = HUGE_VAL, bottom = -HUGE_VAL;
   for (const Disc& d : discs) {
     largest = std::max(largest, d.radius);
@@ -27,22 +28,21 @@ std::vector<std::array<std::int32_t, 2>> near_pairs(const std::vector<Disc>& dis
             ny = 1 + static_cast<int>((bottom - top) / cell);
   std::vector<std::int32_t> first(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny), -1),
       next(discs.size());
-  const auto column = [&](const Disc& d) { return static_cast<int>((d.x - left) / cell); };
-  const auto row = [&](const Disc& d) { return static_cast<int>((d.y - top) / cell); };
   const auto place = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(x);
   };
   for (std::size_t i = 0; i < discs.size(); ++i) {
     const Disc& d = discs[i];
+    const int column = static_cast<int>((d.x - left) / cell), row = static_cast<int>((d.y - top) / cell);
     // Those put into the cells before are this one's candidates: each pair comes once.
-    for (int y = std::max(0, row(d) - 1); y <= std::min(ny - 1, row(d) + 1); ++y)
-      for (int x = std::max(0, column(d) - 1); x <= std::min(nx - 1, column(d) + 1); ++x)
+    for (int y = std::max(0, row - 1); y <= std::min(ny - 1, row + 1); ++y)
+      for (int x = std::max(0, column - 1); x <= std::min(nx - 1, column + 1); ++x)
         for (std::int32_t j = first[place(x, y)]; j >= 0; j = next[static_cast<std::size_t>(j)]) {
           const Disc& other = discs[static_cast<std::size_t>(j)];
           const double far = d.radius + other.radius + reach, dx = d.x - other.x, dy = d.y - other.y;
           if (dx * dx + dy * dy < far * far) pairs.push_back({static_cast<std::int32_t>(i), j});
         }
-    std::int32_t& head = first[place(column(d), row(d))];
+    std::int32_t& head = first[place(column, row)];
     next[i] = head;
     head = static_cast<std::int32_t>(i);
   }

@@ -77,6 +77,8 @@ Judged judge(std::vector<Detection> candidates, double radius_px, int width, int
   Judged judged;
   for (Detection& b : candidates) b.verdict = verdict_on(b, radius_px, width, height, options);
   std::vector<Detection> possible;
+  possible.reserve(candidates.size());
+  judged.beads.reserve(candidates.size());
   for (const Detection& b : candidates)
     if (b.verdict == Verdict::bead)
       possible.push_back(b);

@@ -584,7 +584,7 @@ class PictureFit {
       moved.sigma = upper_median(std::move(sigma));
     }
     if (sweeps_ == 1)
-      for (double& u : unsettled_) u = kLeftByFirst * std::hypot(u, moved.rms);
+      for (double& u : unsettled_) u = kLeftByFirst * std::sqrt(u * u + moved.rms * moved.rms);
     stale_ = true;
     return moved;
   }
