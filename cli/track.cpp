@@ -120,6 +120,11 @@ std::string describe(const TrackedStack& stack) {
     if (p.jitter)
       text += fmt::format(", jitter {}{:.3f} frames", p.way == "found" ? "at most " : "", *p.jitter);
     if (!p.frames.empty()) text += fmt::format(", {} frames dropped, {} taken twice", p.dropped, p.doubled);
+    // A camera that misses so much has been seen by nobody; one that nobody triggers slips for ever.
+    constexpr double kMostSlips = 0.1;
+    if (p.way == "found" &&
+        static_cast<double>(p.dropped + p.doubled) > kMostSlips * static_cast<double>(p.frames.size()))
+      text += " (so many that the camera seems to run free of the drive: then these phases mean nothing)";
     if (p.agreement)
       text += fmt::format("; phase 0 placed by the drive, correlation {:.3f}", *p.agreement);
     else if (p.way == "found")

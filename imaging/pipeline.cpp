@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include "analysis/trajectory/error.hpp"
@@ -128,23 +129,40 @@ PixelPoint place_of(const TrackedBead& b) {
   return {b.x_px, b.y_px};
 }
 
-// The bed's height without knowing phases: steps common to all beads, added up.
-std::vector<double> bed_heights(const BeadSpool& located, const LinkOptions& link, double unit_px) {
+// The bed's motion without knowing phases: steps common to all beads, added up, and whether there were any.
+BedMotion bed_motion(const BeadSpool& located, const LinkOptions& link, double unit_px) {
   Linker linker(link);
-  std::vector<double> heights;
+  BedMotion motion;
   std::vector<PixelPoint> places;
   std::vector<std::uint8_t> tracers;
+  std::unordered_map<std::int64_t, TrackedBead> before, now;
+  std::vector<double> steps;
+  double height = 0;
   for (std::size_t f = 0; f < located.size(); ++f) {
+    const std::vector<TrackedBead> beads = located[f];
     places.clear();
     tracers.clear();
-    for (const TrackedBead& b : located[f]) {
+    for (const TrackedBead& b : beads) {
       places.push_back(place_of(b));
       tracers.push_back(b.tracer ? 1 : 0);
     }
-    linker.next(places, {}, tracers);
-    heights.push_back((heights.empty() ? 0 : heights.back()) - linker.mean_step().y_px / unit_px);
+    const std::vector<std::int64_t> ids = linker.next(places, {}, tracers);
+    now.clear();
+    steps.clear();
+    for (std::size_t k = 0; k < beads.size(); ++k) {
+      const TrackedBead& b = now[ids[k]] = beads[k];
+      const auto old = before.find(ids[k]);
+      if (old == before.end()) continue;
+      const TrackedBead& a = old->second;
+      steps.push_back(std::hypot((b.x_px - a.x_px) / std::hypot(a.sigma_x_px, b.sigma_x_px),
+                                 (b.y_px - a.y_px) / std::hypot(a.sigma_y_px, b.sigma_y_px)));
+    }
+    std::swap(before, now);
+    height -= f > 0 ? linker.mean_step().y_px / unit_px : 0;
+    motion.heights.push_back(height);
+    motion.repeats.push_back(log_odds_of_repeat(steps));
   }
-  return heights;
+  return motion;
 }
 
 PhaseTable learn_phases(const BeadSpool& located, const LinkOptions& link, const CellDescription& cell,
@@ -162,7 +180,7 @@ PhaseTable learn_phases(const BeadSpool& located, const LinkOptions& link, const
   FoundPhaseOptions options{
       .frames_per_cycle = cell.phase_lock.frames_per_cycle, .gamma = {}, .amplitude = {}};
   if (const auto drive = cell.drive()) options.gamma = drive->gamma();
-  return find_phases(bed_heights(located, link, cell.pixels_per_sigma.value_or(link.diameter_px)), options);
+  return find_phases(bed_motion(located, link, cell.pixels_per_sigma.value_or(link.diameter_px)), options);
 }
 
 }  // namespace

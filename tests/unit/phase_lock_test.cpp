@@ -140,7 +140,8 @@ TEST(FoundPhase, TheBedOnThePlateIsThatOfItsEquation) {
 
 TEST(FoundPhase, PhasesAndWhatIsWrongWithThem) {
   const Film clean = film(400, 7, 0.01, 0, {}, {});
-  const PhaseTable t = find_phases(clean.heights, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+  const PhaseTable t =
+      find_phases({clean.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
   EXPECT_EQ(t.frames_per_cycle, kPhases);
   EXPECT_NEAR(t.period_frames.value(), kPhases, 0.005);
   EXPECT_EQ(t.dropped, 0);
@@ -151,7 +152,7 @@ TEST(FoundPhase, PhasesAndWhatIsWrongWithThem) {
     ASSERT_EQ(t.frames[f].phase, clean.ticks[f] % kPhases) << f;
 
   const Film bad = film(600, 7, 0.01, 0, {83, 210, 211, 415}, {140, 333});
-  const PhaseTable u = find_phases(bad.heights, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+  const PhaseTable u = find_phases({bad.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
   EXPECT_EQ(u.dropped, 4);
   EXPECT_EQ(u.doubled, 2);
   std::size_t wrong = 0;
@@ -163,25 +164,88 @@ TEST(FoundPhase, PhasesAndWhatIsWrongWithThem) {
 }
 
 TEST(FoundPhase, ThreeCyclesAreEnoughAndASlipThatIsSoonUndoneIsSeen) {
-  const Film bad = film(60, 0, 0.01, 0, {23}, {35});
-  const PhaseTable t = find_phases(bad.heights, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+  for (const bool beads_tell : {false, true}) {
+    const Film bad = film(60, 0, beads_tell ? 0.01 : 0.003, 0, {23}, {35});
+    BedMotion motion{bad.heights, {}};
+    if (beads_tell) {
+      motion.repeats.assign(60, -40.0);
+      motion.repeats[35] = 40;
+    }
+    const PhaseTable t = find_phases(motion, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+    EXPECT_EQ(t.frames_per_cycle, kPhases);
+    EXPECT_EQ(t.dropped, 1);
+    EXPECT_EQ(t.doubled, 1);
+  }
+}
+
+TEST(FoundPhase, GapsInEverySecondCycleHideNoPeriod) {
+  for (const int more : {2, 3}) {
+    std::vector<int> dropped(static_cast<std::size_t>(more), 41);
+    dropped.insert(dropped.end(), static_cast<std::size_t>(more), 82);
+    const Film bad = film(114, 0, 0.01, 0, dropped, {});
+    const PhaseTable t =
+        find_phases({bad.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+    EXPECT_EQ(t.frames_per_cycle, kPhases);
+    EXPECT_EQ(t.dropped, 2 * more);
+    EXPECT_EQ(t.doubled, 0);
+  }
+}
+
+TEST(FoundPhase, AGapOfHalfACycleIsSeen) {
+  const Film bad = film(110, 3, 0.01, 0, std::vector<int>(10, 47), {});
+  const PhaseTable t = find_phases({bad.heights, std::vector<double>(bad.heights.size(), -40.0)},
+                                   {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
   EXPECT_EQ(t.frames_per_cycle, kPhases);
-  EXPECT_EQ(t.dropped, 1);
+  EXPECT_EQ(t.dropped, 10);
+  EXPECT_EQ(t.doubled, 0);
+  for (std::size_t f = 0; f < bad.ticks.size(); ++f)
+    EXPECT_EQ(t.frames[f].phase, bad.ticks[f] % kPhases) << f;
+}
+
+TEST(FoundPhase, WhatTheBeadsSayOfRepeatsCounts) {
+  // A jumpy bed, as it is above the onset of convection.
+  const Film clean = film(240, 0, 0.05, 0, {}, {});
+  BedMotion motion{clean.heights, std::vector<double>(clean.heights.size(), -40.0)};
+  const FoundPhaseOptions options{.frames_per_cycle = kPhases, .gamma = 2.0, .amplitude = {}};
+  EXPECT_EQ(find_phases(motion, options).doubled, 0);
+  // Where the bed turns it repeats itself in every cycle: nobody took a frame twice.
+  for (std::size_t f = 9; f < motion.repeats.size(); f += kPhases) motion.repeats[f] = 40;
+  EXPECT_EQ(find_phases(motion, options).doubled, 0);
+  // But once in all, it tells.
+  const Film twice = film(240, 0, 0.05, 0, {}, {114});
+  BedMotion seen{twice.heights, std::vector<double>(twice.heights.size(), -40.0)};
+  seen.repeats[114] = 40;
+  const PhaseTable t = find_phases(seen, options);
   EXPECT_EQ(t.doubled, 1);
+  EXPECT_EQ(t.frames[114].interval, 0);
+}
+
+TEST(FoundPhase, OddsOfARepeat) {
+  const double nan = std::nan("");
+  EXPECT_EQ(log_odds_of_repeat({}), 0);
+  EXPECT_EQ(log_odds_of_repeat(std::vector<double>{nan, nan}), 0);
+  EXPECT_EQ(log_odds_of_repeat(std::vector<double>{0.5}), 3) << "one bead tells little";
+  EXPECT_EQ(log_odds_of_repeat(std::vector<double>{5}), -27) << "but more if it moved";
+  std::vector<double> many(200, 1.0);
+  EXPECT_EQ(log_odds_of_repeat(many), 40);
+  std::fill_n(many.begin(), 18, 30.0);
+  EXPECT_EQ(log_odds_of_repeat(many), 40) << "some wrong links do no harm";
+  std::fill_n(many.begin(), 40, 30.0);
+  EXPECT_EQ(log_odds_of_repeat(many), -40);
 }
 
 TEST(FoundPhase, APeriodThatIsNoWholeNumberOfFramesIsMeasured) {
   std::vector<double> heights;
   for (int f = 0; f < 200; ++f) heights.push_back(bed_height(2.0, f / 20.03));
-  EXPECT_NEAR(
-      find_phases(heights, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}}).period_frames.value(),
-      20.03, 0.006);
+  EXPECT_NEAR(find_phases({heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}})
+                  .period_frames.value(),
+              20.03, 0.006);
 }
 
 TEST(FoundPhase, JitterIsMeasured) {
   for (const double jitter : {0.1, 0.25}) {
     const Film f = film(2000, 0, 0.005, jitter, {}, {});
-    const PhaseTable t = find_phases(f.heights, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+    const PhaseTable t = find_phases({f.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
     std::cout << "jitter " << jitter << ", found " << t.jitter.value() << '\n';
     EXPECT_EQ(t.dropped + t.doubled, 0);
     EXPECT_NEAR(t.jitter.value(), jitter, 0.25 * jitter);
@@ -191,7 +255,7 @@ TEST(FoundPhase, JitterIsMeasured) {
 TEST(FoundPhase, WithoutADriveTheFundamentalIsTheClock) {
   std::vector<double> sine;
   for (int f = 0; f < 200; ++f) sine.push_back(std::sin(2 * std::numbers::pi * (f + 5) / 25));
-  const PhaseTable t = find_phases(sine, {});
+  const PhaseTable t = find_phases({sine, {}}, {});
   EXPECT_EQ(t.frames_per_cycle, 25);
   EXPECT_EQ(t.first_phase, 5);
   EXPECT_FALSE(t.agreement.has_value());
@@ -202,9 +266,12 @@ TEST(FoundPhase, RefusesWhatDoesNotRepeat) {
   std::normal_distribution<double> normal;
   std::vector<double> walk = {0};
   for (int f = 1; f < 500; ++f) walk.push_back(walk.back() + normal(generator));
-  EXPECT_THROW(find_phases(walk, {}), InputError);
-  EXPECT_THROW(find_phases(std::vector<double>(500, 1.0), {}), InputError);
-  EXPECT_THROW(find_phases(std::vector<double>(5, 1.0), {}), InputError);
+  EXPECT_THROW(find_phases({walk, {}}, {}), InputError);
+  EXPECT_THROW(find_phases({std::vector<double>(500, 1.0), {}}, {}), InputError);
+  EXPECT_THROW(find_phases({std::vector<double>(5, 1.0), {}}, {}), InputError);
   const Film f = film(400, 0, 0.01, 0, {}, {});
-  EXPECT_THROW(find_phases(f.heights, {.frames_per_cycle = 13, .gamma = {}, .amplitude = {}}), InputError);
+  EXPECT_THROW(find_phases({f.heights, {}}, {.frames_per_cycle = 13, .gamma = {}, .amplitude = {}}),
+               InputError);
+  EXPECT_THROW(find_phases({f.heights, {}}, {.frames_per_cycle = 2, .gamma = {}, .amplitude = {}}),
+               InputError);
 }
