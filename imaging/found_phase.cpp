@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kMostLags = 2000;
 constexpr std::size_t kMostFrames = 20000;  // for the period; its phases are found for all
 constexpr double kDip = 0.2;                // of the normalised difference, below which a lag is a period
+constexpr double kDipOfMedian = 0.03;       // likewise of its median, which is small sooner
 constexpr double kDipGiven = 0.8;           // the same where the period was given
 constexpr double kPrice = 12;               // of a dropped or doubled frame, natural logarithm of odds
 constexpr double kPriceOfMore = 2;          // of each frame more that was dropped there
@@ -70,10 +71,10 @@ std::vector<double> normalised_difference(std::span<const double> v, std::size_t
   return out;
 }
 
-/// The lag of the first deep minimum; 0: none.
-std::size_t first_dip(std::span<const double> dip) {
+/// The lag of the first minimum that is so deep; 0: none.
+std::size_t first_dip(std::span<const double> dip, double deep) {
   for (std::size_t lag = 2; lag + 1 < dip.size(); ++lag)
-    if (dip[lag] < kDip && dip[lag] <= dip[lag + 1] && dip[lag] <= dip[lag - 1]) return lag;
+    if (dip[lag] < deep && dip[lag] <= dip[lag + 1] && dip[lag] <= dip[lag - 1]) return lag;
   return 0;
 }
 
@@ -100,7 +101,7 @@ std::vector<std::size_t> likely_periods(const Steps& steps, int given) {
     return {period};
   }
   std::vector<std::size_t> periods;
-  const std::size_t of_mean = first_dip(mean), of_median = first_dip(median);
+  const std::size_t of_mean = first_dip(mean, kDip), of_median = first_dip(median, kDipOfMedian);
   if (of_mean >= kFewest) periods.push_back(of_mean);
   if (of_median >= kFewest && of_median != of_mean) periods.push_back(of_median);
   if (periods.empty()) refuse(of_mean + of_median > 0 ? too_few : "the bed's motion does not repeat itself");
