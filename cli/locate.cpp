@@ -31,6 +31,7 @@ struct LocateOptions {
   std::int64_t overlay_frame = 0;
   bool dark = false;
   LocatorOptions locator;
+  std::string flat;
 };
 
 // trackpy's columns in trackpy's order, then our own.
@@ -82,9 +83,15 @@ class TableFile {
   std::ofstream out_;
 };
 
+nlohmann::json in_words(const std::map<Verdict, std::size_t>& counts) {
+  nlohmann::json words = nlohmann::json::object();
+  for (const auto& [why, count] : counts) words[std::string(word_of(why))] = count;
+  return words;
+}
+
 /// What a reader should know before trusting the table: frames without beads, and candidates that were left
 /// out if they are many. Empty if there is nothing to doubt.
-std::string doubts(const std::map<std::string, std::size_t>& left_out, std::size_t beads, std::size_t bare,
+std::string doubts(const std::map<Verdict, std::size_t>& left_out, std::size_t beads, std::size_t bare,
                    std::size_t frames) {
   constexpr double kMany = 0.02;  // of the beads
   std::string text;
@@ -92,10 +99,10 @@ std::string doubts(const std::map<std::string, std::size_t>& left_out, std::size
   std::size_t all = 0, wrong_radius = 0;
   std::string reasons;
   for (const auto& [why, count] : left_out) {
-    if (why == word_of(Verdict::outside) || why == word_of(Verdict::in_wall)) continue;  // no beads in sight
-    if (why == word_of(Verdict::wrong_radius)) wrong_radius = count;
+    if (why == Verdict::outside || why == Verdict::in_wall) continue;  // no beads in sight
+    if (why == Verdict::wrong_radius) wrong_radius = count;
     all += count;
-    reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, why);
+    reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, word_of(why));
   }
   const double many = kMany * static_cast<double>(beads);
   if (static_cast<double>(all) > many)
@@ -124,7 +131,7 @@ void run(LocateOptions& o, const Common& common) {
   if (o.scored_rows.size() == 2) rows = {o.scored_rows[0], o.scored_rows[1]};
   Scorer scorer(rows);
 
-  const auto frames = open_stack(o.stack, common);
+  const auto frames = open_flattened(o.stack, o.flat, common);
   const auto announced = static_cast<std::int64_t>(frames->announced());
   if (!o.overlay.empty() && announced > 0 && o.overlay_frame >= announced)
     throw ConfigError(Where{.file = {}, .key = "--overlay-frame"},
@@ -145,7 +152,7 @@ void run(LocateOptions& o, const Common& common) {
   const bool find_polarity = !o.dark && !o.locator.preprocess.bright;
   o.locator.polarity_known = !find_polarity;
   constexpr std::int64_t kShown = 20;  // frames with a line of their own
-  std::map<std::string, std::size_t> left_out;
+  std::map<Verdict, std::size_t> left_out;
   std::size_t beads = 0, bare = 0;  // frames without a bead
   const LocatedStack stack = locate_stack(
       *frames, o.locator, common.n_threads(),
@@ -168,9 +175,9 @@ void run(LocateOptions& o, const Common& common) {
           if (stage.stage != "prepare") line += fmt::format(" ({})", stage.beads);
         }
         if (frame < kShown) text += line + "\n";
-        std::map<std::string, std::size_t> reasons;
-        for (const Detection& b : located.dropped) ++reasons[std::string(word_of(b.verdict))];
-        f["dropped"] = reasons;
+        std::map<Verdict, std::size_t> reasons;
+        for (const Detection& b : located.dropped) ++reasons[b.verdict];
+        f["dropped"] = in_words(reasons);
         for (const auto& [why, count] : reasons) left_out[why] += count;
         beads += located.beads.size();
         bare += located.beads.empty() ? 1 : 0;
@@ -193,6 +200,7 @@ void run(LocateOptions& o, const Common& common) {
     throw ConfigError(
         Where{.file = {}, .key = "--overlay-frame"},
         fmt::format("{} was asked for, the stack has {} frames, counted from 0.", o.overlay_frame, n));
+  check_flat(o.flat, o.locator.preprocess.bright);
   table.commit();
   candidates.commit();
   document["diameter_px"] = o.locator.diameter_px;
@@ -220,7 +228,7 @@ void run(LocateOptions& o, const Common& common) {
   else if (find_polarity)
     text += fmt::format("beads are {} than what lies behind them, as {} shows (--dark, --bright)\n",
                         o.locator.preprocess.bright ? "brighter" : "darker", shown);
-  document["left_out"] = left_out;
+  document["left_out"] = in_words(left_out);
   text += doubts(left_out, beads, bare, static_cast<std::size_t>(n));
   text += o.output + "\n";
   if (truth) {
@@ -268,6 +276,7 @@ void add_locate(CLI::App& program, Common& common) {
                                       "Beads are brighter than what lies behind them");
   verb.add_flag("--dark", o->dark, "Beads are darker; with neither, found from the first frame")
       ->excludes(bright);
+  add_flat_option(verb, o->flat);
   verb.add_option("--truth", o->truth, "Score against truth.csv or a folder of truth_NN.csv");
   verb.add_option("--scored-rows", o->scored_rows, "First and last row that is scored, px")->expected(2);
   verb.callback([o, &common] { run(*o, common); });

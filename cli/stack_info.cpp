@@ -3,11 +3,14 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <bit>
 #include <cmath>
 
+#include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/hdf5.hpp"
 #include "cli/output.hpp"
+#include "imaging/flat_field.hpp"
 
 namespace twincell::cli {
 
@@ -68,6 +71,30 @@ std::unique_ptr<FrameSource> open_stack(const std::filesystem::path& stack, cons
   auto frames = open_frames(stack);
   for (const std::string& sentence : frames->info().notes) note(common, stack.string() + ": " + sentence);
   return frames;
+}
+
+std::unique_ptr<FrameSource> open_flattened(const std::filesystem::path& stack, const std::string& flat,
+                                            const Common& common) {
+  auto frames = open_stack(stack, common);
+  if (flat.empty()) return frames;
+  return flattened(std::move(frames), flat == "stack"
+                                          ? flat_of_stack(*open_frames(stack), *open_frames(stack))
+                                          : flat_of_blank(*open_frames(flat)));
+}
+
+void add_flat_option(CLI::App& verb, std::string& flat) {
+  verb.add_option(
+      "--flat", flat,
+      "Divide frames by a flat field: frames of the cell without beads, or 'stack' for the light between the "
+      "back-lit beads of the stack itself");
+}
+
+void check_flat(const std::string& flat, bool bright) {
+  if (flat == "stack" && bright)
+    throw ConfigError(
+        Where{.file = {}, .key = "--flat"},
+        "'stack' takes the light between dark beads, and these are brighter than what lies behind them; "
+        "give frames of the cell without beads.");
 }
 
 bool is_trajectory(const std::filesystem::path& file) {

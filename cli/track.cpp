@@ -31,6 +31,7 @@ struct TrackOptions {
   std::optional<int> frames_per_cycle, first_phase;
   int shortest = 1;
   LocatorOptions locator;
+  std::string flat;
   LinkOptions link;
 };
 
@@ -168,13 +169,14 @@ void run(TrackOptions& o, const Common& common) {
   (void)cell.drive();  // a drive that contradicts itself is refused before the work, not after
   o.locator.preprocess.bright |= cell.bright;
   if (o.locator.diameter_px <= 0) o.locator.diameter_px = cell.pixels_per_sigma.value_or(0);
-  const auto frames = open_stack(o.stack, common);
+  const auto frames = open_flattened(o.stack, o.flat, common);
   const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
   const std::filesystem::path folder = parent.empty() ? "." : parent;
   { const AtomicPath writable(o.output); }  // an output that cannot be written is refused before the work
   ProgressBar bar(common, "track");
   const TrackedStack stack =
       track_stack(*frames, o.locator, o.link, cell, common.n_threads(), bar, way, folder);
+  check_flat(o.flat, o.locator.preprocess.bright);
   TrackPlan plan = plan_trajectory(stack, cell, o.locator.diameter_px, o.shortest);
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
@@ -249,6 +251,7 @@ void add_track(CLI::App& program, Common& common) {
       ->check(CLI::Range(3.0, 400.0));
   verb.add_option("--locator", o->locator.finder, "Finder")->check(CLI::IsMember(finder_names()));
   verb.add_flag("--bright", o->locator.preprocess.bright, "Beads are brighter than what lies behind them");
+  add_flat_option(verb, o->flat);
   verb.add_option("--range", o->link.range_diameters, "Longest step from the predicted place, diameters");
   verb.add_option("--memory", o->link.memory, "Frames for which a bead may be missing");
   verb.add_option("--shortest", o->shortest, "Tracks seen in fewer frames are left out")

@@ -61,7 +61,7 @@ void renew(Coupling& c, const RingArgs& args, const std::vector<Disc>& discs) {
 }
 
 std::vector<Coupling> couplings_of(const RingArgs& args, const std::vector<Disc>& discs) {
-  constexpr double kFar = 4;  // edges so many widths of blur apart share next to nothing
+  constexpr double kFar = 3;  // edges so many widths of blur apart share next to nothing
   const auto pairs = near_pairs(discs, std::min(2 * args.ring, args.blur.reach(kFar)));
   std::vector<Coupling> couplings;
   couplings.reserve(pairs.size());

@@ -110,6 +110,36 @@ TEST_F(Frames, TheSameInEveryFormatAndForAnyNumberOfThreads) {
       EXPECT_EQ(located(name, threads), beads) << name << ", " << threads << " threads";
 }
 
+TEST_F(Frames, AreDividedByAFlatField) {
+  cv::imwrite(at("blank.png"), cv::Mat(kHeight, kWidth, CV_16U, cv::Scalar(215 * 16)));
+  cv::imwrite(at("small.png"), cv::Mat(kHeight / 2, kWidth, CV_16U, cv::Scalar(215 * 16)));
+  const auto located = [&](const std::vector<std::string>& options) {
+    fs::remove(at("beads.csv"));
+    std::vector<std::string> words = {"locate", at("folder"),    "--diameter", "15",
+                                      "-o",     at("beads.csv"), "-q"};
+    words.insert(words.end(), options.begin(), options.end());
+    return run_program(words);
+  };
+  for (const std::string& flat : {std::string("stack"), at("blank.png")}) {
+    const Ran ran = located({"--flat", flat});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const std::string beads = text_of(at("beads.csv"));
+    EXPECT_EQ(std::count(beads.begin(), beads.end(), '\n'), 1 + 12 * kFrames) << flat;
+  }
+  const auto refused = [&](const std::vector<std::string>& options, int code, const std::string& why) {
+    const Ran ran = located(options);
+    EXPECT_EQ(ran.code, code) << ran.err;
+    EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+    EXPECT_FALSE(fs::exists(at("beads.csv")));
+  };
+  refused({"--flat", at("small.png")}, 3, "the flat field of 160 x 60 px");
+  refused({"--flat", at("nosuch")}, 3, "does not exist");
+  refused({"--flat", "stack", "--bright"}, 2, "give frames of the cell without beads");
+  const Ran tracked =
+      run_program({"track", at("folder"), "--diameter", "15", "-o", at("t.h5"), "--flat", "stack", "-q"});
+  EXPECT_EQ(tracked.code, 0) << tracked.err;
+}
+
 TEST_F(Frames, InfoSaysWhatTheyHold) {
   for (const char* name :
        {"folder", "a.cine", "packed.cine", "a.seq", "a.mrf", "a.mraw", "a.tif", "imagej.tif", "a.h5"}) {
