@@ -6,4 +6,6 @@ add_compile_options(-ffp-contract=off)
 add_compile_options(-fno-math-errno)
 if(TWINCELL_NATIVE)
   add_compile_options(-march=native)
+  # Highway 1.0 has vectors of Ice Lake, Zen 4 and later only if asked, and then stops where they are native.
+  add_compile_definitions(HWY_WANT_AVX3_DL)
 endif()
