@@ -111,7 +111,7 @@ std::string doubts(const std::map<Verdict, std::size_t>& left_out, std::size_t b
         "beads)\n",
         beads, reasons);
   if (static_cast<double>(wrong_radius) > many && wrong_radius > 1)
-    text += "beads of several sizes are found with --diameter D1 D2 ... --refine edges\n";
+    text += "beads of several sizes are found with --diameter D1 D2 ...\n";
   if (all > beads)
     text +=
         "more was left out than found: look at --overlay; --diameter with --dark or --bright may do better\n";
@@ -222,6 +222,11 @@ void run(LocateOptions& o, const Common& common) {
     text += fmt::format(
         "discs are alike but not plain, as {} shows: fitted by their common profile (--refine profile)\n",
         shown);
+  if (o.locator.preprocess.contrast < 1 && o.locator.refine.method != "edges") {
+    document["contrast"] = o.locator.preprocess.contrast;
+    text += fmt::format("beads are pale: darkness is in units of {:.2f} of the light\n",
+                        o.locator.preprocess.contrast);
+  }
   if (find_polarity && o.locator.refine.method == "profile")  // they may have rings of both kinds
     text += fmt::format("frames are read as with --{}, which explains {} better (--dark, --bright)\n",
                         o.locator.preprocess.bright ? "bright" : "dark", shown);
@@ -261,7 +266,7 @@ void add_locate(CLI::App& program, Common& common) {
   verb.add_option("--overlay", o->overlay, "PNG of a frame with its beads marked");
   verb.add_option("--overlay-frame", o->overlay_frame, "Which frame, from 0")->check(CLI::NonNegativeNumber);
   verb.add_option("--diameter", o->diameters,
-                  "Bead diameter, px, or, with --refine edges, several; absent: found from the first frame")
+                  "Bead diameter, px, or several; absent: found from the first frame")
       ->check(CLI::Range(3.0, 400.0))
       ->expected(1, 8);
   verb.add_option("--locator", o->locator.finder, "Finder")->check(CLI::IsMember(finder_names()));

@@ -24,7 +24,7 @@ namespace {
 
 struct TrackOptions {
   std::string stack, output, cell_file, csv, truth;
-  std::vector<double> scored_rows, origin;
+  std::vector<double> scored_rows, origin, diameters;
   std::string phase_lock;
   std::optional<double> drive_hz;
   std::optional<double> pixels_per_sigma, gamma, amplitude, width, height;
@@ -168,7 +168,12 @@ void run(TrackOptions& o, const Common& common) {
   const PhaseWay way = phase_way(o, cell);
   (void)cell.drive();  // a drive that contradicts itself is refused before the work, not after
   o.locator.preprocess.bright |= cell.bright;
-  if (o.locator.diameter_px <= 0) o.locator.diameter_px = cell.pixels_per_sigma.value_or(0);
+  if (o.diameters.empty()) {
+    o.locator.diameter_px = cell.pixels_per_sigma.value_or(0);
+  } else {
+    o.locator.diameter_px = o.diameters.front();
+    o.locator.other_diameters_px.assign(o.diameters.begin() + 1, o.diameters.end());
+  }
   const auto frames = open_flattened(o.stack, o.flat, common);
   const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
   const std::filesystem::path folder = parent.empty() ? "." : parent;
@@ -201,11 +206,19 @@ void run(TrackOptions& o, const Common& common) {
                              {"beads_located", beads},
                              {"tracks", stack.n_tracks},
                              {"slots", plan.info.n_beads},
-                             {"outside_cell", stack.outside_cell}};
+                             {"outside_cell", stack.outside_cell},
+                             {"wrong_radius", stack.wrong_radius}};
   document.update(nlohmann::json::parse(plan.info.tracking_json));
   std::string text = fmt::format(
       "{} frames, {} beads located, {} tracks ({} written), {} detections outside the cell left out\n",
       stack.frames.size(), beads, stack.n_tracks, plan.info.n_beads, stack.outside_cell);
+  if (constexpr double kMany = 0.02;
+      static_cast<double>(stack.wrong_radius) > kMany * static_cast<double>(beads))
+    text += fmt::format(
+        "{} candidates were left out as discs of another size: beads of several sizes are found with "
+        "--diameter D1 D2 "
+        "...\n",
+        stack.wrong_radius);
   text += describe(stack);
   if (!o.truth.empty()) {
     const Score s = score_against(o, stack);
@@ -247,8 +260,10 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--first-phase", o->first_phase, "Phase of the first frame")->check(CLI::NonNegativeNumber);
   verb.add_option("--drive-gamma", o->gamma, "A omega^2/g (with --drive-amplitude)");
   verb.add_option("--drive-amplitude", o->amplitude, "A, sigma");
-  verb.add_option("--diameter", o->locator.diameter_px, "Bead diameter, px; absent: the scale, or estimated")
-      ->check(CLI::Range(3.0, 400.0));
+  verb.add_option("--diameter", o->diameters,
+                  "Bead diameter, px, or several; absent: the scale, or found from the first frame")
+      ->check(CLI::Range(3.0, 400.0))
+      ->expected(1, 8);
   verb.add_option("--locator", o->locator.finder, "Finder")->check(CLI::IsMember(finder_names()));
   verb.add_flag("--bright", o->locator.preprocess.bright, "Beads are brighter than what lies behind them");
   add_flat_option(verb, o->flat);

@@ -18,8 +18,8 @@ std::vector<Proposal> HoughFinder::find(const Prepared& image, const FindOptions
   // A score of 1 would be every edge pixel of the circle voting for the cell.
   const double needed = std::max(4.0, options.min_score * r);
   std::vector<cv::Vec3f> circles;
-  cv::HoughCircles(grey, circles, cv::HOUGH_GRADIENT, 2, 0.8 * 2 * r, edge, needed, cvFloor(0.9 * r),
-                   cvCeil(1.1 * r));
+  cv::HoughCircles(grey, circles, cv::HOUGH_GRADIENT, 2, options.apart * 2 * r, edge, needed,
+                   cvFloor(0.9 * r), cvCeil(1.1 * r));
   std::vector<Proposal> found;
   for (const cv::Vec3f& c : circles) {
     // Enlarging maps the centre of pixel i to 3 i + 1.

@@ -30,6 +30,7 @@ struct FindOptions {
   /// six small voids face a bead, 5 to 10 % of its edge; false proposals are cheap, the fit and the judge
   /// drop them.
   double min_score = 0.04;
+  double apart = 0.8;  ///< no two proposals are nearer to each other, diameters
 };
 
 /// A finder: a type with a name that turns darkness into proposals, best first.
@@ -43,11 +44,11 @@ concept CircleFinder = requires(const Prepared& image, const FindOptions& option
 struct LocatorOptions {
   std::string finder = "vote";             ///< one of finder_names()
   double diameter_px = 0;                  ///< bead diameter, 3 .. 400; 0: found from the first frame
-  std::vector<double> other_diameters_px;  ///< further sizes, each likewise; only with refine.method "edges"
+  std::vector<double> other_diameters_px;  ///< further sizes, each likewise; not with refine.method "profile"
   bool polarity_known = true;  ///< preprocess.bright was said, not to be found from the first frame
   PreprocessOptions preprocess;
-  FindOptions find;  ///< its radius is set from the diameter
-  RefineOptions refine;
+  FindOptions find;      ///< its radius is set from the diameter
+  RefineOptions refine;  ///< its other radii likewise
   JudgeOptions judge;
   /// \throws ConfigError naming the option and its bound
   void check() const;

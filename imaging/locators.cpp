@@ -15,6 +15,7 @@
 #include "imaging/hough_locator.hpp"
 #include "imaging/locator.hpp"
 #include "imaging/orientation.hpp"
+#include "imaging/size_choice.hpp"
 #include "imaging/vote_locator.hpp"
 
 namespace twincell {
@@ -108,9 +109,9 @@ void LocatorOptions::check() const {
   range("diameter", diameter_px, 3, 400);
   range("min-score", find.min_score, 0.01, 1);
   for (const double other : other_diameters_px) range("diameter", other, 3, 400);
-  if (!other_diameters_px.empty() && refine.method != "edges")
+  if (!other_diameters_px.empty() && refine.method == "profile")
     throw ConfigError(Where{.file = {}, .key = "diameter"},
-                      "has several values; discs of several sizes are located with --refine edges.");
+                      "has several values; discs of several sizes have no profile in common.");
   if (refine.method != "exact" && refine.method != "fast" && refine.method != "edges" &&
       refine.method != "profile")
     throw ConfigError(
@@ -136,7 +137,12 @@ namespace {
 
 /// Discs of every size asked for; those of several sizes each say which.
 std::vector<Proposal> propose_all(const Prepared& image, const LocatorOptions& options) {
+  // Circles through edges stand each for itself: which of them overlap is for the judge to say.
+  const bool choose = !options.other_diameters_px.empty() && options.refine.method != "edges";
   FindOptions wanted = options.find;
+  // One that is of the wrong size must not drive out its neighbours.
+  constexpr double kApart = 0.2;
+  if (choose) wanted.apart = kApart;
   wanted.radius_px = options.diameter_px / 2;
   std::vector<Proposal> all = propose_at_scale(options.finder, image, wanted);
   for (const double other : options.other_diameters_px) {
@@ -144,7 +150,7 @@ std::vector<Proposal> propose_all(const Prepared& image, const LocatorOptions& o
     const std::vector<Proposal> more = propose_at_scale(options.finder, image, wanted);
     all.insert(all.end(), more.begin(), more.end());
   }
-  return all;
+  return choose ? choose_sizes(image, all) : all;
 }
 
 }  // namespace
@@ -155,7 +161,13 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   const double radius = options.diameter_px / 2;
   LocatorStages result;
   Stopwatch watch;
-  result.image = prepare(grey, options.preprocess, radius);
+  double largest = radius;
+  RefineOptions refined = options.refine;
+  for (const double other : options.other_diameters_px) {
+    largest = std::max(largest, other / 2);
+    refined.other_radii_px.push_back(other / 2);
+  }
+  result.image = prepare(grey, options.preprocess, largest);
   result.reports.push_back({"prepare", watch.lap(), 0});
   result.proposals = propose_all(result.image, options);
   result.reports.push_back({"find", watch.lap(), result.proposals.size()});
@@ -163,14 +175,14 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   result.refined = method == "edges"     ? refine_by_edges(result.image, result.proposals, radius)
                    : method == "profile" ? refine_by_profile(result.image, result.proposals, radius,
                                                              options.refine.sweeps, &result.profile)
-                                         : refine(result.image, result.proposals, radius, options.refine);
+                                         : refine(result.image, result.proposals, radius, refined);
   result.reports.push_back({"refine", watch.lap(), result.refined.beads.size()});
   JudgeOptions judged = options.judge;
   // Patterned discs differ in brightness without being tracers.
-  if (options.preprocess.contrast != 1 || method == "profile") judged.tracer_below = 0;
+  if ((options.preprocess.contrast != 1 && method == "edges") || method == "profile") judged.tracer_below = 0;
   // A disc may look like anything inside if all do.
   if (method == "profile") judged.min_interior = -HUGE_VAL;
-  for (const double other : options.other_diameters_px) judged.other_radii_px.push_back(other / 2);
+  judged.other_radii_px = refined.other_radii_px;
   result.judged = judge(result.refined.beads, radius, grey.cols, grey.rows, judged);
   result.reports.push_back({"judge", watch.lap(), result.judged.beads.size()});
   return result;

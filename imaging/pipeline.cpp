@@ -66,6 +66,7 @@ void take(const FoundSettings& found, LocatorOptions& options) {
   options.preprocess.bright = found.bright;
   if (options.other_diameters_px.empty()) options.other_diameters_px = found.other_diameters_px;
   if (!found.method.empty()) options.refine.method = found.method;
+  options.preprocess.contrast = found.contrast;
   options.polarity_known = true;
 }
 
@@ -106,7 +107,7 @@ LocatedStack locate_stack(FrameSource& source, LocatorOptions& options, int thre
   if (const cv::Mat* first = frames.look(0)) {
     if (options.diameter_px <= 0 || !options.polarity_known)
       stack.settings_frame = settle(frames, source, options);
-    else if (options.refine.method == "edges")
+    else
       options.preprocess.contrast = find_contrast(*first, options);
   }
   const std::size_t batch_size = 2 * static_cast<std::size_t>(std::max(threads, 1));
@@ -254,7 +255,7 @@ TrackedStack track_stack(FrameSource& frames, LocatorOptions& locator, LinkOptio
   if (way.triggers) (void)read_triggers(*way.triggers, way.drive_hz, cell.phase_lock.frames_per_cycle);
   BeadSpool located(spool_folder);
   int width = 0, height = 0;
-  std::size_t outside_cell = 0;
+  std::size_t outside_cell = 0, wrong_radius = 0;
   link.closed = cell.sides == Boundary::wall;
   std::vector<TrackedBead> beads;
   locate_stack(
@@ -263,6 +264,9 @@ TrackedStack track_stack(FrameSource& frames, LocatorOptions& locator, LinkOptio
         width = grey.cols;
         height = grey.rows;
         beads.clear();
+        wrong_radius += static_cast<std::size_t>(
+            std::count_if(found.dropped.begin(), found.dropped.end(),
+                          [](const Detection& b) { return b.verdict == Verdict::wrong_radius; }));
         for (const Detection& b : found.beads) {
           if (outside(cell, grey.size(), b)) {
             ++outside_cell;
@@ -279,11 +283,14 @@ TrackedStack track_stack(FrameSource& frames, LocatorOptions& locator, LinkOptio
         located.append(beads);
       },
       progress);
+  // No two beads are nearer to each other than the smallest are.
   link.diameter_px = locator.diameter_px;
+  for (const double other : locator.other_diameters_px) link.diameter_px = std::min(link.diameter_px, other);
   TrackedStack stack = link_spool(located, link, cell, way, spool_folder);
   stack.width_px = width;
   stack.height_px = height;
   stack.outside_cell = outside_cell;
+  stack.wrong_radius = wrong_radius;
   return stack;
 }
 

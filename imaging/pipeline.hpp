@@ -62,6 +62,7 @@ struct TrackedStack {
   std::int64_t n_tracks = 0;
   int width_px = 0, height_px = 0;
   std::size_t outside_cell = 0;  ///< detections left out because the cell does not reach there
+  std::size_t wrong_radius = 0;  ///< candidates left out as discs of another size
   PhaseTable phases;
   LinkReport links;
 

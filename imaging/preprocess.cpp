@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <type_traits>
 #include <vector>
@@ -262,6 +264,38 @@ Surface surface_basis(double x, double y, cv::Size size) {
   Surface b;
   b << 1, u, v, u * u, u * v, v * v;
   return b;
+}
+
+double blur_of(const cv::Mat1f& darkness) {
+  constexpr float kEdge = 0.05F;                       // darkness per pixel
+  constexpr double kSteepest = 0.01, kDarkest = 0.05;  // shares of the pixels
+  constexpr double kLeast = 0.5, kMost = 5;            // px
+  constexpr double kKernel = 0.5;     // px^2, by which the kernel itself blurs an edge, more or less
+  constexpr double kSamples = 20000;  // pixels that are looked at
+  const int stride = std::max(1, cvRound(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
+  std::vector<float> steep, seen;
+  for (int y = 1; y + 1 < darkness.rows; y += stride) {
+    const float *above = darkness[y - 1], *row = darkness[y], *below = darkness[y + 1];
+    for (int x = 1; x + 1 < darkness.cols; x += stride) {
+      seen.push_back(row[x]);
+      // Scharr's kernel, which sums to 32 over a step of two pixels.
+      const float left = 3 * (above[x - 1] + below[x - 1]) + 10 * row[x - 1],
+                  right = 3 * (above[x + 1] + below[x + 1]) + 10 * row[x + 1],
+                  up = 3 * (above[x - 1] + above[x + 1]) + 10 * above[x],
+                  down = 3 * (below[x - 1] + below[x + 1]) + 10 * below[x];
+      const float across = (right - left) / 32, along = (down - up) / 32;
+      if (const float g2 = across * across + along * along; g2 > kEdge * kEdge) steep.push_back(g2);
+    }
+  }
+  if (steep.empty()) return kLeast;
+  const auto highest = [](std::vector<float>& values, double share) {
+    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+    std::nth_element(values.begin(), values.begin() + at, values.end(), std::greater<>());
+    return static_cast<double>(values[static_cast<std::size_t>(at)]);
+  };
+  const double dark = std::min(1.0, highest(seen, kDarkest));
+  const double variance = dark * dark / (2 * std::numbers::pi * highest(steep, kSteepest));
+  return std::clamp(std::sqrt(std::max(0.0, variance - kKernel)), kLeast, kMost);
 }
 
 Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double radius_px) {

@@ -52,6 +52,11 @@ struct Noise {
 /// beside it is known no better for that: dark is at least a tenth of what full light has.
 Noise noise_of(const cv::Mat1f& darkness);
 
+/// Blur of the sharpest edges, px: the steepest gradient of an edge of darkness a is a/(s sqrt(2 pi)). For a
+/// stands what a twentieth of the pixels surpass, for the gradient what a hundredth of those with one do. 0.5
+/// .. 5; too small where discs cover less than a twentieth, or noise makes gradients. Good to a fifth. Pure.
+double blur_of(const cv::Mat1f& darkness);
+
 /// Pure: grey frame (CV_8U, CV_16U or CV_32F, one channel) -> darkness.
 /// \param radius_px bead radius
 Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double radius_px);

@@ -26,8 +26,14 @@ constexpr double kMinInterior = 0.3;  // median darkness inside R/2 that a propo
 constexpr double kMinDarkness = 0.4;  // a fitted disc paler than that is none
 // Mean residual of a disc that nobody proposed; half that of the palest tracer.
 constexpr double kMissedDarkness = 0.35;
+// Of a size so much of the radius must be filled by what is missed, on average.
+// A disc whose radius is so far from all sizes, relative, is several that were taken for one.
+constexpr double kOfNoSize = 0.2;
+constexpr double kInner = 0.85, kFilled = 0.7;
 // After so many sweeps some few may wander on: they are no beads.
 constexpr int kPatient = 12;
+// So many sweeps learn how much R and a differ from disc to disc.
+constexpr int kLearning = 8;
 // So far a disc may wander, px or darkness, before what couples it to its neighbours is found anew.
 constexpr double kRestless = 0.1;
 // Likewise the blur, as a share of s^2.
@@ -62,17 +68,40 @@ struct Belief {
   }
 };
 
+/// A quantity of many beads, and the variances of some that their fit alone would have.
+struct Scatter {
+  std::vector<double> values, variances;
+  /// Middle and spread of the beads themselves; as it was if there are too few.
+  /// \param rows of which one was read by the fit that they come from
+  void learn(Belief& belief, double least, int rows) {
+    constexpr std::size_t kEnough = 20;
+    if (values.size() < kEnough) return;
+    const double middle = upper_median(values);
+    for (double& v : values) v = std::abs(v - middle);
+    const double scatter = 1.4826 * upper_median(values);
+    const double own = scatter * scatter - rows * upper_median(variances);
+    belief = {middle, std::max(least, std::sqrt(std::max(0.0, own)))};
+  }
+};
+
 class PictureFit {
  public:
   PictureFit(const Prepared& image, double radius, const RefineOptions& options)
-      : image_(image),
-        radius_(radius),
-        options_(options),
-        size_(image.darkness.size()),
-        noise_(noise_of(image.darkness)),
-        beliefs_{Belief{radius, options.radius_spread * radius}, Belief{1, 0.3}} {
+      : image_(image), options_(options), size_(image.darkness.size()), noise_(noise_of(image.darkness)) {
+    sizes_.push_back({radius, options.radius_spread * radius});
+    for (const double other : options.other_radii_px)
+      sizes_.push_back({other, options.radius_spread * other});
+    for (const Belief& s : sizes_) given_.push_back(s.mean);
     constexpr double kLens = 0.8, kPixel = 1.0 / 12;  // a sharp lens, px; a pixel's own width, px^2
     blur_.variance = options.blur_px > 0 ? options.blur_px * options.blur_px : kLens * kLens + kPixel;
+    // A picture out of focus would be fitted with sharp rims first, and its light and sizes found from what
+    // those leave. From the whole blur at once, places that are a third of a radius off do not find their way
+    // back.
+    constexpr double kOutOfFocus = 1.3, kOfRadius = 0.2;  // px
+    if (const double seen = blur_of(image.darkness); options.blur_px <= 0 && seen > kOutOfFocus) {
+      const double begin = std::min(seen, kOfRadius * smallest());
+      blur_.variance = std::max(blur_.variance, begin * begin);
+    }
     picture_ = image.darkness;
     picture_.adjustROI(0, 0, 0, kSpareColumns);
     if (image.opaque.empty()) return;
@@ -84,8 +113,8 @@ class PictureFit {
     Detection b;
     b.x = p.x;
     b.y = p.y;
-    b.radius = beliefs_[0].mean;
-    b.darkness = beliefs_[1].mean;
+    b.radius = sizes_[size_of(p.radius)].mean;
+    b.darkness = darkness_.mean;
     // A proposal that is bright inside is a void or a clear bead, one with its centre in a wall is the wall's
     // edge; fitted along, they would spoil their neighbours.
     const double inside = rough_interior(image_, b);
@@ -102,8 +131,8 @@ class PictureFit {
   /// Before the first sweep: most beads are as dark as the insides of those proposed.
   void expect_as_dark_as_seen() {
     if (interiors_.empty()) return;
-    beliefs_[1].mean = upper_median(std::move(interiors_));
-    for (Detection& b : beads_) b.darkness = beliefs_[1].mean;
+    darkness_.mean = upper_median(std::move(interiors_));
+    for (Detection& b : beads_) b.darkness = darkness_.mean;
   }
 
   struct Moved {
@@ -138,20 +167,24 @@ class PictureFit {
       damping_ = std::max(kDamping, damping_ / 4);
       if (sweeps_ >= 1) pruned = prune();
     }
-    if (sweeps_ >= 1 && sweeps_ <= 3) learn_beliefs(sweeps_ == 1 ? kFirstRows : 1);
+    if (sweeps_ >= 1 && sweeps_ <= kLearning) learn_beliefs(sweeps_ == 1 ? kFirstRows : 1);
     ++sweeps_;
     Moved moved = step(args, fit);
     moved.pruned = pruned;
     return moved;
   }
 
-  /// After a first sweep by which every disc stands alone: most are alike.
+  /// After a first sweep by which every disc stands alone: most of a size are alike.
   void expect_alike() {
     if (beads_.empty()) return;
-    std::vector<double> radius, darkness;
-    for (const Detection& b : beads_) radius.push_back(b.radius), darkness.push_back(b.darkness);
-    beliefs_ = {Belief{upper_median(std::move(radius)), options_.radius_spread / 3 * radius_},
-                Belief{upper_median(std::move(darkness)), 0.02}};
+    std::vector<std::vector<double>> radii(sizes_.size());
+    std::vector<double> darkness;
+    for (const Detection& b : beads_)
+      radii[size_of(b.radius)].push_back(b.radius), darkness.push_back(b.darkness);
+    for (std::size_t k = 0; k < sizes_.size(); ++k)
+      if (!radii[k].empty())
+        sizes_[k] = {upper_median(std::move(radii[k])), options_.radius_spread / 3 * given_[k]};
+    darkness_ = {upper_median(std::move(darkness)), 0.02};
   }
 
   /// Divides the light by a quadratic surface, so that what is left in the gaps between the discs vanishes.
@@ -177,7 +210,7 @@ class PictureFit {
   /// of them about as wide as a disc, are looked through for it.
   void add_missed() {
     if (stale_) render();
-    const int side = std::max(1, cvRound(0.4 * radius_));
+    const int side = std::max(1, cvRound(0.4 * smallest()));
     cv::Mat1f blocks = cv::Mat1f::zeros(size_.height / side, size_.width / side);
     std::vector<float> columns(static_cast<std::size_t>(size_.width));
     for (int row = 0; row < blocks.rows; ++row) {
@@ -201,12 +234,12 @@ class PictureFit {
     std::stable_sort(missed.begin(), missed.end(),
                      [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
     const std::size_t before = beads_.size();
-    // Opaque discs do not overlap: a centre within 1.3 R of a known one is that one's own misfit. A map of
-    // what is known, for in noise there are ten thousands of either.
+    // Opaque discs do not overlap: a centre within R and 0.3 of the least R of a known one is that one's own
+    // misfit. A map of what is known, for in noise there are ten thousands of either.
     cv::Mat1b known = cv::Mat1b::zeros(blocks.size());
-    const double reach = 1.3 * radius_;
     const auto block_of = [&](double at) { return (at + 0.5) / side - 0.5; };
     const auto mark = [&](const Detection& b) {
+      const double reach = given_[size_of(b.radius)] + 0.3 * smallest();
       const int last_y = std::min(known.rows - 1, cvFloor(block_of(b.y + reach))),
                 last_x = std::min(known.cols - 1, cvFloor(block_of(b.x + reach)));
       for (int y = std::max(0, cvCeil(block_of(b.y - reach))); y <= last_y; ++y)
@@ -216,8 +249,9 @@ class PictureFit {
         }
     };
     for (const Detection& b : beads_) mark(b);
-    for (const Proposal& p : missed) {
+    for (Proposal& p : missed) {
       if (known(cvRound(block_of(p.y)), cvRound(block_of(p.x))) != 0) continue;
+      p.radius = missed_radius(p);
       const std::size_t had = beads_.size();
       add(p);
       if (beads_.size() > had) mark(beads_.back());
@@ -230,14 +264,31 @@ class PictureFit {
   void add_beyond(bool blur_known) {
     if (stale_) render();
     // Nearer to a known one it is that one's own misfit.
-    const double reach = 1.5 * radius_, radius = beliefs_[0].mean, blur = std::sqrt(blur_.variance);
+    const double blur = std::sqrt(blur_.variance);
     const std::size_t before = beads_.size();
-    for (const Proposal& p : discs_beyond(ring_args(), radius, blur_known ? radius + blur : radius - blur))
+    std::vector<Proposal> beyond;
+    for (const Belief& s : sizes_)
+      for (Proposal p : discs_beyond(ring_args(), s.mean, blur_known ? s.mean + blur : s.mean - blur)) {
+        p.radius = s.mean;
+        beyond.push_back(p);
+      }
+    std::stable_sort(beyond.begin(), beyond.end(),
+                     [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
+    for (const Proposal& p : beyond)
       if (std::none_of(beads_.begin(), beads_.end(), [&](const Detection& b) {
+            const double reach = given_[size_of(b.radius)] + 0.5 * smallest();
             return (b.x - p.x) * (b.x - p.x) + (b.y - p.y) * (b.y - p.y) < reach * reach;
           }))
         add(p);
     if (beads_.size() > before) stale_ = true, before_.reset(), couplings_.clear();
+  }
+
+  /// One, but two where votes are poor: those of the smallest discs run into each other, those out of focus
+  /// do not meet in a point. A second one fits what the first has found to be missed.
+  [[nodiscard]] int sweeps_of_fast() const {
+    constexpr double kSmall = 4.5;    // px
+    constexpr double kBlurred = 1.7;  // px^2
+    return smallest() < kSmall || blur_.variance > kBlurred ? 2 : 1;
   }
 
   /// The fit ends here, though another step would move each bead by this share of its last.
@@ -346,7 +397,7 @@ class PictureFit {
   [[nodiscard]] cv::Mat1f ripple_beside(const Surface& q) const {
     constexpr double kSeen = 10000, kFound = 400000;  // samples that tell of one, and what it is
     constexpr int kMost = 32;                         // tiles
-    const int side = std::max(cvCeil(6 * radius_), std::max(size_.width, size_.height) / kMost);
+    const int side = std::max(cvCeil(6 * largest()), std::max(size_.width, size_.height) / kMost);
     if (const Tiles seen = tiles_beside(q, side, kSeen); !has_ripple(seen.mean, seen.variance)) return {};
     const Tiles found = tiles_beside(q, side, kFound);
     const cv::Mat1f map = smooth_ripple(found.mean, found.variance);
@@ -427,8 +478,8 @@ class PictureFit {
   /// and a path is fitted that begins with that of the variance found. \returns by what share of s^2 it
   /// changed
   double fit_blur(BlurFit fit, const std::vector<Normal>& blocks, std::vector<Step>& steps) {
-    constexpr double kClear = 0.04, kNear = 0.1;             // of s^2
-    constexpr double kLeast = 0.09, kMost = 9, kWide = 0.7;  // px^2
+    constexpr double kClear = 0.04, kNear = 0.1;              // of s^2
+    constexpr double kLeast = 0.09, kMost = 36, kWide = 0.7;  // px^2
     if (fit == BlurFit::none) return 0;
     BlurEquations equations = blur_equations(fit);
     if (fit == BlurFit::uneven) {
@@ -462,7 +513,7 @@ class PictureFit {
   }
   void put_path(const Eigen::Vector2d& path) {
     // One longer than that leaves nothing of a disc that is dark throughout.
-    const double most = radius_, length = path.norm();
+    const double most = smallest(), length = path.norm();
     const Eigen::Vector2d bounded = length > most ? Eigen::Vector2d(most / length * path) : path;
     blur_.path = {bounded.x(), bounded.y()};
   }
@@ -470,41 +521,39 @@ class PictureFit {
   /// How much R and a differ from bead to bead, from the beads themselves: the scatter less what the fit
   /// alone would scatter. \param rows of which one was read by the fit that they come from
   void learn_beliefs(int rows) {
-    constexpr std::size_t kEnough = 20;
-    const std::array<double, 2> least = {0.002 * radius_, 0.003};
-    std::array<std::vector<double>, 2> values, variances;
+    constexpr double kLeastRadius = 0.002, kLeastDarkness = 0.003;
+    std::vector<Scatter> radii(sizes_.size());
+    Scatter darkness;
     for (std::size_t k = 0; k < beads_.size(); ++k) {
       const Detection& b = beads_[k];
-      if (sums_[k].pixels < 0.8 * full_ring()) continue;
-      const std::array<double, 2> v = {b.radius, b.darkness};
-      for (std::size_t q = 0; q < 2; ++q) values[q].push_back(v[q]);
-      if (variances[0].size() > 200) continue;
+      if (sums_[k].pixels < 0.8 * full_ring(b)) continue;
+      Scatter& radius = radii[size_of(b.radius)];
+      radius.values.push_back(b.radius);
+      darkness.values.push_back(b.darkness);
+      if (radius.variances.size() > 200) continue;
       const Normal covariance = normal_of(sums_[k]).inverse();
-      for (int q = 0; q < 2; ++q)
-        variances[static_cast<std::size_t>(q)].push_back(covariance(kR + q, kR + q));
+      radius.variances.push_back(covariance(kR, kR));
+      darkness.variances.push_back(covariance(kA, kA));
     }
-    if (values[0].size() < kEnough) return;
-    for (std::size_t q = 0; q < 2; ++q) {
-      const double middle = upper_median(values[q]);
-      for (double& v : values[q]) v = std::abs(v - middle);
-      const double scatter = 1.4826 * upper_median(values[q]);
-      const double own = scatter * scatter - rows * upper_median(variances[q]);
-      beliefs_[q] = {middle, std::max(least[q], std::sqrt(std::max(0.0, own)))};
-    }
+    for (std::size_t k = 0; k < sizes_.size(); ++k) radii[k].learn(sizes_[k], kLeastRadius * given_[k], rows);
+    darkness.learn(darkness_, kLeastDarkness, rows);
   }
 
   /// Drops what has turned out to be no disc, or to lie outside. Left in, it would spoil its neighbours.
   /// \returns whether there was any
   bool prune() {
     std::size_t kept = 0;
-    const double out = radius_ + std::sqrt(blur_.variance);
     for (std::size_t k = 0; k < beads_.size(); ++k) {
       const Detection& b = beads_[k];
+      const double out = given_[size_of(b.radius)] + std::sqrt(blur_.variance);
+      const double size = given_[size_of(b.radius)];
       if (b.darkness < kMinDarkness) {
         drop(b, Verdict::pale);
+      } else if (given_.size() > 1 && sweeps_ >= 3 && std::abs(b.radius - size) > kOfNoSize * size) {
+        drop(b, Verdict::wrong_radius);
       } else if (b.x < -out || b.y < -out || b.x > size_.width - 1 + out || b.y > size_.height - 1 + out) {
         drop(b, Verdict::outside);
-      } else if (sums_[k].pixels < 0.05 * full_ring()) {
+      } else if (sums_[k].pixels < 0.05 * full_ring(b)) {
         drop(b, Verdict::unseen);
       } else {
         beads_[kept] = b;
@@ -620,9 +669,38 @@ class PictureFit {
   [[nodiscard]] double ring() const {
     constexpr double kFar = 3, kLeast = 2.5, kMost = 6;
     if (options_.ring_px > 0) return options_.ring_px;
-    return std::clamp(blur_.reach(kFar), kLeast, kMost);
+    return std::clamp(blur_.reach(kFar), kLeast, std::max(kMost, smallest()));
   }
-  [[nodiscard]] double full_ring() const { return 4 * std::numbers::pi * radius_ * ring(); }
+  [[nodiscard]] double full_ring(const Detection& b) const {
+    return 4 * std::numbers::pi * given_[size_of(b.radius)] * ring();
+  }
+  /// Which of the sizes a disc is nearest to.
+  [[nodiscard]] std::size_t size_of(double radius) const {
+    const auto off = [&](double size) { return std::abs(std::log(radius / size)); };
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < given_.size(); ++k)
+      if (off(given_[k]) < off(given_[nearest])) nearest = k;
+    return nearest;
+  }
+  [[nodiscard]] double smallest() const { return *std::min_element(given_.begin(), given_.end()); }
+  [[nodiscard]] double largest() const { return *std::max_element(given_.begin(), given_.end()); }
+  /// The largest size of which the residual picture is dark there; the smallest if it is of none.
+  [[nodiscard]] double missed_radius(const Proposal& p) const {
+    double radius = smallest();
+    for (const double size : given_) {
+      if (size <= radius) continue;
+      const int reach = cvFloor(kInner * size);
+      double left = 0, pixels = 0;
+      for (int y = std::max(0, cvRound(p.y) - reach); y <= std::min(size_.height - 1, cvRound(p.y) + reach);
+           ++y)
+        for (int x = std::max(0, cvRound(p.x) - reach); x <= std::min(size_.width - 1, cvRound(p.x) + reach);
+             ++x)
+          if (std::hypot(x - p.x, y - p.y) < kInner * size && picture_(y, x) < kUnseen)
+            left += static_cast<double>(picture_(y, x) - model_(y, x)), ++pixels;
+      if (left > kFilled * darkness_.mean * pixels) radius = size;
+    }
+    return radius;
+  }
   /// The picture is the frame's own until it is to be changed.
   void own_picture() {
     if (!owned_) picture_ = picture_.clone();
@@ -648,23 +726,27 @@ class PictureFit {
   }
   /// Adds what is believed to the normal equations of a bead.
   void believe(const Detection& b, Normal& a, Step& g) const {
-    const std::array<double, 2> v = {b.radius, b.darkness};
-    for (std::size_t q = 0; q < 2; ++q) {
-      const double p = beliefs_[q].precision(v[q]);
-      const int at = kR + static_cast<int>(q);
+    const auto add = [&](int at, const Belief& belief, double value) {
+      const double p = belief.precision(value);
       a(at, at) += p;
-      g[at] += p * (beliefs_[q].mean - v[q]);
-    }
+      g[at] += p * (belief.mean - value);
+    };
+    add(kR, sizes_[size_of(b.radius)], b.radius);
+    add(kA, darkness_, b.darkness);
     a(kX, kX) += 0.25, a(kY, kY) += 0.25;  // a proposal is good to 2 px
   }
-  /// \returns how far the centre moved, px
+  /// \returns how far the centre moved, px; of several sizes also the rim: one of the wrong size finds its
+  /// place last
   double apply(Detection& b, const Step& step) const {
     const double dx = std::clamp(step[kX], -1.0, 1.0), dy = std::clamp(step[kY], -1.0, 1.0);
     b.x += dx;
     b.y += dy;
-    b.radius = std::clamp(b.radius + std::clamp(step[kR], -0.5, 0.5), 0.6 * radius_, 1.4 * radius_);
+    const double radius =
+        std::clamp(b.radius + std::clamp(step[kR], -0.5, 0.5), 0.6 * smallest(), 1.4 * largest());
+    const double wider = given_.size() > 1 ? std::abs(radius - b.radius) : 0;
+    b.radius = radius;
     b.darkness = std::clamp(b.darkness + step[kA], 0.0, 1.5);
-    return std::sqrt(dx * dx + dy * dy);
+    return std::max(std::sqrt(dx * dx + dy * dy), wider);
   }
 
   /// Where the fit leaves more than the noise, the scatter is larger by as much: variance over that of the
@@ -689,15 +771,16 @@ class PictureFit {
   }
 
   const Prepared& image_;
-  double radius_;
   RefineOptions options_;
   cv::Size size_;
   Noise noise_;
   EdgeBlur blur_;
-  std::array<Belief, 2> beliefs_;  // R, a
-  cv::Mat1f picture_, model_;      // with spare columns; darkness, sum of all a P
-  bool owned_ = false;             // the picture is no longer the frame's
-  bool stale_ = true;              // the model is not that of the beads
+  std::vector<double> given_;  // radii
+  std::vector<Belief> sizes_;  // what the discs of each have
+  Belief darkness_{1, 0.3};
+  cv::Mat1f picture_, model_;  // with spare columns; darkness, sum of all a P
+  bool owned_ = false;         // the picture is no longer the frame's
+  bool stale_ = true;          // the model is not that of the beads
   std::vector<Detection> beads_, dropped_;
   std::vector<double> interiors_;      // of the proposals
   std::vector<RingSums> sums_;         // of the last sweep
@@ -737,7 +820,7 @@ std::vector<Proposal> by_place(const std::vector<Proposal>& proposals, double ba
 Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
                const RefineOptions& options) {
   PictureFit fit(image, radius_px, options);
-  const int most_sweeps = options.method == "fast" ? 1 : options.sweeps;
+  const int most_sweeps = options.method == "fast" ? fit.sweeps_of_fast() : options.sweeps;
   for (const Proposal& p : by_place(proposals, 2 * radius_px)) fit.add(p);
   fit.expect_as_dark_as_seen();
   constexpr int kLeast = 2;
@@ -746,8 +829,9 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
   constexpr double kBlurSettled = 0.03;  // of s^2: moves no touching bead by more than its error
   // Whether the bed moved during the exposure shows once the discs are in place.
   BlurFit blur = options.blur_px > 0 ? BlurFit::none : BlurFit::uneven;
-  constexpr int kMostRipples = 2;  // of the light, one beside the other
-  int sweeps = 0, ripples = 0;
+  constexpr int kMostRipples = 2;                  // of the light, one beside the other
+  constexpr double kUnknown = 0.2, kKnown = 0.05;  // change of s^2
+  int sweeps = 0, ripples = 0, owed = 0;
   bool blurred = false;
   double before = HUGE_VAL;
   while (sweeps < most_sweeps) {
@@ -777,11 +861,17 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
       if (sweeps > 1) fit.leave(shrinks);
       break;
     }
-    if (sweeps <= 3) fit.level();
+    // What rims leave whose blur is not yet known looks like light: that is mended later.
+    if (sweeps <= 3 && moved.blur > kUnknown) ++owed;
+    const bool mend = sweeps > 3 && owed > 0 && moved.blur < kKnown;
+    if (mend) --owed;
+    if (sweeps <= 3 || mend) fit.level();
     // Those found now need a sweep of their own. Beyond the frame first: a block of pixels at the border
     // would place such a disc inside it.
     if (sweeps <= 3) fit.add_beyond(sweeps > 1 && moved.blur < kBlurSettled);
-    if (sweeps <= 2) fit.add_missed();
+    // Where one of the wrong size was dropped, one of another may be.
+    if (sweeps <= 2 || (moved.pruned && !options.other_radii_px.empty() && sweeps <= kPatient))
+      fit.add_missed();
   }
   return fit.result();
 }

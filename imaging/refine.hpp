@@ -10,12 +10,12 @@
 /// B; of a ripple that this leaves, a smooth map (light_ripple.hpp). Discs beyond the frame that darken its
 /// border (beyond_frame.hpp) are fitted along. Noise is Gaussian with the variance of camera noise,
 /// v = v_d + v_l (1 - d), found from the picture; residuals are weighted after Huber. What R and a scatter by
-/// is found too, and serves as prior: beads of one kind need not have each its own darkness fitted from
-/// noise. Then the fit is one of maximum likelihood. Bound (Cramer-Rao, 15 px disc, blur 0.8 px): 0.36/SNR px
-/// per coordinate.
+/// is found too, size by size, and serves as prior: beads of one kind need not have each its own darkness
+/// fitted from noise. Then the fit is one of maximum likelihood. Bound (Cramer-Rao, 15 px disc, blur 0.8 px):
+/// 0.36/SNR px per coordinate.
 ///
-/// The first sweep reads every other row and leaves a twelfth of the way to go, on average; two sweeps do
-/// where the proposals are good.
+/// The first sweep, at which "fast" ends but for discs below 9 px and pictures out of focus, reads every
+/// other row and leaves a twelfth of the way to go, on average; two sweeps do where the proposals are good.
 ///
 /// When not to use: translucent discs with bright cores, or discs that overlap in projection.
 
@@ -31,13 +31,15 @@ namespace twincell {
 
 /// How the fit is done.
 struct RefineOptions {
-  std::string method = "exact";  ///< "exact": this fit; "fast": its first sweep; "edges": edge_fit.hpp;
-                                 ///< "profile": profile_fit.hpp
+  std::string method = "exact";  ///< "exact": this fit; "fast": its first sweep, or two (below); "edges":
+                                 ///< edge_fit.hpp; "profile": profile_fit.hpp
   int sweeps = 30;               ///< at most, 1 .. 1000
   double tolerance_px = 2e-3;    ///< a sweep that moves no bead further is the last, > 0
-  double ring_px = 0;            ///< half width of the ring, 1 .. 50; 0: three times the blur, 2.5 .. 6
-  double blur_px = 0;            ///< edge blur s; 0: fitted
-  double radius_spread = 0.06;   ///< prior: relative scatter of the radii about the given one, > 0
+  double ring_px =
+      0;  ///< half width of the ring, 1 .. 50; 0: three times the blur, from 2.5 to 6, or R if that is more
+  double blur_px = 0;                  ///< edge blur s; 0: fitted
+  double radius_spread = 0.06;         ///< prior: relative scatter of the radii about the given one, > 0
+  std::vector<double> other_radii_px;  ///< of discs of further sizes, each likewise
 };
 
 /// Result of a refinement.

@@ -9,6 +9,7 @@
 #include "analysis/trajectory/median.hpp"
 #include "imaging/alike_settings.hpp"
 #include "imaging/lattice_constant.hpp"
+#include "imaging/mixed_settings.hpp"
 #include "imaging/orientation.hpp"
 #include "imaging/settings_trial.hpp"
 #include "imaging/vote_locator.hpp"
@@ -16,6 +17,9 @@
 namespace twincell {
 
 namespace {
+
+constexpr int kSide = 600;        // px, of the part of a frame that is looked at
+constexpr double kClearly = 1.2;  // so much more must pale discs explain
 
 /// Radii (px) at which votes meet more sharply than at those beside them, sharpest first.
 std::vector<double> sharp_radii(const cv::Mat1f& darkness, double smallest, double largest) {
@@ -59,7 +63,15 @@ double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options) 
 double find_contrast(const cv::Mat& grey, const LocatorOptions& options) {
   PreprocessOptions plain = options.preprocess;
   plain.contrast = 1;
-  return contrast_of(prepare(grey, plain, options.diameter_px / 2).darkness);
+  if (options.refine.method == "profile") return 1;
+  const double contrast = contrast_of(prepare(grey, plain, options.diameter_px / 2).darkness);
+  if (options.refine.method == "edges") return contrast;
+  if (contrast >= kPale) return 1;
+  const cv::Mat part = busiest(grey, kSide);
+  const auto explained = [&](double by) {
+    return settle_plain(part, options, {plain.bright, options.diameter_px, by}).explained;
+  };
+  return explained(contrast) > kClearly * explained(1) ? contrast : 1;
 }
 
 std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given) {
@@ -134,29 +146,58 @@ namespace {
 
 /// Sizes that the votes of one or both polarities propose, and the lattice constant; the given one where one
 /// was given.
-std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& given, double lattice) {
+/// \param pale  instead those of pale discs, if there may be some, which would not vote
+std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& given, double lattice,
+                                   bool pale = false) {
   constexpr double kNoisy = 0.04, kSmooth = 1;  // darkness; px
   std::vector<Hypothesis> all;
   const double largest = std::min(kLargestRadius, 0.5 * std::min(grey.cols, grey.rows));
   for (const bool bright : {false, true}) {
     if (given.polarity_known && bright != given.preprocess.bright) continue;
-    if (given.diameter_px > 0) {
-      all.push_back({bright, given.diameter_px});
-      continue;
-    }
-    if (largest < kSmallestRadius) continue;
+    if (largest < kSmallestRadius && given.diameter_px <= 0) continue;
     PreprocessOptions options = given.preprocess;
     options.bright = bright;
-    cv::Mat1f darkness = prepare(grey, options, largest).darkness;
+    cv::Mat1f darkness =
+        prepare(grey, options, given.diameter_px > 0 ? given.diameter_px / 2 : largest).darkness;
+    const double contrast = pale ? contrast_of(darkness) : 1;
+    if (pale && contrast >= kPale) continue;
+    if (given.diameter_px > 0) {
+      all.push_back({bright, given.diameter_px, contrast});
+      continue;
+    }
+    darkness /= contrast;
     // The gradients of noise alone would vote, and meet most sharply at the smallest radius.
     const Noise noise = noise_of(darkness);
     if (noise.dark + noise.light > kNoisy * kNoisy)
       cv::GaussianBlur(darkness.clone(), darkness, {0, 0}, kSmooth);
     for (const double radius : sharp_radii(darkness, kSmallestRadius, largest))
-      all.push_back({bright, 2 * radius});
-    if (lattice > 0) all.push_back({bright, lattice});
+      all.push_back({bright, 2 * radius, contrast});
+    if (lattice > 0) all.push_back({bright, lattice, contrast});
   }
   return all;
+}
+
+/// Pale plain discs, if they explain clearly more than the best so far. With grey discs a dark rim does
+/// little harm: where a common profile is the best, it must have the shape of a plain disc's.
+std::optional<FoundSettings> find_pale(const cv::Mat& grey, const LocatorOptions& given, double lattice,
+                                       const std::optional<FoundSettings>& best) {
+  if (given.refine.method != "exact" && given.refine.method != "fast") return std::nullopt;
+  const std::vector<Hypothesis> all = hypotheses(grey, given, lattice, true);
+  if (all.empty()) return std::nullopt;
+  double to_beat = best ? kClearly * best->explained : 0;
+  if (best && best->method == "profile") {
+    const ProfileTrial trial = try_profile(grey, given, {best->bright, best->diameter_px});
+    if (trial.explained > 0 && !trial.has_plain_shape()) return std::nullopt;
+    to_beat = trial.explained;
+  }
+  std::optional<FoundSettings> pale;
+  for (const Hypothesis& h : all) {
+    const Trial trial = settle_plain(grey, given, h);
+    if (trial.explained <= to_beat) continue;
+    to_beat = trial.explained;
+    pale = FoundSettings{trial.diameter_px, h.bright, trial.explained, {}, {}, h.contrast};
+  }
+  return pale;
 }
 
 }  // namespace
@@ -166,7 +207,6 @@ std::optional<FoundSettings> find_settings(const cv::Mat& picture, const Locator
   const cv::Mat frame = canonical_orientation(picture).turned(picture);
   std::optional<FoundSettings> patterned;
   if (given.diameter_px <= 0) patterned = find_patterned(frame, given);
-  constexpr int kSide = 600;  // px
   constexpr double kShrink = 4;
   const cv::Mat grey = busiest(frame, kSide);
   const double lattice = lattice_constant(grey);
@@ -192,7 +232,11 @@ std::optional<FoundSettings> find_settings(const cv::Mat& picture, const Locator
   const double part = static_cast<double>(grey.total()) / static_cast<double>(frame.total());
   if (patterned && (!best || part * patterned->explained > best->explained)) return patterned;
   if (best && given.refine.method == "exact")
-    if (auto alike = find_alike(frame, given, all, *best, lattice)) return alike;
+    if (auto alike = find_alike(frame, given, all, *best, lattice)) best = alike;
+  if (auto pale = find_pale(grey, given, lattice, best)) best = pale;
+  const bool by_picture = given.refine.method == "exact" || given.refine.method == "fast";
+  if (best && best->explained > 0 && given.diameter_px <= 0 && by_picture)
+    if (auto mixed = find_mixed(grey, given, all, *best)) return mixed;
   if (best && best->explained <= 0 && given.diameter_px <= 0) return std::nullopt;
   return best;
 }

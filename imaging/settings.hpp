@@ -32,6 +32,7 @@ struct FoundSettings {
   double explained = 0;                    ///< sum of -R^2 ln(1 - score), px^2
   std::vector<double> other_diameters_px;  ///< of discs of further sizes
   std::string method;                      ///< RefineOptions::method is to be that; empty: as it was
+  double contrast = 1;                     ///< PreprocessOptions::contrast of plain discs
 };
 
 /// Large discs (80 px and more, up to two sizes) known by their rims alone, such as photoelastic ones: most
@@ -39,7 +40,9 @@ struct FoundSettings {
 /// there are none.
 std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given);
 
-/// Darkness of a typical disc of a frame, for PreprocessOptions::contrast.
+/// Darkness of a typical disc of a frame, for PreprocessOptions::contrast with the method, size and polarity
+/// of the options. 1 for discs with a common profile, and where the picture is fitted for all but those that
+/// are so pale that the fit explains a fifth more if it knows.
 double find_contrast(const cv::Mat& grey, const LocatorOptions& options);
 
 /// Finds what `given` leaves open: the diameter, the polarity, and, where the refinement is the default one,

@@ -10,11 +10,11 @@
 
 namespace twincell {
 
-namespace {
-
 double gained(const Detection& b) {
   return -b.radius * b.radius * std::log(std::max(1 - b.score, 1e-6));
 }
+
+namespace {
 
 /// Whether most discs lie too near to another one for discs of one layer, were all wider by a factor.
 bool overlap(const std::vector<Detection>& beads, double wider = 1) {
@@ -60,6 +60,7 @@ Trial settle_plain(const cv::Mat& grey, const LocatorOptions& given, const Hypot
   LocatorOptions options = given;
   options.refine.sweeps = std::min(options.refine.sweeps, kTrialSweeps);
   options.preprocess.bright = h.bright;
+  options.preprocess.contrast = h.contrast;
   options.diameter_px = h.diameter_px;
   Trial trial = try_plain(grey, options);
   for (int round = 1; round < kRounds && given.diameter_px <= 0 && trial.diameter_px > 0; ++round) {
@@ -87,10 +88,14 @@ ProfileTrial try_profile(const cv::Mat& grey, LocatorOptions options, const Hypo
   return trial;
 }
 
-bool ProfileTrial::looks_plain() const {
+bool ProfileTrial::has_plain_shape() const {
   constexpr double kUnlike = 0.012;  // of a plain disc's profile
-  constexpr double kDark = 0.5;      // paler discs the plain fit calls none
-  return explained > 0 && profile.unlike_plain() < kUnlike && profile.largest() > kDark;
+  return explained > 0 && profile.unlike_plain() < kUnlike;
+}
+
+bool ProfileTrial::looks_plain() const {
+  constexpr double kDark = 0.5;  // paler discs the plain fit calls none
+  return has_plain_shape() && profile.largest() > kDark;
 }
 
 /// The part of a frame, at most `side` px wide and high, whose grey levels change most from pixel to pixel.

@@ -13,13 +13,19 @@
 
 namespace twincell {
 
+/// Darkness below which discs may be too pale to be taken for some.
+inline constexpr double kPale = 0.45;
 /// The radii that are sought, px.
 inline constexpr double kSmallestRadius = 3, kLargestRadius = 40;
+
+/// What one disc explains, px^2.
+double gained(const Detection& b);
 
 /// What the discs may be.
 struct Hypothesis {
   bool bright = false;
   double diameter_px = 0;
+  double contrast = 1;  ///< PreprocessOptions::contrast
 };
 
 /// Plain discs.
@@ -36,7 +42,9 @@ struct ProfileTrial {
   double explained = 0;
   bool overlaps = false;  ///< and nothing is explained
   DiscProfile profile;
-  /// Whether plain discs, dark enough for their fit, would have that profile.
+  /// Whether plain discs, however pale, would have that profile.
+  [[nodiscard]] bool has_plain_shape() const;
+  /// The same of discs dark enough for their fit.
   [[nodiscard]] bool looks_plain() const;
 };
 ProfileTrial try_profile(const cv::Mat& grey, LocatorOptions options, const Hypothesis& h);

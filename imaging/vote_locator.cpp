@@ -80,8 +80,8 @@ std::vector<Proposal> VoteFinder::find(const Prepared& image, const FindOptions&
   const double smoothing = std::min(kVoteSmoothing, r / 3);
   // 2 pi R pixels of edge, each of integral 1, meet in a spot of the smoothing plus about a pixel of scatter.
   const double full_circle = 2 * std::numbers::pi * r / (2 * std::numbers::pi * (smoothing * smoothing + 1));
-  return suppress_near(peaks(image, {r, smoothing, pad}, full_circle, options.min_score), 0.8 * 2 * r,
-                       image.darkness.size(), pad);
+  return suppress_near(peaks(image, {r, smoothing, pad}, full_circle, options.min_score),
+                       options.apart * 2 * r, image.darkness.size(), pad);
 }
 
 double vote_sharpness(const cv::Mat1f& darkness, double radius_px) {

@@ -12,8 +12,9 @@ namespace twincell::bench {
 namespace {
 
 // The only place that knows how this library is called.
-std::vector<cv::Point2d> ours(const cv::Mat1b& frame, LocatorOptions options, double diameter) {
-  options.diameter_px = diameter;
+std::vector<cv::Point2d> ours(const cv::Mat1b& frame, LocatorOptions options, const rendered::Case& of) {
+  options.diameter_px = of.diameter;
+  options.other_diameters_px = of.other_diameters;
   std::vector<cv::Point2d> centres;
   for (const Detection& bead : locate(frame, options).beads) centres.emplace_back(bead.x, bead.y);
   return centres;
@@ -32,14 +33,18 @@ void refine_by(Options& options, const std::string& method) {
 
 }  // namespace
 
-std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, double diameter, const HoughSettings& s) {
+std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, const rendered::Case& of,
+                                      const HoughSettings& s) {
   cv::Mat picture = frame;
   if (s.smooth > 0) cv::GaussianBlur(frame, picture = cv::Mat(), {}, s.smooth);
   if (s.enlarge != 1) cv::resize(picture, picture, {}, s.enlarge, s.enlarge, cv::INTER_CUBIC);
-  const double d = diameter * s.enlarge;
+  double least = of.diameter * s.enlarge, most = least;
+  for (const double other : of.other_diameters)
+    least = std::min(least, other * s.enlarge), most = std::max(most, other * s.enlarge);
   std::vector<cv::Vec3f> circles;
-  cv::HoughCircles(picture, circles, s.mode, s.mode == cv::HOUGH_GRADIENT ? 1 : 1.5, s.apart * d, s.edge,
-                   s.votes, cvFloor(0.5 * d * (1 - s.radius_slack)), cvCeil(0.5 * d * (1 + s.radius_slack)));
+  cv::HoughCircles(picture, circles, s.mode, s.mode == cv::HOUGH_GRADIENT ? 1 : 1.5, s.apart * least, s.edge,
+                   s.votes, cvFloor(0.5 * least * (1 - s.radius_slack)),
+                   cvCeil(0.5 * most * (1 + s.radius_slack)));
   std::vector<cv::Point2d> centres;
   for (const cv::Vec3f& c : circles)
     centres.emplace_back((double{c[0]} + 0.5) / s.enlarge - 0.5, (double{c[1]} + 0.5) / s.enlarge - 0.5);
@@ -76,11 +81,11 @@ std::vector<Contestant> contestants() {
       refine_by(options.refine, method);
       all.push_back(
           {fmt::format("twincell {}{}{}", finder, method.empty() ? "" : " ", method),
-           [options](const cv::Mat1b& frame, double diameter) { return ours(frame, options, diameter); }});
+           [options](const cv::Mat1b& frame, const rendered::Case& of) { return ours(frame, options, of); }});
     }
   auto hough = [&](const char* name, const HoughSettings& settings) {
-    all.push_back({name, [settings](const cv::Mat1b& frame, double diameter) {
-                     return opencv_hough(frame, diameter, settings);
+    all.push_back({name, [settings](const cv::Mat1b& frame, const rendered::Case& of) {
+                     return opencv_hough(frame, of, settings);
                    }});
   };
   // Without an enlarged frame: the best of `locate_truth --tune`. Enlarged: tried by hand on the random

@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "imaging/rendered/cases.hpp"
+
 namespace twincell::bench {
 
 struct Contestant {
   std::string name;
-  /// Centres in an 8-bit frame, told the nominal diameter (px).
-  std::function<std::vector<cv::Point2d>(const cv::Mat1b&, double diameter)> find;
+  /// Centres in an 8-bit frame of a case, told its nominal diameters.
+  std::function<std::vector<cv::Point2d>(const cv::Mat1b&, const rendered::Case&)> find;
 };
 
 std::vector<Contestant> contestants();
@@ -24,10 +26,11 @@ struct HoughSettings {
   double smooth = 0;           ///< Gaussian blur before, px of the original frame
   double edge = 100;           ///< param1
   double votes = 100;          ///< param2
-  double apart = 0.8;          ///< minDist, in diameters
-  double radius_slack = 0.15;  ///< minRadius, maxRadius = radius (1 -+ this)
+  double apart = 0.8;          ///< minDist, in the least diameter
+  double radius_slack = 0.15;  ///< minRadius = least radius (1 - this), maxRadius = largest (1 + this)
 };
-std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, double diameter, const HoughSettings& settings);
+std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, const rendered::Case& of,
+                                      const HoughSettings& settings);
 
 /// The grid on which OpenCV's settings are searched, by name.
 std::vector<std::pair<std::string, HoughSettings>> hough_grid();

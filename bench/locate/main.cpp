@@ -4,7 +4,7 @@
 //   --case NAME --snr S --method NAME   only those (repeatable; a method's name may be a part of it)
 //   --frames N     frames per case and noise level, default 3
 //   --write DIR    only write the frames: CASE_SNR_FRAME.pgm, CASE_FRAME_truth.csv, and
-//                  index.json with each case's diameter
+//                  index.json with each case's diameters
 //   --read DIR     score what others found too: DIR/METHOD/CASE_SNR_FRAME.csv, first line processor ms, then
 //   x,y
 //   --tune         search OpenCV's settings on the random packing at SNR 51 instead
@@ -101,14 +101,14 @@ nlohmann::json as_json(const Marks::Summary& s) {
 }
 
 // The fastest of a few runs: other programs only ever add.
-double time_of(const Contestant& contestant, const cv::Mat1b& frame, double diameter,
+double time_of(const Contestant& contestant, const cv::Mat1b& frame, const Case& of,
                std::vector<cv::Point2d>& found) {
   constexpr double kEnough_ms = 150;
   constexpr int kRuns = 3;
   double best = 1e300, sum = 0;
   for (int i = 0; i < kRuns && (i == 0 || sum < kEnough_ms); ++i) {
     const double before = processor_ms();
-    found = contestant.find(frame, diameter);
+    found = contestant.find(frame, of);
     const double ms = processor_ms() - before;
     best = std::min(best, ms);
     sum += ms;
@@ -133,8 +133,12 @@ void write_frames(const Wanted& wanted) {
           const std::string name = frame_name(c, snr, f);
           cv::imwrite((fs::path(wanted.write) / (name + ".pgm")).string(),
                       expose(light, picture, snr, seed_of(f)));
-          index.push_back(
-              {{"frame", name}, {"case", c.name}, {"snr", snr}, {"number", f}, {"diameter", c.diameter}});
+          index.push_back({{"frame", name},
+                           {"case", c.name},
+                           {"snr", snr},
+                           {"number", f},
+                           {"diameter", c.diameter},
+                           {"other_diameters", c.other_diameters}});
         }
       }
   std::ofstream(fs::path(wanted.write) / "index.json") << index.dump(1);
@@ -183,7 +187,7 @@ nlohmann::json measure(const Wanted& wanted) {
           std::vector<cv::Point2d> found;
           double ms = 0;
           if (k < here.size()) {
-            ms = time_of(here[k], frame, c.diameter, found);
+            ms = time_of(here[k], frame, c, found);
           } else {
             const auto reported = read_found(fs::path(wanted.read) / table[k].method /
                                              (frame_name(c, snr, static_cast<int>(f)) + ".csv"));
@@ -227,7 +231,7 @@ void tune() {
   std::vector<Try> tries;
   for (const auto& [name, settings] : hough_grid()) {
     Marks marks;
-    marks.add(picture, opencv_hough(frame, c.diameter, settings), bound);
+    marks.add(picture, opencv_hough(frame, c, settings), bound);
     const Marks::Summary s = marks.summary();
     tries.push_back(
         {name, s, std::round(100 * 2 * s.recall * s.precision / std::max(1e-9, s.recall + s.precision))});

@@ -1,5 +1,6 @@
 #include "imaging/rendered/cases.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -29,6 +30,19 @@ Picture bed(Random& random, double diameter = 15, double spread = 0, double over
     radii.push_back(0.5 * diameter * (1 + uniform(random, -spread, spread)));
   const double left = -over + uniform(random, 0, 1), floor = p.height + over - uniform(random, 0, 1);
   p.discs = deposited(radii, {left, 0, p.width - 2 * left, floor}, random);
+  return p;
+}
+
+// The same with every other disc of another size.
+Picture mixed_bed(Random& random, double one, double other) {
+  Picture p;
+  const double mean = 0.5 * (one + other);
+  p.width = static_cast<int>(40 * mean);
+  p.height = static_cast<int>(100 * mean);
+  std::vector<double> radii;
+  for (std::size_t k = 0; k < kBeads; ++k) radii.push_back(0.5 * (k % 2 == 0 ? one : other));
+  std::shuffle(radii.begin(), radii.end(), random);
+  p.discs = deposited(radii, {10, 0, p.width - 20.0, p.height - 10.0}, random);
   return p;
 }
 
@@ -106,6 +120,13 @@ const std::vector<Case> kCases{
        p.blur = 2;
        return p;
      }},
+    {"defocus_4px", "random, beads of 30 px, blur 4 px", 30, kOne,
+     [](std::uint64_t seed) {
+       Random random(seed);
+       Picture p = bed(random, 30);
+       p.blur = 4;
+       return p;
+     }},
     {"sizes_2pc", "random, radii within 2 %", 15, kOne,
      [](std::uint64_t seed) {
        Random random(seed);
@@ -116,6 +137,24 @@ const std::vector<Case> kCases{
        Random random(seed);
        return bed(random, 15, 0.1);
      }},
+    {"two_sizes",
+     "random, half of the beads of 15 px, half of 21 px",
+     15,
+     kOne,
+     [](std::uint64_t seed) {
+       Random random(seed);
+       return mixed_bed(random, 15, 21);
+     },
+     {21}},
+    {"two_sizes_apart",
+     "random, half of the beads of 12 px, half of 24 px",
+     12,
+     kOne,
+     [](std::uint64_t seed) {
+       Random random(seed);
+       return mixed_bed(random, 12, 24);
+     },
+     {24}},
     {"glare", "random, a bright spot on every bead", 15, kOne,
      [](std::uint64_t seed) {
        Random random(seed);

