@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <numbers>
-#include <opencv2/imgproc.hpp>
+#include <queue>
 #include <utility>
 
 #include "analysis/trajectory/median.hpp"
@@ -71,27 +71,40 @@ std::vector<Proposal> choose_sizes(const Prepared& image, const std::vector<Prop
   constexpr double kMissing = 0.01;  // of a disc that is none
   const double blur = blur_of(image.darkness);
   const Noise noise = noise_of(image.darkness);
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t k = 0; k < proposals.size(); ++k) {
-    const Proposal& p = proposals[k];
-    const double there = 1 - missing_share(image, p, blur, noise.dark) / kMissing;
-    order.emplace_back(-p.score * (there > 0 ? p.radius * p.radius * there : 0), k);
-  }
-  std::sort(order.begin(), order.end());
-  std::vector<Proposal> ranked;
   std::vector<Disc> discs;
-  for (const auto& entry : order) {
-    const Proposal& p = ranked.emplace_back(proposals[entry.second]);
-    discs.push_back({p.x, p.y, kApart * p.radius, 1});
+  for (const Proposal& p : proposals) discs.push_back({p.x, p.y, kApart * p.radius, 1});
+  std::vector<std::vector<std::size_t>> excluded(proposals.size());
+  for (const auto& [i, j] : near_pairs(discs, 0)) {
+    excluded[static_cast<std::size_t>(i)].push_back(static_cast<std::size_t>(j));
+    excluded[static_cast<std::size_t>(j)].push_back(static_cast<std::size_t>(i));
   }
-  std::vector<std::vector<std::size_t>> better(ranked.size());
-  for (const auto& [i, j] : near_pairs(discs, 0))
-    better[static_cast<std::size_t>(std::max(i, j))].push_back(static_cast<std::size_t>(std::min(i, j)));
-  std::vector<bool> stays(ranked.size());
+  // By evidence, or by what it would be if nothing were missing: most are excluded before they are looked at.
+  struct Candidate {
+    double evidence;
+    std::size_t k;
+    bool looked_at;
+    bool operator<(const Candidate& o) const { return std::pair(evidence, o.k) < std::pair(o.evidence, k); }
+  };
+  std::vector<Candidate> all;
+  for (std::size_t k = 0; k < proposals.size(); ++k)
+    all.push_back({proposals[k].score * proposals[k].radius * proposals[k].radius, k, false});
+  std::priority_queue<Candidate> left(std::less<Candidate>(), std::move(all));
+  std::vector<bool> out(proposals.size());
   std::vector<Proposal> kept;
-  for (std::size_t k = 0; k < ranked.size(); ++k) {
-    stays[k] = std::none_of(better[k].begin(), better[k].end(), [&](std::size_t b) { return stays[b]; });
-    if (stays[k]) kept.push_back(ranked[k]);
+  while (!left.empty()) {
+    Candidate best = left.top();
+    left.pop();
+    if (out[best.k]) continue;
+    const Proposal& p = proposals[best.k];
+    if (!best.looked_at) {
+      const double there = 1 - missing_share(image, p, blur, noise.dark) / kMissing;
+      best.evidence *= std::clamp(there, 0.0, 1.0);
+      best.looked_at = true;
+      left.push(best);
+      continue;
+    }
+    kept.push_back(p);
+    for (const std::size_t other : excluded[best.k]) out[other] = true;
   }
   return kept;
 }
