@@ -124,14 +124,13 @@ Surface bright_envelope(const Rows& image) {
 // resolution: the opening reaches a few pixels too far or not far enough, but only over what is dark itself.
 // The frame is continued beyond its border, so that a thin strip of plate at the bottom of a frame is as
 // thick as the plate is. Empty if there is nothing.
-cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double disc_radius_px) {
+cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double disc_radius_px) {
   constexpr double kCoarse = 6;  // pixels of the coarse picture across the disc's radius
-  constexpr float kDark = 0.75F;
   const int shrink = std::max(1, static_cast<int>(disc_radius_px / kCoarse));
   const cv::Size size((darkness.cols + shrink - 1) / shrink, (darkness.rows + shrink - 1) / shrink);
   const double reach = disc_radius_px / shrink;
   // A block is dark if all of it is: the gaps between beads are narrow.
-  const cv::Mat1b dark_pixels = darkness > kDark;
+  const cv::Mat1b dark_pixels = darkness > limit;
   cv::Mat1b dark = dark_pixels;
   if (shrink > 1) {
     dark = cv::Mat1b(size, uchar{255});
@@ -184,6 +183,37 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double disc_radius_px) {
   cv::resize(coarse, regions, cv::Size(), shrink, shrink, cv::INTER_NEAREST);
   regions = regions(cv::Rect(0, 0, darkness.cols, darkness.rows)) & dark_pixels;
   cv::dilate(regions, regions, cv::Mat(), cv::Point(-1, -1), 2);  // their blurred edge
+  return regions;
+}
+
+// Out of focus, a wall's edge darkens what lies beside it, the gaps of a crystal are nearly as dark as its
+// discs, and a wall is only a little darker than both.
+cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double radius_px, double in_radii) {
+  constexpr float kDark = 0.75F, kOfDarkest = 0.94F;
+  constexpr double kSharp = 1.3, kSmooth = 1;                          // px
+  constexpr double kOutOfFocus = 0.22;                                 // of the radius
+  constexpr double kTail = 1.5, kFromDark = 0.7, kFromDarkest = 1.55;  // blurs, to either side of an edge
+  cv::Mat1b regions = regions_darker_than(kDark, darkness, in_radii * radius_px);
+  const double blur = regions.empty() ? 0 : blur_of(darkness);
+  if (blur < kSharp) return regions;
+  double beside = (kTail + kFromDark) * blur;
+  if (blur > kOutOfFocus * radius_px) {
+    cv::Mat1f smooth;
+    cv::GaussianBlur(darkness, smooth, {0, 0}, kSmooth);
+    std::vector<float> levels;
+    for (int y = 0; y < smooth.rows; ++y)
+      for (int x = 0; x < smooth.cols; ++x)
+        if (regions(y, x) != 0) levels.push_back(smooth(y, x));
+    constexpr double kNearlyAll = 0.9;
+    const auto at =
+        levels.begin() + static_cast<std::ptrdiff_t>(kNearlyAll * static_cast<double>(levels.size()));
+    std::nth_element(levels.begin(), at, levels.end());
+    regions = regions_darker_than(kOfDarkest * *at, smooth, in_radii * radius_px);
+    beside = (kTail + kFromDarkest) * blur;
+  }
+  const int wide = 2 * std::max(0, cvRound(beside) - 2) + 1;
+  if (!regions.empty())
+    cv::dilate(regions, regions, cv::getStructuringElement(cv::MORPH_ELLIPSE, {wide, wide}));
   return regions;
 }
 
@@ -320,7 +350,7 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
       d[x] = bright > 0 ? bounded : 0.0F;
     }
   }
-  p.opaque = large_dark_regions(p.darkness, options.opaque_radii * radius_px);
+  p.opaque = large_dark_regions(p.darkness, radius_px, options.opaque_radii);
   return p;
 }
 

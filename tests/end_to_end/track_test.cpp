@@ -72,6 +72,25 @@ TEST(Track, AConvectingCellAtTwentyPhasesKeepsItsCrystalTogether) {
   EXPECT_GT(said["links"]["rematched"], 0);
 }
 
+// Walls and plate, and gaps nearly as dark as the beads, in a picture blurred by a third of a radius.
+TEST(Track, ACellOutOfFocus) {
+  const TemporaryFolder folder;
+  write(folder / "scene.toml", scene("crystal_a", 1.8));
+  ASSERT_EQ(run_program({"simulate", folder / "scene.toml", "-o", folder / "sim.h5", "-q"}).code, 0);
+  ASSERT_EQ(run_program({"render", folder / "sim.h5", "-o", folder / "frames", "--blur", "2.5", "-q"}).code,
+            0);
+  const Ran ran =
+      run_program({"track", folder / "frames", "-o", folder / "exp.h5", "--cell", folder / "frames/CELL.toml",
+                   "--truth", folder / "frames/truth.csv", "--phase-lock", "20", "--json", "-q"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto said = nlohmann::json::parse(ran.out);
+  std::cout << said["truth"] << '\n';
+  EXPECT_GE(said["truth"]["recall"], 0.999);
+  EXPECT_GE(said["truth"]["precision"], 0.999);
+  EXPECT_LE(said["truth"]["rms_px"], 0.06);
+  EXPECT_LE(said["truth"]["wrong_links"], 2);
+}
+
 // Radii within a quarter: at one size a fourth of the beads is left out, and that is said; at two none is.
 TEST(Track, BeadsOfSeveralSizes) {
   const TemporaryFolder folder;

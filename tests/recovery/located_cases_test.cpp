@@ -276,9 +276,10 @@ TEST_F(LocatedCase, BeadsCutByTheFrameAreFlagged) {
   }
 }
 
-void expect_turned_results(const cv::Mat1b& frame) {
+void expect_turned_results(const cv::Mat1b& frame, const Case& c) {
   LocatorOptions options;
-  options.diameter_px = 15;
+  options.diameter_px = c.diameter;
+  options.other_diameters_px = c.other_diameters;
   const Located as_is = locate(frame, options);
   const auto& upright = as_is.beads;
   ASSERT_GE(upright.size(), 300U);
@@ -313,9 +314,9 @@ void expect_turned_results(const cv::Mat1b& frame) {
 }
 
 TEST_F(LocatedCase, TurnedPicturesGiveTurnedResults) {
-  for (const char* name : {"random", "motion_3px", "edge", "uneven"}) {
+  for (const char* name : {"random", "motion_3px", "edge", "uneven", "two_sizes", "defocus_2px"}) {
     SCOPED_TRACE(name);
-    expect_turned_results(look(name, 51).frames[0].frame(cv::Rect(0, 900, 300, 600)));
+    expect_turned_results(look(name, 51).frames[0].frame(cv::Rect(0, 900, 300, 600)), case_of(name));
   }
 }
 
