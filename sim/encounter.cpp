@@ -3,47 +3,40 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
+#include "sim/collocation.hpp"
 #include "sim/contact.hpp"
-#include "sim/dormand_prince.hpp"
+#include "sim/encounter_forces.hpp"
+#include "sim/passes.hpp"
 
 namespace twincell::sim {
 
 namespace {
 
-template <class N>
-concept SmoothNormal = N::kMemory == 0 && requires {
-  N::kSmooth;
-};
-
-/// No history, and a Coulomb limit that says where it binds.
-template <class T>
-concept PresentTangential = !T::kActs || (!T::kHistory && requires(const double* c, double x) {
-  { T::slack(c, x, x) } -> std::same_as<double>;
-});
-
-constexpr double kBeyond = 0.01;
-constexpr double kLongestStep = 0.35;  // of the contact time: a bead is not to part and come back in one
+constexpr double kBeyond = 0.01;  // of the contact time: it ends a little after that, but for the spring
+/// Of the contact time: two steps are a contact, and a bead is not to part and come back in one.
+constexpr double kLongestStep = 0.5 * (1 + kBeyond);
+constexpr double kShortestStep = 1e-9;
 
 template <class N, class T, int D>
 class Encounter {
  public:
   static constexpr int kTurn = kTurns<D>;
-  static constexpr int kNumbers = 2 * D + (T::kActs ? kTurn : 0);  // r, u, and s
+  static constexpr int kSlopes = D + (T::kActs ? kTurn : 0);  // of u, and of s
+  static constexpr int kNumbers = D + kSlopes;                // r, u, and s
   using Numbers = std::array<double, kNumbers>;
-  /// Whose changes of sign are kinks of the force: F_n, and how far the Coulomb limit is.
-  using Kinks = std::array<double, T::kActs ? 2 : 0>;
+  using Forces = EncounterForces<double, N, T, D>;
 
   explicit Encounter(const EncounterSetting& setting, const N& normal, const T& tangential)
       : set_(setting),
         c_n_(normal.constants(setting.pair)),
         c_t_(tangential.constants(setting.pair)),
         inv_mass_(1 / setting.pair.m_eff),
-        wall_(setting.wall.has_value()) {
+        wall_(setting.wall.has_value()),
+        step_(widest_target().find_step(setting.laws->normal.index(), setting.laws->tangential.index(), D)) {
     if (wall_) put(*set_.wall, n_.data());
     put(set_.pull, pull_.data());
     put(set_.swing, swing_.data());
@@ -52,39 +45,38 @@ class Encounter {
   [[nodiscard]] EncounterEnd run(const RelativeMotion& start, double time, double last, double scale,
                                  double tolerance) const {
     Numbers y = numbers(start);
-    const double fall = (set_.pull.norm() + set_.swing.norm()) * scale;
+    const double fall = wall_ ? (set_.pull.norm() + set_.swing.norm()) * scale : 0;
     const double speed = std::max({start.u.norm(), start.s.norm(), fall, 1e-300});
-    const Scales scales{tolerance * speed * scale, tolerance * speed};
     EncounterEnd end;
     end.deepest = std::max(0.0, overlap(y));
-    // The first step is about as long as the tolerance allows: the contact begins like any other.
-    double h = kLongestStep * scale * std::min(1.0, std::sqrt(std::sqrt(std::sqrt(tolerance / 1e-6)))),
-           t = time;
+    Step step(*this, speed, scale, tolerance);
+    Regime regime = regime_at(y);
+    double longest = kLongestStep * scale, shorter = 1, t = time;
     while (t < last && !end.parted) {
-      // A step that would go far beyond the parting is refused there, where the force of the law changes its
-      // sign, and says less well where they part: it ends a little after a contact time.
-      if (const double left = time + scale - t; left > 0) h = std::min(h, left + kBeyond * scale);
-      h = std::min(h, last - t);
-      const Kinks regime = kinks(y);
-      Step step(*this, regime, t, y);
-      const double error = step.take(h, scales);
-      const double better = std::clamp(0.9 / std::sqrt(std::sqrt(std::sqrt(error))), 0.2, 2.0);
-      if (!(error <= 1) && h > 1e-9 * scale) {
-        h *= better;
+      double h = longest;
+      if (const double left = time + (1 + kBeyond) * scale - t; left > 0) h = std::min(h, left);
+      h = std::min(shorter * h, last - t);
+      const double error = step.take(regime, t, h, y);
+      if (!(error <= 1) && h > kShortestStep * scale) {
+        // Where the force has no smooth continuation so far beyond a kink the next step need not be short.
+        (error < HUGE_VAL ? longest : shorter) *= error < HUGE_VAL ? 0.5 : step.to_first_event(regime);
         continue;
       }
-      double x = to_kink(step, regime, 0.1 * std::sqrt(tolerance));
-      for (const double by : {step.parts(x), x})
-        if (!end.parted && overlap(by < 1 ? step.at(by) : step.end()) <= 0) {
-          end.parted = true;
-          x = to_parting(step, by);
-        }
-      Numbers next = x < 1 ? step.at(x) : step.end();
+      shorter = 1;
+      const auto [x, what] = step.first_event(regime);
+      y = step.at(x);
       t += x * h;
-      if (end.parted) t += part(t, regime, next);
-      y = next;
-      end.deepest = std::max(end.deepest, overlap(y));
-      h = std::min(kLongestStep * scale, better * h);
+      end.deepest = std::max(end.deepest, step.deepest());
+      if (what == Event::parting) {
+        end.parted = true;
+        t += part(t, regime, y);
+      } else if (what == Event::turn) {
+        // There F_n vanishes, and so does the Coulomb limit.
+        regime = {!regime.pressed, T::kActs && tangential_speed(y) > 0};
+      } else if (what == Event::limit) {
+        regime.slides = !regime.slides;
+      }
+      if (error < kEasy) longest = std::min(2 * longest, kLongestStep * scale);
     }
     end.time = t;
     end.motion = motion(y, start);
@@ -93,21 +85,23 @@ class Encounter {
 
   [[nodiscard]] EncounterForce force(const RelativeMotion& m) const {
     const Numbers y = numbers(m);
-    Kinks far;
-    const Forces f = forces(y, kinks(y), far);
-    const Vec3 n = vector(f.n), f_t = vector(f.f_t);
-    return {f.f_n * n + f_t, n.cross(f_t), n};
+    const Forces f = forces(y, regime_at(y));
+    const Vec3 n = vector(f.n);
+    if constexpr (T::kActs) {
+      const Vec3 f_t = vector(f.f_t);
+      return {f.f_n * n + f_t, n.cross(f_t), n};
+    } else {
+      return {f.f_n * n, Vec3::Zero(), n};
+    }
   }
 
  private:
-  struct Scales {
-    double length, speed;  ///< errors that a step may make
+  /// Of the force, between its kinks.
+  struct Regime {
+    bool pressed, slides;  ///< F_n > 0; the Coulomb limit binds
   };
-  struct Forces {
-    double n[D], f_t[D] = {};          // as vectors
-    Tangent<double, kTurn> turning{};  // n x F_t; in the plane F_t
-    double overlap, v_n, f_n;
-  };
+  enum class Event { none, turn, limit, parting };  ///< turn: F_n changes its sign
+  static constexpr double kEasy = 1e-4;             ///< error of a step that could have been twice as long
 
   static void put(const Vec3& v, double* to) {
     if constexpr (D == 2) {
@@ -135,251 +129,212 @@ class Encounter {
       m.s = D == 2 ? Vec3(start.s.x(), -y[2 * D], start.s.z()) : vector(y.data() + 2 * D);
     return m;
   }
-  static double dot(const double* a, const double* b) {
-    double sum = a[D - 1] * b[D - 1];
-    for (int k = D - 2; k >= 0; --k) sum += a[k] * b[k];
-    return sum;
-  }
   [[nodiscard]] double distance(const Numbers& y) const {
-    return wall_ ? dot(n_.data(), y.data()) : std::sqrt(dot(y.data(), y.data()));
+    return wall_ ? Forces::dot(n_.data(), y.data()) : std::sqrt(Forces::dot(y.data(), y.data()));
   }
   [[nodiscard]] double overlap(const Numbers& y) const { return set_.reach - distance(y); }
-  [[nodiscard]] double normal_speed(const Numbers& y) const {
-    return wall_ ? dot(n_.data(), y.data() + D) : dot(y.data(), y.data() + D) / distance(y);
-  }
 
-  /// Normal motion and force, and the tangential velocity.
-  void approach(const Numbers& y, Forces& f, Tangent<double, kTurn>& v_t) const {
-    const double apart = distance(y);
-    const double inverse = 1 / apart;
-    for (int k = 0; k < D; ++k) f.n[k] = wall_ ? n_[k] : y[k] * inverse;
-    f.overlap = set_.reach - apart;
-    f.v_n = dot(f.n, y.data() + D);
-    f.f_n = N::template force<double>(c_n_.data(), f.overlap, f.v_n, nullptr);
-    if constexpr (T::kActs && D == 2) {
-      v_t.c[0] = f.n[0] * y[3] - f.n[1] * y[2] - y[4];
-    } else if constexpr (T::kActs) {
-      for (int k = 0; k < 3; ++k) {
-        const int l = (k + 1) % 3, m = (k + 2) % 3;
-        v_t.c[k] = y[3 + k] - f.v_n * f.n[k] - (y[6 + l] * f.n[m] - y[6 + m] * f.n[l]);
-      }
-    }
-  }
-  [[nodiscard]] Kinks kinks(const Numbers& y) const {
-    if constexpr (T::kActs) {
-      Forces f;
-      Tangent<double, kTurn> v_t{};
-      approach(y, f, v_t);
-      return {f.f_n, T::slack(c_t_.data(), norm(v_t), f.f_n)};
-    } else {
-      return {};
-    }
-  }
-  /// In a regime of the force; \param far how far its kinks are
-  Forces forces(const Numbers& y, const Kinks& regime, Kinks& far) const {
+  [[nodiscard]] Forces approach(const Numbers& y) const {
     Forces f;
-    Tangent<double, kTurn> v_t{};
-    approach(y, f, v_t);
-    if constexpr (T::kActs) {
-      far = {f.f_n, T::slack(c_t_.data(), norm(v_t), f.f_n)};
-      // |F_n| is continued beyond its kink as +F_n or -F_n.
-      const double pressed = regime[0] > 0 ? f.f_n : -f.f_n;
-      Tangent<double, kTurn> f_t;
-      if (regime[1] >= 0)
-        f_t = T::sticking(c_t_.data(), v_t);
-      else if (pressed >= 0)
-        f_t = T::sliding(c_t_.data(), v_t, pressed);
-      else
-        f_t = -1.0 * T::sliding(c_t_.data(), v_t, pressed);
-      if constexpr (D == 2) {
-        f.f_t[0] = -f_t.c[0] * f.n[1], f.f_t[1] = f_t.c[0] * f.n[0];
-        f.turning = f_t;
-      } else {
-        for (int k = 0; k < 3; ++k) {
-          const int l = (k + 1) % 3, m = (k + 2) % 3;
-          f.f_t[k] = f_t.c[k];
-          f.turning.c[k] = f.n[l] * f_t.c[m] - f.n[m] * f_t.c[l];
-        }
-      }
-    }
+    f.approach(c_n_.data(), set_.reach, wall_ ? n_.data() : nullptr, y.data(), y.data() + D,
+               y.data() + 2 * D);
     return f;
   }
-  /// \returns the overlap, and how far the kinks are
-  std::pair<double, Kinks> rate(double t, const Numbers& y, const Kinks& regime, Numbers& dy) const {
-    Kinks far;
-    const Forces f = forces(y, regime, far);
-    const double swing = wall_ && set_.omega > 0 ? std::sin(set_.omega * t) : 0;
-    for (int k = 0; k < D; ++k) {
-      dy[k] = y[D + k];
-      dy[D + k] = (f.f_n * f.n[k] + f.f_t[k]) * inv_mass_;
-      if (wall_) dy[D + k] += pull_[k] + swing_[k] * swing;
+  [[nodiscard]] Forces forces(const Numbers& y, const Regime& regime) const {
+    Forces f = approach(y);
+    f.rub(c_t_.data(), regime.pressed, regime.slides);
+    return f;
+  }
+  [[nodiscard]] Regime regime_at(const Numbers& y) const {
+    Forces f = approach(y);
+    Regime regime{f.f_n > 0, false};
+    if constexpr (T::kActs) {
+      f.rub(c_t_.data(), regime.pressed, false);
+      regime.slides = f.slack < 0;
     }
-    if constexpr (T::kActs)
-      for (int k = 0; k < kTurn; ++k) dy[2 * D + k] = -set_.turn * f.turning.c[k];
-    return {f.overlap, far};
+    return regime;
+  }
+  [[nodiscard]] double tangential_speed(const Numbers& y) const {
+    if constexpr (T::kActs) return norm(approach(y).v_t);
+    return 0;
+  }
+  /// Accelerations other than the contact's.
+  void push_at(double t, std::array<double, D>& push) const {
+    const double swing = set_.omega > 0 ? std::sin(set_.omega * t) : 0;
+    for (int k = 0; k < D; ++k) push[k] = pull_[k] + swing_[k] * swing;
+  }
+  std::array<double, kSlopes> slopes(const Forces& f, double t) const {
+    std::array<double, kSlopes> to;
+    std::array<double, D> push{};
+    if (wall_) push_at(t, push);
+    f.slopes(inv_mass_, set_.turn, push.data(), to.data());
+    return to;
   }
 
-  /// A step from one place in one regime of the force, and the motion between its ends.
+  /// A step in one regime of the force.
   class Step {
    public:
-    Step(const Encounter& law, const Kinks& regime, double t, const Numbers& y)
-        : law_(law), regime_(regime), t_(t), y_(y) {
-      std::tie(overlaps_[0], far_[0]) = law_.rate(t, y, regime, slopes_[0]);
+    Step(const Encounter& law, double speed, double scale, double tolerance)
+        : law_(law),
+          numbers_(Collocation::numbers()),
+          tolerance_(tolerance),
+          speed_(speed),
+          near_(0.1 * std::sqrt(tolerance)) {
+      // The spring and the dashpot that the normal force is like.
+      const double deep = speed * scale / 3;
+      const auto f_n = [&](double overlap, double v_n) {
+        return N::template force<double>(law.c_n_.data(), overlap, v_n, nullptr);
+      };
+      start_.stiffness = f_n(deep, 0) / deep * law.inv_mass_;
+      start_.damping = -f_n(0, speed) / speed * law.inv_mass_;
+      frequency_ = std::sqrt(std::max(0.0, start_.stiffness));
+      start_.normal_law = law.c_n_.data(), start_.tangential_law = law.c_t_.data();
+      start_.reach = law.set_.reach, start_.inv_mass = law.inv_mass_, start_.turn = law.set_.turn;
+      start_.wall = law.wall_ ? law.n_.data() : nullptr;
+      start_.push = law.wall_ ? push_[0].data() : nullptr;
+      start_.method = &numbers_;
+      start_.enough = 0.5 * tolerance * speed;
     }
     /// \returns the error over what is allowed
-    double take(double h, const Scales& scales) {
-      h_ = h;
-      slope_at<1>(), slope_at<2>(), slope_at<3>(), slope_at<4>(), slope_at<5>(), slope_at<6>();
-      slope_at<7>(), slope_at<8>(), slope_at<9>(), slope_at<10>(), slope_at<11>();
-      end_ = moved<dormand_prince::kStages>();
-      continued_ = false;
-      const Numbers off_5 = weighted<dormand_prince::kError, 0>(),
-                    off_3 = weighted<dormand_prince::kError, 1>();
-      double fifth = 0, third = 0;
-      for (std::size_t q = 0; q < kNumbers; ++q) {
-        const double allowed = q < D ? scales.length : scales.speed;
-        fifth += off_5[q] * off_5[q] / (allowed * allowed),
-            third += off_3[q] * off_3[q] / (allowed * allowed);
-      }
-      if (!(fifth > 0)) return fifth;
-      return std::abs(h) * fifth / std::sqrt((fifth + 0.01 * third) * kNumbers);
+    double take(const Regime& regime, double t, double h, const Numbers& y) {
+      y_ = y;
+      const Forces f = law_.forces(y, regime);
+      const auto slopes = law_.slopes(f, t);
+      if (law_.wall_)
+        for (std::size_t k = 0; k < kMoments; ++k) {
+          std::array<double, D> push;
+          law_.push_at(t + numbers_.moment[k] * h, push);
+          for (std::size_t q = 0; q < D; ++q) push_[q][k] = push[q];
+        }
+      start_.h = h;
+      start_.pressed = regime.pressed, start_.slides = regime.slides;
+      start_.numbers = y_.data(), start_.slopes = slopes.data(), start_.normal = f.n;
+      const double width = frequency_ * h * (Collocation::kWidths / Collocation::kWidest);
+      start_.response =
+          &numbers_.response[static_cast<std::size_t>(std::min(width + 0.5, Collocation::kWidths + 0.0))];
+      if (width < kNarrow) start_.response = nullptr;
+      overlap_ = f.overlap, f_n_ = f.f_n;
+      if constexpr (T::kActs) slack_ = f.slack;
+      law_.step_(start_, motion_);
+      if (!(motion_.change <= start_.enough)) return HUGE_VAL;
+      double most = 0;
+      for (std::size_t q = 0; q < D; ++q)
+        for (const auto& last : numbers_.last) {
+          double sum = 0;
+          for (std::size_t k = 0; k < kMoments; ++k) sum += last[k] * motion_.slopes[q][k];
+          most = std::max(most, std::abs(sum));
+        }
+      return kOfLast * h * most / (tolerance_ * speed_);
     }
-    [[nodiscard]] const Numbers& from() const { return y_; }
-    [[nodiscard]] const Numbers& end() const { return end_; }
-    /// The earliest fraction of the step, of those where slopes were taken, at which a kink has been passed;
-    /// 1 if none is. What begins and ends between two of them is missed, and is as small as it is short.
-    [[nodiscard]] double passes(std::size_t which) const {
-      double first = 1;
-      for (std::size_t k = 1; k < dormand_prince::kStages; ++k)
-        if ((far_[k][which] > 0) != (far_[0][which] > 0)) first = std::min(first, dormand_prince::kNode[k]);
+    [[nodiscard]] double deepest() const {
+      return *std::max_element(motion_.overlap, motion_.overlap + kMoments);
+    }
+    /// What happens first, and at which fraction of the step.
+    [[nodiscard]] std::pair<double, Event> first_event(const Regime& regime) const {
+      std::pair<double, Event> first{1, Event::none};
+      const auto look = [&](Event what, double begins, const double* values, bool positive) {
+        for (std::size_t k = 0; k < kMoments; ++k) {
+          if ((values[k] > 0) == positive) continue;
+          const double x = vanishing(begins, values, k, near_);
+          if (x < first.first || first.second == Event::none) first = {x, what};
+          return;
+        }
+      };
+      if constexpr (T::kActs) {
+        look(Event::limit, slack_, motion_.slack, !regime.slides);
+        look(Event::turn, f_n_, motion_.f_n, regime.pressed);
+      }
+      look(Event::parting, overlap_, motion_.overlap, true);
       return first;
     }
-    /// The earliest of them before x at which the surfaces have parted; x if they have not.
-    [[nodiscard]] double parts(double x) const {
-      for (std::size_t k = 1; k < dormand_prince::kStages; ++k)
-        if (overlaps_[k] <= 0) x = std::min(x, dormand_prince::kNode[k]);
-      return x;
+    /// Which part of a step that failed goes not far beyond the first kink, as far as it is seen.
+    [[nodiscard]] double to_first_event(const Regime& regime) const {
+      for (std::size_t k = 0; k + 2 < kMoments; ++k)
+        if ((motion_.slack[k] > 0) != !regime.slides || (motion_.f_n[k] > 0) != regime.pressed)
+          return std::min(0.7, numbers_.moment[k + 1]);
+      return 0.5;
     }
     /// The motion at a fraction x of the step.
-    [[nodiscard]] Numbers at(double x) {
-      if (!continued_) go_on();
-      Numbers y{};
-      for (std::size_t k = terms_.size(); k-- > 0;)
-        for (std::size_t q = 0; q < kNumbers; ++q) y[q] = (y[q] + terms_[k][q]) * (k % 2 == 0 ? x : 1 - x);
-      for (std::size_t q = 0; q < kNumbers; ++q) y[q] += y_[q];
+    [[nodiscard]] Numbers at(double x) const {
+      Numbers y;
+      if (x >= 1) {
+        for (std::size_t q = 0; q < kNumbers; ++q) y[q] = motion_.numbers[q][kMoments - 1];
+        return y;
+      }
+      Shares shares;
+      share(x, shares);
+      const double whole = 1 / sum(shares);
+      for (double& part : shares) part *= whole;
+      for (std::size_t q = 0; q < kNumbers; ++q) y[q] = sum(shares, y_[q], motion_.numbers[q]);
       return y;
     }
 
    private:
-    template <const auto& Table, std::size_t Row>
-    [[nodiscard]] Numbers weighted() const {
-      Numbers sum{};
-      [&]<std::size_t... J>(std::index_sequence<J...>) {
-        const auto add = [&]<std::size_t K>() {
-          if constexpr (Table[Row][K] != 0)
-            for (std::size_t q = 0; q < kNumbers; ++q) sum[q] += Table[Row][K] * slopes_[K][q];
-        };
-        (add.template operator()<J>(), ...);
+    static constexpr double kOfLast = 3e-3;  ///< error over the change that the last coefficient makes
+    static constexpr double kNarrow = 4;     ///< the spring hardly counts
+
+    using Shares = std::array<double, kMoments + 1>;
+    /// Of the polynomial through a start and the values at the moments: how much each counts at x, but for a
+    /// common factor.
+    void share(double x, Shares& shares) const {
+      for (std::size_t k = 0; k <= kMoments; ++k) {
+        const double d = x - numbers_.place[k];
+        shares[k] = numbers_.weight[k] / (d == 0 ? 1e-100 : d);
       }
-      (std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(Table[Row])>>>());
-      return sum;
     }
-    template <std::size_t Row>
-    [[nodiscard]] Numbers moved() const {
-      Numbers y = weighted<dormand_prince::kWeight, Row>();
-      for (std::size_t q = 0; q < kNumbers; ++q) y[q] = y_[q] + h_ * y[q];
-      return y;
+    static double sum(const Shares& shares) {
+      double all = shares[kMoments];
+      for (std::size_t k = 0; k < kMoments; ++k) all += shares[k];
+      return all;
     }
-    template <std::size_t Row>
-    void slope_at() {
-      std::tie(overlaps_[Row], far_[Row]) =
-          law_.rate(t_ + dormand_prince::kNode[Row] * h_, moved<Row>(), regime_, slopes_[Row]);
+    static double sum(const Shares& shares, double begins, const double* values) {
+      double all = shares[0] * begins;
+      for (std::size_t k = 0; k < kMoments; ++k) all += shares[k + 1] * values[k];
+      return all;
     }
-    void go_on() {
-      slope_at<12>(), slope_at<13>(), slope_at<14>(), slope_at<15>();
-      const Numbers high[] = {
-          weighted<dormand_prince::kBetween, 0>(), weighted<dormand_prince::kBetween, 1>(),
-          weighted<dormand_prince::kBetween, 2>(), weighted<dormand_prince::kBetween, 3>()};
-      for (std::size_t q = 0; q < kNumbers; ++q) {
-        const double way = end_[q] - y_[q], first = h_ * slopes_[0][q], last = h_ * slopes_[12][q];
-        terms_[0][q] = way;
-        terms_[1][q] = first - way;
-        terms_[2][q] = 2 * way - (first + last);
-        for (std::size_t k = 0; k < 4; ++k) terms_[3 + k][q] = h_ * high[k][q];
+    /// Where the polynomial vanishes between moment k, where its sign is another, and the one before:
+    /// secants, or halves where they would leave. \param near how near, of the larger of the two values: the
+    /// force has no jump there, so that the error of what follows is of second order in it
+    [[nodiscard]] double vanishing(double begins, const double* values, std::size_t k, double near) const {
+      double low = numbers_.place[k], high = numbers_.place[k + 1];
+      const double g_low = k == 0 ? begins : values[k - 1], g_high = values[k];
+      const bool sign = g_high > 0;
+      // Rounding, or how near the kink before was found.
+      if ((g_low > 0) == sign) return std::min(high, kShortestStep);
+      const double enough = near * std::max(std::abs(g_low), std::abs(g_high));
+      double before = high, g_before = g_high, x = low + (high - low) * g_low / (g_low - g_high);
+      Shares shares;
+      for (int n = 0; n < 60; ++n) {
+        share(x, shares);
+        const double g = sum(shares, begins, values) / sum(shares);
+        if (std::abs(g) <= enough || high - low < 1e-15) break;
+        ((g > 0) == sign ? high : low) = x;
+        const double next = x - g * (x - before) / (g - g_before);
+        before = x, g_before = g;
+        x = next > low && next < high ? next : 0.5 * (low + high);
       }
-      continued_ = true;
+      return x;
     }
 
     const Encounter& law_;
-    const Kinks& regime_;
-    double t_, h_ = 0;
-    const Numbers& y_;
-    Numbers end_{};
-    std::array<Numbers, dormand_prince::kSlopes> slopes_;
-    std::array<Kinks, dormand_prince::kSlopes> far_;
-    std::array<double, dormand_prince::kSlopes> overlaps_;
-    std::array<Numbers, 7> terms_;
-    bool continued_ = false;
+    const Collocation& numbers_;
+    double tolerance_, speed_, frequency_, near_;
+    double overlap_ = 0, f_n_ = 0, slack_ = 0;  ///< at the start
+    Numbers y_;
+    CollocationStart start_;
+    CollocationMotion motion_;
+    alignas(64) std::array<std::array<double, kMoments>, D> push_;
   };
 
-  /// The fraction of a step up to x = `last` at which g(y) has just changed its sign: regula falsi, an end
-  /// that stays getting half its value (the Illinois rule). \param near what |g| may be there
-  template <class G>
-  static double vanishing(Step& step, double last, double g_low, double g_high, const G& g, double near) {
-    double low = 0, high = last;
-    const bool sign = g_high > 0;
-    double found = g_high;
-    int kept = 0;
-    for (int k = 0; k < 60 && high - low > 1e-15 && std::abs(found) > near; ++k) {
-      const double x = std::clamp(low + (high - low) * g_low / (g_low - g_high), low + 0.01 * (high - low),
-                                  high - 0.01 * (high - low));
-      const double value = g(step.at(x));
-      if ((value > 0) != sign) {
-        low = x, g_low = value;
-        if (kept == 1) g_high /= 2;
-        kept = 1;
-      } else {
-        high = x, g_high = found = value;
-        if (kept == -1) g_low /= 2;
-        kept = -1;
-      }
-    }
-    return high;
-  }
-
-  /// The fraction of a step at which the force has just passed its first kink; 1 if it passes none.
-  /// \param near how near, of what F_n and the limit are at the step's ends: the force has no jump there, so
-  /// that the error of what follows is of second order in it
-  double to_kink(Step& step, const Kinks& at_start, double near) const {
-    double x = 1;
-    for (std::size_t which = 0; which < at_start.size(); ++which) {
-      const double begins = at_start[which];
-      // A slope was taken at a rougher place than the motion there.
-      for (const double end : {std::min(step.passes(which), x), x}) {
-        const double ends = kinks(end < 1 ? step.at(end) : step.end())[which];
-        if ((begins > 0) == (ends > 0)) continue;
-        x = vanishing(
-            step, end, begins, ends, [&](const Numbers& y) { return kinks(y)[which]; },
-            near * std::max(std::abs(begins), std::abs(ends)));
-        break;
-      }
-    }
-    return x;
-  }
-  /// The fraction of a step that ends beyond contact at which the surfaces part.
-  double to_parting(Step& step, double last) const {
-    return vanishing(
-        step, last, std::max(overlap(step.from()), 1e-300), overlap(last < 1 ? step.at(last) : step.end()),
-        [&](const Numbers& y) { return overlap(y); }, 1e-12 * set_.reach);
-  }
   /// From close to the moment of parting to it, by tiny straight steps. \returns how long they took
-  double part(double t, const Kinks& regime, Numbers& y) const {
+  double part(double t, const Regime& regime, Numbers& y) const {
     double passed = 0;
     for (int k = 0; k < 6 && std::abs(overlap(y)) > 4e-15 * set_.reach; ++k) {
-      const double more = overlap(y) / normal_speed(y);
-      Numbers change;
-      rate(t + passed, y, regime, change);
-      for (std::size_t q = 0; q < kNumbers; ++q) y[q] += more * change[q];
+      const Forces f = forces(y, regime);
+      const double more = f.overlap / f.v_n;
+      const auto change = slopes(f, t + passed);
+      for (std::size_t q = 0; q < D; ++q) y[q] += more * y[D + q];
+      for (std::size_t q = 0; q < kSlopes; ++q) y[D + q] += more * change[q];
       passed += more;
     }
     return passed;
@@ -390,6 +345,7 @@ class Encounter {
   std::array<double, T::kConstants> c_t_;
   double inv_mass_;
   bool wall_;
+  CollocationStep step_;
   std::array<double, D> n_{}, pull_{}, swing_{};
 };
 

@@ -50,9 +50,9 @@ double encounter_time(const EncounterSetting& setting, double speed);
 
 /// Integrates from `motion` at `time` (in contact, or at first touch) until the surfaces part or `last`.
 ///
-/// Runge-Kutta steps of order 8 (dormand_prince.hpp) of at most about a third of a contact time, as long as
-/// `tolerance` allows; their continuation tells where the Coulomb limit begins or ceases to bind, where F_n
-/// changes its sign, and where the surfaces part, and there they end.
+/// Steps of order 15 (collocation.hpp) of at most half a contact time, as long as `tolerance` allows; the
+/// polynomial that each one is tells where the Coulomb limit begins or ceases to bind, where F_n changes its
+/// sign, and where the surfaces part, and there it ends.
 /// \param tolerance of lengths and velocities relative to those of the encounter; 1e-13 .. 1e-3
 EncounterEnd meet(const EncounterSetting& setting, const RelativeMotion& motion, double time, double last,
                   double tolerance);

@@ -427,7 +427,7 @@ class FlightKernel : public Kernel {
         crowd_ = {static_cast<std::int32_t>(i)};
         return false;
       }
-      if (const double t = wall_touch(i, walls_[w], from); t < event.time)
+      if (const double t = wall_touch(i, walls_[w], from, event.time); t < event.time)
         event = {t, Event::Kind::wall, -1 - static_cast<std::int32_t>(w)};
     }
     crowd_ = {static_cast<std::int32_t>(i)};
@@ -493,10 +493,10 @@ class FlightKernel : public Kernel {
   /// Adds to `crowd_` the beads whose lines come near a body's. \returns whether there is one
   bool add_near(const FlightLine& line, double radius, double begin, double end) {
     const std::size_t before = crowd_.size();
-    for (std::size_t k = 0; k < lines_->size(); ++k)
-      if (const auto bead = static_cast<std::int32_t>(k);
-          !in_crowd(bead) && come_near(line, radius, (*lines_)[k], lines_->radius(k), begin, end))
-        crowd_.push_back(bead);
+    near_.clear();
+    lines_->find_near(line, radius, begin, end, near_);
+    for (const std::int32_t k : near_)
+      if (!in_crowd(k)) crowd_.push_back(k);
     return crowd_.size() > before;
   }
 
@@ -506,10 +506,11 @@ class FlightKernel : public Kernel {
     if (!wall.moves || above > std::abs(amplitude_)) return above < 0;
     return above < wall.n.dot(plate(t));
   }
-  /// When a bead on its line first touches a wall, from a time on; never: infinite. What lies between them is
-  /// a parabola less a sine, h(t); since its curvature is bounded below by -m, h + h' x - m x^2/2 = 0 gives a
-  /// step x that never goes beyond the first root, and that converges on it as Newton's do.
-  [[nodiscard]] double wall_touch(std::size_t i, const Wall& wall, double from) const {
+  /// When a bead on its line first touches a wall, from a time on; never, or not before `needed`: infinite.
+  /// What lies between them is a parabola less a sine, h(t); since its curvature is bounded below by -m, h +
+  /// h' x - m x^2/2 = 0 gives a step x that never goes beyond the first root, and that converges on it as
+  /// Newton's do.
+  [[nodiscard]] double wall_touch(std::size_t i, const Wall& wall, double from, double needed) const {
     const FlightLine line = (*lines_)[i];
     const double height = wall.n.dot(line.a) - wall.offset - lines_->radius(i), speed = wall.n.dot(line.b),
                  fall = wall.n.dot(gravity_);
@@ -524,6 +525,7 @@ class FlightKernel : public Kernel {
         if (down == HUGE_VAL) return HUGE_VAL;
         t += down;
       }
+      if (t >= needed) return HUGE_VAL;
       double sine = 0, cosine = 0;
       if (most > 0) sine = std::sin(omega_ * t), cosine = std::cos(omega_ * t);
       const double h = height + t * (speed + 0.5 * t * fall) - swing * sine;
@@ -652,8 +654,7 @@ class FlightKernel : public Kernel {
     bool alone = true;
     for (std::size_t q = 0; q < (j < 0 ? 1u : 2u); ++q) {
       const double reach = lines_->radius(q == 0 ? a : b) + c.stray[q];
-      if (lines_->any_near(c.before[q], reach, now_, c.until, {a, j < 0 ? a : b}))
-        alone = !add_near(c.before[q], reach, now_, c.until) && alone;
+      alone = !add_near(c.before[q], reach, now_, c.until) && alone;
       alone = !near_others_meeting(c.before[q], reach, c.until) && alone;
       // A bead near a wall and in contact with another body is three bodies too.
       for (std::size_t w = 0; w < walls_.size(); ++w)
@@ -867,6 +868,7 @@ class FlightKernel : public Kernel {
   std::vector<Contact> open_;
   std::vector<Crowd> crowds_;
   std::vector<std::int32_t> crowd_;  ///< beads that were just found to meet in threes
+  std::vector<std::int32_t> near_;   ///< used by add_near() alone
   System frame_;                     ///< without beads: walls, drive, period
   std::vector<Vec3> rim_;            ///< R w, after a contact that goes on
   std::vector<double> mass_, turn_;  ///< turn: R^2/I

@@ -26,7 +26,6 @@ struct View {
 struct Body {
   const double *a, *b;  // of the line, three numbers each
   double radius, begin, end;
-  std::array<std::size_t, 2> but;
 };
 }  // namespace twincell::sim::flight
 #endif
@@ -51,11 +50,8 @@ HWY_INLINE V nearest(V x, double period) {
   const V magic = set(6755399441055744.0);  // 1.5 2^52: adding it rounds
   return hn::Sub(x, hn::Mul(hn::Sub(hn::Add(hn::Mul(x, set(1 / period)), magic), magic), set(period)));
 }
-HWY_INLINE M others(std::size_t first, const View& f, std::size_t i, std::size_t j) {
-  const V place = hn::Add(hn::Iota(Tag(), 0), set(static_cast<double>(first)));
-  return hn::And(
-      hn::Lt(place, set(static_cast<double>(f.n))),
-      hn::And(hn::Ne(place, set(static_cast<double>(i))), hn::Ne(place, set(static_cast<double>(j)))));
+HWY_INLINE V places(std::size_t first) {
+  return hn::Add(hn::Iota(Tag(), 0), set(static_cast<double>(first)));
 }
 
 FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
@@ -65,7 +61,9 @@ FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
   V best = infinite, partner = set(-1), until = infinite;
   M overlap = hn::FirstN(tag, 0);
   for (std::size_t j = 0; j < f.n; j += hn::Lanes(tag)) {
-    const M counts = others(j, f, i, i);
+    const V place = places(j);
+    const M counts =
+        hn::And(hn::Lt(place, set(static_cast<double>(f.n))), hn::Ne(place, set(static_cast<double>(i))));
     const V reach = hn::Add(own_radius, hn::LoadU(tag, f.radius + j));
     const V from = hn::Max(start, hn::LoadU(tag, f.from + j));
     V square = zero, closing = zero, speed = zero;
@@ -103,7 +101,7 @@ FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
     const V time = hn::IfThenElse(hits, hn::Add(from, hn::Max(after, zero)), infinite);
     const M sooner = hn::Lt(time, best);
     best = hn::IfThenElse(sooner, time, best);
-    partner = hn::IfThenElse(sooner, hn::Add(hn::Iota(tag, 0), set(static_cast<double>(j))), partner);
+    partner = hn::IfThenElse(sooner, place, partner);
   }
   FlightLines::Hit hit{HUGE_VAL, -1, HUGE_VAL, !hn::AllFalse(tag, overlap)};
   alignas(64) double times[flight::kSpare], partners[flight::kSpare], untils[flight::kSpare];
@@ -121,10 +119,9 @@ FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
   return hit;
 }
 
-bool any_near(const View& f, const Body& body) {
+void find_near(const View& f, const Body& body, std::vector<std::int32_t>& found) {
   const Tag tag;
   const V zero = hn::Zero(tag), begin = set(body.begin), span = set(body.end - body.begin);
-  M near = hn::FirstN(tag, 0);
   for (std::size_t j = 0; j < f.n; j += hn::Lanes(tag)) {
     const V reach = hn::Add(set(body.radius), hn::LoadU(tag, f.radius + j));
     V d[3], w[3], closing = zero, speed = set(1e-300);
@@ -143,10 +140,14 @@ bool any_near(const View& f, const Body& body) {
       const V x = hn::Add(d[k], hn::Mul(w[k], nearest_time));
       square = hn::Add(square, hn::Mul(x, x));
     }
-    near =
-        hn::Or(near, hn::And(others(j, f, body.but[0], body.but[1]), hn::Lt(square, hn::Mul(reach, reach))));
+    const M near =
+        hn::And(hn::Lt(places(j), set(static_cast<double>(f.n))), hn::Lt(square, hn::Mul(reach, reach)));
+    if (hn::AllFalse(tag, near)) continue;
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(tag, near, bits);
+    for (std::size_t k = 0; k < hn::Lanes(tag); ++k)
+      if ((bits[0] >> k & 1U) != 0) found.push_back(static_cast<std::int32_t>(j + k));
   }
-  return !hn::AllFalse(tag, near);
 }
 
 }  // namespace twincell::sim::HWY_NAMESPACE
@@ -156,7 +157,7 @@ HWY_AFTER_NAMESPACE();
 namespace twincell::sim {
 
 HWY_EXPORT(first_hit);
-HWY_EXPORT(any_near);
+HWY_EXPORT(find_near);
 
 namespace {
 
@@ -190,10 +191,11 @@ FlightLines::Hit FlightLines::first_hit(std::size_t i, double now) const {
   return HWY_DYNAMIC_DISPATCH(first_hit)(view(n_, dimension_, a_, b_, radius_, from_, period_), i, now);
 }
 
-bool FlightLines::any_near(const FlightLine& line, double radius, double begin, double end,
-                           std::array<std::size_t, 2> but) const {
-  return HWY_DYNAMIC_DISPATCH(any_near)(view(n_, dimension_, a_, b_, radius_, from_, period_),
-                                        {line.a.data(), line.b.data(), radius, begin, end, but});
+void FlightLines::find_near(const FlightLine& line, double radius, double begin, double end,
+                            std::vector<std::int32_t>& found) const {
+  HWY_DYNAMIC_DISPATCH(find_near)
+  (view(n_, dimension_, a_, b_, radius_, from_, period_), {line.a.data(), line.b.data(), radius, begin, end},
+   found);
 }
 
 }  // namespace twincell::sim

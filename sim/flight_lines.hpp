@@ -61,10 +61,10 @@ class FlightLines {
     bool overlap;          ///< another bead already overlaps: no flight
   };
   [[nodiscard]] Hit first_hit(std::size_t i, double now) const;
-  /// Whether a body of this radius on this line comes into touch with any other bead's line between two
-  /// times, whose difference is short. \param but two beads that do not count, or the same twice
-  [[nodiscard]] bool any_near(const FlightLine& line, double radius, double begin, double end,
-                              std::array<std::size_t, 2> but) const;
+  /// Appends to `found` the beads with whose lines a body of this radius on this line comes into touch
+  /// between two times, whose difference is short. Its own bead, if it is one of these, is found too.
+  void find_near(const FlightLine& line, double radius, double begin, double end,
+                 std::vector<std::int32_t>& found) const;
 
  private:
   std::size_t n_;

@@ -17,6 +17,11 @@ int threads_for(std::size_t beads, int asked) {
   return static_cast<int>(std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(1, most)));
 }
 
+const Target& widest_target() {
+  static const Target& widest = kAvx512.available() ? kAvx512 : kAvx2.available() ? kAvx2 : kScalar;
+  return widest;
+}
+
 bool available(KernelKind kind) {
   switch (kind) {
     case KernelKind::avx2:
@@ -45,7 +50,7 @@ std::unique_ptr<Kernel> make_kernel(const Plan& plan, const GuardLimits& limits,
     case KernelKind::best:
       break;
   }
-  const Target& widest = kAvx512.available() ? kAvx512 : kAvx2.available() ? kAvx2 : kScalar;
+  const Target& widest = widest_target();
   if (!plan.flights) return make_list_kernel(plan, limits, widest, threads);
   return make_flight_kernel(plan, limits, [plan, limits, &widest, threads] {
     return make_list_kernel(plan, limits, widest, threads);

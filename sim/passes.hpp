@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "sim/collocation.hpp"
 #include "sim/contact.hpp"
 
 namespace twincell::sim {
@@ -169,10 +170,14 @@ struct Target {
   int width;  ///< contacts to a packet
   bool (*available)();
   Passes (*find)(const PassKey&);
+  /// Of encounters (collocation.hpp). \param normal, tangential places of laws that can meet alone
+  CollocationStep (*find_step)(std::size_t normal, std::size_t tangential, int dimension);
 };
 
 extern const Target kScalar;
 extern const Target kAvx2;
 extern const Target kAvx512;
+/// The widest that this processor has.
+const Target& widest_target();
 
 }  // namespace twincell::sim

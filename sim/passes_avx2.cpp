@@ -1,5 +1,6 @@
 // The passes with AVX2. CMake compiles this file, and no other, for processors that have it.
 
+#include "sim/collocation_body.hpp"
 #include "sim/lanes_highway.hpp"
 #include "sim/passes_body.hpp"
 
@@ -12,6 +13,7 @@ const Target kAvx2 = {"AVX2", HWY_NAMESPACE::HighwayLanes::kWidth,
                       [](const PassKey& key) {
                         return key.single ? PassTable<HWY_NAMESPACE::SingleLanes>::find(key)
                                           : PassTable<HWY_NAMESPACE::HighwayLanes>::find(key);
-                      }};
+                      },
+                      &CollocationTable<HWY_NAMESPACE::HighwayLanes>::find};
 
 }  // namespace twincell::sim

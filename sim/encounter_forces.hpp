@@ -1,0 +1,98 @@
+#pragma once
+/// \file
+/// The forces of an encounter (encounter.hpp) in one of their regimes, at one moment or at several in the
+/// lanes of vectors: written once, for any type of number of laws/real.hpp.
+
+#include <concepts>
+
+#include "sim/laws/concepts.hpp"
+
+namespace twincell::sim {
+
+/// One formula for all overlaps and velocities, without memory.
+template <class N>
+concept SmoothNormal = N::kMemory == 0 && requires {
+  N::kSmooth;
+};
+
+/// No history, and a Coulomb limit that says where it binds.
+template <class T>
+concept PresentTangential = !T::kActs || (!T::kHistory && requires(const double* c, double x) {
+  { T::slack(c, x, x) } -> std::same_as<double>;
+});
+
+/// Forces on i, and what they depend on, in D dimensions.
+template <class V, class N, class T, int D>
+struct EncounterForces {
+  static constexpr int kTurn = D == 2 ? 1 : 3;
+
+  V n[D], f_t[D], overlap, v_n, f_n;
+  Tangent<V, kTurn> v_t, turning;  ///< tangential velocity; n x F_t, in the plane F_t
+  V slack;                         ///< how far the Coulomb limit is from binding
+
+  static V dot(const V* a, const V* b) {
+    V sum = a[D - 1] * b[D - 1];
+    for (int k = D - 2; k >= 0; --k) sum = sum + a[k] * b[k];
+    return sum;
+  }
+
+  /// Normal motion and force, and the tangential velocity. \param wall its normal; null between beads
+  [[gnu::always_inline]] void approach(const V* c_n, V reach, const V* wall, const V* r, const V* u,
+                                       const V* s) {
+    V apart;
+    if (wall != nullptr) {
+      apart = dot(wall, r);
+      for (int k = 0; k < D; ++k) n[k] = wall[k];
+    } else {
+      apart = sqrt(dot(r, r));
+      const V inverse = V(1.0) / apart;
+      for (int k = 0; k < D; ++k) n[k] = r[k] * inverse;
+    }
+    overlap = reach - apart;
+    v_n = dot(n, u);
+    f_n = N::template force<V>(c_n, overlap, v_n, nullptr);
+    if constexpr (T::kActs && D == 2) {
+      v_t.c[0] = n[0] * u[1] - n[1] * u[0] - s[0];
+    } else if constexpr (T::kActs) {
+      for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3, m = (k + 2) % 3;
+        v_t.c[k] = u[k] - v_n * n[k] - (s[l] * n[m] - s[m] * n[l]);
+      }
+    }
+  }
+  /// Friction, after approach(). \param pressed, slides the regime: F_n > 0, and the Coulomb limit binds. It
+  /// is continued beyond where it holds: |F_n| as F_n or -F_n
+  [[gnu::always_inline]] void rub(const V* c_t, bool pressed, bool slides) {
+    if constexpr (T::kActs) {
+      const V pressure = pressed ? f_n : -f_n;
+      const auto beyond = pressure < V(0.0);
+      const V sign = select(beyond, V(-1.0), V(1.0));
+      slack = T::slack(c_t, norm(v_t), f_n);
+      slack = select(beyond, slack - V(2.0) * T::slack(c_t, V(0.0), f_n), slack);
+      const Tangent<V, kTurn> force = slides ? sign * T::sliding(c_t, v_t, f_n) : T::sticking(c_t, v_t);
+      if constexpr (D == 2) {
+        f_t[0] = -(force.c[0] * n[1]), f_t[1] = force.c[0] * n[0];
+        turning = force;
+      } else {
+        for (int k = 0; k < 3; ++k) {
+          const int l = (k + 1) % 3, m = (k + 2) % 3;
+          f_t[k] = force.c[k];
+          turning.c[k] = n[l] * force.c[m] - n[m] * force.c[l];
+        }
+      }
+    }
+  }
+  /// Slopes of u and s, after these. \param push other accelerations; null: none
+  [[gnu::always_inline]] void slopes(V inv_mass, V turn, const V* push, V* to) const {
+    for (int k = 0; k < D; ++k) {
+      V force = f_n * n[k];
+      if constexpr (T::kActs) force = force + f_t[k];
+      to[k] = force * inv_mass;
+      if (push != nullptr) to[k] = to[k] + push[k];
+    }
+    if constexpr (T::kActs)
+      for (int k = 0; k < kTurn; ++k) to[D + k] = -(turn * turning.c[k]);
+  }
+};
+
+}  // namespace twincell::sim
