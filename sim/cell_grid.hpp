@@ -17,12 +17,19 @@ inline Vec3 centre_of(const Bead& b) {
   return {b.x, b.y, b.z};
 }
 
+/// The nearest whole number, of two the even one. Of moderate numbers: adding 1.5 2^52 rounds, where
+/// std::round is a call.
+inline double nearest_whole(double x) {
+  constexpr double kRounds = 6755399441055744.0;
+  return (x + kRounds) - kRounds;
+}
+
 /// From r to the nearest of its images: r + nearest_shift(r) is the shortest. Period 0: not periodic.
 inline Vec3 nearest_shift(const Vec3& r, const std::array<double, 3>& period) {
   Vec3 shift = Vec3::Zero();
   for (int a = 0; a < 3; ++a)
     if (const double p = period[static_cast<std::size_t>(a)]; p > 0 && 2 * std::abs(r[a]) >= p)
-      shift[a] = -p * std::round(r[a] / p);
+      shift[a] = -p * nearest_whole(r[a] / p);
   return shift;
 }
 
@@ -183,11 +190,38 @@ void for_each_near_pair(const std::vector<Bead>& beads, int dimension, const std
     const double gap = std::sqrt(square) - reach;
     if (gap < margin) visit(i, j, gap, shift);
   };
-  constexpr std::size_t kFew = 150;  // of whom every pair is sooner seen than a grid of cells filled
+  // Of a few every pair is sooner seen than a grid of cells filled.
+  constexpr std::size_t kFew = 150, kVeryFew = 12;
   if (beads.size() <= kFew) {
-    const auto n = static_cast<std::int32_t>(beads.size());
-    for (std::int32_t j = 1; j < n; ++j)
-      for (std::int32_t i = 0; i < j; ++i) look_at(i, j);
+    const auto look_at_all_before = [&](std::size_t j) {
+      for (std::size_t i = 0; i < j; ++i) look_at(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+    };
+    if (beads.size() <= kVeryFew) {
+      for (std::size_t j = 1; j < beads.size(); ++j) look_at_all_before(j);
+      return;
+    }
+    // Most have nobody near: that is told by plain loops over numbers that lie together.
+    std::vector<double> at[3], radius;
+    for (const Bead& b : beads) {
+      at[0].push_back(b.x), at[1].push_back(b.y), at[2].push_back(b.z);
+      radius.push_back(b.radius);
+    }
+    const double per[3] = {period[0] > 0 ? 1 / period[0] : 0, period[1] > 0 ? 1 / period[1] : 0,
+                           period[2] > 0 ? 1 / period[2] : 0};
+    constexpr double kMore = 1 + 1e-9;  // look_at() decides, whose rounding is another
+    for (std::size_t j = 1; j < beads.size(); ++j) {
+      const double x = at[0][j], y = at[1][j], z = at[2][j], reach = kMore * (radius[j] + margin);
+      int near = 0;
+      for (std::size_t i = 0; i < j; ++i) {
+        double dx = at[0][i] - x, dy = at[1][i] - y, dz = at[2][i] - z;
+        dx -= period[0] * nearest_whole(dx * per[0]);
+        dy -= period[1] * nearest_whole(dy * per[1]);
+        dz -= period[2] * nearest_whole(dz * per[2]);
+        const double far = reach + kMore * radius[i];
+        near |= dx * dx + dy * dy + dz * dz <= far * far ? 1 : 0;
+      }
+      if (near != 0) look_at_all_before(j);
+    }
     return;
   }
   std::vector<double> radii;

@@ -74,7 +74,8 @@ Collocation reckoned() {
   }
   for (std::size_t k = 0; k <= Collocation::kWidths; ++k) {
     const Number width = Number{Collocation::kWidest} * static_cast<Number>(k) / Collocation::kWidths;
-    c.response[k] = map_of((Matrix::Identity() + width * width * twice).inverse());
+    const Matrix r_a = (Matrix::Identity() + width * width * twice).inverse() * once;
+    c.response[k] = {static_cast<double>(width), map_of(r_a), map_of(r_a * once), map_of(r_a * twice)};
   }
   return c;
 }

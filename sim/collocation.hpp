@@ -20,6 +20,13 @@ struct alignas(64) MomentMap {
   double column[kMoments][kMoments];
 };
 
+/// What an oscillator of frequency omega makes of what its force lacks, for one omega h: with A the integral,
+/// R = (1 + (omega h)^2 A^2)^-1 leads to its acceleration, and
+struct OscillatorResponse {
+  double width;                   ///< omega h
+  MomentMap once, twice, thrice;  ///< R A, R A^2, R A^3
+};
+
 /// Numbers of the method, for a step from 0 to 1.
 struct Collocation {
   alignas(64) double moment[kMoments];
@@ -30,9 +37,7 @@ struct Collocation {
   double weight[1 + kMoments];             ///< ... and what each weighs in the barycentric formula
   static constexpr double kWidest = 1.75;  ///< omega h, of an oscillator that is put in
   static constexpr std::size_t kWidths = 16;
-  /// From what the force lacks to the acceleration that an oscillator then has, for omega h = kWidest
-  /// k/kWidths.
-  MomentMap response[kWidths + 1];
+  OscillatorResponse response[kWidths + 1];  ///< for omega h = kWidest k/kWidths
 
   static const Collocation& numbers();
 };
@@ -42,7 +47,8 @@ struct Collocation {
 struct CollocationStart {
   const double *normal_law, *tangential_law;  ///< their constants
   double reach, inv_mass, turn, h;
-  double stiffness, damping;  ///< of the normal force, over the mass
+  double frequency, damping;  ///< of the oscillator that the normal force is like; over the mass
+  double relaxation;          ///< rate at which friction slows the surfaces, for a first guess
   const double* wall;         ///< its normal; null between beads
   const double* push;         ///< other accelerations at the moments, a row of them per direction; null: none
   bool pressed, slides;       ///< the regime of the force, which is continued beyond where it holds
@@ -51,7 +57,7 @@ struct CollocationStart {
   const double* normal;
   double enough;  ///< what velocities may be off by
   const Collocation* method;
-  const MomentMap* response;  ///< of an oscillator like the normal force; null: none
+  const OscillatorResponse* response;  ///< of an oscillator like the normal force; null: none
 };
 
 /// The motion at the eight moments.
@@ -59,7 +65,8 @@ struct CollocationMotion {
   alignas(64) double numbers[9][kMoments];  ///< r, u, s
   alignas(64) double slopes[6][kMoments];   ///< of u and s
   alignas(64) double overlap[kMoments], f_n[kMoments], slack[kMoments];
-  double change;  ///< of a further pass, about
+  double deepest;  ///< overlap
+  double change;   ///< of a further pass, about
 };
 
 using CollocationStep = void (*)(const CollocationStart&, CollocationMotion&);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "sim/collocation.hpp"
 #include "sim/contact.hpp"
 #include "sim/encounter_forces.hpp"
+#include "sim/moment_polynomial.hpp"
 #include "sim/passes.hpp"
 
 namespace twincell::sim {
@@ -48,7 +50,10 @@ class Encounter {
     const double fall = wall_ ? (set_.pull.norm() + set_.swing.norm()) * scale : 0;
     const double speed = std::max({start.u.norm(), start.s.norm(), fall, 1e-300});
     EncounterEnd end;
-    end.deepest = std::max(0.0, overlap(y));
+    double deep = overlap(y);
+    Numbers middle = y;
+    end.middle = time;
+    end.deepest = std::max(0.0, deep);
     Step step(*this, speed, scale, tolerance);
     Regime regime = regime_at(y);
     double longest = kLongestStep * scale, shorter = 1, t = time;
@@ -67,6 +72,7 @@ class Encounter {
       y = step.at(x);
       t += x * h;
       end.deepest = std::max(end.deepest, step.deepest());
+      if (const double now = overlap(y); now > deep) deep = now, middle = y, end.middle = t;
       if (what == Event::parting) {
         end.parted = true;
         t += part(t, regime, y);
@@ -80,6 +86,7 @@ class Encounter {
     }
     end.time = t;
     end.motion = motion(y, start);
+    end.at_middle = motion(middle, start);
     return end;
   }
 
@@ -136,8 +143,8 @@ class Encounter {
 
   [[nodiscard]] Forces approach(const Numbers& y) const {
     Forces f;
-    f.approach(c_n_.data(), set_.reach, wall_ ? n_.data() : nullptr, y.data(), y.data() + D,
-               y.data() + 2 * D);
+    f.look(set_.reach, wall_ ? n_.data() : nullptr, y.data());
+    f.approach(c_n_.data(), y.data() + D, y.data() + 2 * D);
     return f;
   }
   [[nodiscard]] Forces forces(const Numbers& y, const Regime& regime) const {
@@ -146,12 +153,9 @@ class Encounter {
     return f;
   }
   [[nodiscard]] Regime regime_at(const Numbers& y) const {
-    Forces f = approach(y);
+    const Forces f = approach(y);
     Regime regime{f.f_n > 0, false};
-    if constexpr (T::kActs) {
-      f.rub(c_t_.data(), regime.pressed, false);
-      regime.slides = f.slack < 0;
-    }
+    if constexpr (T::kActs) regime.slides = f.slack(c_t_.data(), regime.pressed) < 0;
     return regime;
   }
   [[nodiscard]] double tangential_speed(const Numbers& y) const {
@@ -185,9 +189,8 @@ class Encounter {
       const auto f_n = [&](double overlap, double v_n) {
         return N::template force<double>(law.c_n_.data(), overlap, v_n, nullptr);
       };
-      start_.stiffness = f_n(deep, 0) / deep * law.inv_mass_;
       start_.damping = -f_n(0, speed) / speed * law.inv_mass_;
-      frequency_ = std::sqrt(std::max(0.0, start_.stiffness));
+      start_.frequency = std::sqrt(std::max(0.0, f_n(deep, 0) / deep * law.inv_mass_));
       start_.normal_law = law.c_n_.data(), start_.tangential_law = law.c_t_.data();
       start_.reach = law.set_.reach, start_.inv_mass = law.inv_mass_, start_.turn = law.set_.turn;
       start_.wall = law.wall_ ? law.n_.data() : nullptr;
@@ -207,38 +210,35 @@ class Encounter {
           for (std::size_t q = 0; q < D; ++q) push_[q][k] = push[q];
         }
       start_.h = h;
+      if constexpr (T::kActs)
+        start_.relaxation =
+            regime.slides ? 0 : -T::sticking(law_.c_t_.data(), 1.0) * (law_.inv_mass_ + law_.set_.turn);
       start_.pressed = regime.pressed, start_.slides = regime.slides;
       start_.numbers = y_.data(), start_.slopes = slopes.data(), start_.normal = f.n;
-      const double width = frequency_ * h * (Collocation::kWidths / Collocation::kWidest);
+      const double width = start_.frequency * h * (Collocation::kWidths / Collocation::kWidest);
       start_.response =
           &numbers_.response[static_cast<std::size_t>(std::min(width + 0.5, Collocation::kWidths + 0.0))];
       if (width < kNarrow) start_.response = nullptr;
       overlap_ = f.overlap, f_n_ = f.f_n;
-      if constexpr (T::kActs) slack_ = f.slack;
+      if constexpr (T::kActs) slack_ = f.slack(law_.c_t_.data(), regime.pressed);
       law_.step_(start_, motion_);
       if (!(motion_.change <= start_.enough)) return HUGE_VAL;
       double most = 0;
       for (std::size_t q = 0; q < D; ++q)
-        for (const auto& last : numbers_.last) {
-          double sum = 0;
-          for (std::size_t k = 0; k < kMoments; ++k) sum += last[k] * motion_.slopes[q][k];
-          most = std::max(most, std::abs(sum));
-        }
+        for (const auto& last : numbers_.last)
+          most = std::max(most, std::abs(sum_of_products(last, motion_.slopes[q])));
       return kOfLast * h * most / (tolerance_ * speed_);
     }
-    [[nodiscard]] double deepest() const {
-      return *std::max_element(motion_.overlap, motion_.overlap + kMoments);
-    }
+    [[nodiscard]] double deepest() const { return motion_.deepest; }
     /// What happens first, and at which fraction of the step.
     [[nodiscard]] std::pair<double, Event> first_event(const Regime& regime) const {
       std::pair<double, Event> first{1, Event::none};
       const auto look = [&](Event what, double begins, const double* values, bool positive) {
-        for (std::size_t k = 0; k < kMoments; ++k) {
-          if ((values[k] > 0) == positive) continue;
-          const double x = vanishing(begins, values, k, near_);
-          if (x < first.first || first.second == Event::none) first = {x, what};
-          return;
-        }
+        unsigned others = 0;  // moments where the sign is another
+        for (unsigned k = 0; k < kMoments; ++k) others |= ((values[k] > 0) != positive ? 1U : 0U) << k;
+        if (others == 0) return;
+        const double x = vanishing(begins, values, static_cast<std::size_t>(std::countr_zero(others)), near_);
+        if (x < first.first || first.second == Event::none) first = {x, what};
       };
       if constexpr (T::kActs) {
         look(Event::limit, slack_, motion_.slack, !regime.slides);
@@ -261,11 +261,8 @@ class Encounter {
         for (std::size_t q = 0; q < kNumbers; ++q) y[q] = motion_.numbers[q][kMoments - 1];
         return y;
       }
-      Shares shares;
-      share(x, shares);
-      const double whole = 1 / sum(shares);
-      for (double& part : shares) part *= whole;
-      for (std::size_t q = 0; q < kNumbers; ++q) y[q] = sum(shares, y_[q], motion_.numbers[q]);
+      const MomentPolynomials motion(numbers_, x);
+      for (std::size_t q = 0; q < kNumbers; ++q) y[q] = motion.value(y_[q], motion_.numbers[q]);
       return y;
     }
 
@@ -273,69 +270,53 @@ class Encounter {
     static constexpr double kOfLast = 3e-3;  ///< error over the change that the last coefficient makes
     static constexpr double kNarrow = 4;     ///< the spring hardly counts
 
-    using Shares = std::array<double, kMoments + 1>;
-    /// Of the polynomial through a start and the values at the moments: how much each counts at x, but for a
-    /// common factor.
-    void share(double x, Shares& shares) const {
-      for (std::size_t k = 0; k <= kMoments; ++k) {
-        const double d = x - numbers_.place[k];
-        shares[k] = numbers_.weight[k] / (d == 0 ? 1e-100 : d);
-      }
-    }
-    static double sum(const Shares& shares) {
-      double all = shares[kMoments];
-      for (std::size_t k = 0; k < kMoments; ++k) all += shares[k];
-      return all;
-    }
-    static double sum(const Shares& shares, double begins, const double* values) {
-      double all = shares[0] * begins;
-      for (std::size_t k = 0; k < kMoments; ++k) all += shares[k + 1] * values[k];
-      return all;
-    }
-    /// Where the polynomial vanishes between moment k, where its sign is another, and the one before:
-    /// secants, or halves where they would leave. \param near how near, of the larger of the two values: the
-    /// force has no jump there, so that the error of what follows is of second order in it
+    /// Where the polynomial vanishes between moment k, where its sign is another, and the one before: by
+    /// Newton's method, or halves where it would leave. \param near how near, of the larger of the two
+    /// values: the force has no jump there, so that the error of what follows is of second order in it
     [[nodiscard]] double vanishing(double begins, const double* values, std::size_t k, double near) const {
       double low = numbers_.place[k], high = numbers_.place[k + 1];
       const double g_low = k == 0 ? begins : values[k - 1], g_high = values[k];
       const bool sign = g_high > 0;
       // Rounding, or how near the kink before was found.
       if ((g_low > 0) == sign) return std::min(high, kShortestStep);
-      const double enough = near * std::max(std::abs(g_low), std::abs(g_high));
-      double before = high, g_before = g_high, x = low + (high - low) * g_low / (g_low - g_high);
-      Shares shares;
+      const double large = std::max(std::abs(g_low), std::abs(g_high));
+      const double enough = near * large, nearly = 0.5 * std::sqrt(near) * large;
+      double x = low + (high - low) * g_low / (g_low - g_high);
       for (int n = 0; n < 60; ++n) {
-        share(x, shares);
-        const double g = sum(shares, begins, values) / sum(shares);
+        const MomentPolynomials at_x(numbers_, x);
+        const double g = at_x.value(begins, values);
         if (std::abs(g) <= enough || high - low < 1e-15) break;
         ((g > 0) == sign ? high : low) = x;
-        const double next = x - g * (x - before) / (g - g_before);
-        before = x, g_before = g;
-        x = next > low && next < high ? next : 0.5 * (low + high);
+        const double next = x - g / at_x.slope(begins, values, g);
+        const bool within = next > low && next < high;
+        x = within ? next : 0.5 * (low + high);
+        // The next error is of second order in this one.
+        if (within && std::abs(g) <= nearly) break;
       }
       return x;
     }
 
     const Encounter& law_;
     const Collocation& numbers_;
-    double tolerance_, speed_, frequency_, near_;
+    double tolerance_, speed_, near_;
     double overlap_ = 0, f_n_ = 0, slack_ = 0;  ///< at the start
     Numbers y_;
-    CollocationStart start_;
+    CollocationStart start_{};
     CollocationMotion motion_;
     alignas(64) std::array<std::array<double, kMoments>, D> push_;
   };
 
   /// From close to the moment of parting to it, by tiny straight steps. \returns how long they took
   double part(double t, const Regime& regime, Numbers& y) const {
-    double passed = 0;
-    for (int k = 0; k < 6 && std::abs(overlap(y)) > 4e-15 * set_.reach; ++k) {
-      const Forces f = forces(y, regime);
-      const double more = f.overlap / f.v_n;
-      const auto change = slopes(f, t + passed);
+    const Forces f = forces(y, regime);
+    const auto change = slopes(f, t);
+    double passed = 0, deep = f.overlap;
+    for (int k = 0; k < 6 && std::abs(deep) > 4e-15 * set_.reach; ++k) {
+      const double more = deep / f.v_n;
       for (std::size_t q = 0; q < D; ++q) y[q] += more * y[D + q];
       for (std::size_t q = 0; q < kSlopes; ++q) y[D + q] += more * change[q];
       passed += more;
+      deep = overlap(y);
     }
     return passed;
   }
@@ -360,7 +341,7 @@ class OrbitPlane {
   }
   [[nodiscard]] RelativeMotion into(const RelativeMotion& m) const { return {flat(m.r), flat(m.u), m.s}; }
   [[nodiscard]] EncounterEnd back(EncounterEnd end, const RelativeMotion& start) const {
-    end.motion = {space(end.motion.r), space(end.motion.u), start.s};
+    for (RelativeMotion* m : {&end.motion, &end.at_middle}) *m = {space(m->r), space(m->u), start.s};
     return end;
   }
 

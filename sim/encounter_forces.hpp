@@ -26,9 +26,8 @@ template <class V, class N, class T, int D>
 struct EncounterForces {
   static constexpr int kTurn = D == 2 ? 1 : 3;
 
-  V n[D], f_t[D], overlap, v_n, f_n;
+  V n[D], f_t[D], per_distance, overlap, v_n, f_n;
   Tangent<V, kTurn> v_t, turning;  ///< tangential velocity; n x F_t, in the plane F_t
-  V slack;                         ///< how far the Coulomb limit is from binding
 
   static V dot(const V* a, const V* b) {
     V sum = a[D - 1] * b[D - 1];
@@ -36,19 +35,32 @@ struct EncounterForces {
     return sum;
   }
 
-  /// Normal motion and force, and the tangential velocity. \param wall its normal; null between beads
-  [[gnu::always_inline]] void approach(const V* c_n, V reach, const V* wall, const V* r, const V* u,
-                                       const V* s) {
-    V apart;
+  /// Direction and overlap. \param wall its normal; null between beads
+  [[gnu::always_inline]] void look(V reach, const V* wall, const V* r) {
     if (wall != nullptr) {
-      apart = dot(wall, r);
       for (int k = 0; k < D; ++k) n[k] = wall[k];
+      overlap = reach - dot(wall, r);
     } else {
-      apart = sqrt(dot(r, r));
-      const V inverse = V(1.0) / apart;
-      for (int k = 0; k < D; ++k) n[k] = r[k] * inverse;
+      const V apart = sqrt(dot(r, r));
+      per_distance = V(1.0) / apart;
+      for (int k = 0; k < D; ++k) n[k] = r[k] * per_distance;
+      overlap = reach - apart;
     }
-    overlap = reach - apart;
+  }
+  /// The same if r has changed a little since: a step of Newton's for 1/|r|, whose error is of second order
+  /// in the change, instead of a root and a division.
+  [[gnu::always_inline]] void look_again(V reach, const V* wall, const V* r) {
+    if (wall != nullptr) {
+      overlap = reach - dot(wall, r);
+    } else {
+      const V square = dot(r, r), half = V(0.5) * per_distance;
+      per_distance = fma(half, nfma(square * per_distance, per_distance, V(1.0)), per_distance);
+      for (int k = 0; k < D; ++k) n[k] = r[k] * per_distance;
+      overlap = nfma(square, per_distance, reach);
+    }
+  }
+  /// Normal force and velocities, after one of these.
+  [[gnu::always_inline]] void approach(const V* c_n, const V* u, const V* s) {
     v_n = dot(n, u);
     f_n = N::template force<V>(c_n, overlap, v_n, nullptr);
     if constexpr (T::kActs && D == 2) {
@@ -65,10 +77,7 @@ struct EncounterForces {
   [[gnu::always_inline]] void rub(const V* c_t, bool pressed, bool slides) {
     if constexpr (T::kActs) {
       const V pressure = pressed ? f_n : -f_n;
-      const auto beyond = pressure < V(0.0);
-      const V sign = select(beyond, V(-1.0), V(1.0));
-      slack = T::slack(c_t, norm(v_t), f_n);
-      slack = select(beyond, slack - V(2.0) * T::slack(c_t, V(0.0), f_n), slack);
+      const V sign = select(pressure < V(0.0), V(-1.0), V(1.0));
       const Tangent<V, kTurn> force = slides ? sign * T::sliding(c_t, v_t, f_n) : T::sticking(c_t, v_t);
       if constexpr (D == 2) {
         f_t[0] = -(force.c[0] * n[1]), f_t[1] = force.c[0] * n[0];
@@ -81,6 +90,11 @@ struct EncounterForces {
         }
       }
     }
+  }
+  /// How far the Coulomb limit is from binding, after approach(); continued as rub() is.
+  [[nodiscard]] [[gnu::always_inline]] V slack(const V* c_t, bool pressed) const {
+    const V slack = T::slack(c_t, norm(v_t), f_n);
+    return select((pressed ? f_n : -f_n) < V(0.0), slack - V(2.0) * T::slack(c_t, V(0.0), f_n), slack);
   }
   /// Slopes of u and s, after these. \param push other accelerations; null: none
   [[gnu::always_inline]] void slopes(V inv_mass, V turn, const V* push, V* to) const {

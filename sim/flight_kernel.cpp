@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <span>
 
 #include "sim/cell_grid.hpp"
 #include "sim/encounter.hpp"
 #include "sim/flight_lines.hpp"
 #include "sim/huddle.hpp"
+#include "sim/schedule.hpp"
 
 namespace twincell::sim {
 
@@ -25,11 +27,14 @@ constexpr std::size_t kMostInCrowd = 8;     // more, and all beads go by steps
 
 /// A contact of two bodies that goes on, or has just ended. Its beads' lines are those after it.
 struct Contact {
-  std::int32_t i, j;            ///< i < j; or j = -1 - w for wall w
-  double begin, end;            ///< of the contact
-  double from, until;           ///< the whole steps about it: nothing else may touch its beads in between
-  std::array<double, 2> stray;  ///< how far its beads get from `before` by then, sigma
-  RelativeMotion motion;        ///< at `begin`
+  std::int32_t i, j;          ///< i < j; or j = -1 - w for wall w
+  double begin, middle, end;  ///< of the contact
+  double from, until;         ///< the whole steps about it: nothing else may touch its beads in between
+  /// How far its beads get from `before` until the middle, and are from their lines after it since, sigma.
+  std::array<double, 2> early, late;
+  /// Radius of a ball that holds both, and flies like the first before, from `from` to `until`.
+  double about;
+  RelativeMotion motion;  ///< at `begin`
   Vec3 shift = Vec3::Zero();
   std::array<FlightLine, 2> before;
   std::array<Vec3, 2> rim;  ///< R w before
@@ -42,14 +47,6 @@ struct Crowd {
   std::vector<FlightLine> before;  ///< of each, as if nothing had met it
 };
 
-/// What happens next to a bead.
-struct Event {
-  enum class Kind { touch, wall, look_again, none };
-  double time = HUGE_VAL;
-  Kind kind = Kind::none;
-  std::int32_t partner = -1;
-};
-
 /// A bead as it is at a moment.
 struct Instant {
   Vec3 r, v, rim;
@@ -57,13 +54,13 @@ struct Instant {
 
 class FlightKernel : public Kernel {
  public:
-  FlightKernel(const Plan& plan, const GuardLimits& limits, std::function<std::unique_ptr<Kernel>()> steps)
+  FlightKernel(const Plan& plan, const GuardLimits& limits, StepKernels steps)
       : plan_(plan),
         limits_(limits),
         look_every_(std::clamp<std::int64_t>(std::llround(kLookAfter * plan.shortest().time / plan.dt), 8,
                                              kLookSeldom)),
         make_steps_(std::move(steps)),
-        steps_(make_steps_()) {}
+        steps_(make_steps_.all()) {}
 
   void advance(System& s, std::int64_t steps) override {
     if (s.beads.empty() || steps <= 0) {
@@ -72,7 +69,7 @@ class FlightKernel : public Kernel {
     }
     if (flying() && !is_as_left(s)) {
       end_flights();  // somebody else moved a bead, the clock or the plate
-      steps_ = make_steps_();
+      steps_ = make_steps_.all();
     }
     if (!flying() && s.step < next_look_ - kLookSeldom) next_look_ = 0;  // the clock was set back
     const std::int64_t last = s.step + steps;
@@ -115,7 +112,7 @@ class FlightKernel : public Kernel {
     pass(*this, in);
   }
   [[nodiscard]] std::string description() const override {
-    return "flights between contacts; where three bodies meet " + make_steps_()->description();
+    return "flights between contacts; where three bodies meet " + make_steps_.few()->description();
   }
   [[nodiscard]] Footprint footprint() const override {
     if (steps_) return steps_->footprint();
@@ -185,14 +182,15 @@ class FlightKernel : public Kernel {
       a(line);
       if constexpr (Archive::kReads) k.lines_->put(i, line);
       a(k.lines_->valid_from(i)), a(k.rim_[i]);
-      a(k.events_[i].time), a(k.events_[i].kind), a(k.events_[i].partner);
+      Event event = k.events_[i];
+      a(event.time), a(event.kind), a(event.partner);
+      if constexpr (Archive::kReads) k.events_.put(i, event);
     }
     pass_size(k.open_, a);
     for (auto& c : k.open_) {
-      a(c.i), a(c.j), a(c.begin), a(c.end), a(c.from), a(c.until), a(c.motion.r), a(c.motion.u),
-          a(c.motion.s);
-      a(c.shift);
-      for (std::size_t q = 0; q < 2; ++q) a(c.stray[q]), a(c.before[q]), a(c.rim[q]);
+      a(c.i), a(c.j), a(c.begin), a(c.middle), a(c.end), a(c.from), a(c.until);
+      a(c.motion.r), a(c.motion.u), a(c.motion.s), a(c.shift), a(c.about);
+      for (std::size_t q = 0; q < 2; ++q) a(c.early[q]), a(c.late[q]), a(c.before[q]), a(c.rim[q]);
     }
     pass_size(k.crowds_, a);
     for (auto& c : k.crowds_) pass(k, c, a);
@@ -304,7 +302,7 @@ class FlightKernel : public Kernel {
     base_ = s.step / per_period_ * per_period_;
     now_ = static_cast<double>(s.step - base_) * dt_;
     mass_.resize(n), turn_.resize(n), rim_.resize(n);
-    events_.assign(n, {});
+    events_.clear(n);
     open_.clear();
     crowds_.clear();
     frame_ = s;
@@ -336,12 +334,11 @@ class FlightKernel : public Kernel {
     const std::int64_t stop = std::min(last, base_ + per_period_);
     const double until = static_cast<double>(stop - base_) * dt_;
     for (;;) {
-      const auto next = std::min_element(events_.begin(), events_.end(),
-                                         [](const Event& a, const Event& b) { return a.time < b.time; });
-      if (!(next->time < until)) break;
-      const auto i = static_cast<std::size_t>(next - events_.begin());
-      now_ = std::max(now_, next->time);
-      if (!happen(i, *next)) {
+      const std::size_t i = events_.soonest();
+      const Event next = events_[i];
+      if (!(next.time < until)) break;
+      now_ = std::max(now_, next.time);
+      if (!happen(i, next)) {
         s.step = std::max(s.step, base_ + step_before(now_));
         if (disperse_crowd(s)) continue;
         hand_over(s);
@@ -359,13 +356,13 @@ class FlightKernel : public Kernel {
     now_ -= period;
     std::erase_if(open_, [&](const Contact& c) { return c.until <= now_ + period; });
     std::erase_if(crowds_, [&](const Crowd& c) { return c.until <= now_ + period; });
-    for (Event& e : events_) e.time -= period;
+    events_.set_back(period);
     for (std::size_t i = 0; i < lines_->size(); ++i) {
       lines_->put(i, (*lines_)[i].later(period, gravity_));
       lines_->valid_from(i) -= period;
     }
     for (Contact& c : open_) {
-      c.begin -= period, c.end -= period, c.from -= period, c.until -= period;
+      c.begin -= period, c.middle -= period, c.end -= period, c.from -= period, c.until -= period;
       for (FlightLine& line : c.before) line = line.later(period, gravity_);
     }
     for (Crowd& c : crowds_) {
@@ -392,20 +389,11 @@ class FlightKernel : public Kernel {
     }
     return true;
   }
-  /// Looks ahead for two beads with new lines, and for those that were to meet them.
+  /// Looks ahead for two beads with new lines.
   bool foresee_anew(std::size_t i, std::size_t j) {
-    events_[i] = events_[j] = {};
+    events_.put(i, {}), events_.put(j, {});
     if (!foresee(i) || (j != i && !foresee(j))) return false;
-    for (std::size_t k = 0; k < events_.size(); ++k) {
-      if (k == i || k == j || events_[k].kind != Event::Kind::touch) continue;
-      const auto partner = static_cast<std::size_t>(events_[k].partner);
-      // A meeting just foreseen from i's or j's side stands.
-      if ((partner == i || partner == j) &&
-          !(events_[partner].kind == Event::Kind::touch && events_[partner].time == events_[k].time &&
-            static_cast<std::size_t>(events_[partner].partner) == k) &&
-          !foresee(k))
-        return false;
-    }
+    for (const std::size_t changed : {i, j}) events_.put_off(changed);
     return true;
   }
 
@@ -415,8 +403,8 @@ class FlightKernel : public Kernel {
     const double from = std::max(now_, lines_->valid_from(i));
     if (hit.overlap) {
       crowd_ = {static_cast<std::int32_t>(i)};
-      const FlightLine line = (*lines_)[i];
-      add_near(line, lines_->radius(i), from, from);
+      const Passage here{crowd_.front(), (*lines_)[i], lines_->radius(i), from, from};
+      add_near({&here, 1});
       return false;
     }
     Event event;
@@ -431,35 +419,55 @@ class FlightKernel : public Kernel {
         event = {t, Event::Kind::wall, -1 - static_cast<std::int32_t>(w)};
     }
     crowd_ = {static_cast<std::int32_t>(i)};
-    if (near_others_meeting((*lines_)[i], lines_->radius(i), HUGE_VAL)) return false;
-    events_[i] = event;
+    const Passage own{crowd_.front(), (*lines_)[i], lines_->radius(i), now_, HUGE_VAL};
+    if (near_others_meeting(own, {&own, 1})) return false;
+    events_.put(i, event);
     if (event.kind == Event::Kind::touch) {
-      Event& other = events_[static_cast<std::size_t>(event.partner)];
-      if (event.time < other.time) other = {event.time, Event::Kind::touch, static_cast<std::int32_t>(i)};
+      const auto other = static_cast<std::size_t>(event.partner);
+      if (event.time < events_[other].time)
+        events_.put(other, {event.time, Event::Kind::touch, static_cast<std::int32_t>(i)});
     }
     return true;
   }
-  [[nodiscard]] bool come_near(const FlightLine& p, double radius_p, const FlightLine& q, double radius_q,
-                               double begin, double end) const {
-    Vec3 d = p.a - q.a + begin * (p.b - q.b);
-    d += lines_->shift(d);
-    const Vec3 w = p.b - q.b;
-    const double t =
-        std::clamp(-d.dot(w) / std::max(w.squaredNorm(), 1e-300), 0.0, std::max(0.0, end - begin));
-    const double reach = radius_p + radius_q;
-    return (d + t * w).squaredNorm() < reach * reach;
-  }
-
-  /// Calls visit(bead, its line before, how far it gets from it) for those that take part in a meeting.
+  /// A bead near a line, between two times.
+  struct Passage {
+    std::int32_t bead;
+    FlightLine line;
+    double radius;  ///< its own, and how far it may be from the line
+    double begin, end;
+  };
+  /// Calls visit(bead) for those that take part in a meeting.
   template <class Visit>
   static void visit_members(const Contact& c, Visit visit) {
-    visit(c.i, c.before[0], c.stray[0]);
-    if (c.j >= 0) visit(c.j, c.before[1], c.stray[1]);
+    visit(c.i);
+    if (c.j >= 0) visit(c.j);
   }
   template <class Visit>
   static void visit_members(const Crowd& c, Visit visit) {
-    for (std::size_t k = 0; k < c.huddle.members.size(); ++k)
-      visit(c.huddle.members[k], c.before[k], c.huddle.stray[k]);
+    for (const std::int32_t k : c.huddle.members) visit(k);
+  }
+  /// Calls visit(passage) for these, until they are on their lines after it.
+  template <class Visit>
+  void visit_passages(const Contact& c, const std::array<FlightLine, 2>& after, Visit visit) const {
+    for (std::size_t q = 0; q < (c.j < 0 ? 1u : 2u); ++q) {
+      const std::int32_t k = q == 0 ? c.i : c.j;
+      const double radius = lines_->radius(static_cast<std::size_t>(k));
+      visit(Passage{k, c.before[q], radius + c.early[q], c.from, c.middle});
+      visit(Passage{k, after[q], radius + c.late[q], c.middle, c.until});
+    }
+  }
+  template <class Visit>
+  void visit_passages(const Contact& c, Visit visit) const {
+    const auto line = [&](std::int32_t k) { return (*lines_)[static_cast<std::size_t>(std::max(0, k))]; };
+    visit_passages(c, {line(c.i), line(c.j)}, visit);
+  }
+  template <class Visit>
+  void visit_passages(const Crowd& c, Visit visit) const {
+    for (std::size_t k = 0; k < c.huddle.members.size(); ++k) {
+      const std::int32_t bead = c.huddle.members[k];
+      const double radius = lines_->radius(static_cast<std::size_t>(bead));
+      visit(Passage{bead, c.before[k], radius + c.huddle.stray[k], c.from, c.until});
+    }
   }
   /// Calls visit(meeting) for contacts and crowds that go on.
   template <class Visit>
@@ -472,32 +480,74 @@ class FlightKernel : public Kernel {
   [[nodiscard]] bool in_crowd(std::int32_t bead) const {
     return std::find(crowd_.begin(), crowd_.end(), bead) != crowd_.end();
   }
-  /// Adds to `crowd_` who of a meeting that none of it takes part in a body on a line may come near, from now
-  /// until the meeting ends or `end`. \returns whether there is one
-  bool near_others_meeting(const FlightLine& line, double radius, double end) {
+  /// Where a meeting is, from its begin to its end.
+  static Passage whole(const Contact& c) { return {c.i, c.before[0], c.about, c.from, c.until}; }
+  static Passage whole(const Crowd& c) {
+    return {c.huddle.members.front(), c.before.front(), HUGE_VAL, c.from, c.until};
+  }
+  /// Adds to `crowd_` who of a meeting that none of it takes part in may come near passages, from now on.
+  /// \param all about all of them \returns whether there is one
+  bool near_others_meeting(const Passage& all, std::span<const Passage> passages) {
     const std::size_t before = crowd_.size();
+    const auto near = [&](const Passage& p, const Passage& q) {
+      const double begin = std::max({now_, p.begin, q.begin}), end = std::min(p.end, q.end);
+      return begin <= end && come_near(p, q, begin, end);
+    };
     visit_meetings([&](const auto& meeting) {
+      if (!near(all, whole(meeting))) return;
       bool own = false;
-      visit_members(meeting, [&](std::int32_t k, const FlightLine&, double) { own = own || in_crowd(k); });
+      visit_members(meeting, [&](std::int32_t k) { own = own || in_crowd(k); });
       if (own) return;
-      const double until = std::min(end, meeting.until);
       std::int32_t found = -1;
-      visit_members(meeting, [&](std::int32_t k, const FlightLine& other, double stray) {
-        if (come_near(line, radius, other, lines_->radius(static_cast<std::size_t>(k)) + stray, now_, until))
-          found = k;
+      visit_passages(meeting, [&](const Passage& other) {
+        if (std::any_of(passages.begin(), passages.end(), [&](const Passage& p) { return near(p, other); }))
+          found = other.bead;
       });
       if (found >= 0) crowd_.push_back(found);
     });
     return crowd_.size() > before;
   }
-  /// Adds to `crowd_` the beads whose lines come near a body's. \returns whether there is one
-  bool add_near(const FlightLine& line, double radius, double begin, double end) {
+  [[nodiscard]] double apart_at(const Passage& p, const Passage& q, double t) const {
+    const Vec3 d = p.line.a - q.line.a + t * (p.line.b - q.line.b);
+    return (d + lines_->shift(d)).norm();
+  }
+  [[nodiscard]] bool come_near(const Passage& p, const Passage& q, double begin, double end) const {
+    const Vec3 w = p.line.b - q.line.b;
+    Vec3 d = p.line.a - q.line.a + begin * w;
+    d += lines_->shift(d);
+    const double t = std::clamp(-d.dot(w) / std::max(w.squaredNorm(), 1e-300), 0.0, end - begin);
+    const double reach = p.radius + q.radius;
+    return (d + t * w).squaredNorm() < reach * reach;
+  }
+  /// Adds to `crowd_` the beads whose lines come near passages, those of one bead one after the other.
+  /// \returns whether there is one
+  bool add_near(std::span<const Passage> passages) {
     const std::size_t before = crowd_.size();
-    near_.clear();
-    lines_->find_near(line, radius, begin, end, near_);
-    for (const std::int32_t k : near_)
-      if (!in_crowd(k)) crowd_.push_back(k);
+    while (!passages.empty()) {
+      const Passage& first = passages.front();
+      std::size_t own = 1;
+      while (own < passages.size() && passages[own].bead == first.bead) ++own;
+      add_near_one(passages.first(own));
+      passages = passages.subspan(own);
+    }
     return crowd_.size() > before;
+  }
+  void add_near_one(std::span<const Passage> passages) {
+    // First, by vectors, those that may: within a ball about all passages, which flies like the first.
+    const Passage &first = passages.front(), &last = passages.back();
+    double reach = first.radius;
+    for (const Passage& p : passages.subspan(1))
+      for (const double t : {p.begin, p.end}) reach = std::max(reach, p.radius + apart_at(p, first, t));
+    near_.clear();
+    lines_->find_near(first.line, reach, first.begin, last.end, near_);
+    for (const std::int32_t k : near_) {
+      if (in_crowd(k)) continue;
+      const auto i = static_cast<std::size_t>(k);
+      const Passage other{k, (*lines_)[i], lines_->radius(i), 0, 0};
+      if (std::any_of(passages.begin(), passages.end(),
+                      [&](const Passage& p) { return come_near(p, other, p.begin, p.end); }))
+        crowd_.push_back(k);
+    }
   }
 
   [[nodiscard]] bool in_wall(std::size_t i, const Wall& wall, double t) const {
@@ -642,31 +692,39 @@ class FlightKernel : public Kernel {
     c.end = end.time;
     c.from = static_cast<double>(step_before(c.begin)) * dt_;
     c.until = static_cast<double>(step_before(c.end) + 1) * dt_;
-    const auto after = apart(c, end.motion, end.time);
-    for (const std::size_t q : {std::size_t{0}, std::size_t{1}}) {
-      if (q == 1 && j < 0) continue;
+    c.middle = end.middle;
+    const auto halfway = apart(c, end.at_middle, end.middle), after = apart(c, end.motion, end.time);
+    std::array<FlightLine, 2> lines{};
+    for (std::size_t q = 0; q < (j < 0 ? 1u : 2u); ++q) {
+      lines[q] = FlightLine::through(after[q].r, after[q].v, c.end, gravity_);
       // The force hardly turns, so that they get away ever farther.
-      c.stray[q] = 1.05 * ((after[q].r - c.before[q].position(c.end, gravity_)).norm() +
-                           (after[q].v - c.before[q].velocity(c.end, gravity_)).norm() * (c.until - c.end));
+      const auto off = [&](const FlightLine& line) {
+        return 1.05 * (halfway[q].r - line.position(c.middle, gravity_)).norm();
+      };
+      c.early[q] = off(c.before[q]), c.late[q] = off(lines[q]);
     }
     crowd_ = {i};
     if (j >= 0) crowd_.push_back(j);
-    bool alone = true;
-    for (std::size_t q = 0; q < (j < 0 ? 1u : 2u); ++q) {
-      const double reach = lines_->radius(q == 0 ? a : b) + c.stray[q];
-      alone = !add_near(c.before[q], reach, now_, c.until) && alone;
-      alone = !near_others_meeting(c.before[q], reach, c.until) && alone;
-      // A bead near a wall and in contact with another body is three bodies too.
+    passages_.clear();
+    visit_passages(c, lines, [&](const Passage& p) {
+      passages_.push_back(p);
+      passages_.back().begin = std::max(p.begin, now_);
+    });
+    for (const Passage& p : passages_)
+      for (const double t : {p.begin, p.end})
+        c.about = std::max(c.about, p.radius + apart_at(p, passages_.front(), t));
+    bool alone = !add_near(passages_);
+    alone = !near_others_meeting(whole(c), passages_) && alone;
+    // A bead near a wall and in contact with another body is three bodies too.
+    for (const Passage& p : passages_)
       for (std::size_t w = 0; w < walls_.size(); ++w)
-        alone = alone && (j == -1 - static_cast<std::int32_t>(w) ||
-                          !reaches(c.before[q], reach, walls_[w], now_, c.until));
-    }
+        alone = alone && (j == -1 - static_cast<std::int32_t>(w) || !reaches(p, walls_[w]));
     if (!alone) return false;
-    lines_->put(a, FlightLine::through(after[0].r, after[0].v, c.end, gravity_));
+    lines_->put(a, lines[0]);
     lines_->valid_from(a) = c.until;
     rim_[a] = after[0].rim;
     if (j >= 0) {
-      lines_->put(b, FlightLine::through(after[1].r, after[1].v, c.end, gravity_));
+      lines_->put(b, lines[1]);
       lines_->valid_from(b) = c.until;
       rim_[b] = after[1].rim;
     }
@@ -675,13 +733,16 @@ class FlightKernel : public Kernel {
     return true;
   }
   /// Whether a body may come into touch with a wall in a short time.
-  [[nodiscard]] bool reaches(const FlightLine& line, double radius, const Wall& wall, double begin,
-                             double end) const {
-    const auto gap = [&](double t) {
-      return wall.n.dot(line.position(t, gravity_) - surface(wall, t).first) - radius;
+  [[nodiscard]] bool reaches(const Passage& p, const Wall& wall) const {
+    const double span = p.end - p.begin, swing = wall.moves ? std::abs(amplitude_) : 0;
+    const double bend = gravity_.norm() + swing * omega_ * omega_, sag = 0.125 * bend * span * span;
+    const auto height = [&](double t) {
+      return wall.n.dot(p.line.position(t, gravity_)) - wall.offset - p.radius;
     };
-    const double bend = gravity_.norm() + (wall.moves ? amplitude_ * omega_ * omega_ : 0), span = end - begin;
-    return std::min(gap(begin), gap(end)) < 0.125 * bend * span * span;
+    const double begin = height(p.begin), end = height(p.end);
+    if (std::min(begin, end) > swing + sag) return false;
+    const auto rise = [&](double t) { return wall.moves ? wall.n.dot(plate(t)) : 0; };
+    return std::min(begin - rise(p.begin), end - rise(p.end)) < sag;
   }
 
   // --- where three meet ---
@@ -706,16 +767,14 @@ class FlightKernel : public Kernel {
       std::sort(crowd_.begin(), crowd_.end());
       Crowd c{take_out(s, memories_, crowd_), from, 0, {}};
       const auto end =
-          disperse(c.huddle, contact, static_cast<std::int64_t>(kLongest) * contact, make_steps_);
+          disperse(c.huddle, contact, static_cast<std::int64_t>(kLongest) * contact, make_steps_.few);
       if (!end) return false;
       c.until = static_cast<double>(s.step + c.huddle.steps - base_) * dt_;
       for (const Bead& b : c.huddle.start.beads) c.before.push_back(line_through(b, from));
-      bool alone = true;
-      visit_members(c, [&](std::int32_t k, const FlightLine& line, double stray) {
-        const double reach = lines_->radius(static_cast<std::size_t>(k)) + stray;
-        alone = !add_near(line, reach, from, c.until) && alone;
-        alone = !near_others_meeting(line, reach, c.until) && alone;
-      });
+      passages_.clear();
+      visit_passages(c, [&](const Passage& p) { passages_.push_back(p); });
+      bool alone = !add_near(passages_);
+      alone = !near_others_meeting(whole(c), passages_) && alone;
       if (alone && send_off(std::move(c), *end)) return true;
     }
   }
@@ -725,9 +784,9 @@ class FlightKernel : public Kernel {
       grown = false;
       const auto take_all = [&](const auto& meeting) {
         bool own = false;
-        visit_members(meeting, [&](std::int32_t k, const FlightLine&, double) { own = own || in_crowd(k); });
+        visit_members(meeting, [&](std::int32_t k) { own = own || in_crowd(k); });
         if (!own || meeting.until <= from) return;
-        visit_members(meeting, [&](std::int32_t k, const FlightLine&, double) {
+        visit_members(meeting, [&](std::int32_t k) {
           if (!in_crowd(k)) crowd_.push_back(k), grown = true;
         });
       };
@@ -746,14 +805,12 @@ class FlightKernel : public Kernel {
     for (std::size_t k = 0; k < members.size(); ++k) {
       const auto i = static_cast<std::size_t>(members[k]);
       fly_on(i, end, k, crowd.until);
-      events_[i] = {};
+      events_.put(i, {});
     }
     crowds_.push_back(std::move(crowd));
-    for (std::size_t k = 0; k < events_.size(); ++k)
-      if ((within(static_cast<std::int32_t>(k)) ||
-           (events_[k].kind == Event::Kind::touch && within(events_[k].partner))) &&
-          !foresee(k))
-        return false;
+    for (const std::int32_t k : members)
+      if (!foresee(static_cast<std::size_t>(k))) return false;
+    for (const std::int32_t k : members) events_.put_off(static_cast<std::size_t>(k));
     return true;
   }
 
@@ -800,7 +857,7 @@ class FlightKernel : public Kernel {
     }
     for (const Crowd& c : crowds_) {
       if (s.step - c.huddle.start.step >= c.huddle.steps) continue;
-      const HuddleState now = after(c.huddle, s.step - c.huddle.start.step, make_steps_);
+      const HuddleState now = after(c.huddle, s.step - c.huddle.start.step, make_steps_.few);
       for (std::size_t k = 0; k < c.huddle.members.size(); ++k) {
         const auto i = static_cast<std::size_t>(c.huddle.members[k]);
         s.beads[i] = now.system.beads[k];
@@ -848,7 +905,7 @@ class FlightKernel : public Kernel {
   void hand_over(System& s) {
     write(s);
     end_flights();
-    steps_ = make_steps_();
+    steps_ = make_steps_.all();
     steps_->restore(memories_);
     wait_ = look_every_;
     next_look_ = (s.step / wait_ + 1) * wait_;
@@ -857,18 +914,19 @@ class FlightKernel : public Kernel {
   Plan plan_;
   GuardLimits limits_;
   std::int64_t look_every_;
-  std::function<std::unique_ptr<Kernel>()> make_steps_;
+  StepKernels make_steps_;
   std::unique_ptr<Kernel> steps_;  ///< while not flying
   std::int64_t next_look_ = 0, wait_ = 1;
   Counters counted_;
   std::int64_t list_builds_ = 0;
 
   std::optional<FlightLines> lines_;  ///< while flying; times from the beginning of the period
-  std::vector<Event> events_;
+  Schedule events_;
   std::vector<Contact> open_;
   std::vector<Crowd> crowds_;
   std::vector<std::int32_t> crowd_;  ///< beads that were just found to meet in threes
   std::vector<std::int32_t> near_;   ///< used by add_near() alone
+  std::vector<Passage> passages_;    ///< of who has just met
   System frame_;                     ///< without beads: walls, drive, period
   std::vector<Vec3> rim_;            ///< R w, after a contact that goes on
   std::vector<double> mass_, turn_;  ///< turn: R^2/I
@@ -896,8 +954,7 @@ std::string why_not_flights(const Scene& scene, const Plan& plan) {
   return "";
 }
 
-std::unique_ptr<Kernel> make_flight_kernel(const Plan& plan, const GuardLimits& limits,
-                                           std::function<std::unique_ptr<Kernel>()> steps) {
+std::unique_ptr<Kernel> make_flight_kernel(const Plan& plan, const GuardLimits& limits, StepKernels steps) {
   return std::make_unique<FlightKernel>(plan, limits, std::move(steps));
 }
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/cell_grid.hpp"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sim/flight_lines.cpp"
 #include <hwy/foreach_target.h>
@@ -20,7 +18,7 @@ struct View {
   std::size_t n;
   int dimension;
   const double *a[3], *b[3], *radius, *from;
-  double period[3];
+  double period[3], per[3];  ///< per: 1/period
 };
 /// A body on a line, between two times.
 struct Body {
@@ -45,10 +43,10 @@ using M = hn::Mask<Tag>;
 HWY_INLINE V set(double x) {
   return hn::Set(Tag(), x);
 }
-/// x less the nearest multiple of a period.
-HWY_INLINE V nearest(V x, double period) {
+/// x less the nearest multiple of a period. \param per 1/period
+HWY_INLINE V nearest(V x, double period, double per) {
   const V magic = set(6755399441055744.0);  // 1.5 2^52: adding it rounds
-  return hn::Sub(x, hn::Mul(hn::Sub(hn::Add(hn::Mul(x, set(1 / period)), magic), magic), set(period)));
+  return hn::Sub(x, hn::Mul(hn::Sub(hn::Add(hn::Mul(x, set(per)), magic), magic), set(period)));
 }
 HWY_INLINE V places(std::size_t first) {
   return hn::Add(hn::Iota(Tag(), 0), set(static_cast<double>(first)));
@@ -67,27 +65,33 @@ FlightLines::Hit first_hit(const View& f, std::size_t i, double now) {
     const V reach = hn::Add(own_radius, hn::LoadU(tag, f.radius + j));
     const V from = hn::Max(start, hn::LoadU(tag, f.from + j));
     V square = zero, closing = zero, speed = zero;
-    // Along directions without images, two are within reach of each other from `enter` to `leave`, after
-    // `from`; their next images do not matter before or beyond.
-    V enter = zero, leave = infinite, image = infinite;
+    V fast[3] = {set(1), set(1), set(1)}, along[3] = {zero, zero, zero};
     for (int k = 0; k < 3; ++k) {
       if (k == 1 && f.dimension == 2) continue;
       const V w = hn::Sub(set(f.b[k][i]), hn::LoadU(tag, f.b[k] + j));
       V d = hn::Add(hn::Sub(set(f.a[k][i]), hn::LoadU(tag, f.a[k] + j)), hn::Mul(w, from));
-      const bool periodic = f.period[k] > 0;
-      if (periodic) d = nearest(d, f.period[k]);
-      const V slowness = hn::Div(set(1), hn::Max(hn::Abs(w), set(1e-300))),
-              along = hn::Mul(d, hn::CopySign(set(1), w));
-      if (periodic) {
-        // The next image is a period away, and touches at `reach`.
-        image = hn::Min(image, hn::Mul(hn::Sub(hn::Sub(set(f.period[k]), reach), along), slowness));
-      } else {
-        enter = hn::Max(enter, hn::Mul(hn::Neg(hn::Add(along, reach)), slowness));
-        leave = hn::Min(leave, hn::Mul(hn::Sub(reach, along), slowness));
-      }
+      if (f.period[k] > 0) d = nearest(d, f.period[k], f.per[k]);
+      fast[k] = hn::Max(hn::Abs(w), set(1e-100));
+      along[k] = hn::Mul(d, hn::CopySign(set(1), w));
       square = hn::Add(square, hn::Mul(d, d));
       closing = hn::Add(closing, hn::Mul(d, w));
       speed = hn::Add(speed, hn::Mul(w, w));
+    }
+    // Along directions without images, two are within reach of each other from `enter` to `leave`, after
+    // `from`; their next images do not matter before or beyond.
+    V enter = zero, leave = infinite, image = infinite;
+    // One division for three: the product of the other two speeds over that of all.
+    const V all = hn::Div(set(1), hn::Mul(hn::Mul(fast[0], fast[1]), fast[2]));
+    for (int k = 0; k < 3; ++k) {
+      if (k == 1 && f.dimension == 2) continue;
+      const V slowness = hn::Mul(hn::Mul(fast[(k + 1) % 3], fast[(k + 2) % 3]), all);
+      if (f.period[k] > 0) {
+        // The next image is a period away, and touches at `reach`.
+        image = hn::Min(image, hn::Mul(hn::Sub(hn::Sub(set(f.period[k]), reach), along[k]), slowness));
+      } else {
+        enter = hn::Max(enter, hn::Mul(hn::Neg(hn::Add(along[k], reach)), slowness));
+        leave = hn::Min(leave, hn::Mul(hn::Sub(reach, along[k]), slowness));
+      }
     }
     const M matters = hn::And(counts, hn::Lt(image, leave));
     until = hn::Min(until, hn::IfThenElse(matters, hn::Add(from, hn::Max(image, enter)), infinite));
@@ -124,24 +128,23 @@ void find_near(const View& f, const Body& body, std::vector<std::int32_t>& found
   const V zero = hn::Zero(tag), begin = set(body.begin), span = set(body.end - body.begin);
   for (std::size_t j = 0; j < f.n; j += hn::Lanes(tag)) {
     const V reach = hn::Add(set(body.radius), hn::LoadU(tag, f.radius + j));
-    V d[3], w[3], closing = zero, speed = set(1e-300);
+    V square = zero, closing = zero, speed = zero;
     for (int k = 0; k < 3; ++k) {
       if (k == 1 && f.dimension == 2) continue;
-      w[k] = hn::Sub(set(body.b[k]), hn::LoadU(tag, f.b[k] + j));
-      d[k] = hn::Add(hn::Sub(set(body.a[k]), hn::LoadU(tag, f.a[k] + j)), hn::Mul(w[k], begin));
-      if (f.period[k] > 0) d[k] = nearest(d[k], f.period[k]);
-      closing = hn::Add(closing, hn::Mul(d[k], w[k]));
-      speed = hn::Add(speed, hn::Mul(w[k], w[k]));
+      const V w = hn::Sub(set(body.b[k]), hn::LoadU(tag, f.b[k] + j));
+      V d = hn::Add(hn::Sub(set(body.a[k]), hn::LoadU(tag, f.a[k] + j)), hn::Mul(w, begin));
+      if (f.period[k] > 0) d = nearest(d, f.period[k], f.per[k]);
+      square = hn::Add(square, hn::Mul(d, d));
+      closing = hn::Add(closing, hn::Mul(d, w));
+      speed = hn::Add(speed, hn::Mul(w, w));
     }
-    const V nearest_time = hn::Min(hn::Max(hn::Neg(hn::Div(closing, speed)), zero), span);
-    V square = zero;
-    for (int k = 0; k < 3; ++k) {
-      if (k == 1 && f.dimension == 2) continue;
-      const V x = hn::Add(d[k], hn::Mul(w[k], nearest_time));
-      square = hn::Add(square, hn::Mul(x, x));
-    }
-    const M near =
-        hn::And(hn::Lt(places(j), set(static_cast<double>(f.n))), hn::Lt(square, hn::Mul(reach, reach)));
+    // Near at the beginning, or at the end, or in between.
+    const V c = hn::Sub(square, hn::Mul(reach, reach)), change = hn::Mul(speed, span);
+    const M at_end = hn::Lt(hn::Add(hn::Mul(hn::Add(hn::Add(closing, closing), change), span), c), zero);
+    const M between = hn::And(hn::And(hn::Lt(closing, zero), hn::Gt(hn::Add(closing, change), zero)),
+                              hn::Gt(hn::Mul(closing, closing), hn::Mul(speed, c)));
+    const M near = hn::And(hn::Lt(places(j), set(static_cast<double>(f.n))),
+                           hn::Or(hn::Lt(c, zero), hn::Or(at_end, between)));
     if (hn::AllFalse(tag, near)) continue;
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(tag, near, bits);
@@ -170,7 +173,8 @@ flight::View view(std::size_t n, int dimension, const std::array<std::vector<dou
           {b[0].data(), b[1].data(), b[2].data()},
           radius.data(),
           from.data(),
-          {period[0], period[1], period[2]}};
+          {period[0], period[1], period[2]},
+          {1 / period[0], 1 / period[1], 1 / period[2]}};
 }
 
 }  // namespace
@@ -181,10 +185,6 @@ FlightLines::FlightLines(const std::vector<double>& radii, int dimension, const 
   for (std::size_t k = 0; k < 3; ++k) a_[k].resize(with_spare), b_[k].resize(with_spare);
   radius_.resize(with_spare);
   from_.resize(with_spare);
-}
-
-Vec3 FlightLines::shift(const Vec3& r) const {
-  return nearest_shift(r, period_);
 }
 
 FlightLines::Hit FlightLines::first_hit(std::size_t i, double now) const {

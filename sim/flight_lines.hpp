@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/trajectory/box.hpp"
+#include "sim/cell_grid.hpp"
 
 namespace twincell::sim {
 
@@ -51,7 +52,7 @@ class FlightLines {
   double& valid_from(std::size_t i) { return from_[i]; }
   [[nodiscard]] double valid_from(std::size_t i) const { return from_[i]; }
   /// From r to the nearest of its images.
-  [[nodiscard]] Vec3 shift(const Vec3& r) const;
+  [[nodiscard]] Vec3 shift(const Vec3& r) const { return nearest_shift(r, period_); }
 
   /// The first touch of bead i with another, if all fly on.
   struct Hit {

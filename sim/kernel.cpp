@@ -40,7 +40,7 @@ std::unique_ptr<Kernel> make_kernel(const Plan& plan, const GuardLimits& limits,
                       "this processor lacks the instruction set that was asked for.");
   switch (kind) {
     case KernelKind::all_pairs:
-      return make_all_pairs_kernel(plan, limits);
+      return make_all_pairs_kernel(plan, limits, kScalar);
     case KernelKind::scalar:
       return make_list_kernel(plan, limits, kScalar, threads);
     case KernelKind::avx2:
@@ -52,9 +52,10 @@ std::unique_ptr<Kernel> make_kernel(const Plan& plan, const GuardLimits& limits,
   }
   const Target& widest = widest_target();
   if (!plan.flights) return make_list_kernel(plan, limits, widest, threads);
-  return make_flight_kernel(plan, limits, [plan, limits, &widest, threads] {
-    return make_list_kernel(plan, limits, widest, threads);
-  });
+  return make_flight_kernel(
+      plan, limits,
+      {[plan, limits, &widest, threads] { return make_list_kernel(plan, limits, widest, threads); },
+       [plan, limits, &widest] { return make_all_pairs_kernel(plan, limits, widest); }});
 }
 
 }  // namespace twincell::sim

@@ -19,7 +19,8 @@ namespace twincell::sim {
 std::unique_ptr<Kernel> make_list_kernel(const Plan& plan, const GuardLimits& limits, const Target& target,
                                          int threads);
 
-/// The oracle: every pair and every wall at every step.
-std::unique_ptr<Kernel> make_all_pairs_kernel(const Plan& plan, const GuardLimits& limits);
+/// Every pair and every wall at every step: with kScalar the oracle, with wider ones for a few beads.
+std::unique_ptr<Kernel> make_all_pairs_kernel(const Plan& plan, const GuardLimits& limits,
+                                              const Target& target);
 
 }  // namespace twincell::sim

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <functional>
 #include <random>
 
+#include "sim/list_kernel.hpp"
 #include "sim/simulation.hpp"
 #include "sim/start.hpp"
 #include "tests/support/collision.hpp"
@@ -17,8 +19,19 @@ bool same_bits(const System& a, const System& b) {
          std::memcmp(a.beads.data(), b.beads.data(), a.beads.size() * sizeof(Bead)) == 0;
 }
 
-/// A shaken random bed after some thousand steps, by the given kernel.
-System shaken(const std::string& extra, KernelKind kind, std::int64_t rebuild_every) {
+/// Makes a kernel.
+using Maker = std::function<std::unique_ptr<Kernel>(const Plan&)>;
+Maker of_kind(KernelKind kind, std::int64_t rebuild_every) {
+  return [=](const Plan& plan) {
+    auto kernel = make_kernel(plan, {}, kind);
+    kernel->rebuild_every(rebuild_every);
+    return kernel;
+  };
+}
+
+/// A shaken random bed after some thousand steps, by the given kernel, and when that is done in several calls
+/// each with a kernel of its own, which is told what contacts remember.
+System shaken(const std::string& extra, const Maker& make, int calls = 1) {
   const Scene scene = read_scene_text(
       "[beads]\ncount = 60\n[drive]\nomega = 1.0\ngamma = 3.0\n[start]\nkind = \"random\"\nseed = 5\n" +
           extra,
@@ -27,10 +40,17 @@ System shaken(const std::string& extra, KernelKind kind, std::int64_t rebuild_ev
   System s = make_system(scene, plan);
   s.beads = make_start(scene).beads;
   for (Bead& b : s.beads) b.vz -= 2, b.vx *= 2, b.spin = b.vx;
-  const auto kernel = make_kernel(plan, {}, kind);
-  kernel->rebuild_every(rebuild_every);
-  kernel->advance(s, static_cast<std::int64_t>(240 * scene.steps_per_contact));
+  std::vector<ContactMemory> memories;
+  for (int call = 0; call < calls; ++call) {
+    const auto kernel = make(plan);
+    kernel->restore(memories);
+    kernel->advance(s, static_cast<std::int64_t>(240 * scene.steps_per_contact) / calls);
+    memories = kernel->contacts();
+  }
   return s;
+}
+System shaken(const std::string& extra, KernelKind kind, std::int64_t rebuild_every) {
+  return shaken(extra, of_kind(kind, rebuild_every));
 }
 
 const std::string kPaperOne =
@@ -58,6 +78,16 @@ TEST(ListKernel, AgreesWithTheOracleToTheBit) {
                           kSmooth + by("split"), kSpace + by("split"), kPaperOne + by("verlet") + kSingle,
                           kSpace + by("split") + kSingle})
     EXPECT_TRUE(same_bits(shaken(law, KernelKind::best, 0), shaken(law, KernelKind::all_pairs, 0))) << law;
+}
+
+TEST(AllPairsKernel, ManyContactsAtATimeHaveTheBitsOfOne) {
+  const Maker wide = [](const Plan& plan) { return make_all_pairs_kernel(plan, {}, widest_target()); };
+  for (const auto& law : {kPaperOne, kDashpot, kSmooth, kPaperOne + by("predicted"), kPaperOne + by("split"),
+                          kSpace + by("split")}) {
+    const System oracle = shaken(law, KernelKind::all_pairs, 0);
+    EXPECT_TRUE(same_bits(shaken(law, wide), oracle)) << law;
+    EXPECT_TRUE(same_bits(shaken(law, wide, 3), oracle)) << law;
+  }
 }
 
 TEST(ListKernel, RebuildHabitsChangeNothing) {  // V2.14, H22, H24: history is neither lost nor doubled
