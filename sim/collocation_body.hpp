@@ -125,7 +125,8 @@ struct CollocationOf {
   }
 
   /// A first guess: the motion of an oscillator along n_0, and across it what a rate of relaxation leaves.
-  static void guess(const CollocationStart& a, V time, const V* r0, const V* u0, const V* n0, V* r, V* u) {
+  [[gnu::always_inline]] static void guess(const CollocationStart& a, V time, const V* r0, const V* u0,
+                                           const V* n0, V* r, V* u) {
     V a0[kSlopes];
     for (int k = 0; k < kSlopes; ++k) a0[k] = V(a.slopes[k]);
     const V u_n = Forces::dot(n0, u0), a_n = Forces::dot(n0, a0), square = time * time;

@@ -55,34 +55,39 @@ class Encounter {
     end.middle = time;
     end.deepest = std::max(0.0, deep);
     Step step(*this, speed, scale, tolerance);
-    Regime regime = regime_at(y);
     double longest = kLongestStep * scale, shorter = 1, t = time;
-    while (t < last && !end.parted) {
+    Regime regime = step.begin(t, y);
+    while (t < last) {
       double h = longest;
       if (const double left = time + (1 + kBeyond) * scale - t; left > 0) h = std::min(h, left);
+      // A step far beyond a kink may have to be taken again, and in more passes.
+      if (const double slides = step.sliding_time(); slides < kSoon * scale)
+        h = std::min(h, kAmple * slides + kLeast * scale);
       h = std::min(shorter * h, last - t);
-      const double error = step.take(regime, t, h, y);
+      const double error = step.take(h);
       if (!(error <= 1) && h > kShortestStep * scale) {
         // Where the force has no smooth continuation so far beyond a kink the next step need not be short.
-        (error < HUGE_VAL ? longest : shorter) *= error < HUGE_VAL ? 0.5 : step.to_first_event(regime);
+        (error < HUGE_VAL ? longest : shorter) *= error < HUGE_VAL ? 0.5 : step.to_first_event();
         continue;
       }
       shorter = 1;
-      const auto [x, what] = step.first_event(regime);
+      const auto [x, what] = step.first_event();
       y = step.at(x);
       t += x * h;
       end.deepest = std::max(end.deepest, step.deepest());
-      if (const double now = overlap(y); now > deep) deep = now, middle = y, end.middle = t;
       if (what == Event::parting) {
         end.parted = true;
         t += part(t, regime, y);
       } else if (what == Event::turn) {
         // There F_n vanishes, and so does the Coulomb limit.
-        regime = {!regime.pressed, T::kActs && tangential_speed(y) > 0};
+        regime = {!regime.pressed, step.surfaces_slide()};
       } else if (what == Event::limit) {
         regime.slides = !regime.slides;
       }
       if (error < kEasy) longest = std::min(2 * longest, kLongestStep * scale);
+      if (end.parted) break;
+      step.begin(regime, t, y);
+      if (step.overlap() > deep) deep = step.overlap(), middle = y, end.middle = t;
     }
     end.time = t;
     end.motion = motion(y, start);
@@ -91,8 +96,9 @@ class Encounter {
   }
 
   [[nodiscard]] EncounterForce force(const RelativeMotion& m) const {
-    const Numbers y = numbers(m);
-    const Forces f = forces(y, regime_at(y));
+    Forces f = approach(numbers(m));
+    const Regime regime = regime_of(f);
+    f.rub(c_t_.data(), regime.pressed, regime.slides);
     const Vec3 n = vector(f.n);
     if constexpr (T::kActs) {
       const Vec3 f_t = vector(f.f_t);
@@ -109,6 +115,8 @@ class Encounter {
   };
   enum class Event { none, turn, limit, parting };  ///< turn: F_n changes its sign
   static constexpr double kEasy = 1e-4;             ///< error of a step that could have been twice as long
+  // Of contact times: sliding that ends so soon is foreseen so well.
+  static constexpr double kSoon = 0.25, kAmple = 1.15, kLeast = 0.01;
 
   static void put(const Vec3& v, double* to) {
     if constexpr (D == 2) {
@@ -147,20 +155,10 @@ class Encounter {
     f.approach(c_n_.data(), y.data() + D, y.data() + 2 * D);
     return f;
   }
-  [[nodiscard]] Forces forces(const Numbers& y, const Regime& regime) const {
-    Forces f = approach(y);
-    f.rub(c_t_.data(), regime.pressed, regime.slides);
-    return f;
-  }
-  [[nodiscard]] Regime regime_at(const Numbers& y) const {
-    const Forces f = approach(y);
+  [[nodiscard]] Regime regime_of(const Forces& f) const {
     Regime regime{f.f_n > 0, false};
     if constexpr (T::kActs) regime.slides = f.slack(c_t_.data(), regime.pressed) < 0;
     return regime;
-  }
-  [[nodiscard]] double tangential_speed(const Numbers& y) const {
-    if constexpr (T::kActs) return norm(approach(y).v_t);
-    return 0;
   }
   /// Accelerations other than the contact's.
   void push_at(double t, std::array<double, D>& push) const {
@@ -198,29 +196,48 @@ class Encounter {
       start_.method = &numbers_;
       start_.enough = 0.5 * tolerance * speed;
     }
+    /// From here steps are taken. \returns the regime of the force
+    Regime begin(double t, const Numbers& y) {
+      forces_ = law_.approach(y);
+      return begin_in(law_.regime_of(forces_), t, y);
+    }
+    void begin(const Regime& regime, double t, const Numbers& y) {
+      forces_ = law_.approach(y);
+      begin_in(regime, t, y);
+    }
+    [[nodiscard]] double overlap() const { return forces_.overlap; }
+    /// Surfaces at rest against each other stay so while nothing else acts along them.
+    [[nodiscard]] bool surfaces_slide() const {
+      if constexpr (T::kActs) return norm(forces_.v_t) > 0;
+      return false;
+    }
+    /// About how long surfaces that slide will: the Coulomb limit grows as F_n does, and friction slows them.
+    /// Infinite if that says nothing.
+    [[nodiscard]] double sliding_time() const {
+      if constexpr (T::kActs) {
+        if (!regime_.slides || !regime_.pressed) return HUGE_VAL;
+        const double moment = 1e-3 / std::max(start_.frequency, 1e-300);
+        const double speed = norm(forces_.v_t) - moment * norm(forces_.turning) * turning_mass();
+        const double force =
+            forces_.f_n - moment * forces_.v_n * start_.frequency * start_.frequency / law_.inv_mass_;
+        const double gained = T::slack(law_.c_t_.data(), speed, force) - slack_;
+        return slack_ < 0 && gained > 0 ? -slack_ / gained * moment : HUGE_VAL;
+      }
+      return HUGE_VAL;
+    }
     /// \returns the error over what is allowed
-    double take(const Regime& regime, double t, double h, const Numbers& y) {
-      y_ = y;
-      const Forces f = law_.forces(y, regime);
-      const auto slopes = law_.slopes(f, t);
+    double take(double h) {
       if (law_.wall_)
         for (std::size_t k = 0; k < kMoments; ++k) {
           std::array<double, D> push;
-          law_.push_at(t + numbers_.moment[k] * h, push);
+          law_.push_at(t_ + numbers_.moment[k] * h, push);
           for (std::size_t q = 0; q < D; ++q) push_[q][k] = push[q];
         }
       start_.h = h;
-      if constexpr (T::kActs)
-        start_.relaxation =
-            regime.slides ? 0 : -T::sticking(law_.c_t_.data(), 1.0) * (law_.inv_mass_ + law_.set_.turn);
-      start_.pressed = regime.pressed, start_.slides = regime.slides;
-      start_.numbers = y_.data(), start_.slopes = slopes.data(), start_.normal = f.n;
       const double width = start_.frequency * h * (Collocation::kWidths / Collocation::kWidest);
       start_.response =
           &numbers_.response[static_cast<std::size_t>(std::min(width + 0.5, Collocation::kWidths + 0.0))];
       if (width < kNarrow) start_.response = nullptr;
-      overlap_ = f.overlap, f_n_ = f.f_n;
-      if constexpr (T::kActs) slack_ = f.slack(law_.c_t_.data(), regime.pressed);
       law_.step_(start_, motion_);
       if (!(motion_.change <= start_.enough)) return HUGE_VAL;
       double most = 0;
@@ -231,7 +248,7 @@ class Encounter {
     }
     [[nodiscard]] double deepest() const { return motion_.deepest; }
     /// What happens first, and at which fraction of the step.
-    [[nodiscard]] std::pair<double, Event> first_event(const Regime& regime) const {
+    [[nodiscard]] std::pair<double, Event> first_event() const {
       std::pair<double, Event> first{1, Event::none};
       const auto look = [&](Event what, double begins, const double* values, bool positive) {
         unsigned others = 0;  // moments where the sign is another
@@ -241,16 +258,16 @@ class Encounter {
         if (x < first.first || first.second == Event::none) first = {x, what};
       };
       if constexpr (T::kActs) {
-        look(Event::limit, slack_, motion_.slack, !regime.slides);
-        look(Event::turn, f_n_, motion_.f_n, regime.pressed);
+        look(Event::limit, slack_, motion_.slack, !regime_.slides);
+        look(Event::turn, forces_.f_n, motion_.f_n, regime_.pressed);
       }
-      look(Event::parting, overlap_, motion_.overlap, true);
+      look(Event::parting, forces_.overlap, motion_.overlap, true);
       return first;
     }
     /// Which part of a step that failed goes not far beyond the first kink, as far as it is seen.
-    [[nodiscard]] double to_first_event(const Regime& regime) const {
+    [[nodiscard]] double to_first_event() const {
       for (std::size_t k = 0; k + 2 < kMoments; ++k)
-        if ((motion_.slack[k] > 0) != !regime.slides || (motion_.f_n[k] > 0) != regime.pressed)
+        if ((motion_.slack[k] > 0) != !regime_.slides || (motion_.f_n[k] > 0) != regime_.pressed)
           return std::min(0.7, numbers_.moment[k + 1]);
       return 0.5;
     }
@@ -267,6 +284,21 @@ class Encounter {
     }
 
    private:
+    const Regime& begin_in(const Regime& regime, double t, const Numbers& y) {
+      y_ = y, t_ = t, regime_ = regime;
+      forces_.rub(law_.c_t_.data(), regime.pressed, regime.slides);
+      slopes_ = law_.slopes(forces_, t);
+      start_.pressed = regime.pressed, start_.slides = regime.slides;
+      start_.numbers = y_.data(), start_.slopes = slopes_.data(), start_.normal = forces_.n;
+      if constexpr (T::kActs) {
+        slack_ = forces_.slack(law_.c_t_.data(), regime.pressed);
+        start_.relaxation = regime.slides ? 0 : -T::sticking(law_.c_t_.data(), 1.0) * turning_mass();
+      }
+      return regime_;
+    }
+    /// What a tangential force acts on.
+    [[nodiscard]] double turning_mass() const { return law_.inv_mass_ + law_.set_.turn; }
+
     static constexpr double kOfLast = 3e-3;  ///< error over the change that the last coefficient makes
     static constexpr double kNarrow = 4;     ///< the spring hardly counts
 
@@ -299,8 +331,12 @@ class Encounter {
     const Encounter& law_;
     const Collocation& numbers_;
     double tolerance_, speed_, near_;
-    double overlap_ = 0, f_n_ = 0, slack_ = 0;  ///< at the start
+    // At the start.
     Numbers y_;
+    Forces forces_;
+    std::array<double, kSlopes> slopes_;
+    Regime regime_;
+    double t_, slack_ = 0;
     CollocationStart start_{};
     CollocationMotion motion_;
     alignas(64) std::array<std::array<double, kMoments>, D> push_;
@@ -308,7 +344,8 @@ class Encounter {
 
   /// From close to the moment of parting to it, by tiny straight steps. \returns how long they took
   double part(double t, const Regime& regime, Numbers& y) const {
-    const Forces f = forces(y, regime);
+    Forces f = approach(y);
+    f.rub(c_t_.data(), regime.pressed, regime.slides);
     const auto change = slopes(f, t);
     double passed = 0, deep = f.overlap;
     for (int k = 0; k < 6 && std::abs(deep) > 4e-15 * set_.reach; ++k) {

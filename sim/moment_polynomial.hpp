@@ -9,7 +9,7 @@
 namespace twincell::sim {
 
 /// Of eight each; in pairs: short chains.
-inline double sum_of_products(const double* a, const double* b) {
+[[gnu::always_inline]] inline double sum_of_products(const double* a, const double* b) {
   double c[kMoments];
   for (std::size_t k = 0; k < kMoments; ++k) c[k] = a[k] * b[k];
   return ((c[0] + c[4]) + (c[2] + c[6])) + ((c[1] + c[5]) + (c[3] + c[7]));
@@ -18,7 +18,7 @@ inline double sum_of_products(const double* a, const double* b) {
 /// All of them at a fraction x of the step.
 class MomentPolynomials {
  public:
-  explicit MomentPolynomials(const Collocation& numbers, double x) {
+  [[gnu::always_inline]] explicit MomentPolynomials(const Collocation& numbers, double x) {
     const auto apart = [&](std::size_t place) {
       const double d = x - numbers.place[place];
       return d == 0 ? 1e-100 : d;
@@ -31,11 +31,11 @@ class MomentPolynomials {
     start_ = start * whole;
   }
   /// The value of the one that begins so and has these values at the moments.
-  [[nodiscard]] double value(double begins, const double* values) const {
+  [[nodiscard]] [[gnu::always_inline]] double value(double begins, const double* values) const {
     return start_ * begins + sum_of_products(share_, values);
   }
   /// Its slope, where its value is known.
-  [[nodiscard]] double slope(double begins, const double* values, double value) const {
+  [[nodiscard]] [[gnu::always_inline]] double slope(double begins, const double* values, double value) const {
     double apart[kMoments];
     for (std::size_t k = 0; k < kMoments; ++k) apart[k] = per_[k] * (value - values[k]);
     return start_ * per_start_ * (value - begins) + sum_of_products(share_, apart);
