@@ -149,7 +149,7 @@ class Encounter {
   }
   [[nodiscard]] double overlap(const Numbers& y) const { return set_.reach - distance(y); }
 
-  [[nodiscard]] Forces approach(const Numbers& y) const {
+  [[nodiscard]] [[gnu::always_inline]] Forces approach(const Numbers& y) const {
     Forces f;
     f.look(set_.reach, wall_ ? n_.data() : nullptr, y.data());
     f.approach(c_n_.data(), y.data() + D, y.data() + 2 * D);
@@ -165,7 +165,7 @@ class Encounter {
     const double swing = set_.omega > 0 ? std::sin(set_.omega * t) : 0;
     for (int k = 0; k < D; ++k) push[k] = pull_[k] + swing_[k] * swing;
   }
-  std::array<double, kSlopes> slopes(const Forces& f, double t) const {
+  [[gnu::always_inline]] std::array<double, kSlopes> slopes(const Forces& f, double t) const {
     std::array<double, kSlopes> to;
     std::array<double, D> push{};
     if (wall_) push_at(t, push);

@@ -716,9 +716,10 @@ class FlightKernel : public Kernel {
     bool alone = !add_near(passages_);
     alone = !near_others_meeting(whole(c), passages_) && alone;
     // A bead near a wall and in contact with another body is three bodies too.
-    for (const Passage& p : passages_)
-      for (std::size_t w = 0; w < walls_.size(); ++w)
-        alone = alone && (j == -1 - static_cast<std::int32_t>(w) || !reaches(p, walls_[w]));
+    for (std::size_t w = 0; w < walls_.size(); ++w)
+      if (j != -1 - static_cast<std::int32_t>(w) && reaches(whole(c), walls_[w]))
+        alone = alone && std::none_of(passages_.begin(), passages_.end(),
+                                      [&](const Passage& p) { return reaches(p, walls_[w]); });
     if (!alone) return false;
     lines_->put(a, lines[0]);
     lines_->valid_from(a) = c.until;

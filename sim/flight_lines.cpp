@@ -166,7 +166,8 @@ namespace {
 
 flight::View view(std::size_t n, int dimension, const std::array<std::vector<double>, 3>& a,
                   const std::array<std::vector<double>, 3>& b, const std::vector<double>& radius,
-                  const std::vector<double>& from, const std::array<double, 3>& period) {
+                  const std::vector<double>& from, const std::array<double, 3>& period,
+                  const std::array<double, 3>& per) {
   return {n,
           dimension,
           {a[0].data(), a[1].data(), a[2].data()},
@@ -174,13 +175,14 @@ flight::View view(std::size_t n, int dimension, const std::array<std::vector<dou
           radius.data(),
           from.data(),
           {period[0], period[1], period[2]},
-          {1 / period[0], 1 / period[1], 1 / period[2]}};
+          {per[0], per[1], per[2]}};
 }
 
 }  // namespace
 
 FlightLines::FlightLines(const std::vector<double>& radii, int dimension, const std::array<double, 3>& period)
     : n_(radii.size()), dimension_(dimension), period_(period), radius_(radii) {
+  for (std::size_t k = 0; k < 3; ++k) per_[k] = period[k] > 0 ? 1 / period[k] : 0;
   const std::size_t with_spare = n_ + flight::kSpare;
   for (std::size_t k = 0; k < 3; ++k) a_[k].resize(with_spare), b_[k].resize(with_spare);
   radius_.resize(with_spare);
@@ -188,14 +190,14 @@ FlightLines::FlightLines(const std::vector<double>& radii, int dimension, const 
 }
 
 FlightLines::Hit FlightLines::first_hit(std::size_t i, double now) const {
-  return HWY_DYNAMIC_DISPATCH(first_hit)(view(n_, dimension_, a_, b_, radius_, from_, period_), i, now);
+  return HWY_DYNAMIC_DISPATCH(first_hit)(view(n_, dimension_, a_, b_, radius_, from_, period_, per_), i, now);
 }
 
 void FlightLines::find_near(const FlightLine& line, double radius, double begin, double end,
                             std::vector<std::int32_t>& found) const {
   HWY_DYNAMIC_DISPATCH(find_near)
-  (view(n_, dimension_, a_, b_, radius_, from_, period_), {line.a.data(), line.b.data(), radius, begin, end},
-   found);
+  (view(n_, dimension_, a_, b_, radius_, from_, period_, per_),
+   {line.a.data(), line.b.data(), radius, begin, end}, found);
 }
 
 }  // namespace twincell::sim

@@ -70,7 +70,7 @@ class FlightLines {
  private:
   std::size_t n_;
   int dimension_;
-  std::array<double, 3> period_;
+  std::array<double, 3> period_, per_;  ///< per: 1/period
   std::array<std::vector<double>, 3> a_, b_;
   std::vector<double> radius_, from_;
 };
