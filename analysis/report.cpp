@@ -559,7 +559,7 @@ std::string comparison_json(const Comparison& c) {
 
 void write_report(const std::filesystem::path& folder, const Comparison& c,
                   const std::string& provenance_json, Progress& progress) {
-  AtomicPath output(folder, AtomicPath::Kind::folder);
+  AtomicPath output(folder, report_folder());
   const std::filesystem::path figure_folder = output.part() / "figures";
   std::filesystem::create_directories(figure_folder);
 

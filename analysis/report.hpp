@@ -6,6 +6,7 @@
 #include <string>
 
 #include "analysis/comparison.hpp"
+#include "analysis/trajectory/product.hpp"
 #include "analysis/trajectory/progress.hpp"
 
 namespace twincell {
@@ -17,6 +18,11 @@ std::string comparison_text(const Comparison& comparison);
 /// The same for machines: {"runs": […], "matches": […], "boundaries": […], "differences": […]}. Text of one
 /// JSON object.
 std::string comparison_json(const Comparison& comparison);
+
+/// What the folder of a report is to the rules of outputs.
+inline Product report_folder() {
+  return Product::whole_folder("a report");
+}
 
 /// Writes `folder` whole or not at all: report.html (one file, no outside request), figures/ (SVG, PDF, PNG,
 /// .gp, .dat), runs.csv, differences.csv, series_s_k.csv, series_s_j.csv, phases.txt, results.json,

@@ -175,7 +175,7 @@ std::vector<Result> results_from_json(const std::string& text) {
 
 void write_results(const std::filesystem::path& path, const std::vector<Result>& results,
                    const std::string& provenance_json) {
-  AtomicPath output(path);
+  AtomicPath output(path, Product::results());
   h5::quiet();
   {
     const h5::Handle file = h5::own(H5Fcreate(output.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),

@@ -47,7 +47,7 @@ void film_and_track(const TrajectorySource& simulation, const CameraOptions& cam
                     const std::filesystem::path& tracked, int threads, Show& show, Progress& progress) {
   std::filesystem::path place = tracked;
   place += ".frames";
-  const AtomicPath film(place, AtomicPath::Kind::folder);  // never committed: gone at the end
+  const AtomicPath film(place, Product::whole_folder("a film"));  // never committed: gone at the end
   const std::filesystem::path frames = film.part() / "frames";
   CameraOptions whole = camera;
   whole.drop = whole.doubled = 0;  // the phases of the film are counted, not found

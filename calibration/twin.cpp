@@ -10,6 +10,7 @@
 #include "analysis/trajectory/config.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "analysis/trajectory/median.hpp"
+#include "analysis/trajectory/output_rules.hpp"
 #include "analysis/trajectory/toml_leaves.hpp"
 #include "calibration/plate_drive.hpp"
 #include "imaging/frame_source.hpp"
@@ -24,6 +25,8 @@ namespace fs = std::filesystem;
 
 /// A scene refuses larger shifts (start.perturbation).
 constexpr double kLargestShift = 0.01;
+/// By which a scene of ours is known when the twin is made anew.
+const char* const kSceneHead = "# The scene of a filmed cell, by twincell match.\n";
 
 void require_known(const CellDescription& cell, const fs::path& file) {
   const auto need = [&](bool known, const char* key, const char* why) {
@@ -40,14 +43,6 @@ const char* word_of_sides(const CellDescription& cell, const fs::path& file) {
   if (cell.sides == Boundary::wall) return "walls";
   throw ConfigError({.file = file.string(), .key = "cell.sides"},
                     "\"open\" sides cannot be simulated: beads would leave; say \"walls\" or \"periodic\".");
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code failure;
-  fs::create_directory(folder, failure);
-  if (failure || !fs::is_directory(folder))
-    throw ConfigError({.file = folder.string()},
-                      "is no folder that can be written to, and none can be made there.");
 }
 
 /// The first frame at phase 0, from which the twin begins, and what it holds.
@@ -145,7 +140,7 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments);
 
   const auto frames = open_frames(options.stack);
-  make_folder(folder);
+  claim_shared_folder(folder, twin_folder());
 
   LocatorOptions locator = options.locator;
   locator.preprocess.bright |= cell.bright;
@@ -165,8 +160,8 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   twin.beads = begin.beads;
   twin.cycles = begin.cycles;
   twin.position_error = begin.position_error;
-  const std::string text = scene_text(begin.frame, begin.cycles);
-  write_text_file(twin.scene, text);
+  const std::string text = std::string(kSceneHead) + scene_text(begin.frame, begin.cycles);
+  write_text_file(twin.scene, text, Product::text("a scene", kSceneHead));
   for (int k = 1; k <= options.twins; ++k) {
     std::vector<std::string> assignments = options.assignments;
     if (k > 1) {

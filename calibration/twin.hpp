@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trajectory/product.hpp"
 #include "analysis/trajectory/progress.hpp"
 #include "calibration/comparing.hpp"
 #include "imaging/cell.hpp"
@@ -34,6 +35,11 @@ struct TwinProvenance {
   std::function<std::string(const CellDescription&)> of_experiment;
   std::function<std::string(const sim::Scene&, const std::vector<sim::Bead>&)> of_simulation;
 };
+
+/// What the folder of a match is to the rules of outputs: several files, and a report in a folder of its own.
+inline Product twin_folder() {
+  return Product::shared_folder("a match");
+}
 
 /// Files of a twin, each written whole or not at all.
 struct Twin {

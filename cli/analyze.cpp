@@ -33,6 +33,10 @@ struct AnalyzeOptions {
   AnalysisOptions analysis;
 };
 
+Product figure_folder() {
+  return Product::whole_folder("the figures of an analysis");
+}
+
 /// A number, or the mean height of the centre of mass above the plate in a trajectory of a bed at rest.
 double rest_height_of(const std::string& said) {
   double number = 0;
@@ -74,9 +78,6 @@ void run(const Common& common, const AnalyzeOptions& options) {
   if (readers.size() > 1 && !options.figures.empty())
     throw ConfigError({.file = {}, .key = "--figures"},
                       fmt::format("draws one trajectory; {} were given", readers.size()));
-  // An unwritable place is found before the work, not after.
-  if (!options.output.empty()) AtomicPath{options.output};
-  if (!options.figures.empty()) AtomicPath(options.figures, AtomicPath::Kind::folder);
   std::vector<std::vector<Result>> runs;
   for (const TrajectorySource* trajectory : trajectories) {
     ProgressBar progress(common, readers.size() > 1 ? trajectory->name() : "analyze");
@@ -89,8 +90,7 @@ void run(const Common& common, const AnalyzeOptions& options) {
   const std::string provenance_json = provenance.to_json();
   if (!options.output.empty()) write_results(options.output, results, provenance_json);
   if (!options.figures.empty()) {
-    AtomicPath folder(options.figures, AtomicPath::Kind::folder);
-    std::filesystem::create_directories(folder.part());
+    AtomicPath folder(options.figures, figure_folder());
     for (const Figure& figure : spatial_figures(results, *readers.front(), options.analysis))
       draw(figure, folder.part());
     folder.commit();
@@ -115,9 +115,14 @@ void add_analyze(CLI::App& program, Common& common) {
                   "trajectory (H5MD); several that differ by chance alone (seeds, repeats) are pooled, with "
                   "intervals over them")
       ->required();
-  verb.add_option("-o,--output", options->output, "write the results to this HDF5 file too");
-  verb.add_option("--figures", options->figures,
-                  "draw the lattice, the convection field, the profiles and the defects into this folder");
+  writes(common, verb,
+         verb.add_option("-o,--output", options->output, "write the results to this HDF5 file too"),
+         Product::results());
+  writes(common, verb,
+         verb.add_option(
+             "--figures", options->figures,
+             "draw the lattice, the convection field, the profiles and the defects into this folder"),
+         figure_folder());
   verb.add_option("--discard", options->analysis.discard_cycles, "cycles left out at the beginning")
       ->capture_default_str();
   verb.add_option("--cycles", options->analysis.cycles, "cycles used after those, N_f (0: all)")

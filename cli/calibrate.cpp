@@ -24,6 +24,15 @@ namespace {
 constexpr AddKind kKinds[] = {add_calibrate_camera, add_calibrate_walls, add_calibrate_plate,
                               add_calibrate_beads, add_calibrate_contacts};
 
+/// Calibrations of several kinds go into one folder.
+Product calibration_figures() {
+  return Product::shared_folder("the figures of a calibration");
+}
+
+Product calibration_product() {
+  return Product::text("a calibration", "# twincell ");
+}
+
 const Quantity& quantity(const std::string& name) {
   const auto& all = quantities();
   return *std::find_if(all.begin(), all.end(), [&](const Quantity& q) { return q.name == name; });
@@ -68,14 +77,18 @@ std::string data_hash(const std::string& stack) {
   return "sha256:" + sha256_of(file_of_stack(stack));
 }
 
-void add_output_flags(CLI::App& verb, CalibrateFlags& flags) {
-  verb.add_option(
-      "-o,--output", flags.output,
-      "Calibration file (TOML) that a scene or CELL.toml includes; quantities of other runs stay in it");
-  verb.add_option("--figures", flags.figures, "Folder for pictures and their data");
+void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags) {
+  writes(
+      common, verb,
+      verb.add_option(
+          "-o,--output", flags.output,
+          "Calibration file (TOML) that a scene or CELL.toml includes; quantities of other runs stay in it"),
+      calibration_product());
+  writes(common, verb, verb.add_option("--figures", flags.figures, "Folder for pictures and their data"),
+         calibration_figures());
 }
 
-void add_stack_flags(CLI::App& verb, CalibrateFlags& flags) {
+void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags) {
   verb.add_option("stack", flags.stack,
                   "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
       ->required();
@@ -84,7 +97,7 @@ void add_stack_flags(CLI::App& verb, CalibrateFlags& flags) {
                   "Bead diameter, px; absent: the cell's scale, or estimated")
       ->check(CLI::Range(3.0, 400.0));
   verb.add_flag("--bright", flags.bright, "Beads, walls and plate are brighter than what lies behind them");
-  add_output_flags(verb, flags);
+  add_output_flags(verb, common, flags);
 }
 
 CellDescription cell_of(const CalibrateFlags& flags) {
@@ -137,20 +150,22 @@ void finish_calibration(const CalibrateFlags& flags, const Common& common, Calib
   for (const Measurement& m : result.measured) document["measured"][m.name] = json_of(m);
   document["notes"] = result.notes;
   if (!flags.figures.empty()) {
-    std::filesystem::create_directories(flags.figures);
+    AtomicPath folder(flags.figures, calibration_figures());
     for (const Figure& f : result.figures) {
-      draw(f, flags.figures);
+      draw(f, folder.part());
       const std::string file = (std::filesystem::path(flags.figures) / (f.name + ".svg")).string();
       document["figures"].push_back(file);
       text += "picture: " + file + "\n";
     }
+    folder.commit();
   }
   if (!flags.output.empty()) {
     Calibration file;
     if (std::filesystem::exists(flags.output)) file = read_calibration(flags.output);
     for (Measurement& m : result.measured) file.put(std::move(m));
     if (result.camera) file.camera = std::move(result.camera);
-    write_text_file(flags.output, calibration_text(file, version_line() + ", last: " + common.command_line));
+    write_text_file(flags.output, calibration_text(file, version_line() + ", last: " + common.command_line),
+                    calibration_product());
     document["output"] = flags.output;
     text += flags.output + "\n";
   }

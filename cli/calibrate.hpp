@@ -26,9 +26,9 @@ struct CalibrateFlags {
   double diameter_px = 0;
   bool bright = false;
 };
-void add_stack_flags(CLI::App& verb, CalibrateFlags& flags);
+void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
 /// -o and --figures.
-void add_output_flags(CLI::App& verb, CalibrateFlags& flags);
+void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
 
 /// The cell of --cell, or one of which nothing is known.
 CellDescription cell_of(const CalibrateFlags& flags);

@@ -93,7 +93,7 @@ void add_calibrate_beads(CLI::App& calibrate, Common& common) {
   CLI::App& verb =
       add_verb(calibrate, common, "beads", "Diameters, masses by volume, effective number of layers",
                "twincell calibrate beads frames/ --cell CELL.toml -o cell.calibration.toml");
-  add_stack_flags(verb, o->flags);
+  add_stack_flags(verb, common, o->flags);
   verb.add_option("--frames", o->frames, "Frames looked at, spread over the stack")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

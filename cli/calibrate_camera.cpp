@@ -226,7 +226,7 @@ void add_calibrate_camera(CLI::App& calibrate, Common& common) {
   auto o = std::make_shared<CameraCalibration>();
   CLI::App& verb = add_verb(calibrate, common, "camera", "Scale, origin, turn and distortion of the picture",
                             "twincell calibrate camera frames/ --cell CELL.toml -o cell.calibration.toml");
-  add_stack_flags(verb, o->flags);
+  add_stack_flags(verb, common, o->flags);
   verb.add_option("--frames", o->frames, "Frames in which beads are located, spread over the stack")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

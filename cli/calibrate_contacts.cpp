@@ -240,7 +240,7 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
     kind.add_option("--amplitude", o->amplitude, "A of the vibrating plate, in the heights' unit");
     kind.add_option("--omega", o->omega, "omega of the vibrating plate, in the times' unit");
     kind.add_option("--phase", o->phase, "Its phase at time 0, rad");
-    add_output_flags(kind, o->out);
+    add_output_flags(kind, common, o->out);
     kind.callback([o, &common] { run_bounce(*o, common); });
   }
   {
@@ -253,7 +253,7 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
         ->capture_default_str();
     kind.add_option("--shape", o->shape, "disc or sphere: moment of inertia")
         ->check(CLI::IsMember({"disc", "sphere"}));
-    add_output_flags(kind, o->out);
+    add_output_flags(kind, common, o->out);
     kind.callback([o, &common] { run_collisions(*o, common); });
   }
   add_calibrate_infer(verb, common);

@@ -432,7 +432,7 @@ void add_calibrate_infer(CLI::App& contacts, Common& common) {
   kind.add_option("--discard", o->discard, "Cycles left out at the beginning, of both")
       ->capture_default_str();
   kind.add_option("--set", o->assignments, "section.key=value of the scene; may be repeated")->take_all();
-  add_output_flags(kind, o->out);
+  add_output_flags(kind, common, o->out);
   kind.callback([o, &common] { run_infer(*o, common); });
 }
 

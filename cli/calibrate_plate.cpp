@@ -25,11 +25,13 @@ struct PlateOptions {
   std::optional<double> frame_rate_hz;
 };
 
+constexpr const char* kPhaseHeading = "frame,cycles\n";
+
 void write_phases(const std::string& path, const PlateLock& lock) {
-  AtomicPath file(path);
+  AtomicPath file(path, Product::table(kPhaseHeading));
   {
     std::ofstream out(file.part());
-    out << "frame,cycles\n";
+    out << kPhaseHeading;
     // read_triggers counts cycles from 0 on.
     const double first = std::floor(lock.frames.front().cycles);
     for (std::size_t f = 0; f < lock.frames.size(); ++f)
@@ -197,13 +199,15 @@ void add_calibrate_plate(CLI::App& calibrate, Common& common) {
   auto o = std::make_shared<PlateOptions>();
   CLI::App& verb = add_verb(calibrate, common, "plate", "Drive and phases from the plate's edge",
                             "twincell calibrate plate frames/ --cell CELL.toml -o cell.calibration.toml");
-  add_stack_flags(verb, o->flags);
+  add_stack_flags(verb, common, o->flags);
   verb.add_option("--frames-per-cycle", o->frames_per_cycle,
                   "Where the search for the period begins; absent: the cell's, or sought")
       ->check(CLI::Range(2, 100000));
   verb.add_option("--fps", o->frame_rate_hz, "Frames per second, where the stack does not say")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--phases", o->phases, "List of each frame's phase (CSV) for track --phase-lock");
+  writes(common, verb,
+         verb.add_option("--phases", o->phases, "List of each frame's phase (CSV) for track --phase-lock"),
+         Product::table(kPhaseHeading));
   verb.add_option("--accelerometer", o->accelerometer,
                   "CSV with columns time_s and acceleration_m_s2 to compare with");
   verb.callback([o, &common] { run(*o, common); });

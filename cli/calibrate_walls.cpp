@@ -118,7 +118,7 @@ void add_calibrate_walls(CLI::App& calibrate, Common& common) {
   auto flags = std::make_shared<CalibrateFlags>();
   CLI::App& verb = add_verb(calibrate, common, "walls", "Width and tilt of the side walls",
                             "twincell calibrate walls frames/ --cell CELL.toml -o cell.calibration.toml");
-  add_stack_flags(verb, *flags);
+  add_stack_flags(verb, common, *flags);
   verb.callback([flags, &common] {
     if (is_trajectory(flags->stack))
       of_trajectory(*flags, common);

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/report.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "cli/comparing_options.hpp"
 #include "cli/verb.hpp"
@@ -25,7 +25,6 @@ void run(const Common& common, CompareOptions& o) {
                           ? "there is nothing to compare: give --experiment and --simulation trajectories"
                           : "a sweep's results hold no bed to look at: give --simulation or --experiment "
                             "trajectories too, as sweep run --keep-trajectories leaves them in points/");
-  { const AtomicPath probe(o.output, AtomicPath::Kind::folder); }  // found before the work, not after
   compare_and_report(common, options, o.output, nlohmann::json::object(), "");
 }
 
@@ -44,7 +43,8 @@ void add_compare(CLI::App& program, Common& common) {
                   "stacks of the experiments, in their order, to be shown; absent: where they were tracked");
   verb.add_option("--sweep", o->flags.options.sweeps,
                   "collected results of sweeps (JSON): their points and onsets");
-  verb.add_option("-o,--output", o->output, "folder of the report; replaced as a whole")->required();
+  writes(common, verb, verb.add_option("-o,--output", o->output, "folder of the report")->required(),
+         report_folder());
   add_comparing_flags(verb, o->flags);
   verb.callback([&common, o] { run(common, *o); });
 }

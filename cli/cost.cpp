@@ -29,6 +29,10 @@ namespace {
 using sim::StepSetting;
 using sim::WorkPrecision;
 
+Product cost_folder() {
+  return Product::whole_folder("a study of costs");
+}
+
 struct CostOptions {
   std::string what, output;
   std::optional<double> accuracy;
@@ -300,8 +304,7 @@ void run(const CostOptions& options, const Common& common) {
                   locate ? 100 : 1);
   std::optional<AtomicPath> folder;  // an unwritable place is found before the work, not after
   if (!options.output.empty()) {
-    folder.emplace(options.output, AtomicPath::Kind::folder);
-    std::filesystem::create_directories(folder->part());
+    folder.emplace(options.output, cost_folder());
   }
   CostReport report =
       locate ? cost_of_locating(options.accuracy.value_or(kAccuracy_px), options.quick, common)
@@ -331,7 +334,8 @@ void add_cost(CLI::App& program, Common& common) {
           "gas; locate: finders, fit, noise, pixels per bead; calibration: frames used")
       ->required()
       ->check(CLI::IsMember({"sim", "gas", "locate", "calibration"}));
-  verb.add_option("-o,--output", options->output, "Folder for figure and table; replaced as a whole");
+  writes(common, verb, verb.add_option("-o,--output", options->output, "Folder for figure and table"),
+         cost_folder());
   verb.add_option(
       "--accuracy", options->accuracy,
       "The cheapest setting is named whose largest error of e (sim; 1e-3), relative error of T_z (gas; "

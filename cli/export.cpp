@@ -15,6 +15,10 @@ namespace twincell::cli {
 
 namespace {
 
+Product deck_folder() {
+  return Product::whole_folder("a LAMMPS deck");
+}
+
 struct ExportOptions {
   std::string scene, format, output, from;
   std::size_t frame = 0;
@@ -23,7 +27,7 @@ struct ExportOptions {
 
 void run(const ExportOptions& o, const Common& common) {
   const sim::Scene scene = sim::read_scene(o.scene, with_seed(o.assignments, common));
-  AtomicPath folder(o.output, AtomicPath::Kind::folder);
+  AtomicPath folder(o.output, deck_folder());
   ProgressBar settling(common, "settling");
   const sim::LammpsDeck deck = o.from.empty() ? sim::lammps_deck(scene, settling)
                                               : sim::lammps_deck(scene, H5mdReader(o.from), o.frame);
@@ -46,7 +50,8 @@ void add_export(CLI::App& program, Common& common) {
                             "twincell export scene.toml --to lammps -o deck/");
   verb.add_option("scene", o->scene, "Scene (TOML, docs/scene.md)")->required();
   verb.add_option("--to", o->format, "Program")->required()->check(CLI::IsMember({"lammps"}));
-  verb.add_option("-o,--output", o->output, "Folder to write")->required();
+  writes(common, verb, verb.add_option("-o,--output", o->output, "Folder to write")->required(),
+         deck_folder());
   verb.add_option("--set", o->assignments, "section.key=value, over the scene's own; may be repeated")
       ->take_all();
   CLI::Option* from =

@@ -22,6 +22,10 @@ struct FitOptions {
   std::optional<std::array<double, 2>> window;
 };
 
+Product fit_folder() {
+  return Product::whole_folder("a fit");
+}
+
 constexpr std::array<const char*, 4> kUses = {"used", "zero", "outside", "invalid"};
 
 const char* use_name(PointUse use) {
@@ -170,7 +174,7 @@ void run(const Common& common, FitOptions o) {
         {.file = {}, .key = "window"},
         fmt::format("[{:g}, {:g}] is not a window: low must be below high", (*o.window)[0], (*o.window)[1]));
   std::optional<AtomicPath> folder;  // an unwritable place is found before the work, not after
-  if (!o.output.empty()) folder.emplace(o.output, AtomicPath::Kind::folder);
+  if (!o.output.empty()) folder.emplace(o.output, fit_folder());
   const Table table = read_table(o.table);
   const std::vector<DataPoint> points = points_of(table, o);
   if (!o.trials.empty()) check_frequencies(points, o);
@@ -184,7 +188,6 @@ void run(const Common& common, FitOptions o) {
   document["provenance"] = nlohmann::json::parse(provenance.to_json());
   std::string text = text_of(fit);
   if (folder) {
-    std::filesystem::create_directories(folder->part());
     draw(fit_figure(fit, points, o.x, o.y), folder->part());
     write_text_file(folder->part() / "fit.json", document.dump(2) + "\n");
     folder->commit();
@@ -210,7 +213,9 @@ void add_fit(CLI::App& program, Common& common) {
   verb.add_option("--window", o->window, "only points with LOW <= x <= HIGH")
       ->delimiter(',')
       ->type_name("LOW,HIGH");
-  verb.add_option("-o,--output", o->output, "folder for the picture, its data and fit.json");
+  writes(common, verb,
+         verb.add_option("-o,--output", o->output, "folder for the picture, its data and fit.json"),
+         fit_folder());
   verb.callback([&common, o] { run(common, *o); });
 }
 

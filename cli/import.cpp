@@ -54,7 +54,8 @@ void add_import(CLI::App& program, Common& common) {
                "--drive-omega 1 --frames-per-cycle 20");
   LammpsDumpOptions& l = o->lammps;
   verb.add_option("dump", o->dump, "Text dump of LAMMPS")->required();
-  verb.add_option("-o,--output", o->output, "Trajectory (H5MD)")->required();
+  writes(common, verb, verb.add_option("-o,--output", o->output, "Trajectory (H5MD)")->required(),
+         Product::trajectory());
   verb.add_option("--dimension", l.dimension, "2: the plane (x, y), y up; 3: z up")
       ->check(CLI::IsMember({2, 3}))
       ->capture_default_str();

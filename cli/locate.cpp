@@ -35,6 +35,7 @@ struct LocateOptions {
 };
 
 // trackpy's columns in trackpy's order, then our own.
+constexpr const char* kCandidateHeading = "frame,x,y,radius,darkness,interior,score,ring_share,verdict\n";
 constexpr const char* kHeading =
     "y,x,mass,size,ecc,signal,raw_mass,ep,frame,radius,sigma_x,sigma_y,sigma_radius,score,tracer,edge\n";
 
@@ -62,7 +63,7 @@ class TableFile {
  public:
   TableFile(const std::string& name, const char* heading) : name_(name) {
     if (name.empty()) return;
-    path_.emplace(name);
+    path_.emplace(name, Product::table(heading));
     out_.open(path_->part());
     out_ << heading;
   }
@@ -138,7 +139,7 @@ void run(LocateOptions& o, const Common& common) {
                       fmt::format("{} was asked for, the stack has {} frames, counted from 0.",
                                   o.overlay_frame, announced));
   TableFile table(o.output, kHeading);
-  TableFile candidates(o.candidates, "frame,x,y,radius,darkness,interior,score,ring_share,verdict\n");
+  TableFile candidates(o.candidates, kCandidateHeading);
   nlohmann::json document = {{"stack", o.stack}, {"output", o.output}, {"frames", nlohmann::json::array()}};
   std::string text;
   bool drawn = false;
@@ -258,12 +259,20 @@ void add_locate(CLI::App& program, Common& common) {
   verb.add_option("stack", o->stack,
                   "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
       ->required();
-  verb.add_option("-o,--output", o->output, "Bead table (CSV, trackpy's columns); absent: STACK.beads.csv");
-  verb.add_option("--candidates", o->candidates,
-                  "Every candidate of every frame, with why it was dropped (CSV)");
-  verb.add_option("--debug-dir", o->debug_folder,
-                  "Folder for pictures of what each stage made of --overlay-frame");
-  verb.add_option("--overlay", o->overlay, "PNG of a frame with its beads marked");
+  writes(common, verb,
+         verb.add_option("-o,--output", o->output,
+                         "Bead table (CSV, trackpy's columns); absent: STACK.beads.csv"),
+         Product::table(kHeading));
+  writes(common, verb,
+         verb.add_option("--candidates", o->candidates,
+                         "Every candidate of every frame, with why it was dropped (CSV)"),
+         Product::table(kCandidateHeading));
+  writes(common, verb,
+         verb.add_option("--debug-dir", o->debug_folder,
+                         "Folder for pictures of what each stage made of --overlay-frame"),
+         debug_folder());
+  writes(common, verb, verb.add_option("--overlay", o->overlay, "PNG of a frame with its beads marked"),
+         Product::picture());
   verb.add_option("--overlay-frame", o->overlay_frame, "Which frame, from 0")->check(CLI::NonNegativeNumber);
   verb.add_option("--diameter", o->diameters,
                   "Bead diameter, px, or several; absent: found from the first frame")

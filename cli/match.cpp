@@ -79,8 +79,11 @@ void add_match(CLI::App& program, Common& common) {
                   "measured where it "
                   "does not say them")
       ->required();
-  verb.add_option("-o,--output", o->output, "Folder: experiment.h5, scene.toml, simulation-N.h5, report/")
-      ->required();
+  writes(
+      common, verb,
+      verb.add_option("-o,--output", o->output, "Folder: experiment.h5, scene.toml, simulation-N.h5, report/")
+          ->required(),
+      twin_folder());
   verb.add_option(
       "--scene", o->twin.scene,
       "What the cell does not say: contacts, steps (TOML); absent: the preset fortini-huang-2015");

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/results.hpp"
-#include "analysis/trajectory/atomic_file.hpp"
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
@@ -96,7 +95,6 @@ std::string compared(const Run& rest, const Run& boiling) {
 }
 
 void run(const MeasureOptions& options, const Common& common) {
-  if (!options.output.empty()) AtomicPath{options.output};
   const std::vector<std::string> assignments = with_seed(options.assignments, common);
   const Run first = run_once(options, assignments, "as the scene says", common);
   if (!options.output.empty()) write_results(options.output, first.measured.results, first.provenance);
@@ -128,7 +126,9 @@ void add_measure(CLI::App& program, Common& common) {
                "twincell measure gas.toml --only T_z,delta_h_cm --set until.quantity=T_z "
                "--set until.relative_error=0.01 --set time.cycles=20000");
   verb.add_option("scene", options->scene, "Scene (TOML, docs/scene.md)")->required();
-  verb.add_option("-o,--output", options->output, "write the results to this HDF5 file too");
+  writes(common, verb,
+         verb.add_option("-o,--output", options->output, "write the results to this HDF5 file too"),
+         Product::results());
   verb.add_option("--set", options->assignments, "section.key=value, over the scene's own; may be repeated")
       ->take_all();
   verb.add_option("--only", options->analysis.only, "results wanted, comma separated; fewer are quicker")

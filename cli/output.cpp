@@ -9,9 +9,14 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/output_rules.hpp"
+#include "analysis/trajectory/temporary.hpp"
 
 namespace twincell::cli {
 
@@ -20,7 +25,16 @@ namespace {
 std::atomic<int> caught_signal{0};
 
 extern "C" void remember_signal(int signal) {
-  if (caught_signal.exchange(signal) != 0) std::_Exit(128 + signal);  // asked twice: at once
+  if (caught_signal.exchange(signal) == 0) return;
+  remove_temporaries();  // asked twice: at once
+  std::_Exit(128 + signal);
+}
+
+/// A fault ends the program as it would have, but nothing unfinished stays.
+extern "C" void clean_up_and_die(int signal) {
+  remove_temporaries();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
 }
 
 std::int64_t now_ns() {
@@ -30,6 +44,35 @@ std::int64_t now_ns() {
 }
 
 constexpr int kBarWidth = 30;
+
+/// Notes the verb's inputs, then holds its outputs against the rules.
+void guard_outputs(const CLI::App& verb, const Common& common) {
+  replace_by_force(common.force);
+  const auto is_output = [&](const CLI::Option* option) {
+    return std::any_of(common.outputs.begin(), common.outputs.end(),
+                       [&](const Output& o) { return o.option == option; });
+  };
+  for (const CLI::Option* option : verb.get_options()) {
+    if (is_output(option)) continue;
+    for (const std::string& word : option->results()) {
+      protect_input(word);
+      if (const auto inside = word.rfind(":/"); inside != std::string::npos)
+        protect_input(word.substr(0, inside));  // FILE.h5:/dataset
+      if (const auto equals = word.find('='); equals != std::string::npos)
+        protect_input(word.substr(equals + 1));  // --set start.from=FILE
+    }
+  }
+  std::vector<std::filesystem::path> taken;
+  for (const Output& output : common.outputs) {
+    if (output.verb != &verb || output.option->count() == 0) continue;
+    const std::string name = output.option->as<std::string>();
+    const std::filesystem::path final = require_output(name, output.product);
+    if (std::find(taken.begin(), taken.end(), final) != taken.end())
+      throw ConfigError({.file = name, .key = {}}, "two outputs of one command have this name.");
+    taken.push_back(final);
+    if (!output.product.shared) hold_until_exit(final);
+  }
+}
 
 }  // namespace
 
@@ -60,7 +103,16 @@ CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, c
       ->check(CLI::Range(0, 4096))
       ->envname("TWINCELL_THREADS");
   verb.add_option("--seed", common.seed, "Seed, where chance plays a part");
+  verb.add_flag(
+      "--force", common.force,
+      "Replace an output file that is not of the kind to be written; never an input, never a folder");
+  verb.parse_complete_callback([&verb, &common] { guard_outputs(verb, common); });
   return verb;
+}
+
+CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product product) {
+  common.outputs.push_back({option, &verb, std::move(product)});
+  return option;
 }
 
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text) {
@@ -110,6 +162,11 @@ void watch_signals() {
   action.sa_handler = remember_signal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);
+  sigaction(SIGQUIT, &action, nullptr);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(fault, clean_up_and_die);
+#endif
   // A closed pipe, or a file beyond its limit, becomes a failed write, which is reported.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);

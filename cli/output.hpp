@@ -8,14 +8,23 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trajectory/product.hpp"
 #include "analysis/trajectory/progress.hpp"
 #include "analysis/trajectory/provenance.hpp"
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace twincell::cli {
+
+/// An option that names an output.
+struct Output {
+  const CLI::Option* option;
+  const CLI::App* verb;
+  Product product;
+};
 
 /// Options every verb has.
 struct Common {
@@ -24,6 +33,8 @@ struct Common {
   int threads = 0;                    ///< 0: one per core
   std::optional<std::uint64_t> seed;  ///< where chance plays a part
   std::string command_line;
+  bool force = false;           ///< an output file of another kind may be replaced
+  std::vector<Output> outputs;  ///< the options that name outputs, of all verbs
 
   /// Threads to use: the option, or the number of cores.
   [[nodiscard]] int n_threads() const;
@@ -37,6 +48,11 @@ std::vector<std::string> with_seed(std::vector<std::string> assignments, const C
 /// Makes a subcommand with the common options and an example in its help.
 CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, const std::string& summary,
                    const std::string& example);
+
+/// Declares that an option names an output. Before the verb begins its value is held against the rules of
+/// outputs (output_rules.hpp), with all other arguments that name something on the disk as inputs, and
+/// locked.
+CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product product);
 
 /// Prints the result of a verb: `document` as JSON if --json was given, else `text`.
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text);

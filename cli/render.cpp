@@ -68,9 +68,12 @@ void add_render(CLI::App& program, Common& common) {
   CLI::App& verb = add_verb(program, common, "render", "Synthetic camera: frames with known truth, or a film",
                             "twincell render sim.h5 -o frames/ --exposure 0.05 --movie film.mp4");
   verb.add_option("trajectory", o->trajectory, "Trajectory (H5MD)")->required();
-  verb.add_option("-o,--output", o->job.folder,
-                  "Folder for frames, truth.csv, frames.csv, CELL.toml, CAMERA.toml");
-  verb.add_option("--movie", o->job.movie, "Film (.mp4 or .avi), 8 bit");
+  writes(common, verb,
+         verb.add_option("-o,--output", o->job.folder,
+                         "Folder for frames, truth.csv, frames.csv, CELL.toml, CAMERA.toml"),
+         rendered_stack());
+  writes(common, verb, verb.add_option("--movie", o->job.movie, "Film (.mp4 or .avi), 8 bit"),
+         Product::film());
   verb.add_option("--fps", o->job.frames_per_second, "Frames per second of the film");
   verb.add_option("--camera", o->camera_file, "CAMERA.toml: any of the options below; the command line wins");
   const auto list = camera_option_list(o->flags);

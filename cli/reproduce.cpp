@@ -14,6 +14,7 @@
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/output_rules.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_watch.hpp"
 #include "cli/verb.hpp"
@@ -95,11 +96,7 @@ void run(const ReproduceOptions& options, const Common& common) {
   if (options.window && !(options.window->first < options.window->second))
     throw ConfigError({"", 0, 0, "window"}, fmt::format("goes from {:g} to {:g}; it must rise.",
                                                         options.window->first, options.window->second));
-  std::error_code made;
-  fs::create_directories(folder, made);
-  {
-    const AtomicPath probe(folder / (options.name + ".json"));
-  }  // an unwritable place is found before the work
+  claim_shared_folder(folder, Product::runs());
   SweepWatch watch(common, options.full ? 1e300 : 60 * options.budget);
   const Reproduction r = what.run({.minutes = options.budget,
                                    .full = options.full,
@@ -112,10 +109,18 @@ void run(const ReproduceOptions& options, const Common& common) {
                                    .watch = &watch});
   nlohmann::json document = as_json(r, folder);
   document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
-  write_text_file(folder / (options.name + ".json"), document.dump(1) + "\n");
-  write_text_file(folder / (options.name + ".txt"), as_text(r, folder));
-  for (const Figure& figure : r.figures)
-    draw(figure, folder);  // last: what was measured outlives a missing gnuplot
+  {
+    AtomicPath files(folder, Product::runs());
+    write_text_file(files.part() / (options.name + ".json"), document.dump(1) + "\n");
+    write_text_file(files.part() / (options.name + ".txt"), as_text(r, folder));
+    files.commit();
+  }
+  if (!r.figures.empty()) {
+    AtomicPath files(folder, Product::runs());
+    for (const Figure& figure : r.figures)
+      draw(figure, files.part());  // last: what was measured outlives a missing gnuplot
+    files.commit();
+  }
   print_result(common, document, as_text(r, folder));
 }
 
@@ -129,7 +134,10 @@ void add_reproduce(CLI::App& program, Common& common) {
   std::string list = "One of:";
   for (const Reproducible& r : reproduce::list()) list += fmt::format("\n{}: {}", r.name, r.what);
   verb.add_option("name", options->name, list)->required();
-  verb.add_option("-o,--output", options->output, "Folder for runs, figures and results; NAME if not said");
+  writes(common, verb,
+         verb.add_option("-o,--output", options->output,
+                         "Folder for runs, figures and results; NAME if not said"),
+         Product::runs());
   const auto budget =
       verb.add_option("--budget", options->budget, "Minutes that it may take; fewer minutes, fewer runs")
           ->check(CLI::Range(0.01, 1e6))

@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 
-#include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "cli/output.hpp"
@@ -191,7 +190,6 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   std::vector<std::string> assignments = with_seed(options.assignments, common);
   if (options.relax) assignments.emplace_back("start.relax=true");
   sim::Scene scene = sim::read_scene(options.scene, assignments);
-  { const AtomicPath probe(options.output); }  // an unwritable place is found before the work, not after
   if (scene.until)
     note(common,
          fmt::format("[until] is for `measure` and `sweep`, which analyse while they run; all {} cycles are "
@@ -256,7 +254,9 @@ void add_simulate(CLI::App& program, Common& common) {
       add_verb(program, common, "simulate", "Run a scene",
                "twincell simulate scene.toml -o sim.h5 --set drive.gamma=1.8 --set time.cycles=50");
   verb.add_option("scene", options->scene, "Scene (TOML, docs/scene.md)")->required();
-  verb.add_option("-o,--output", options->output, "Trajectory to write (H5MD)")->required();
+  writes(common, verb,
+         verb.add_option("-o,--output", options->output, "Trajectory to write (H5MD)")->required(),
+         Product::trajectory());
   verb.add_option("--set", options->assignments, "section.key=value, over the scene's own; may be repeated")
       ->take_all();
   verb.add_flag("--relax", options->relax, "Push beads of the start apart, however deep they overlap");

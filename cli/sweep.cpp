@@ -11,6 +11,7 @@
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/output_rules.hpp"
 #include "cli/mpi_farm.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_watch.hpp"
@@ -24,6 +25,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using sweep::Counts;
+
+Product collected_product() {
+  return Product::json("the results of a sweep", "points");
+}
 
 struct SweepOptions {
   std::string plan, folder, shard, output, engine;
@@ -149,10 +154,15 @@ void run_collect(const SweepOptions& options, const Common& common) {
   const fs::path output = options.output.empty() ? store.folder() / "results.json" : fs::path(options.output);
   const sweep::Schedule schedule(plan, store);
   const std::string json = collected_json(schedule);
-  write_text_file(output, json);
-  write_text_file(fs::path(output).replace_extension(".csv"), collected_csv(schedule));
-  if (const std::string pooled = pooled_csv(schedule); !pooled.empty())
-    write_text_file(fs::path(output).replace_extension(".pooled.csv"), pooled);
+  const std::string csv = collected_csv(schedule), pooled = pooled_csv(schedule);
+  const fs::path table = fs::path(output).replace_extension(".csv"),
+                 pooled_table = fs::path(output).replace_extension(".pooled.csv");
+  // All of them or none.
+  require_output(table, Product::table(csv));
+  if (!pooled.empty()) require_output(pooled_table, Product::table(pooled));
+  write_text_file(output, json, collected_product());
+  write_text_file(table, csv, Product::table(csv));
+  if (!pooled.empty()) write_text_file(pooled_table, pooled, Product::table(pooled));
   if (!schedule.all()) note(common, "not all points are done; the file says how many are open.");
   print_result(common, nlohmann::json::parse(json), collected_text(schedule) + output.string() + "\n");
 }
@@ -192,8 +202,11 @@ void add_sweep(CLI::App& program, Common& common) {
   const auto add = [&](const char* name, const char* summary, const char* example) -> CLI::App& {
     CLI::App& sub = add_verb(verb, common, name, summary, example);
     sub.add_option("plan", options->plan, "Plan (TOML, docs/sweeps.md)")->required();
-    sub.add_option(std::string(name) == "collect" ? "--folder" : "-o,--output,--folder", options->folder,
-                   "Folder of the sweep; PLAN.sweep if not said");
+    // The folder is held against the rules where the sweep is begun (sweep/store.cpp).
+    common.outputs.push_back(
+        {sub.add_option(std::string(name) == "collect" ? "--folder" : "-o,--output,--folder", options->folder,
+                        "Folder of the sweep; PLAN.sweep if not said"),
+         nullptr, Product::runs()});
     return sub;
   };
   CLI::App& plan = add("plan", "Write down the points that the plan needs", "twincell sweep plan plan.toml");
@@ -212,8 +225,11 @@ void add_sweep(CLI::App& program, Common& common) {
 
   CLI::App& collect = add("collect", "All results in one file, JSON and CSV",
                           "twincell sweep collect plan.toml -o results.json");
-  collect.add_option("-o,--output", options->output,
-                     "FILE.json; FILE.csv and, of several seeds, FILE.pooled.csv are written beside it");
+  writes(
+      common, collect,
+      collect.add_option("-o,--output", options->output,
+                         "FILE.json; FILE.csv and, of several seeds, FILE.pooled.csv are written beside it"),
+      collected_product());
   collect.callback([options, &common] { run_collect(*options, common); });
 
   CLI::App& script = *verb.add_subcommand("template", "A script for Slurm or GNU parallel");

@@ -81,11 +81,13 @@ CellDescription resolve_cell(const TrackOptions& o) {
   return cell;
 }
 
+constexpr const char* kHeading = "y,x,frame,particle,radius,tracer,phase,cycle,sigma_y,sigma_x,ambiguous\n";
+
 void write_csv(const std::string& path, const TrackedStack& stack) {
-  AtomicPath file(path);
+  AtomicPath file(path, Product::table(kHeading));
   {
     std::ofstream out(file.part());
-    out << "y,x,frame,particle,radius,tracer,phase,cycle,sigma_y,sigma_x,ambiguous\n";
+    out << kHeading;
     for (std::size_t f = 0; f < stack.frames.size(); ++f) {
       const FramePhase at = stack.phases.at(static_cast<std::int64_t>(f));
       for (const TrackedBead& b : stack.frames[f])
@@ -177,7 +179,6 @@ void run(TrackOptions& o, const Common& common) {
   const auto frames = open_flattened(o.stack, o.flat, common);
   const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
   const std::filesystem::path folder = parent.empty() ? "." : parent;
-  { const AtomicPath writable(o.output); }  // an output that cannot be written is refused before the work
   ProgressBar bar(common, "track");
   const TrackedStack stack =
       track_stack(*frames, o.locator, o.link, cell, common.n_threads(), bar, way, folder);
@@ -243,7 +244,8 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("stack", o->stack,
                   "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
       ->required();
-  verb.add_option("-o,--output", o->output, "Trajectory (H5MD)")->required();
+  writes(common, verb, verb.add_option("-o,--output", o->output, "Trajectory (H5MD)")->required(),
+         Product::trajectory());
   verb.add_option("--cell", o->cell_file, "CELL.toml: scale, origin, size, drive of the cell");
   verb.add_option("--pixels-per-sigma", o->pixels_per_sigma, "Camera pixels per bead diameter")
       ->check(CLI::PositiveNumber);
@@ -271,7 +273,8 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--memory", o->link.memory, "Frames for which a bead may be missing");
   verb.add_option("--shortest", o->shortest, "Tracks seen in fewer frames are left out")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--csv", o->csv, "Table of tracks (trackpy's columns and more)");
+  writes(common, verb, verb.add_option("--csv", o->csv, "Table of tracks (trackpy's columns and more)"),
+         Product::table(kHeading));
   verb.add_option("--truth", o->truth, "Score against truth.csv or a folder of truth_NN.csv");
   verb.add_option("--scored-rows", o->scored_rows, "First and last row that is scored, px")->expected(2);
   verb.callback([o, &common] { run(*o, common); });

@@ -92,12 +92,10 @@ std::string candidates_csv(const LocatorStages& stages) {
 
 }  // namespace
 
-void write_debug_pictures(const std::filesystem::path& folder, const cv::Mat& grey,
+void write_debug_pictures(const std::filesystem::path& place, const cv::Mat& grey,
                           const LocatorOptions& options) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw ConfigError(Where{.file = folder.string(), .key = {}}, "cannot be made: " + error.message() + ".");
+  AtomicPath output(place, debug_folder());
+  const std::filesystem::path& folder = output.part();
   const LocatorStages stages = locate_stages(grey, options);
   const int enlarge = std::max(1, 1200 / std::max(1, std::max(grey.cols, grey.rows)));
 
@@ -129,6 +127,7 @@ void write_debug_pictures(const std::filesystem::path& folder, const cv::Mat& gr
   }
   write_png(folder / "5_judged.png", judged);
   write_text_file(folder / "candidates.csv", candidates_csv(stages));
+  output.commit();
 }
 
 }  // namespace twincell

@@ -5,11 +5,17 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 
+#include "analysis/trajectory/product.hpp"
 #include "imaging/locator.hpp"
 
 namespace twincell {
 
-/// Writes into a folder, which is made: 1_darkness.png (walls tinted), 2_proposals.png, 3_model.png (all
+/// What the folder is to the rules of outputs.
+inline Product debug_folder() {
+  return Product::whole_folder("pictures of the locator's stages");
+}
+
+/// Writes a folder: 1_darkness.png (walls tinted), 2_proposals.png, 3_model.png (all
 /// fitted discs, in the same shades), 4_residual.png (darkness less model, grey is zero, black and white are
 /// -0.2 and 0.2), 5_judged.png (beads green, edge orange, tracers magenta; dropped candidates red with their
 /// verdict's number), and candidates.csv (every candidate, its numbers, its verdict). Needs diameter_px > 0.

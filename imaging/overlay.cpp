@@ -1,9 +1,11 @@
 #include "imaging/overlay.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
@@ -32,13 +34,39 @@ cv::Mat3b draw_overlay(const cv::Mat& grey, const std::vector<Detection>& beads,
   return picture;
 }
 
+namespace {
+
+constexpr std::streamsize kEndOfPngHeader = 33;
+
+/// The chunk "Software: twincell" of a PNG (ISO/IEC 15948, 11.3.4.3), by which an earlier picture of ours is
+/// known.
+std::string software_chunk() {
+  const std::string body("tEXtSoftware\0twincell", 21);
+  std::uint32_t crc = 0xffffffffU;  // ISO 3309, as PNG's annex D has it
+  for (const char c : body) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1U) != 0 ? 0xedb88320U ^ (crc >> 1) : crc >> 1;
+  }
+  const auto four = [](std::uint32_t n) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(n >> shift & 255U);
+    return bytes;
+  };
+  return four(static_cast<std::uint32_t>(body.size() - 4)) + body + four(crc ^ 0xffffffffU);
+}
+
+}  // namespace
+
 void write_png(const std::filesystem::path& png, const cv::Mat& picture) {
   std::vector<unsigned char> bytes;
   if (!cv::imencode(".png", picture, bytes))
     throw RunError(png.string() + ": the picture cannot be encoded as PNG.");
-  AtomicPath path(png);
+  AtomicPath path(png, Product::picture());
   std::ofstream out(path.part(), std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  const auto* png_bytes = reinterpret_cast<const char*>(bytes.data());
+  out.write(png_bytes, kEndOfPngHeader);
+  out << software_chunk();
+  out.write(png_bytes + kEndOfPngHeader, static_cast<std::streamsize>(bytes.size()) - kEndOfPngHeader);
   out.close();
   if (!out) throw RunError(png.string() + ": cannot be written.");
   path.commit();

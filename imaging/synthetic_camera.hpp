@@ -20,6 +20,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "analysis/trajectory/product.hpp"
 #include "analysis/trajectory/progress.hpp"
 #include "analysis/trajectory/trajectory.hpp"
 #include "imaging/camera/lens.hpp"
@@ -80,6 +81,11 @@ class SyntheticCamera {
   cv::Mat1f walls_;                     // share of light that side walls leave; empty: all
   cv::Mat2d ideal_;                     // (x, y) of a pixel in the ideal picture; empty: its own
 };
+
+/// What the folder of rendered frames is to the rules of outputs.
+inline Product rendered_stack() {
+  return Product::whole_folder("a rendered stack");
+}
 
 /// What to write and how.
 struct RenderJob {

@@ -203,7 +203,7 @@ std::map<std::string, std::string> keys_of(const std::string& toml) {
 
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
   h5::quiet();
-  AtomicPath place(path);
+  AtomicPath place(path, Product::checkpoint());
   h5::Handle file = h5::own(H5Fcreate(place.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                             path.string() + ": creating the file");
   h5::write_attribute(file.get(), kVersion, kCheckpointVersion);

@@ -69,7 +69,9 @@ CheckpointFolder::~CheckpointFolder() {
 }
 
 void CheckpointFolder::remove_strays() const {
-  static const std::regex ours("(segment-[0-9]{4,}\\.h5|state\\.h5)(\\.part)?");
+  // Segments that no state counts, and what a killed run left unfinished (temporary.hpp).
+  static const std::regex ours(
+      R"(segment-[0-9]{4,}\.h5|state\.h5|\.twincell-[0-9a-f]{16}(-[0-9a-v]{12}\.part\.h5|\.lock))");
   std::vector<fs::path> strays;
   for (const auto& entry : fs::directory_iterator(folder_)) {
     const fs::path& path = entry.path();

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/output_rules.hpp"
 
 namespace twincell::sweep {
 
@@ -40,8 +41,10 @@ Claim::~Claim() {
 }
 
 Store::Store(fs::path folder) : folder_(std::move(folder)) {
+  // Sweeps of earlier versions have no manifest, but points.
   std::error_code ec;
-  fs::create_directories(folder_ / "points", ec);
+  if (!fs::is_directory(folder_ / "points", ec)) claim_shared_folder(folder_, Product::runs());
+  fs::create_directory(folder_ / "points", ec);
   if (ec || ::access((folder_ / "points").c_str(), R_OK | W_OK | X_OK) != 0)
     throw ConfigError({folder_.string(), 0, 0, ""},
                       fmt::format("the folder of the sweep cannot be made or written to ({}).",

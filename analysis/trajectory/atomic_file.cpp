@@ -1,6 +1,7 @@
 #include "analysis/trajectory/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,8 +10,11 @@
 #include <sstream>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/manifest.hpp"
+#include "analysis/trajectory/output_rules.hpp"
 
 namespace twincell {
 
@@ -28,61 +32,177 @@ bool sync_to_disk(const fs::path& path) {
   return !refused;
 }
 
+/// Whether a new file of this name may take its place in a folder: nothing is there, or a listed, unchanged
+/// file, and no link or file stands where a folder is needed.
+bool replaceable(const fs::path& folder, const Manifest& manifest, const std::string& name) {
+  std::error_code ec;
+  fs::path at = folder;
+  for (const fs::path& part : fs::path(name).parent_path()) {
+    at /= part;
+    const fs::file_status status = fs::symlink_status(at, ec);
+    if (!fs::exists(status)) return true;
+    if (!fs::is_directory(status)) return false;
+  }
+  return !fs::exists(fs::symlink_status(folder / name, ec)) || manifest.unchanged(folder, name);
+}
+
+bool is_leftover(const fs::path& path) {
+  return path.filename().string().starts_with(kTemporaryPrefix);
+}
+
+/// Whether a folder holds nothing but what its manifest lists, unchanged.
+bool only_listed(const fs::path& folder, const Manifest& manifest) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_directory() && !entry.is_symlink()) continue;
+    const std::string name = entry.path().lexically_relative(folder).string();
+    if (name != Manifest::kName && !manifest.unchanged(folder, name)) return false;
+  }
+  return true;
+}
+
+/// Removes the listed, unchanged files of a folder, its manifest, and the folders that are then empty.
+void remove_listed(const fs::path& folder, const Manifest& manifest) {
+  std::error_code ec;
+  for (const auto& [name, hashes] : manifest.files)
+    if (manifest.unchanged(folder, name)) fs::remove(folder / name, ec);
+  fs::remove(folder / Manifest::kName, ec);
+  std::vector<fs::path> folders = {folder};
+  for (const auto& entry : fs::recursive_directory_iterator(folder, ec))
+    if (entry.is_directory(ec) && !entry.is_symlink(ec)) folders.push_back(entry.path());
+  for (std::size_t i = folders.size(); i-- > 0;) fs::remove(folders[i], ec);  // fails where something is left
+}
+
+/// Removes what unfinished outputs left in a folder that is otherwise empty.
+void remove_own_leftovers(const fs::path& folder) {
+  std::error_code ec;
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder, ec))
+    if (is_leftover(entry.path())) found.push_back(entry.path());
+  for (const fs::path& path : found) fs::remove_all(path, ec);
+}
+
 }  // namespace
 
-AtomicPath::AtomicPath(fs::path final_path, Kind kind) : final_(std::move(final_path)) {
-  while (!final_.empty() && !final_.has_filename())
-    final_ = final_.parent_path();  // "report/" means "report"
-  const Where where{final_.string(), 0, 0, ""};
-  if (final_.empty()) throw ConfigError({}, "The output has no name.");
-  const fs::path parent = final_.has_parent_path() ? final_.parent_path() : fs::path(".");
-  std::error_code ec;
-  if (!fs::is_directory(parent, ec))
-    throw ConfigError(where, "the output's folder '" + parent.string() + "' does not exist.");
-  if (::access(parent.c_str(), W_OK | X_OK) != 0)
-    throw ConfigError(where, "the output's folder '" + parent.string() + "' cannot be written to.");
-  const bool exists = fs::exists(final_, ec);
-  if (kind == Kind::file && exists && fs::is_directory(final_, ec))
-    throw ConfigError(where, "the output is a folder where a file is to be written.");
-  if (kind == Kind::folder && exists && !fs::is_directory(final_, ec))
-    throw ConfigError(where, "the output is a file where a folder is to be written.");
-  part_ = final_;
-  part_ += ".part";
-  fs::remove_all(part_, ec);
-  if (kind == Kind::folder && !fs::create_directory(part_, ec))
-    throw ConfigError(where, "the folder cannot be made (" + ec.message() + ").");
+AtomicPath::AtomicPath(const fs::path& final_path, Product product)
+    : given_(final_path), final_(require_output(final_path, product)), product_(std::move(product)) {
+  while (!given_.empty() && !given_.has_filename() && given_ != given_.root_path())
+    given_ = given_.parent_path();  // "report/" means "report"
+  lock_.emplace(final_);
+  part_ = make_temporary(final_, product_.folder);
 }
 
 AtomicPath::AtomicPath(AtomicPath&& other) noexcept
-    : final_(std::move(other.final_)),
+    : given_(std::move(other.given_)),
+      final_(std::move(other.final_)),
+      product_(std::move(other.product_)),
+      lock_(std::move(other.lock_)),
       part_(std::move(other.part_)),
-      open_(std::exchange(other.open_, false)) {}
+      open_(std::exchange(other.open_, false)) {
+  other.lock_.reset();
+}
 
 AtomicPath::~AtomicPath() {
+  if (!open_) return;
   std::error_code ec;
-  if (open_) fs::remove_all(part_, ec);
+  fs::remove_all(part_, ec);
+  forget_temporary(part_);
 }
 
 void AtomicPath::commit() {
-  commit_as(final_);
+  if (product_.folder)
+    place_folder(final_);
+  else
+    place_file(final_);
+  open_ = false;
+  forget_temporary(part_);
+  sync_to_disk(final_.parent_path());
 }
 
 void AtomicPath::commit_as(const fs::path& other_name) {
-  std::error_code ec;
-  if (fs::is_directory(part_, ec))
-    fs::remove_all(other_name, ec);
-  else if (!sync_to_disk(part_))
-    throw RunError(part_.string() + ": the disk did not take it (" + std::strerror(errno) + ").");
-  fs::rename(part_, other_name, ec);
-  if (ec)
-    throw RunError(other_name.string() + ": the finished output cannot be given its name (" + ec.message() +
-                   ").");
-  open_ = false;
-  sync_to_disk(other_name.has_parent_path() ? other_name.parent_path() : fs::path("."));
+  given_ = other_name;
+  final_ = require_output(other_name, product_);
+  commit();
 }
 
-void write_text_file(const fs::path& path, const std::string& text) {
-  AtomicPath out(path);
+void AtomicPath::give_way(const fs::path& target, const std::string& obstacle) {
+  for (int k = 1; k < 10000; ++k) {
+    const fs::path other =
+        target.parent_path() / fmt::format("{}.twincell-{}", target.filename().string(), k);
+    if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, other.c_str(), RENAME_NOREPLACE) != 0) continue;
+    open_ = false;
+    forget_temporary(part_);
+    throw RunError(
+        fmt::format("{}: {} appeared or changed during the run and is not replaced; the finished output is "
+                    "{}.",
+                    given_.string(), obstacle, other.string()));
+  }
+  throw RunError(given_.string() + ": " + obstacle + " is in the way, and no other name is free beside it.");
+}
+
+void AtomicPath::place_file(const fs::path& target) {
+  if (!sync_to_disk(part_))
+    throw RunError(part_.string() + ": the disk did not take it (" + std::strerror(errno) + ").");
+  std::error_code ec;
+  if (fs::exists(fs::symlink_status(target, ec)) &&
+      (!fs::is_regular_file(target, ec) || !may_replace(target, product_)))
+    give_way(target, "a file of that name");
+  fs::rename(part_, target, ec);
+  if (ec)
+    throw RunError(given_.string() + ": the finished output cannot be given its name (" + ec.message() +
+                   ").");
+}
+
+void AtomicPath::place_folder(const fs::path& target) {
+  const auto fail = [&](const std::error_code& ec) {
+    throw RunError(given_.string() + ": the finished output cannot be given its name (" + ec.message() +
+                   ").");
+  };
+  Manifest fresh = Manifest::of(part_, product_.name);
+  std::error_code ec;
+  const auto old = Manifest::read(target);
+  if (!old) {
+    // Absent or empty; anything else has come meanwhile.
+    fresh.write(part_);
+    if (fs::is_directory(target, ec)) remove_own_leftovers(target);
+    fs::rename(part_, target, ec);
+    if (ec == std::errc::directory_not_empty || ec == std::errc::file_exists ||
+        ec == std::errc::not_a_directory)
+      give_way(target, "a folder or file of that name");
+    if (ec) fail(ec);
+    return;
+  }
+  for (const auto& [name, hashes] : fresh.files)
+    if (!replaceable(target, *old, name)) give_way(target, "'" + name + "' in it");
+  if (!product_.shared && only_listed(target, *old)) {
+    // All of it is ours: the folders change places in one step.
+    fresh.write(part_);
+    if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) {
+      remove_listed(part_, *old);
+      return;
+    }
+  }
+  // File by file. At every instant the manifest lists each file of ours, old or new.
+  Manifest both = *old;
+  for (const auto& [name, hashes] : fresh.files) both.files[name].insert(hashes.begin(), hashes.end());
+  both.write(target);
+  for (const auto& [name, hashes] : fresh.files) {
+    fs::create_directories((target / name).parent_path(), ec);
+    fs::rename(part_ / name, target / name, ec);
+    if (ec) fail(ec);
+  }
+  for (const auto& [name, hashes] : old->files) {
+    if (fresh.files.contains(name)) continue;
+    if (product_.shared)
+      fresh.files[name] = hashes;
+    else if (old->unchanged(target, name))
+      fs::remove(target / name, ec);
+  }
+  fresh.write(target);
+  fs::remove_all(part_, ec);
+}
+
+void write_text_file(const fs::path& path, const std::string& text, const Product& product) {
+  AtomicPath out(path, product);
   {
     std::ofstream stream(out.part(), std::ios::binary);
     stream << text;

@@ -1,47 +1,59 @@
 #pragma once
 /// \file
 /// Outputs that exist whole or not at all: write beside the final name, rename at the end. A file is on the
-/// disk before it gets its name, so that this holds for a machine that loses its power too.
+/// disk before it gets its name, so that this holds for a machine that loses its power too. What an output
+/// may replace: output_rules.hpp.
 
 #include <filesystem>
+#include <optional>
 #include <string>
+
+#include "analysis/trajectory/product.hpp"
+#include "analysis/trajectory/temporary.hpp"
 
 namespace twincell {
 
-/// Reserves `NAME.part` for an output that will be called NAME. `commit` renames; a destructor without a
-/// commit deletes. Works for a file and for a folder (a folder of that name is replaced as a whole by
-/// `commit`).
+/// Reserves a temporary file or folder beside an output. `commit` gives it its name; a destructor without a
+/// commit deletes it. A folder that exists is replaced as far as its manifest lists it: other files stay.
 class AtomicPath {
  public:
-  enum class Kind { file, folder };
-
-  /// \throws ConfigError if the parent folder is missing or cannot be written to, or if NAME is of the other
-  /// kind.
-  explicit AtomicPath(std::filesystem::path final_path, Kind kind = Kind::file);
+  /// \throws ConfigError as require_output; if another process writes the same output; if nothing can be
+  /// written beside it
+  AtomicPath(const std::filesystem::path& final_path, Product product);
   AtomicPath(AtomicPath&& other) noexcept;
   AtomicPath& operator=(AtomicPath&&) = delete;
   AtomicPath(const AtomicPath&) = delete;
   AtomicPath& operator=(const AtomicPath&) = delete;
   ~AtomicPath();
 
-  /// Where to write.
+  /// Where to write: an empty file, with the output's extension, or an empty folder.
   [[nodiscard]] const std::filesystem::path& part() const { return part_; }
-  /// What it will be called.
-  [[nodiscard]] const std::filesystem::path& final() const { return final_; }
-  /// Renames part to final. \throws RunError naming the path.
+  /// What it will be called, as it was given.
+  [[nodiscard]] const std::filesystem::path& final() const { return given_; }
+  /// Renames part to final. \throws RunError naming the path; where something that may not be replaced has
+  /// appeared meanwhile, the finished output keeps a name beside it that the sentence says
   void commit();
   /// Renames part to another name in the same folder (a run that failed keeps its frames under a name that
-  /// says so).
+  /// says so). The rules for what may be replaced hold for that name too.
   void commit_as(const std::filesystem::path& other_name);
 
  private:
-  std::filesystem::path final_;
+  void place_file(const std::filesystem::path& target);
+  void place_folder(const std::filesystem::path& target);
+  [[noreturn]] void give_way(const std::filesystem::path& target, const std::string& obstacle);
+
+  std::filesystem::path given_;  ///< as the user said it
+  std::filesystem::path final_;  ///< absolute, links resolved
+  Product product_;
+  std::optional<OutputLock> lock_;
   std::filesystem::path part_;
   bool open_ = true;
 };
 
-/// Writes `text` as a whole file. \throws ConfigError, RunError
-void write_text_file(const std::filesystem::path& path, const std::string& text);
+/// Writes `text` as a whole file. A file that exists is replaced as AtomicPath says. \throws ConfigError,
+/// RunError
+void write_text_file(const std::filesystem::path& path, const std::string& text,
+                     const Product& product = Product::part());
 
 /// Reads a whole file. \throws InputError if it is missing or unreadable
 std::string read_text_file(const std::filesystem::path& path);

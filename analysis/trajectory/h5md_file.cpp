@@ -52,7 +52,8 @@ struct H5mdWriter::Impl {
   h5::Series step, time, position, position_sigma, edges, velocity, spin, id, plate_height, phase, cycle;
   std::int64_t last_step = 0;
 
-  Impl(const fs::path& final_path, TrajectoryInfo i) : path(final_path), info(std::move(i)) {}
+  Impl(const fs::path& final_path, TrajectoryInfo i)
+      : path(final_path, Product::trajectory()), info(std::move(i)) {}
 
   void create();
   void create_particles();

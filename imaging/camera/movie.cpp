@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <fstream>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
@@ -9,13 +11,32 @@
 
 namespace twincell {
 
+namespace {
+
+/// Appends a box that players skip ("free" of MP4, "JUNK" of AVI) and that ends with kFilmMark, by which an
+/// earlier film of ours is known.
+void sign(const std::filesystem::path& film) {
+  const std::string mark = Product::kFilmMark;
+  const auto size = static_cast<std::uint32_t>(mark.size());
+  const auto bytes = [](std::uint32_t n, bool big) {
+    std::string four;
+    for (int k = 0; k < 4; ++k) four += static_cast<char>(n >> (big ? 24 - 8 * k : 8 * k) & 255U);
+    return four;
+  };
+  std::ofstream out(film, std::ios::binary | std::ios::app);
+  out << (film.extension() == ".avi" ? "JUNK" + bytes(size, false) : bytes(size + 8, true) + "free") << mark;
+  out.close();
+  if (!out) throw RunError(film.string() + ": cannot be written.");
+}
+
+}  // namespace
+
 struct Movie::Writer {
   cv::VideoWriter video;
 };
 
 Movie::Movie(const std::filesystem::path& file, cv::Size size, double rate)
-    : place_(file),
-      draft_(file),
+    : place_(file, Product::film()),
       writer_(std::make_unique<Writer>()),
       size_((size.width + 1) / 2 * 2, (size.height + 1) / 2 * 2) {
   require_range(Where{.file = {}, .key = "fps"}, rate, 0.01, 1000);
@@ -23,22 +44,17 @@ Movie::Movie(const std::filesystem::path& file, cv::Size size, double rate)
   if (kind != ".mp4" && kind != ".avi")
     throw ConfigError(Where{.file = {}, .key = "movie"},
                       fmt::format("is '{}'; films are written as .mp4 or .avi.", file.string()));
-  draft_.replace_extension(".part" + kind);  // the encoder goes by the extension
   using cv::VideoWriter;
   const std::vector<int> codecs = kind == ".avi" ? std::vector{VideoWriter::fourcc('M', 'J', 'P', 'G')}
                                                  : std::vector{VideoWriter::fourcc('a', 'v', 'c', '1'),
                                                                VideoWriter::fourcc('m', 'p', '4', 'v')};
   for (const int codec : codecs)
-    if (writer_->video.open(draft_.string(), codec, rate, size_, true)) return;
-  std::error_code ignored;
-  std::filesystem::remove(draft_, ignored);
+    if (writer_->video.open(place_.part().string(), codec, rate, size_, true)) return;
   throw RunError(file.string() + ": this OpenCV cannot write such a film.");
 }
 
 Movie::~Movie() {
   writer_->video.release();
-  std::error_code ignored;
-  std::filesystem::remove(draft_, ignored);
 }
 
 void Movie::add(const cv::Mat& frame, int bits) {
@@ -54,9 +70,9 @@ void Movie::add(const cv::Mat& frame, int bits) {
 void Movie::commit() {
   writer_->video.release();
   std::error_code error;
-  if (std::filesystem::file_size(draft_, error) == 0 || error)
+  if (std::filesystem::file_size(place_.part(), error) == 0 || error)
     throw RunError(place_.final().string() + ": cannot be written.");
-  std::filesystem::rename(draft_, place_.part());
+  sign(place_.part());
   place_.commit();
 }
 

@@ -27,7 +27,6 @@ class Movie {
  private:
   struct Writer;
   AtomicPath place_;
-  std::filesystem::path draft_;
   std::unique_ptr<Writer> writer_;
   cv::Size size_;
 };

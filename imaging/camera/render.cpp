@@ -185,7 +185,7 @@ Rendered render(const TrajectorySource& trajectory, const CameraOptions& options
   std::filesystem::path folder;
   std::ofstream truth, record;
   if (!job.folder.empty()) {
-    place.emplace(job.folder, AtomicPath::Kind::folder);
+    place.emplace(job.folder, rendered_stack());
     folder = place->part();
     truth.open(folder / "truth.csv");
     truth << "frame,id,x_px,y_px,r_px,tracer,phase,cycle,visible\n";

@@ -1,0 +1,311 @@
+// Nothing is deleted or overwritten that the program did not make: every verb that writes, against every kind
+// of place that could hurt.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "analysis/trajectory/sha256.hpp"
+#include "tests/support/program.hpp"
+
+namespace twincell {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScene =
+    "preset = \"fortini-huang-2015\"\n[beads]\nlayers = 3\n[cell]\nwidth = 8\n[drive]\ngamma = "
+    "1.5\n[time]\ncycles "
+    "= 2\ndiscard = 0\n";
+
+void write(const fs::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+/// A user's folder: scene, trajectory, frames, tables, and things that are none of the program's business.
+class Sandbox {
+ public:
+  Sandbox() : old_(fs::current_path()) {
+    fs::create_directory(folder_ / "work");
+    fs::current_path(folder_ / "work");
+    write("scene.toml", kScene);
+    write("plan.toml", "scene = \"scene.toml\"\n[grid]\n\"drive.gamma\" = [1.2, 1.4]\n");
+    write("table.csv", "x,y\n1,2\n2,4.1\n3,5.9\n4,8.2\n");
+    EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "sim.h5", "-q"}).code, 0);
+    EXPECT_EQ(run_program({"render", "sim.h5", "-o", "frames", "-q"}).code, 0);
+    fs::remove("frames/twincell-manifest.json");  // an experiment's frames have none
+    fs::create_directory("io");
+    fs::copy_file("sim.h5", "io/sim.h5");
+    write("io/notes.txt", "mine");
+    write("notes.txt", "mine");
+    fs::create_directory("foreign");
+    write("foreign/thesis.tex", "mine");
+    fs::create_directory("foreign/raw");
+    write("foreign/raw/a.dat", "mine");
+    fs::create_symlink("scene.toml", "link.toml");
+    fs::create_symlink("nowhere", "dangling");
+    fs::create_symlink("foreign", "to_foreign");
+    ::mkfifo("pipe", 0600);
+  }
+  ~Sandbox() { fs::current_path(old_); }
+  Sandbox(const Sandbox&) = delete;
+  Sandbox& operator=(const Sandbox&) = delete;
+
+  /// Everything that lies there: path -> hash, or kind.
+  [[nodiscard]] static std::map<std::string, std::string> contents() {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator("."))
+      all[entry.path().string()] = entry.is_symlink() ? "link to " + fs::read_symlink(entry.path()).string()
+                                   : entry.is_regular_file() ? sha256_of(entry.path())
+                                   : entry.is_directory()    ? "folder"
+                                                             : "other";
+    return all;
+  }
+
+ private:
+  TemporaryFolder folder_;
+  fs::path old_;
+};
+
+struct Verb {
+  const char* name;
+  std::vector<std::string> words;  ///< before the output
+  const char* option;
+  bool folder;
+};
+
+/// Every option of every verb that names an output.
+std::vector<Verb> verbs() {
+  return {
+      {"simulate", {"simulate", "scene.toml"}, "-o", false},
+      {"measure", {"measure", "scene.toml"}, "-o", false},
+      {"analyze", {"analyze", "sim.h5"}, "-o", false},
+      {"analyze figures", {"analyze", "sim.h5"}, "--figures", true},
+      {"render", {"render", "sim.h5"}, "-o", true},
+      {"render movie", {"render", "sim.h5"}, "--movie", false},
+      {"locate", {"locate", "frames"}, "-o", false},
+      {"locate overlay", {"locate", "frames", "-o", "beads.csv"}, "--overlay", false},
+      {"locate candidates", {"locate", "frames", "-o", "beads.csv"}, "--candidates", false},
+      {"locate debug", {"locate", "frames", "-o", "beads.csv"}, "--debug-dir", true},
+      {"track", {"track", "frames", "--cell", "frames/CELL.toml"}, "-o", false},
+      {"track csv", {"track", "frames", "--cell", "frames/CELL.toml", "-o", "t.h5"}, "--csv", false},
+      {"import", {"import", "notes.txt"}, "-o", false},
+      {"export", {"export", "scene.toml", "--to", "lammps"}, "-o", true},
+      {"fit", {"fit", "table.csv", "--law", "line"}, "-o", true},
+      {"compare", {"compare", "--experiment", "io/sim.h5", "--simulation", "sim.h5"}, "-o", true},
+      {"match", {"match", "frames", "frames/CELL.toml"}, "-o", true},
+      {"cost", {"cost", "sim", "--quick"}, "-o", true},
+      {"reproduce", {"reproduce", "p1-appendix"}, "-o", true},
+      {"sweep run", {"sweep", "run", "plan.toml"}, "-o", true},
+      {"sweep plan", {"sweep", "plan", "plan.toml"}, "-o", true},
+      {"calibrate plate", {"calibrate", "plate", "frames", "--cell", "frames/CELL.toml"}, "-o", false},
+      {"calibrate plate figures",
+       {"calibrate", "plate", "frames", "--cell", "frames/CELL.toml"},
+       "--figures",
+       true},
+      {"calibrate plate phases",
+       {"calibrate", "plate", "frames", "--cell", "frames/CELL.toml"},
+       "--phases",
+       false},
+      {"calibrate walls", {"calibrate", "walls", "frames"}, "-o", false},
+      {"calibrate beads", {"calibrate", "beads", "frames"}, "-o", false},
+      {"calibrate camera", {"calibrate", "camera", "frames"}, "-o", false},
+      {"calibrate bounce", {"calibrate", "contacts", "bounce", "table.csv"}, "-o", false},
+  };
+}
+
+Ran run_verb(const Verb& verb, const std::string& output, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> words = verb.words;
+  words.emplace_back(verb.option);
+  words.push_back(output);
+  words.insert(words.end(), more.begin(), more.end());
+  return run_program(words);
+}
+
+TEST(Outputs, NoVerbHarmsWhatItDidNotMake) {
+  const Sandbox sandbox;
+  const auto before = Sandbox::contents();
+  const std::vector<std::string> for_all = {"/",         "//",       ".",        "..",         "../work",
+                                            "a/..",      "./",       "dangling", "pipe",       "-",
+                                            "foreign",   "foreign/", "io",       "to_foreign", "frames",
+                                            "/dev/null", "/tmp",     "",         "missing/out"};
+  for (const Verb& verb : verbs()) {
+    std::vector<std::string> places = for_all;
+    places.insert(places.end(), {"scene.toml", "./io/../scene.toml", "link.toml", "sim.h5", "table.csv",
+                                 "notes.txt", "frames/frame_00000.png", "plan.toml", "foreign/thesis.tex"});
+    for (const std::string& place : places) {
+      // A product of the same kind may be replaced where it is no input; these would be.
+      if (place == "sim.h5" && std::string(verb.name) != "analyze" && !verb.folder) continue;
+      const Ran ran = run_verb(verb, place);
+      EXPECT_EQ(ran.code, 2) << verb.name << " into '" << place << "': " << ran.err;
+      EXPECT_FALSE(ran.err.empty()) << verb.name << " into '" << place << "'";
+    }
+    ASSERT_EQ(Sandbox::contents(), before) << verb.name;
+    // An input stays even with --force.
+    if (!verb.folder) {
+      const Ran ran =
+          run_verb(verb, verb.words[1] == "frames" ? "frames/frame_00000.png" : "foreign", {"--force"});
+      EXPECT_EQ(ran.code, 2) << verb.name << ": " << ran.err;
+      ASSERT_EQ(Sandbox::contents(), before) << verb.name;
+    }
+  }
+}
+
+TEST(Outputs, AnInputIsNeverAnOutputThroughAnyName) {
+  const Sandbox sandbox;
+  fs::create_hard_link("scene.toml", "hard.toml");
+  fs::create_symlink("sim.h5", "soft.h5");
+  const auto before = Sandbox::contents();
+  for (const std::string place :
+       {"scene.toml", "link.toml", "hard.toml", "./scene.toml", "io/../scene.toml"}) {
+    EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", place, "--force"}).code, 2) << place;
+    EXPECT_EQ(Sandbox::contents(), before) << place;
+  }
+  EXPECT_EQ(run_program({"analyze", "soft.h5", "-o", "sim.h5", "--force"}).code, 2);
+  EXPECT_EQ(run_program({"simulate", "scene.toml", "--set", "start.kind=trajectory", "--set",
+                         "start.from=sim.h5", "-o", "sim.h5"})
+                .code,
+            2);
+  EXPECT_EQ(Sandbox::contents(), before);
+}
+
+TEST(Outputs, NamesOfAnyBytesAreWritten) {
+  const Sandbox sandbox;
+  for (const std::string name : {"with space", "it's \"quoted\"", "new\nline", "./-o", "caf\xc3\xa9",
+                                 "\xff\xfe bytes", "$(touch PWNED)", "`touch PWNED`", "a;touch PWNED"}) {
+    const Ran fit = run_program({"fit", "table.csv", "--law", "line", "-o", name, "-q"});
+    EXPECT_EQ(fit.code, 0) << name << ": " << fit.err;
+    EXPECT_TRUE(fs::exists(fs::path(name) / "fit.svg")) << name;
+    const Ran json = run_program({"simulate", "scene.toml", "-o", name + ".h5", "-q", "--json"});
+    EXPECT_EQ(json.code, 0) << name << ": " << json.err;
+    EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << name;
+    EXPECT_EQ(run_program({"analyze", name + ".h5", "-o", name + ".results.h5", "-q"}).code, 0) << name;
+  }
+  EXPECT_FALSE(fs::exists("PWNED"));
+  for (const auto& [path, kind] : Sandbox::contents())
+    EXPECT_EQ(path.find(".twincell-"), std::string::npos) << path;
+}
+
+TEST(Outputs, AFolderIsReplacedAsFarAsItsManifestGoes) {
+  const Sandbox sandbox;
+  const std::vector<std::string> render = {"render", "sim.h5", "-o", "new", "-q"};
+  ASSERT_EQ(run_program(render).code, 0);
+  const auto manifest = nlohmann::json::parse(std::ifstream("new/twincell-manifest.json"));
+  EXPECT_EQ(manifest["product"], "a rendered stack");
+  for (const auto& [name, hashes] : manifest["files"].items())
+    EXPECT_EQ(hashes, nlohmann::json::array({sha256_of(fs::path("new") / name)})) << name;
+  EXPECT_EQ(manifest["files"].size() + 1, names_in("new").size());
+
+  // Files of others stay, in the folder and below it; fewer frames leave no old ones.
+  write("new/thesis.tex", "mine");
+  fs::create_directories("new/deep/er");
+  write("new/deep/er/a.txt", "mine");
+  ASSERT_EQ(run_program({"simulate", "scene.toml", "-o", "short.h5", "-q", "--set", "time.cycles=1"}).code,
+            0);
+  ASSERT_EQ(run_program({"render", "short.h5", "-o", "new", "-q"}).code, 0);
+  EXPECT_TRUE(fs::exists("new/thesis.tex"));
+  EXPECT_TRUE(fs::exists("new/deep/er/a.txt"));
+  EXPECT_TRUE(fs::exists("new/frame_00019.png"));
+  EXPECT_FALSE(fs::exists("new/frame_00020.png"));
+
+  // A file that has changed is no longer ours.
+  write("new/CELL.toml", "changed by hand");
+  const Ran refused = run_program(render);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("CELL.toml"), std::string::npos) << refused.err;
+  std::ifstream cell("new/CELL.toml");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(cell), {}), "changed by hand");
+
+  // Nor is a folder of another product, or one whose manifest points elsewhere.
+  EXPECT_EQ(run_program({"analyze", "sim.h5", "--figures", "new", "-q"}).code, 2);
+  fs::create_directory("trap");
+  write("trap/twincell-manifest.json",
+        nlohmann::json({{"program", "twincell"},
+                        {"product", "a rendered stack"},
+                        {"files", {{"../notes.txt", {sha256_of("notes.txt")}}}}})
+            .dump());
+  EXPECT_EQ(run_program({"render", "sim.h5", "-o", "trap", "-q"}).code, 2);
+  EXPECT_TRUE(fs::exists("notes.txt"));
+}
+
+TEST(Outputs, FilesAreReplacedByTheirOwnKindOrByForce) {
+  const Sandbox sandbox;
+  const std::vector<std::vector<std::string>> twice = {
+      {"simulate", "scene.toml", "-o", "a.h5"},
+      {"analyze", "sim.h5", "-o", "r.h5"},
+      {"locate", "frames", "-o", "b.csv", "--overlay", "o.png", "--candidates", "c.csv", "--debug-dir", "d"},
+      {"track", "frames", "--cell", "frames/CELL.toml", "-o", "t.h5", "--csv", "t.csv"},
+      {"render", "sim.h5", "--movie", "f.avi"},
+      {"fit", "table.csv", "--law", "line", "-o", "fit"},
+      {"export", "scene.toml", "--to", "lammps", "-o", "deck"}};
+  for (auto words : twice) {
+    words.emplace_back("-q");
+    EXPECT_EQ(run_program(words).code, 0) << words[0];
+    const Ran again = run_program(words);
+    EXPECT_EQ(again.code, 0) << words[0] << ": " << again.err;
+  }
+  // One kind does not replace another.
+  EXPECT_EQ(run_program({"analyze", "sim.h5", "-o", "a.h5", "-q"}).code, 2);
+  EXPECT_EQ(run_program({"locate", "frames", "-o", "t.csv", "-q"}).code, 2);
+  EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "notes.txt", "-q"}).code, 2);
+  EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "notes.txt", "-q", "--force"}).code, 0);
+}
+
+TEST(Outputs, TwoRunsDoNotShareAnOutput) {
+  const Sandbox sandbox;
+  // The lock of an output, as another process would hold it.
+  RunningProgram first({"simulate", "scene.toml", "-o", "both.h5", "-q", "--set", "time.cycles=100000"});
+  const auto temporaries = [] {
+    int n = 0;
+    for (const auto& entry : fs::directory_iterator("."))
+      n += entry.path().filename().string().starts_with(".twincell-") ? 1 : 0;
+    return n;
+  };
+  for (int wait = 0; wait < 2000 && temporaries() < 2; ++wait) ::usleep(10000);  // lock and unfinished file
+  ASSERT_EQ(temporaries(), 2);
+  const Ran second = run_program({"simulate", "scene.toml", "-o", "both.h5", "-q"});
+  EXPECT_EQ(second.code, 2);
+  EXPECT_NE(second.err.find("another process"), std::string::npos) << second.err;
+  first.signal(SIGTERM);
+  EXPECT_EQ(first.wait().code, 143);
+  EXPECT_EQ(temporaries(), 0);
+  EXPECT_FALSE(fs::exists("both.h5"));
+
+  // What a killed run leaves is removed by the next one with the same output.
+  RunningProgram killed({"simulate", "scene.toml", "-o", "both.h5", "-q", "--set", "time.cycles=100000"});
+  for (int wait = 0; wait < 2000 && temporaries() < 2; ++wait) ::usleep(10000);
+  killed.signal(SIGKILL);
+  EXPECT_EQ(killed.wait().code, 137);
+  EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "both.h5", "-q"}).code, 0);
+  EXPECT_EQ(temporaries(), 0);
+  EXPECT_TRUE(fs::exists("both.h5"));
+}
+
+TEST(Outputs, ASecondSignalLeavesNothingEither) {
+  const Sandbox sandbox;
+  RunningProgram run({"render", "sim.h5", "-o", "big", "-q", "--pixels-per-sigma", "200"});
+  bool begun = false;
+  for (int wait = 0; wait < 2000 && !begun; ++wait) {
+    for (const auto& entry : fs::directory_iterator("."))
+      begun = begun || (entry.is_directory() && entry.path().filename().string().starts_with(".twincell-"));
+    ::usleep(5000);
+  }
+  ASSERT_TRUE(begun);
+  run.signal(SIGINT);
+  run.signal(SIGINT);
+  EXPECT_NE(run.wait().code, 0);
+  for (const auto& [path, kind] : Sandbox::contents())
+    EXPECT_EQ(path.find(".twincell-"), std::string::npos) << path;
+}
+
+}  // namespace
+}  // namespace twincell
