@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "analysis/colours.hpp"
+#include "analysis/gnuplot_text.hpp"
 #include "analysis/trajectory/atomic_file.hpp"
 
 extern char** environ;
@@ -172,7 +173,8 @@ std::string curve_panels(const std::vector<Run>& runs, const std::string& name, 
         const std::string block = points(run);
         if (block.empty()) continue;
         any = true;
-        data += fmt::format("# {} {} Gamma {:.4g}\n{}\n\n", side_name(side), run.name, run.gamma, block);
+        data += fmt::format("# {} {} Gamma {:.4g}\n{}\n\n", side_name(side), gnuplot_plain_text(run.name),
+                            run.gamma, block);
         clauses.push_back(
             fmt::format("'{}.dat' index {} using 1:2 with linespoints pt {} ps 0.7 lw 1.8 lc rgb '{}' {}",
                         name, index++, side == Side::simulation ? 7 : 6, gamma_colour(gammas, run.gamma),
@@ -319,7 +321,8 @@ std::string snapshots_plot(const std::vector<BeadPanel>& panels, const SnapshotS
                            std::isnan(q6) ? "?" : fmt::format("{:.5f}", q6));
     });
     if (block.empty()) block = "? ? ? 0 ?\n";
-    data += fmt::format("# {}: x, z above the plate, radius, colour, q6\n{}\n\n", p.title, block);
+    data += fmt::format("# {}: x, z above the plate, radius, colour, q6\n{}\n\n", gnuplot_plain_text(p.title),
+                        block);
     plot += fmt::format(
         "set lmargin at screen {}\nset rmargin at screen {}\nset tmargin at screen {}\nset bmargin at screen "
         "{}\n",
@@ -330,7 +333,7 @@ std::string snapshots_plot(const std::vector<BeadPanel>& panels, const SnapshotS
         "set arrow 1 from {1},0 to {1},{3} nohead front lw 2 lc rgb '#222222'\n"
         "set arrow 2 from {2},0 to {2},{3} nohead front lw 2 lc rgb '#222222'\n"
         "set arrow 3 from {1},0 to {2},0 nohead front lw 2 lc rgb '#222222'\n",
-        p.title, p.box.lower.x(), p.box.upper.x(), sheet.z.high);
+        gnuplot_plain_text(p.title), p.box.lower.x(), p.box.upper.x(), sheet.z.high);
     if (n + 1 == panels.size())
       for (std::size_t k = 0; k < kStructures.size(); ++k)
         plot += fmt::format("set label {} '{}' at screen {},{} point pt {} ps 1.8 lc rgb '{}' offset 1.2,0\n",
@@ -376,6 +379,9 @@ void run_gnuplot(const std::filesystem::path& folder, const std::string& script)
 }  // namespace
 
 void draw(const Figure& figure, const std::filesystem::path& folder) {
+  if (!is_figure_name(figure.name))
+    throw RunError(
+        fmt::format("A figure cannot be named '{}': letters, digits, '_', '-' and '.' only.", figure.name));
   const bool own_svg = !figure.svg.empty();
   const std::string script = fmt::format(
       "# {0}\n# gnuplot {1}.gp draws {2}\n{12}"
@@ -396,7 +402,7 @@ void draw(const Figure& figure, const std::filesystem::path& folder) {
       "unset output\n"
       "reset\n"
       "}}\n",
-      figure.title, figure.name,
+      gnuplot_plain_text(figure.title), figure.name,
       own_svg ? fmt::format("{0}.pdf and {0}.png", figure.name)
               : fmt::format("{0}.svg, {0}.pdf and {0}.png", figure.name),
       own_svg ? "pdf png" : "svg pdf png", figure.width, figure.height, figure.width * 8 / 5,
@@ -429,7 +435,7 @@ Figure phase_diagram_figure(const std::vector<Run>& runs) {
   const double aside = 0.014 * (x.high - x.low);
   const std::string clauses = phase_blocks(runs, f.name, f.data, [&](const Run& run) {
     return fmt::format("{} {} {} # {}\n", run.n_l + (run.side == Side::experiment ? -aside : aside),
-                       run.gamma, run.k_m, run.name);
+                       run.gamma, run.k_m, gnuplot_plain_text(run.name));
   });
   const Range y = gamma_range(runs);
   f.plot =
@@ -461,7 +467,8 @@ Figure phase_strip_figure(const std::vector<Run>& runs) {
            .data = {},
            .svg = {}};
   const std::string clauses = phase_blocks(runs, f.name, f.data, [](const Run& run) {
-    return fmt::format("{} {} # {}\n", run.gamma, run.side == Side::experiment ? 1 : 0, run.name);
+    return fmt::format("{} {} # {}\n", run.gamma, run.side == Side::experiment ? 1 : 0,
+                       gnuplot_plain_text(run.name));
   });
   const Range x = gamma_range(runs);
   f.plot = fmt::format(
@@ -509,8 +516,9 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
         const double low = r.interval ? r.interval->low : r.value(),
                      high = r.interval ? r.interval->high : r.value();
         const auto at_least_floor = [](double v) { return std::max(v, kFloor); };
-        block += fmt::format("{} {} {} {} {} # {}\n", run->gamma, at_least_floor(r.value()),
-                             at_least_floor(low), at_least_floor(high), r.value(), run->name);
+        block +=
+            fmt::format("{} {} {} {} {} # {}\n", run->gamma, at_least_floor(r.value()), at_least_floor(low),
+                        at_least_floor(high), r.value(), gnuplot_plain_text(run->name));
         y.add(at_least_floor(r.value()));
         y.add(at_least_floor(low));
         y.add(at_least_floor(high));

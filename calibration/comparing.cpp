@@ -143,7 +143,13 @@ Checks::Filmed film(const Run& experiment, Run& simulation, std::size_t index,
     frames = frames * static_cast<std::size_t>(simulation.phases_per_cycle) /
              static_cast<std::size_t>(experiment.phases_per_cycle);
   const Beginning seen(trajectory, std::max<std::size_t>(1, frames));
-  const Scratch scratch(options.scratch);
+  // Asked only here: a TMPDIR that does not exist is no matter for what needs none.
+  std::error_code missing;
+  const fs::path place = options.scratch.empty() ? fs::temp_directory_path(missing) : options.scratch;
+  if (missing)
+    throw RunError(
+        fmt::format("The folder for temporary files (TMPDIR) cannot be used: {}.", missing.message()));
+  const Scratch scratch(place);
   const fs::path tracked = scratch.path / "filmed.h5";
   film_and_track(seen, camera, tracked, options.threads, simulation.show, progress);
   return {.run = index,

@@ -25,7 +25,7 @@ struct ComparingOptions {
   /// The camera of the film; absent: the defaults at the scale of the match's experiment, with the noise of
   /// its frames where these are there still.
   std::optional<CameraOptions> camera;
-  std::filesystem::path scratch = std::filesystem::temp_directory_path();  ///< where the film waits
+  std::filesystem::path scratch = {};  ///< where the film waits; empty: the folder for temporary files
   int threads = 1;
 };
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/gnuplot_text.hpp"
+
 namespace twincell {
 
 Figure bounce_figure(const BounceFit& fit) {
@@ -70,7 +72,7 @@ Figure profile_figure(const Inference& inference) {
       3 * highest);
   for (std::size_t i = 0; i < n; ++i) {
     const Profile& p = inference.profiles[i];
-    f.data += fmt::format("# {}, chi^2 above its least\n", p.sought.name);
+    f.data += fmt::format("# {}, chi^2 above its least\n", gnuplot_plain_text(p.sought.name));
     for (std::size_t k = 0; k < p.at.size(); ++k)
       f.data += fmt::format("{:.6g} {:.6g}\n", p.at[k], p.chi2[k] - inference.chi2);
     f.data += "\n\n";
@@ -80,7 +82,7 @@ Figure profile_figure(const Inference& inference) {
         "set xlabel '{}'\nset xrange [{:.6g}:{:.6g}]\nplot 'profile.dat' index {} using 1:2 with lines lw 2 "
         "lc rgb "
         "blue, {:.6g} with lines dt 2 lc rgb vermilion\n",
-        label, p.sought.lower, p.sought.upper, i, p.drop);
+        gnuplot_text(label), p.sought.lower, p.sought.upper, i, p.drop);
   }
   f.plot += "unset multiplot\n";
   f.caption = "The dashed line cuts the 95 % interval";
@@ -99,7 +101,7 @@ Figure curve_figure(const std::string& name, const std::vector<double>& measured
       "set xlabel 'element'\nset ylabel '{0}'\nset key top right\n"
       "plot '{1}.dat' using 1:2 with points pt 7 lc rgb '#222222' title 'measured', '{1}.dat' using 1:3 with "
       "lines lw 2 lc rgb blue title 'best parameters'\n",
-      label, name);
+      gnuplot_text(label), name);
   f.caption = "The curve of the best parameters is made of the forms in which the curves of the runs differ";
   return f;
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/gnuplot_text.hpp"
+
 namespace twincell {
 namespace {
 
@@ -13,12 +15,6 @@ constexpr int kSteps = 200;
 double error_of(const DataPoint& p) {
   if (p.sigma > 0) return p.sigma;
   return p.trials > 0 ? std::sqrt(std::max(0.0, p.y * (1 - p.y)) / p.trials) : 0;
-}
-
-/// gnuplot's enhanced text takes _ for a subscript of one letter; braces keep a word together.
-std::string label(const std::string& name) {
-  const auto at = name.find('_');
-  return at == std::string::npos ? name : name.substr(0, at) + "_{" + name.substr(at + 1) + "}";
 }
 
 /// The plot with the name of its data file put in.
@@ -99,7 +95,8 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
                                     : fmt::format("[{:.9g}:{:.9g}]", left - pad, right + pad);
   std::string law_label = law.name;
   std::replace(law_label.begin(), law_label.end(), '_', ' ');
-  const std::string x_label = law.axis == Law::Axis::reciprocal ? "1/" + label(x_name) : label(x_name);
+  const std::string x_label =
+      law.axis == Law::Axis::reciprocal ? "1/" + gnuplot_symbol(x_name) : gnuplot_symbol(x_name);
   f.plot = fmt::format(
       "set multiplot\nset lmargin at screen 0.19\nset rmargin at screen 0.95\nset xrange {}\n"
       "{}{}set tmargin at screen 0.95\nset bmargin at screen 0.40\nset format x ''\nset ylabel '{}'\n"
@@ -114,11 +111,11 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
       "plot 0 with lines lw 1.5 lc rgb blue, 'fit.dat' index 0 using 1:5 with impulses lw 1.3 lc rgb "
       "grey, 'fit.dat' index 0 using 1:5 with points pt 7 ps 0.9 lc rgb '#222222'\nunset multiplot\n",
       x_range, ratio ? "set logscale x\n" : "",
-      law.logarithmic ? "set logscale y\nset format y '10^{%T}'\n" : "", label(y_name),
+      law.logarithmic ? "set logscale y\nset format y '10^{%T}'\n" : "", gnuplot_symbol(y_name),
       law.axis == Law::Axis::reciprocal || (law.logarithmic && fit.at(high) < fit.at(low)) || !law.logarithmic
           ? "right"
           : "left",
-      law_label, more, x_label,
+      gnuplot_text(law_label), more, x_label,
       fit.weighted      ? "residual/error"
       : law.logarithmic ? "residual in ln y"
                         : "residual");

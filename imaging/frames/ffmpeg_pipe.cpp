@@ -101,11 +101,6 @@ std::string all_output(Child& child) {
   return all;
 }
 
-// "file:" keeps a name with a colon or a leading dash from being taken for something else.
-std::string argument(const fs::path& file) {
-  return "file:" + file.string();
-}
-
 double number(const std::string& text) {
   double value = 0;
   std::from_chars(text.data(), text.data() + text.size(), value);
@@ -140,10 +135,17 @@ class Piped final : public FrameSource {
     if (!facts.pixels.starts_with("gray"))
       info_.notes.emplace_back("a video in colour: its grey values are not those the camera measured.");
     const std::string grey = bits == 8 ? "gray" : fmt::format("gray{}le", bits);
-    child_ = std::make_unique<Child>(
-        std::vector<std::string>{"ffmpeg", "-v", "error", "-nostdin", "-xerror", "-protocol_whitelist",
-                                 "file,pipe", "-noautorotate", "-i", argument(file), "-map", "0:v:0",
-                                 "-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", grey, "pipe:1"});
+    child_ = std::make_unique<Child>(std::vector<std::string>{"ffmpeg",    "-v",
+                                                              "error",     "-nostdin",
+                                                              "-xerror",   "-protocol_whitelist",
+                                                              "file,pipe", "-format_whitelist",
+                                                              kContainers, "-noautorotate",
+                                                              "-i",        ffmpeg_name(file),
+                                                              "-map",      "0:v:0",
+                                                              "-fps_mode", "passthrough",
+                                                              "-f",        "rawvideo",
+                                                              "-pix_fmt",  grey,
+                                                              "pipe:1"});
   }
 
   bool next(cv::Mat& frame) override {
@@ -178,6 +180,10 @@ class Piped final : public FrameSource {
 
 }  // namespace
 
+std::string ffmpeg_name(const fs::path& file) {
+  return "file:" + file.string();
+}
+
 bool ffmpeg_is_installed() {
   static const bool both = [] {
     for (const char* program : {"ffmpeg", "ffprobe"}) {
@@ -191,9 +197,10 @@ bool ffmpeg_is_installed() {
 }
 
 std::optional<VideoFacts> probe_video(const fs::path& file) {
-  Child child({"ffprobe", "-v", "error", "-protocol_whitelist", "file,pipe", "-select_streams", "v:0",
-               "-show_entries", "stream=width,height,pix_fmt,bits_per_raw_sample,avg_frame_rate,nb_frames",
-               "-of", "default=noprint_wrappers=1", argument(file)});
+  Child child({"ffprobe", "-v", "error", "-protocol_whitelist", "file,pipe", "-format_whitelist", kContainers,
+               "-select_streams", "v:0", "-show_entries",
+               "stream=width,height,pix_fmt,bits_per_raw_sample,avg_frame_rate,nb_frames", "-of",
+               "default=noprint_wrappers=1", ffmpeg_name(file)});
   const std::string output = all_output(child);
   if (!child.wait()) return {};
   std::map<std::string, std::string> said;

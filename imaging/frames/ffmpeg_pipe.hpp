@@ -20,6 +20,14 @@ struct VideoFacts {
   std::size_t frames = 0;  ///< 0: not stated
 };
 
+/// Containers that ffmpeg may open: each is one file. Playlists (HLS, concat, DASH) and lists of pictures,
+/// which open other files, are none of them.
+inline constexpr const char* kContainers = "avi,mov,matroska,yuv4mpegpipe,mpegts,mpeg,asf,flv,ogg";
+
+/// A file as ffmpeg is told it: "file:" keeps a name with a colon or a leading dash from being taken for a
+/// protocol or an option.
+std::string ffmpeg_name(const std::filesystem::path& file);
+
 /// True if ffmpeg and ffprobe can be run.
 bool ffmpeg_is_installed();
 

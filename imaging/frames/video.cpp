@@ -25,8 +25,13 @@ class Video final : public FrameSource {
   explicit Video(const fs::path& file) : file_(file) {
     static const int hushed = setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);  // FFmpeg prints to stderr of itself
     (void)hushed;
+    // OpenCV hands these to the same libraries that the program ffmpeg uses.
+    static const int limited =
+        setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS",
+               fmt::format("protocol_whitelist;file,pipe|format_whitelist;{}", kContainers).c_str(), 1);
+    (void)limited;
     try {
-      capture_.open(file.string(), cv::CAP_FFMPEG);
+      capture_.open(ffmpeg_name(file), cv::CAP_FFMPEG);
     } catch (const cv::Exception&) {  // then it is not open
     }
     if (!capture_.isOpened()) return;

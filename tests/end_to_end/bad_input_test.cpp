@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 
 #include "analysis/trajectory/h5md_file.hpp"
@@ -203,3 +204,17 @@ TEST_F(BadInput, InterruptLeavesNothing) {
 
 }  // namespace
 }  // namespace twincell
+
+TEST(MissingTmpdir, IsNoMatterForHelp) {
+  const char* const given = std::getenv("TMPDIR");
+  const std::string before = given != nullptr ? given : "";
+  ASSERT_EQ(setenv("TMPDIR", "/nonexistent/folder", 1), 0);
+  // The program's output is kept in a folder for temporary files, so only the program may see the new value.
+  const std::string line = std::string(TWINCELL_PROGRAM) + " --help > /dev/null 2>&1";
+  const int status = std::system(line.c_str());  // NOLINT: a fixed command of a test
+  if (given != nullptr)
+    setenv("TMPDIR", before.c_str(), 1);
+  else
+    unsetenv("TMPDIR");
+  EXPECT_EQ(status, 0);
+}

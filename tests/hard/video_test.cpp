@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <opencv2/videoio.hpp>
 #include <random>
 
@@ -140,4 +142,35 @@ TEST(Video, WhatNoneCanRead) {
   const TemporaryFolder folder;
   put(folder / "noise.mp4", std::string("\0\x01\x02\x03", 4) + std::string(5000, '\x7f') + '\0');
   expect_words(refusal(folder / "noise.mp4"), {"noise.mp4", "cannot be decoded as a video", "ffmpeg"});
+}
+
+TEST(Video, APlaylistOpensNoOtherFile) {
+  const TemporaryFolder folder;
+  write_film(folder / "secret.avi", 5);
+  const std::filesystem::path here = std::filesystem::path(folder / "secret.avi").parent_path();
+  const std::vector<std::string> lists = {
+      "ffconcat version 1.0\nfile secret.avi\n",
+      "#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\nsecret.avi\n#EXT-X-ENDLIST\n"};
+  for (const std::string& list : lists)
+    for (const char* ending : {".avi", ".mkv", ".mp4"}) {
+      const std::filesystem::path file = here / (std::string("list") + ending);
+      // A byte that is no text: the reader leaves text alone before any decoder sees it.
+      std::ofstream(file, std::ios::binary) << list << "#\x01\n";
+      EXPECT_THROW((void)read_all(file), InputError) << file;
+    }
+}
+
+TEST(Video, NamesThatLookLikeProtocolsAreFiles) {
+  const TemporaryFolder folder;
+  const std::filesystem::path here = std::filesystem::path(folder / "a.avi").parent_path();
+  write_film(folder / "a.avi", 5);
+  const std::filesystem::path back = std::filesystem::current_path();
+  std::filesystem::current_path(here);
+  for (const char* name : {"concat:a.avi|a.avi", "-i.avi", "http:x.avi", "subfile,,start,0,end,9,,:a.avi"}) {
+    std::string file = name;
+    if (!file.ends_with(".avi")) file += ".avi";
+    std::filesystem::copy_file("a.avi", file);
+    EXPECT_EQ(read_all(file).size(), 5U) << file;
+  }
+  std::filesystem::current_path(back);
 }
