@@ -181,7 +181,7 @@ class DumpReader {
   }
 
   void place_columns(const std::string& header) {
-    if (header == header_) return;
+    if (columns_.count > 0 && header == header_) return;
     if (!header_.empty()) fail("the columns are not those of the first frame.");
     header_ = header;
     split(header, words_);

@@ -1,8 +1,7 @@
-// The readers whose headers we parse, on whatever bytes. A program per format: TWINCELL_FUZZ_FORMAT is its
+// The readers whose headers we parse, on whatever bytes. A program per format: TWINCELL_FUZZ_READER is its
 // name. An input may be refused in a sentence; it must not crash, hang, or ask for memory that its size
 // cannot explain.
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "imaging/frames/reader.hpp"
+#include "tests/fuzz/input.hpp"
 
 namespace twincell::frames {
 extern const Reader cine_reader, seq_reader, mrf_reader, mraw_reader, tiff_reader;
@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using twincell::frames::Reader;
 
-constexpr std::string_view kFormat = TWINCELL_FUZZ_FORMAT;
+constexpr std::string_view kFormat = TWINCELL_FUZZ_READER;
 
 const Reader& reader() {
   using namespace twincell::frames;
@@ -35,21 +35,6 @@ const Reader& reader() {
          : kFormat == "mraw" ? mraw_reader
                              : tiff_reader;
 }
-
-/// A file in memory.
-class MemoryFile {
- public:
-  MemoryFile(const std::uint8_t* data, std::size_t n) : descriptor_(memfd_create("fuzz", MFD_CLOEXEC)) {
-    if (descriptor_ < 0 || write(descriptor_, data, n) != static_cast<ssize_t>(n)) std::abort();
-  }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  ~MemoryFile() { close(descriptor_); }
-  [[nodiscard]] fs::path path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-
- private:
-  int descriptor_;
-};
 
 /// A .cih and its .mraw, for which the name matters: the input up to its first NUL, and the rest.
 class PhotronPair {
@@ -100,7 +85,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const PhotronPair pair;
     read_stack(pair.write(data, size));
   } else {
-    read_stack(MemoryFile(data, size).path());
+    read_stack(twincell::fuzz::MemoryFile(data, size).path());
   }
   return 0;
 }

@@ -1,11 +1,45 @@
-// Writes a few small whole files of each format, for the fuzzer to begin with: seeds FOLDER.
+// Writes a few small whole files of each binary format, for the fuzzer to begin with: seeds FOLDER. Those of
+// the text formats lie in tests/fuzz/corpus.
 
 #include <filesystem>
 #include <fstream>
 
+#include "analysis/trajectory/h5md_file.hpp"
 #include "tests/support/camera_files.hpp"
 
 using namespace twincell;
+
+namespace {
+
+void save_trajectory(const std::filesystem::path& file, bool full) {
+  TrajectoryInfo info;
+  info.n_beads = 2;
+  info.box.upper = Vec3(4, 1, 6);
+  if (full) {
+    info.columns = {.velocity = true, .spin = true, .identity = true, .phase = true, .plate_height = true};
+    info.drive = Drive{Axis::z, 1.5, 1.0};
+    info.phases_per_cycle = 2;
+    info.radius.assign(2, 0.5);
+    info.tracer.assign(2, 0);
+  }
+  H5mdWriter writer(file, info);
+  for (int f = 0; f < 3; ++f) {
+    Frame frame;
+    frame.step = 10 * f;
+    frame.time = full ? info.drive->period() * f / 2 : 0.5 * f;
+    frame.position = {Vec3(1, 0, 0.5 + f), Vec3(2, 0, 0.5)};
+    if (full) {
+      frame.phase = f % 2;
+      frame.cycle = f / 2;
+      frame.velocity = frame.spin = {Vec3(0, 0, 1), Vec3(0, 0, 0)};
+      frame.id = {0, 1};
+    }
+    writer.append(frame);
+  }
+  writer.finish();
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
@@ -43,4 +77,10 @@ int main(int argc, char** argv) {
   tiff("big", {.bits = 12, .big_first = true, .big_tiff = true});
   tiff("white", {.bits = 8, .photometric = 0});
   tiff("imagej", {.description = "ImageJ=1.53t\nimages=3\nfinterval=0.1\n", .pages_written = 1});
+  std::filesystem::create_directories(root / "h5md");
+  for (const bool full : {false, true}) {
+    const std::filesystem::path file = root / "h5md" / (full ? "full" : "plain");
+    std::filesystem::remove(file);
+    save_trajectory(file, full);
+  }
 }

@@ -188,6 +188,8 @@ TEST_F(Dump, MalformedOnesAreRefusedByLine) {
   EXPECT_EQ(refusal("\x89HDF\n"), "d:1: 'ITEM: TIMESTEP' is missing; this is no text dump of LAMMPS.");
   EXPECT_EQ(refusal(with("2 2 1\n", "")), "d:10: the file ends where an atom should be.");
   EXPECT_EQ(refusal(good.substr(0, good.find("ITEM: BOX"))), "d:4: the file ends within a frame.");
+  EXPECT_EQ(refusal(with("ATOMS id x y", "ATOMS ")),
+            "d:9: there is no column 'id', without which beads cannot be told apart.");
   EXPECT_EQ(refusal(with("2 2 1", "2 2")), "d:11: 3 columns are needed, 2 were found.");
   EXPECT_EQ(refusal(with("2 2 1", "2 two 1")), "d:11: 'two' is not a finite number.");
   EXPECT_EQ(refusal(with("2 2 1", "2 nan 1")), "d:11: 'nan' is not a finite number.");

@@ -1,0 +1,12 @@
+// A calibration file.
+
+#include "analysis/trajectory/calibration_file.hpp"
+#include "tests/fuzz/input.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace twincell;
+  const fuzz::MemoryFile file(data, size);
+  // What is accepted can be written.
+  fuzz::accept_or_refuse([&] { (void)calibration_text(read_calibration(file.path()), "fuzz"); });
+  return 0;
+}

@@ -1,0 +1,11 @@
+// A CELL.toml.
+
+#include "imaging/cell.hpp"
+#include "tests/fuzz/input.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace twincell;
+  const fuzz::MemoryFile file(data, size);
+  fuzz::accept_or_refuse([&] { (void)read_cell(file.path()).drive(); });
+  return 0;
+}

@@ -1,0 +1,15 @@
+// A table of comma-separated numbers.
+
+#include "calibration/table.hpp"
+#include "tests/fuzz/input.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace twincell;
+  const fuzz::MemoryFile file(data, size);
+  fuzz::accept_or_refuse([&] {
+    const Table table = read_table(file.path());
+    for (const auto& column : table.columns)
+      if (column.size() != table.n_rows()) std::abort();
+  });
+  return 0;
+}
