@@ -11,6 +11,7 @@
 #include "analysis/trajectory/h5md_file.hpp"
 #include "analysis/trajectory/median.hpp"
 #include "analysis/trajectory/output_rules.hpp"
+#include "analysis/trajectory/quantities.hpp"
 #include "analysis/trajectory/toml_leaves.hpp"
 #include "calibration/plate_drive.hpp"
 #include "imaging/frame_source.hpp"
@@ -108,6 +109,7 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
   Config scene = base_name.empty()
                      ? Config::from_text("preset = \"fortini-huang-2015\"\n", "preset of the twin")
                      : Config::from_text(base, base_name);
+  reduce_units(scene);
   // One file speaks for cell and contacts.
   if (!cell.included.file.empty() && !scene.root().has("calibration"))
     scene.assign("calibration.from=" + toml_quoted(fs::absolute(cell.included.file).string()));
@@ -117,7 +119,7 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
   scene.yield_to(measured, "drive", {"amplitude", "omega", "frequency", "gamma", "k_m", "peak_velocity"});
   scene.yield_to(measured, "start", {"kind", "from", "frame"});
   scene.overlay(std::move(measured));
-  return scene.text();
+  return resolved_text(scene);
 }
 
 Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinProvenance& provenance,

@@ -1,6 +1,7 @@
 #include "imaging/cell.hpp"
 
 #include "analysis/trajectory/config.hpp"
+#include "analysis/trajectory/quantities.hpp"
 
 namespace twincell {
 
@@ -20,9 +21,10 @@ CellDescription read_cell(const std::filesystem::path& path) {
   constexpr std::int64_t kMostPhases = 100000;
   Config config = Config::from_file(path);
   CellDescription cell;
+  reduce_units(config);
   cell.included = include_calibration(config, path, Includer::cell);
   const ConfigSection root = config.root();
-  cell.text = config.text();
+  cell.text = resolved_text(config);
 
   const ConfigSection camera = root.section("camera");
   cell.pixels_per_sigma = camera.number_in("pixels_per_sigma", 0, std::nullopt, true);

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "analysis/trajectory/calibration_file.hpp"
+#include "analysis/trajectory/quantities.hpp"
 #include "sim/laws/axes.hpp"
 #include "sim/presets.hpp"
 
@@ -390,10 +391,10 @@ void check_contact_tables(const Scene& s, const Section& contact) {
   }
 }
 
-Scene interpret(const Config& config, const std::string& name) {
+Scene interpret(Config& config, const std::string& name) {
   Scene scene;
   scene.file = name;
-  scene.resolved = config.text();
+  scene.resolved = resolved_text(config);
   const Section root = config.root(), cell = root.section("cell"), beads = root.section("beads"),
                 contact = root.section("contact"), drive = root.section("drive");
   scene.source = root;
@@ -451,7 +452,10 @@ void displace(Config& lower, const Config& upper) {
 /// still do.
 void assign(Config& config, const std::vector<std::string>& assignments) {
   Config upper = Config::from_text("", "--set");
-  for (const auto& assignment : assignments) upper.assign(assignment);
+  for (const auto& assignment : assignments) {
+    upper.assign(assignment);
+    displace_spellings(config, assignment);
+  }
   displace(config, upper);
   config.yield_to(upper, "drive", {"gamma", "k_m", "peak_velocity"});
   for (const auto& assignment : assignments) config.assign(assignment);
@@ -459,6 +463,7 @@ void assign(Config& config, const std::vector<std::string>& assignments) {
 
 Scene resolve(Config config, const std::string& name, const std::vector<std::string>& assignments) {
   assign(config, assignments);
+  reduce_units(config);
   const Included included = include_calibration(config, name, Includer::scene);
   const Section root = config.root();
   const auto preset = root.word("preset", preset_names());

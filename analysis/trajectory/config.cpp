@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numeric>
 #include <set>
 #include <sstream>
@@ -18,7 +19,8 @@ namespace twincell {
 struct ConfigSection::Shared {
   std::string name;  ///< file, for complaints about what is absent
   toml::table table;
-  std::set<std::string> asked;  ///< full keys somebody asked for
+  std::set<std::string> asked;         ///< full keys somebody asked for
+  std::map<std::string, Where> stood;  ///< of keys restated under another name: what was written, and where
 
   Where where_of(const toml::node& node, const std::string& key) const {
     const toml::source_region& at = node.source();
@@ -53,7 +55,10 @@ const toml::node* find(const toml::table& root, const std::string& path) {
 
 Where ConfigSection::where(const std::string& key) const {
   const std::string path = full(key);
-  if (const toml::node* node = find(shared_->table, path)) return shared_->where_of(*node, path);
+  if (const toml::node* node = find(shared_->table, path)) {
+    const auto written = shared_->stood.find(path);
+    return written != shared_->stood.end() ? written->second : shared_->where_of(*node, path);
+  }
   if (const std::size_t dot = path.rfind('.'); dot != std::string::npos)
     if (const toml::node* table = find(shared_->table, path.substr(0, dot)))
       return shared_->where_of(*table, path);
@@ -202,6 +207,9 @@ void fill_in(toml::table& upper, toml::table&& lower) {
 }  // namespace
 
 void Config::overlay(Config&& upper) {
+  for (auto& [key, written] : shared_->stood)
+    if (find(upper.shared_->table, key) == nullptr) upper.shared_->stood[key] = written;
+  shared_->stood = std::move(upper.shared_->stood);
   fill_in(upper.shared_->table, std::move(shared_->table));
   shared_->table = std::move(upper.shared_->table);
   shared_->name = upper.shared_->name;
@@ -215,7 +223,10 @@ void Config::yield_to(const Config& upper, const std::string& section,
   if (std::none_of(alternatives.begin(), alternatives.end(), named)) return;
   const toml::node_view<toml::node> table = shared_->table.at_path(section);
   if (!table.is_table()) return;
-  for (const auto& key : alternatives) table.as_table()->erase(key);
+  for (const auto& key : alternatives) {
+    table.as_table()->erase(key);
+    shared_->stood.erase(section + "." + key);
+  }
 }
 
 namespace {
@@ -250,7 +261,16 @@ void Config::adopt(Config& lower, const std::string& from, const std::string& to
     node->visit([&](auto& value) { target->insert_or_assign(last_word(to), std::move(value)); });
 }
 
+void Config::restate(const std::string& from, const std::string& to, double value) {
+  const Where written = root().where(from);
+  erase(from);
+  if (toml::table* table = table_above(shared_->table, to, true))
+    table->insert_or_assign(last_word(to), value);
+  shared_->stood[to] = written;
+}
+
 void Config::erase(const std::string& path) {
+  shared_->stood.erase(path);
   if (toml::table* table = table_above(shared_->table, path, false)) table->erase(last_word(path));
 }
 

@@ -74,6 +74,9 @@ class Config {
   /// Moves what `lower` has at the path `from` to the path `to` of this one, tables between made as needed;
   /// it keeps its own file and line for complaints. \pre `from` is there, `to` is not
   void adopt(Config& lower, const std::string& from, const std::string& to);
+  /// Puts `value` at the path `to` and removes the key at `from`; complaints about `to` go on to name `from`
+  /// and where it stood. \pre `from` is there, `to` is not
+  void restate(const std::string& from, const std::string& to, double value);
   /// Removes the key or table at `path`, if it is there.
   void erase(const std::string& path);
   /// "section.key=value" from the command line; a value that is not TOML is taken as text.

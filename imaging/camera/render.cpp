@@ -71,8 +71,9 @@ std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info,
   if (const auto [left, right] = camera.side_tilt(); left != 0 || right != 0)
     text += fmt::format("# The side walls lean outward by {} and {} degrees.\n", left, right);
   if (info.drive)
-    text += fmt::format("\n[drive]\namplitude = {:.17g}\nomega = {:.17g}\n", info.drive->amplitude,
-                        info.drive->omega);
+    text += fmt::format("\n[drive]\namplitude{} = {:.17g}\nomega{} = {:.17g}\n",
+                        info.scale.sigma_m ? "_sigma" : "", info.drive->amplitude,
+                        info.scale.sigma_m ? "_per_t0" : "", info.drive->omega);
   if (info.scale.sigma_m || info.scale.gravity_m_s2) text += "\n[scale]\n";
   if (info.scale.sigma_m) text += fmt::format("sigma_m = {:.17g}\n", *info.scale.sigma_m);
   if (info.scale.gravity_m_s2) text += fmt::format("gravity_m_s2 = {:.17g}\n", *info.scale.gravity_m_s2);
