@@ -206,7 +206,8 @@ void choose_stepping(const Scene& s, std::size_t beads, Plan& plan) {
   constexpr double kDilute = 10;
   constexpr std::size_t kMost = 200;
   const std::string hindrance = why_not_flights(s, plan);
-  const double w = s.drive.amplitude == 0 ? 0 : s.g() > 0 ? s.drive.k_m(s.g()) : HUGE_VAL;
+  // Without gravity nothing brings beads together to stay, shaken or not.
+  const double w = s.g() > 0 ? s.drive.k_m(s.g()) : HUGE_VAL;
   if (s.stepping == "flights" && !hindrance.empty())
     throw ConfigError(s.where("time.stepping"),
                       fmt::format("is \"flights\", but {}; choose \"auto\" or \"steps\".", hindrance));
