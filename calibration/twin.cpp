@@ -76,7 +76,7 @@ FirstPacking find_first_packing(const TrajectorySource& trajectory) {
 
 void simulate(const sim::Scene& scene, const fs::path& output, const TwinProvenance& provenance, int threads,
               Progress& progress) {
-  sim::RunState start = sim::placed(scene);
+  sim::RunState start = sim::placed(scene, progress);
   const std::string said = provenance.of_simulation(scene, start.beads);
   // A small bed on many threads waits for them at every step, without end where others use the processor too.
   const int worth = std::min(threads, sim::threads_for(start.beads.size(), 0));
@@ -117,7 +117,7 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
   Config measured =
       Config::from_text(of_cell + (scale.empty() ? "" : "[scale]\n" + scale), "the cell description");
   scene.yield_to(measured, "drive", {"amplitude", "omega", "frequency", "gamma", "k_m", "peak_velocity"});
-  scene.yield_to(measured, "start", {"kind", "from", "frame"});
+  scene.yield_to(measured, "start", {"kind", "from", "frame", "velocity_scale"});
   scene.overlay(std::move(measured));
   return resolved_text(scene);
 }
@@ -136,10 +136,10 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   Twin twin{.experiment = folder / "experiment.h5", .scene = folder / "scene.toml"};
   twin.drive = drive;
   const auto scene_text = [&](std::size_t frame, std::int64_t cycles) {
-    return twin_scene(base, options.scene.string(), cell, twin.experiment, frame, cycles);
+    return twin_scene(base, options.scene.string(), cell, twin.experiment.filename(), frame, cycles);
   };
   // A scene that cannot be is refused before the stack is read.
-  (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments);
+  (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
 
   const auto frames = open_frames(options.stack);
   claim_shared_folder(folder, twin_folder());
@@ -173,7 +173,7 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
     }
     twin.simulations.push_back(folder / fmt::format("simulation-{}.h5", k));
     const auto bar = progress(fmt::format("simulating twin {}", k));
-    simulate(sim::read_scene_text(text, twin.scene.string(), assignments), twin.simulations.back(),
+    simulate(sim::read_scene_text(text, twin.scene.string(), assignments, folder), twin.simulations.back(),
              provenance, options.threads, *bar);
   }
   return twin;

@@ -67,7 +67,9 @@ std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::C
 
 void run(const ExplainOptions& o, const Common& common) {
   const sim::Scene scene = sim::read_scene(o.scene, with_seed(o.assignments, common));
-  const sim::Cost cost = sim::measure_cost(scene, kMeasuredSeconds, common.threads);
+  for (const sim::VoidKey& key : scene.void_keys) note(common, key.text());
+  ProgressBar bar(common, "placing beads");
+  const sim::Cost cost = sim::measure_cost(scene, kMeasuredSeconds, common.threads, bar);
   sim::Plan plan = cost.plan;
   sim::state_step_error(scene, plan);
   nlohmann::json d = as_json(plan);

@@ -41,7 +41,8 @@ struct Run {
 Run run_once(const MeasureOptions& options, const std::vector<std::string>& assignments,
              const std::string& start, const Common& common) {
   sim::Scene scene = sim::read_scene(options.scene, assignments);
-  sim::RunState state = sim::placed(scene);
+  ProgressBar placing(common, "placing beads");
+  sim::RunState state = sim::placed(scene, placing);
   json provenance = json::parse(scene_provenance(common, scene, state.beads, {options.scene}));
   const double w = scene.g() > 0 ? scene.drive.k_m(scene.g()) : std::nan("");
   if (!options.both_starts && scene.g() > 0 && w > kLowestBistable && w < kHighestBistable)

@@ -89,6 +89,11 @@ Provenance Common::provenance() const {
 }
 
 std::vector<std::string> with_seed(std::vector<std::string> assignments, const Common& common) {
+  constexpr std::uint64_t kLargestSeed = std::uint64_t{1} << 53;  // docs/scene.md, start.seed
+  if (common.seed && *common.seed > kLargestSeed)
+    throw ConfigError({"", 0, 0, "--seed"},
+                      fmt::format("{} is out of range; the seed of a scene must be at most {}.", *common.seed,
+                                  kLargestSeed));
   if (common.seed) assignments.push_back(fmt::format("start.seed={}", *common.seed));
   return assignments;
 }

@@ -42,7 +42,7 @@ struct Common {
   [[nodiscard]] Provenance provenance() const;
 };
 
-/// The --set of a scene, and --seed as one of them.
+/// The --set of a scene, and --seed as one of them. \throws ConfigError for a seed that no scene can have
 std::vector<std::string> with_seed(std::vector<std::string> assignments, const Common& common);
 
 /// Makes a subcommand with the common options and an example in its help.

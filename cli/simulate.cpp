@@ -200,12 +200,13 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
     note(common, options.output + " is finished, nothing is left to resume.");
     return;
   }
+  ProgressBar placing(common, "placing beads");
   // Placed once, before a folder is made: a start that cannot be leaves none behind.
   std::optional<sim::RunState> start;
   if (!sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output)))
-    start = sim::placed(scene);
+    start = sim::placed(scene, placing);
   const auto make_provenance = [&] {
-    if (!start) start = sim::placed(scene);
+    if (!start) start = sim::placed(scene, placing);
     return scene_provenance(common, scene, start->beads, {options.scene});
   };
   auto checkpoints = folder_for(scene, options, make_provenance, common);

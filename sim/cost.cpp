@@ -11,21 +11,23 @@ namespace twincell::sim {
 namespace {
 
 /// Advances in small pieces until the time is up or `most` steps are done; returns the seconds it took.
-double advance_for(double seconds, std::int64_t most, Kernel& kernel, System& system) {
+double advance_for(double seconds, std::int64_t most, Kernel& kernel, System& system, Progress& progress) {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   const std::int64_t piece = 1 + 200'000 / (1 + static_cast<std::int64_t>(system.beads.size()));
-  for (std::int64_t done = 0; done < most && elapsed() < seconds; done += piece)
+  for (std::int64_t done = 0; done < most && elapsed() < seconds; done += piece) {
+    progress.update(0, 0);
     kernel.advance(system, std::min(piece, most - done));
+  }
   return elapsed();
 }
 
 }  // namespace
 
-Cost measure_cost(const Scene& scene, double seconds, int threads) {
+Cost measure_cost(const Scene& scene, double seconds, int threads, Progress& progress) {
   constexpr double kSettling = 0.1;
-  std::vector<Bead> beads = placed(scene).beads;
+  std::vector<Bead> beads = placed(scene, progress).beads;
   Cost cost;
   cost.plan = make_plan(scene, beads);
   const Plan& plan = cost.plan;
@@ -38,10 +40,10 @@ Cost measure_cost(const Scene& scene, double seconds, int threads) {
   try {
     const bool falls = scene.g() > 0;
     advance_for(falls ? kSettling : 0, falls ? static_cast<std::int64_t>(scene.settle_limit / plan.dt) : 0,
-                *kernel, system);
+                *kernel, system, progress);
     cost.settled_for = system.time();
     begin_drive(scene, system);
-    const double took = advance_for(seconds, plan.steps, *kernel, system);
+    const double took = advance_for(seconds, plan.steps, *kernel, system, progress);
     cost.measured_steps = system.step;
     cost.seconds_per_step = took / static_cast<double>(system.step);
   } catch (const RunError& e) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "analysis/trajectory/progress.hpp"
 #include "sim/plan.hpp"
 
 namespace twincell::sim {
@@ -23,7 +24,7 @@ struct Cost {
 };
 
 /// Places the beads, lets them settle for a tenth of a second of clock time, then drives them for `seconds`.
-/// \param threads as in make_kernel \throws ConfigError, InputError
-Cost measure_cost(const Scene& scene, double seconds, int threads);
+/// \param threads as in make_kernel \throws ConfigError, InputError, what `progress` throws
+Cost measure_cost(const Scene& scene, double seconds, int threads, Progress& progress = Progress::none());
 
 }  // namespace twincell::sim

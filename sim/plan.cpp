@@ -206,7 +206,8 @@ void choose_stepping(const Scene& s, std::size_t beads, Plan& plan) {
   constexpr double kDilute = 10;
   constexpr std::size_t kMost = 200;
   const std::string hindrance = why_not_flights(s, plan);
-  const double w = s.drive.amplitude == 0 ? 0 : s.g() > 0 ? s.drive.k_m(s.g()) : HUGE_VAL;
+  // Without gravity nothing brings beads together to stay, shaken or not.
+  const double w = s.g() > 0 ? s.drive.k_m(s.g()) : HUGE_VAL;
   if (s.stepping == "flights" && !hindrance.empty())
     throw ConfigError(s.where("time.stepping"),
                       fmt::format("is \"flights\", but {}; choose \"auto\" or \"steps\".", hindrance));
@@ -309,6 +310,15 @@ std::vector<BeadScale> fastest(const std::vector<BeadScale>& all) {
 
 void warn(const Scene& s, Plan& plan) {
   constexpr double kManySteps = 2e6;
+  for (const VoidKey& key : s.void_keys) plan.warnings.push_back(key.text());
+  const auto slides_freely = [](const ContactLaws& laws) {
+    const auto* dashpot = std::get_if<DashpotSlider>(&laws.tangential);
+    return dashpot != nullptr && dashpot->damping.eta(1) == 0;
+  };
+  if (slides_freely(plan.bead) && std::all_of(plan.wall_laws.begin(), plan.wall_laws.end(), slides_freely))
+    plan.warnings.push_back(
+        "the tangential law is a dashpot without gamma_t, c_t or c_t_over_c_n: no contact has friction, "
+        "whatever mu is.");
   if (s.steps_per_contact < kFewSteps)
     plan.warnings.push_back(fmt::format(
         "time.steps_per_contact = {:g} is below {:g}: collisions are coarse and a bed may not rest.",

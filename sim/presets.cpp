@@ -43,7 +43,6 @@ mu = 0.4
 k_n = 1e6
 restitution = 0.9
 tangential = "none"
-mu = 0.0
 )";
   static const std::vector<std::pair<std::string, std::string>> all = {
       // Table I and section II; omega = 1/t0, so that A = Gamma and K_m = Gamma^2. By default side walls ride
@@ -88,7 +87,6 @@ kind = "random"
 k_n = 1e6
 restitution = 0.3
 tangential = "none"
-mu = 0.0
 [drive]
 axis = "x"
 amplitude = 10.0

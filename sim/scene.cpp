@@ -23,13 +23,35 @@ using Section = ConfigSection;
 const std::vector<std::pair<std::string, std::vector<std::string>>> kWallTables = {
     {"bottom", {"bottom"}}, {"sides", {"left", "right"}}, {"plates", {"front", "back"}}, {"lid", {"lid"}}};
 
-/// Refuses keys that speak of something the scene does not have.
-void refuse(const Section& s, std::initializer_list<const char*> keys, const std::string& complaint) {
-  const char* first = nullptr;
-  for (const char* key : keys)
-    if (s.has(key) && first == nullptr) first = key;
-  if (first != nullptr) throw ConfigError(s.where(first), complaint);
-}
+/// Keys that nothing of a scene reads. One that the user wrote is refused; one that a preset or a calibration
+/// file brought gives way to what the user chose, and is kept to be told of.
+class Voids {
+ public:
+  /// \param lower names of the preset and of the calibration file, as complaints have them
+  Voids(Config& config, std::vector<std::string> lower, std::vector<VoidKey>& told)
+      : config_(config), lower_(std::move(lower)), told_(told) {}
+
+  /// Refuses keys that speak of something the scene does not have. \param complaint a sentence
+  void refuse(const Section& s, const std::vector<std::string>& keys, const std::string& complaint) {
+    std::optional<Where> first;
+    for (const auto& key : keys) {
+      if (!s.has(key)) continue;
+      const Where where = s.where(key);
+      if (std::find(lower_.begin(), lower_.end(), where.file) == lower_.end()) {
+        if (!first) first = where;
+        continue;
+      }
+      told_.push_back({where.key, where.file, complaint});
+      config_.erase(where.key);
+    }
+    if (first) throw ConfigError(*first, complaint);
+  }
+
+ private:
+  Config& config_;
+  std::vector<std::string> lower_;
+  std::vector<VoidKey>& told_;
+};
 
 template <class Enum>
 Enum read_word(const Section& s, const std::string& key, const std::vector<std::string>& words,
@@ -48,11 +70,13 @@ constexpr double radians(double degrees) {
 }
 
 /// Returns the magnitude of g as it was stated, from which Gamma and K_m take their meaning.
-double read_gravity(const Section& s, Scene& scene) {
+double read_gravity(const Section& s, Scene& scene, Voids& voids) {
   const auto tilt = s.number_in("tilt", -45, 45);
   if (!s.is_list("gravity")) {
     const double g = s.number_in("gravity", 0).value_or(1), lean = radians(tilt.value_or(0));
     scene.gravity = Vec3(g * std::sin(lean), 0, -g * std::cos(lean));
+    if (g == 0 && tilt.value_or(0) != 0)
+      voids.refuse(s, {"tilt"}, "turns gravity, but cell.gravity is 0.");
     return g;
   }
   if (tilt)
@@ -79,7 +103,7 @@ void read_side_tilt(const Section& s, Scene& scene) {
   scene.right_tilt = both[1];
 }
 
-double read_cell(const Section& s, Scene& scene) {
+double read_cell(const Section& s, Scene& scene, Voids& voids) {
   scene.dimension = static_cast<int>(s.integer_in("dimension", 2, 3).value_or(scene.dimension));
   scene.width = s.number_in("width", 0, 1e6, true).value_or(scene.width);
   scene.height = s.number_in("height", 0, 1e9, true);
@@ -87,10 +111,10 @@ double read_cell(const Section& s, Scene& scene) {
   scene.bottom = read_word(s, "bottom", {"wall", "periodic", "absent"}, scene.bottom);
   scene.lid = read_word(s, "lid", {"absent", "wall"}, scene.lid ? 1 : 0) == 1;
   if (scene.dimension == 2) {
-    refuse(s, {"depth", "plates", "plates_motion"}, "a 2D cell has no depth; cell.dimension = 3 does.");
+    voids.refuse(s, {"depth", "plates", "plates_motion"}, "a 2D cell has no depth; cell.dimension = 3 does.");
     scene.plate_drag = s.number_in("plate_drag", 0).value_or(scene.plate_drag);
   } else {
-    refuse(s, {"plate_drag"}, "stands in for the front and back plates of a 2D cell; in 3D say cell.plates.");
+    voids.refuse(s, {"plate_drag"}, "stands in for the front and back plates of a 2D cell; in 3D say cell.plates.");
     const auto depth = s.number_in("depth", 0, 1e6, true);
     if (!depth) throw ConfigError(s.where("depth"), "a 3D cell needs its depth.");
     scene.depth = *depth;
@@ -101,15 +125,15 @@ double read_cell(const Section& s, Scene& scene) {
   scene.plates_move = read_motion(s, "plates_motion", scene.plates_move);
   scene.lid_moves = read_motion(s, "lid_motion", scene.lid_moves);
   read_side_tilt(s, scene);
-  if (scene.bottom != Edge::wall) refuse(s, {"bottom_motion"}, "the cell has no bottom wall.");
-  if (scene.sides != Edge::wall) refuse(s, {"side_walls", "side_tilt"}, "the cell has no side walls.");
-  if (scene.plates != Edge::wall) refuse(s, {"plates_motion"}, "the cell has no front and back walls.");
+  if (scene.bottom != Edge::wall) voids.refuse(s, {"bottom_motion"}, "the cell has no bottom wall.");
+  if (scene.sides != Edge::wall) voids.refuse(s, {"side_walls", "side_tilt"}, "the cell has no side walls.");
+  if (scene.plates != Edge::wall) voids.refuse(s, {"plates_motion"}, "the cell has no front and back walls.");
   if (!scene.lid)
-    refuse(s, {"lid_motion"}, "the cell has no lid that acts; cell.lid = \"wall\" gives it one.");
-  return read_gravity(s, scene);
+    voids.refuse(s, {"lid_motion"}, "the cell has no lid that acts; cell.lid = \"wall\" gives it one.");
+  return read_gravity(s, scene, voids);
 }
 
-void read_intruder(const Section& s, Scene& scene) {
+void read_intruder(const Section& s, Scene& scene, Voids& voids) {
   if (!s.has("radius") && !s.has("mass") && !s.has("x") && !s.has("y") && !s.has("z")) return;
   Intruder intruder;
   const auto radius = s.number_in("radius", 0, 1e6, true), z = s.number("z");
@@ -118,13 +142,13 @@ void read_intruder(const Section& s, Scene& scene) {
   intruder.radius = *radius;
   intruder.mass = s.number_in("mass", 0, 1e12, true).value_or(scene.mass_of(intruder.radius));
   intruder.x = s.number("x").value_or(scene.width / 2);
-  if (scene.dimension == 2) refuse(s, {"y"}, "a 2D cell has no y.");
+  if (scene.dimension == 2) voids.refuse(s, {"y"}, "a 2D cell has no y.");
   intruder.y = scene.dimension == 3 ? s.number("y").value_or(scene.depth / 2) : 0;
   intruder.z = *z;
   scene.intruder = intruder;
 }
 
-void read_beads(const Section& s, Scene& scene) {
+void read_beads(const Section& s, Scene& scene, Voids& voids) {
   constexpr std::int64_t kMost = 10'000'000;
   scene.radius = s.number_in("radius", 0, 1e6, true).value_or(scene.radius);
   scene.mass = s.number_in("mass", 0, 1e12, true).value_or(scene.mass);
@@ -151,11 +175,11 @@ void read_beads(const Section& s, Scene& scene) {
     throw ConfigError(s.where("spread_width"),
                       fmt::format("{} is out of range; the value must be less than 0.5.", *width));
   if (scene.spread == SizeSpread::none)
-    refuse(s, {"spread_width"}, "says how far radii are spread, but beads.spread is \"none\".");
+    voids.refuse(s, {"spread_width"}, "says how far radii are spread, but beads.spread is \"none\".");
   else if (!width)
     throw ConfigError(s.where("spread"), "needs beads.spread_width.");
   scene.spread_width = width.value_or(0);
-  read_intruder(s.section("intruder"), scene);
+  read_intruder(s.section("intruder"), scene, voids);
 }
 
 /// The older spelling of a variant of a law, as a key of its own: `word` chooses `variant` of `plain`, any
@@ -172,7 +196,32 @@ void apply_variant(const Section& s, const std::string& key, const std::string& 
   if (*v == word) law = variant;
 }
 
-void read_contact(const Section& s, Scene& scene) {
+/// "\"linear\"", "\"linear\" or \"hertz\"", "\"a\", \"b\" or \"c\"".
+std::string any_of_words(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t k = 0; k < words.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == words.size() ? " or " : ", ") + fmt::format("\"{}\"", words[k]);
+  return text;
+}
+
+/// Keys of laws that the chosen ones do not read: what they say would be lost.
+void refuse_unread(const Section& table, const ContactChoice& laws, Voids& voids) {
+  const std::vector<std::string> read = keys_of(laws.normal, laws.tangential, laws.rolling);
+  for (const std::string& key : all_law_keys()) {
+    if (!table.has(key) || std::find(read.begin(), read.end(), key) != read.end()) continue;
+    const KeyReaders readers = readers_of(key);
+    const std::string& law = readers.axis == "normal"       ? laws.normal
+                             : readers.axis == "tangential" ? laws.tangential
+                                                            : laws.rolling;
+    // Smooth beads may be called so in both ways.
+    if (key == "mu" && law == NoTangential::kWord && table.number(key) == 0.0) continue;
+    voids.refuse(table, {key},
+                 fmt::format("the law contact.{} = \"{}\" does not read it; {} would.", readers.axis, law,
+                             any_of_words(readers.laws)));
+  }
+}
+
+void read_contact(const Section& s, Scene& scene, Voids& voids) {
   ContactChoice& c = scene.contact;
   c.normal = s.word("normal", normal_words()).value_or(c.normal);
   c.tangential = s.word("tangential", tangential_words()).value_or(c.tangential);
@@ -182,19 +231,21 @@ void read_contact(const Section& s, Scene& scene) {
   scene.overlap_bound = s.number_in("overlap_bound", 0, 0.5, true).value_or(scene.overlap_bound);
 
   const Section walls = s.section("wall");
-  const auto only_numbers = [](const Section& table) {
-    refuse(table, {"normal", "tangential", "rolling", "tension", "slip"},
+  const auto only_numbers = [&](const Section& table) {
+    voids.refuse(table, {"normal", "tangential", "rolling", "tension", "slip"},
            "all contacts follow the same kinds of law, named in [contact]; their parameters may differ here "
            "(mu = 0 "
            "makes a smooth wall).");
   };
   only_numbers(walls);
   c.bead = ContactTable({s});
+  refuse_unread(s, c, voids);
+  refuse_unread(walls, c, voids);
   for (const auto& [table, names] : kWallTables) {
     const Section own = s.section(table);
     only_numbers(own);
+    refuse_unread(own, c, voids);
     for (const auto& name : names) c.wall[name] = ContactTable({own, walls, s});
-    know_all_keys(c.wall[names.front()]);
   }
 }
 
@@ -235,11 +286,11 @@ DriveSpec read_drive(const Section& s, Scene& scene) {
   return spec;
 }
 
-void read_start(const Section& s, Scene& scene) {
+void read_start(const Section& s, const std::filesystem::path& folder, Scene& scene, Voids& voids) {
   scene.start =
       read_word(s, "kind", {"crystal_a", "crystal_b", "random", "trajectory", "table"}, scene.start);
-  scene.seed = static_cast<std::uint64_t>(s.integer_in("seed", 0, std::int64_t{1} << 53).value_or(1));
-  if (const auto v = s.text("from")) scene.from = *v;
+  scene.seed = static_cast<std::uint64_t>(s.integer_in("seed", 0, kLargestSeed).value_or(1));
+  if (const auto v = s.text("from"); v && !v->empty()) scene.from = folder / *v;
   scene.frame = static_cast<std::size_t>(s.integer_in("frame", 0, std::int64_t{1} << 40).value_or(0));
   scene.perturbation = s.number_in("perturbation", 0, 0.01).value_or(scene.perturbation);
   scene.velocity_scale = s.number_in("velocity_scale", 0, 1e6).value_or(scene.velocity_scale);
@@ -252,8 +303,17 @@ void read_start(const Section& s, Scene& scene) {
   if (table && scene.from.empty())
     throw ConfigError(s.where("from"), "a start from a table needs the name of its file.");
   if (!trajectory && !table)
-    refuse(s, {"from"}, "a file is named, but start.kind is neither \"trajectory\" nor \"table\".");
-  if (!trajectory) refuse(s, {"frame"}, "a frame is named, but start.kind is not \"trajectory\".");
+    voids.refuse(s, {"from"}, "a file is named, but start.kind is neither \"trajectory\" nor \"table\".");
+  if (!trajectory) voids.refuse(s, {"frame"}, "a frame is named, but start.kind is not \"trajectory\".");
+  if (scene.start != StartKind::random)
+    voids.refuse(s, {"velocity_scale"}, "is a speed of random starts, but start.kind is not \"random\".");
+}
+
+/// A table's beads have the sizes of its column, or all the same.
+void refuse_void_spread(const Section& beads, const Scene& scene, Voids& voids) {
+  if (scene.start == StartKind::table && scene.spread != SizeSpread::none)
+    voids.refuse(beads, {"spread", "spread_width"},
+                 "radii are not drawn for the beads of a table; its column \"radius\" says them.");
 }
 
 void read_time(const Section& s, Scene& scene) {
@@ -389,25 +449,31 @@ void check_contact_tables(const Scene& s, const Section& contact) {
         std::none_of(walls.begin(), walls.end(), [&](const Wall& w) { return w.name == name; }))
       throw ConfigError(contact.where(table), "the cell has no such wall.");
   }
+  if (walls.empty() && contact.has("wall"))
+    throw ConfigError(contact.where("wall"), "the cell has no walls.");
 }
 
-Scene interpret(Config& config, const std::string& name) {
+/// \param lower names of the preset and of the calibration file, whose keys give way
+Scene interpret(Config& config, const std::string& name, const std::filesystem::path& folder,
+                std::vector<std::string> lower) {
   Scene scene;
   scene.file = name;
-  scene.resolved = resolved_text(config);
+  std::erase(lower, name);  // a scene of that name is the user's
+  Voids voids(config, std::move(lower), scene.void_keys);
   const Section root = config.root(), cell = root.section("cell"), beads = root.section("beads"),
                 contact = root.section("contact"), drive = root.section("drive");
   scene.source = root;
   static_cast<void>(root.text("preset"));
-  const double g = read_cell(cell, scene);
-  read_beads(beads, scene);
-  read_contact(contact, scene);
+  const double g = read_cell(cell, scene, voids);
+  read_beads(beads, scene, voids);
+  read_contact(contact, scene, voids);
   const DriveSpec spec = read_drive(drive, scene);
-  read_start(root.section("start"), scene);
+  read_start(root.section("start"), folder, scene, voids);
   read_time(root.section("time"), scene);
   read_until(root.section("until"), scene);
   read_scale(root.section("scale"), scene);
   read_effects(root.section("effects"), scene);
+  refuse_void_spread(beads, scene, voids);
   // A misspelt key explains more than what is missing because of it.
   config.refuse_unknown_keys();
   const ContactChoice& laws = scene.contact;
@@ -423,6 +489,7 @@ Scene interpret(Config& config, const std::string& name) {
   check_gravity(scene, cell);
   check_drive(scene, drive);
   check_contact_tables(scene, contact);
+  scene.resolved = resolved_text(config);
   return scene;
 }
 
@@ -461,16 +528,20 @@ void assign(Config& config, const std::vector<std::string>& assignments) {
   for (const auto& assignment : assignments) config.assign(assignment);
 }
 
-Scene resolve(Config config, const std::string& name, const std::vector<std::string>& assignments) {
+Scene resolve(Config config, const std::string& name, const std::vector<std::string>& assignments,
+              const std::filesystem::path& folder) {
   assign(config, assignments);
   reduce_units(config);
   const Included included = include_calibration(config, name, Includer::scene);
   const Section root = config.root();
   const auto preset = root.word("preset", preset_names());
-  if (!preset) return interpret(config, name);
+  std::vector<std::string> lower;
+  if (!included.file.empty()) lower.push_back(included.file.string());
+  if (!preset) return interpret(config, name, folder, lower);
   const auto& all = presets();
   const auto chosen = std::find_if(all.begin(), all.end(), [&](const auto& p) { return p.first == *preset; });
-  Config base = Config::from_text(chosen->second, "preset " + *preset);
+  lower.push_back("preset " + *preset);
+  Config base = Config::from_text(chosen->second, lower.back());
   displace(base, config);
   // Two measured numbers, or a stated and a measured one, are a whole drive.
   if (std::any_of(included.taken.begin(), included.taken.end(),
@@ -478,7 +549,7 @@ Scene resolve(Config config, const std::string& name, const std::vector<std::str
       count_drive_words(config) >= 2)
     base.yield_to(config, "drive", drive_words());
   base.overlay(std::move(config));
-  return interpret(base, name);
+  return interpret(base, name, folder, lower);
 }
 
 }  // namespace
@@ -493,6 +564,10 @@ double largest_deviation(SizeSpread spread, double width) {
       break;
   }
   return std::min(3 * width, 0.9);
+}
+
+std::string VoidKey::text() const {
+  return fmt::format("{} of {} has no effect: {}", key, source, reason);
 }
 
 Where Scene::where(const std::string& key) const {
@@ -528,12 +603,12 @@ std::vector<std::string> preset_names() {
 }
 
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& assignments) {
-  return resolve(Config::from_file(path), path.string(), assignments);
+  return resolve(Config::from_file(path), path.string(), assignments, path.parent_path());
 }
 
 Scene read_scene_text(const std::string& text, const std::string& name,
-                      const std::vector<std::string>& assignments) {
-  return resolve(Config::from_text(text, name), name, assignments);
+                      const std::vector<std::string>& assignments, const std::filesystem::path& folder) {
+  return resolve(Config::from_text(text, name), name, assignments, folder);
 }
 
 }  // namespace twincell::sim

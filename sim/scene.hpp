@@ -49,6 +49,9 @@ inline constexpr double kListReach = 0.25;
 /// Steps per contact below which a run is refused, unless forced, and below which it is warned.
 inline constexpr double kFewestSteps = 6, kFewSteps = 20;
 
+/// Largest seed: up to here a whole number is the same in every language that reads a provenance.
+inline constexpr std::int64_t kLargestSeed = std::int64_t{1} << 53;
+
 enum class StartKind { crystal_a, crystal_b, random, trajectory, table };
 
 /// When a driven bed has been watched for long enough: the 95 % interval of a mean is narrow. Scene::cycles
@@ -59,9 +62,19 @@ struct Precision {
   double absolute = 0;     ///< or half of the interval, in the quantity's unit; the larger bound counts
 };
 
+/// A key of a preset or of a calibration file that nothing reads, since the scene chose otherwise.
+struct VoidKey {
+  std::string key;     ///< "contact.gamma_n"
+  std::string source;  ///< "preset fortini-huang-2015", or the calibration file
+  std::string reason;  ///< a sentence
+
+  /// The whole as one sentence, for `explain` and for notes.
+  [[nodiscard]] std::string text() const;
+};
+
 struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in the order of a scene's tables
   std::string file;      ///< for messages
-  std::string resolved;  ///< TOML with preset and overrides, for provenance
+  std::string resolved;  ///< TOML with preset and overrides, without void_keys, for provenance
 
   // Cell
   int dimension = 2;
@@ -96,7 +109,7 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   // Start
   StartKind start = StartKind::crystal_a;
   std::uint64_t seed = 1;
-  std::filesystem::path from;  ///< trajectory or table start
+  std::filesystem::path from;  ///< trajectory or table start; a relative one is below the scene's folder
   std::size_t frame = 0;
   double perturbation = 0;     ///< seeded random displacement of every bead, sigma
   double velocity_scale = 1;   ///< random start: largest speed component, sigma/t0
@@ -118,6 +131,8 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   // What need not be reckoned, says the user; the plan refuses what would change the answer.
   bool rotation = true, history = true;
 
+  std::vector<VoidKey> void_keys;  ///< what of a preset or a calibration file does not act
+
   std::optional<ConfigSection> source;  ///< what was read; absent in a scene that no text stands for
 
   /// Where "section.key" stands in the scene's file, or where it could, for complaints about what is only
@@ -136,11 +151,14 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
 
 /// Reads a scene. A key `preset` names one of preset_names(); the file's own keys win over it.
 /// \param assignments "section.key=value", over all else
+/// Every key must be read: one that the chosen laws, start or cell do not read is refused, or, if a preset or a
+/// calibration file brought it, is left out and named in Scene::void_keys.
 /// \throws InputError if the file is missing; ConfigError naming file, line, key, value and bound
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& assignments = {});
-/// The same from text.
+/// The same from text. \param folder where a relative start.from begins; empty: the working directory
 Scene read_scene_text(const std::string& text, const std::string& name,
-                      const std::vector<std::string>& assignments = {});
+                      const std::vector<std::string>& assignments = {},
+                      const std::filesystem::path& folder = {});
 
 std::vector<std::string> preset_names();
 

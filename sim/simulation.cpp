@@ -27,10 +27,12 @@ bool touches(const System& s, const Bead& b, const Wall& wall) {
   return wall.n.dot(centre_of(b)) - offset_now(s, wall) < b.radius;
 }
 
-std::int64_t beads_in_contact(const System& s) {
+std::int64_t beads_in_contact(const System& s, Progress& progress) {
+  Heed heed(progress);
   std::vector<char> touching(s.beads.size(), 0);
   for_each_near_pair(s.beads, s.dimension, s.period, 0,
                      [&](std::int32_t i, std::int32_t j, double, const Vec3&) {
+                       heed();
                        touching[static_cast<std::size_t>(i)] = touching[static_cast<std::size_t>(j)] = 1;
                      });
   for (const Wall& wall : s.walls)
@@ -59,10 +61,10 @@ double kinetic_energy_per_bead(const System& s) {
   return s.beads.empty() ? 0 : sum / static_cast<double>(s.beads.size());
 }
 
-RunState placed(const Scene& scene) {
+RunState placed(const Scene& scene, Progress& progress) {
   static_cast<void>(make_plan(scene));  // what cannot run is refused before ten million beads are placed
-  Start start = make_start(scene);
-  require_sound(start.beads, scene, 0.05);
+  Start start = make_start(scene, progress);
+  require_sound(start.beads, scene, 0.05, progress);
   RunState state;
   // High enough never to be reached: the bed, the plate's stroke, twice the ballistic height of the plate's
   // speed, ten diameters.
@@ -126,7 +128,7 @@ Simulation::Simulation(Scene scene, RunState state, KernelKind kind, int threads
 }
 
 Simulation::Simulation(const Scene& scene, Progress& progress, KernelKind kind, int threads)
-    : Simulation(scene, placed(scene), kind, threads) {
+    : Simulation(scene, placed(scene, progress), kind, threads) {
   settle(progress);
 }
 
@@ -249,8 +251,9 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
     if (into == 0 && cycle >= 0) {
       if (handed_over == most) return;
       ++handed_over;
+      const std::int64_t touching = beads_in_contact(system_, progress);  // may throw: nothing is done yet
       sink.append(snapshot(cycle, static_cast<int>(frame % scene_.phases)));
-      touching_ += beads_in_contact(system_);
+      touching_ += touching;
       looked_at_ += static_cast<std::int64_t>(system_.beads.size());
     }
     const std::int64_t piece = std::min(per_phase - into, unnoticed_steps(system_));

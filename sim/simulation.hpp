@@ -42,7 +42,7 @@ struct RunState {
 
 /// The state in which a scene begins: beads placed, nothing moved.
 /// \throws ConfigError, InputError for a start that cannot be
-RunState placed(const Scene& scene);
+RunState placed(const Scene& scene, Progress& progress = Progress::none());
 
 /// m v^2/2 + I omega^2/2, their mean over beads; 0 without beads.
 double kinetic_energy_per_bead(const System& s);

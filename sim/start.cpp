@@ -91,28 +91,28 @@ std::vector<double> draw_radii(const Scene& scene, std::size_t n) {
   return radii;
 }
 
-Start make_start(const Scene& scene) {
+Start make_start(const Scene& scene, Progress& progress) {
   const auto place = [&] {
     switch (scene.start) {
       case StartKind::crystal_a:
-        return crystal_a(scene);
+        return crystal_a(scene, progress);
       case StartKind::crystal_b:
-        return crystal_b(scene);
+        return crystal_b(scene, progress);
       case StartKind::random:
-        return random_deposit(scene);
+        return random_deposit(scene, progress);
       case StartKind::trajectory:
-        return from_trajectory(scene);
+        return from_trajectory(scene, progress);
       case StartKind::table:
         break;
     }
-    return from_table(scene);
+    return from_table(scene, progress);
   };
   Start start = place();
   if (scene.relax) {
     // Centres in the same place have no direction to part in, and what is beyond a wall is another cell's.
     constexpr double kRefused = 0.99, kTolerated = 1e-6;
-    require_sound(start.beads, scene, kRefused);
-    if (const double left = relax_overlaps(start.beads, scene, kTolerated, 50000); left > kTolerated)
+    require_sound(start.beads, scene, kRefused, progress);
+    if (const double left = relax_overlaps(start.beads, scene, kTolerated, 50000, progress); left > kTolerated)
       throw ConfigError(
           scene.where("start.relax"),
           fmt::format("the beads cannot be pushed apart, an overlap of {:.3g} sigma is left, the "
@@ -122,7 +122,9 @@ Start make_start(const Scene& scene) {
   if (scene.perturbation == 0) return start;
   std::mt19937_64 engine = engine_of(scene, Stream::perturbation);
   const auto shift = [&] { return scene.perturbation * (2 * uniform(engine) - 1); };
+  Heed heed(progress);
   for (Bead& b : start.beads) {
+    heed();
     b.x += shift();
     if (scene.dimension == 3) b.y += shift();
     b.z += shift();

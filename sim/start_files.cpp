@@ -33,7 +33,7 @@ void require_positive(const Scene& scene, const std::vector<double>& column, con
 
 }  // namespace
 
-Start from_trajectory(const Scene& scene) {
+Start from_trajectory(const Scene& scene, Progress& progress) {
   const H5mdReader file(scene.from);
   const TrajectoryInfo& info = file.info();
   if (scene.frame >= file.n_frames())
@@ -70,8 +70,8 @@ Start from_trajectory(const Scene& scene) {
   require_count(scene, start.beads.size(), fmt::format("frame {} of {}", scene.frame, scene.from.string()));
   // A camera's noise is a few hundredths of a diameter; beyond 0.2 it is not this cell.
   constexpr double kRefused = 0.2, kTolerated = 1e-4, kLeft = 0.05;
-  require_sound(start.beads, scene, kRefused);
-  const double left = relax_overlaps(start.beads, scene, kTolerated, 20000);
+  require_sound(start.beads, scene, kRefused, progress);
+  const double left = relax_overlaps(start.beads, scene, kTolerated, 20000, progress);
   if (left > kLeft)
     throw ConfigError(
         scene.where("start.from"),
@@ -175,7 +175,8 @@ class BeadTable {
 
 }  // namespace
 
-Start from_table(const Scene& scene) {
+Start from_table(const Scene& scene, Progress& progress) {
+  Heed heed(progress);
   const std::string text = read_text_file(scene.from);
   std::optional<BeadTable> table;
   Start start;
@@ -185,6 +186,7 @@ Start from_table(const Scene& scene) {
     std::string_view line = std::string_view(text).substr(begin, end - begin);
     begin = end + 1;
     ++line_number;
+    heed();
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (line.empty()) continue;
     if (!table)

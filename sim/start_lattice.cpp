@@ -15,7 +15,9 @@ namespace {
 /// Puts beads on the sites of a lattice of constant `d` that `level(k, offer)` names, level by level, until
 /// offer(x, y, z) says that all are placed.
 template <class Level>
-Start fill_lattice(const Scene& scene, const std::vector<double>& radii, double d, Level level) {
+Start fill_lattice(const Scene& scene, const std::vector<double>& radii, double d, Progress& progress,
+                   Level level) {
+  Heed heed(progress);
   const auto walls = scene.walls();
   const auto period = scene.period();
   // Twenty beads of diameter 1 fit into a width of 20 whatever the rounding.
@@ -33,6 +35,7 @@ Start fill_lattice(const Scene& scene, const std::vector<double>& radii, double 
   for (std::size_t k = 0, empty = 0; start.beads.size() < radii.size(); ++k) {
     const std::size_t before = start.beads.size();
     level(k, [&](double x, double y, double z) {
+      heed();
       const double radius = radii[start.beads.size()];
       if (const Vec3 r(x, y, z); free(radius, r)) start.beads.push_back(bead_at(scene, radius, r));
       return start.beads.size() < radii.size();
@@ -65,7 +68,7 @@ double lattice_constant(const std::vector<double>& radii, const Scene& scene) {
 
 }  // namespace
 
-Start crystal_a(const Scene& scene) {
+Start crystal_a(const Scene& scene, Progress& progress) {
   const std::vector<double> radii = draw_radii(scene, scene.n_beads.value_or(0));
   const double d = lattice_constant(radii, scene);
   const std::size_t full = std::max<std::size_t>(1, whole(scene.width / d));
@@ -79,11 +82,11 @@ Start crystal_a(const Scene& scene) {
     return true;
   };
   if (const auto y = only_row(scene, d))
-    return fill_lattice(scene, radii, d, [&](std::size_t k, auto offer) {
+    return fill_lattice(scene, radii, d, progress, [&](std::size_t k, auto offer) {
       row(k % 2 == 1, *y, d / 2 + static_cast<double>(k) * kRowSpacing * d, offer);
     });
   const std::size_t rows = lines(scene.depth, kRowSpacing * d, d, scene.plates == Edge::periodic);
-  return fill_lattice(scene, radii, d, [&](std::size_t k, auto offer) {
+  return fill_lattice(scene, radii, d, progress, [&](std::size_t k, auto offer) {
     const double first = d / 2 + (k % 2 == 1 ? kLayerShift * d : 0);
     const double z = d / 2 + static_cast<double>(k) * kLayerSpacing * d;
     for (std::size_t r = 0; r < rows; ++r)
@@ -91,12 +94,12 @@ Start crystal_a(const Scene& scene) {
   });
 }
 
-Start crystal_b(const Scene& scene) {
+Start crystal_b(const Scene& scene, Progress& progress) {
   const std::vector<double> radii = draw_radii(scene, scene.n_beads.value_or(0));
   const double d = lattice_constant(radii, scene);
   if (const auto y = only_row(scene, d)) {
     const std::size_t columns = lines(scene.width, kRowSpacing * d, d, false);
-    return fill_lattice(scene, radii, d, [&](std::size_t k, auto offer) {
+    return fill_lattice(scene, radii, d, progress, [&](std::size_t k, auto offer) {
       for (const bool odd : {false, true})
         for (std::size_t c = odd ? 1 : 0; c < columns; c += 2)
           if (!offer(d / 2 + static_cast<double>(c) * kRowSpacing * d, *y,
@@ -106,7 +109,7 @@ Start crystal_b(const Scene& scene) {
   }
   const std::size_t layers = lines(scene.width, kLayerSpacing * d, d, scene.sides == Edge::periodic),
                     rows = lines(scene.depth, kRowSpacing * d, d, scene.plates == Edge::periodic);
-  return fill_lattice(scene, radii, d, [&](std::size_t k, auto offer) {
+  return fill_lattice(scene, radii, d, progress, [&](std::size_t k, auto offer) {
     for (const std::size_t odd : {0U, 1U})
       for (std::size_t l = 0; l < layers; ++l)
         for (std::size_t r = (l + odd) % 2; r < rows; r += 2)

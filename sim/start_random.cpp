@@ -33,7 +33,7 @@ double column_height(const Scene& scene, const std::vector<double>& radii) {
 
 }  // namespace
 
-Start random_deposit(const Scene& scene) {
+Start random_deposit(const Scene& scene, Progress& progress) {
   const std::size_t n = scene.n_beads.value_or(0);
   const std::vector<double> radii = draw_radii(scene, n);
   const auto walls = scene.walls();
@@ -59,10 +59,12 @@ Start random_deposit(const Scene& scene) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t i, std::size_t j) { return radii[i] > radii[j]; });
+  Heed heed(progress);
   long tries_left = 2000L * static_cast<long>(n) + 100000;
   for (const std::size_t i : order) {
     const double radius = radii[i];
     for (bool placed = false; !placed;) {
+      heed();
       if (--tries_left < 0)
         throw ConfigError(scene.where("beads.count"),
                           fmt::format("{} beads find no random places in {}.", n, describe_cell(scene)));

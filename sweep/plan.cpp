@@ -99,14 +99,16 @@ void read_scene_of(Plan& plan, const ConfigSection& root, const fs::path& folder
       plan.scene += leaf.path + " = " + leaf.literal + "\n";
     }
     plan.scene_name = plan.file + " [scene]";
+    plan.scene_folder = folder;
     return;
   }
   const auto file = root.text("scene");
   if (!file)
     throw ConfigError(root.where("scene"), "is missing: the file of the base scene, or a table [scene].");
   const fs::path path = fs::path(*file).is_absolute() ? fs::path(*file) : folder / *file;
-  plan.scene = read_text_file(path);
+  plan.scene = read_text_file(path, kLargestConfig);
   plan.scene_name = path.string();
+  plan.scene_folder = path.parent_path();
 }
 
 void check_axis(const Plan& plan, const Where& where, const TomlLeaf& leaf) {
@@ -186,7 +188,7 @@ Plan interpret(const Config& config, const std::string& name, const fs::path& fo
 /// The scene of a point. A complaint about what an axis says points to the plan.
 sim::Scene scene_of(const Plan& plan, const std::vector<std::string>& assignments) {
   try {
-    return sim::read_scene_text(plan.scene, plan.scene_name, assignments);
+    return sim::read_scene_text(plan.scene, plan.scene_name, assignments, plan.scene_folder);
   } catch (const ConfigError& e) {
     const std::string complaint = e.what();
     for (const Axis& axis : plan.axes)

@@ -68,9 +68,9 @@ void on_disk(Work work) {
   }
 }
 
-sim::RunState placed_in_turn(const sim::Scene& scene) {
+sim::RunState placed_in_turn(const sim::Scene& scene, Progress& progress) {
   const std::lock_guard lock(hdf5_turn());  // a start may be read from a trajectory
-  return sim::placed(scene);
+  return sim::placed(scene, progress);
 }
 
 /// The number that the plan's verdict is about; NaN where the run has none.
@@ -91,8 +91,8 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
   nlohmann::json document = {{"id", point.id}, {"answer", nullptr}};
   std::int64_t cycles = 0;
   try {
-    sim::Scene scene = sim::read_scene_text(point.scene, "point " + point.id);
-    sim::RunState state = placed_in_turn(scene);
+    sim::Scene scene = sim::read_scene_text(point.scene, "point " + point.id, {}, plan.scene_folder);
+    sim::RunState state = placed_in_turn(scene, progress);
     const std::int64_t all_cycles = scene.cycles;
     sim::Simulation run(std::move(scene), std::move(state));
     std::optional<StopRule> rule;

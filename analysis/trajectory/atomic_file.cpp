@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -212,16 +213,41 @@ void write_text_file(const fs::path& path, const std::string& text, const Produc
   out.commit();
 }
 
-std::string read_text_file(const fs::path& path) {
-  std::error_code ec;
-  if (!fs::exists(path, ec)) throw InputError({path.string(), 0, 0, ""}, "the file does not exist.");
-  if (fs::is_directory(path, ec))
-    throw InputError({path.string(), 0, 0, ""}, "this is a folder, a file is needed.");
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw InputError({path.string(), 0, 0, ""}, "the file cannot be read.");
-  return text.str();
+std::string read_text_file(const fs::path& path, std::uintmax_t most) {
+  const auto refuse = [&](const std::string& complaint) {
+    throw InputError({path.string(), 0, 0, ""}, complaint);
+  };
+  struct File {
+    int number;
+    ~File() {
+      if (number >= 0) ::close(number);
+    }
+  };
+  // Not blocking: to open a pipe that nobody writes into would never end.
+  const File file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)};
+  if (file.number < 0)
+    refuse(errno == ENOENT || errno == ENOTDIR
+               ? "the file does not exist."
+               : std::string("the file cannot be read (") + std::strerror(errno) + ").");
+  struct stat about {};
+  if (::fstat(file.number, &about) != 0)
+    refuse(std::string("the file cannot be read (") + std::strerror(errno) + ").");
+  if (S_ISDIR(about.st_mode)) refuse("this is a folder, a file is needed.");
+  if (!S_ISREG(about.st_mode)) refuse("this is a device, a pipe or a socket; a regular file is needed.");
+  const auto too_large = [&] {
+    refuse("the file is larger than the " + std::to_string(most) + " bytes that such a file may have.");
+  };
+  if (static_cast<std::uintmax_t>(about.st_size) > most) too_large();
+  std::string text;
+  text.reserve(static_cast<std::size_t>(about.st_size) + 1);
+  for (std::string piece(1 << 16, '\0');;) {
+    const ssize_t got = ::read(file.number, piece.data(), piece.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) refuse(std::string("the file cannot be read (") + std::strerror(errno) + ").");
+    if (got == 0) return text;
+    text.append(piece, 0, static_cast<std::size_t>(got));
+    if (text.size() > most) too_large();  // it grew meanwhile
+  }
 }
 
 }  // namespace twincell

@@ -4,6 +4,7 @@
 /// disk before it gets its name, so that this holds for a machine that loses its power too. What an output
 /// may replace: output_rules.hpp.
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -55,7 +56,12 @@ class AtomicPath {
 void write_text_file(const std::filesystem::path& path, const std::string& text,
                      const Product& product = Product::part());
 
-/// Reads a whole file. \throws InputError if it is missing or unreadable
-std::string read_text_file(const std::filesystem::path& path);
+/// Largest text file that is read, bytes: a table of ten million beads has less.
+inline constexpr std::uintmax_t kLargestText = std::uintmax_t{4} << 30;
+
+/// Reads a whole regular file. Devices, pipes and sockets are refused, since they may never end.
+/// \param most bytes that the file may have
+/// \throws InputError if it is missing, no regular file, larger than `most`, or unreadable
+std::string read_text_file(const std::filesystem::path& path, std::uintmax_t most = kLargestText);
 
 }  // namespace twincell

@@ -104,9 +104,11 @@ std::optional<double> ConfigSection::number_in(const std::string& key, std::opti
 std::optional<std::int64_t> ConfigSection::integer_in(const std::string& key, std::int64_t lower,
                                                       std::int64_t upper) const {
   auto value = integer(key);
-  if (value)
-    require_range(where(key), static_cast<double>(*value), static_cast<double>(lower),
-                  static_cast<double>(upper));
+  // As whole numbers: beyond 2^53 a double is their neighbour.
+  if (value && (*value < lower || *value > upper))
+    throw ConfigError(where(key),
+                      fmt::format("{} is out of range; the value must be at least {} and at most {}.", *value,
+                                  lower, upper));
   return value;
 }
 
@@ -172,7 +174,80 @@ ConfigSection ConfigSection::section(const std::string& key) const {
   return {shared_, full(key)};
 }
 
+namespace {
+
+/// Refuses text whose tables would lie deeper in each other than kDeepest: the parser, and whoever visits
+/// its tables, go down by calling themselves, and a key of ten thousand dots would exhaust the stack. Depth
+/// is counted from the text: dots of the table's header, of the key, and the same of each list and inline
+/// table that is open. (A number's point counts as a dot, which does no harm.) Up to the first mistake in the
+/// text this reads strings and comments as the parser does; behind it the parser does not come.
+void refuse_deep(const std::string& text, const std::string& name) {
+  constexpr std::size_t kDeepest = 100;
+  std::size_t header = 0, line = 1;
+  std::vector<std::size_t> dots = {0};  // of the key that is being read: outermost, then of each bracket
+  std::size_t outer = 0;                // depth of all but the last
+  bool in_header = false, line_is_empty = true;
+  const auto look = [&] {
+    if (header + outer + dots.size() - 1 + dots.back() <= kDeepest) return;
+    throw ConfigError({name, static_cast<long>(line), 0, ""},
+                      fmt::format("tables and lists lie more than {} deep in each other.", kDeepest));
+  };
+  const auto at = [&](std::size_t k) { return k < text.size() ? text[k] : '\0'; };
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (c == '#') {
+      k = std::min(text.find('\n', k), text.size()) - 1;
+    } else if (c == '"' || c == '\'') {
+      const bool several = at(k + 1) == c && at(k + 2) == c;
+      for (k += several ? 3 : 1; k < text.size(); ++k) {
+        if (text[k] == '\n') {
+          ++line;
+          if (!several) break;
+        }
+        if (text[k] == '\\' && c == '"') {
+          ++k;
+          line += at(k) == '\n' ? 1 : 0;
+        } else if (text[k] == c && (!several || (at(k + 1) == c && at(k + 2) == c))) {
+          if (several)
+            for (k += 2; at(k + 1) == c;) ++k;  // quotes that belong to the text's end
+          break;
+        }
+      }
+      line_is_empty = false;
+    } else if (c == '\n') {
+      ++line;
+      if (in_header) header = dots.front() + 1;
+      if (dots.size() == 1) dots.front() = 0;
+      in_header = false;
+      line_is_empty = true;
+    } else if (c == '.') {
+      ++dots.back();
+      look();
+    } else if (c == ',') {
+      if (!in_header) dots.back() = 0;
+    } else if (c == '[' && dots.size() == 1 && (line_is_empty || in_header)) {
+      in_header = true, line_is_empty = false, header = 0;
+    } else if (c == '[' || c == '{') {
+      outer += dots.back();
+      dots.push_back(0);
+      look();
+    } else if ((c == ']' || c == '}') && dots.size() > 1) {
+      dots.pop_back();
+      outer -= dots.back();
+    } else if (c != ' ' && c != '\t' && c != '\r') {
+      line_is_empty = false;
+    }
+  }
+}
+
+}  // namespace
+
 Config Config::from_text(const std::string& text, const std::string& name) {
+  if (text.size() > kLargestConfig)
+    throw ConfigError({name, 0, 0, ""},
+                      fmt::format("{} bytes are more than the {} that a configuration may have.", text.size(),
+                                  kLargestConfig));
+  refuse_deep(text, name);
   auto shared = std::make_shared<ConfigSection::Shared>();
   shared->name = name;
   try {
@@ -186,7 +261,7 @@ Config Config::from_text(const std::string& text, const std::string& name) {
 }
 
 Config Config::from_file(const std::filesystem::path& path) {
-  return from_text(read_text_file(path), path.string());
+  return from_text(read_text_file(path, kLargestConfig), path.string());
 }
 
 namespace {
@@ -302,7 +377,9 @@ void walk(const toml::table& table, const std::string& path, const std::set<std:
           const std::function<void(const std::string&, const toml::node&)>& complain) {
   for (auto&& [key, node] : table) {
     const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
-    if (!asked.contains(full)) complain(full, node);
+    // A point in quotes is part of a name: "cell.width" is not the width of the cell.
+    const bool quoted = key.str().empty() || key.str().find('.') != std::string_view::npos;
+    if (quoted || !asked.contains(full)) complain(full, node);
     if (const toml::table* below = node.as_table()) walk(*below, full, asked, complain);
   }
 }

@@ -15,6 +15,9 @@
 
 namespace twincell {
 
+/// Largest configuration, bytes.
+inline constexpr std::uintmax_t kLargestConfig = std::uintmax_t{16} << 20;
+
 /// One table of a configuration. Getters return nothing for an absent key and throw ConfigError for one of
 /// the wrong type. Asking for a key marks it as known.
 class ConfigSection {
@@ -61,7 +64,8 @@ class ConfigSection {
 /// A whole configuration.
 class Config {
  public:
-  /// \throws InputError if the file cannot be read, ConfigError "file:line:column: …" if it is not TOML
+  /// \throws InputError if the file cannot be read, is no regular file or is larger than kLargestConfig;
+  /// ConfigError "file:line:column: …" if it is not TOML, or its tables lie more than 100 deep in each other
   static Config from_file(const std::filesystem::path& path);
   static Config from_text(const std::string& text, const std::string& name);
 

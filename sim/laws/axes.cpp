@@ -1,5 +1,8 @@
 #include "sim/laws/axes.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace twincell::sim {
 
 namespace {
@@ -55,8 +58,19 @@ std::vector<std::string> all_law_keys() {
   return keys_of("", "", "");
 }
 
-void know_all_keys(const ContactTable& table) {
-  table.know(all_law_keys());
+KeyReaders readers_of(const std::string& key) {
+  KeyReaders readers;
+  const auto collect = [&](const char* axis) {
+    return [&readers, &key, axis](const auto& law) {
+      if (std::find(std::begin(law.kKeys), std::end(law.kKeys), key) == std::end(law.kKeys)) return;
+      readers.axis = axis;
+      readers.laws.emplace_back(law.kWord);
+    };
+  };
+  for_each_law(NormalAxis{}, collect("normal"));
+  for_each_law(TangentialAxis{}, collect("tangential"));
+  for_each_law(RollingAxis{}, collect("rolling"));
+  return readers;
 }
 
 }  // namespace twincell::sim

@@ -63,7 +63,11 @@ std::vector<std::string> keys_of(const std::string& normal, const std::string& t
                                  const std::string& rolling);
 /// The keys of all laws.
 std::vector<std::string> all_law_keys();
-/// Marks the keys of all laws as known in a table.
-void know_all_keys(const ContactTable& table);
+/// The axis to which a key of all_law_keys() belongs ("normal") and the words of the laws that read it.
+struct KeyReaders {
+  std::string axis;
+  std::vector<std::string> laws;
+};
+KeyReaders readers_of(const std::string& key);
 
 }  // namespace twincell::sim

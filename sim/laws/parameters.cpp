@@ -61,9 +61,4 @@ Where ContactTable::where(const std::string& key) const {
   return tables_.empty() ? Where{} : tables_.back().where(key);
 }
 
-void ContactTable::know(const std::vector<std::string>& keys) const {
-  for (const ConfigSection& t : tables_)
-    for (const auto& key : keys) static_cast<void>(t.has(key));
-}
-
 }  // namespace twincell::sim

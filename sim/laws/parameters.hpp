@@ -44,9 +44,6 @@ class ContactTable {
   [[nodiscard]] std::string which_of(const std::vector<std::string>& keys) const;
   /// Where a key stands, or where it could.
   [[nodiscard]] Where where(const std::string& key) const;
-  /// Marks keys as known, so that they are not refused as misspelt where the chosen law does not ask for
-  /// them.
-  void know(const std::vector<std::string>& keys) const;
 
  private:
   std::vector<ConfigSection> tables_;

@@ -360,6 +360,35 @@ TEST(Flights, ElasticBeadsKeepTheirEnergy) {
   EXPECT_NEAR(after / before, 1, 3e-6);
 }
 
+// The box at rest without gravity, as a scene says it and `auto` runs it.
+TEST(Flights, AreWhatAutoChoosesWithoutGravity) {
+  const Scene scene = scene_of(
+      "[cell]\nwidth = 8.0\nheight = 8.0\ngravity = 0.0\nsides = \"periodic\"\nbottom = \"periodic\"\n"
+      "[beads]\ncount = 20\n[start]\nkind = \"random\"\n[contact]\nk_n = 1e5\nrestitution = 1.0\n"
+      "tangential = \"none\"\n[drive]\namplitude = 0.0\nomega = 6.0\n");
+  const Plan plan = make_plan(scene);
+  EXPECT_TRUE(plan.flights);
+  System s = make_system(scene, plan);
+  s.beads = placed(scene).beads;
+  const auto kernel = make_kernel(plan, guard_limits(plan));
+  const auto most = [&] {  // over some moments, in one of which nothing touches
+    double e = 0;
+    for (int k = 0; k < 100; ++k) {
+      kernel->advance(s, 37);
+      e = std::max(e, kinetic_energy_per_bead(s));
+    }
+    return e;
+  };
+  const double before = most();
+  kernel->advance(s, 300 * plan.steps_per_period);
+  EXPECT_GT(before, 0.1);
+  EXPECT_NEAR(most() / before, 1, 2e-4);
+  // Beads that fall on a plate at rest are no gas.
+  Scene heavy = scene;
+  heavy.gravity = -Vec3::UnitZ();
+  EXPECT_FALSE(make_plan(heavy).flights);
+}
+
 TEST(Flights, HardCases) {
   // Weak drives: the bed rides, and all is left to steps.
   {

@@ -51,12 +51,16 @@ Scene scene_of(const Case& c, const Laws& laws) {
   text += "[drive]\nomega = 7.0\ngamma = 4.0\n[time]\nsteps_per_contact = 12\nintegrator = \"" +
           c.integrator + "\"\nprecision = \"" + (c.single ? "single" : "double") + "\"\n";
   text += "[contact]\nnormal = \"" + laws.normal + "\"\ntangential = \"" + laws.tangential +
-          "\"\nrolling = \"" + laws.rolling + "\"\nk_n = 1e4\nmu = 0.4\nk_t = 3e3\n";
-  text += laws.normal == "hertz"                 ? "youngs_modulus = 3e4\nviscous_time = 1e-3\nc_t = 5.0\n"
-          : laws.normal == "falling-restitution" ? "restitution_fast = 0.6\nc_t = 5.0\n"
-                                                 : "restitution = 0.8\nc_t_over_c_n = 0.5\n";
+          "\"\nrolling = \"" + laws.rolling + "\"\n";
+  const bool damped = laws.normal != "hertz" && laws.normal != "falling-restitution";
+  text += laws.normal == "hertz" ? "youngs_modulus = 3e4\nviscous_time = 1e-3\n"
+          : damped               ? "k_n = 1e4\nrestitution = 0.8\n"
+                                 : "k_n = 1e4\nrestitution_fast = 0.6\n";
+  const bool rough = laws.tangential != "none";
+  if (rough) text += damped ? "mu = 0.4\nc_t_over_c_n = 0.5\n" : "mu = 0.4\nc_t = 5.0\n";
+  if (rough && laws.tangential != "dashpot") text += "k_t = 3e3\n";
   if (laws.rolling != "none") text += "k_r = 50.0\nc_r = 0.05\nmu_r = 0.2\n";
-  text += "[contact.wall]\nmu = 0.7\n";
+  if (rough) text += "[contact.wall]\nmu = 0.7\n";
   return read_scene_text(text, "bed");
 }
 

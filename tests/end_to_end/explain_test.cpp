@@ -1,6 +1,7 @@
 // What `explain` says of a scene is what is run: the lists, the refusals, the columns and the provenance.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <map>
@@ -107,6 +108,41 @@ TEST_F(Explain, WhatActsMayNotBeDropped) {
         {"--set", "effects.history=false", "--set", "contact.tangential=dashpot"},
         {"--set", "effects.history=false", "--set", "contact.k_t=0.0"}})
     EXPECT_NE(run("explain", harmless).out.find("= false drops nothing"), std::string::npos);
+}
+
+TEST_F(Explain, AKeyThatNoLawReadsIsRefusedAndAPresetsIsNamed) {
+  expect_refusal({"--set", "contact.normal=hertz", "--set", "contact.youngs_modulus=1e7", "--set",
+                  "contact.restitution=0.5"},
+                 {"contact.restitution", "contact.normal = \"hertz\"", "\"linear\""});
+  expect_refusal({"--set", "contact.tangential=none", "--set", "contact.mu=0.5"}, {"contact.mu", "\"none\""});
+  const Ran ran = run_program(
+      {"explain", scene_, "--set", "contact.normal=hertz", "--set", "contact.youngs_modulus=1e7"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  for (const std::string& text : {ran.out, ran.err})
+    EXPECT_NE(text.find("contact.gamma_n of preset fortini-huang-2015 has no effect: the law contact.normal = "
+                        "\"hertz\" does not read it"),
+              std::string::npos)
+        << text;
+}
+
+TEST_F(Explain, FilesWithoutAnEndAreRefused) {
+  const std::string pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& file : {std::string("/dev/zero"), pipe}) {
+    const Ran ran = run_program({"explain", file});
+    EXPECT_EQ(ran.code, 3);
+    EXPECT_NE(ran.err.find("a regular file is needed"), std::string::npos) << ran.err;
+  }
+}
+
+// Ten million beads are being placed: a signal does not wait for them.
+TEST_F(Explain, ASignalEndsThePlacingOfManyBeads) {
+  RunningProgram program({"explain", scene_, "-q", "--set", "beads.count=10000000"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  const auto asked = std::chrono::steady_clock::now();
+  program.signal(SIGTERM);
+  EXPECT_EQ(program.wait().code, 143);
+  EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(1));
 }
 
 TEST_F(Explain, ARefusalPointsToItsLine) {

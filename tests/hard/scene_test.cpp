@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -286,6 +288,113 @@ TEST(Contact, LawsRefuseTheirParameters) {
   expect_complaint(kGood + "[contact]\nc_n = 5.0\nrestitution = 0.9\n", "contradicts 'c_n'");
   expect_complaint(kGood + "[contact.wall]\nmu = -0.1\n",
                    "scene.toml:7:6: contact.wall.mu: -0.1 is out of range; the value must be at least 0");
+}
+
+// Each law with each key of another: the number would be dropped without a word.
+TEST(Contact, KeysThatTheLawDoesNotReadAreRefused) {
+  const std::string bare = "[beads]\ncount = 9\n[drive]\ngamma = 1.5\nomega = 1.0\n";
+  for (const std::string table : {"contact", "contact.wall", "contact.bottom", "contact.sides"})
+    for (const auto& [law, key, readers] : std::vector<std::array<std::string, 3>>{
+             {"normal = \"hertz\"", "restitution", "\"linear\" or \"linear-clipped\""},
+             {"normal = \"hertz\"", "c_n", "\"linear\" or \"linear-clipped\""},
+             {"normal = \"hertz\"", "gamma_n", "\"linear\" or \"linear-clipped\""},
+             {"normal = \"hertz\"", "k_n", "\"linear\", \"linear-clipped\" or \"falling-restitution\""},
+             {"normal = \"hertz\"", "restitution_fast", "\"falling-restitution\""},
+             {"normal = \"falling-restitution\"", "restitution", "\"linear\" or \"linear-clipped\""},
+             {"normal = \"falling-restitution\"", "viscous_time", "\"hertz\""},
+             {"normal = \"linear\"", "youngs_modulus", "\"hertz\""},
+             {"normal = \"linear\"", "restitution_speed", "\"falling-restitution\""},
+             {"normal = \"linear-clipped\"", "poisson_ratio", "\"hertz\""},
+             {"tangential = \"none\"", "mu", "\"dashpot\", \"spring\" or \"spring-only\""},
+             {"tangential = \"none\"", "k_t", "\"spring\" or \"spring-only\""},
+             {"tangential = \"none\"", "gamma_t", "\"dashpot\", \"spring\" or \"spring-only\""},
+             {"tangential = \"dashpot\"", "k_t", "\"spring\" or \"spring-only\""},
+             {"rolling = \"none\"", "mu_r", "\"spring\""},
+             {"rolling = \"none\"", "k_r", "\"spring\""},
+             {"rolling = \"none\"", "c_r", "\"spring\""}}) {
+      const std::string young = law.find("hertz") != std::string::npos ? "youngs_modulus = 1e7\n" : "";
+      const std::string head = bare + "[contact]\n" + law + "\n" + young;
+      ASSERT_EQ(complaint(head), "accepted");
+      expect_complaint(
+          head + (table == "contact" ? "" : "[" + table + "]\n") + key + " = 0.3\n",
+          table + "." + key + ": the law contact." + law + " does not read it; " + readers + " would.");
+    }
+  // With file, line and column.
+  expect_complaint("[beads]\ncount = 9\n[contact]\nnormal = \"hertz\"\nrestitution = 0.5\n",
+                   "scene.toml:5:15: contact.restitution: the law contact.normal = \"hertz\" does not read");
+}
+
+// What the plan leaves out by itself is no mistake of the user's.
+TEST(Contact, SmoothBeadsMayBeSaidInBothWays) {
+  EXPECT_EQ(complaint(kGood, {"contact.mu=0"}), "accepted");  // the preset's k_t and gamma_t are read
+  EXPECT_EQ(complaint(kGood, {"contact.mu=0", "contact.k_t=2e4"}), "accepted");
+  EXPECT_EQ(complaint(kGood, {"contact.tangential=none", "contact.mu=0"}), "accepted");
+  EXPECT_NE(complaint(kGood, {"contact.tangential=none", "contact.mu=0.5"}), "accepted");
+}
+
+TEST(Contact, APresetsKeysGiveWayAndAreNamed) {
+  const auto keys = [](const Scene& s) {
+    std::vector<std::string> all;
+    for (const VoidKey& key : s.void_keys) all.push_back(key.key);
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  EXPECT_TRUE(good({}).void_keys.empty());
+  const Scene hertz = good({"contact.normal=hertz", "contact.youngs_modulus=1e7"});
+  EXPECT_EQ(keys(hertz), (std::vector<std::string>{"contact.gamma_n", "contact.k_n"}));
+  ASSERT_FALSE(hertz.void_keys.empty());
+  EXPECT_EQ(hertz.void_keys[0].source, "preset fortini-huang-2015");
+  EXPECT_NE(hertz.void_keys[0].text().find("has no effect: the law contact.normal = \"hertz\""),
+            std::string::npos)
+      << hertz.void_keys[0].text();
+  EXPECT_EQ(hertz.resolved.find("gamma_n"), std::string::npos);
+  EXPECT_EQ(keys(read_scene_text(hertz.resolved, "again")), keys(hertz));  // as sweeps read it
+  EXPECT_EQ(read_scene_text(hertz.resolved, "again").resolved, hertz.resolved);
+  EXPECT_EQ(keys(good({"contact.tangential=none"})),
+            (std::vector<std::string>{"contact.gamma_t", "contact.k_t", "contact.mu"}));
+  EXPECT_EQ(keys(read_scene_text("preset = \"bhateja-2016-horizontal\"\n[cell]\nlid = \"absent\"\n"
+                                 "[drive]\nk_m = 9\n",
+                                 "s")),
+            std::vector<std::string>{"cell.lid_motion"});
+  // A multiple of a dashpot that is gone is no friction at all: that is not left to a note.
+  EXPECT_NE(complaint("preset = \"bhateja-2016-rough-2d\"\n[drive]\nk_m = 9\n[contact]\nnormal = "
+                      "\"hertz\"\nyoungs_modulus = 1e7\n")
+                .find("contact.c_t_over_c_n: there is no normal dashpot"),
+            std::string::npos);
+}
+
+TEST(Scene, KeysOfAnotherStartOrCellAreRefused) {
+  expect_complaint(kGood + "[start]\nvelocity_scale = 2.0\n",
+                   "start.velocity_scale: is a speed of random starts, but start.kind is not");
+  expect_complaint(kGood + "[cell]\ngravity = 0.0\ntilt = 3.0\n", "cell.tilt: turns gravity");
+  const std::string table = kGood + "[start]\nkind = \"table\"\nfrom = \"a.csv\"\n";
+  EXPECT_EQ(complaint(table), "accepted");
+  EXPECT_NE(complaint(table, {"beads.spread=uniform", "beads.spread_width=0.1"})
+                .find("beads.spread: radii are not drawn for the beads of a table"),
+            std::string::npos);
+  expect_complaint("\"beads.count\" = 5\n" + kGood, "beads.count: there is no such key");
+  expect_complaint(kGood + "gamma = 2.0\n", "scene.toml:6");  // twice
+}
+
+TEST(Scene, SeedsAreNeverRounded) {
+  EXPECT_EQ(good({"start.seed=9007199254740992"}).seed, std::uint64_t{1} << 53);
+  for (const char* seed : {"9007199254740993", "9223372036854775807", "-1"})
+    EXPECT_NE(complaint(kGood, {std::string("start.seed=") + seed})
+                  .find(std::string("start.seed: ") + seed + " is out of range; the value must be at least 0"),
+              std::string::npos)
+        << seed;
+  for (const char* seed : {"9223372036854775808", "18446744073709551616", "1e3", "2.5"})
+    EXPECT_NE(complaint(kGood + "[start]\nseed = " + std::string(seed) + "\n").find("scene.toml:7"),
+              std::string::npos)
+        << complaint(kGood + "[start]\nseed = " + std::string(seed) + "\n");
+}
+
+TEST(Scene, AStartsFileLiesBesideTheScene) {
+  const std::string text = kGood + "[start]\nkind = \"table\"\nfrom = \"b/a.csv\"\n";
+  EXPECT_EQ(read_scene_text(text, "s", {}, "/x/y").from, "/x/y/b/a.csv");
+  EXPECT_EQ(read_scene_text(text, "s").from, "b/a.csv");
+  EXPECT_EQ(read_scene_text(text, "s", {"start.from=/z.csv"}, "/x/y").from, "/z.csv");
+  EXPECT_NE(read_scene_text(text, "s", {}, "/x/y").resolved.find("b/a.csv"), std::string::npos);
 }
 
 TEST(Contact, OlderSpellingsChooseVariants) {

@@ -2,6 +2,7 @@
 /// \file
 /// No tangential force.
 
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -10,10 +11,10 @@
 
 namespace twincell::sim {
 
-/// Smooth beads: no tangential force, hence no torque, no rotation, no history.
+/// Smooth beads: no tangential force, hence no torque, no rotation, no history. It reads no key.
 struct NoTangential {
   static constexpr std::string_view kWord = "none", kName = "none";
-  static constexpr const char* kKeys[] = {"mu"};
+  static constexpr std::array<const char*, 0> kKeys = {};
   static constexpr int kConstants = 0;
   static constexpr bool kActs = false, kHistory = false;
 
