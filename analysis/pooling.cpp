@@ -112,7 +112,7 @@ std::optional<Interval> interval_over_runs(const Values& v) {
   if (scatter <= 1e-12 * std::abs(centre) && half_own <= 1e-12 * std::abs(centre)) return std::nullopt;
   const std::string of = fmt::format("{} runs", n);
   std::optional<Interval> interval = mean_interval(v.values, of);
-  if (!interval) return std::nullopt;
+  if (!interval) interval = Interval{centre, centre, 0.95, of + " that agree"};
   if (interval->low <= centre - half_own && interval->high >= centre + half_own) return interval;
   interval->low = std::min(interval->low, centre - half_own);
   interval->high = std::max(interval->high, centre + half_own);
