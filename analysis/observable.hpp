@@ -99,6 +99,8 @@ struct AnalysisContext {
   std::string no_tracers;            ///< why there are none, if so
   /// Mean height of the tracers above the plate when they were chosen; NaN unknown.
   double tracer_rest_height;
+  /// The same of each tracer, beside `tracers`; NaN where it is not known.
+  std::vector<double> tracer_rest_heights = {};
   /// Height of the bed's centre of mass above the plate at rest, sigma: as the options say, else of the first
   /// frame at phase 0 if the bed rests on the plate there (resting_height in barycentre.hpp).
   std::optional<double> rest_height = {};

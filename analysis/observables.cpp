@@ -100,11 +100,14 @@ AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisO
   const auto plate = plate_height(info, frame);
   double sum = 0;
   std::size_t n = 0;
-  for (const std::size_t slot : choice.slots)
-    if (frame.present(slot) && std::isfinite(frame.position[slot].z())) {
-      sum += frame.position[slot].z();
-      ++n;
-    }
+  for (const std::size_t slot : choice.slots) {
+    const bool seen = frame.present(slot) && std::isfinite(frame.position[slot].z());
+    context.tracer_rest_heights.push_back(seen && plate ? frame.position[slot].z() - *plate
+                                                        : std::numeric_limits<double>::quiet_NaN());
+    if (!seen) continue;
+    sum += frame.position[slot].z();
+    ++n;
+  }
   if (plate && n > 0) context.tracer_rest_height = sum / static_cast<double>(n) - *plate;
   context.rest_height =
       options.rest_height ? options.rest_height : resting_height(info, frame, context.no_rest_height);
@@ -138,6 +141,10 @@ Result mean_of(const BlockAverage& series, Result r, const std::string& why_abse
   r.values = {series.mean()};
   r.n = series.n();
   r.interval = series.interval(r.n_of);
+  if (r.interval && !(r.interval->low < r.interval->high)) {
+    r.interval.reset();
+    r.no_interval = "the same in all " + r.n_of;
+  }
   if (!r.interval && r.no_interval.empty()) r.no_interval = series.why_no_interval(r.n_of);
   return r;
 }

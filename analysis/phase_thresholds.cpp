@@ -162,6 +162,20 @@ class PhaseThresholds : public Observable {
     return s;
   }
 
+  /// Mean rest height of a resample of the tracers: another line of tracers rests at another height, so that
+  /// it goes with the curve. NaN if none of them has one.
+  [[nodiscard]] double rest_of(const std::vector<std::size_t>& tracers) const {
+    double sum = 0;
+    std::size_t n = 0;
+    for (const std::size_t t : tracers) {
+      const double rest = context_.tracer_rest_heights[t];
+      if (!std::isfinite(rest)) continue;
+      sum += rest;
+      ++n;
+    }
+    return n > 0 ? sum / static_cast<double>(n) : kNaN;
+  }
+
   [[nodiscard]] std::vector<Result> closed_results() const {
     std::vector<Result> all;
     add_bounce(all);
@@ -219,9 +233,14 @@ class PhaseThresholds : public Observable {
       if (!context_.options.wants(name)) return r;
       r.interval = bootstrap_interval(
           n_tracers_,
-          [&](const std::vector<std::size_t>& pick) { return s_b_of(curve(sums, pick), form, rest); },
+          [&](const std::vector<std::size_t>& pick) {
+            return s_b_of(curve(sums, pick), form, rest_of(pick));
+          },
           "tracers");
-      if (!r.interval) r.no_interval = "one tracer only";
+      // A spread is not negative.
+      if (r.interval) r.interval->low = std::max(0.0, r.interval->low);
+      if (!r.interval)
+        r.no_interval = n_tracers_ < 2 ? "one tracer only" : "the same for every choice of the tracers";
       r.convention = form == SbForm::variance ? "standard deviation of s(k) over the phases"
                      : form == SbForm::about_rest
                          ? fmt::format("rms of s(k) about the rest height {:.4f} sigma", rest)
@@ -369,7 +388,7 @@ class PhaseThresholds : public Observable {
       Result r{
           .name = name, .values = {line.rate}, .unit = "sigma^2", .n = line_.n() - first, .n_of = "cycles"};
       r.interval = line.interval;
-      if (!r.interval) r.no_interval = "fewer than 3 tracers";
+      if (!r.interval) r.no_interval = "fewer than 3 tracers, or all of them alike";
       r.convention = fmt::format("d s_j^2/dj by least squares, cycles {} to {}; per cycle",
                                  line_.cycle[first], line_.cycle.back());
       r.source = source;

@@ -112,7 +112,7 @@ std::optional<Interval> interval_over_runs(const Values& v) {
   if (scatter <= 1e-12 * std::abs(centre) && half_own <= 1e-12 * std::abs(centre)) return std::nullopt;
   const std::string of = fmt::format("{} runs", n);
   std::optional<Interval> interval = mean_interval(v.values, of);
-  if (!interval) return std::nullopt;
+  if (!interval) interval = Interval{centre, centre, 0.95, of + " that agree"};
   if (interval->low <= centre - half_own && interval->high >= centre + half_own) return interval;
   interval->low = std::min(interval->low, centre - half_own);
   interval->high = std::max(interval->high, centre + half_own);
@@ -224,10 +224,55 @@ Result pooled_array(const std::vector<const Result*>& with, std::size_t runs) {
   return r;
 }
 
+/// Whether a number can be the same in two runs by chance: a count, or a share of few counts.
+bool may_recur(double value) {
+  constexpr int kLargest = 1000;
+  if (!std::isfinite(value)) return true;
+  for (int q = 1; q <= kLargest; ++q)
+    if (std::abs(value * q - std::round(value * q)) <= 1e-11 * std::abs(value * q)) return true;
+  return false;
+}
+
+/// Of counts, or of the camera alone.
+bool recurs(const std::string& name) {
+  return name.starts_with("p_s") || name.starts_with("slip") || name == "half_pixel";
+}
+
+bool same_run(const std::vector<Result>& a, const std::vector<Result>& b) {
+  const auto same = [](double u, double v) { return u == v || (std::isnan(u) && std::isnan(v)); };
+  bool told = false;
+  if (a.size() != b.size()) return false;
+  for (const Result& r : a) {
+    const Result* other = seek_result(b, r.name);
+    if (other == nullptr || r.text != other->text || r.values.size() != other->values.size() ||
+        !std::equal(r.values.begin(), r.values.end(), other->values.begin(), same))
+      return false;
+    told = told || (!recurs(r.name) && !std::all_of(r.values.begin(), r.values.end(), may_recur));
+  }
+  return told;
+}
+
 }  // namespace
+
+std::vector<std::size_t> repeated_runs(const std::vector<std::vector<Result>>& runs) {
+  std::vector<std::size_t> first(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    first[i] = i;
+    for (std::size_t k = 0; k < i && first[i] == i; ++k)
+      if (same_run(runs[k], runs[i])) first[i] = k;
+  }
+  return first;
+}
 
 std::vector<Result> pool(const std::vector<std::vector<Result>>& runs) {
   assert(!runs.empty());
+  const std::vector<std::size_t> first = repeated_runs(runs);
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (first[i] != i)
+      throw ConfigError({.file = {}, .key = "runs"},
+                        fmt::format("runs {} and {} are the same run, to the last digit; another seed or "
+                                    "repeat is needed to see its scatter",
+                                    first[i] + 1, i + 1));
   std::vector<Result> pooled;
   for (const Result& like : runs.front()) {
     std::vector<const Result*> with;

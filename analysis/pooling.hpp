@@ -20,7 +20,13 @@ namespace twincell {
 /// with the counts; absent if two words tie. Arrays are pooled element by element, those of different length
 /// up to the end of the shortest; values of single beads are not pooled, for they are other beads in each
 /// run. `n` counts runs, `of_runs` holds the value of each (NaN where a run has none). \pre runs is not empty
+/// \throws ConfigError if one run repeats another (repeated_runs)
 std::vector<Result> pool(const std::vector<std::vector<Result>>& runs);
+
+/// For each run the index of the first one whose results are the same to the last bit, itself if none is: the
+/// same run given twice, or a seed that changes nothing. Runs may agree by chance in counts and in shares of
+/// counts, so that only runs with a number that is no fraction of small integers are told to be the same.
+std::vector<std::size_t> repeated_runs(const std::vector<std::vector<Result>>& runs);
 
 /// Refuses runs that cannot be pooled. \throws ConfigError naming two of them and what tells them apart:
 /// source, dimension, Gamma, omega or width (2 %), number of beads (10 %), phases per cycle, kind of start;

@@ -205,7 +205,20 @@ std::optional<Interval> bootstrap_interval(
     const double stretched = (shift + z) / std::max(0.1, 1 - acceleration * (shift + z));
     return values[static_cast<std::size_t>(std::lround(normal_cdf(shift + stretched) * (count - 1)))];
   };
-  return Interval{at(-wide), at(wide), 0.95, "bootstrap over " + of_what};
+  const Interval interval{at(-wide), at(wide), 0.95, "bootstrap over " + of_what};
+  // What differs by rounding alone does not scatter.
+  if (interval.high - interval.low <= 1e-12 * std::abs(value)) return std::nullopt;
+  if (interval.low <= value && value <= interval.high) return interval;
+  // Resamples that all lie on one side tell nothing of how far the value may be off on the other.
+  if (left_out.size() != n) return std::nullopt;
+  const double centre = mean_of(left_out);
+  double squares = 0;
+  for (const double v : left_out) squares += (v - centre) * (v - centre);
+  const auto items = static_cast<double>(n);
+  const double half = student_t_95(items - 1) * std::sqrt((items - 1) / items * squares);
+  if (!(half > 0)) return std::nullopt;
+  return Interval{std::min(interval.low, value - half), std::max(interval.high, value + half), 0.95,
+                  "bootstrap over " + of_what + ", widened to Student's t of the jackknife"};
 }
 
 std::optional<Interval> mean_interval(const std::vector<double>& items, const std::string& of_what,
@@ -220,7 +233,7 @@ std::optional<Interval> mean_interval(const std::vector<double>& items, const st
     return std::pair(mean, std::sqrt(squares / static_cast<double>(n - 1) / static_cast<double>(n)));
   };
   const auto [mean, error] = mean_and_error([&](std::size_t i) { return items[i]; });
-  if (!std::isfinite(mean)) return std::nullopt;
+  if (!std::isfinite(mean) || error <= 1e-12 * std::abs(mean)) return std::nullopt;
   if (n < kItemsToResample) {
     const double half = student_t_95(static_cast<double>(n - 1)) * error;
     return Interval{mean - half, mean + half, 0.95, "Student's t over " + of_what};
@@ -237,7 +250,7 @@ std::optional<Interval> mean_interval(const std::vector<double>& items, const st
   // A few items show less skewness than their distribution has: without this, 20 squares of Gaussians are
   // covered to 93.8 %.
   const double wide = error * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 2));
-  if (error <= 0 || t.size() < 40) return Interval{mean, mean, 0.95, method};
+  if (t.size() < 40) return std::nullopt;
   std::sort(t.begin(), t.end());
   const auto at = [&](double share) {
     return t[static_cast<std::size_t>(std::lround(share * static_cast<double>(t.size() - 1)))];

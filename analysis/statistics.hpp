@@ -80,14 +80,16 @@ class BlockAverage {
 
 /// 95 % bootstrap of a statistic of `n` independent items: `statistic` is called with the indices of each
 /// resample. Bias-corrected and accelerated (Efron 1987), with the level widened to what Student's t asks of
-/// n items (Hesterberg 2014). Same seed, same interval. Absent for n < 2.
+/// n items (Hesterberg 2014). Same seed, same interval. Widened to Student's t of the jackknife where all
+/// resamples lie on one side of the value. Absent for n < 2 and where resamples do not differ.
 std::optional<Interval> bootstrap_interval(
     std::size_t n, const std::function<double(const std::vector<std::size_t>&)>& statistic,
     const std::string& of_what, std::uint64_t seed = 1, std::size_t resamples = 1000);
 
 /// 95 % interval of the mean of independent items from a skewed distribution: bootstrap of Student's t (Efron
 /// & Tibshirani 1993, ch. 12.5), widened by sqrt(n/(n - 2)) for what n items do not show of the skewness.
-/// Same seed, same interval. Of 2 to 5 items, whose resamples show too little: Student's t. Absent for fewer.
+/// Same seed, same interval. Of 2 to 5 items, whose resamples show too little: Student's t. Absent for fewer,
+/// and for items that are all the same.
 std::optional<Interval> mean_interval(const std::vector<double>& items, const std::string& of_what,
                                       std::uint64_t seed = 1, std::size_t resamples = 1000);
 

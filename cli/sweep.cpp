@@ -83,6 +83,11 @@ std::size_t running(const sweep::Schedule& schedule, const sweep::Store& store) 
   return n;
 }
 
+/// Says once which runs of the plan are left out.
+void note_repeats(const sweep::Schedule& schedule, const Common& common) {
+  if (const std::string text = schedule.repeats_text(); !text.empty()) note(common, text);
+}
+
 void run_plan(const SweepOptions& options, const Common& common) {
   const sweep::Plan plan = plan_of(options, common);
   const sweep::Store store(folder_of(options));
@@ -91,8 +96,11 @@ void run_plan(const SweepOptions& options, const Common& common) {
     for (const sweep::Point& point : curve.points)
       if (const auto claim = store.claim(point)) store.announce(plan, point);
   const Counts counts = schedule.counts();
+  note_repeats(schedule, common);
+  nlohmann::json document = as_json(counts, store.folder(), schedule.all());
+  document["repeats_left_out"] = schedule.repeats();
   print_result(
-      common, as_json(counts, store.folder(), schedule.all()),
+      common, document,
       fmt::format("{} point{}{}, {} done, {:.3g} particle-steps to go\n{}\n", counts.known,
                   counts.known == 1 ? "" : "s",
                   plan.search ? fmt::format(" in the first round of {} search{}", schedule.curves().size(),
@@ -109,6 +117,7 @@ void run_run(const SweepOptions& options, const Common& common) {
   const sweep::Store store(folder_of(options));
   std::optional<sweep::Schedule> schedule;
   if (!job || job->is_master()) schedule.emplace(plan, store, shard);
+  if (schedule) note_repeats(*schedule, common);
   {
     SweepWatch watch(common);
     if (job)
@@ -153,6 +162,7 @@ void run_collect(const SweepOptions& options, const Common& common) {
   const sweep::Store store = store_of(options);
   const fs::path output = options.output.empty() ? store.folder() / "results.json" : fs::path(options.output);
   const sweep::Schedule schedule(plan, store);
+  note_repeats(schedule, common);
   const std::string json = collected_json(schedule);
   const std::string csv = collected_csv(schedule), pooled = pooled_csv(schedule);
   const fs::path table = fs::path(output).replace_extension(".csv"),

@@ -91,6 +91,11 @@ std::vector<double> draw_radii(const Scene& scene, std::size_t n) {
   return radii;
 }
 
+bool has_chance(const Scene& scene) {
+  if (scene.start == StartKind::random || scene.perturbation != 0) return true;
+  return scene.spread != SizeSpread::none && scene.spread_width > 0 && scene.start != StartKind::table;
+}
+
 Start make_start(const Scene& scene, Progress& progress) {
   const auto place = [&] {
     switch (scene.start) {

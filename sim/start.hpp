@@ -21,6 +21,10 @@ struct Start {
 /// Radii of the scene's beads, drawn from its seed; all the same without a spread.
 std::vector<double> draw_radii(const Scene& scene, std::size_t n);
 
+/// Whether another start.seed makes another run: places of a random start, radii with a spread, perturbation.
+/// A table brings its own radii. True for a spread on a trajectory start, whose file may bring its own too.
+bool has_chance(const Scene& scene);
+
 /// Close-packed layers parallel to the plate, filled from below.
 ///
 /// 2D, and 3D cells too shallow for a second row (depth < d (1 + 1/sqrt 12)), in the middle of their gap:

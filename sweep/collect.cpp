@@ -78,6 +78,7 @@ json onset_json(const Plan& plan, const Curve& curve) {
 struct Group {
   json axes;
   std::vector<std::vector<Result>> runs;
+  std::size_t repeats = 0;  ///< runs left out because they are another one's, bit for bit
 };
 
 /// Of the points with results, in the order of the points. The seed may be an axis of the plan; it tells no
@@ -95,6 +96,14 @@ std::vector<Group> groups_of(const json& points) {
     std::erase_if(run, [](const Result& r) { return !r.shape.empty(); });
     groups[place->second].runs.push_back(std::move(run));
   }
+  for (Group& group : groups) {
+    const std::vector<std::size_t> first = repeated_runs(group.runs);
+    std::vector<std::vector<Result>> different;
+    for (std::size_t i = 0; i < first.size(); ++i)
+      if (first[i] == i) different.push_back(std::move(group.runs[i]));
+    group.repeats = first.size() - different.size();
+    group.runs = std::move(different);
+  }
   return groups;
 }
 
@@ -102,10 +111,11 @@ std::vector<Group> groups_of(const json& points) {
 json pooled_json(const json& points) {
   json pooled = json::array();
   for (const Group& group : groups_of(points)) {
-    if (group.runs.size() < 2) continue;
+    if (group.runs.size() < 2 && group.repeats == 0) continue;
     pooled.push_back({{"axes", group.axes},
                       {"runs", group.runs.size()},
                       {"results", json::parse(results_json(pool(group.runs)))}});
+    if (group.repeats > 0) pooled.back()["repeats_left_out"] = group.repeats;
   }
   return pooled;
 }

@@ -14,6 +14,7 @@
 #include "analysis/trajectory/toml_leaves.hpp"
 #include "sim/plan.hpp"
 #include "sim/scene.hpp"
+#include "sim/start.hpp"
 
 namespace twincell::sweep {
 
@@ -233,6 +234,7 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
     assignments.push_back(fmt::format("start.seed={}", point.seed));
     scene = scene_of(plan, assignments);
   }
+  point.chance = sim::has_chance(scene);
   point.scene = scene.resolved;
   std::string content = point.scene;
   if (!scene.from.empty()) content += "\n# from " + sha256_of(scene.from);

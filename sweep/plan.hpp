@@ -62,8 +62,9 @@ struct Point {
   std::optional<double> at;         ///< of the search's key
   int replica = 0;                  ///< which of the runs that differ in the seed alone
   std::uint64_t seed = 0;
-  std::string scene;  ///< resolved, as TOML
-  double work = 0;    ///< particle-steps
+  bool chance = true;  ///< whether another seed makes another run (sim::has_chance)
+  std::string scene;   ///< resolved, as TOML
+  double work = 0;     ///< particle-steps
 };
 
 /// The point of a plan at these values. Its seed is drawn from the master seed, the rest of the scene and the

@@ -1,7 +1,11 @@
 #include "sweep/schedule.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace twincell::sweep {
 
@@ -19,6 +23,29 @@ std::vector<Trial> trials_of(const Curve& curve) {
   return trials;
 }
 
+/// The values of all axes but the seed.
+std::vector<std::string> besides_seed(const Plan& plan, std::vector<std::string> values) {
+  for (std::size_t a = 0; a < plan.axes.size(); ++a)
+    if (plan.axes[a].key == "start.seed") values[a].clear();
+  return values;
+}
+
+/// The place next to x, by sixteenths of the asked width, at which the curve has no run; x if there is none
+/// within the range.
+double place_without_run(const Curve& curve, const Search& search, double x) {
+  const auto taken = [&](double place) {
+    return std::any_of(curve.points.begin(), curve.points.end(),
+                       [&](const Point& p) { return p.at == place; });
+  };
+  const double step = search.width / 16;
+  for (int k = 0; k * step <= search.high - search.low; ++k)
+    for (const int sign : {1, -1}) {
+      const double place = std::stod(fmt::format("{:.6g}", x + sign * k * step));
+      if (place >= search.low && place <= search.high && !taken(place)) return place;
+    }
+  return x;
+}
+
 }  // namespace
 
 std::optional<bool> answer_of(const std::string& result) {
@@ -29,6 +56,7 @@ std::optional<bool> answer_of(const std::string& result) {
 
 Schedule::Schedule(const Plan& plan, const Store& store, Shard shard) : plan_(plan), store_(store) {
   int number = 0;
+  std::set<std::vector<std::string>> without_chance;
   const auto ours = [&] { return number++ % shard.of == shard.index - 1; };
   for (const auto& values : combinations(plan.axes)) {
     Curve curve;
@@ -37,7 +65,15 @@ Schedule::Schedule(const Plan& plan, const Store& store, Shard shard) : plan_(pl
       if (ours()) curves_.push_back(std::move(curve));
       continue;
     }
-    for (int replica = 0; replica < plan.seeds; ++replica)
+    Point first = make_point(plan, values, std::nullopt, 0);
+    const bool chance = first.chance;
+    if (!chance && !without_chance.insert(besides_seed(plan, values)).second) {
+      ++repeats_;  // the seed is an axis, and this one is not the first
+      continue;
+    }
+    if (ours()) curve.points.push_back(std::move(first));
+    if (!chance) repeats_ += static_cast<std::size_t>(plan.seeds - 1);
+    for (int replica = 1; chance && replica < plan.seeds; ++replica)
       if (ours()) curve.points.push_back(make_point(plan, values, std::nullopt, replica));
     if (!curve.points.empty()) curves_.push_back(std::move(curve));
   }
@@ -75,7 +111,11 @@ void Schedule::advance(std::size_t index, std::size_t unseen) {
          next_places(*curve.onset, search.low, search.high, search.width, std::min(left, search.batch))) {
       const auto before =
           std::count_if(curve.points.begin(), curve.points.end(), [&](const Point& p) { return p.at == x; });
-      curve.points.push_back(make_point(plan_, curve.values, x, static_cast<int>(before)));
+      Point point = make_point(plan_, curve.values, x, static_cast<int>(before));
+      // The same run again would count one answer twice; a run beside it is another one.
+      if (!point.chance && before > 0)
+        point = make_point(plan_, curve.values, place_without_run(curve, search, x), 0);
+      curve.points.push_back(std::move(point));
     }
   }
 }
@@ -121,6 +161,15 @@ void Schedule::done(const Task& task, const std::string& result) {
 
 void Schedule::give_up(const Task& task) {
   here_[task.curve][task.number] = 0;
+}
+
+std::string Schedule::repeats_text() const {
+  if (repeats_ == 0) return "";
+  return fmt::format(
+      "{} of the plan's runs would repeat another bit for bit and {} left out: no random start, perturbation "
+      "or "
+      "size spread makes a seed matter there.",
+      repeats_, repeats_ == 1 ? "is" : "are");
 }
 
 bool Schedule::all() const {

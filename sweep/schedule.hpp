@@ -65,6 +65,11 @@ class Schedule {
   [[nodiscard]] bool all() const;
   [[nodiscard]] Counts counts() const;
   [[nodiscard]] const std::vector<Curve>& curves() const { return curves_; }
+  /// Runs that the plan asks for and that would repeat another bit for bit, because nothing in their scene is
+  /// drawn from the seed; they are left out. Of a grid; a search asks at another place instead.
+  [[nodiscard]] std::size_t repeats() const { return repeats_; }
+  /// repeats() as a sentence; empty without any.
+  [[nodiscard]] std::string repeats_text() const;
   [[nodiscard]] const Plan& plan() const { return plan_; }
 
  private:
@@ -74,6 +79,7 @@ class Schedule {
   const Plan& plan_;
   const Store& store_;
   std::vector<Curve> curves_;
+  std::size_t repeats_ = 0;
   std::vector<std::vector<char>> here_;  ///< beside Curve::points
 };
 

@@ -88,6 +88,17 @@ TEST(Pooling, AgreementByChanceIsNotBetterThanTheRunsAre) {
   EXPECT_EQ(pool(runs_of("half_pixel", {0.02, 0.02})).front().no_interval, "the same in every run");
 }
 
+TEST(Pooling, TheSameRunTwiceIsRefused) {
+  const double drawn = 0.123456789012345678;
+  EXPECT_THROW(pool(runs_of("T_g", {drawn, 0.2, drawn})), ConfigError);
+  EXPECT_EQ(repeated_runs(runs_of("T_g", {drawn, 0.2, drawn})), (std::vector<std::size_t>{0, 1, 0}));
+  EXPECT_NO_THROW(pool(runs_of("T_g", {drawn, std::nextafter(drawn, 1)})));
+  // Counts, shares of few counts and what the camera's scale alone says may be the same in different runs.
+  EXPECT_NO_THROW(pool(runs_of("slips", {3, 3})));
+  EXPECT_NO_THROW(pool(runs_of("hexagonal_fraction", {2.0 / 3, 2.0 / 3})));
+  EXPECT_NO_THROW(pool(runs_of("half_pixel", {drawn, drawn})));
+}
+
 TEST(Pooling, NoSlipInAnyRunHasTheLimitOfAllTrials) {
   const Result r = pool(runs_of("p_s", {0, 0, 0})).front();
   EXPECT_EQ(r.value(), 0);

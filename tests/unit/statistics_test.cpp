@@ -181,6 +181,32 @@ TEST(Statistics, BootstrapCoversMeanAndSpreadOfAFewItems) {
   EXPECT_FALSE(bootstrap_interval(1, mean, "values").has_value());
 }
 
+TEST(Statistics, ItemsThatAreAllTheSameHaveNoInterval) {
+  const std::vector<double> same(8, 0.1);
+  const auto mean = [&](const std::vector<std::size_t>& pick) {
+    double sum = 0;
+    for (const std::size_t i : pick) sum += same[i];
+    return sum / static_cast<double>(pick.size());
+  };
+  EXPECT_FALSE(bootstrap_interval(same.size(), mean, "values").has_value());
+  EXPECT_FALSE(mean_interval(same, "values").has_value());
+  EXPECT_FALSE(mean_interval({0.1, 0.1, 0.1}, "values").has_value());
+}
+
+TEST(Statistics, AValueBelowAllResamplesLiesInItsInterval) {
+  // |mean| of values that cancel: nearly every resample is above it.
+  const std::vector<double> items = {-4, -3, -2, -1, 1, 2, 3, 4};
+  const auto off = [&](const std::vector<std::size_t>& pick) {
+    double sum = 0;
+    for (const std::size_t i : pick) sum += items[i];
+    return std::abs(sum);
+  };
+  const auto interval = bootstrap_interval(items.size(), off, "values");
+  ASSERT_TRUE(interval.has_value());
+  EXPECT_LE(interval->low, 0);
+  EXPECT_GT(interval->high, 0);
+}
+
 TEST(Statistics, ExactBinomialAgainstTablesAndCounts) {
   // Clopper and Pearson's limits, and the rule of three.
   test::validate({"V5.12", "Clopper-Pearson, 3 of 20, lower", 0.0320709, 1e-6, "table"},

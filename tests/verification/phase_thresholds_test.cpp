@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <sstream>
 
 #include "tests/support/rigid_bed.hpp"
@@ -53,6 +54,49 @@ TEST(BouncingThreshold, CriticalGamma) {
   test::validate(
       {"V4.9", "rigid inelastic bed: Gamma at which s_b about rest = sigma/30", 1.1542, 2e-4, "closed form"},
       rest);
+}
+
+TEST(BouncingThreshold, IntervalsHoldTheirValueWhereTracersRestAtDifferentHeights) {
+  // A bed that moves with its plate, seen by a camera: all that s_b has to show is noise, while the tracers
+  // rest a tenth of a bead apart.
+  constexpr std::size_t kTracers = 12;
+  constexpr int kPhases = 10, kCycles = 6;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 generator(seed);
+    std::normal_distribution<double> rest(3, 0.1), noise(0, 0.002);
+    TrajectoryInfo info;
+    info.n_beads = kTracers;
+    info.box.upper = Vec3(20, 1, 10);
+    info.phases_per_cycle = kPhases;
+    info.columns.phase = info.columns.plate_height = true;
+    info.tracer.assign(kTracers, 1);
+    MemoryTrajectory bed(info);
+    std::vector<double> height(kTracers);
+    for (double& z : height) z = rest(generator);
+    for (int c = 0; c < kCycles; ++c)
+      for (int k = 0; k < kPhases; ++k) {
+        Frame f;
+        f.cycle = c;
+        f.phase = k;
+        f.plate_height = 0;
+        for (std::size_t t = 0; t < kTracers; ++t)
+          f.position.emplace_back(1.0 + static_cast<double>(t), 0, height[t] + noise(generator));
+        bed.append(f);
+      }
+    AnalysisOptions options;
+    options.only = {"s_b", "s_b_about_rest", "s_b_as_printed"};
+    for (const Result& r : analyze(bed, options)) {
+      ASSERT_TRUE(r.present()) << r.absent;
+      ASSERT_TRUE(r.interval.has_value()) << r.name << ": " << r.no_interval;
+      EXPECT_LE(r.interval->low, r.value()) << r.name << ", seed " << seed;
+      EXPECT_GE(r.interval->high, r.value()) << r.name << ", seed " << seed;
+      EXPECT_LT(r.interval->low, r.interval->high) << r.name << ", seed " << seed;
+      // With the rest height held fixed the interval is that of the tracers' rest heights, 0.1/sqrt(12).
+      if (r.name == "s_b_about_rest") {
+        EXPECT_LT(r.interval->high, 0.01) << seed;
+      }
+    }
+  }
 }
 
 TEST(BouncingThreshold, AsPrintedIsTheHeightOfTheTracers) {
