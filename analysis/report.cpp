@@ -14,6 +14,7 @@
 #include "analysis/report_data.hpp"
 #include "analysis/results.hpp"
 #include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/provenance.hpp"
 
 namespace twincell {
@@ -452,7 +453,7 @@ std::string page(const Comparison& c, const std::vector<Figure>& figures,
       conventions(c.runs) + "</details>\n";
   html += "<h2>Provenance</h2>\n<p>" + escape(version_line()) +
           "</p>\n<details><summary>Command, inputs and their digests</summary><pre>" +
-          escape(nlohmann::json::parse(provenance_json).dump(2)) +
+          escape(json_text(nlohmann::json::parse(provenance_json), 2)) +
           "</pre></details>\n<details><summary>Licence of plotly.js, which draws the graphs</summary><pre>" +
           escape(std::string(embedded::plotly_license)) + "</pre></details>\n";
   html += "<script type=\"application/json\" id=\"data\">" + report_data(c) + "</script>\n";
@@ -554,7 +555,7 @@ std::string comparison_json(const Comparison& c) {
                                    {"verdict", verdict(c.runs, match)}});
   document["boundaries"] = boundaries_json(c.boundaries);
   document["differences"] = differences_json(c.differences, c.matches);
-  return document.dump();
+  return json_text(document);
 }
 
 void write_report(const std::filesystem::path& folder, const Comparison& c,

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/results.hpp"
+#include "analysis/trajectory/json_text.hpp"
 
 namespace twincell {
 namespace {
@@ -170,7 +171,7 @@ std::string report_data(const Comparison& comparison) {
   for (const SweepPoint& p : comparison.sweep)
     document["sweep"].push_back(
         {{"n_l", p.n_l}, {"gamma", p.gamma}, {"start", p.start}, {"phase", phase_name(p.phase)}});
-  const std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string text = json_text(document);
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text)  // "</script" inside a name must not end the element

@@ -8,6 +8,7 @@
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/hdf5.hpp"
+#include "analysis/trajectory/json_text.hpp"
 
 namespace twincell {
 namespace {
@@ -163,7 +164,7 @@ std::string results_text(const std::vector<Result>& results) {
 std::string results_json(const std::vector<Result>& results) {
   nlohmann::json document = nlohmann::json::object();
   for (const Result& r : results) document[r.name] = to_json(r);
-  return document.dump();
+  return json_text(document);
 }
 
 std::vector<Result> results_from_json(const std::string& text) {

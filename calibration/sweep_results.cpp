@@ -7,6 +7,7 @@
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/config.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "sim/scene.hpp"
 
 namespace twincell {
@@ -53,7 +54,7 @@ Place place_of(const ConfigSection& base, const json& axes, const std::string& f
       const std::string name = table + "." + key;
       const ConfigSection section = base.section(table);
       if (axes.contains(name))
-        assignments.push_back(name + "=" + axes[name].dump());
+        assignments.push_back(name + "=" + json_text(axes[name]));
       else if (table == "beads" ? section.integer(key).has_value() : section.number(key).has_value())
         assignments.push_back(fmt::format(
             "{}={}", name,

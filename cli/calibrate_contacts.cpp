@@ -10,6 +10,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "calibration/bounce.hpp"
 #include "calibration/collisions.hpp"
 #include "calibration/contact_figures.hpp"
@@ -182,7 +183,7 @@ void run_collisions(const CollisionFlags& o, const Common& common) {
     out.text += fmt::format("; de_n/d ln(speed) = {:.2g} +- {:.1g}", fit.slope, fit.slope_error);
   out.text += "\n";
   if (fit.has_tangential) out.text += fmt::format("{} impacts stick, {} slide\n", fit.sticking, fit.sliding);
-  if (!d["undetermined"].empty()) out.text += "undetermined: " + d["undetermined"].dump() + "\n";
+  if (!d["undetermined"].empty()) out.text += "undetermined: " + json_text(d["undetermined"]) + "\n";
   out.figures = {collisions_figure(found, fit, o.shape == "disc" ? 0.5 : 0.4)};
   finish_calibration(o.out, common, std::move(out));
 }

@@ -7,6 +7,7 @@
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "calibration/curve_fit.hpp"
 #include "calibration/fit_figure.hpp"
 #include "calibration/table.hpp"
@@ -189,7 +190,7 @@ void run(const Common& common, FitOptions o) {
   std::string text = text_of(fit);
   if (folder) {
     draw(fit_figure(fit, points, o.x, o.y), folder->part());
-    write_text_file(folder->part() / "fit.json", document.dump(2) + "\n");
+    write_text_file(folder->part() / "fit.json", json_text(document, 2) + "\n");
     folder->commit();
     text += fmt::format("picture: {}\n", (folder->final() / "fit.svg").string());
   }

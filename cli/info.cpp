@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
@@ -68,8 +69,14 @@ nlohmann::json describe(const H5mdReader& file) {
     most = std::max(most, frame.n_present());
   }
   d["beads_per_frame"] = {{"fewest", file.n_frames() > 0 ? fewest : 0}, {"most", most}};
-  d["provenance"] =
-      t.provenance_json.empty() ? nlohmann::json() : nlohmann::json::parse(t.provenance_json, nullptr, false);
+  d["provenance"] = nlohmann::json();
+  if (!t.provenance_json.empty()) {
+    auto provenance = nlohmann::json::parse(t.provenance_json, nullptr, false);
+    if (provenance.is_object())
+      d["provenance"] = std::move(provenance);
+    else
+      d["damaged"] = nlohmann::json::array({"provenance"});
+  }
   return d;
 }
 
@@ -102,8 +109,11 @@ std::string as_text(const nlohmann::json& d) {
   s += d.contains("phases_per_cycle")
            ? fmt::format("  phases      {} per cycle\n", d["phases_per_cycle"].get<int>())
            : "  phases      not phase-locked\n";
-  s += "  scale       " + (d.contains("scale") ? d["scale"].dump() : std::string("absent")) + "\n";
-  if (d["provenance"].is_object()) s += "  made by     " + d["provenance"].value("command_line", "") + "\n";
+  s += "  scale       " + (d.contains("scale") ? json_text(d["scale"]) : std::string("absent")) + "\n";
+  if (d.contains("damaged")) s += "  made by     unknown: the provenance is damaged\n";
+  if (d["provenance"].is_object() && d["provenance"].contains("command_line") &&
+      d["provenance"]["command_line"].is_string())
+    s += "  made by     " + d["provenance"]["command_line"].get<std::string>() + "\n";
   return s;
 }
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/results.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
@@ -63,7 +64,7 @@ Run run_once(const MeasureOptions& options, const std::vector<std::string>& assi
   if (m.rest_height) r.about["rest_height"] = *m.rest_height;
   if (m.contact_fraction) r.about["contact_fraction"] = *m.contact_fraction;
   provenance["run"] = r.about;
-  r.provenance = provenance.dump();
+  r.provenance = json_text(provenance);
   return r;
 }
 

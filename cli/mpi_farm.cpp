@@ -1,6 +1,7 @@
 #include "cli/mpi_farm.hpp"
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/json_text.hpp"
 
 #ifdef TWINCELL_MPI
 
@@ -111,7 +112,7 @@ void lead(sweep::Schedule& schedule, const sweep::Plan& plan, const sweep::Store
         if (at[rank] || !(at[rank] = schedule.take())) continue;
         const sweep::Point& point = at[rank]->point;
         if (rank > 0)
-          send(nlohmann::json{{"id", point.id}, {"seed", point.seed}, {"scene", point.scene}}.dump(),
+          send(json_text({{"id", point.id}, {"seed", point.seed}, {"scene", point.scene}}),
                static_cast<int>(rank), kWork);
         else
           own = std::async(std::launch::async,

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/output_rules.hpp"
 #include "analysis/trajectory/temporary.hpp"
 
@@ -121,7 +122,7 @@ CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product
 }
 
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text) {
-  const std::string out = common.json ? document.dump(2) + "\n" : text;
+  const std::string out = common.json ? json_text(document, 2) + "\n" : text;
   if (std::fwrite(out.data(), 1, out.size(), stdout) != out.size() || std::fflush(stdout) != 0)
     throw RunError("The result cannot be written to standard output.");
 }

@@ -1,5 +1,6 @@
 #include "cli/plan_text.hpp"
 
+#include "analysis/trajectory/json_text.hpp"
 #include "cli/output.hpp"
 #include "sim/simulation.hpp"
 #include "sim/step_error.hpp"
@@ -28,7 +29,7 @@ std::string scene_provenance(const Common& common, const sim::Scene& scene,
   provenance.config = scene.resolved;
   sim::Plan plan = sim::make_plan(scene, beads);
   sim::state_step_error(scene, plan);
-  provenance.plan = as_json(plan).dump();
+  provenance.plan = json_text(as_json(plan));
   provenance.seed = scene.seed;
   provenance.threads = sim::threads_for(scene.n_beads.value_or(0), common.threads);
   return provenance.to_json();

@@ -14,6 +14,7 @@
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/output_rules.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_watch.hpp"
@@ -111,7 +112,7 @@ void run(const ReproduceOptions& options, const Common& common) {
   document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
   {
     AtomicPath files(folder, Product::runs());
-    write_text_file(files.part() / (options.name + ".json"), document.dump(1) + "\n");
+    write_text_file(files.part() / (options.name + ".json"), json_text(document, 1) + "\n");
     write_text_file(files.part() / (options.name + ".txt"), as_text(r, folder));
     files.commit();
   }

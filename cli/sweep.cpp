@@ -52,7 +52,7 @@ sweep::Store store_of(const SweepOptions& options) {
   const fs::path folder = folder_of(options);
   if (!fs::is_directory(folder / "points"))
     throw InputError({folder.string(), 0, 0, ""}, "there is no sweep in this place; 'sweep run' makes one.");
-  return sweep::Store(folder);
+  return sweep::Store(folder, sweep::Store::Access::read);
 }
 
 sweep::Shard shard_of(const std::string& text) {

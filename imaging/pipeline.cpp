@@ -11,6 +11,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/in_parallel.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "imaging/first_steps.hpp"
 #include "imaging/found_phase.hpp"
 #include "imaging/settings.hpp"
@@ -389,7 +390,7 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
   if (cell.included.camera)
     document["camera"]["covariance"] = {{"names", cell.included.camera->names},
                                         {"matrix", cell.included.camera->matrix}};
-  return document.dump();
+  return json_text(document);
 }
 
 void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell,

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "analysis/colours.hpp"
+#include "analysis/trajectory/json_text.hpp"
 
 namespace twincell::reproduce {
 
@@ -229,7 +230,7 @@ std::string Gas::as_json() const {
       }
       all.push_back(j);
     }
-  return all.dump();
+  return json_text(all);
 }
 
 std::vector<std::string> Gas::conditions() const {

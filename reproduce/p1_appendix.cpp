@@ -11,6 +11,7 @@
 #include "analysis/colours.hpp"
 #include "analysis/observable.hpp"
 #include "analysis/phase_thresholds.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "reproduce/estimate.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/rigid_bed.hpp"
@@ -301,7 +302,7 @@ Reproduction run(const Request&) {
   add_contacts(r, measured);
   r.figures.push_back(contact_sketch());
   add_measures(r, measured);
-  r.measured = measured.dump();
+  r.measured = json_text(measured);
   r.conditions = p1_contact_conditions();
   r.conditions.push_back(
       fmt::format("collisions: integrator verlet, n = {:g} steps per contact, without gravity", kSteps));

@@ -13,6 +13,7 @@
 #include "analysis/colours.hpp"
 #include "analysis/observable.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "calibration/table.hpp"
 #include "reproduce/at_rest.hpp"
 #include "reproduce/estimate.hpp"
@@ -454,7 +455,7 @@ Reproduction run(const Request& request) {
       "  at rest: of the runs with s_c > sigma those whose s_j changed by less than 0.1 sigma in the second "
       "half of\n  their cycles: they had rearranged and came to rest; moving: the onset without them. Runs "
       "end early, so that\n  one that rearranges slowly counts as moving\n";
-  r.measured = measured.dump();
+  r.measured = json_text(measured);
   r.figures = {figure_of(boundaries, filmed)};
   return r;
 }

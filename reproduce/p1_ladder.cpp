@@ -11,6 +11,7 @@
 
 #include "analysis/phase_thresholds.hpp"
 #include "analysis/statistics.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "reproduce/p1_scene.hpp"
 
 namespace twincell::reproduce {
@@ -245,7 +246,7 @@ std::string json_of(const Ladders& ladders) {
                    {"convection_k_m", as_json(l->convection)},
                    {"first_slips_k_m", as_json(l->first_slips)}});
   }
-  return all.dump();
+  return json_text(all);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "analysis/statistics.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "reproduce/p1_scene.hpp"
 
 namespace twincell::reproduce {
@@ -141,7 +142,7 @@ Reproduction reproduction_of(const Packings& all, const std::string& title, std:
       measured.push_back(std::move(bed));
       r.table += fmt::format("  {:<26} {}\n", p.title(), line(p));
     }
-  r.measured = measured.dump();
+  r.measured = json_text(measured);
   if (!all.crystals.empty() || !all.random.empty()) r.figures = {figure(all)};
   return r;
 }

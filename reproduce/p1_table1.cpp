@@ -5,6 +5,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "analysis/trajectory/json_text.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/reproduction.hpp"
 #include "sim/scene.hpp"
@@ -55,7 +56,7 @@ Reproduction run(const Request&) {
                               scene.inertia_factor * scene.mass * scene.radius * scene.radius));
   r.targets.push_back(exactly("wall separation L_x, sigma", 20, scene.width));
   r.targets.push_back(exactly("frequency omega, 1/t_0", 1, scene.drive.omega));
-  r.measured = measured.dump();
+  r.measured = json_text(measured);
   r.conditions = p1_contact_conditions();
   return r;
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "calibration/curve_fit.hpp"
 #include "calibration/fit_figure.hpp"
 #include "calibration/table.hpp"
@@ -218,8 +219,7 @@ Reproduction run(const Request& request, bool of_height) {
     exponents.push_back(j);
   }
   r.table += gas.table();
-  r.measured =
-      nlohmann::json({{"exponents", exponents}, {"points", nlohmann::json::parse(gas.as_json())}}).dump();
+  r.measured = json_text({{"exponents", exponents}, {"points", nlohmann::json::parse(gas.as_json())}});
   r.conditions = gas.conditions();
   r.cheaper = gas.cheaper();
   r.figures = {figure_of(of_height ? "p2-table2" : "p2-table1", fitted, of_height)};

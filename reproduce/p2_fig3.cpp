@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "analysis/trajectory/json_text.hpp"
 #include "reproduce/gas.hpp"
 #include "sim/simulation.hpp"
 
@@ -118,7 +119,7 @@ Reproduction run(const Request& request) {
       {"the lowest layer moves more from W to W", "rising",
        fmt::format("{:.2f}, {:.2f}, {:.2f}", mobile[0][0], mobile[1][0], mobile[2][0]),
        mobile[0][0] < mobile[1][0] && mobile[1][0] < mobile[2][0] ? Fate::met : Fate::missed, ""}};
-  r.measured = measured.dump();
+  r.measured = json_text(measured);
   r.cheaper = {fmt::format("one seed, {} cycles each", cycles),
                "the insets, T_bar_z near W = 1, are p2-fig2's points"};
   r.complete = true;

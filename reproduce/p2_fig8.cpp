@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "analysis/trajectory/json_text.hpp"
 #include "calibration/curve_fit.hpp"
 #include "calibration/fit_figure.hpp"
 #include "reproduce/gas.hpp"
@@ -154,7 +155,7 @@ Reproduction run(const Request& request, bool coefficients) {
     }
   }
   r.table += gas.table();
-  r.measured = nlohmann::json({{"fits", fits}, {"points", nlohmann::json::parse(gas.as_json())}}).dump();
+  r.measured = json_text({{"fits", fits}, {"points", nlohmann::json::parse(gas.as_json())}});
   r.conditions = gas.conditions();
   r.cheaper = gas.cheaper();
   r.figures.insert(

@@ -75,8 +75,7 @@ double read_gravity(const Section& s, Scene& scene, Voids& voids) {
   if (!s.is_list("gravity")) {
     const double g = s.number_in("gravity", 0).value_or(1), lean = radians(tilt.value_or(0));
     scene.gravity = Vec3(g * std::sin(lean), 0, -g * std::cos(lean));
-    if (g == 0 && tilt.value_or(0) != 0)
-      voids.refuse(s, {"tilt"}, "turns gravity, but cell.gravity is 0.");
+    if (g == 0 && tilt.value_or(0) != 0) voids.refuse(s, {"tilt"}, "turns gravity, but cell.gravity is 0.");
     return g;
   }
   if (tilt)
@@ -114,7 +113,8 @@ double read_cell(const Section& s, Scene& scene, Voids& voids) {
     voids.refuse(s, {"depth", "plates", "plates_motion"}, "a 2D cell has no depth; cell.dimension = 3 does.");
     scene.plate_drag = s.number_in("plate_drag", 0).value_or(scene.plate_drag);
   } else {
-    voids.refuse(s, {"plate_drag"}, "stands in for the front and back plates of a 2D cell; in 3D say cell.plates.");
+    voids.refuse(s, {"plate_drag"},
+                 "stands in for the front and back plates of a 2D cell; in 3D say cell.plates.");
     const auto depth = s.number_in("depth", 0, 1e6, true);
     if (!depth) throw ConfigError(s.where("depth"), "a 3D cell needs its depth.");
     scene.depth = *depth;
@@ -232,10 +232,11 @@ void read_contact(const Section& s, Scene& scene, Voids& voids) {
 
   const Section walls = s.section("wall");
   const auto only_numbers = [&](const Section& table) {
-    voids.refuse(table, {"normal", "tangential", "rolling", "tension", "slip"},
-           "all contacts follow the same kinds of law, named in [contact]; their parameters may differ here "
-           "(mu = 0 "
-           "makes a smooth wall).");
+    voids.refuse(
+        table, {"normal", "tangential", "rolling", "tension", "slip"},
+        "all contacts follow the same kinds of law, named in [contact]; their parameters may differ here "
+        "(mu = 0 "
+        "makes a smooth wall).");
   };
   only_numbers(walls);
   c.bead = ContactTable({s});

@@ -151,9 +151,9 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
 
 /// Reads a scene. A key `preset` names one of preset_names(); the file's own keys win over it.
 /// \param assignments "section.key=value", over all else
-/// Every key must be read: one that the chosen laws, start or cell do not read is refused, or, if a preset or a
-/// calibration file brought it, is left out and named in Scene::void_keys.
-/// \throws InputError if the file is missing; ConfigError naming file, line, key, value and bound
+/// Every key must be read: one that the chosen laws, start or cell do not read is refused, or, if a preset or
+/// a calibration file brought it, is left out and named in Scene::void_keys. \throws InputError if the file
+/// is missing; ConfigError naming file, line, key, value and bound
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& assignments = {});
 /// The same from text. \param folder where a relative start.from begins; empty: the working directory
 Scene read_scene_text(const std::string& text, const std::string& name,

@@ -117,7 +117,8 @@ Start make_start(const Scene& scene, Progress& progress) {
     // Centres in the same place have no direction to part in, and what is beyond a wall is another cell's.
     constexpr double kRefused = 0.99, kTolerated = 1e-6;
     require_sound(start.beads, scene, kRefused, progress);
-    if (const double left = relax_overlaps(start.beads, scene, kTolerated, 50000, progress); left > kTolerated)
+    if (const double left = relax_overlaps(start.beads, scene, kTolerated, 50000, progress);
+        left > kTolerated)
       throw ConfigError(
           scene.where("start.relax"),
           fmt::format("the beads cannot be pushed apart, an overlap of {:.3g} sigma is left, the "

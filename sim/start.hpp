@@ -53,7 +53,8 @@ Start from_trajectory(const Scene& scene, Progress& progress = Progress::none())
 /// number; ConfigError if beads.count says otherwise
 Start from_table(const Scene& scene, Progress& progress = Progress::none());
 /// Whichever the scene asks for, its overlaps pushed apart and perturbed as it asks. \throws ConfigError also
-/// for overlaps that cannot be pushed apart \param progress asked many times a second; it may throw Interrupted
+/// for overlaps that cannot be pushed apart \param progress asked many times a second; it may throw
+/// Interrupted
 Start make_start(const Scene& scene, Progress& progress = Progress::none());
 
 /// Pushes overlapping beads apart, and out of walls, by at most 0.01 sigma a contact and sweep until no

@@ -11,6 +11,7 @@
 
 #include "analysis/pooling.hpp"
 #include "analysis/results.hpp"
+#include "analysis/trajectory/json_text.hpp"
 
 namespace twincell::sweep {
 
@@ -50,6 +51,7 @@ std::vector<std::size_t> order_of(const Curve& curve) {
 json point_json(const Plan& plan, const Point& point, const std::string& result) {
   json j = json::parse(result);
   j.erase("computed");
+  j.erase("sha256");
   j["axes"] = axes_of(plan, point.values);
   if (point.at) j["axes"][plan.search->key] = *point.at;
   j["replica"] = point.replica;
@@ -90,9 +92,9 @@ std::vector<Group> groups_of(const json& points) {
     if (!point.contains("results")) continue;
     json axes = point["axes"];
     axes.erase("start.seed");
-    const auto [place, is_new] = number.emplace(axes.dump(), groups.size());
+    const auto [place, is_new] = number.emplace(json_text(axes), groups.size());
     if (is_new) groups.push_back({axes, {}});
-    std::vector<Result> run = results_from_json(point["results"].dump());
+    std::vector<Result> run = results_from_json(json_text(point["results"]));
     std::erase_if(run, [](const Result& r) { return !r.shape.empty(); });
     groups[place->second].runs.push_back(std::move(run));
   }
@@ -141,7 +143,7 @@ json document_of(const Schedule& schedule) {
 
 std::string cell(const json& value) {
   if (value.is_null()) return "";
-  if (!value.is_string()) return value.dump();
+  if (!value.is_string()) return json_text(value);
   const std::string text = value.get<std::string>();
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -186,7 +188,7 @@ std::string table_of(const json& rows, const std::vector<std::string>& lead,
 }  // namespace
 
 std::string collected_json(const Schedule& schedule) {
-  return document_of(schedule).dump(1) + "\n";
+  return json_text(document_of(schedule), 1) + "\n";
 }
 
 std::string collected_csv(const Schedule& schedule) {

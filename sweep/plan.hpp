@@ -35,14 +35,14 @@ struct Search {
 };
 
 struct Plan {
-  std::string file;        ///< for messages
-  std::string text;        ///< as TOML, keys in order; what the collected file says of the plan
-  std::string scene;       ///< TOML of the base scene
-  std::string scene_name;  ///< for messages
+  std::string file;                    ///< for messages
+  std::string text;                    ///< as TOML, keys in order; what the collected file says of the plan
+  std::string scene;                   ///< TOML of the base scene
+  std::string scene_name;              ///< for messages
   std::filesystem::path scene_folder;  ///< where a relative start.from begins: that of the base scene's file
-  std::uint64_t seed = 1;  ///< master seed
-  std::vector<Axis> axes;  ///< in the order of their keys
-  int seeds = 1;           ///< runs of every point of a grid
+  std::uint64_t seed = 1;              ///< master seed
+  std::vector<Axis> axes;              ///< in the order of their keys
+  int seeds = 1;                       ///< runs of every point of a grid
   std::optional<Verdict> verdict;
   std::optional<Search> search;
   bool stop_early = false;           ///< end a run when its verdict is settled (stop_rule.hpp)

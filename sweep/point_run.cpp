@@ -13,6 +13,7 @@
 #include "analysis/results.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/provenance.hpp"
 #include "sim/simulation.hpp"
 #include "sweep/measure.hpp"
@@ -140,7 +141,7 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
       {"program", version_line()}};
   for (const char* key : {"date", "time", "utc", "cpu", "processor"})
     if (program.contains(key)) document["computed"][key] = program[key];
-  return document.dump() + "\n";
+  return json_text(document) + "\n";
 }
 
 }  // namespace twincell::sweep

@@ -11,13 +11,35 @@
 #include <utility>
 
 #include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/output_rules.hpp"
+#include "analysis/trajectory/sha256.hpp"
 
 namespace twincell::sweep {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* kSum = "sha256";
+
+/// Of a result without its own sum, and without what differs from machine to machine.
+std::string sum_of(nlohmann::json document) {
+  document.erase(kSum);
+  document.erase("computed");
+  const std::string text = json_text(document);
+  Sha256 sum;
+  sum.add(text.data(), text.size());
+  return sum.hex();
+}
+
+/// Whether a document is this point's whole result. Results of earlier versions have no sum.
+bool is_sound(const nlohmann::json& document, const Point& point) {
+  if (!document.is_object() || !document.contains("id") || document["id"] != point.id) return false;
+  if (!document.contains("computed") || !document["computed"].is_object()) return false;
+  if (document.contains(kSum)) return document[kSum] == sum_of(document);
+  return document.contains("failed") || (document.contains("results") && document["results"].is_object());
+}
 
 template <class Work>
 void storing(const fs::path& folder, Work work) {
@@ -40,7 +62,8 @@ Claim::~Claim() {
   if (file_ >= 0) ::close(file_);
 }
 
-Store::Store(fs::path folder) : folder_(std::move(folder)) {
+Store::Store(fs::path folder, Access access) : folder_(std::move(folder)) {
+  if (access == Access::read) return;
   // Sweeps of earlier versions have no manifest, but points.
   std::error_code ec;
   if (!fs::is_directory(folder_ / "points", ec)) claim_shared_folder(folder_, Product::runs());
@@ -63,7 +86,7 @@ void Store::announce(const Plan& plan, const Point& point) const {
                         {"scene", point.scene}};
     for (std::size_t a = 0; a < plan.axes.size(); ++a) j["axes"][plan.axes[a].key] = point.values[a];
     if (point.at) j["axes"][plan.search->key] = *point.at;
-    write_text_file(file, j.dump(2) + "\n");
+    write_text_file(file, json_text(j, 2) + "\n");
   });
 }
 
@@ -73,7 +96,7 @@ std::optional<std::string> Store::result(const Point& point) const {
   if (!fs::exists(file, ec)) return std::nullopt;
   std::string text = read_text_file(file);
   const auto document = nlohmann::json::parse(text, nullptr, false);
-  if (!document.is_object() || document.value("id", "") != point.id)
+  if (!is_sound(document, point))
     throw InputError(
         {file.string(), 0, 0, ""},
         "the result is damaged; remove the file, and the same command computes the point again.");
@@ -97,7 +120,7 @@ std::optional<Claim> Store::claim(const Point& point) const {
 }
 
 bool Store::claimed(const Point& point) const {
-  const int lock = ::open((of(point) / "lock").c_str(), O_RDWR | O_CLOEXEC);
+  const int lock = ::open((of(point) / "lock").c_str(), O_RDONLY | O_CLOEXEC);
   if (lock < 0) return false;
   const bool taken = ::flock(lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   ::close(lock);
@@ -105,7 +128,9 @@ bool Store::claimed(const Point& point) const {
 }
 
 void Store::keep(const Point& point, const std::string& result) const {
-  storing(folder_, [&] { write_text_file(of(point) / "result.json", result); });
+  auto document = nlohmann::json::parse(result);
+  document[kSum] = sum_of(document);
+  storing(folder_, [&] { write_text_file(of(point) / "result.json", json_text(document) + "\n"); });
 }
 
 }  // namespace twincell::sweep

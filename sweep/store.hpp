@@ -32,11 +32,12 @@ class Claim {
 };
 
 /// FOLDER/points/ID/point.json (scene and place in the plan), result.json (there when the point is done,
-/// whole or not at all), lock, and trajectory.h5 if it is kept.
+/// whole or not at all, with the SHA-256 of its content), lock, and trajectory.h5 if it is kept.
 class Store {
  public:
-  /// Makes the folder. \throws ConfigError if it cannot be made or written to
-  explicit Store(std::filesystem::path folder);
+  enum class Access { read, write };
+  /// To write, makes the folder. \throws ConfigError if it cannot be made or written to, or is not a sweep's
+  explicit Store(std::filesystem::path folder, Access access = Access::write);
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] std::filesystem::path of(const Point& point) const { return folder_ / "points" / point.id; }

@@ -241,6 +241,7 @@ struct H5mdReader::Impl {
   void read_box(const std::string& group);
   bool is_planar() const;
   void read_parameters();
+  void require_ranges() const;
 };
 
 namespace {
@@ -286,6 +287,45 @@ void H5mdReader::Impl::open() {
   open_columns(group);
   read_box(group);
   read_parameters();
+  require_ranges();
+}
+
+/// What a bead cell can be. Whatever lies outside would overflow, index out of range or never end further on.
+void H5mdReader::Impl::require_ranges() const {
+  constexpr double kFarthest = 1e7, kLargestRadius = 1e5;  // sigma
+  constexpr int kMostPhases = 1'000'000;
+  if (info.box.dimension != 2 && info.box.dimension != 3)
+    refuse("twincell/cell@dimension", fmt::format("is {}; it must be 2 or 3.", info.box.dimension));
+  for (int a = 0; a < 3; ++a) {
+    const double low = info.box.lower[a], high = info.box.upper[a];
+    if (!(std::abs(low) <= kFarthest) || !(std::abs(high) <= kFarthest) || low > high)
+      refuse("cell", fmt::format("its {} side goes from {:g} to {:g}; it must rise, within {:g}.", "xyz"[a],
+                                 low, high, kFarthest));
+  }
+  const auto each = [&](const std::vector<double>& values, const char* name, double most) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!(values[i] > 0 && values[i] <= most))
+        refuse(name,
+               fmt::format("entry {} is {:g}; it must be above 0 and at most {:g}.", i, values[i], most));
+  };
+  each(info.radius, "radius", kLargestRadius);
+  each(info.mass, "mass", 1e300);
+  if (info.phases_per_cycle < 0 || info.phases_per_cycle > kMostPhases)
+    refuse("parameters/phases_per_cycle",
+           fmt::format("is {}; it must be between 0 and {}.", info.phases_per_cycle, kMostPhases));
+  if (info.drive) {
+    if (!(info.drive->amplitude >= 0 && info.drive->amplitude <= kFarthest))
+      refuse("parameters/drive/amplitude",
+             fmt::format("is {:g}; it must be between 0 and {:g}.", info.drive->amplitude, kFarthest));
+    if (!(info.drive->omega >= 0 && info.drive->omega <= 1e9))
+      refuse("parameters/drive/omega",
+             fmt::format("is {:g}; it must be between 0 and 1e9.", info.drive->omega));
+  }
+  for (const auto& [name, value] : {std::pair{"sigma_m", info.scale.sigma_m},
+                                    {"gravity_m_s2", info.scale.gravity_m_s2},
+                                    {"pixels_per_sigma", info.scale.pixels_per_sigma}})
+    if (value && !(*value > 0 && std::isfinite(*value)))
+      refuse(std::string("parameters/scale/") + name, fmt::format("is {:g}; it must be above 0.", *value));
 }
 
 void H5mdReader::Impl::open_columns(const std::string& group) {
@@ -397,8 +437,11 @@ void H5mdReader::Impl::read_parameters() {
     const h5::Handle group = open_object(file.get(), "parameters/drive");
     Drive drive;
     const auto axis = h5::read_text_attribute(group.get(), "axis");
-    if (!axis.empty() && !axis.front().empty())
-      drive.axis = static_cast<Axis>(std::string("xyz").find(axis.front().front()));
+    if (!axis.empty() && !axis.front().empty()) {
+      const auto k = axis.front().size() == 1 ? std::string("xyz").find(axis.front()) : std::string::npos;
+      if (k == std::string::npos) refuse("parameters/drive@axis", "must be x, y or z.");
+      drive.axis = static_cast<Axis>(k);
+    }
     if (h5::read_scalar(group.get(), "amplitude", drive.amplitude) &&
         h5::read_scalar(group.get(), "omega", drive.omega))
       info.drive = drive;
@@ -406,13 +449,14 @@ void H5mdReader::Impl::read_parameters() {
   double value = 0;
   if (h5::exists(file.get(), "parameters/phases_per_cycle") &&
       h5::read_scalar(file.get(), "parameters/phases_per_cycle", value))
-    info.phases_per_cycle = static_cast<int>(value);
+    info.phases_per_cycle =
+        value >= 0 && value <= 2e9 && value == std::floor(value) ? static_cast<int>(value) : -1;
   else if (info.columns.phase) {
     // What a file does not state, its phases show.
     for (std::size_t f = 0; f < position.size(); ++f) {
       int k = -1;
       phase.read(f, h5::native<int>(), &k);
-      info.phases_per_cycle = std::max(info.phases_per_cycle, k + 1);
+      info.phases_per_cycle = std::max(info.phases_per_cycle, std::min(k, 2'000'000'000) + 1);
     }
   }
   auto scale = [&](const char* name, std::optional<double>& out) {
@@ -475,6 +519,14 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
     if (r.info.columns.phase) {
       r.phase.read(index, h5::native<int>(), &frame.phase);
       r.cycle.read(index, h5::native<std::int64_t>(), &frame.cycle);
+      constexpr std::int64_t kMostCycles = 1'000'000'000'000;
+      if (frame.phase < -1 || frame.phase >= std::max(r.info.phases_per_cycle, 1))
+        r.refuse(fmt::format("frame {}", index),
+                 fmt::format("its phase is {}; it must be below {} phases per cycle.", frame.phase,
+                             r.info.phases_per_cycle));
+      if (frame.cycle < -kMostCycles || frame.cycle > kMostCycles)
+        r.refuse(fmt::format("frame {}", index),
+                 fmt::format("its cycle is {}; it must be within {}.", frame.cycle, kMostCycles));
     }
   } catch (const RunError& e) {
     r.refuse(fmt::format("frame {}", index), e.what());

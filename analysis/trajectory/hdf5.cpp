@@ -1,5 +1,7 @@
 #include "analysis/trajectory/hdf5.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
@@ -275,10 +277,29 @@ std::vector<int> read_int_attribute(hid_t object, const std::string& name) {
   return values;
 }
 
+namespace {
+
+/// A dataset that claims more than the file can hold is damaged, and asks for memory that nobody has.
+void require_stored(hid_t dataset, const std::string& name) {
+  // Deflate packs 1032 to 1 at most; small datasets may be all fill value.
+  constexpr double kMostPacked = 1100, kSmall = 1 << 20;
+  double claimed = 1;
+  for (const hsize_t n : extents(dataset)) claimed *= static_cast<double>(n);
+  const Handle type = own(H5Dget_type(dataset), "reading a type");
+  claimed *= static_cast<double>(H5Tget_size(type.get()));
+  const auto stored = static_cast<double>(H5Dget_storage_size(dataset));
+  if (claimed > kSmall + kMostPacked * stored)
+    throw RunError(fmt::format("{}: the dataset claims {:.3g} bytes, and the file holds {:.3g} of them.",
+                               name, claimed, stored));
+}
+
+}  // namespace
+
 template <class T>
 std::vector<T> read_dataset(hid_t parent, const std::string& name) {
   const Handle set = open_dataset(parent, name);
   if (!set || !is_class(set, {H5T_FLOAT, H5T_INTEGER})) return {};
+  require_stored(set.get(), name);
   std::vector<T> values(count_of(extents(set.get())));
   if (!values.empty())
     check(H5Dread(set.get(), native<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "reading " + name);
@@ -327,6 +348,7 @@ Series::Series(hid_t group, const std::string& name) : dataset_(open_dataset(gro
     dataset_.reset();
     return;
   }
+  require_stored(dataset_.get(), name);
   size_ = shape.front();
   record_.assign(shape.begin() + 1, shape.end());
 }

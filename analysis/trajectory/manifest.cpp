@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/sha256.hpp"
 
 namespace twincell {
@@ -69,7 +70,7 @@ void Manifest::write(const fs::path& folder) const {
   nlohmann::json document = {
       {"program", "twincell"}, {"product", product}, {"files", nlohmann::json::object()}};
   for (const auto& [name, hashes] : files) document["files"][name] = hashes;
-  const std::string text = document.dump(1) + "\n";
+  const std::string text = json_text(document, 1) + "\n";
   const fs::path file = folder / kName;
   fs::path draft = folder / (std::string(".twincell-") + kName + "." + std::to_string(::getpid()));
   ::unlink(draft.c_str());

@@ -2,9 +2,10 @@
 /// \file
 /// What an output may replace: one rule for all verbs (docs/running.md, "Where output goes").
 ///
-/// A file that exists is replaced if it is a product of the same kind, or with --force. A folder is written into if it is absent, empty, or has a manifest of the same product;
-/// of what lies in it only files that the manifest lists and that are unchanged are replaced. An input is
-/// never replaced, nor is anything but a regular file.
+/// A file that exists is replaced if it is a product of the same kind, or with --force. A folder is written
+/// into if it is absent, empty, or has a manifest of the same product; of what lies in it only files that the
+/// manifest lists and that are unchanged are replaced. An input is never replaced, nor is anything but a
+/// regular file.
 
 #include <filesystem>
 #include <string>

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/sha256.hpp"
 #include "twincell_version.hpp"
 
@@ -68,7 +69,7 @@ std::string version_line() {
 }
 
 std::string version_json() {
-  return version_object().dump(2);
+  return json_text(version_object(), 2);
 }
 
 std::string Provenance::to_json() const {
@@ -83,7 +84,7 @@ std::string Provenance::to_json() const {
   for (const auto& input : inputs)
     out["inputs"].push_back(
         {{"path", input.string()}, {"bytes", size_of(input)}, {"sha256", sha256_of(input)}});
-  return out.dump();
+  return json_text(out);
 }
 
 }  // namespace twincell

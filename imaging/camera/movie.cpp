@@ -65,6 +65,7 @@ void Movie::add(const cv::Mat& frame, int bits) {
                        cv::BORDER_REPLICATE);
   cv::cvtColor(grey, colour, cv::COLOR_GRAY2BGR);
   writer_->video.write(colour);
+  ++frames_;
 }
 
 void Movie::commit() {
@@ -72,6 +73,13 @@ void Movie::commit() {
   std::error_code error;
   if (std::filesystem::file_size(place_.part(), error) == 0 || error)
     throw RunError(place_.final().string() + ": cannot be written.");
+  // OpenCV does not say when the disk is full: the frames that can be read back do.
+  cv::VideoCapture back(place_.part().string());
+  std::size_t kept = 0;
+  while (kept <= frames_ && back.grab()) ++kept;
+  if (kept != frames_)
+    throw RunError(fmt::format("{}: {} of {} frames could be written; is the disk full?",
+                               place_.final().string(), kept, frames_));
   sign(place_.part());
   place_.commit();
 }

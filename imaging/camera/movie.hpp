@@ -29,6 +29,7 @@ class Movie {
   AtomicPath place_;
   std::unique_ptr<Writer> writer_;
   cv::Size size_;
+  std::size_t frames_ = 0;
 };
 
 }  // namespace twincell

@@ -107,9 +107,10 @@ inline ViscousDamping read_tangential_damping(const ContactTable& t) {
   if (key == "c_t") return {0, t.required(key, 0), 0};
   if (key == "c_t_over_c_n") {
     if (t.which_of(normal_damping_keys()).empty())
-      throw ConfigError(t.where(key),
-                        "there is no normal dashpot to take a multiple of; give c_n or restitution, which linear "
-                        "laws read, or gamma_t or c_t.");
+      throw ConfigError(
+          t.where(key),
+          "there is no normal dashpot to take a multiple of; give c_n or restitution, which linear "
+          "laws read, or gamma_t or c_t.");
     return read_normal_damping(t, read_stiffness(t)).times(t.required(key, 0));
   }
   return {};

@@ -174,9 +174,10 @@ TEST(Compare, OneReportWithEverythingInIt) {
   check_parts(document["differences"]);
 
   const fs::path report = folder / "report";
-  EXPECT_EQ(names_in(report), (std::vector<std::string>{"differences.csv", "figures", "phases.txt",
-                                                        "provenance.json", "report.html", "results.json",
-                                                        "runs.csv", "series_s_j.csv", "series_s_k.csv"}));
+  EXPECT_EQ(names_in(report),
+            (std::vector<std::string>{"differences.csv", "figures", "phases.txt", "provenance.json",
+                                      "report.html", "results.json", "runs.csv", "series_s_j.csv",
+                                      "series_s_k.csv", "twincell-manifest.json"}));
   for (const char* ending : {".gp", ".dat", ".svg", ".png", ".pdf"})
     EXPECT_EQ(files_called(report / "figures", ending), 8) << ending;
   for (const auto& entry : fs::directory_iterator(report / "figures"))

@@ -66,6 +66,7 @@ TEST(AnalyzeSpatial, FiguresAppearTogether) {
   for (const char* name : {"convection_field", "defect_evolution", "lattice", "profiles"})
     for (const char* ending : {".dat", ".gp", ".pdf", ".png", ".svg"})
       expected.push_back(std::string(name) + ending);
+  expected.emplace_back("twincell-manifest.json");
   EXPECT_EQ(names_in(folder / "figures"), expected);
   EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"bed.h5", "figures"}));
   EXPECT_EQ(read_text_file(folder / "figures/lattice.svg").find("nan"), std::string::npos);

@@ -16,6 +16,7 @@
 #include "imaging/synthetic_camera.hpp"
 #include "sim/scene.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/rigid_bed.hpp"
 
 namespace twincell {
@@ -76,7 +77,7 @@ TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
   const std::string frames = folder / "frames", file = folder / "cell.calibration.toml",
                     known = folder / "KNOWN.toml";
   // What a user knows: how wide the cell is, how long, and how fast the shaker turns.
-  write_text_file(known, "[cell]\nwidth = 12.0\nheight = 20.0\n[drive]\nomega = 1.0\n");
+  put_file(known, "[cell]\nwidth = 12.0\nheight = 20.0\n[drive]\nomega = 1.0\n");
 
   const nlohmann::json c = run_json({"calibrate", "camera", frames, "--cell", known, "-o", file});
   expect_within(c, "camera.pixels_per_sigma", 14.37, 0.02);
@@ -84,9 +85,9 @@ TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
   EXPECT_EQ(c["covariance"]["matrix"].size(), 25U);
   EXPECT_LT(c["scales"]["standard_errors_apart"].get<double>(), 4);
 
-  write_text_file(folder / "CELL.toml",
-                  "[cell]\nwidth = 12.0\nheight = 20.0\n[drive]\nomega = 1.0\n[calibration]\nfrom = "
-                  "\"cell.calibration.toml\"\n");
+  put_file(folder / "CELL.toml",
+           "[cell]\nwidth = 12.0\nheight = 20.0\n[drive]\nomega = 1.0\n[calibration]\nfrom = "
+           "\"cell.calibration.toml\"\n");
   const std::string cell = folder / "CELL.toml";
   const std::string phases = folder / "phases.csv";
   const nlohmann::json p = run_json({"calibrate", "plate", frames, "--cell", cell, "-o", file, "--phases",
@@ -154,10 +155,10 @@ TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
 // it says they may.
 TEST(Calibrate, TheTwinOfAHiddenCellAgreesInBouncingAndConvection) {
   const TemporaryFolder folder;
-  write_text_file(folder / "hidden.toml",
-                  "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 12.0\nside_tilt = [0.6, -0.4]\n"
-                  "[beads]\ncount = 120\n[drive]\ngamma = 2.1\n[start]\nkind = \"random\"\nseed = 11\n"
-                  "[time]\nsteps_per_contact = 20\ndiscard = 0\ncycles = 10\nphases = 20\n");
+  put_file(folder / "hidden.toml",
+           "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 12.0\nside_tilt = [0.6, -0.4]\n"
+           "[beads]\ncount = 120\n[drive]\ngamma = 2.1\n[start]\nkind = \"random\"\nseed = 11\n"
+           "[time]\nsteps_per_contact = 20\ndiscard = 0\ncycles = 10\nphases = 20\n");
   const std::string hidden = folder / "hidden.h5", frames = folder / "frames",
                     file = folder / "cell.calibration.toml", cell = folder / "CELL.toml";
   for (const auto& words : std::vector<std::vector<std::string>>{
@@ -169,8 +170,8 @@ TEST(Calibrate, TheTwinOfAHiddenCellAgreesInBouncingAndConvection) {
     ASSERT_EQ(ran.code, 0) << ran.err;
   }
   const std::string known = "[cell]\nwidth = 12.0\nheight = 30.0\n[drive]\nomega = 1.0\n";
-  write_text_file(folder / "KNOWN.toml", known);
-  write_text_file(cell, known + "[calibration]\nfrom = \"cell.calibration.toml\"\n");
+  put_file(folder / "KNOWN.toml", known);
+  put_file(cell, known + "[calibration]\nfrom = \"cell.calibration.toml\"\n");
   const nlohmann::json c =
       run_json({"calibrate", "camera", frames, "--cell", folder / "KNOWN.toml", "-o", file});
   expect_within(c, "camera.pixels_per_sigma", 13.3, 0.005);
@@ -281,8 +282,8 @@ TEST(Calibrate, InfersFromACurveAFlightTimeAndAnOnset) {
            "\nmu = 0.3\n[drive]\nomega = 1.0\ngamma = 2.0\n[start]\nkind = \"random\"\nseed = 3\n"
            "[time]\ncycles = 20\ndiscard = 5\nphases = 20\nsteps_per_contact = 20\n";
   };
-  write_text_file(folder / "hidden.toml", scene(0.75));
-  write_text_file(folder / "scene.toml", scene(0.5));
+  put_file(folder / "hidden.toml", scene(0.75));
+  put_file(folder / "scene.toml", scene(0.5));
   const std::string film = folder / "film.h5", cell = folder / "scene.toml", figures = folder / "figures";
   ASSERT_EQ(run_program({"simulate", folder / "hidden.toml", "-o", film, "-q"}).code, 0);
   const std::vector<std::string> infer = {"calibrate", "contacts", "infer"},
@@ -336,7 +337,7 @@ TEST(Calibrate, SaysWhatIsWrongAndLeavesNothing) {
   EXPECT_EQ(
       run_program({"calibrate", "contacts", "numbers", "--restitution", "1.5", "--contact-time", "0.1"}).code,
       2);
-  write_text_file(folder / "two.csv", "time,height\n0,1\n1,0\n");
+  put_file(folder / "two.csv", "time,height\n0,1\n1,0\n");
   const Ran few =
       run_program({"calibrate", "contacts", "bounce", folder / "two.csv", "-o", folder / "c.toml", "-q"});
   EXPECT_EQ(few.code, 3);

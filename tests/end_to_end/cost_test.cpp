@@ -51,8 +51,9 @@ TEST(Cost, SaysWhatAccuracyCosts) {
   }
 
   EXPECT_EQ(names_in(folder / "cost"),
-            (std::vector<std::string>{"table.txt", "work_precision.dat", "work_precision.gp",
-                                      "work_precision.pdf", "work_precision.png", "work_precision.svg"}));
+            (std::vector<std::string>{"table.txt", "twincell-manifest.json", "work_precision.dat",
+                                      "work_precision.gp", "work_precision.pdf", "work_precision.png",
+                                      "work_precision.svg"}));
 }
 
 TEST(Cost, SaysWhatAGasCosts) {
@@ -73,7 +74,7 @@ TEST(Cost, SaysWhatAGasCosts) {
   EXPECT_GE(d["gain"]["rough-2d"], 1);
   EXPECT_EQ(names_in(folder / "cost"),
             (std::vector<std::string>{"gas_cost.dat", "gas_cost.gp", "gas_cost.pdf", "gas_cost.png",
-                                      "gas_cost.svg", "table.txt"}));
+                                      "gas_cost.svg", "table.txt", "twincell-manifest.json"}));
 }
 
 TEST(Cost, SaysWhatLocatingCosts) {
@@ -105,7 +106,7 @@ TEST(Cost, SaysWhatLocatingCosts) {
   for (const auto& c : d["cheapest"]) EXPECT_LE(c["setting"]["rms_px"], 0.02);
   EXPECT_EQ(names_in(folder / "cost"),
             (std::vector<std::string>{"locating.dat", "locating.gp", "locating.pdf", "locating.png",
-                                      "locating.svg", "table.txt"}));
+                                      "locating.svg", "table.txt", "twincell-manifest.json"}));
 }
 
 TEST(Cost, RefusesBeforeItMeasures) {

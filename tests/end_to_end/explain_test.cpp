@@ -119,9 +119,10 @@ TEST_F(Explain, AKeyThatNoLawReadsIsRefusedAndAPresetsIsNamed) {
       {"explain", scene_, "--set", "contact.normal=hertz", "--set", "contact.youngs_modulus=1e7"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   for (const std::string& text : {ran.out, ran.err})
-    EXPECT_NE(text.find("contact.gamma_n of preset fortini-huang-2015 has no effect: the law contact.normal = "
-                        "\"hertz\" does not read it"),
-              std::string::npos)
+    EXPECT_NE(
+        text.find("contact.gamma_n of preset fortini-huang-2015 has no effect: the law contact.normal = "
+                  "\"hertz\" does not read it"),
+        std::string::npos)
         << text;
 }
 

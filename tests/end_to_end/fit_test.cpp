@@ -8,6 +8,7 @@
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/put_file.hpp"
 
 namespace twincell {
 namespace {
@@ -17,7 +18,7 @@ std::string slips(const TemporaryFolder& folder) {
   for (const double k : {2.0, 2.5, 3.0, 4.0, 6.0, 10.0})
     text += fmt::format("{}, {:.9f}, 40000\n", k, std::exp(-7 / k));
   text += "1.2, 0, 40000\n";
-  write_text_file(folder / "p_s.csv", text);
+  put_file(folder / "p_s.csv", text);
   return (folder / "p_s.csv").string();
 }
 
@@ -38,7 +39,8 @@ TEST(Fit, TextJsonAndPictureSayTheSame) {
   EXPECT_FALSE(document["stop_reason"].get<std::string>().empty());
   EXPECT_EQ(document["covariance"].size(), 2U);
   EXPECT_EQ(names_in(folder / "fit"),
-            (std::vector<std::string>{"fit.dat", "fit.gp", "fit.json", "fit.pdf", "fit.png", "fit.svg"}));
+            (std::vector<std::string>{"fit.dat", "fit.gp", "fit.json", "fit.pdf", "fit.png", "fit.svg",
+                                      "twincell-manifest.json"}));
   EXPECT_EQ(nlohmann::json::parse(read_text_file(folder / "fit/fit.json"))["parameters"],
             document["parameters"]);
 
@@ -62,13 +64,13 @@ TEST(Fit, Refusals) {
   refused({"fit", table, "--law", "arrhenius", "--window", "30,20", "-q"}, 2, "window");
   refused({"fit", folder / "no.csv", "--law", "line", "-q"}, 3, "no.csv");
   refused({"fit", table, "--law", "line", "-q", "-o", folder / "no/fit"}, 2, "no");
-  write_text_file(folder / "zeros.csv", "x,y\n1,0\n2,0\n3,0\n");
+  put_file(folder / "zeros.csv", "x,y\n1,0\n2,0\n3,0\n");
   refused({"fit", folder / "zeros.csv", "--law", "power", "-q"}, 3, "3 zero");
   refused({"fit", folder / "zeros.csv", "--law", "arrhenius", "--y", "x", "--trials", "x", "-q"}, 3,
           "row 2 holds 2");
-  write_text_file(folder / "bad.csv", "x,y\n1,2\n3,four\n");
+  put_file(folder / "bad.csv", "x,y\n1,2\n3,four\n");
   refused({"fit", folder / "bad.csv", "--law", "line", "-q"}, 3, "bad.csv:3");
-  write_text_file(folder / "short.csv", "x,y\n1,2\n3\n");
+  put_file(folder / "short.csv", "x,y\n1,2\n3\n");
   refused({"fit", folder / "short.csv", "--law", "line", "-q"}, 3, "short.csv:3");
   EXPECT_EQ(names_in(folder.path()),
             (std::vector<std::string>{"bad.csv", "p_s.csv", "short.csv", "zeros.csv"}));
@@ -76,7 +78,7 @@ TEST(Fit, Refusals) {
 
 TEST(Fit, ErrorsThatAreNoneAreSaid) {
   const TemporaryFolder folder;
-  write_text_file(folder / "flat.csv", "x,y,s\n1,2,0\n2,2,0\n4,2,0.1\n8,2,0\n16,2,0\n");
+  put_file(folder / "flat.csv", "x,y,s\n1,2,0\n2,2,0\n4,2,0.1\n8,2,0\n16,2,0\n");
   const Ran line = run_program({"fit", folder / "flat.csv", "--law", "line", "--sigma", "s", "-q"});
   EXPECT_EQ(line.code, 0) << line.err;
   EXPECT_NE(line.out.find("not weighted: the errors named are not above 0 at 4 of 5 points"),

@@ -13,6 +13,7 @@
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/put_file.hpp"
 
 namespace twincell {
 namespace {
@@ -125,7 +126,7 @@ class Lammps : public ::testing::Test {
 
   /// Runs the scene here, and what becomes of it when gravity is a little different.
   void simulate(const std::string& scene, const std::vector<std::string>& set) {
-    write_text_file(folder_ / "scene.toml", scene);
+    put_file(folder_ / "scene.toml", scene);
     set_ = set;
     simulate_as("ours.h5", "");
     const double gravity = 1;
@@ -150,7 +151,7 @@ class Lammps : public ::testing::Test {
 
   /// Runs a deck and returns the differences per frame.
   std::vector<double> lammps(const std::string& input, std::size_t skip = 0) {
-    write_text_file(folder_ / "deck/in.twincell", input);
+    put_file(folder_ / "deck/in.twincell", input);
     const std::string command =
         fmt::format("cd '{}' && lmp -in in.twincell -log none >log.txt 2>&1", (folder_ / "deck").string());
     EXPECT_EQ(std::system(command.c_str()), 0) << read_text_file(folder_ / "deck/log.txt");

@@ -54,8 +54,9 @@ TEST(Match, GivesTheTwinOfAFilmedCell) {
   EXPECT_EQ(d["cycles"], 1);
   EXPECT_GT(d["position_error"].get<double>(), 1e-5);
   EXPECT_LT(d["position_error"].get<double>(), 0.01);
-  EXPECT_EQ(names_in(folder / "twin"), (std::vector<std::string>{"experiment.h5", "report", "scene.toml",
-                                                                 "simulation-1.h5", "simulation-2.h5"}));
+  EXPECT_EQ(names_in(folder / "twin"),
+            (std::vector<std::string>{"experiment.h5", "report", "scene.toml", "simulation-1.h5",
+                                      "simulation-2.h5", "twincell-manifest.json"}));
   EXPECT_EQ(d["matches"][0]["experiments"].size(), 1U);
   EXPECT_EQ(d["matches"][0]["simulations"].size(), 2U);
 

@@ -11,6 +11,7 @@
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace twincell {
@@ -35,7 +36,7 @@ LammpsDumpOptions reduced() {
 class Dump : public ::testing::Test {
  protected:
   MemoryTrajectory read(const std::string& text, const LammpsDumpOptions& options = reduced()) {
-    write_text_file(file(), text);
+    put_file(file(), text);
     const LammpsDump dump(file(), options);
     MemoryTrajectory trajectory(dump.info());
     dump.copy_to(trajectory);

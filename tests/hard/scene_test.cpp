@@ -379,9 +379,10 @@ TEST(Scene, KeysOfAnotherStartOrCellAreRefused) {
 TEST(Scene, SeedsAreNeverRounded) {
   EXPECT_EQ(good({"start.seed=9007199254740992"}).seed, std::uint64_t{1} << 53);
   for (const char* seed : {"9007199254740993", "9223372036854775807", "-1"})
-    EXPECT_NE(complaint(kGood, {std::string("start.seed=") + seed})
-                  .find(std::string("start.seed: ") + seed + " is out of range; the value must be at least 0"),
-              std::string::npos)
+    EXPECT_NE(
+        complaint(kGood, {std::string("start.seed=") + seed})
+            .find(std::string("start.seed: ") + seed + " is out of range; the value must be at least 0"),
+        std::string::npos)
         << seed;
   for (const char* seed : {"9223372036854775808", "18446744073709551616", "1e3", "2.5"})
     EXPECT_NE(complaint(kGood + "[start]\nseed = " + std::string(seed) + "\n").find("scene.toml:7"),

@@ -17,6 +17,7 @@
 #include "imaging/camera/sensor.hpp"
 #include "imaging/camera_like.hpp"
 #include "imaging/synthetic_camera.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace twincell;
@@ -442,10 +443,10 @@ TEST(Camera, OptionsFileIsReadBackAndRefusesWhatItDoesNotKnow) {
   o.bright = true;
   o.distortion = -0.0123456789;
   o.seed = 42;
-  write_text_file(folder / "CAMERA.toml", camera_text(o));
+  put_file(folder / "CAMERA.toml", camera_text(o));
   EXPECT_EQ(camera_text(read_camera(folder / "CAMERA.toml")), camera_text(o));
   for (const char* bad : {"blur = 9.0", "glare_kind = \"blue\"", "bits = 9", "blurr = 1.0", "bright = 3"}) {
-    write_text_file(folder / "bad.toml", bad);
+    put_file(folder / "bad.toml", bad);
     EXPECT_THROW(read_camera(folder / "bad.toml"), ConfigError) << bad;
   }
 }

@@ -9,6 +9,7 @@
 #include "analysis/trajectory/atomic_file.hpp"
 #include "imaging/cell.hpp"
 #include "sim/scene.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace twincell;
@@ -36,7 +37,7 @@ Calibration some() {
 
 std::string complaint_of(const std::string& text) {
   const TemporaryFolder folder;
-  write_text_file(folder / "c.toml", text);
+  put_file(folder / "c.toml", text);
   try {
     (void)read_calibration(folder / "c.toml");
   } catch (const ConfigError& e) {
@@ -51,7 +52,7 @@ TEST(CalibrationFile, ReadsWhatItWrote) {
   const TemporaryFolder folder;
   Calibration c = some();
   c.camera = MeasuredCovariance{{"a", "b", "c", "d", "e"}, std::vector<double>(25, 0.5)};
-  write_text_file(folder / "c.toml", calibration_text(c, "made by a test"));
+  put_file(folder / "c.toml", calibration_text(c, "made by a test"));
   const Calibration back = read_calibration(folder / "c.toml");
   ASSERT_EQ(back.measured.size(), c.measured.size());
   for (std::size_t i = 0; i < c.measured.size(); ++i) {
@@ -92,10 +93,9 @@ TEST(CalibrationFile, SaysWhatIsWrongAndWhere) {
 
 TEST(CalibrationFile, ACellTakesWhatItDoesNotState) {
   const TemporaryFolder folder;
-  write_text_file(folder / "c.toml", calibration_text(some(), ""));
-  write_text_file(
-      folder / "CELL.toml",
-      "[camera]\norigin_px = [1.0, 2.0]\n[drive]\nomega = 2.0\n[calibration]\nfrom = \"c.toml\"\n");
+  put_file(folder / "c.toml", calibration_text(some(), ""));
+  put_file(folder / "CELL.toml",
+           "[camera]\norigin_px = [1.0, 2.0]\n[drive]\nomega = 2.0\n[calibration]\nfrom = \"c.toml\"\n");
   const CellDescription cell = read_cell(folder / "CELL.toml");
   EXPECT_EQ(cell.pixels_per_sigma, 15.5);
   EXPECT_EQ(cell.phase_lock.frames_per_cycle, 20);
@@ -105,10 +105,9 @@ TEST(CalibrationFile, ACellTakesWhatItDoesNotState) {
   EXPECT_TRUE(cell.included.overridden.empty());
 
   // What is stated wins, and is named; a drive that is whole takes nothing.
-  write_text_file(
-      folder / "CELL.toml",
-      "[camera]\npixels_per_sigma = 12.0\n[drive]\nomega = 2.0\ngamma = 2.0\n[calibration]\nfrom = "
-      "\"c.toml\"\n");
+  put_file(folder / "CELL.toml",
+           "[camera]\npixels_per_sigma = 12.0\n[drive]\nomega = 2.0\ngamma = 2.0\n[calibration]\nfrom = "
+           "\"c.toml\"\n");
   const CellDescription stated = read_cell(folder / "CELL.toml");
   EXPECT_EQ(stated.pixels_per_sigma, 12.0);
   EXPECT_EQ(stated.drive()->amplitude, 0.5);
@@ -118,10 +117,10 @@ TEST(CalibrationFile, ACellTakesWhatItDoesNotState) {
 
 TEST(CalibrationFile, ASceneTakesContactsOverItsPreset) {
   const TemporaryFolder folder;
-  write_text_file(folder / "c.toml", calibration_text(some(), ""));
+  put_file(folder / "c.toml", calibration_text(some(), ""));
   const std::string scene =
       "preset = \"fortini-huang-2015\"\n[beads]\ncount = 100\n[calibration]\nfrom = \"c.toml\"\n";
-  write_text_file(folder / "scene.toml", scene);
+  put_file(folder / "scene.toml", scene);
   const sim::Scene s = sim::read_scene(folder / "scene.toml");
   EXPECT_EQ(s.drive.amplitude, 1.25);
   EXPECT_EQ(s.drive.omega, 1);  // the preset's
@@ -130,7 +129,7 @@ TEST(CalibrationFile, ASceneTakesContactsOverItsPreset) {
   EXPECT_EQ(s.contact.bead.which_of(sim::normal_damping_keys()), "restitution");
   EXPECT_EQ(s.contact.bead.number("restitution"), 0.91);
   // The scene's own damping stays, in whichever word.
-  write_text_file(folder / "scene.toml", scene + "[contact]\ngamma_n = 50.0\n");
+  put_file(folder / "scene.toml", scene + "[contact]\ngamma_n = 50.0\n");
   EXPECT_EQ(sim::read_scene(folder / "scene.toml").contact.bead.which_of(sim::normal_damping_keys()),
             "gamma_n");
   // The resolved scene stands alone.
@@ -140,17 +139,17 @@ TEST(CalibrationFile, ASceneTakesContactsOverItsPreset) {
 
 TEST(CalibrationFile, ABoundIsComplainedOfInTheCalibrationFile) {
   const TemporaryFolder folder;
-  write_text_file(folder / "c.toml", "[contact.restitution]\nvalue = 1.2\n");
-  write_text_file(folder / "scene.toml",
-                  "[beads]\ncount = 4\n[drive]\namplitude = 1.0\nomega = 1.0\n[calibration]\nfrom = "
-                  "\"c.toml\"\n");
+  put_file(folder / "c.toml", "[contact.restitution]\nvalue = 1.2\n");
+  put_file(folder / "scene.toml",
+           "[beads]\ncount = 4\n[drive]\namplitude = 1.0\nomega = 1.0\n[calibration]\nfrom = "
+           "\"c.toml\"\n");
   try {
     (void)sim::read_scene(folder / "scene.toml");
     FAIL() << "a restitution above 1 was taken";
   } catch (const ConfigError& e) {
     EXPECT_NE(std::string(e.what()).find("c.toml:2:9: contact.restitution"), std::string::npos) << e.what();
   }
-  write_text_file(folder / "scene.toml", "[calibration]\nfrom = \"no.toml\"\n");
+  put_file(folder / "scene.toml", "[calibration]\nfrom = \"no.toml\"\n");
   try {
     (void)sim::read_scene(folder / "scene.toml");
     FAIL() << "a missing file was taken";

@@ -89,7 +89,8 @@ TEST(Config, DepthIsBounded) {
         "a = \"\"\"" + repeated(".\n", 999) + "\"\"\"\n", "a = '" + repeated(".", 999) + "'\nb = 1.5\n"})
     EXPECT_EQ(refusal(text), "accepted") << text.substr(0, 40);
   std::string lines;
-  for (int k = 0; k < 999; ++k) lines.append("a").append(std::to_string(k)).append(".b = [1.5, {c.d = 2.5}]\n");
+  for (int k = 0; k < 999; ++k)
+    lines.append("a").append(std::to_string(k)).append(".b = [1.5, {c.d = 2.5}]\n");
   EXPECT_EQ(refusal(lines), "accepted");
 }
 

@@ -6,6 +6,7 @@
 #include "analysis/trajectory/atomic_file.hpp"
 #include "imaging/cell.hpp"
 #include "sim/scene.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace twincell;
@@ -14,7 +15,7 @@ namespace {
 
 CellDescription cell_of(const std::string& text) {
   const TemporaryFolder folder;
-  write_text_file(folder / "CELL.toml", text);
+  put_file(folder / "CELL.toml", text);
   return read_cell(folder / "CELL.toml");
 }
 

@@ -5,6 +5,7 @@
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace twincell {
@@ -43,8 +44,8 @@ void check(const Comparison& c) {
 
 TEST(SweepResults, PointsAndOnsetsArePlacedByTheirScene) {
   const TemporaryFolder folder;
-  write_text_file(folder / "results.json",
-                  results(R"([scene]\npreset = 'fortini-huang-2015'\nbeads.count = 400\n)"));
+  put_file(folder / "results.json",
+           results(R"([scene]\npreset = 'fortini-huang-2015'\nbeads.count = 400\n)"));
   Comparison c;
   add_sweep(folder / "results.json", c);
   check(c);
@@ -53,10 +54,10 @@ TEST(SweepResults, PointsAndOnsetsArePlacedByTheirScene) {
 TEST(SweepResults, TheSceneMayStandBesideThePlan) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "plan.sweep");
-  write_text_file(folder / "plan.sweep/results.json", results(R"(scene = 'base.toml'\n)"));
+  put_file(folder / "plan.sweep/results.json", results(R"(scene = 'base.toml'\n)"));
   Comparison c;
   EXPECT_THROW(add_sweep(folder / "plan.sweep/results.json", c), InputError);
-  write_text_file(folder / "base.toml", "preset = 'fortini-huang-2015'\n[beads]\ncount = 400\n");
+  put_file(folder / "base.toml", "preset = 'fortini-huang-2015'\n[beads]\ncount = 400\n");
   add_sweep(folder / "plan.sweep/results.json", c);
   check(c);
 }
@@ -65,7 +66,7 @@ TEST(SweepResults, AnythingElseIsRefused) {
   const TemporaryFolder folder;
   Comparison c;
   for (const char* text : {"", "[]", "{\"format\": \"else\"}", "{\"format\": \"twincell sweep 1\"}"}) {
-    write_text_file(folder / "results.json", text);
+    put_file(folder / "results.json", text);
     EXPECT_THROW(add_sweep(folder / "results.json", c), InputError) << text;
   }
 }
