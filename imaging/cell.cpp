@@ -27,7 +27,7 @@ CellDescription read_cell(const std::filesystem::path& path) {
   cell.text = resolved_text(config);
 
   const ConfigSection camera = root.section("camera");
-  cell.pixels_per_sigma = camera.number_in("pixels_per_sigma", 0, std::nullopt, true);
+  cell.pixels_per_sigma = camera.number_in("pixels_per_sigma", 1, 1e4);
   if (const auto origin = camera.numbers("origin_px", 2))
     cell.origin = PixelPoint{(*origin)[0], (*origin)[1]};
   cell.phase_lock.frames_per_cycle =

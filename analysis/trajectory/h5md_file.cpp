@@ -305,8 +305,8 @@ void H5mdReader::Impl::require_ranges() const {
   const auto each = [&](const std::vector<double>& values, const char* name, double most) {
     for (std::size_t i = 0; i < values.size(); ++i)
       if (!(values[i] > 0 && values[i] <= most))
-        refuse(name,
-               fmt::format("entry {} is {:g}; it must be above 0 and at most {:g}.", i, values[i], most));
+        refuse(name, fmt::format("{:g} of bead {} is out of range; it must be above 0 and at most {:g}.",
+                                 values[i], i, most));
   };
   each(info.radius, "radius", kLargestRadius);
   each(info.mass, "mass", 1e300);

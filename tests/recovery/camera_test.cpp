@@ -420,7 +420,7 @@ TEST(Camera, ThreadsDoNotMatter) {
         << entry.path().filename();
     ++files;
   }
-  EXPECT_EQ(files, one.frames + 4);
+  EXPECT_EQ(files, one.frames + 5);  // truth, record, cell, camera, manifest
 }
 
 TEST(Camera, AFilmHasItsFrames) {

@@ -23,6 +23,7 @@ struct Bench {
     scene = read_scene_text(
         "preset = \"fortini-huang-2015\"\n[beads]\ncount = 1\n[drive]\namplitude = 0.0\n" + extra, "bench");
     scene.steps_per_contact = n;
+    if (scene.stepping == "auto") scene.stepping = "steps";  // these tests are of the steps
     plan = make_plan(scene);
     system = make_system(scene, plan);
     // The plan rounds the step so that phases are whole; here the step itself is what is studied.

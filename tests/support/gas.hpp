@@ -45,7 +45,7 @@ class Gas {
         "[beads]\ncount = 1\n[drive]\namplitude = 0.0\nomega = 1.0\n[contact]\ntangential = \"none\"\nk_n "
         "= " +
         exact(o.stiffness) + "\nrestitution = " + exact(o.restitution) + "\n[time]\nintegrator = \"" +
-        o.integrator + "\"\n";
+        o.integrator + "\"\nstepping = \"steps\"\n";
     const Scene scene = read_scene_text(text, "gas");
     const Plan plan = make_plan(scene);
     system = make_system(scene, plan);

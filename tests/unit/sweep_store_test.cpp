@@ -16,7 +16,7 @@ constexpr const char* kResult = R"({"id":"a","results":{"s_b":{"value":0.25}},"c
 
 Point point() {
   Point p;
-  p.id = "a";
+  p.id.push_back('a');
   return p;
 }
 

@@ -29,7 +29,9 @@ TEST(Barycentre, OfTheBouncingRigidBed) {
   const double phi = 2 * std::numbers::pi * 10 / 40;
   EXPECT_NEAR(by_phase.values[10], rest + 1.5 + test::rigid_bed_height(1.5, phi), 1e-12);
   EXPECT_EQ(find_result(results, "h_cm_j").values.size(), 6U);
-  ASSERT_TRUE(find_result(results, "delta_h_cm").interval);
+  // Every cycle is the same: nothing scatters, so there is nothing from which an interval could be taken.
+  EXPECT_FALSE(find_result(results, "delta_h_cm").interval);
+  EXPECT_FALSE(find_result(results, "delta_h_cm").no_interval.empty());
 }
 
 TEST(Barycentre, WithoutARestHeightThereIsNoLift) {
