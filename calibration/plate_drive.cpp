@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "analysis/trajectory/error.hpp"
@@ -89,6 +91,41 @@ std::string complete_drive(CellDescription& cell, const std::filesystem::path& c
                         lock.frames_per_cycle, lock.first_phase);
   }
   return said;
+}
+
+std::string drive_disagreement(const CellDescription& cell, const std::filesystem::path& stack, int threads,
+                               Progress& progress) {
+  constexpr double kErrors = 5, kShare = 0.03, kPixels = 0.3;
+  const auto drive = cell.drive();
+  if (!drive || !cell.pixels_per_sigma) return {};
+  const double scale = *cell.pixels_per_sigma;
+  const StackEdges edges = read_stack_edges(*open_frames(stack), cell.bright,
+                                            diameter_for_edges(stack, cell.bright, scale), threads, progress);
+  std::optional<PlateLock> seen;
+  try {
+    seen = lock_plate(fit_cell_geometry(edges).heights_px(),
+                      {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
+                       .mend = true,
+                       .model_error = kHeightModelError_px});
+  } catch (const InputError&) {
+    return {};  // no plate in the picture, or none that moves: nothing to compare with
+  }
+  const double amplitude = seen->amplitude / scale, error = seen->amplitude_error / scale,
+               difference = std::abs(amplitude - drive->amplitude);
+  if (difference > std::max({kErrors * error, kShare * drive->amplitude, kPixels / scale}))
+    return fmt::format(
+        "the plate in the frames moves by A = {:.4g} +- {:.2g} sigma, and the cell states {:.4g}", amplitude,
+        error, drive->amplitude);
+  const auto rate = frame_rate_of(edges, stack);
+  const auto t0 = cell.scale.t0_s();
+  if (rate && t0) {
+    const double omega = seen->omega * *rate * *t0, omega_error = seen->omega_error * *rate * *t0;
+    if (std::abs(omega - drive->omega) > std::max(kErrors * omega_error, kShare * drive->omega))
+      return fmt::format(
+          "the plate in the frames moves at omega = {:.4g} +- {:.2g} per t0, and the cell states {:.4g}",
+          omega, omega_error, drive->omega);
+  }
+  return {};
 }
 
 }  // namespace twincell

@@ -365,7 +365,8 @@ PlateLock lock_plate(const std::vector<double>& heights, const PlateLockOptions&
       candidates.push_back(n);
     const std::vector<double> whole = filled(heights);
     for (const int n : candidates) try {
-        const PhaseTable table = find_phases({whole, {}}, {.frames_per_cycle = n, .gamma = {}, .amplitude = {}});
+        const PhaseTable table =
+            find_phases({whole, {}}, {.frames_per_cycle = n, .gamma = {}, .amplitude = {}});
         if (table.dropped + table.doubled == 0) continue;
         std::vector<double> mended(heights.size());
         double tick = 0;

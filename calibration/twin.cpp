@@ -141,6 +141,13 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   // A scene that cannot be is refused before the stack is read.
   (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
 
+  if (drive.empty() && !options.trust_stated_drive) {
+    const auto bar = progress("the plate's edge");
+    if (const std::string clause = drive_disagreement(cell, options.stack, options.threads, *bar);
+        !clause.empty())
+      throw ConfigError({.file = options.cell_file.string(), .key = "drive"},
+                        clause + "; correct one of them, or say --trust-stated-drive.");
+  }
   const auto frames = open_frames(options.stack);
   claim_shared_folder(folder, twin_folder());
 

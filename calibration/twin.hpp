@@ -28,6 +28,7 @@ struct TwinOptions {
   LocatorOptions locator;
   LinkOptions link;
   int threads = 1;
+  bool trust_stated_drive = false;  ///< do not hold the stated drive against the plate in the frames
 };
 
 /// Provenance of the files, which only the program can write.

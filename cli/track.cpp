@@ -12,6 +12,7 @@
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
+#include "calibration/plate_drive.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
@@ -30,6 +31,7 @@ struct TrackOptions {
   std::optional<double> pixels_per_sigma, gamma, amplitude, width, height;
   std::optional<int> frames_per_cycle, first_phase;
   int shortest = 1;
+  bool trust_stated_drive = false;
   LocatorOptions locator;
   std::string flat;
   LinkOptions link;
@@ -183,6 +185,13 @@ void run(TrackOptions& o, const Common& common) {
   const TrackedStack stack =
       track_stack(*frames, o.locator, o.link, cell, common.n_threads(), bar, way, folder);
   check_flat(o.flat, o.locator.preprocess.bright);
+  std::string disagreement;
+  if (!o.trust_stated_drive) {
+    ProgressBar edge(common, "the plate's edge");
+    disagreement = drive_disagreement(cell, o.stack, common.n_threads(), edge);
+    if (!disagreement.empty())
+      note(common, "the stated drive does not fit the film: " + disagreement + " (--trust-stated-drive).");
+  }
   TrackPlan plan = plan_trajectory(stack, cell, o.locator.diameter_px, o.shortest);
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
@@ -210,6 +219,7 @@ void run(TrackOptions& o, const Common& common) {
                              {"outside_cell", stack.outside_cell},
                              {"wrong_radius", stack.wrong_radius}};
   document.update(nlohmann::json::parse(plan.info.tracking_json));
+  if (!disagreement.empty()) document["drive_disagreement"] = disagreement;
   std::string text = fmt::format(
       "{} frames, {} beads located, {} tracks ({} written), {} detections outside the cell left out\n",
       stack.frames.size(), beads, stack.n_tracks, plan.info.n_beads, stack.outside_cell);
@@ -271,6 +281,8 @@ void add_track(CLI::App& program, Common& common) {
   add_flat_option(verb, o->flat);
   verb.add_option("--range", o->link.range_diameters, "Longest step from the predicted place, diameters");
   verb.add_option("--memory", o->link.memory, "Frames for which a bead may be missing");
+  verb.add_flag("--trust-stated-drive", o->trust_stated_drive,
+                "Do not hold the stated drive against the plate in the frames");
   verb.add_option("--shortest", o->shortest, "Tracks seen in fewer frames are left out")
       ->check(CLI::PositiveNumber);
   writes(common, verb, verb.add_option("--csv", o->csv, "Table of tracks (trackpy's columns and more)"),

@@ -121,6 +121,31 @@ TEST(Match, MeasuresTheDriveThatTheCellDoesNotState) {
   EXPECT_EQ(first.phase, 0);
 }
 
+TEST(Match, AStatedDriveIsHeldAgainstThePlate) {
+  const TemporaryFolder folder;
+  std::ifstream in(kStack / "CELL.toml");
+  const fs::path cell = folder / "wrong.toml";
+  {
+    std::ofstream out(cell);
+    for (std::string line; std::getline(in, line);)  // the plate in the film moves 1.6 times as far
+      out << (line.rfind("amplitude", 0) == 0 ? "amplitude = 0.5625" : line) << "\n";
+  }
+  std::vector<std::string> words = {"match",   kStack, cell,        "-o",    folder / "twin",
+                                    "--twins", "1",    "--no-film", "--set", "time.steps_per_contact=20",
+                                    "-q"};
+  const Ran refused = run_program(words);
+  EXPECT_EQ(refused.code, 2);
+  const auto seen = refused.err.find("A = ");
+  ASSERT_NE(seen, std::string::npos) << refused.err;
+  EXPECT_NEAR(std::stod(refused.err.substr(seen + 4)), 0.9, 0.002) << refused.err;
+  EXPECT_NE(refused.err.find("0.5625"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("--trust-stated-drive"), std::string::npos) << refused.err;
+  EXPECT_FALSE(fs::exists(folder / "twin"));
+  words.emplace_back("--trust-stated-drive");
+  const Ran trusted = run_program(words);
+  EXPECT_EQ(trusted.code, 0) << trusted.err;
+}
+
 TEST(Match, SaysWhatTheCellLacksAndLeavesNothing) {
   const TemporaryFolder folder;
   const fs::path stack = short_stack(folder);
