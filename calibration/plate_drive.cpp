@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "analysis/trajectory/error.hpp"
@@ -93,13 +94,41 @@ std::string complete_drive(CellDescription& cell, const std::filesystem::path& c
   return said;
 }
 
+namespace {
+
+/// The beginning of a stack.
+class FirstFrames : public FrameSource {
+ public:
+  FirstFrames(const std::filesystem::path& stack, std::size_t most)
+      : all_(open_frames(stack)), most_(most), left_(most) {}
+  bool next(cv::Mat& frame) override {
+    if (left_ == 0) return false;
+    --left_;
+    return all_->next(frame);
+  }
+  [[nodiscard]] std::size_t announced() const override { return std::min(all_->announced(), most_); }
+  [[nodiscard]] std::string current() const override { return all_->current(); }
+  [[nodiscard]] StackInfo info() const override { return all_->info(); }
+  [[nodiscard]] std::optional<double> time_s() const override { return all_->time_s(); }
+
+ private:
+  std::unique_ptr<FrameSource> all_;
+  std::size_t most_, left_;
+};
+
+}  // namespace
+
 std::string drive_disagreement(const CellDescription& cell, const std::filesystem::path& stack, int threads,
                                Progress& progress) {
   constexpr double kErrors = 5, kShare = 0.03, kPixels = 0.3;
   const auto drive = cell.drive();
   if (!drive || !cell.pixels_per_sigma) return {};
   const double scale = *cell.pixels_per_sigma;
-  const StackEdges edges = read_stack_edges(*open_frames(stack), cell.bright,
+  // Three cycles tell an amplitude; the rest of a long film would cost as much as locating its beads.
+  constexpr std::size_t kCycles = 3, kFewest = 40;
+  FirstFrames beginning(
+      stack, std::max(kFewest, kCycles * static_cast<std::size_t>(cell.phase_lock.frames_per_cycle)));
+  const StackEdges edges = read_stack_edges(beginning, cell.bright,
                                             diameter_for_edges(stack, cell.bright, scale), threads, progress);
   std::optional<PlateLock> seen;
   try {

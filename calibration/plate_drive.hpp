@@ -22,10 +22,10 @@ bool lacks_drive(const CellDescription& cell);
 std::string complete_drive(CellDescription& cell, const std::filesystem::path& cell_file,
                            const std::filesystem::path& stack, int threads, Progress& progress);
 
-/// Holds the stated drive against the plate's edge in every frame: amplitude, and omega where the frames'
-/// rate and the scale say it. A difference counts if it is above five standard errors, 3 % and 0.3 px.
-/// \return the disagreement as one clause; empty if there is none, or if no plate is seen to move
-/// \pre the cell states drive and scale
+/// Holds the stated drive against the plate's edge in the first three cycles, at least 40 frames: amplitude,
+/// and omega where the frames' rate and the scale say it. A difference counts if it is above five standard
+/// errors, 3 % and 0.3 px. \return the disagreement as one clause; empty if there is none, or if no plate is
+/// seen to move \pre the cell states drive and scale
 std::string drive_disagreement(const CellDescription& cell, const std::filesystem::path& stack, int threads,
                                Progress& progress);
 
