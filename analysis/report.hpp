@@ -19,7 +19,7 @@ std::string comparison_text(const Comparison& comparison);
 /// JSON object.
 std::string comparison_json(const Comparison& comparison);
 
-/// What the folder of a report is to the rules of outputs.
+/// The kind of output that the folder of a report is.
 inline Product report_folder() {
   return Product::whole_folder("a report");
 }

@@ -37,7 +37,7 @@ struct TwinProvenance {
   std::function<std::string(const sim::Scene&, const std::vector<sim::Bead>&)> of_simulation;
 };
 
-/// What the folder of a match is to the rules of outputs: several files, and a report in a folder of its own.
+/// The kind of output that the folder of a match is: several files, and a report in a folder of its own.
 inline Product twin_folder() {
   return Product::shared_folder("a match");
 }

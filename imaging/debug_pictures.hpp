@@ -10,7 +10,7 @@
 
 namespace twincell {
 
-/// What the folder is to the rules of outputs.
+/// The kind of output that the folder of pictures is.
 inline Product debug_folder() {
   return Product::whole_folder("pictures of the locator's stages");
 }

@@ -82,7 +82,7 @@ class SyntheticCamera {
   cv::Mat2d ideal_;                     // (x, y) of a pixel in the ideal picture; empty: its own
 };
 
-/// What the folder of rendered frames is to the rules of outputs.
+/// The kind of output that a folder of rendered frames is.
 inline Product rendered_stack() {
   return Product::whole_folder("a rendered stack");
 }

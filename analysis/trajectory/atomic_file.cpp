@@ -47,10 +47,6 @@ bool replaceable(const fs::path& folder, const Manifest& manifest, const std::st
   return !fs::exists(fs::symlink_status(folder / name, ec)) || manifest.unchanged(folder, name);
 }
 
-bool is_leftover(const fs::path& path) {
-  return path.filename().string().starts_with(kTemporaryPrefix);
-}
-
 /// Whether a folder holds nothing but what its manifest lists, unchanged.
 bool only_listed(const fs::path& folder, const Manifest& manifest) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -71,15 +67,6 @@ void remove_listed(const fs::path& folder, const Manifest& manifest) {
   for (const auto& entry : fs::recursive_directory_iterator(folder, ec))
     if (entry.is_directory(ec) && !entry.is_symlink(ec)) folders.push_back(entry.path());
   for (std::size_t i = folders.size(); i-- > 0;) fs::remove(folders[i], ec);  // fails where something is left
-}
-
-/// Removes what unfinished outputs left in a folder that is otherwise empty.
-void remove_own_leftovers(const fs::path& folder) {
-  std::error_code ec;
-  std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(folder, ec))
-    if (is_leftover(entry.path())) found.push_back(entry.path());
-  for (const fs::path& path : found) fs::remove_all(path, ec);
 }
 
 }  // namespace
@@ -164,7 +151,6 @@ void AtomicPath::place_folder(const fs::path& target) {
   if (!old) {
     // Absent or empty; anything else has come meanwhile.
     fresh.write(part_);
-    if (fs::is_directory(target, ec)) remove_own_leftovers(target);
     fs::rename(part_, target, ec);
     if (ec == std::errc::directory_not_empty || ec == std::errc::file_exists ||
         ec == std::errc::not_a_directory)
@@ -172,8 +158,6 @@ void AtomicPath::place_folder(const fs::path& target) {
     if (ec) fail(ec);
     return;
   }
-  for (const auto& [name, hashes] : fresh.files)
-    if (!replaceable(target, *old, name)) give_way(target, "'" + name + "' in it");
   if (!product_.shared && only_listed(target, *old)) {
     // All of it is ours: the folders change places in one step.
     fresh.write(part_);
@@ -182,6 +166,8 @@ void AtomicPath::place_folder(const fs::path& target) {
       return;
     }
   }
+  for (const auto& [name, hashes] : fresh.files)
+    if (!replaceable(target, *old, name)) give_way(target, "'" + name + "' in it");
   // File by file. At every instant the manifest lists each file of ours, old or new.
   Manifest both = *old;
   for (const auto& [name, hashes] : fresh.files) both.files[name].insert(hashes.begin(), hashes.end());

@@ -76,14 +76,14 @@ bool is_temporary(const fs::path& name) {
   return name.filename().string().starts_with(kTemporaryPrefix);
 }
 
-/// The first thing by name in a folder that is not a leftover of an unfinished output; empty if there is
-/// none.
-std::string first_entry(const fs::path& folder, const Where& where) {
+/// The first thing by name in a folder; empty if there is none. In a folder that several processes share
+/// their unfinished outputs do not count: one of them may be writing the manifest.
+std::string first_entry(const fs::path& folder, bool shared, const Where& where) {
   std::string first;
   std::error_code ec;
   for (fs::directory_iterator at(folder, ec), end; !ec && at != end; at.increment(ec)) {
     const std::string name = at->path().filename().string();
-    if (!is_temporary(at->path()) && (first.empty() || name < first)) first = name;
+    if (!(shared && is_temporary(at->path())) && (first.empty() || name < first)) first = name;
   }
   if (ec) throw ConfigError(where, "the output's folder cannot be read (" + ec.message() + ").");
   return first;
@@ -128,7 +128,7 @@ void require_folder(const fs::path& final, const Product& product, const Where& 
       throw ConfigError(where, fmt::format("the output folder holds the input '{}'.", input.string()));
   if (::access(final.c_str(), R_OK | W_OK | X_OK) != 0)
     throw ConfigError(where, "the output's folder cannot be written to.");
-  const std::string first = first_entry(final, where);
+  const std::string first = first_entry(final, product.shared, where);
   if (first.empty()) return;
   const auto manifest = Manifest::read(final);
   if (!manifest)

@@ -225,6 +225,12 @@ TEST(Outputs, AFolderIsReplacedAsFarAsItsManifestGoes) {
   std::ifstream cell("new/CELL.toml");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(cell), {}), "changed by hand");
 
+  // What another output has not finished is not this one's to remove.
+  fs::create_directory("busy");
+  write("busy/.twincell-notes", "mine");
+  EXPECT_EQ(run_program({"render", "sim.h5", "-o", "busy", "-q"}).code, 2);
+  EXPECT_TRUE(fs::exists("busy/.twincell-notes"));
+
   // Nor is a folder of another product, or one whose manifest points elsewhere.
   EXPECT_EQ(run_program({"analyze", "sim.h5", "--figures", "new", "-q"}).code, 2);
   fs::create_directory("trap");

@@ -82,30 +82,32 @@ TEST(H5mdRanges, WhatNoCellCanBeIsRefusedByEveryVerb) {
   expect_refused(file, "phase");
 }
 
+/// Changes a sound file by hand, as damage or a stranger would.
+template <class Change>
+void spoil(const std::string& file, const std::string& object, Change change) {
+  write(file, sound());
+  const h5::Handle id = h5::own(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+  const h5::Handle part = h5::own(H5Oopen(id.get(), object.c_str(), H5P_DEFAULT), "opening " + object);
+  change(part.get());
+}
+
 TEST(H5mdRanges, AnUnknownAxisIsNoIndex) {
   const TemporaryFolder folder;
   const std::string file = folder / "t.h5";
-  write(file, sound());
-  {
-    const h5::Handle id = h5::own(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
-    const h5::Handle drive = h5::own(H5Gopen2(id.get(), "parameters/drive", H5P_DEFAULT), "opening");
-    ASSERT_GE(H5Adelete(drive.get(), "axis"), 0);
-    h5::write_attribute(drive.get(), "axis", std::string("q"));
-  }
+  spoil(file, "parameters/drive", [](hid_t drive) {
+    ASSERT_GE(H5Adelete(drive, "axis"), 0);
+    h5::write_attribute(drive, "axis", std::string("q"));
+  });
   expect_refused(file, "axis");
 }
 
 TEST(H5mdRanges, ClaimsAreHeldAgainstWhatTheFileHolds) {
   const TemporaryFolder folder;
   const std::string file = folder / "t.h5";
-  write(file, sound());
-  {
-    const h5::Handle id = h5::own(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
-    const h5::Handle set =
-        h5::own(H5Dopen2(id.get(), "particles/trajectory/position/step", H5P_DEFAULT), "opening");
+  spoil(file, "particles/trajectory/position/step", [](hid_t steps) {
     const hsize_t many = 1'000'000'000;
-    ASSERT_GE(H5Dset_extent(set.get(), &many), 0);
-  }
+    ASSERT_GE(H5Dset_extent(steps, &many), 0);
+  });
   expect_refused(file, "claims");
 }
 
