@@ -9,8 +9,10 @@ ours is measured between two steps, LAMMPS's is its loop time times its use of t
 over the repetitions, ratios medians of the quotients of one repetition. A row per job is appended to
 bench/results/MACHINE.csv.
 
-At equal accuracy: the same periods of a run of ours with the integrator and the fewer steps per contact that
-`twincell cost sim` finds to be no less accurate than LAMMPS's integrator with its steps, as a quotient of times.
+At equal accuracy of the whole impact: `twincell cost sim` finds how many steps per contact velocity Verlet, LAMMPS's
+integrator, needs for the spin of a bed's impacts to be right to 1 %, rms, and how few our split steps need to be no
+less accurate than that in e, v_t' and w'. The quotient is of the times of the same periods so. LAMMPS's is
+extrapolated: what it takes at n = 50 and at n = 150, along a line in n, since its work is per step but for its lists.
 
 What cannot be measured is absent, with the reason under "absent".
 """
@@ -32,6 +34,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 SCENE = "scene.toml"  # in the folder of a job
 CHEAPER = "cheaper.toml"  # the same, as accurate in fewer steps
+STEPS = 50  # per contact
+FINER = 3  # times as many, for the line along which LAMMPS's time is extrapolated
 
 # The first paper's bed at Gamma = 2, loose from the start so that it has defects, after five driven periods.
 SHAKER = """
@@ -117,18 +121,20 @@ class Ours:
         return self.answer()["cpu_s"]
 
 
-def lammps_cpu_seconds(build, state, steps, folder):
-    """One piece in LAMMPS from the deck that we export, without its dump."""
+def lammps_cpu_seconds(build, state, steps, folder, finer=1):
+    """One piece in LAMMPS from the deck that we export, without its dump; in `finer` times as many steps."""
     if not shutil.which("lmp"):
         raise Absent("LAMMPS is not installed (Debian: apt-get install lammps)")
     deck = folder / "deck"
+    shutil.rmtree(deck, ignore_errors=True)
     exported = subprocess.run([build / "twincell", "export", SCENE, "--to", "lammps", "-q", "-o", "deck", "--from", state,
-                               "--set", "time.cycles=1", "--set", "time.discard=0"], cwd=folder, capture_output=True, text=True)
+                               "--set", "time.cycles=1", "--set", "time.discard=0",
+                               "--set", f"time.steps_per_contact={STEPS * finer}"], cwd=folder, capture_output=True, text=True)
     if exported.returncode != 0:
         raise Absent(said(exported.stderr, exported.returncode))
     text = (deck / "in.twincell").read_text()
     text = re.sub(r"(?m)^dump.*\n", "", text)
-    text, runs = re.subn(r"(?m)^run .*$", f"run {steps}", text)
+    text, runs = re.subn(r"(?m)^run .*$", f"run {steps * finer}", text)
     assert runs == 1, "a deck has one run"
     (deck / "in.twincell").write_text(text)
     ran = subprocess.run(["lmp", "-in", "in.twincell", "-log", "none"], cwd=deck, capture_output=True, text=True,
@@ -140,22 +146,25 @@ def lammps_cpu_seconds(build, state, steps, folder):
     return float(loop[1]) * float(use[1]) / 100
 
 
-def cheaper_scene(build, scene):
-    """The scene in the fewest steps that are no less accurate than it is."""
-    ran = subprocess.run([build / "twincell", "cost", "sim", "--json", "-q"], capture_output=True, text=True)
+def equal_impacts(build):
+    """Steps per contact of Verlet and of split for one accuracy of a bed's impacts."""
+    ran = subprocess.run([build / "twincell", "cost", "sim", "--quick", "--json", "-q"], capture_output=True, text=True)
     if ran.returncode != 0:
         raise Absent(f"`twincell cost sim` does not say how many steps are as accurate: {said(ran.stderr, ran.returncode)}")
     try:
-        found = json.loads(ran.stdout)["equal_accuracy"]["split"]
-        integrator, n = found["integrator"], float(found["n"])
+        found = json.loads(ran.stdout)["equal_impacts"]
+        return float(found["verlet"]["n"]), float(found["split"]["n"])
     except (KeyError, TypeError, ValueError) as why:
         raise Absent(f"`twincell cost sim --json` has no key {why}") from None
-    return re.sub(r"(?m)^steps_per_contact = .*$", f'steps_per_contact = {n}\nintegrator = "{integrator}"', scene)
+
+
+def in_split_steps(scene, n):
+    return re.sub(r"(?m)^steps_per_contact = .*$", f'steps_per_contact = {n}\nintegrator = "split"', scene)
 
 
 def measure(build, name, scene, periods, equal_accuracy, repetitions):
     """Numbers of one job by key, and reasons of those that are absent. Absent if Twincell's own are."""
-    ours, lammps, cheaper = [], [], []  # seconds of the processor, a piece each
+    ours, lammps, finer, cheaper = [], [], [], []  # seconds of the processor, a piece each
     absent = {}
 
     def unless_absent(key, measured):
@@ -177,7 +186,9 @@ def measure(build, name, scene, periods, equal_accuracy, repetitions):
         first = engine(SCENE, scene)
         second = None
         if equal_accuracy:
-            second = unless_absent("ratio_equal_accuracy", lambda: engine(CHEAPER, cheaper_scene(build, scene)))
+            equal = unless_absent("ratio_equal_accuracy", lambda: equal_impacts(build))
+            if equal:
+                second = unless_absent("ratio_equal_accuracy", lambda: engine(CHEAPER, in_split_steps(scene, equal[1])))
         for _ in range(repetitions):
             piece = first.answer()
             if second:
@@ -187,6 +198,8 @@ def measure(build, name, scene, periods, equal_accuracy, repetitions):
             lammps.append(unless_absent("lammps", lambda: lammps_cpu_seconds(build, piece["state"], piece["steps"], folder)))
             if second:
                 cheaper.append(unless_absent("ratio_equal_accuracy", second.run))
+                finer.append(unless_absent("ratio_equal_accuracy",
+                                           lambda: lammps_cpu_seconds(build, piece["state"], piece["steps"], folder, FINER)))
 
     work = piece["beads"] * piece["steps"]
     numbers = {"beads": piece["beads"], "steps": piece["steps"], "twincell": work / statistics.median(ours)}
@@ -194,7 +207,9 @@ def measure(build, name, scene, periods, equal_accuracy, repetitions):
         numbers["lammps"] = work / statistics.median(lammps)
         numbers["ratio_lammps"] = statistics.median(b / a for a, b in zip(ours, lammps))
         if equal_accuracy and "ratio_equal_accuracy" not in absent:
-            numbers["ratio_equal_accuracy"] = statistics.median(b / a for a, b in zip(cheaper, lammps))
+            numbers["verlet_steps_at_1_percent"], numbers["split_steps_at_1_percent"] = equal
+            slow = [b + (c - b) * (equal[0] - STEPS) / (STEPS * (FINER - 1)) for b, c in zip(lammps, finer)]
+            numbers["ratio_equal_accuracy"] = statistics.median(b / a for a, b in zip(cheaper, slow))
     return numbers, {f"{name}.{key}": why for key, why in absent.items()}
 
 
@@ -216,7 +231,7 @@ def append_row(row):
     path.parent.mkdir(exist_ok=True)
     new = not path.exists()
     with path.open("a", newline="") as stream:
-        table = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
+        table = csv.DictWriter(stream, COLUMNS, extrasaction="ignore", lineterminator="\n")
         if new:
             table.writeheader()
         table.writerow({key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()})

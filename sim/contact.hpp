@@ -112,23 +112,28 @@ template <class V>
   return (f + magic) - magic;
 }
 
-/// What of a step a contact lasted.
+/// What of a step a contact lasted, and the normal force that the Coulomb limit knows.
 template <class V>
 struct Passage {
   decltype(V() > V()) entering, leaving;  ///< first touch, or last, was within the step
-  V fraction;  ///< of the step that lies after first touch, or before the last; 1 elsewhere
-  bool any;    ///< one of these contacts enters or leaves
+  V fraction;    ///< of the step that lies after first touch, or before the last; 1 elsewhere
+  V ended;       ///< F_n at the end of what acts: now, or at the last touch
+  V begun{0.0};  ///< F_n where it begins: at first touch, or at the position before
+  /// F_n > 0 vanishes on the way; else 1: the share of what acts that lies before.
+  V pressed{1.0};
+  bool any = false;  ///< one of these contacts enters, leaves, or ceases to press
 };
 
 /// The force that makes up for the jump where a contact begins or ends. At a position F acts for dt: a half
 /// for the step that ends there, a half for the next. Entering, only a fraction of the first half counts,
-/// with the mean of the force `begun` at first touch and `ended` now; leaving, the half given at the last
-/// position was too much by what lies beyond the end.
+/// with the `mean` of the force since first touch; leaving, the half given at the last position was too much
+/// by what lies beyond the end. \param mean twice that of the force while it acts \param begun, ended the
+/// force at first touch, or at the position before, and now, or at the last touch
 template <class V, class F>
-[[gnu::always_inline]] inline F over_jump(const Passage<V>& p, const F& begun, const F& ended,
+[[gnu::always_inline]] inline F over_jump(const Passage<V>& p, const F& mean, const F& begun, const F& ended,
                                           const F& held) {
-  const F mean = (V(0.5) * p.fraction) * (begun + ended);
-  return select(p.entering, fma(V(0.5), ended, mean), select(p.leaving, fma(V(-0.5), begun, mean), held));
+  const F acted = (V(0.5) * p.fraction) * mean;
+  return select(p.entering, fma(V(0.5), ended, acted), select(p.leaving, fma(V(-0.5), begun, acted), held));
 }
 
 /// x at the end of a step from its value in the middle of it and of the step before.
@@ -137,19 +142,39 @@ template <class M, class V, class X>
   return select(was, fma(half, middle - before, middle), middle);
 }
 
-/// Friction or rolling: `force(v, dt, x)` is the law's, x its lasting displacement.
+/// How far F_n may be from 0, of its change within the step, and still count as 0: friction without a limit
+/// (mu = 1e9, say) is not cut in the moment in which F_n vanishes.
+inline constexpr double kMoment = 1e-6;
+
+/// Friction or rolling: `force(v, f_n, dt, x)` is the law's, x its lasting displacement.
+///
+/// The Coulomb limit jumps where a contact begins, from nothing to mu |F_n(0+)|, and has a kink where F_n
+/// vanishes. A spring that is cut there keeps that length for long after, so the cut is made at that instant,
+/// and the spring then goes on for what is left of the step. (Cut at the end of the step instead, the
+/// friction of a whole impact was that of its first position: first order in dt, wrong by a fifth at n = 50.)
 /// \param v in the middle of the step \param seen at its end
 template <Velocity kVelocity, class V, class T, class X, class Force>
 [[gnu::always_inline]] inline T lasting(const T& v, const T& seen, V dt, const Passage<V>& p, X& x,
                                         Force force) {
   if constexpr (kVelocity == Velocity::half_step) {
-    return force(v, dt, x);
+    return force(v, p.ended, dt, x);
   } else {
+    const V zero(0.0), one(1.0);
+    if (!p.any) {
+      x = fma(dt, v, x);
+      return force(seen, p.ended, zero, x);
+    }
     X begun = x;
-    x = fma(p.fraction * dt, v, x);
-    const T f = force(seen, V(0.0), x);
-    if (!p.any) return f;
-    return over_jump(p, force(seen, V(0.0), begun), f, f);
+    const T first = force(v, p.begun, zero, begun);
+    x = fma(p.fraction * p.pressed * dt, v, select(p.entering, begun, x));
+    const V pulled = one - p.pressed;
+    X vanished = x;
+    const T between = force(v, V(kMoment) * (p.begun - p.ended), zero, vanished);
+    x = select(pulled > zero, fma(p.fraction * pulled * dt, v, vanished), x);
+    const T f = force(seen, p.ended, zero, x);
+    const T mean =
+        select(pulled > zero, fma(p.pressed, first, fma(pulled, f, between)), first + f);  // twice that
+    return over_jump(p, mean, first, f, f);
   }
 }
 
@@ -166,6 +191,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
   using Tangential = typename Laws::Tangential;
   using Rolling = typename Laws::Rolling;
   constexpr bool kFull = kVelocity == Velocity::full_step;
+  constexpr bool kLimited = Tangential::kActs || Rolling::kActs;
   constexpr int K = kTurns<D>;
   const V zero(0.0), half(0.5);
   const Doubles<V> forgotten(0.0);
@@ -179,7 +205,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
   const auto now = a.overlap > zero;
   auto acting = now, was = now;
   V overlap = a.overlap, seen = v_n;
-  Passage<V> passage{now, now, V(1.0), false};
+  Passage<V> passage{now, now, V(1.0), V(0.0)};
   Doubles<V>* middle = memory + Laws::template kMemory<D>;
   if constexpr (kFull) {
     // A pair whose v_n was exactly 0 reads as new, and gets the same force.
@@ -198,7 +224,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
   }
 
   V f_n = Normal::force(c_n, overlap, seen, own);
-  V limit_force = f_n;  // the Coulomb limit knows the force of the moment, not its mean over a step
+  passage.ended = f_n;  // the Coulomb limit knows the force of the moment, not its mean over a step
   if constexpr (kFull) {
     // So far the acceleration of the position before. What this contact's force has gained since is known.
     const V gain = f_n - Normal::force(c_n, fma(seen, dt, overlap), seen, own);
@@ -207,10 +233,25 @@ template <class Laws, Velocity kVelocity, class V, int D>
     if (passage.any) {
       const V edge = Normal::force(c_n, zero, seen, own);
       const V first = select(passage.leaving, f_n, edge), last = select(passage.leaving, edge, f_n);
-      limit_force = select(either(passage.entering, passage.leaving), f_n, held);
-      f_n = over_jump(passage, first, last, held);
+      passage.begun = first;
+      passage.ended = select(passage.entering, f_n, select(passage.leaving, edge, held));
+      f_n = over_jump(passage, first + last, first, last, held);
     } else {
-      limit_force = f_n = held;
+      passage.ended = f_n = held;
+    }
+    if constexpr (kLimited) {
+      // Near its end a contact pulls.
+      const auto pulls = both(acting, passage.ended < zero);
+      if (locate && any(pulls)) {
+        const V start = half * (v_n + V(middle[0]));
+        const V held_before = Normal::force(c_n, fma(v_n, dt, a.overlap), start, own);
+        // Only where it matters: what else is in the packet must not show.
+        const auto vanishes = both(both(pulls, was), held_before > zero);
+        passage.begun = select(vanishes, held_before, passage.begun);
+        passage.pressed =
+            select(vanishes, passage.begun / max(passage.begun - passage.ended, V(kTiny<V>)), V(1.0));
+        passage.any = true;
+      }
     }
   }
 
@@ -236,8 +277,8 @@ template <class Laws, Velocity kVelocity, class V, int D>
       for (int k = 0; k < K; ++k) middle[1 + k] = select(now, Doubles<V>(v_t.c[k]), forgotten);
     }
     const Tangent<V, K> f_t =
-        lasting<kVelocity>(v_t, seen_t, dt, passage, xi, [&](const auto& v, V step, auto& x) {
-          return Tangential::force(c + Layout<Laws>::kTangential, v, limit_force, step, x);
+        lasting<kVelocity>(v_t, seen_t, dt, passage, xi, [&](const auto& v, V limit, V step, auto& x) {
+          return Tangential::force(c + Layout<Laws>::kTangential, v, limit, step, x);
         });
     if constexpr (Tangential::kHistory)
       for (int k = 0; k < K; ++k) kept[k] = select(now, xi.c[k], forgotten);
@@ -268,8 +309,8 @@ template <class Laws, Velocity kVelocity, class V, int D>
       for (int k = 0; k < K; ++k) middle[1 + K + k] = select(now, Doubles<V>(w.c[k]), forgotten);
     }
     const Tangent<V, K> m =
-        lasting<kVelocity>(w, seen_w, dt, passage, theta, [&](const auto& v, V step, auto& x) {
-          return Rolling::torque(c + Layout<Laws>::kRolling, v, limit_force, step, x);
+        lasting<kVelocity>(w, seen_w, dt, passage, theta, [&](const auto& v, V limit, V step, auto& x) {
+          return Rolling::torque(c + Layout<Laws>::kRolling, v, limit, step, x);
         });
     for (int k = 0; k < K; ++k) {
       kept[k] = select(now, theta.c[k], forgotten);

@@ -75,6 +75,22 @@ std::vector<double> restitutions(const Scene& space, double dt, double v, int ph
   return e;
 }
 
+std::optional<ImpactErrors> friction_error(const Scene& space, const Plan& plan, double speed) {
+  constexpr int kOblique = 16;  // entry phases of each
+  if (!plan.rotation || !(remembers(plan.bead) || can_meet_alone(plan.bead))) return std::nullopt;
+  std::vector<Impact> impacts;
+  for (const double degrees : {15.0, 30.0, 45.0, 60.0, 75.0})
+    impacts.push_back(Impact::at(degrees, false, speed));
+  try {
+    return impact_errors(
+        impacts, space,
+        {.integrator = space.integrator, .n = plan.shortest().time / plan.dt, .single = space.single},
+        kOblique);
+  } catch (const RunError&) {
+    return std::nullopt;  // they do not part
+  }
+}
+
 }  // namespace
 
 std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int phases) {
@@ -88,19 +104,32 @@ std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int ph
       restitutions(fine, plan.dt / std::max(kFiner, std::ceil(kFine / scene.steps_per_contact)), v, 1);
   const auto measured = restitutions(space, plan.dt, v, phases);
   if (exact.empty() || measured.empty()) return std::nullopt;
-  return StepError{v, exact.front(), PhaseSpread::of(measured, exact.front())};
+  return StepError{v, exact.front(), PhaseSpread::of(measured, exact.front()),
+                   friction_error(space, plan, v)};
 }
+
+namespace {
+
+std::string sentence(const StepError& error) {
+  std::string s = fmt::format(
+      ": e of two beads that meet at v = {:.3g} is {:.4g} and errs by up to {:.2g}, by {:.2g} in the mean "
+      "over collisions",
+      error.speed, error.restitution, error.error.largest, error.error.mean);
+  if (error.friction)
+    s += fmt::format(
+        "; at 15 to 75 degrees friction changes R w by {:.2g} v, with an error of {:.2g} v rms and up to "
+        "{:.2g} v",
+        error.friction->spin_change, error.friction->spin.rms, error.friction->spin.largest);
+  return s;
+}
+
+}  // namespace
 
 void state_step_error(const Scene& scene, Plan& plan) {
   const auto error = step_error(scene, plan);
   for (Effect& effect : plan.effects)
     if (effect.name == kTimeIntegration)
-      effect.reason += error ? fmt::format(
-                                   ": e of two beads that meet at v = {:.3g} is {:.4g} and errs by up to "
-                                   "{:.2g}, by {:.2g} in "
-                                   "the mean over collisions",
-                                   error->speed, error->restitution, error->error.largest, error->error.mean)
-                             : ": beads that meet do not part";
+      effect.reason += error ? sentence(*error) : ": beads that meet do not part";
 }
 
 }  // namespace twincell::sim

@@ -227,19 +227,6 @@ bool no_worse(const BedErrors& a, const BedErrors& b) {
 
 }  // namespace
 
-PhaseSpread PhaseSpread::of(const std::vector<double>& values, double exact) {
-  PhaseSpread s;
-  const double n = static_cast<double>(values.size());
-  for (const double value : values) {
-    const double error = value - exact;
-    s.mean += error / n;
-    s.rms += error * error / n;
-    s.largest = std::max(s.largest, std::abs(error));
-  }
-  s.rms = std::sqrt(s.rms);
-  return s;
-}
-
 double CollisionErrors::restitution() const {
   return std::max(restitution_pair.largest, restitution_wall.largest);
 }
@@ -250,6 +237,18 @@ double CollisionErrors::sticking() const {
 CollisionErrors collision_errors(const StepSetting& setting, int phases) {
   const ImpactSpread pair = pair_impacts(setting, phases), wall = wall_impacts(setting, phases);
   return {pair.restitution, wall.restitution, pair.sticking, wall.sticking};
+}
+
+std::vector<Impact> bed_impacts() {
+  constexpr int kEach = 100;
+  std::vector<Impact> all = impacts_of_a_bed(2, kEach), more = impacts_of_a_bed(3, kEach);
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+Scene scaled_impact_scene(double k_n) {
+  const std::string contact = scaled_contact(k_n);
+  return impact_scene(contact.substr(contact.find('\n') + 1));
 }
 
 BedErrors bed_errors(const StepSetting& setting) {
@@ -357,8 +356,17 @@ std::vector<WorkPrecision> work_precision(const std::vector<StepSetting>& settin
   // Progress counts units of about the same time: a setting's errors as one, each of its rounds as one.
   const auto count = static_cast<std::int64_t>(settings.size()), total = count * (rounds + 1);
   std::vector<WorkPrecision> all;
+  const std::vector<Impact> impacts = bed_impacts();
+  std::vector<std::pair<double, std::vector<Outcome>>> exact;  // by stiffness
   for (const StepSetting& setting : settings) {
-    all.push_back({setting, collision_errors(setting), bed_errors(setting), {}});
+    const Scene scene = scaled_impact_scene(setting.k_n);
+    if (exact.empty() || exact.back().first != setting.k_n)
+      exact.emplace_back(setting.k_n, exact_outcomes(impacts, scene));
+    all.push_back({setting,
+                   collision_errors(setting),
+                   bed_errors(setting),
+                   {},
+                   impact_errors(impacts, exact.back().second, scene, setting, kBedPhases)});
     progress.update(static_cast<std::int64_t>(all.size()), total);
   }
   struct After : Progress {
@@ -420,7 +428,10 @@ WorkPrecision equal_accuracy(const std::vector<WorkPrecision>& all, const WorkPr
            (as_good(w.collision.restitution_pair, own.restitution_pair) &&
             as_good(w.collision.restitution_wall, own.restitution_wall) &&
             as_good(w.collision.sticking_pair, own.sticking_pair) &&
-            as_good(w.collision.sticking_wall, own.sticking_wall) && no_worse(w.bed, reference.bed));
+            as_good(w.collision.sticking_wall, own.sticking_wall) &&
+            as_good(w.impacts.restitution, reference.impacts.restitution) &&
+            as_good(w.impacts.tangential, reference.impacts.tangential) &&
+            as_good(w.impacts.spin, reference.impacts.spin) && no_worse(w.bed, reference.bed));
   });
   return best == nullptr || best->cost.seconds_per_time > reference.cost.seconds_per_time ? reference : *best;
 }

@@ -8,28 +8,11 @@
 #include <vector>
 
 #include "analysis/trajectory/progress.hpp"
+#include "sim/impacts.hpp"
 #include "sim/scene.hpp"
+#include "sim/step_setting.hpp"
 
 namespace twincell::sim {
-
-/// How a scene is stepped. Dampings and the tangential spring follow k_n (gamma ~ sqrt(k_n), k_t ~ k_n), so
-/// that one collision is the same for every stiffness but for its duration.
-struct StepSetting {
-  std::string integrator = "verlet";  ///< time.integrator
-  double n = 50.37;                   ///< steps per contact; a whole number hides errors of entry and exit
-  double k_n = 1e6;                   ///< m g/sigma
-  bool single = false;                ///< time.precision
-
-  bool operator==(const StepSetting&) const = default;
-};
-
-/// An error over the entry phases of a collision: where within a step the contact begins.
-struct PhaseSpread {
-  double mean = 0, rms = 0, largest = 0;  ///< the last of the modulus
-
-  /// Of what was measured, about what is exact.
-  static PhaseSpread of(const std::vector<double>& values, double exact);
-};
 
 /// Errors of one collision: of e (Fortini & Huang 2015, eq. A5) and of v_t'/v_t without slip.
 struct CollisionErrors {
@@ -94,7 +77,15 @@ struct WorkPrecision {
   CollisionErrors collision;
   BedErrors bed;
   StepCost cost;
+  ImpactErrors impacts = {};  ///< of bed_impacts()
 };
+/// What the first paper's bed has of impacts that slide or stick: a hundred each at Gamma = 2 and 3
+/// (impacts_of_a_bed), each at kBedPhases entry phases.
+std::vector<Impact> bed_impacts();
+inline constexpr int kBedPhases = 8;
+/// The first paper's contact at another stiffness, for impacts.
+Scene scaled_impact_scene(double k_n);
+
 /// All of it, for each setting.
 std::vector<WorkPrecision> work_precision(const std::vector<StepSetting>& settings, int rounds,
                                           Progress& progress = Progress::none());
@@ -107,7 +98,8 @@ std::vector<WorkPrecision> front(const std::vector<WorkPrecision>& all, double k
 std::optional<WorkPrecision> cheapest(const std::vector<WorkPrecision>& all, double k_n, double accuracy);
 
 /// The cheapest setting that is no less accurate than `reference` is: largest and rms error of e and of
-/// v_t'/v_t, for two beads and for a bead and the plate each, and beads at rest no worse or within 1e-12 m g
+/// v_t'/v_t without slip, for two beads and for a bead and the plate each, of e, v_t' and w' of a bed's
+/// impacts, and beads at rest no worse or within 1e-12 m g
 /// sigma, 1e-8 N m g and 1e-5 of each overlap. It and every larger n of its integrator pass; `reference`
 /// itself does. \param mean also the mean errors are no larger: what an average over very many collisions
 /// sees
