@@ -3,7 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <new>
+#include <opencv2/core.hpp>
 #include <string>
 
 #include "analysis/trajectory/config.hpp"
@@ -59,6 +62,29 @@ std::string nearest_verb(const CLI::App& program, const std::string& word) {
   return best;
 }
 
+/// The verb and the files of a command line, for complaints of what does not know them: "locate a.png".
+std::string subject(int argc, char** argv) {
+  std::string said;
+  for (int i = 1; i < argc; ++i) {
+    std::error_code ec;
+    const std::string word = argv[i];
+    if (i == 1 || (!word.starts_with('-') && std::filesystem::exists(word, ec)))
+      said += (i > 1 ? " " : "") + word;
+  }
+  return said;
+}
+
+/// A fault of our own. What the exception says is for those who mend it: TWINCELL_DEBUG=1 shows it.
+int complain_of_fault(int argc, char** argv, const std::string& kind, const char* what) {
+  const char* debug = std::getenv("TWINCELL_DEBUG");
+  const bool shown = debug != nullptr && *debug != '\0';
+  return complain(subject(argc, argv) + ": " + kind +
+                      " stopped at something that it does not foresee; this is a fault of twincell, please "
+                      "report it with the files" +
+                      (shown ? std::string(" (") + what + ")." : "."),
+                  ExitCode::failed);
+}
+
 int run(int argc, char** argv) {
   Common common;
   common.command_line = joined(argc, argv);
@@ -104,8 +130,14 @@ int main(int argc, char** argv) {
   } catch (const Error& e) {
     return complain(e.what(), e.exit_code());
   } catch (const std::bad_alloc&) {
-    return complain("out of memory.", ExitCode::failed);
+    return complain(subject(argc, argv) + ": this needs more memory than the machine can give.",
+                    ExitCode::failed);
+  } catch (const cv::Exception& e) {
+    if (e.code == cv::Error::StsNoMem)
+      return complain(subject(argc, argv) + ": this needs more memory than the machine can give.",
+                      ExitCode::failed);
+    return complain_of_fault(argc, argv, "the image processing", e.err.c_str());
   } catch (const std::exception& e) {
-    return complain(e.what(), ExitCode::failed);
+    return complain_of_fault(argc, argv, "the program", e.what());
   }
 }

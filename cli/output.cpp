@@ -1,11 +1,11 @@
 #include "cli/output.hpp"
 
 #include <fmt/format.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -17,18 +17,36 @@
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/output_rules.hpp"
+#include "analysis/trajectory/stop.hpp"
 #include "analysis/trajectory/temporary.hpp"
 
 namespace twincell::cli {
 
 namespace {
 
-std::atomic<int> caught_signal{0};
+/// How long the work may take to end by itself once it has been asked to.
+constexpr itimerval kPatience{.it_interval = {}, .it_value = {.tv_sec = 0, .tv_usec = 700'000}};
 
 extern "C" void remember_signal(int signal) {
-  if (caught_signal.exchange(signal) == 0) return;
+  if (ask_to_stop(signal)) {
+    setitimer(ITIMER_REAL, &kPatience, nullptr);
+    return;
+  }
   remove_temporaries();  // asked twice: at once
   std::_Exit(128 + signal);
+}
+
+/// The work has not ended: it is in a library that cannot be asked, or in one long operation.
+extern "C" void end_without_waiting(int /*alarm*/) {
+  if (finishing_first()) {  // a run is being saved
+    setitimer(ITIMER_REAL, &kPatience, nullptr);
+    return;
+  }
+  remove_temporaries();
+  static constexpr char kSaid[] = "twincell: Stopped by a signal; no unfinished file was left behind.\n";
+  const auto written = ::write(STDERR_FILENO, kSaid, sizeof kSaid - 1);
+  static_cast<void>(written);
+  std::_Exit(128 + asked_to_stop());
 }
 
 /// A fault ends the program as it would have, but nothing unfinished stays.
@@ -142,7 +160,7 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::update(std::int64_t done, std::int64_t total) {
-  if (const int signal = caught_signal.load()) throw Interrupted(static_cast<ExitCode>(128 + signal));
+  if (const int signal = asked_to_stop()) throw Interrupted(static_cast<ExitCode>(128 + signal));
   if (quiet_ || total <= 0) return;
   if (first_ < 0) first_ = done;  // a run that is taken up begins in the middle
   const int percent = static_cast<int>(100 * done / total);
@@ -170,6 +188,7 @@ void watch_signals() {
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGHUP, &action, nullptr);
   sigaction(SIGQUIT, &action, nullptr);
+  std::signal(SIGALRM, end_without_waiting);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(fault, clean_up_and_die);
 #endif

@@ -76,7 +76,8 @@ class ProgressBar : public Progress {
   std::int64_t start_ns_;
 };
 
-/// Installs the signal handlers that ProgressBar watches.
+/// Installs the signal handlers that ProgressBar and stop_if_asked (stop.hpp) heed. Work that has not ended
+/// 0.7 s after it was asked to is ended, and its unfinished outputs are removed, unless it is saving a run.
 void watch_signals();
 
 }  // namespace twincell::cli

@@ -11,6 +11,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/stop.hpp"
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
@@ -37,7 +38,9 @@ class SavingProgress : public Progress {
  public:
   SavingProgress(const Common& common, const std::string& label, const sim::Simulation& run,
                  sim::CheckpointFolder* folder, double seconds)
-      : bar_(common, label), run_(run), folder_(folder), every_(seconds) {}
+      : bar_(common, label), run_(run), folder_(folder), every_(seconds) {
+    if (folder != nullptr) finish_.emplace();  // the run can be saved between steps alone
+  }
 
   void update(std::int64_t done, std::int64_t total) override {
     if (folder_ == nullptr) return bar_.update(done, total);
@@ -59,6 +62,7 @@ class SavingProgress : public Progress {
   const sim::Simulation& run_;
   sim::CheckpointFolder* folder_;
   std::chrono::duration<double> every_;
+  std::optional<FinishFirst> finish_;
   Clock::time_point saved_ = Clock::now();
 };
 
