@@ -16,6 +16,7 @@
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
 #include "sim/checkpoint_folder.hpp"
+#include "sim/demand.hpp"
 #include "sim/step_error.hpp"
 
 namespace twincell::cli {
@@ -205,6 +206,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
     return;
   }
   ProgressBar placing(common, "placing beads");
+  if (scene.n_beads) sim::require_disk(scene, sim::make_plan(scene), *scene.n_beads, options.output);
   // Placed once, before a folder is made: a start that cannot be leaves none behind.
   std::optional<sim::RunState> start;
   if (!sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output)))

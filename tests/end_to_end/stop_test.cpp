@@ -65,7 +65,7 @@ TEST_F(Stop, EveryLongWorkEndsWithinASecond) {
       {"sweep", "plan", "plan.toml", "-o", "out/sweep"},
       {"explain", "s.toml", "--set", "beads.layers=900000"},
       {"simulate", "s.toml", "-o", "out/o.h5", "--set", "beads.layers=900000", "--set", "start.kind=random"},
-      {"simulate", "s.toml", "-o", "out/o.h5", "--set", "time.cycles=100000"},
+      {"simulate", "s.toml", "-o", "out/o.h5", "--set", "time.cycles=20000"},
       {"export", "s.toml", "--to", "lammps", "-o", "out/deck", "--set", "beads.layers=900000"},
       {"cost", "sim", "-o", "out/cost"},
   };
@@ -108,7 +108,7 @@ TEST_F(Stop, TheSearchForSettingsIsStoppedInTheMiddle) {
 
 TEST_F(Stop, ARunThatIsSavedIsSavedFirst) {
   const Words words = {"simulate",           "s.toml", "-o",    "out/o.h5",
-                       "--checkpoint-every", "0",      "--set", "time.cycles=100000"};
+                       "--checkpoint-every", "0",      "--set", "time.cycles=20000"};
   RunningProgram program(words);
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   program.signal(SIGTERM);
