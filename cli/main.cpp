@@ -11,6 +11,7 @@
 
 #include "analysis/trajectory/config.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/escape.hpp"
 #include "analysis/trajectory/hdf5.hpp"
 #include "analysis/trajectory/kept_memory.hpp"
 #include "cli/output.hpp"
@@ -29,15 +30,15 @@ constexpr AddVerb kVerbs[] = {
 };
 
 int complain(const std::string& sentence, ExitCode code) {
-  std::fprintf(stderr, "twincell: %s\n", sentence.c_str());
+  // A file's name may hold newlines, and what makes a terminal do things.
+  std::fprintf(stderr, "twincell: %s\n", one_line(sentence).c_str());
   return static_cast<int>(code);
 }
 
 std::string joined(int argc, char** argv) {
   std::string line = "twincell";
   for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    line += word.find_first_of(" '\"$&;|<>()*?") == std::string::npos ? " " + word : " '" + word + "'";
+    line += " " + shell_word(argv[i]);
   }
   return line;
 }

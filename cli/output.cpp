@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/escape.hpp"
 #include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/output_rules.hpp"
 #include "analysis/trajectory/stop.hpp"
@@ -65,7 +66,7 @@ std::int64_t now_ns() {
 constexpr int kBarWidth = 30;
 
 /// Notes the verb's inputs, then holds its outputs against the rules.
-void guard_outputs(const CLI::App& verb, const Common& common) {
+void guard_outputs(const CLI::App& verb, Common& common) {
   replace_by_force(common.force);
   const auto is_output = [&](const CLI::Option* option) {
     return std::any_of(common.outputs.begin(), common.outputs.end(),
@@ -89,6 +90,13 @@ void guard_outputs(const CLI::App& verb, const Common& common) {
     if (std::find(taken.begin(), taken.end(), final) != taken.end())
       throw ConfigError({.file = name, .key = {}}, "two outputs of one command have this name.");
     taken.push_back(final);
+    if (final == kStandardOutput) {
+      if (common.json)
+        throw ConfigError({.file = {}, .key = "--json"},
+                          "standard output cannot take both the result and the output '-'; name a file.");
+      common.result_on_stderr = true;
+      continue;
+    }
     if (!output.product.shared) hold_until_exit(final);
   }
 }
@@ -141,12 +149,16 @@ CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product
 
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text) {
   const std::string out = common.json ? json_text(document, 2) + "\n" : text;
+  if (common.result_on_stderr) {
+    if (!common.quiet) std::fwrite(out.data(), 1, out.size(), stderr);
+    return;
+  }
   if (std::fwrite(out.data(), 1, out.size(), stdout) != out.size() || std::fflush(stdout) != 0)
     throw RunError("The result cannot be written to standard output.");
 }
 
 void note(const Common& common, const std::string& text) {
-  if (!common.quiet) std::fprintf(stderr, "note: %s\n", text.c_str());
+  if (!common.quiet) std::fprintf(stderr, "note: %s\n", one_line(text).c_str());
 }
 
 ProgressBar::ProgressBar(const Common& common, std::string label)
