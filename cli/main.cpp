@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <new>
-#include <opencv2/core.hpp>
 #include <string>
 
 #include "analysis/trajectory/config.hpp"
@@ -16,6 +15,7 @@
 #include "analysis/trajectory/kept_memory.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "imaging/opencv_words.hpp"
 
 namespace {
 
@@ -75,6 +75,11 @@ std::string subject(int argc, char** argv) {
   return said;
 }
 
+int complain_of_memory(int argc, char** argv) {
+  return complain(subject(argc, argv) + ": this needs more memory than the machine can give.",
+                  ExitCode::failed);
+}
+
 /// A fault of our own. What the exception says is for those who mend it: TWINCELL_DEBUG=1 shows it.
 int complain_of_fault(int argc, char** argv, const std::string& kind, const char* what) {
   const char* debug = std::getenv("TWINCELL_DEBUG");
@@ -131,14 +136,11 @@ int main(int argc, char** argv) {
   } catch (const Error& e) {
     return complain(e.what(), e.exit_code());
   } catch (const std::bad_alloc&) {
-    return complain(subject(argc, argv) + ": this needs more memory than the machine can give.",
-                    ExitCode::failed);
-  } catch (const cv::Exception& e) {
-    if (e.code == cv::Error::StsNoMem)
-      return complain(subject(argc, argv) + ": this needs more memory than the machine can give.",
-                      ExitCode::failed);
-    return complain_of_fault(argc, argv, "the image processing", e.err.c_str());
+    return complain_of_memory(argc, argv);
   } catch (const std::exception& e) {
+    const auto fault = opencv_fault(e);
+    if (fault && fault->out_of_memory) return complain_of_memory(argc, argv);
+    if (fault) return complain_of_fault(argc, argv, "the image processing", fault->what.c_str());
     return complain_of_fault(argc, argv, "the program", e.what());
   }
 }

@@ -2,7 +2,7 @@
 
 #include "imaging/frames/byte_file.hpp"
 #include "imaging/frames/reader.hpp"
-#include "imaging/quiet_opencv.hpp"
+#include "imaging/opencv_words.hpp"
 
 namespace twincell {
 

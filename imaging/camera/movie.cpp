@@ -8,7 +8,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "analysis/trajectory/error.hpp"
-#include "imaging/quiet_opencv.hpp"
+#include "imaging/opencv_words.hpp"
 
 namespace twincell {
 

@@ -14,7 +14,7 @@
 #include "imaging/frames/raw_pixels.hpp"
 #include "imaging/frames/reader.hpp"
 #include "imaging/frames/size_guard.hpp"
-#include "imaging/quiet_opencv.hpp"
+#include "imaging/opencv_words.hpp"
 
 namespace twincell::frames {
 
