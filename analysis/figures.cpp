@@ -9,11 +9,13 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 
 #include "analysis/colours.hpp"
 #include "analysis/gnuplot_text.hpp"
 #include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/stop.hpp"
 
 extern char** environ;
 
@@ -357,6 +359,8 @@ void run_gnuplot(const std::filesystem::path& folder, const std::string& script)
   posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&actions, 2, (script + ".log").c_str(), O_WRONLY | O_CREAT | O_TRUNC,
                                    0644);
+  posix_spawn_file_actions_addclosefrom_np(&actions,
+                                           3);  // our files, locks and pipes are none of its business
   std::string program = "gnuplot", argument = script;
   std::array<char*, 3> arguments = {program.data(), argument.data(), nullptr};
   pid_t child = 0;
@@ -366,8 +370,13 @@ void run_gnuplot(const std::filesystem::path& folder, const std::string& script)
     throw RunError("Figures are drawn by gnuplot, which is not installed (Debian: gnuplot-nox).");
   if (failure != 0) throw RunError(fmt::format("gnuplot could not be started: {}.", std::strerror(failure)));
   int status = 0;
-  while (waitpid(child, &status, 0) < 0)
+  while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) throw RunError(fmt::format("gnuplot was lost: {}.", std::strerror(errno)));
+    if (asked_to_stop() == 0 || finishing_first()) continue;
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+    stop_if_asked();
+  }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     std::string words = read_text_file(messages);
     std::replace(words.begin(), words.end(), '\n', ' ');

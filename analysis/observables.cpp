@@ -19,6 +19,7 @@
 #include "analysis/profiles.hpp"
 #include "analysis/slip.hpp"
 #include "analysis/tracers.hpp"
+#include "analysis/trajectory/stop.hpp"
 #include "analysis/volume_fraction.hpp"
 
 namespace twincell {
@@ -240,6 +241,7 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
   std::size_t used = 0;
   // The number of frames is asked for each time: a run that is analysed while it goes on may end early.
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
+    stop_if_asked();
     trajectory.read(f, frame);
     progress.update(static_cast<std::int64_t>(f) + 1, static_cast<std::int64_t>(trajectory.n_frames()));
     if (options.discard_cycles > 0 || options.cycles > 0) {
@@ -258,13 +260,15 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
                       fmt::format("leaving out {} cycles leaves no frame", options.discard_cycles));
 
   std::vector<Result> results;
-  for (const auto& observable : observables)
+  for (const auto& observable : observables) {
+    stop_if_asked();
     for (Result& r : observable->results()) {
       if (!options.wants(r.name)) continue;
       if (!r.shape.empty() && !r.interval && r.no_interval.empty())
         r.no_interval = "an array: one value for each element";
       results.push_back(std::move(r));
     }
+  }
   return results;
 }
 

@@ -14,6 +14,7 @@
 #include "analysis/report_data.hpp"
 #include "analysis/results.hpp"
 #include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/escape.hpp"
 #include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/provenance.hpp"
 
@@ -25,27 +26,10 @@ extern const std::string_view page_css, page_js, plotly_js, plotly_license;
 
 namespace {
 
-std::string escape(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 /// Escaped, with s_b, q6 and the like set as symbols with an index.
 std::string typeset(const std::string& text) {
   return std::regex_replace(
-      std::regex_replace(escape(text), std::regex("\\b([sTNK])_([a-z])\\b"), "$1<sub>$2</sub>"),
+      std::regex_replace(html_text(text), std::regex("\\b([sTNK])_([a-z])\\b"), "$1<sub>$2</sub>"),
       std::regex("\\bq6\\b"), "q<sub>6</sub>");
 }
 
@@ -110,13 +94,6 @@ std::vector<std::string> scalar_names(const std::vector<Run>& runs) {
   return names;
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
-
 double value_of(const Result* r) {
   return r != nullptr ? r->value() : std::numeric_limits<double>::quiet_NaN();
 }
@@ -132,9 +109,9 @@ std::string runs_csv(const std::vector<Run>& runs) {
   for (const std::string& name : names) text += fmt::format(",{0},{0}_low,{0}_high", name);
   text += "\n";
   for (const Run& run : runs) {
-    text +=
-        fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{},{},{}", side_name(run.side), csv_field(run.name),
-                    run.start, run.gamma, run.k_m, run.n_l, run.n_beads, run.n_frames, phase_name(run.phase));
+    text += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{},{},{}", side_name(run.side), csv_field(run.name),
+                        csv_field(run.start), run.gamma, run.k_m, run.n_l, run.n_beads, run.n_frames,
+                        phase_name(run.phase));
     for (const std::string& name : names) {
       const Result* r = seek_result(run.results, name);
       text += fmt::format(",{}", csv_number(value_of(r)));
@@ -251,9 +228,9 @@ std::string runs_table(const std::vector<Run>& runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Run& run = runs[i];
     table.row(fmt::format(" data-run=\"{}\"", i));
-    table.cell(escape(run.name));
+    table.cell(html_text(run.name));
     table.cell(side_name(run.side));
-    table.cell(run.start.empty() ? "–" : escape(run.start));
+    table.cell(run.start.empty() ? "–" : html_text(run.start));
     table.cell(run.gamma);
     table.cell(fmt::format("{}", run.n_beads));
     table.cell(fmt::format("{}", run.n_frames));
@@ -271,7 +248,7 @@ std::string boundary_table(const std::vector<PhaseBoundary>& boundaries) {
   for (const PhaseBoundary& b : boundaries) {
     table.row();
     table.cell(phase_name(b.onset));
-    table.cell(escape(boundary_of(b)));
+    table.cell(html_text(boundary_of(b)));
     table.cell(b.n_l);
     if (b.half_width()) {
       table.cell(b.gamma());
@@ -328,11 +305,11 @@ std::string conventions(const std::vector<Run>& runs) {
     }
     if (sentences.empty()) continue;
     const std::string source = find_result(runs.front().results, name).source;
-    html += fmt::format("<li><strong>{}</strong> ({})", name, escape(source));
+    html += fmt::format("<li><strong>{}</strong> ({})", name, html_text(source));
     for (const auto& [sentence, of] : sentences)
-      html += of.size() == runs.size() ? fmt::format(" {}.", escape(sentence))
-                                       : fmt::format("<br>{} <small>[{}]</small>", escape(sentence),
-                                                     escape(fmt::format("{}", fmt::join(of, ", "))));
+      html += of.size() == runs.size() ? fmt::format(" {}.", html_text(sentence))
+                                       : fmt::format("<br>{} <small>[{}]</small>", html_text(sentence),
+                                                     html_text(fmt::format("{}", fmt::join(of, ", "))));
     html += "</li>\n";
   }
   return html + "</ul>\n";
@@ -344,9 +321,7 @@ std::string inline_svg(const std::string& file, const std::string& prefix, const
   svg = std::regex_replace(svg, std::regex("(\\sid\\s*=\\s*[\"'])"), fmt::format("$1{}-", prefix));
   svg = std::regex_replace(svg, std::regex("(href\\s*=\\s*[\"']#)"), fmt::format("$1{}-", prefix));
   svg = std::regex_replace(svg, std::regex("(url[(]['\"]?#)"), fmt::format("$1{}-", prefix));
-  return std::regex_replace(svg, std::regex("<svg"),
-                            fmt::format("<svg role=\"img\" aria-label=\"{}\"", escape(title)),
-                            std::regex_constants::format_first_only);
+  return svg.replace(0, 4, fmt::format("<svg role=\"img\" aria-label=\"{}\"", html_text(title)));
 }
 
 /// Text for the inside of a script element.
@@ -424,7 +399,7 @@ std::string page(const Comparison& c, const std::vector<Figure>& figures,
       "content=\"width=device-width, initial-scale=1\">\n"
       "<title>Experiment and simulation</title><style>{}</style></head><body>\n<h1>Experiment and "
       "simulation, side by side</h1>\n<p class=\"lead\">{}</p>\n",
-      embedded::page_css, escape(conclusion(c.runs, c.matches)));
+      embedded::page_css, html_text(conclusion(c.runs, c.matches)));
   html +=
       "<p>Both sides went through the same analysis. A bed <em>bounces</em> if s<sub>b</sub> &gt; σ/30 and "
       "<em>convects</em> if also s<sub>c</sub> &gt; σ "
@@ -443,7 +418,7 @@ std::string page(const Comparison& c, const std::vector<Figure>& figures,
         "difference between the simulation as filmed and tracked and the simulation itself; what is left is "
         "held "
         "against the errors (± one standard error). " +
-        escape(filmed_words(c)) + "</p>\n" + differences_table(c);
+        html_text(filmed_words(c)) + "</p>\n" + differences_table(c);
   html += "<h2>Runs</h2>\n" + runs_table(c.runs);
   html += "<details><summary>The same figures, drawn by gnuplot</summary>\n" +
           static_figures(figures, figure_folder) + "</details>\n";
@@ -451,11 +426,11 @@ std::string page(const Comparison& c, const std::vector<Figure>& figures,
       "<h2>How each number was made</h2>\n<details><summary>Convention, interval and source of every "
       "number</summary>\n" +
       conventions(c.runs) + "</details>\n";
-  html += "<h2>Provenance</h2>\n<p>" + escape(version_line()) +
+  html += "<h2>Provenance</h2>\n<p>" + html_text(version_line()) +
           "</p>\n<details><summary>Command, inputs and their digests</summary><pre>" +
-          escape(json_text(nlohmann::json::parse(provenance_json), 2)) +
+          html_text(json_text(nlohmann::json::parse(provenance_json), 2)) +
           "</pre></details>\n<details><summary>Licence of plotly.js, which draws the graphs</summary><pre>" +
-          escape(std::string(embedded::plotly_license)) + "</pre></details>\n";
+          html_text(std::string(embedded::plotly_license)) + "</pre></details>\n";
   html += "<script type=\"application/json\" id=\"data\">" + report_data(c) + "</script>\n";
   html += "<script>" + script(embedded::plotly_js) + "</script>\n<script>" + script(embedded::page_js) +
           "</script>\n</body></html>\n";

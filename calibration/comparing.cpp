@@ -97,12 +97,14 @@ struct Scratch {
     if (::mkdtemp(name.data()) == nullptr)
       throw ConfigError({.file = parent.string()}, "no folder for the film can be made there.");
     path = name;
+    care_for_temporary(path);
   }
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
   ~Scratch() {
     std::error_code ignored;
     fs::remove_all(path, ignored);
+    forget_temporary(path);
   }
   fs::path path;
 };
@@ -144,12 +146,7 @@ Checks::Filmed film(const Run& experiment, Run& simulation, std::size_t index,
              static_cast<std::size_t>(experiment.phases_per_cycle);
   const Beginning seen(trajectory, std::max<std::size_t>(1, frames));
   // Asked only here: a TMPDIR that does not exist is no matter for what needs none.
-  std::error_code missing;
-  const fs::path place = options.scratch.empty() ? fs::temp_directory_path(missing) : options.scratch;
-  if (missing)
-    throw RunError(
-        fmt::format("The folder for temporary files (TMPDIR) cannot be used: {}.", missing.message()));
-  const Scratch scratch(place);
+  const Scratch scratch(options.scratch.empty() ? folder_for_temporaries() : options.scratch);
   const fs::path tracked = scratch.path / "filmed.h5";
   film_and_track(seen, camera, tracked, options.threads, simulation.show, progress);
   return {.run = index,

@@ -62,6 +62,13 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
     if (use != PointUse::used) continue;
     const double error = error_of(p, law.logarithmic);
     errors = errors && error > 0;
+    constexpr double kMost = 1e150;
+    if (std::abs(p.x) > kMost || std::abs(p.y) > kMost)
+      throw InputError(
+          {.file = {}, .key = "points"},
+          fmt::format("a point is at ({:g}, {:g}); both must lie within +-{:g}, or their squares "
+                      "are no numbers any more",
+                      p.x, p.y, kMost));
     selected.points.push_back({p.x, law.logarithmic ? std::log(p.y) : p.y, error});
   }
   selected.weighted = errors;

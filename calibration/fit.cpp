@@ -2,6 +2,10 @@
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
+#if __has_include(<glog/logging.h>)
+#include <glog/logging.h>
+#define TWINCELL_HAS_GLOG
+#endif
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -132,6 +136,26 @@ double FitReport::standard_error(const std::string& name) const {
   return standard_errors[static_cast<std::size_t>(found - names.begin())];
 }
 
+namespace {
+
+constexpr int kMostIterations = 2000;
+constexpr double kTolerance = 1e-15;
+
+/// In our words: Ceres's own hold the addresses of its parameters.
+std::string why_stopped(const ceres::Solver::Summary& summary) {
+  switch (summary.termination_type) {
+    case ceres::CONVERGENCE:
+      return fmt::format(
+          "The sum of squares, its slope or the parameters changed by less than {:g} of theirs.", kTolerance);
+    case ceres::NO_CONVERGENCE:
+      return fmt::format("It had not converged after {} iterations.", kMostIterations);
+    default:
+      return "No step lowers the sum of squares, or the law has no finite value there.";
+  }
+}
+
+}  // namespace
+
 FitReport solve(ceres::Problem& problem, double* parameters, const std::vector<std::string>& names,
                 Residuals residuals) {
   ceres::Solver::Options options;
@@ -139,10 +163,13 @@ FitReport solve(ceres::Problem& problem, double* parameters, const std::vector<s
   options.minimizer_progress_to_stdout = false;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
-  options.max_num_iterations = 2000;
-  options.function_tolerance = 1e-15;
-  options.gradient_tolerance = 1e-15;
-  options.parameter_tolerance = 1e-15;
+  options.max_num_iterations = kMostIterations;
+  options.function_tolerance = kTolerance;
+  options.gradient_tolerance = kTolerance;
+  options.parameter_tolerance = kTolerance;
+#ifdef TWINCELL_HAS_GLOG
+  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres would say on stderr is said by the report
+#endif
   FitReport report;
   report.names = names;
   report.n_residuals = problem.NumResiduals();
@@ -163,10 +190,10 @@ FitReport solve(ceres::Problem& problem, double* parameters, const std::vector<s
   report.values.assign(parameters, parameters + names.size());
   report.cost_before = summary.initial_cost;
   problem.Evaluate(ceres::Problem::EvaluateOptions(), &report.cost_after, nullptr, nullptr, nullptr);
-  report.stop_reason = summary.message;
+  report.stop_reason = why_stopped(summary);
   report.usable = summary.IsSolutionUsable();
   if (!report.usable) {
-    report.why_not = summary.message;
+    report.why_not = report.stop_reason;
     return report;
   }
   add_covariance(report, jacobian_at(problem), residuals);

@@ -13,6 +13,7 @@
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/output_rules.hpp"
 #include "analysis/trajectory/sha256.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
@@ -161,7 +162,8 @@ void finish_calibration(const CalibrateFlags& flags, const Common& common, Calib
   }
   if (!flags.output.empty()) {
     Calibration file;
-    if (std::filesystem::exists(flags.output)) file = read_calibration(flags.output);
+    if (flags.output != kStandardOutput && std::filesystem::exists(flags.output))
+      file = read_calibration(flags.output);
     for (Measurement& m : result.measured) file.put(std::move(m));
     if (result.camera) file.camera = std::move(result.camera);
     write_text_file(flags.output, calibration_text(file, version_line() + ", last: " + common.command_line),

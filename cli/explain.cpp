@@ -9,6 +9,7 @@
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
 #include "sim/cost.hpp"
+#include "sim/demand.hpp"
 #include "sim/step_error.hpp"
 
 namespace twincell::cli {
@@ -49,6 +50,10 @@ std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::C
   if (cost.bytes_per_pair > 0)
     s += fmt::format(", {:.0f} a listed pair, of which there are {:.3g} a bead", cost.bytes_per_pair,
                      cost.pairs_per_bead);
+  const sim::Demand demand = sim::demand_of(scene, plan, cost.beads);
+  s += fmt::format("\nMachine\n  about {} of memory, of {} available; frames of `simulate`: at least {}",
+                   sim::bytes_text(demand.memory), sim::bytes_text(memory_available()),
+                   sim::bytes_text(demand.disk));
   s += fmt::format("\nSteps\n  {} a period, dt = {:.6e} t0, set by {}: {:.4e} t0 over {:g}\n",
                    plan.steps_per_period, plan.dt, plan.shortest().name, plan.shortest().time,
                    scene.steps_per_contact);
@@ -79,6 +84,9 @@ void run(const ExplainOptions& o, const Common& common) {
   d["bytes_per_bead"] = cost.bytes_per_bead;
   d["bytes_per_pair"] = cost.bytes_per_pair > 0 ? nlohmann::json(cost.bytes_per_pair) : nlohmann::json();
   d["pairs_per_bead"] = cost.pairs_per_bead;
+  const sim::Demand demand = sim::demand_of(scene, plan, cost.beads);
+  d["expected_memory_bytes"] = demand.memory;
+  d["expected_disk_bytes"] = demand.disk;
   d["particle_steps"] = beads * static_cast<double>(plan.steps);
   if (cost.stopped.empty()) {
     d["expected_seconds"] = cost.seconds_per_step * static_cast<double>(plan.steps);

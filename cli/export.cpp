@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "analysis/trajectory/atomic_file.hpp"
+#include "analysis/trajectory/escape.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
@@ -35,7 +36,7 @@ void run(const ExportOptions& o, const Common& common) {
   write_text_file(folder.part() / sim::LammpsDeck::kDataName, deck.data);
   folder.commit();
   const std::string run_command =
-      fmt::format("cd {} && lmp -in {}", folder.final().string(), sim::LammpsDeck::kInputName);
+      fmt::format("cd {} && lmp -in {}", shell_word(folder.final().string()), sim::LammpsDeck::kInputName);
   print_result(common,
                {{"output", folder.final().string()}, {"run", run_command}, {"import", deck.import_command}},
                fmt::format("{}\n  run     {}\n  import  {}\n", folder.final().string(), run_command,

@@ -3,15 +3,19 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <new>
 #include <string>
 
 #include "analysis/trajectory/config.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/escape.hpp"
 #include "analysis/trajectory/hdf5.hpp"
 #include "analysis/trajectory/kept_memory.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "imaging/opencv_words.hpp"
 
 namespace {
 
@@ -26,15 +30,15 @@ constexpr AddVerb kVerbs[] = {
 };
 
 int complain(const std::string& sentence, ExitCode code) {
-  std::fprintf(stderr, "twincell: %s\n", sentence.c_str());
+  // A file's name may hold newlines, and what makes a terminal do things.
+  std::fprintf(stderr, "twincell: %s\n", one_line(sentence).c_str());
   return static_cast<int>(code);
 }
 
 std::string joined(int argc, char** argv) {
   std::string line = "twincell";
   for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    line += word.find_first_of(" '\"$&;|<>()*?") == std::string::npos ? " " + word : " '" + word + "'";
+    line += " " + shell_word(argv[i]);
   }
   return line;
 }
@@ -57,6 +61,34 @@ std::string nearest_verb(const CLI::App& program, const std::string& word) {
     }
   }
   return best;
+}
+
+/// The verb and the files of a command line, for complaints of what does not know them: "locate a.png".
+std::string subject(int argc, char** argv) {
+  std::string said;
+  for (int i = 1; i < argc; ++i) {
+    std::error_code ec;
+    const std::string word = argv[i];
+    if (i == 1 || (!word.starts_with('-') && std::filesystem::exists(word, ec)))
+      said += (i > 1 ? " " : "") + word;
+  }
+  return said;
+}
+
+int complain_of_memory(int argc, char** argv) {
+  return complain(subject(argc, argv) + ": this needs more memory than the machine can give.",
+                  ExitCode::failed);
+}
+
+/// A fault of our own. What the exception says is for those who mend it: TWINCELL_DEBUG=1 shows it.
+int complain_of_fault(int argc, char** argv, const std::string& kind, const char* what) {
+  const char* debug = std::getenv("TWINCELL_DEBUG");
+  const bool shown = debug != nullptr && *debug != '\0';
+  return complain(subject(argc, argv) + ": " + kind +
+                      " stopped at something that it does not foresee; this is a fault of twincell, please "
+                      "report it with the files" +
+                      (shown ? std::string(" (") + what + ")." : "."),
+                  ExitCode::failed);
 }
 
 int run(int argc, char** argv) {
@@ -104,8 +136,11 @@ int main(int argc, char** argv) {
   } catch (const Error& e) {
     return complain(e.what(), e.exit_code());
   } catch (const std::bad_alloc&) {
-    return complain("out of memory.", ExitCode::failed);
+    return complain_of_memory(argc, argv);
   } catch (const std::exception& e) {
-    return complain(e.what(), ExitCode::failed);
+    const auto fault = opencv_fault(e);
+    if (fault && fault->out_of_memory) return complain_of_memory(argc, argv);
+    if (fault) return complain_of_fault(argc, argv, "the image processing", fault->what.c_str());
+    return complain_of_fault(argc, argv, "the program", e.what());
   }
 }

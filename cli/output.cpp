@@ -1,11 +1,11 @@
 #include "cli/output.hpp"
 
 #include <fmt/format.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -15,20 +15,39 @@
 #include <vector>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/escape.hpp"
 #include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/output_rules.hpp"
+#include "analysis/trajectory/stop.hpp"
 #include "analysis/trajectory/temporary.hpp"
 
 namespace twincell::cli {
 
 namespace {
 
-std::atomic<int> caught_signal{0};
+/// How long the work may take to end by itself once it has been asked to.
+constexpr itimerval kPatience{.it_interval = {}, .it_value = {.tv_sec = 0, .tv_usec = 700'000}};
 
 extern "C" void remember_signal(int signal) {
-  if (caught_signal.exchange(signal) == 0) return;
+  if (ask_to_stop(signal)) {
+    setitimer(ITIMER_REAL, &kPatience, nullptr);
+    return;
+  }
   remove_temporaries();  // asked twice: at once
   std::_Exit(128 + signal);
+}
+
+/// The work has not ended: it is in a library that cannot be asked, or in one long operation.
+extern "C" void end_without_waiting(int /*alarm*/) {
+  if (finishing_first()) {  // a run is being saved
+    setitimer(ITIMER_REAL, &kPatience, nullptr);
+    return;
+  }
+  remove_temporaries();
+  static constexpr char kSaid[] = "twincell: Stopped by a signal; no unfinished file was left behind.\n";
+  const auto written = ::write(STDERR_FILENO, kSaid, sizeof kSaid - 1);
+  static_cast<void>(written);
+  std::_Exit(128 + asked_to_stop());
 }
 
 /// A fault ends the program as it would have, but nothing unfinished stays.
@@ -47,7 +66,7 @@ std::int64_t now_ns() {
 constexpr int kBarWidth = 30;
 
 /// Notes the verb's inputs, then holds its outputs against the rules.
-void guard_outputs(const CLI::App& verb, const Common& common) {
+void guard_outputs(const CLI::App& verb, Common& common) {
   replace_by_force(common.force);
   const auto is_output = [&](const CLI::Option* option) {
     return std::any_of(common.outputs.begin(), common.outputs.end(),
@@ -71,6 +90,13 @@ void guard_outputs(const CLI::App& verb, const Common& common) {
     if (std::find(taken.begin(), taken.end(), final) != taken.end())
       throw ConfigError({.file = name, .key = {}}, "two outputs of one command have this name.");
     taken.push_back(final);
+    if (final == kStandardOutput) {
+      if (common.json)
+        throw ConfigError({.file = {}, .key = "--json"},
+                          "standard output cannot take both the result and the output '-'; name a file.");
+      common.result_on_stderr = true;
+      continue;
+    }
     if (!output.product.shared) hold_until_exit(final);
   }
 }
@@ -123,12 +149,16 @@ CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product
 
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text) {
   const std::string out = common.json ? json_text(document, 2) + "\n" : text;
+  if (common.result_on_stderr) {
+    if (!common.quiet) std::fwrite(out.data(), 1, out.size(), stderr);
+    return;
+  }
   if (std::fwrite(out.data(), 1, out.size(), stdout) != out.size() || std::fflush(stdout) != 0)
     throw RunError("The result cannot be written to standard output.");
 }
 
 void note(const Common& common, const std::string& text) {
-  if (!common.quiet) std::fprintf(stderr, "note: %s\n", text.c_str());
+  if (!common.quiet) std::fprintf(stderr, "note: %s\n", one_line(text).c_str());
 }
 
 ProgressBar::ProgressBar(const Common& common, std::string label)
@@ -142,7 +172,7 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::update(std::int64_t done, std::int64_t total) {
-  if (const int signal = caught_signal.load()) throw Interrupted(static_cast<ExitCode>(128 + signal));
+  if (const int signal = asked_to_stop()) throw Interrupted(static_cast<ExitCode>(128 + signal));
   if (quiet_ || total <= 0) return;
   if (first_ < 0) first_ = done;  // a run that is taken up begins in the middle
   const int percent = static_cast<int>(100 * done / total);
@@ -170,6 +200,7 @@ void watch_signals() {
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGHUP, &action, nullptr);
   sigaction(SIGQUIT, &action, nullptr);
+  std::signal(SIGALRM, end_without_waiting);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(fault, clean_up_and_die);
 #endif

@@ -33,8 +33,9 @@ struct Common {
   int threads = 0;                    ///< 0: one per core
   std::optional<std::uint64_t> seed;  ///< where chance plays a part
   std::string command_line;
-  bool force = false;           ///< an output file of another kind may be replaced
-  std::vector<Output> outputs;  ///< the options that name outputs, of all verbs
+  bool force = false;             ///< an output file of another kind may be replaced
+  bool result_on_stderr = false;  ///< standard output is taken by an output '-'
+  std::vector<Output> outputs;    ///< the options that name outputs, of all verbs
 
   /// Threads to use: the option, or the number of cores.
   [[nodiscard]] int n_threads() const;
@@ -54,7 +55,8 @@ CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, c
 /// locked.
 CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product product);
 
-/// Prints the result of a verb: `document` as JSON if --json was given, else `text`.
+/// Prints the result of a verb: `document` as JSON if --json was given, else `text`. On stderr where an
+/// output of the verb is standard output.
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text);
 /// A note or warning on stderr ("note: …"), unless --quiet.
 void note(const Common& common, const std::string& text);
@@ -76,7 +78,8 @@ class ProgressBar : public Progress {
   std::int64_t start_ns_;
 };
 
-/// Installs the signal handlers that ProgressBar watches.
+/// Installs the signal handlers that ProgressBar and stop_if_asked (stop.hpp) heed. Work that has not ended
+/// 0.7 s after it was asked to is ended, and its unfinished outputs are removed, unless it is saving a run.
 void watch_signals();
 
 }  // namespace twincell::cli

@@ -11,10 +11,12 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/stop.hpp"
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
 #include "sim/checkpoint_folder.hpp"
+#include "sim/demand.hpp"
 #include "sim/step_error.hpp"
 
 namespace twincell::cli {
@@ -37,7 +39,9 @@ class SavingProgress : public Progress {
  public:
   SavingProgress(const Common& common, const std::string& label, const sim::Simulation& run,
                  sim::CheckpointFolder* folder, double seconds)
-      : bar_(common, label), run_(run), folder_(folder), every_(seconds) {}
+      : bar_(common, label), run_(run), folder_(folder), every_(seconds) {
+    if (folder != nullptr) finish_.emplace();  // the run can be saved between steps alone
+  }
 
   void update(std::int64_t done, std::int64_t total) override {
     if (folder_ == nullptr) return bar_.update(done, total);
@@ -59,6 +63,7 @@ class SavingProgress : public Progress {
   const sim::Simulation& run_;
   sim::CheckpointFolder* folder_;
   std::chrono::duration<double> every_;
+  std::optional<FinishFirst> finish_;
   Clock::time_point saved_ = Clock::now();
 };
 
@@ -201,6 +206,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
     return;
   }
   ProgressBar placing(common, "placing beads");
+  if (scene.n_beads) sim::require_disk(scene, sim::make_plan(scene), *scene.n_beads, options.output);
   // Placed once, before a folder is made: a start that cannot be leaves none behind.
   std::optional<sim::RunState> start;
   if (!sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output)))

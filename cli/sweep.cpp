@@ -11,6 +11,7 @@
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/escape.hpp"
 #include "analysis/trajectory/output_rules.hpp"
 #include "cli/mpi_farm.hpp"
 #include "cli/output.hpp"
@@ -167,6 +168,10 @@ void run_collect(const SweepOptions& options, const Common& common) {
   const std::string csv = collected_csv(schedule), pooled = pooled_csv(schedule);
   const fs::path table = fs::path(output).replace_extension(".csv"),
                  pooled_table = fs::path(output).replace_extension(".pooled.csv");
+  if (output == kStandardOutput) {
+    write_text_file(output, json, collected_product());
+    return print_result(common, {}, collected_text(schedule));
+  }
   // All of them or none.
   require_output(table, Product::table(csv));
   if (!pooled.empty()) require_output(pooled_table, Product::table(pooled));
@@ -178,8 +183,8 @@ void run_collect(const SweepOptions& options, const Common& common) {
 }
 
 void run_template(const SweepOptions& options) {
-  const std::string run = fmt::format("twincell sweep run {} -o {} --threads 1 --quiet", options.plan,
-                                      folder_of(options).string());
+  const std::string run = fmt::format("twincell sweep run {} -o {} --threads 1 --quiet",
+                                      shell_word(options.plan), shell_word(folder_of(options).string()));
   if (options.engine == "slurm")
     fmt::print(
         "#!/bin/bash\n"
@@ -195,7 +200,7 @@ void run_template(const SweepOptions& options) {
     fmt::print(
         "#!/bin/bash\n"
         "# With --sshloginfile NODES parallel uses other machines too, if they see this folder.\n"
-        "parallel --halt soon,fail=1 {1} --shard {{}}/{0} ::: $(seq {0})\n",
+        "parallel -q --halt soon,fail=1 {1} --shard {{}}/{0} ::: $(seq {0})\n",
         options.jobs, run);
 }
 
@@ -215,7 +220,10 @@ void add_sweep(CLI::App& program, Common& common) {
     // The folder is held against the rules where the sweep is begun (sweep/store.cpp).
     common.outputs.push_back(
         {sub.add_option(std::string(name) == "collect" ? "--folder" : "-o,--output,--folder", options->folder,
-                        "Folder of the sweep; PLAN.sweep if not said"),
+                        "Folder of the sweep; PLAN.sweep if not said")
+             ->check([](const std::string& said) {
+               return said.empty() ? std::string("The folder of the sweep has no name.") : std::string();
+             }),
          nullptr, Product::runs()});
     return sub;
   };
@@ -235,11 +243,11 @@ void add_sweep(CLI::App& program, Common& common) {
 
   CLI::App& collect = add("collect", "All results in one file, JSON and CSV",
                           "twincell sweep collect plan.toml -o results.json");
-  writes(
-      common, collect,
-      collect.add_option("-o,--output", options->output,
-                         "FILE.json; FILE.csv and, of several seeds, FILE.pooled.csv are written beside it"),
-      collected_product());
+  writes(common, collect,
+         collect.add_option("-o,--output", options->output,
+                            "FILE.json; FILE.csv and, of several seeds, FILE.pooled.csv are written beside "
+                            "it; -: the JSON alone"),
+         collected_product());
   collect.callback([options, &common] { run_collect(*options, common); });
 
   CLI::App& script = *verb.add_subcommand("template", "A script for Slurm or GNU parallel");

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/temporary.hpp"
 
 namespace twincell {
 
@@ -20,12 +21,13 @@ void BeadSpool::Close::operator()(int* descriptor) const {
   delete descriptor;
 }
 
-BeadSpool::BeadSpool(const std::filesystem::path& folder) : folder_(folder) {
-  std::string name = (folder / "twincell-beads-XXXXXX").string();
+BeadSpool::BeadSpool(const std::filesystem::path& folder)
+    : folder_(folder.empty() ? folder_for_temporaries() : folder) {
+  std::string name = (folder_ / "twincell-beads-XXXXXX").string();
   const int descriptor = ::mkstemp(name.data());
   if (descriptor < 0)
     throw RunError(
-        fmt::format("{}: no temporary file can be made here: {}.", folder.string(), std::strerror(errno)));
+        fmt::format("{}: no temporary file can be made here: {}.", folder_.string(), std::strerror(errno)));
   ::unlink(name.c_str());
   file_.reset(new int(descriptor));
 }

@@ -1,9 +1,8 @@
 #include "imaging/frame_source.hpp"
 
-#include <opencv2/core/utils/logger.hpp>
-
 #include "imaging/frames/byte_file.hpp"
 #include "imaging/frames/reader.hpp"
+#include "imaging/opencv_words.hpp"
 
 namespace twincell {
 
@@ -57,8 +56,7 @@ fs::path file_of_stack(const fs::path& stack) {
 }
 
 std::unique_ptr<FrameSource> open_frames(const fs::path& stack) {
-  // OpenCV's complaints become our sentences.
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  quiet_opencv();
   const auto [file, inside] = split(stack);
   std::error_code error;
   if (fs::is_directory(file, error)) return frames::open_folder(file);

@@ -11,6 +11,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/median.hpp"
+#include "analysis/trajectory/stop.hpp"
 #include "imaging/edge_fit.hpp"
 #include "imaging/hough_locator.hpp"
 #include "imaging/locator.hpp"
@@ -55,6 +56,7 @@ std::vector<Proposal> propose_at_scale(const std::string& finder, const Prepared
     return found;
   }
   const double shrink = wanted.radius_px / kGoal;
+  if (std::min(image.darkness.cols, image.darkness.rows) < shrink) return {};  // nothing would be left of it
   Prepared small;
   small.light = image.light;
   cv::resize(image.darkness, small.darkness, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);
@@ -161,6 +163,7 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   const double radius = options.diameter_px / 2;
   LocatorStages result;
   Stopwatch watch;
+  stop_if_asked();
   double largest = radius;
   RefineOptions refined = options.refine;
   for (const double other : options.other_diameters_px) {
@@ -169,8 +172,10 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   }
   result.image = prepare(grey, options.preprocess, largest);
   result.reports.push_back({"prepare", watch.lap(), 0});
+  stop_if_asked();
   result.proposals = propose_all(result.image, options);
   result.reports.push_back({"find", watch.lap(), result.proposals.size()});
+  stop_if_asked();
   const std::string& method = options.refine.method;
   result.refined = method == "edges"     ? refine_by_edges(result.image, result.proposals, radius)
                    : method == "profile" ? refine_by_profile(result.image, result.proposals, radius,

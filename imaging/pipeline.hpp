@@ -75,12 +75,12 @@ struct TrackedStack {
 /// \param cell detections more than half a bead outside its walls are counted and left out, which needs
 ///     origin, scale and size, otherwise all stay; drive, frames per cycle and scale tell the linker how fast
 ///     beads fall
-/// \param spool_folder where the beads wait on disk, about 64 bytes per bead and frame
+/// \param spool_folder where the beads wait on disk, about 64 bytes per bead and frame; empty: the folder for
+/// temporary files
 /// \throws InputError if a list of triggers does not have a line for each frame
 TrackedStack track_stack(FrameSource& frames, LocatorOptions& locator, LinkOptions link,
                          const CellDescription& cell, int threads, Progress& progress = Progress::none(),
-                         const PhaseWay& way = {},
-                         const std::filesystem::path& spool_folder = std::filesystem::temp_directory_path());
+                         const PhaseWay& way = {}, const std::filesystem::path& spool_folder = {});
 
 /// The part of `track_stack` behind the locator: phases and identities for the beads of a spool.
 TrackedStack link_spool(const BeadSpool& located, LinkOptions link, const CellDescription& cell,

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "analysis/trajectory/median.hpp"
+#include "analysis/trajectory/stop.hpp"
 #include "imaging/coupled_step.hpp"
 #include "imaging/disc_measures.hpp"
 
@@ -145,6 +146,7 @@ class ProfileFit {
   /// One step of each disc, all others as they stand. \returns how far the farthest of all but the worst
   /// fiftieth moved, px
   double sweep() {
+    stop_if_asked();
     std::vector<double> far;
     far.reserve(beads_.size());
     covariance_.resize(beads_.size());

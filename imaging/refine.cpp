@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "analysis/trajectory/median.hpp"
+#include "analysis/trajectory/stop.hpp"
 #include "imaging/beyond_frame.hpp"
 #include "imaging/coupled_step.hpp"
 #include "imaging/disc_measures.hpp"
@@ -835,6 +836,7 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
   bool blurred = false;
   double before = HUGE_VAL;
   while (sweeps < most_sweeps) {
+    stop_if_asked();
     // Places that are far off look like blur: the first sweep has none.
     const auto moved = fit.sweep(blurred || sweeps == 0 ? BlurFit::none : blur);
     ++sweeps;

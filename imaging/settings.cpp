@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "analysis/trajectory/median.hpp"
+#include "analysis/trajectory/stop.hpp"
 #include "imaging/alike_settings.hpp"
 #include "imaging/lattice_constant.hpp"
 #include "imaging/mixed_settings.hpp"
@@ -28,8 +29,10 @@ std::vector<double> sharp_radii(const cv::Mat1f& darkness, double smallest, doub
   constexpr double kLeast = 0.1;  // of the sharpest
   std::vector<double> sharpness;
   const int steps = static_cast<int>(std::log(largest / smallest) / std::log(kRatio));
-  for (int k = 0; k <= steps; ++k)
+  for (int k = 0; k <= steps; ++k) {
+    stop_if_asked();
     sharpness.push_back(vote_sharpness(darkness, smallest * std::pow(kRatio, k)));
+  }
   std::vector<std::pair<double, double>> tops;
   // A rise that goes on to the last one is no top.
   for (std::size_t k = 0; k + 1 < sharpness.size(); ++k) {
@@ -99,6 +102,7 @@ std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOp
     std::vector<std::pair<double, double>> tops;  // sharpness, diameter
     double before = 0, last = 0;
     for (double d = kLeast; d <= largest; d *= kRatio) {
+      stop_if_asked();
       const double now = vote_sharpness(small, 0.5 * d / kShrink);
       if (last > before && last >= now) tops.emplace_back(last, d / kRatio);
       before = std::exchange(last, now);
@@ -204,6 +208,9 @@ std::optional<FoundSettings> find_pale(const cv::Mat& grey, const LocatorOptions
 
 std::optional<FoundSettings> find_settings(const cv::Mat& picture, const LocatorOptions& given) {
   // As `locate` does, so that a turned picture has the same settings.
+  // A frame on which no disc of the smallest radius fits says nothing of a size.
+  if (given.diameter_px <= 0 && std::min(picture.cols, picture.rows) < 2 * kSmallestRadius)
+    return std::nullopt;
   const cv::Mat frame = canonical_orientation(picture).turned(picture);
   std::optional<FoundSettings> patterned;
   if (given.diameter_px <= 0) patterned = find_patterned(frame, given);

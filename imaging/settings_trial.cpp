@@ -105,14 +105,17 @@ cv::Mat busiest(const cv::Mat& grey, int side) {
   if (size == grey.size()) return grey;
   cv::Mat1f levels;
   grey.convertTo(levels, CV_32F);
+  // A strip thinner than a block is one block thick.
+  cv::copyMakeBorder(levels, levels, 0, std::max(0, kBlock - grey.rows), 0, std::max(0, kBlock - grey.cols),
+                     cv::BORDER_REPLICATE);
   cv::Mat1f across, down, blocks;
   cv::Sobel(levels, across, CV_32F, 1, 0);
   cv::Sobel(levels, down, CV_32F, 0, 1);
   cv::resize(cv::abs(across) + cv::abs(down), blocks, {}, 1.0 / kBlock, 1.0 / kBlock, cv::INTER_AREA);
   cv::Mat1d sums;
   cv::integral(blocks, sums, CV_64F);
-  const int wide = std::min(blocks.cols, size.width / kBlock),
-            high = std::min(blocks.rows, size.height / kBlock);
+  const int wide = std::min(blocks.cols, std::max(1, size.width / kBlock)),
+            high = std::min(blocks.rows, std::max(1, size.height / kBlock));
   double most = -1;
   cv::Point best;
   for (int y = 0; y + high < sums.rows; ++y)

@@ -12,6 +12,7 @@
 #include "analysis/observable.hpp"
 #include "analysis/phase_thresholds.hpp"
 #include "analysis/trajectory/json_text.hpp"
+#include "analysis/trajectory/stop.hpp"
 #include "reproduce/estimate.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/rigid_bed.hpp"
@@ -81,6 +82,7 @@ std::vector<Moment> collide(const Contact& contact) {
   const auto kernel = sim::make_kernel(plan, {});
   std::vector<Moment> moments;
   for (int k = 1; static_cast<double>(k) < 1.15 * kSteps; ++k) {
+    stop_if_asked();
     kernel->advance(system, 1);
     const double x = system.beads.back().x;
     const double overlap = pair ? 1 - (x - system.beads.front().x) : 0.5 - x;

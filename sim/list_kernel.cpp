@@ -11,6 +11,7 @@
 #include <numeric>
 #include <thread>
 
+#include "analysis/trajectory/stop.hpp"
 #include "sim/cell_grid.hpp"
 #include "sim/packed.hpp"
 #include "sim/subnormals.hpp"
@@ -390,6 +391,7 @@ void ListKernel::make_outer(const System& given) {
     part.pairs = own.size();
     part.chunk_end.clear();
     Size reached = 0;
+    stop_if_asked();
     for (Size end = part.begin; end < part.end;) {
       end = std::min(end + kChunkBeads, part.end);
       const auto before = [&](const Found& f) { return static_cast<Size>(std::min(f.i, f.j)) < end; };
@@ -891,6 +893,7 @@ void ListKernel::run_serial(System& s, std::int64_t steps) {
   Part& part = parts_[0];
   integrate(part, 1, true);
   for (std::int64_t k = 0; k < steps; ++k) {
+    stop_if_asked();
     ++s.step;
     add_up_motion(s);
     const bool last = k + 1 == steps, refresh = pair_refresh_ || wall_refresh_;
@@ -920,6 +923,7 @@ void ListKernel::run_parallel(System& s, std::int64_t steps) {
   const auto meet = [&]() noexcept {
     try {
       if (moved) {
+        stop_if_asked();
         ++s.step;
         add_up_motion(s);
         if (pair_refresh_) refresh_pairs(s);

@@ -239,6 +239,14 @@ void read_contact(const Section& s, Scene& scene, Voids& voids) {
         "makes a smooth wall).");
   };
   only_numbers(walls);
+  if (c.tangential == NoTangential::kWord && c.rolling != NoRolling::kWord) {
+    voids.refuse(
+        s, {"rolling"},
+        fmt::format("is \"{}\", but contact.tangential is \"{}\": without friction beads do not turn, "
+                    "and nothing resists their rolling; choose a tangential law, or rolling = \"{}\".",
+                    c.rolling, c.tangential, NoRolling::kWord));
+    c.rolling = NoRolling::kWord;
+  }
   c.bead = ContactTable({s});
   refuse_unread(s, c, voids);
   refuse_unread(walls, c, voids);

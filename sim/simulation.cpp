@@ -7,6 +7,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "sim/cell_grid.hpp"
+#include "sim/demand.hpp"
 
 namespace twincell::sim {
 
@@ -62,7 +63,9 @@ double kinetic_energy_per_bead(const System& s) {
 }
 
 RunState placed(const Scene& scene, Progress& progress) {
-  static_cast<void>(make_plan(scene));  // what cannot run is refused before ten million beads are placed
+  // What cannot run is refused before ten million beads are placed.
+  const Plan plan = make_plan(scene);
+  require_memory(scene, plan, scene.n_beads.value_or(0));
   Start start = make_start(scene, progress);
   require_sound(start.beads, scene, 0.05, progress);
   RunState state;

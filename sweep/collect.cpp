@@ -11,6 +11,7 @@
 
 #include "analysis/pooling.hpp"
 #include "analysis/results.hpp"
+#include "analysis/trajectory/escape.hpp"
 #include "analysis/trajectory/json_text.hpp"
 
 namespace twincell::sweep {
@@ -144,11 +145,7 @@ json document_of(const Schedule& schedule) {
 std::string cell(const json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return json_text(value);
-  const std::string text = value.get<std::string>();
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
+  return csv_field(value.get<std::string>());
 }
 
 /// A line for each of `rows`: what `lead` lists, the axes, the keys, then value, low and high of every

@@ -11,6 +11,7 @@
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/config.hpp"
 #include "analysis/trajectory/sha256.hpp"
+#include "analysis/trajectory/stop.hpp"
 #include "analysis/trajectory/toml_leaves.hpp"
 #include "sim/plan.hpp"
 #include "sim/scene.hpp"
@@ -213,6 +214,7 @@ Plan read_plan(const fs::path& path) {
 
 Point make_point(const Plan& plan, const std::vector<std::string>& values, std::optional<double> at,
                  int replica) {
+  stop_if_asked();  // a plan may have a million points
   std::vector<std::string> assignments;
   bool seeded = false;
   for (std::size_t a = 0; a < plan.axes.size(); ++a) {

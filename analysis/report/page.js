@@ -25,6 +25,7 @@
                 legend: {orientation: 'h', y: -0.2, yanchor: 'top', x: 0}};
   const axis = (title, more) => Object.assign(
     {title: {text: title, standoff: 8}, gridcolor: '#e4e4e4', linecolor: '#444', zeroline: false, ticks: 'outside', showline: true, automargin: true}, more);
+  const plain = text => String(text).replace(/[&<>%]/g, c => `&#${c.charCodeAt(0)};`);  // Plotly's text has tags and %{...}
   function graph(id, traces, layout) {
     const config = {responsive: true, displaylogo: false, modeBarButtonsToRemove: ['select2d', 'lasso2d', 'autoScale2d'],
                     toImageButtonOptions: {format: 'svg', filename: id}};
@@ -51,8 +52,8 @@
     for (const start of new Set(data.sweep.map(p => p.start)))
       for (const phase of Object.keys(phaseColour)) {
         const of = data.sweep.filter(p => p.start === start && p.phase === phase);
-        if (of.length) traces.push({x: of.map(p => p.n_l), y: of.map(p => p.gamma), mode: 'markers', name: `sweep ${start}, ${phase}`,
-          hovertemplate: `sweep, ${start}: ${phase}<br>Nₗσ %{x:.3g}, Γ %{y:.4g}<extra></extra>`,
+        if (of.length) traces.push({x: of.map(p => p.n_l), y: of.map(p => p.gamma), mode: 'markers', name: `sweep ${plain(start)}, ${phase}`,
+          hovertemplate: `sweep, ${plain(start)}: ${phase}<br>Nₗσ %{x:.3g}, Γ %{y:.4g}<extra></extra>`,
           marker: {size: 8, symbol: phaseSymbol[phase] + (start.startsWith('crystal') ? '' : '-dot'), color: phaseColour[phase], opacity: 0.6}});
       }
     for (const side of ['experiment', 'simulation'])
@@ -61,7 +62,7 @@
         if (!of.length) continue;
         const open = side === 'experiment';
         traces.push({x: of.map(i => runs[i].n_l + (open ? -aside : aside)), y: of.map(i => runs[i].gamma), customdata: of,
-          mode: 'markers', name: `${side}, ${phase}`, text: of.map(i => runs[i].name),
+          mode: 'markers', name: `${side}, ${phase}`, text: of.map(i => plain(runs[i].name)),
           hovertemplate: `${side}: ${phase}<br>%{text}<br>Γ = %{y:.4g}<extra>click to look</extra>`,
           marker: {size: 14, symbol: phaseSymbol[phase] + (open || phase === 'undetermined' ? '-open' : ''), color: phaseColour[phase],
                    line: {width: 2, color: open ? phaseColour[phase] : '#222'}}});
@@ -70,8 +71,8 @@
       for (const key of new Set(data.boundaries.filter(b => b.onset === kind && b.gamma !== null).map(b => b.of))) {
         const of = data.boundaries.filter(b => b.onset === kind && b.of === key && b.gamma !== null);
         const experiment = of[0].side === 'experiment';
-        traces.push({x: of.map(b => b.n_l + (experiment ? -0.4 : 0.4) * aside), y: of.map(b => b.gamma), mode: of.length > 1 ? 'lines+markers' : 'markers', name: `onset of ${kind}, ${key}`,
-          hovertemplate: `onset of ${kind}, ${key}<br>Γ = %{y:.3g}<extra></extra>`,
+        traces.push({x: of.map(b => b.n_l + (experiment ? -0.4 : 0.4) * aside), y: of.map(b => b.gamma), mode: of.length > 1 ? 'lines+markers' : 'markers', name: `onset of ${kind}, ${plain(key)}`,
+          hovertemplate: `onset of ${kind}, ${plain(key)}<br>Γ = %{y:.3g}<extra></extra>`,
           error_y: {type: 'data', symmetric: false, array: of.map(b => b.high - b.gamma), arrayminus: of.map(b => b.gamma - b.low), width: 6, thickness: 1.2},
           line: {color: sideColour[experiment ? 'experiment' : 'simulation'], width: 1.2, dash: kind === 'bouncing' ? 'dot' : 'solid'},
           marker: {size: 6, symbol: experiment ? 'square' : 'diamond', color: sideColour[experiment ? 'experiment' : 'simulation']}});
@@ -103,7 +104,7 @@
         for (const start of starts) {
           const some = of.map((i, k) => k).filter(k => runs[of[k]].start === start);
           traces.push({x: some.map(k => runs[of[k]].gamma), y: some.map(k => Math.max(1e-4, runs[of[k]].results[name].value)), customdata: some.map(k => of[k]),
-            mode: 'lines+markers', name: starts.size > 1 ? `${side}, ${start}` : side, text: some.map(k => runs[of[k]].name),
+            mode: 'lines+markers', name: starts.size > 1 ? `${side}, ${plain(start)}` : side, text: some.map(k => plain(runs[of[k]].name)),
             hovertemplate: `${side}, %{text}<br>Γ = %{x:.4g}, ${name} = %{y:.4g} σ<extra></extra>`,
             error_y: {type: 'data', symmetric: false, array: some.map(k => bars[k][1]), arrayminus: some.map(k => bars[k][0]), width: 5, thickness: 1.2},
             line: {color: sideColour[side], width: 1.2, dash: side === 'experiment' ? 'dash' : 'solid'},

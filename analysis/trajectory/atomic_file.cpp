@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -75,6 +76,10 @@ AtomicPath::AtomicPath(const fs::path& final_path, Product product)
     : given_(final_path), final_(require_output(final_path, product)), product_(std::move(product)) {
   while (!given_.empty() && !given_.has_filename() && given_ != given_.root_path())
     given_ = given_.parent_path();  // "report/" means "report"
+  if (final_ == kStandardOutput) {
+    part_ = make_temporary(folder_for_temporaries() / "standard-output", false);
+    return;
+  }
   lock_.emplace(final_);
   part_ = make_temporary(final_, product_.folder);
 }
@@ -97,6 +102,7 @@ AtomicPath::~AtomicPath() {
 }
 
 void AtomicPath::commit() {
+  if (final_ == kStandardOutput) return print();  // the destructor removes the file
   if (product_.folder)
     place_folder(final_);
   else
@@ -138,6 +144,17 @@ void AtomicPath::place_file(const fs::path& target) {
   if (ec)
     throw RunError(given_.string() + ": the finished output cannot be given its name (" + ec.message() +
                    ").");
+}
+
+void AtomicPath::print() {
+  std::ifstream stream(part_, std::ios::binary);
+  bool good = static_cast<bool>(stream);
+  for (std::vector<char> piece(1 << 16); good && stream;) {
+    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto got = static_cast<std::size_t>(stream.gcount());
+    good = std::fwrite(piece.data(), 1, got, stdout) == got;
+  }
+  if (!good || std::fflush(stdout) != 0) throw RunError("The output cannot be written to standard output.");
 }
 
 void AtomicPath::place_folder(const fs::path& target) {

@@ -14,8 +14,9 @@
 
 namespace twincell {
 
-/// Reserves a temporary file or folder beside an output. `commit` gives it its name; a destructor without a
-/// commit deletes it. A folder that exists is replaced as far as its manifest lists it: other files stay.
+/// Reserves a temporary file or folder beside an output. `commit` gives it its name, or copies it to standard
+/// output where that is the output (output_rules.hpp); a destructor without a commit deletes it. A folder
+/// that exists is replaced as far as its manifest lists it: other files stay.
 class AtomicPath {
  public:
   /// \throws ConfigError as require_output; if another process writes the same output; if nothing can be
@@ -40,6 +41,7 @@ class AtomicPath {
 
  private:
   void place_file(const std::filesystem::path& target);
+  void print();
   void place_folder(const std::filesystem::path& target);
   [[noreturn]] void give_way(const std::filesystem::path& target, const std::string& obstacle);
 

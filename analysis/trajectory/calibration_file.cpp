@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/trajectory/escape.hpp"
 #include "analysis/trajectory/toml_leaves.hpp"
 
 namespace twincell {
@@ -157,7 +158,7 @@ Calibration read_calibration(const std::filesystem::path& file) {
 }
 
 std::string calibration_text(const Calibration& calibration, const std::string& head) {
-  std::string text = head.empty() ? "" : "# " + head + "\n";
+  std::string text = head.empty() ? "" : "# " + one_line(head) + "\n";
   for (const Measurement& m : calibration.measured) {
     const auto& all = quantities();
     const Quantity& q =

@@ -10,13 +10,16 @@
 #include <thread>
 #include <vector>
 
+#include "analysis/trajectory/stop.hpp"
+
 namespace twincell {
 
 /// Calls work(i) once for each i = 0 .. n - 1, begun in this order, on so many threads, of which the caller's
 /// is one; returns when all have ended.
 ///
 /// After a job has thrown, none begins any more, and once those under way have ended the exception of the
-/// smallest i is thrown again: the same one for any number of threads.
+/// smallest i is thrown again: the same one for any number of threads. A signal that asks the process to stop
+/// (stop.hpp) counts as such an exception of the next job.
 /// \param threads fewer than 1 counts as 1
 template <class Work>
 void in_parallel(std::size_t n, int threads, const Work& work) {
@@ -26,6 +29,7 @@ void in_parallel(std::size_t n, int threads, const Work& work) {
   std::size_t failed = n;
   const auto take_jobs = [&] {
     for (std::size_t i = next++; i < n; i = next++) try {
+        stop_if_asked();
         work(i);
       } catch (...) {
         const std::scoped_lock lock(mutex);

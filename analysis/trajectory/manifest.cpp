@@ -1,17 +1,22 @@
 #include "analysis/trajectory/manifest.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <fstream>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/json_text.hpp"
 #include "analysis/trajectory/sha256.hpp"
+#include "analysis/trajectory/stop.hpp"
 
 namespace twincell {
 
@@ -33,6 +38,51 @@ bool stays_inside(const std::string& name) {
 bool regular(const fs::path& path) {
   std::error_code ec;
   return fs::symlink_status(path, ec).type() == fs::file_type::regular;
+}
+
+/// What the system says of a file that changes with every change of its bytes.
+struct Stamp {
+  off_t size = 0;
+  timespec written{}, changed{};
+
+  bool operator==(const Stamp& o) const {
+    const auto same = [](const timespec& a, const timespec& b) {
+      return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
+    };
+    return size == o.size && same(written, o.written) && same(changed, o.changed);
+  }
+};
+
+/// SHA-256 of a file. One that has not changed since this process read it is not read again: the folders of
+/// large stacks are held against their manifests before, during and after a run. The time of change (ctime)
+/// cannot be set by anybody; since clocks of file systems tick, a sum is kept only of files that were last
+/// changed some ticks before they were read.
+std::string sum_of(const fs::path& file) {
+  struct Known {
+    Stamp stamp;
+    std::string sum;
+  };
+  static std::mutex mutex;
+  static std::map<std::pair<dev_t, ino_t>, Known> known;
+  constexpr time_t kTicks = 2;  // s
+  stop_if_asked();
+  struct stat about {};
+  if (::stat(file.c_str(), &about) != 0) return sha256_of(file);
+  const Stamp stamp{about.st_size, about.st_mtim, about.st_ctim};
+  const std::pair key{about.st_dev, about.st_ino};
+  {
+    const std::lock_guard lock(mutex);
+    if (const auto found = known.find(key); found != known.end() && found->second.stamp == stamp)
+      return found->second.sum;
+  }
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  std::string sum = sha256_of(file);
+  if (stamp.changed.tv_sec + kTicks < now.tv_sec && stamp.written.tv_sec + kTicks < now.tv_sec) {
+    const std::lock_guard lock(mutex);
+    known[key] = {stamp, sum};
+  }
+  return sum;
 }
 
 }  // namespace
@@ -62,7 +112,7 @@ Manifest Manifest::of(const fs::path& folder, const std::string& product) {
   Manifest manifest{.product = product, .files = {}};
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (regular(entry.path()) && entry.path() != folder / kName)
-      manifest.files[entry.path().lexically_relative(folder).string()] = {sha256_of(entry.path())};
+      manifest.files[entry.path().lexically_relative(folder).string()] = {sum_of(entry.path())};
   return manifest;
 }
 
@@ -100,7 +150,7 @@ bool Manifest::unchanged(const fs::path& folder, const std::string& name) const 
     at /= part;
     if (fs::is_symlink(fs::symlink_status(at, ec))) return false;
   }
-  return regular(at) && listed->second.contains(sha256_of(at));
+  return regular(at) && listed->second.contains(sum_of(at));
 }
 
 }  // namespace twincell

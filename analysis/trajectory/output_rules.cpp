@@ -173,9 +173,13 @@ bool may_replace(const fs::path& file, const Product& product) {
 fs::path require_output(const fs::path& path, const Product& product) {
   const Where where{path.string(), 0, 0, ""};
   if (path.empty()) throw ConfigError({}, "The output has no name.");
-  if (path == "-")
+  if (path == kStandardOutput) {
+    if (product.is_text()) return path;
     throw ConfigError({},
-                      "The output '-' is not supported: standard output carries the result; name a file.");
+                      fmt::format("The output '-' is standard output, which takes tables, TOML and JSON; {} "
+                                  "needs a name.",
+                                  product.name));
+  }
   const bool slash = !path.has_filename();
   std::error_code ec;
   if (fs::is_symlink(fs::symlink_status(path, ec)) && !fs::exists(path, ec))

@@ -24,7 +24,10 @@ void protect_input(const std::filesystem::path& path);
 /// With --force one existing regular file may be of any kind, unless it is an input.
 void replace_by_force(bool allowed);
 
-/// Where an output goes: absolute, links and ".." resolved.
+/// The output that is standard output, for products that are text in one file. A file of that name is `./-`.
+inline constexpr const char* kStandardOutput = "-";
+
+/// Where an output goes: absolute, links and ".." resolved, or kStandardOutput.
 /// \throws ConfigError naming the output and what is in its way, before anything has been written
 std::filesystem::path require_output(const std::filesystem::path& path, const Product& product);
 

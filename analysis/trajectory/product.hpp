@@ -30,6 +30,11 @@ struct Product {
   /// Of a folder: several runs write into it, and the files of earlier runs stay.
   bool shared = false;
 
+  /// Whether it is text in one file, which standard output can take.
+  [[nodiscard]] bool is_text() const {
+    return !folder && (sign == Sign::first_line || sign == Sign::beginning || sign == Sign::json_member);
+  }
+
   static Product trajectory() { return {.name = "a trajectory", .sign = Sign::h5md_creator, .mark = {}}; }
   static Product results() { return {.name = "a results file", .sign = Sign::results_group, .mark = {}}; }
   static Product checkpoint() { return {.name = "a checkpoint", .sign = Sign::checkpoint, .mark = {}}; }

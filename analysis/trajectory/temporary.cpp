@@ -194,6 +194,19 @@ fs::path make_temporary(const fs::path& final, bool folder) {
   throw RunError(final.string() + ": no free temporary name was found beside it.");
 }
 
+void care_for_temporary(const fs::path& path) {
+  remember(path);
+}
+
+fs::path folder_for_temporaries() {
+  std::error_code missing;
+  fs::path folder = fs::temp_directory_path(missing);
+  if (missing)
+    throw RunError(
+        fmt::format("The folder for temporary files (TMPDIR) cannot be used: {}.", missing.message()));
+  return folder;
+}
+
 void forget_temporary(const fs::path& path) {
   forget(path);
 }
@@ -202,10 +215,16 @@ void remove_temporaries() noexcept {
   for (Slot& slot : slots) {
     if (!slot.filled.load()) continue;
     if (::unlink(slot.path.data()) == 0) continue;
-    // A folder. Walking it is not async-signal-safe; starting a program is.
+    // A folder. It gets another name first, so that threads that still run can write nothing more into it.
+    // Walking it is not async-signal-safe; starting a program is.
+    static std::array<char, 4096 + 8> aside;
+    const std::size_t length = ::strlen(slot.path.data());
+    std::memcpy(aside.data(), slot.path.data(), length);
+    std::memcpy(aside.data() + length, ".old", 5);
+    const bool moved = ::rename(slot.path.data(), aside.data()) == 0;
     const pid_t child = ::vfork();
     if (child == 0) {
-      const char* words[] = {"rm", "-rf", "--", slot.path.data(), nullptr};
+      const char* words[] = {"rm", "-rf", "--", moved ? aside.data() : slot.path.data(), nullptr};
       ::execv("/bin/rm", const_cast<char* const*>(words));
       ::_exit(127);
     }

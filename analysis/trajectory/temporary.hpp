@@ -32,6 +32,12 @@ void hold_until_exit(const std::filesystem::path& final);
 /// left of the same output. The file's name keeps the extension of `final`. \throws ConfigError
 std::filesystem::path make_temporary(const std::filesystem::path& final, bool folder);
 
+/// Takes a file or folder that somebody else made into the same care.
+void care_for_temporary(const std::filesystem::path& path);
+
+/// The folder for what needs no name: TMPDIR, or /tmp. \throws RunError saying so if it cannot be used
+std::filesystem::path folder_for_temporaries();
+
 /// Ends the care for a temporary that was made: it has been renamed, or removed.
 void forget_temporary(const std::filesystem::path& path);
 

@@ -8,6 +8,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "analysis/trajectory/error.hpp"
+#include "imaging/opencv_words.hpp"
 
 namespace twincell {
 
@@ -39,6 +40,7 @@ Movie::Movie(const std::filesystem::path& file, cv::Size size, double rate)
     : place_(file, Product::film()),
       writer_(std::make_unique<Writer>()),
       size_((size.width + 1) / 2 * 2, (size.height + 1) / 2 * 2) {
+  quiet_opencv();
   require_range(Where{.file = {}, .key = "fps"}, rate, 0.01, 1000);
   const std::string kind = file.extension().string();
   if (kind != ".mp4" && kind != ".avi")

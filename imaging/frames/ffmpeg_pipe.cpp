@@ -14,6 +14,7 @@
 #include <map>
 #include <utility>
 
+#include "analysis/trajectory/stop.hpp"
 #include "imaging/frames/byte_file.hpp"
 #include "imaging/frames/raw_pixels.hpp"
 
@@ -38,6 +39,7 @@ class Child {
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
     posix_spawn_file_actions_adddup2(&actions, fileno(errors_), 2);
+    posix_spawn_file_actions_addclosefrom_np(&actions, 3);  // HDF5's files and stdio's are open, too
     std::vector<char*> argv;
     argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());
@@ -60,7 +62,10 @@ class Child {
     std::size_t got = 0;
     while (got < n) {
       const ssize_t now = ::read(out_, to + got, n - got);
-      if (now < 0 && errno == EINTR) continue;
+      if (now < 0 && errno == EINTR) {
+        stop_if_asked();
+        continue;
+      }
       if (now <= 0) break;
       got += static_cast<std::size_t>(now);
     }
@@ -82,6 +87,9 @@ class Child {
     std::rewind(errors_);
     while (std::fgets(line.data(), line.size(), errors_) != nullptr)
       if (line[0] != '\n') last = line.data();
+    // "[matroska,webm @ 0x55d0c0]": an address is nobody's business.
+    if (const std::size_t end = last.find("] "); last.starts_with('[') && end != std::string::npos)
+      last.erase(0, end + 2);
     while (!last.empty() && (last.back() == '\n' || last.back() == '.')) last.pop_back();
     return last;
   }
@@ -117,7 +125,7 @@ int bits_of(const std::string& pixels, const std::string& raw_bits) {
 
 class Piped final : public FrameSource {
  public:
-  Piped(const fs::path& file, const VideoFacts& facts) : file_(file), announced_(facts.frames) {
+  Piped(const fs::path& file, const VideoFacts& facts) : file_(file) {
     // A width that ffmpeg converts to without spreading the values.
     const int bits = facts.bits <= 8    ? 8
                      : facts.bits <= 10 ? 10
@@ -163,7 +171,10 @@ class Piped final : public FrameSource {
     ++read_;
     return true;
   }
-  [[nodiscard]] std::size_t announced() const override { return announced_; }
+  [[nodiscard]] std::size_t announced() const override {
+    if (!counted_) counted_ = count_frames(file_).value_or(0);
+    return *counted_;
+  }
   [[nodiscard]] std::string current() const override {
     return fmt::format("{}, frame {}", file_.string(), std::max<std::size_t>(read_, 1));
   }
@@ -171,7 +182,8 @@ class Piped final : public FrameSource {
 
  private:
   fs::path file_;
-  std::size_t announced_ = 0, read_ = 0;
+  mutable std::optional<std::size_t> counted_;
+  std::size_t read_ = 0;
   RawLayout layout_;
   StackInfo info_;
   std::unique_ptr<Child> child_;
@@ -199,7 +211,7 @@ bool ffmpeg_is_installed() {
 std::optional<VideoFacts> probe_video(const fs::path& file) {
   Child child({"ffprobe", "-v", "error", "-protocol_whitelist", "file,pipe", "-format_whitelist", kContainers,
                "-select_streams", "v:0", "-show_entries",
-               "stream=width,height,pix_fmt,bits_per_raw_sample,avg_frame_rate,nb_frames", "-of",
+               "stream=width,height,pix_fmt,bits_per_raw_sample,avg_frame_rate", "-of",
                "default=noprint_wrappers=1", ffmpeg_name(file)});
   const std::string output = all_output(child);
   if (!child.wait()) return {};
@@ -221,8 +233,17 @@ std::optional<VideoFacts> probe_video(const fs::path& file) {
   const std::size_t slash = rate.find('/');
   const double below = slash == std::string::npos ? 1 : number(rate.substr(slash + 1));
   if (below > 0) facts.frame_rate_hz = number(rate.substr(0, slash)) / below;
-  facts.frames = static_cast<std::size_t>(std::max(0.0, number(said["nb_frames"])));
   return facts;
+}
+
+std::optional<std::size_t> count_frames(const fs::path& file) {
+  Child child({"ffprobe", "-v", "error", "-protocol_whitelist", "file,pipe", "-format_whitelist", kContainers,
+               "-select_streams", "v:0", "-count_packets", "-show_entries", "stream=nb_read_packets", "-of",
+               "default=noprint_wrappers=1:nokey=1", ffmpeg_name(file)});
+  const std::string output = all_output(child);
+  const double n = number(output);
+  if (!child.wait() || !(n > 0) || n > 1e15) return {};
+  return static_cast<std::size_t>(n);
 }
 
 std::unique_ptr<FrameSource> open_ffmpeg(const fs::path& file, const VideoFacts& facts) {

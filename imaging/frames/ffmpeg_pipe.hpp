@@ -17,7 +17,6 @@ struct VideoFacts {
   std::string pixels;  ///< ffmpeg's name of the pixel format: "gray16le"
   int bits = 8;        ///< per sample
   double frame_rate_hz = 0;
-  std::size_t frames = 0;  ///< 0: not stated
 };
 
 /// Containers that ffmpeg may open: each is one file. Playlists (HLS, concat, DASH) and lists of pictures,
@@ -33,6 +32,10 @@ bool ffmpeg_is_installed();
 
 /// Absent if ffprobe finds no video in the file.
 std::optional<VideoFacts> probe_video(const std::filesystem::path& file);
+
+/// Frames of the first video stream, counted through the whole file without decoding them: no header is
+/// believed. Absent if ffprobe cannot.
+std::optional<std::size_t> count_frames(const std::filesystem::path& file);
 
 /// All frames, grey, at the depth of the file. A file that ffmpeg finds damaged is refused.
 std::unique_ptr<FrameSource> open_ffmpeg(const std::filesystem::path& file, const VideoFacts& facts);

@@ -101,7 +101,11 @@ class Hdf5Stack final : public FrameSource {
     if (!is_number(object.get())) refuse(file_, fmt::format("holds no numbers in {}.", path_));
     if (shape_[0] == 0) refuse(file_, fmt::format("holds no frames in {}.", path_));
     choose_type(object.get());
-    require_plausible_size(file_, shape_[2], shape_[1], CV_ELEM_SIZE(mat_type_), file_size);
+    // What the dataset itself takes on the disk: other datasets of the file explain nothing of it. As for
+    // pictures, 8 bytes a pixel: so much at least is made of it.
+    const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(object.get()), file_size);
+    require_plausible_size(file_, shape_[2], shape_[1], 8, stored);
+    require_plausible_chunks(object.get(), stored);
     dataset_ =
         h5::own(H5Dopen2(file.get(), path_.c_str(), cache_for(object.get()).get()), "opening " + path_);
     info_.width = static_cast<int>(shape_[2]);
@@ -134,6 +138,22 @@ class Hdf5Stack final : public FrameSource {
       memory_type_ = H5T_NATIVE_FLOAT;
       info_.format = fmt::format("HDF5 stack {}, read as 32-bit real numbers", path_);
     }
+  }
+  /// A compressed chunk is unpacked as a whole, before a pixel of it is read.
+  void require_plausible_chunks(hid_t dataset, std::uint64_t stored) const {
+    constexpr double always = 64U << 20, compressed = 2000;
+    const h5::Handle layout = h5::own(H5Dget_create_plist(dataset), "reading the layout");
+    if (H5Pget_layout(layout.get()) != H5D_CHUNKED) return;
+    std::array<hsize_t, 3> chunk{};
+    h5::check(H5Pget_chunk(layout.get(), 3, chunk.data()), "reading the chunks");
+    const h5::Handle type = h5::own(H5Dget_type(dataset), "reading the type");
+    const double needed = static_cast<double>(chunk[0]) * static_cast<double>(chunk[1]) *
+                          static_cast<double>(chunk[2]) * static_cast<double>(H5Tget_size(type.get()));
+    if (needed > always && needed / compressed > static_cast<double>(stored))
+      refuse(file_,
+             fmt::format("says that the chunks of {} are {} x {} x {}, which the {} bytes stored of it "
+                         "cannot hold.",
+                         path_, chunk[0], chunk[1], chunk[2], stored));
   }
   // Chunks may hold many frames; the cache then keeps those that one frame touches, or each would be read and
   // unpacked once per frame.

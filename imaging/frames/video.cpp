@@ -8,11 +8,13 @@
 #include <cstdlib>
 #include <opencv2/videoio.hpp>
 
+#include "analysis/trajectory/stop.hpp"
 #include "imaging/frames/byte_file.hpp"
 #include "imaging/frames/ffmpeg_pipe.hpp"
 #include "imaging/frames/raw_pixels.hpp"
 #include "imaging/frames/reader.hpp"
 #include "imaging/frames/size_guard.hpp"
+#include "imaging/opencv_words.hpp"
 
 namespace twincell::frames {
 
@@ -23,8 +25,7 @@ namespace fs = std::filesystem;
 class Video final : public FrameSource {
  public:
   explicit Video(const fs::path& file) : file_(file) {
-    static const int hushed = setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);  // FFmpeg prints to stderr of itself
-    (void)hushed;
+    quiet_opencv();
     // OpenCV hands these to the same libraries that the program ffmpeg uses.
     static const int limited =
         setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS",
@@ -41,7 +42,7 @@ class Video final : public FrameSource {
     info_.bits = 8;
     if (const double rate = capture_.get(cv::CAP_PROP_FPS); rate > 0 && rate < 1e9)
       info_.frame_rate_hz = rate;
-    announced_ = static_cast<std::size_t>(std::max(0.0, capture_.get(cv::CAP_PROP_FRAME_COUNT)));
+    stated_ = static_cast<std::size_t>(std::max(0.0, capture_.get(cv::CAP_PROP_FRAME_COUNT)));
     info_.notes.push_back(fmt::format(
         "a video is read with 8 bits, whatever it holds, and its grey values are not those the camera "
         "measured{}",
@@ -54,9 +55,9 @@ class Video final : public FrameSource {
     if (!capture_.read(picture) || picture.empty()) {
       if (read_ == 0) refuse(file_, "holds no frame that can be decoded.");
       // The number announced may be an estimate; a twentieth is no estimate any more.
-      if (static_cast<double>(read_) < 0.95 * static_cast<double>(announced_) - 2)
+      if (static_cast<double>(read_) < 0.95 * static_cast<double>(stated_) - 2)
         refuse(file_, fmt::format("is truncated or damaged: it announces {} frames, of which {} can be read.",
-                                  announced_, read_));
+                                  stated_, read_));
       return false;
     }
     ++read_;
@@ -64,16 +65,30 @@ class Video final : public FrameSource {
     guard_.check(frame, current());
     return true;
   }
-  [[nodiscard]] std::size_t announced() const override { return announced_; }
+  // Containers that were streamed state no number, others a guess from the duration: counted when asked for.
+  [[nodiscard]] std::size_t announced() const override {
+    if (!counted_) counted_ = ffmpeg_is_installed() ? count_frames(file_) : std::nullopt;
+    if (!counted_) counted_ = grabbed();
+    return *counted_;
+  }
   [[nodiscard]] std::string current() const override {
     return fmt::format("{}, frame {}", file_.string(), std::max<std::size_t>(read_, 1));
   }
   [[nodiscard]] StackInfo info() const override { return info_; }
 
  private:
+  /// Frames that can be read, by reading them.
+  [[nodiscard]] std::size_t grabbed() const {
+    std::size_t n = 0;
+    cv::VideoCapture again(ffmpeg_name(file_), cv::CAP_FFMPEG);
+    for (; again.isOpened() && again.grab(); ++n) stop_if_asked();
+    return n;
+  }
+
   fs::path file_;
   cv::VideoCapture capture_;
-  std::size_t announced_ = 0, read_ = 0;
+  std::size_t stated_ = 0, read_ = 0;
+  mutable std::optional<std::size_t> counted_;
   SizeGuard guard_;
   StackInfo info_;
 };

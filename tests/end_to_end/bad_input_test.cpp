@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 
 #include "analysis/trajectory/h5md_file.hpp"
 #include "tests/support/program.hpp"
@@ -74,6 +75,58 @@ TEST_F(BadInput, Images) {
   write(at("cut.tif"), std::string("II*\0\x08\0\0\0", 8));
   expect_refusal({"locate", at("cut.tif"), "--diameter", "15", "-o", at("o.csv")}, kInput, {"cut.tif"});
   expect_only({"cut.tif", "empty", "text.png"});
+}
+
+// Pictures on which there is nothing to see, or hardly a pixel: a sentence, or an empty table.
+TEST_F(BadInput, PicturesWithoutAnything) {
+  const auto picture = [&](int width, int height, int type, double value) {
+    cv::Mat m(height, width, type, cv::Scalar(value));
+    if (type == CV_8U && value == 1) cv::randu(m, 0, 255);
+    cv::imwrite(at("a.tif"), m);
+  };
+  const std::vector<std::pair<int, int>> sizes = {{1, 1},   {2, 2},   {1, 100}, {100, 1},  {5, 5},
+                                                  {7, 700}, {2, 700}, {3, 80},  {200, 150}};
+  const std::vector<std::pair<int, double>> values = {
+      {CV_8U, 1}, {CV_8U, 0}, {CV_8U, 255}, {CV_16U, 65535}, {CV_32F, std::nan("")}, {CV_32F, 1e38}};
+  for (const auto& [width, height] : sizes)
+    for (const auto& [type, value] : values) {
+      const bool all_values = width == 1 || width == 200;
+      if (!all_values && !(type == CV_8U && value == 1)) continue;
+      picture(width, height, type, value);
+      for (const std::vector<std::string>& words : {std::vector<std::string>{"locate"},
+                                                    {"locate", "--diameter", "5"},
+                                                    {"locate", "--diameter", "400", "--dark"},
+                                                    {"locate", "--diameter", "6", "--refine", "profile"},
+                                                    {"locate", "--diameter", "90", "--refine", "edges"},
+                                                    {"track"},
+                                                    {"calibrate", "camera"},
+                                                    {"calibrate", "beads"},
+                                                    {"calibrate", "walls"}}) {
+        std::vector<std::string> all = words;
+        all.insert(all.begin() + (words[0] == "calibrate" ? 2 : 1), at("a.tif"));
+        all.insert(all.end(), {"-q", "-o", at("o")});
+        const Ran ran = run_program(all);
+        SCOPED_TRACE(words[0] + " " + words.back() + " " + std::to_string(width) + " x " +
+                     std::to_string(height) + ", " + std::to_string(type) + ", " + std::to_string(value));
+        EXPECT_TRUE(ran.code == 0 || ran.code == 2 || ran.code == 3) << ran.code << ": " << ran.err;
+        for (const char* raw : {"OpenCV", "std::", "foresee", "assert", ".cpp"})
+          EXPECT_EQ(ran.err.find(raw), std::string::npos) << ran.err;
+        EXPECT_LE(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+        fs::remove_all(at("o"));
+      }
+    }
+  picture(1, 1, CV_8U, 0);
+  expect_refusal({"locate", at("a.tif"), "-o", at("o.csv")}, kInput, {"a.tif", "--diameter"});
+  expect_only({"a.tif"});
+}
+
+// What libraries would say of themselves, with addresses and file names of theirs, is said in a sentence.
+TEST_F(BadInput, NumbersThatNoFitCanHold) {
+  write(at("huge.csv"), "x,y\n1,1e308\n2,1e308\n3,-1e308\n4,1e308\n");
+  for (const char* law : {"line", "constant", "exponential"})
+    expect_refusal({"fit", at("huge.csv"), "--law", law, "-o", at("fit")}, kInput,
+                   {"huge.csv", "1e+308", "1e+150"});
+  expect_only({"huge.csv"});
 }
 
 TEST_F(BadInput, Trajectories) {

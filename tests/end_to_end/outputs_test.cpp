@@ -38,7 +38,7 @@ class Sandbox {
     fs::create_directory(folder_ / "work");
     fs::current_path(folder_ / "work");
     write("scene.toml", kScene);
-    write("plan.toml", "scene = \"scene.toml\"\n[grid]\n\"drive.gamma\" = [1.2, 1.4]\n");
+    write("plan.toml", "scene = \"scene.toml\"\n[axes]\ndrive.gamma = [1.2, 1.4]\n");
     write("table.csv", "x,y\n1,2\n2,4.1\n3,5.9\n4,8.2\n");
     EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "sim.h5", "-q"}).code, 0);
     EXPECT_EQ(run_program({"render", "sim.h5", "-o", "frames", "-q"}).code, 0);
@@ -120,6 +120,18 @@ std::vector<Verb> verbs() {
       {"calibrate beads", {"calibrate", "beads", "frames"}, "-o", false},
       {"calibrate camera", {"calibrate", "camera", "frames"}, "-o", false},
       {"calibrate bounce", {"calibrate", "contacts", "bounce", "table.csv"}, "-o", false},
+      {"calibrate bounce figures", {"calibrate", "contacts", "bounce", "table.csv"}, "--figures", true},
+      {"calibrate collisions", {"calibrate", "contacts", "collisions", "sim.h5"}, "-o", false},
+      {"calibrate collisions figures", {"calibrate", "contacts", "collisions", "sim.h5"}, "--figures", true},
+      {"calibrate infer",
+       {"calibrate", "contacts", "infer", "sim.h5", "--scene", "scene.toml", "--vary", "contact.mu=0.1:0.9"},
+       "-o",
+       false},
+      {"calibrate infer figures",
+       {"calibrate", "contacts", "infer", "sim.h5", "--scene", "scene.toml", "--vary", "contact.mu=0.1:0.9"},
+       "--figures",
+       true},
+      {"sweep collect", {"sweep", "collect", "plan.toml", "--folder", "swept"}, "-o", false},
   };
 }
 
@@ -134,10 +146,9 @@ Ran run_verb(const Verb& verb, const std::string& output, const std::vector<std:
 TEST(Outputs, NoVerbHarmsWhatItDidNotMake) {
   const Sandbox sandbox;
   const auto before = Sandbox::contents();
-  const std::vector<std::string> for_all = {"/",         "//",       ".",        "..",         "../work",
-                                            "a/..",      "./",       "dangling", "pipe",       "-",
-                                            "foreign",   "foreign/", "io",       "to_foreign", "frames",
-                                            "/dev/null", "/tmp",     "",         "missing/out"};
+  const std::vector<std::string> for_all = {
+      "/",       "//",       ".",  "..",         "../work", "a/..",      "./",   "dangling", "pipe",
+      "foreign", "foreign/", "io", "to_foreign", "frames",  "/dev/null", "/tmp", "",         "missing/out"};
   for (const Verb& verb : verbs()) {
     std::vector<std::string> places = for_all;
     places.insert(places.end(), {"scene.toml", "./io/../scene.toml", "link.toml", "sim.h5", "table.csv",
@@ -158,6 +169,50 @@ TEST(Outputs, NoVerbHarmsWhatItDidNotMake) {
       ASSERT_EQ(Sandbox::contents(), before) << verb.name;
     }
   }
+}
+
+// `-o -`: text in one file goes to standard output, whole, and nothing else does; all other outputs are
+// refused.
+TEST(Outputs, StandardOutputTakesTextAlone) {
+  const Sandbox sandbox;
+  EXPECT_EQ(run_program({"sweep", "run", "plan.toml", "-o", "swept", "-q"}).code, 0);
+  const auto before = Sandbox::contents();
+  const std::string frames = "frames", cell = "frames/CELL.toml";
+  const Ran table = run_program({"locate", frames, "-o", "-"});
+  EXPECT_EQ(table.code, 0) << table.err;
+  EXPECT_TRUE(table.out.starts_with("y,x,mass,")) << table.out.substr(0, 200);
+  EXPECT_GT(std::count(table.out.begin(), table.out.end(), '\n'), 100);
+  EXPECT_NE(table.err.find("frame 0: "), std::string::npos) << table.err;
+  const Ran named = run_program({"locate", frames, "-o", "named.csv", "-q"});
+  std::ifstream file("named.csv");
+  EXPECT_EQ(table.out, std::string(std::istreambuf_iterator<char>(file), {}));
+  fs::remove("named.csv");
+  const Ran tracks = run_program({"track", frames, "--cell", cell, "-o", "t.h5", "--csv", "-", "-q"});
+  EXPECT_EQ(tracks.code, 0) << tracks.err;
+  EXPECT_TRUE(tracks.out.starts_with("y,x,frame,particle,")) << tracks.out.substr(0, 200);
+  EXPECT_EQ(tracks.err, "");
+  fs::remove("t.h5");
+  const Ran toml = run_program({"calibrate", "beads", frames, "--cell", cell, "-o", "-"});
+  EXPECT_EQ(toml.code, 0) << toml.err;
+  EXPECT_TRUE(toml.out.starts_with("# twincell ")) << toml.out.substr(0, 200);
+  const Ran json = run_program({"sweep", "collect", "plan.toml", "--folder", "swept", "-o", "-"});
+  EXPECT_EQ(json.code, 0) << json.err;
+  EXPECT_TRUE(nlohmann::json::parse(json.out, nullptr, false).is_object()) << json.out.substr(0, 200);
+  EXPECT_EQ(Sandbox::contents(), before);
+  // One standard output takes one thing.
+  EXPECT_EQ(run_program({"locate", frames, "-o", "-", "--candidates", "-"}).code, 2);
+  EXPECT_EQ(run_program({"locate", frames, "-o", "-", "--json"}).code, 2);
+  for (const Verb& verb : verbs()) {
+    const std::string name = verb.name;
+    const bool text = name.starts_with("calibrate") || name.starts_with("sweep collect") ||
+                      name == "locate" || name == "locate candidates" || name == "track csv";
+    if (text && !verb.folder) continue;
+    const Ran ran = run_verb(verb, "-");
+    EXPECT_EQ(ran.code, 2) << name;
+    EXPECT_NE(ran.err.find("'-'"), std::string::npos) << name << ": " << ran.err;
+    EXPECT_EQ(ran.out, "") << name;
+  }
+  EXPECT_EQ(Sandbox::contents(), before);
 }
 
 TEST(Outputs, AnInputIsNeverAnOutputThroughAnyName) {

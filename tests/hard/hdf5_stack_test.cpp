@@ -144,3 +144,42 @@ TEST(Hdf5Stack, Spoilt) {
   put(path, "no HDF5");
   expect_words(refusal(path + ":/a"), {"a.h5"});
 }
+
+// Blank frames compress to a thousandth: some hundred kilobytes may claim a quarter of a gigabyte.
+TEST(Hdf5Stack, WhatACompressedDatasetClaims) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.h5";
+  const auto blank = [&](const std::vector<hsize_t>& shape, const std::vector<hsize_t>& chunk) {
+    const h5::Handle file = new_file(path);
+    const h5::Handle create = h5::own(H5Pcreate(H5P_DATASET_CREATE), "plist");
+    H5Pset_chunk(create.get(), 3, chunk.data());
+    H5Pset_deflate(create.get(), 9);
+    const h5::Handle space = h5::own(H5Screate_simple(3, shape.data(), nullptr), "space");
+    const h5::Handle dataset = h5::own(
+        H5Dcreate2(file.get(), "/a", H5T_STD_U8LE, space.get(), H5P_DEFAULT, create.get(), H5P_DEFAULT), "a");
+    const std::vector<std::uint8_t> zeros(shape[0] * shape[1] * shape[2], 0);
+    h5::check(H5Dwrite(dataset.get(), H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data()), "a");
+  };
+  blank({1, 16384, 16384}, {1, 16384, 16384});
+  ASSERT_GT(contents(path).size(), 200'000U);
+  expect_words(refusal(path), {"a.h5", "16384 x 16384", "cannot hold"});
+  // The bytes of another dataset explain nothing of this one.
+  {
+    const h5::Handle file = h5::own(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), path);
+    add_dataset(file.get(), "/padding", H5T_STD_I32LE, {1000, 1000});
+  }
+  expect_words(refusal(path), {"a.h5", "16384 x 16384", "cannot hold"});
+  blank({4, 100, 100}, {4, 100, 100});
+  EXPECT_EQ(refusal(path), "");
+  {
+    const h5::Handle file = new_file(path);
+    const h5::Handle create = h5::own(H5Pcreate(H5P_DATASET_CREATE), "plist");
+    const std::vector<hsize_t> shape = {1, 64, 64}, largest = {H5S_UNLIMITED, H5S_UNLIMITED, H5S_UNLIMITED},
+                               chunk = {16384, 256, 256};
+    H5Pset_chunk(create.get(), 3, chunk.data());
+    const h5::Handle space = h5::own(H5Screate_simple(3, shape.data(), largest.data()), "space");
+    const h5::Handle dataset = h5::own(
+        H5Dcreate2(file.get(), "/a", H5T_STD_U8LE, space.get(), H5P_DEFAULT, create.get(), H5P_DEFAULT), "a");
+  }
+  expect_words(refusal(path), {"a.h5", "chunks of /a", "16384 x 256 x 256", "cannot hold"});
+}

@@ -275,6 +275,14 @@ TEST(Contact, KindsOfLawAreTheSameForAll) {
                    "contact.normal: 'rubber' is not one of linear,");
 }
 
+// Beads that nothing turns do not roll: the resistance would be dropped without a word.
+TEST(Contact, RollingWithoutFrictionIsRefused) {
+  const std::string rolling = kGood + "[contact]\nrolling = \"spring\"\nk_r = 1.0\nmu_r = 0.1\n";
+  expect_complaint(rolling + "tangential = \"none\"\n", "scene.toml:7:11: contact.rolling: is \"spring\"");
+  expect_complaint(rolling + "tangential = \"none\"\n", "contact.tangential is \"none\"");
+  EXPECT_NO_THROW((void)read_scene_text(rolling, "scene.toml"));
+}
+
 TEST(Contact, LawsRefuseTheirParameters) {
   expect_complaint(kGood + "[contact]\nmu = -0.1\n",
                    "scene.toml:7:6: contact.mu: -0.1 is out of range; the value must be at least 0");

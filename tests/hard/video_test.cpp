@@ -128,6 +128,35 @@ TEST(Video, ATruncatedOneIsRefused) {
   }
 }
 
+// A film that was streamed states no number of frames, and ffv1 in Matroska never does.
+TEST(Video, FramesAreCountedWhereTheHeaderStatesNone) {
+  if (!kFfmpeg) GTEST_SKIP() << "ffmpeg is not installed.";
+  const TemporaryFolder folder;
+  put(folder / "raw", planes(64, 48, 23, 8, values(8)));
+  encode(folder / "raw", "gray", 64, 48, "ffv1", folder / "grey.mkv");
+  write_film(folder / "film.avi", 23);
+  ASSERT_TRUE(runs(fmt::format("sh -c 'ffmpeg -y -i {} -c copy -f matroska - | cat > {}'",
+                               std::string(folder / "film.avi"), std::string(folder / "streamed.mkv"))));
+  for (const char* name : {"grey.mkv", "streamed.mkv", "film.avi"}) {
+    EXPECT_EQ(open_frames(folder / name)->announced(), 23U) << name;
+    EXPECT_EQ(read_all(folder / name).size(), 23U) << name;
+  }
+}
+
+TEST(Video, ACutFilmIsRefusedWithoutAnAddress) {
+  if (!kFfmpeg) GTEST_SKIP() << "ffmpeg is not installed.";
+  const TemporaryFolder folder;
+  std::mt19937 chance(1);
+  put(folder / "raw",
+      planes(64, 48, 20, 16, [&](int, int, int) { return static_cast<unsigned>(chance() & 0xFFFF); }));
+  encode(folder / "raw", "gray16le", 64, 48, "ffv1", folder / "deep.mkv");
+  const std::string whole = contents(folder / "deep.mkv");
+  put(folder / "deep.mkv", whole.substr(0, whole.size() / 2));
+  const std::string sentence = refusal(folder / "deep.mkv");
+  expect_words(sentence, {"deep.mkv", "ffmpeg says"});
+  EXPECT_EQ(sentence.find("0x"), std::string::npos) << sentence;
+}
+
 TEST(Video, ANameThatAShellOrFfmpegWouldMistake) {
   if (!kFfmpeg) GTEST_SKIP() << "ffmpeg is not installed.";
   const TemporaryFolder folder;
