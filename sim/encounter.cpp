@@ -11,6 +11,7 @@
 #include "sim/collocation.hpp"
 #include "sim/contact.hpp"
 #include "sim/encounter_forces.hpp"
+#include "sim/history_encounter.hpp"
 #include "sim/moment_polynomial.hpp"
 #include "sim/passes.hpp"
 
@@ -406,10 +407,14 @@ bool visit_laws(const ContactLaws& laws, Visit visit) {
       laws.normal, laws.tangential);
 }
 
+// Steps per contact time of laws that remember: errors below 1e-11 and, of events, 1e-8.
+constexpr double kFineTolerance = 1e-9;
+constexpr int kFineSteps = 200, kCoarseSteps = 24;
+
 }  // namespace
 
 bool can_meet_alone(const ContactLaws& laws) {
-  return visit_laws(laws, [](const auto&, const auto&) {});
+  return remembers(laws) || visit_laws(laws, [](const auto&, const auto&) {});
 }
 
 double encounter_time(const EncounterSetting& setting, double speed) {
@@ -419,6 +424,9 @@ double encounter_time(const EncounterSetting& setting, double speed) {
 
 EncounterEnd meet(const EncounterSetting& setting, const RelativeMotion& motion, double time, double last,
                   double tolerance) {
+  if (remembers(*setting.laws))
+    return meet_with_history(setting, motion, time, last, reading_of(*setting.laws),
+                             tolerance < kFineTolerance ? kFineSteps : kCoarseSteps);
   EncounterEnd end;
   const double scale = encounter_time(setting, motion.u.norm());
   visit_laws(*setting.laws, [&]<class N, class T>(const N& normal, const T& tangential) {
@@ -437,7 +445,8 @@ EncounterEnd meet(const EncounterSetting& setting, const RelativeMotion& motion,
   return end;
 }
 
-EncounterForce force_of(const EncounterSetting& setting, const RelativeMotion& motion) {
+EncounterForce force_of(const EncounterSetting& setting, const RelativeMotion& motion, const Vec3& xi) {
+  if (remembers(*setting.laws)) return force_with_history(setting, motion, xi, reading_of(*setting.laws));
   EncounterForce force{};
   visit_laws(*setting.laws, [&]<class N, class T>(const N& normal, const T& tangential) {
     force = setting.dimension == 2 ? Encounter<N, T, 2>(setting, normal, tangential).force(motion)

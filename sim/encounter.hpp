@@ -38,14 +38,15 @@ struct EncounterEnd {
   bool parted = false;  ///< false: still in contact when the time was over
   double time = 0;
   RelativeMotion motion;
-  double deepest = 0;  ///< overlap, sigma, at the moments that its steps look at
+  double deepest = 0;      ///< overlap, sigma, at the moments that its steps look at
   /// About half way: where the deepest of its steps ended.
   double middle = 0;
   RelativeMotion at_middle;
+  Vec3 xi = Vec3::Zero();  ///< the tangential spring at the end, of laws that remember
 };
 
-/// Whether encounters of these laws can be integrated alone: forces that depend on the present only and are
-/// smooth but for the Coulomb limit.
+/// Whether encounters of these laws can be integrated alone: forces that are smooth but for the Coulomb
+/// limit, and depend on the present only or on a tangential spring (history_encounter.hpp).
 bool can_meet_alone(const ContactLaws& laws);
 
 /// Shortest time in which the contact force changes (t_c, for a linear law).
@@ -56,6 +57,8 @@ double encounter_time(const EncounterSetting& setting, double speed);
 /// Steps of order 15 (collocation.hpp) of at most half a contact time, as long as `tolerance` allows; the
 /// polynomial that each one is tells where the Coulomb limit begins or ceases to bind, where F_n changes its
 /// sign, and where the surfaces part, and there it ends.
+///
+/// Laws that remember begin with a spring of length 0: `motion` is that of first touch.
 /// \param tolerance of lengths and velocities relative to those of the encounter; 1e-13 .. 1e-3
 EncounterEnd meet(const EncounterSetting& setting, const RelativeMotion& motion, double time, double last,
                   double tolerance);
@@ -64,6 +67,8 @@ EncounterEnd meet(const EncounterSetting& setting, const RelativeMotion& motion,
 struct EncounterForce {
   Vec3 force, moment, normal;
 };
-EncounterForce force_of(const EncounterSetting& setting, const RelativeMotion& motion);
+/// \param xi the tangential spring, of laws that remember
+EncounterForce force_of(const EncounterSetting& setting, const RelativeMotion& motion,
+                        const Vec3& xi = Vec3::Zero());
 
 }  // namespace twincell::sim

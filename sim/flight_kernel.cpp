@@ -269,7 +269,8 @@ class FlightKernel : public Kernel {
     };
     for_each_near_pair(s.beads, s.dimension, s.period, 0,
                        [&](std::int32_t i, std::int32_t j, double, const Vec3&) { touch(i, j); });
-    if (crowded) return false;
+    // A contact that goes on has a spring; encounters begin without.
+    if (crowded || (plan_.history && !pairs.empty())) return false;
     begin_flights(s);
     for (const auto& [i, j] : pairs)
       if (!meet_now(i, j)) return give_up();
@@ -847,11 +848,11 @@ class FlightKernel : public Kernel {
       std::array<Instant, 2> both{};
       if (t <= c.begin) {
         for (std::size_t q = 0; q < 2; ++q) both[q] = flown(c.before[q], c.rim[q]);
-        if (t == c.begin) write_contact(s, c, c.motion, t);
+        if (t == c.begin) write_contact(s, c, c.motion, Vec3::Zero(), t);
       } else {
-        const RelativeMotion m = meet(setting(c.i, c.j), c.motion, c.begin, t, kTolerance).motion;
-        both = apart(c, m, t);
-        write_contact(s, c, m, t);
+        const EncounterEnd now = meet(setting(c.i, c.j), c.motion, c.begin, t, kTolerance);
+        both = apart(c, now.motion, t);
+        write_contact(s, c, now.motion, now.xi, t);
       }
       put(static_cast<std::size_t>(c.i), both[0]);
       if (c.j >= 0) put(static_cast<std::size_t>(c.j), both[1]);
@@ -874,9 +875,9 @@ class FlightKernel : public Kernel {
       return std::pair(a.i, a.j) < std::pair(b.i, b.j);
     });
   }
-  void write_contact(System& s, const Contact& c, const RelativeMotion& m, double t) {
+  void write_contact(System& s, const Contact& c, const RelativeMotion& m, const Vec3& xi, double t) {
     const EncounterSetting e = setting(c.i, c.j);
-    const EncounterForce f = force_of(e, m);
+    const EncounterForce f = force_of(e, m, xi);
     const auto add = [&](std::int32_t bead, double sign) {
       Force& to = s.forces[static_cast<std::size_t>(bead)];
       to.x += sign * f.force.x(), to.y += sign * f.force.y(), to.z += sign * f.force.z();
@@ -884,7 +885,19 @@ class FlightKernel : public Kernel {
     };
     add(c.i, 1);
     if (c.j >= 0) add(c.j, -1);
-    if (plan_.key.velocity == Velocity::half_step) return;
+    ContactMemory memory{c.i, c.j, {}};
+    // A tangential vector; in the plane its length along (-n_z, n_x).
+    const auto remember = [&](const Vec3& along) {
+      if (plan_.dimension == 2)
+        memory.values.push_back(-along.x() * f.normal.z() + along.z() * f.normal.x());
+      else
+        memory.values.insert(memory.values.end(), {along.x(), along.y(), along.z()});
+    };
+    if (plan_.history) remember(xi);
+    if (plan_.key.velocity == Velocity::half_step) {
+      if (plan_.history) memories_.push_back(std::move(memory));
+      return;
+    }
     // What the step before would have left: the velocities in its middle.
     const double half = 0.5 * dt_;
     RelativeMotion middle = m;
@@ -892,14 +905,8 @@ class FlightKernel : public Kernel {
     middle.u -= half * push;
     middle.s += half * e.turn * f.moment;
     const double v_n = middle.u.dot(f.normal);
-    ContactMemory memory{c.i, c.j, {v_n}};
-    if (plan_.rotation) {
-      const Vec3 v_t = middle.u - v_n * f.normal - middle.s.cross(f.normal);
-      if (plan_.dimension == 2)
-        memory.values.push_back(-v_t.x() * f.normal.z() + v_t.z() * f.normal.x());
-      else
-        memory.values.insert(memory.values.end(), {v_t.x(), v_t.y(), v_t.z()});
-    }
+    memory.values.push_back(v_n);
+    if (plan_.rotation) remember(middle.u - v_n * f.normal - middle.s.cross(f.normal));
     memories_.push_back(std::move(memory));
   }
   /// From flights to steps.
@@ -946,9 +953,11 @@ class FlightKernel : public Kernel {
 }  // namespace
 
 std::string why_not_flights(const Scene& scene, const Plan& plan) {
-  if (!can_meet_alone(plan.bead)) return "the contact law of beads remembers, or is not smooth";
+  if (!can_meet_alone(plan.bead))
+    return "the contact law of beads has a normal force that remembers, or resists rolling";
   for (const ContactLaws& laws : plan.wall_laws)
-    if (!can_meet_alone(laws)) return "the contact law of a wall remembers, or is not smooth";
+    if (!can_meet_alone(laws))
+      return "the contact law of a wall has a normal force that remembers, or resists rolling";
   if (scene.plate_drag > 0) return "cell.plate_drag slows beads between contacts";
   if (!scene.envelope.points.empty()) return "the drive's amplitude changes";
   if (scene.single) return "time.precision = \"single\"";

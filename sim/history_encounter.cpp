@@ -69,8 +69,23 @@ class HistoryEncounter {
     }
     end.time = t;
     end.motion = motion(y);
+    if (const Moment m = look(t, y); mode_ == Mode::slide)
+      end.xi = spring_for(m, friction(m));
+    else if (mode_ != Mode::loose)
+      end.xi = m.x;
     end.at_middle = motion(middle_);
     return end;
+  }
+
+  EncounterForce force(const RelativeMotion& at, const Vec3& xi) {
+    State y = state(at);
+    put(xi, 3, y);
+    const Moment m = look(0, y);
+    constexpr double kAtLimit = 1 - 1e-9;
+    const bool held =
+        reading_ == SlipReading::spring_only && k_t_ * xi.norm() >= kAtLimit * limit(m) && limit(m) > 0;
+    const Vec3 f_t = cut(held ? Vec3(-k_t_ * xi) : sticking_force(m), limit(m));
+    return {m.f_n * m.n + f_t, m.n.cross(f_t), m.n};
   }
 
  private:
@@ -353,6 +368,16 @@ EncounterEnd meet_with_history(const EncounterSetting& setting, const RelativeMo
               .run(motion, time, last, scale, steps);
   });
   return end;
+}
+
+EncounterForce force_with_history(const EncounterSetting& setting, const RelativeMotion& motion,
+                                  const Vec3& xi, SlipReading reading) {
+  EncounterForce force{};
+  visit_history(*setting.laws, [&](const auto& normal, const auto& spring) {
+    force =
+        HistoryEncounter<std::decay_t<decltype(normal)>>(setting, normal, spring, reading).force(motion, xi);
+  });
+  return force;
 }
 
 }  // namespace twincell::sim

@@ -32,4 +32,8 @@ SlipReading reading_of(const ContactLaws& laws);
 EncounterEnd meet_with_history(const EncounterSetting& setting, const RelativeMotion& motion, double time,
                                double last, SlipReading reading, int steps = 200);
 
+/// As force_of() (encounter.hpp), with a spring of length xi.
+EncounterForce force_with_history(const EncounterSetting& setting, const RelativeMotion& motion,
+                                  const Vec3& xi, SlipReading reading);
+
 }  // namespace twincell::sim

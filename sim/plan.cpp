@@ -212,7 +212,7 @@ void choose_stepping(const Scene& s, std::size_t beads, Plan& plan) {
     throw ConfigError(s.where("time.stepping"),
                       fmt::format("is \"flights\", but {}; choose \"auto\" or \"steps\".", hindrance));
   plan.flights = s.stepping == "flights" ||
-                 (s.stepping == "auto" && hindrance.empty() && w >= kDilute && beads <= kMost);
+                 (s.stepping == "auto" && hindrance.empty() && !plan.history && w >= kDilute && beads <= kMost);
   const char* name = "free flight";
   if (plan.flights)
     plan.effects.push_back(

@@ -251,8 +251,8 @@ TEST(Flights, TheGasIsAsHotAsByStepsOfTime) {
   }
 }
 
-TEST(Flights, TheBitsDoNotDependOnHowARunIsCutOrTakenUp) {
-  Gas whole(gas("rough-3d", 30), true), cut(gas("rough-3d", 30), true), taken(gas("rough-3d", 30), true);
+void expect_same_bits_however_cut(const std::string& text) {
+  Gas whole(text, true), cut(text, true), taken(text, true);
   const std::int64_t steps = 6 * whole.plan.steps_per_period;
   whole.kernel->advance(whole.system, steps);
   for (std::int64_t done = 0, piece = 1; done < steps; done += piece, piece = piece * 7 % 1013 + 1)
@@ -269,18 +269,29 @@ TEST(Flights, TheBitsDoNotDependOnHowARunIsCutOrTakenUp) {
   EXPECT_EQ(std::memcmp(whole.system.beads.data(), cut.system.beads.data(), bytes), 0);
   EXPECT_EQ(std::memcmp(whole.system.beads.data(), taken.system.beads.data(), bytes), 0);
   EXPECT_NE(whole.system.beads[0].spin, 0);
+  EXPECT_NE(whole.kernel->description().find("flights"), std::string::npos);
+  EXPECT_NE(whole.kernel->memory().front(), 0) << "beads fly";
 }
+TEST(Flights, TheBitsDoNotDependOnHowARunIsCutOrTakenUp) {
+  expect_same_bits_however_cut(gas("rough-3d", 30));
+}
+TEST(Flights, WithSpringsTheBitsDoNotDependOnHowARunIsCutOrTakenUp) {
+  expect_same_bits_however_cut(gas("rough-2d", 50, "[contact]\ntangential = \"spring\"\nk_t = 2e5\n"));
+}
+
+const std::string kDashpot = "tangential = \"dashpot\"\nc_t_over_c_n = 1.0\n",
+                  kSpring = "tangential = \"spring\"\nk_t = 2e5\ngamma_t = 100.0\n",
+                  kSpringOnly = kSpring + "slip = \"spring_only\"\n";
 
 /// Two spheres that slide on each other, and elsewhere a row that is pressed together meanwhile; all of them
 /// after that.
-std::vector<Bead> pair_and_row(const std::string& stepping, int n, int row) {
+std::vector<Bead> pair_and_row(const std::string& stepping, int n, int row, const std::string& friction) {
   const Scene scene = scene_of(fmt::format(
       "[cell]\ndimension = 3\nwidth = 40.0\ndepth = 40.0\nheight = 40.0\ngravity = 0.0\nbottom = "
       "\"periodic\"\nsides = \"periodic\"\nplates = \"periodic\"\n[beads]\ncount = {}\n[drive]\namplitude "
       "= 0.0\nomega = 6.0\n[time]\nintegrator = \"split\"\nsteps_per_contact = {}\nstepping = "
-      "\"{}\"\n[contact]\nk_n = 1e6\ntangential = \"dashpot\"\nmu = 0.4\nrestitution = 0.9\n"
-      "c_t_over_c_n = 1.0\n",
-      2 + row, n, stepping));
+      "\"{}\"\n[contact]\nk_n = 1e6\nmu = 0.4\nrestitution = 0.9\n{}",
+      2 + row, n, stepping, friction));
   const Plan plan = make_plan(scene);
   System s = make_system(scene, plan);
   const auto put = [&](const Vec3& r, const Vec3& v) {
@@ -315,22 +326,26 @@ double difference(const std::vector<Bead>& a, const std::vector<Bead>& b, std::s
 
 // Three meet: they go by steps until they have parted, the pair does not.
 TEST(Flights, ThreeThatMeetMoveAsByStepsAndTheOthersFlyOn) {
-  const auto exact = pair_and_row("steps", 8000, 3), by_steps = pair_and_row("steps", 200, 3),
-             flown = pair_and_row("flights", 200, 3);
-  EXPECT_GT(std::abs(exact[2].spin), 0.1);
-  EXPECT_LT(difference(flown, exact, 2, 5), 2e-3);
-  EXPECT_LT(difference(flown, exact, 0, 2), 2e-6);
-  EXPECT_GT(difference(by_steps, exact, 0, 2), 1e-5);
+  for (const std::string& law : {kDashpot, kSpring, kSpringOnly}) {
+    const auto exact = pair_and_row("steps", 8000, 3, law), by_steps = pair_and_row("steps", 200, 3, law),
+               flown = pair_and_row("flights", 200, 3, law);
+    EXPECT_GT(std::abs(exact[2].spin), 0.1) << law;
+    EXPECT_LT(difference(flown, exact, 2, 5), 2e-3) << law;
+    EXPECT_LT(difference(flown, exact, 0, 2), 1e-5) << law;
+    EXPECT_GT(difference(by_steps, exact, 0, 2), 2 * difference(flown, exact, 0, 2)) << law;
+  }
 }
 
 // Ten meet, too many to be moved alone: all go over to steps in the middle of the pair's contact, and it must
-// end as if nothing had happened.
+// end as if nothing had happened: the spring goes over too.
 TEST(Flights, AContactIsHandedOverAsItStands) {
-  const auto exact = pair_and_row("steps", 8000, 10), handed = pair_and_row("flights", 200, 10);
-  EXPECT_GT(std::abs(exact[0].spin), 1);
-  EXPECT_GT(std::abs(exact[0].spin_x), 0.5);
-  EXPECT_LT(difference(handed, exact, 0, 2), 1e-3);
-  EXPECT_GT(difference(handed, exact, 0, 2), 1e-7);
+  for (const std::string& law : {kDashpot, kSpring, kSpringOnly}) {
+    const auto exact = pair_and_row("steps", 8000, 10, law), handed = pair_and_row("flights", 200, 10, law);
+    EXPECT_GT(std::abs(exact[0].spin), 1) << law;
+    EXPECT_GT(std::abs(exact[0].spin_x), 0.5) << law;
+    EXPECT_LT(difference(handed, exact, 0, 2), 1e-3) << law;
+    EXPECT_GT(difference(handed, exact, 0, 2), 1e-7) << law;
+  }
 }
 
 // Beads that lose nothing, in a box without gravity: the energy is that of the start after some ten thousand
@@ -423,7 +438,12 @@ TEST(Flights, HardCases) {
 
 TEST(Flights, AreRefusedWhereTheyAreNotExact) {
   const auto flights = [](const std::string& more) { return "[time]\nstepping = \"flights\"\n" + more; };
-  EXPECT_THROW(make_plan(scene_of("preset = \"fortini-huang-2015\"\n" + flights(""))), ConfigError);
+  const std::string paper = "preset = \"fortini-huang-2015\"\n[beads]\ncount = 40\n[drive]\ngamma = 7.0\n";
+  EXPECT_TRUE(make_plan(scene_of(paper + flights(""))).flights);
+  EXPECT_FALSE(make_plan(scene_of(paper)).flights) << "springs fly where that is asked for";
+  EXPECT_THROW(
+      make_plan(scene_of(paper + flights("[contact]\nrolling = \"spring\"\nk_r = 1.0\nmu_r = 0.1\n"))),
+      ConfigError);
   EXPECT_THROW(make_plan(scene_of("preset = \"bhateja-2016-smooth-2d\"\n" + flights("[drive]\nk_m = 50.0\n") +
                                   "[contact]\nnormal = \"clipped\"\n")),
                ConfigError);
