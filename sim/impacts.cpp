@@ -118,6 +118,7 @@ std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& i
   scene.steps_per_contact = setting.n;
   scene.single = setting.single;
   scene.width = kApart * (total + 1);
+  scene.stepping = "steps";
   const Plan plan = make_plan(scene);
   System system = make_system(scene, plan);
   // The plan rounds the step so that frames fall on whole ones; here the step itself is studied.

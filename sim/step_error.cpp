@@ -24,6 +24,7 @@ Scene in_empty_space(Scene s, const Plan& plan) {
   s.spread = SizeSpread::none;
   s.intruder.reset();
   s.start = StartKind::crystal_a;
+  s.stepping = "steps";  // without gravity beads would fly, and no step would err
   return s;
 }
 

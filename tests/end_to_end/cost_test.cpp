@@ -42,6 +42,26 @@ TEST(Cost, SaysWhatAccuracyCosts) {
     EXPECT_NEAR(seconds["contact_time"].get<double>() / seconds["t0"].get<double>(), 2.222831e-3, 1e-8);
     EXPECT_LE(w["bed"]["floor_force"], 1e-8);
   }
+  // Impacts of a bed that slide and stick.
+  ASSERT_EQ(d["sliding"].size(), d["settings"].size());
+  for (const auto& w : d["sliding"]) {
+    for (const char* key : {"restitution", "tangential", "spin"})
+      EXPECT_LE(w[key]["rms"], w[key]["max"]) << key;
+    EXPECT_NEAR(w["spin_change"], 0.072, 0.02);
+    // A fifth of what friction does, by Verlet (22 %: k_n tau/(gamma_n m), tau the age of the first
+    // position).
+    if (w["integrator"] == "verlet" && w["n"] > 50) {
+      EXPECT_NEAR(w["spin"]["rms"].get<double>() / w["spin_change"].get<double>(), 0.22, 0.05);
+    }
+    if (w["integrator"] == "split") {
+      EXPECT_LT(w["spin"]["rms"].get<double>(), 0.06 * w["spin_change"].get<double>());
+    }
+  }
+  const auto& impacts = d["equal_impacts"];
+  EXPECT_NEAR(impacts["verlet"]["spin"]["rms"].get<double>() / impacts["verlet"]["spin_change"].get<double>(),
+              impacts["spin_share"], 5e-4);
+  EXPECT_NEAR(impacts["verlet"]["n"], 1000, 400);  // k_n tau/(gamma_n m) = 1 %
+  EXPECT_GT(impacts["step_ratio"], 40);
   EXPECT_EQ(d["gas"].size(), 3U);
   ASSERT_EQ(d["precisions"].size(), 4U);
   for (std::size_t k = 0; k < 4; ++k) {

@@ -81,6 +81,33 @@ TEST(StepError, FollowsTheScenesOwnLaw) {
   EXPECT_NEAR(hertz.error->restitution, 1, 1e-6);
 }
 
+TEST(StepError, IsOfStepsAlsoWhereBeadsWouldFlyWithoutGravity) {
+  const Explained e("[contact]\ntangential = \"none\"\ngamma_n = 100.0\n" + stepped(50.37));
+  ASSERT_TRUE(e.error);
+  EXPECT_NEAR(e.error->error.largest, 3.2e-3, 3e-4);
+  EXPECT_FALSE(e.error->friction);
+}
+
+TEST(StepError, OfFrictionIsThatOfSlidingImpacts) {
+  // The first paper's beads: a fifth of the friction at n = 50 by Verlet, a hundredth where steps are split.
+  const std::string law = "[contact]\ngamma_n = 100.0\ngamma_t = 100.0\nk_t = 1e4\nmu = 0.6\n";
+  Explained verlet(law + stepped(50.37));
+  const Explained fine(law + stepped(201.48)), split(law + stepped(50.37, "split"));
+  ASSERT_TRUE(verlet.error && verlet.error->friction && split.error && split.error->friction);
+  const ImpactErrors& e = *verlet.error->friction;
+  EXPECT_NEAR(e.spin.rms / e.spin_change, 0.22, 0.05);
+  EXPECT_NEAR(e.spin.rms / fine.error->friction->spin.rms, 4, 0.8) << "first order";
+  EXPECT_LT(split.error->friction->spin.rms, 0.02 * e.spin.rms);
+  EXPECT_NE(verlet.reason().find("friction changes R w by 0.0"), std::string::npos) << verlet.reason();
+  // The dashpot's slider has no spring, and is exact in another way.
+  const Explained dashpot(
+      "[contact]\nrestitution = 0.9\ntangential = \"dashpot\"\nc_t_over_c_n = 1.0\nmu = 0.4\n" +
+      stepped(50.37));
+  ASSERT_TRUE(dashpot.error && dashpot.error->friction);
+  EXPECT_GT(dashpot.error->friction->spin.rms, 1e-5);
+  EXPECT_LT(dashpot.error->friction->spin.rms, 0.01);
+}
+
 TEST(StepError, IsOfTheUsualBeadAndSaysSo) {
   const std::string contact = "[contact]\nrestitution = 0.9\n";
   Explained equal(contact + stepped(50)),
