@@ -142,10 +142,6 @@ Result mean_of(const BlockAverage& series, Result r, const std::string& why_abse
   r.values = {series.mean()};
   r.n = series.n();
   r.interval = series.interval(r.n_of);
-  if (r.interval && !(r.interval->low < r.interval->high)) {
-    r.interval.reset();
-    r.no_interval = "the same in all " + r.n_of;
-  }
   if (!r.interval && r.no_interval.empty()) r.no_interval = series.why_no_interval(r.n_of);
   return r;
 }

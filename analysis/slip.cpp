@@ -255,7 +255,8 @@ class Slip : public Observable {
     };
     Result r{.name = name, .values = {share(every)}, .unit = "1", .n = moved_.size(), .n_of = "periods"};
     r.interval = bootstrap_interval(moved_.size(), share, "periods with slips");
-    if (!r.interval) r.no_interval = "slips in one period only";
+    if (!r.interval)
+      r.no_interval = moved_.size() < 2 ? "slips in one period only" : "the same in every period with slips";
     r.convention =
         fmt::format("share of the moved bonds of slipping beads within {:g} degrees of {}", kWithin, about);
     r.source = source;

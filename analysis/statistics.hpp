@@ -61,13 +61,21 @@ class BlockAverage {
   [[nodiscard]] double correlation_time() const;
   /// 95 % interval of the mean by Student's t. Absent for fewer than 4 values, or if fewer
   /// than 5 blocks of 5 correlation times fit into the series (one block per value where no correlation is
-  /// to be seen, tau < 0.65).
+  /// to be seen, tau < 0.65), and where nothing scatters (has_no_scatter).
   [[nodiscard]] std::optional<Interval> interval(const std::string& of_what) const;
   /// Why `interval` is absent; empty if it is there.
   [[nodiscard]] std::string why_no_interval(const std::string& of_what) const;
+  /// Whether the series is long enough for an interval, but its blocks all have the same mean to 12 digits:
+  /// its values are all the same, or they repeat with a period that fits into a block (a bed that bounces
+  /// with period two).
+  [[nodiscard]] bool has_no_scatter() const;
 
  private:
   [[nodiscard]] std::size_t block_length() const;
+  /// But for rounding.
+  [[nodiscard]] bool all_the_same() const;
+  /// Half of the interval's width from blocks of `length` entries of coarse_.
+  [[nodiscard]] double half_width(std::size_t length) const;
 
   std::vector<double> coarse_;  ///< means of coarse_length_ consecutive values
   std::size_t coarse_length_ = 1;
@@ -92,6 +100,9 @@ std::optional<Interval> bootstrap_interval(
 /// and for items that are all the same.
 std::optional<Interval> mean_interval(const std::vector<double>& items, const std::string& of_what,
                                       std::uint64_t seed = 1, std::size_t resamples = 1000);
+
+/// Why `mean_interval` of these items is absent; empty if it is there.
+std::string why_no_mean_interval(const std::vector<double>& items, const std::string& of_what);
 
 /// 95 % interval of a probability from `successes` in `trials` independent trials: exact (Clopper & Pearson
 /// 1934), by quantiles of the beta distribution. For no

@@ -10,6 +10,7 @@
 #include "cli/verb.hpp"
 #include "sim/cost.hpp"
 #include "sim/demand.hpp"
+#include "sim/start.hpp"
 #include "sim/step_error.hpp"
 
 namespace twincell::cli {
@@ -37,6 +38,13 @@ std::string duration(double seconds) {
   return fmt::format("{:.3g} d", seconds / 86'400);
 }
 
+/// Whether another seed makes another run.
+std::string chance_of(const sim::Scene& scene) {
+  return sim::has_chance(scene)
+             ? "the start is drawn at random: another start.seed makes another run"
+             : "none: nothing in the start is drawn at random, and every start.seed makes the same run";
+}
+
 std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::Cost& cost) {
   using State = sim::Effect::State;
   std::string s = list_of(plan, State::on, "On, because the scene says so") +
@@ -45,6 +53,7 @@ std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::C
                   list_of(plan, State::approximated, "Approximated, with the error that is known");
   if (!plan.warnings.empty()) s += "Warnings\n";
   for (const std::string& warning : plan.warnings) s += "  " + warning + "\n";
+  s += fmt::format("Chance\n  {}\n", chance_of(scene));
   s += fmt::format("Kernel\n  {}; {}\n", plan.kernel_name(), cost.kernel);
   s += fmt::format("  {:.0f} bytes a bead", cost.bytes_per_bead);
   if (cost.bytes_per_pair > 0)
@@ -80,6 +89,7 @@ void run(const ExplainOptions& o, const Common& common) {
   nlohmann::json d = as_json(plan);
   const double beads = static_cast<double>(cost.beads);
   d["beads"] = cost.beads;
+  d["has_chance"] = sim::has_chance(scene);
   d["vectors"] = cost.kernel;
   d["bytes_per_bead"] = cost.bytes_per_bead;
   d["bytes_per_pair"] = cost.bytes_per_pair > 0 ? nlohmann::json(cost.bytes_per_pair) : nlohmann::json();

@@ -74,6 +74,8 @@ bool PrecisionRule::reached(const Frame& frame) {
 }
 
 bool PrecisionRule::narrow() const {
+  // What does not scatter from cycle to cycle is known to its last digit.
+  if (cycles_.has_no_scatter()) return true;
   const auto interval = cycles_.interval("cycles");
   if (!interval) return false;
   const double half = (interval->high - interval->low) / 2;
@@ -87,7 +89,10 @@ std::string PrecisionRule::text() const {
       interval ? fmt::format("{} is known to {:.3g} %", name,
                              50 * (interval->high - interval->low) / std::abs(cycles_.mean()))
                : fmt::format("the error of {} is not known, {}", name, cycles_.why_no_interval("cycles"));
-  if (interval && cycles_.mean() == 0) known = fmt::format("{} is 0", name);
+  if (cycles_.has_no_scatter())
+    known = cycles_.mean() == 0
+                ? fmt::format("{} is 0", name)
+                : fmt::format("{} does not scatter: {}", name, cycles_.why_no_interval("cycles"));
   std::string asked = fmt::format("{:g} % was asked", 100 * asked_.relative);
   if (asked_.absolute > 0) asked += fmt::format(", or {:g}", asked_.absolute);
   const std::string time = fmt::format("correlation time {:.3g} cycles", cycles_.correlation_time());

@@ -137,9 +137,41 @@ TEST(Statistics, BlockMeanIsTheMean) {
   EXPECT_FALSE(three.why_no_interval("values").empty());
   BlockAverage constant;
   for (int i = 0; i < 9; ++i) constant.add(0.25);
-  ASSERT_TRUE(constant.interval("values").has_value());
-  EXPECT_EQ(constant.interval("values")->low, 0.25);
-  EXPECT_EQ(constant.interval("values")->high, 0.25);
+  EXPECT_FALSE(constant.interval("values").has_value());
+  EXPECT_TRUE(constant.has_no_scatter());
+  EXPECT_EQ(constant.why_no_interval("values"), "the same in all 9 values");
+}
+
+TEST(Statistics, NoSeriesHasAnIntervalOfZeroWidth) {
+  // 0.1 summed is not 0.1 to the last digit; a bed that bounces with period two cancels in blocks of two.
+  for (const std::size_t n : {4, 9, 16, 64, 5000, 20000}) {
+    BlockAverage constant, period_two, about_zero;
+    for (std::size_t i = 0; i < n; ++i) {
+      constant.add(0.1);
+      period_two.add(i % 2 == 0 ? 0.3 : 0.1);
+      about_zero.add(i % 2 == 0 ? 1 : -1);
+    }
+    EXPECT_FALSE(constant.interval("cycles").has_value()) << n;
+    EXPECT_NE(constant.why_no_interval("cycles").find("the same in all"), std::string::npos) << n;
+    for (const BlockAverage& series : {period_two, about_zero}) {
+      const auto interval = series.interval("cycles");
+      if (interval) {
+        EXPECT_GT(interval->high - interval->low, 1e-9) << n;
+      }
+      EXPECT_EQ(interval.has_value(), series.why_no_interval("cycles").empty()) << n;
+    }
+  }
+  BlockAverage sixteen;
+  for (int i = 0; i < 16; ++i) sixteen.add(i % 2 == 0 ? 1 : -1);
+  EXPECT_FALSE(sixteen.interval("cycles").has_value());
+  EXPECT_NE(sixteen.why_no_interval("cycles").find("period"), std::string::npos);
+}
+
+TEST(Statistics, AnAbsentIntervalOfAMeanHasAReason) {
+  EXPECT_EQ(why_no_mean_interval({1, 2, 4}, "runs"), "");
+  EXPECT_EQ(why_no_mean_interval({1}, "runs"), "too few runs for an error: 1 of at least 2");
+  EXPECT_EQ(why_no_mean_interval({0.1, 0.1, 0.1}, "runs"), "the same in all 3 runs");
+  EXPECT_EQ(why_no_mean_interval({1, std::nan("")}, "runs"), "not every one of 2 runs has a value");
 }
 
 TEST(Statistics, BootstrapCoversMeanAndSpreadOfAFewItems) {
