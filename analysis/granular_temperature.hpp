@@ -5,16 +5,12 @@
 #include <memory>
 
 #include "analysis/observable.hpp"
+#include "analysis/trajectory/temperature.hpp"
 
 namespace twincell {
 
-/// m <v'^2> of one frame, per component, in m g sigma:  (1/N) sum m_i (v_i - v_cm)^2  over the beads present,
-/// v_cm the centre-of-mass velocity of that instant; rotation does not enter. `mass` empty: every mass is 1.
-/// For N beads with independent velocities of variance T/m per component it is T (1 - 1/N): the factor
-/// belongs to the definition and is not corrected. NaN for no beads or no velocities.
-Vec3 temperature_components(const Frame& frame, const std::vector<double>& mass);
-
-/// T_g of one frame, in m g sigma:  (1/2) (1/N) sum m_i |v_i - v_cm|^2: half the sum of the components above.
+/// T_g of one frame, in m g sigma:  (1/2) (1/N) sum m_i |v_i - v_cm|^2: half the sum of
+/// temperature_components (analysis/trajectory/temperature.hpp).
 /// Fortini & Huang 2015, eq. 2.
 double granular_temperature(const Frame& frame, const std::vector<double>& mass);
 
@@ -27,8 +23,14 @@ double granular_temperature(const Frame& frame, const std::vector<double>& mass)
 ///                  instead of about the centre of mass
 ///   T_bar_z, T_bar T_z and T in units of m V_p^2, V_p = A omega              (1)
 ///   T_z_tau        integrated correlation time of T_z, in cycles (or frames): what its error bar rests on
-/// Means over the frames of whole cycles, so that all phases weigh the same, with block averages over cycles;
-/// over frames where the frames are not locked to the drive. Absent for a trajectory without velocities: a
+///   T_g_aliasing, T_z_aliasing   what the mean over the frames of whole cycles would be above the mean over
+///                  time, as a share of it: a bed lands within a tenth of t0, and N_k phases locked to the
+///                  drive see it or do not. Absent where the file has no means over time: then it is not
+///                  known
+///   T_g_sampling   what every second sample of the time means would give above all of them, as a share
+/// Means over time where the frames bring them (Frame::time_mean), otherwise over the frames of whole cycles,
+/// so that all phases weigh the same, with block averages over cycles; over frames where the frames are not
+/// locked to the drive. T_z_field is of frames always. Absent for a trajectory without velocities: a
 /// difference between frames would be another quantity (it averages over the time between them), so it is not
 /// put in its place.
 std::unique_ptr<Observable> make_granular_temperature(const AnalysisContext& context);

@@ -28,7 +28,8 @@ CameraOptions camera_of(RenderOptions& o, const Common& common) {
   const auto said = camera_option_list(o.flags), kept = camera_option_list(camera);
   for (const auto& [option, i] : o.given)
     if (option->count() > 0)
-      std::visit([&](auto* value) { *value = *std::get<decltype(value)>(said[i].value); }, kept[i].value);
+      std::visit([&said, place = i](auto* value) { *value = *std::get<decltype(value)>(said[place].value); },
+                 kept[i].value);
   if (common.seed) camera.seed = *common.seed;
   return camera;
 }

@@ -66,7 +66,8 @@ std::vector<double> spread(const std::vector<double>& all, int every) {
   // The i-th place to be taken is the rank of the i-th key.
   std::vector<double> ordered;
   for (const auto& [key, unused] : keyed) {
-    const auto rank = std::count_if(keyed.begin(), keyed.end(), [&](const auto& k) { return k.first < key; });
+    const auto rank =
+        std::count_if(keyed.begin(), keyed.end(), [bound = key](const auto& k) { return k.first < bound; });
     ordered.push_back(some[static_cast<std::size_t>(rank)]);
   }
   return ordered;

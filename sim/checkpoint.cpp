@@ -121,7 +121,8 @@ struct Plain {
   std::int64_t driven = 0, quiet = 0, reached = 0;
   ContactTables contacts;
   std::vector<std::int64_t> segment_frames;
-  std::string segment_digests;  ///< one a line
+  std::string segment_digests;    ///< one a line
+  std::vector<Vec3> temperature;  ///< all, coarse
 };
 
 template <class Direction, class C, class P>
@@ -148,10 +149,18 @@ void pass(Direction& a, C& c, P& plain) {
   a.list("tracer", s.tracer);
   a.number("looked_at", s.looked_at);
   a.number("touching", s.touching);
+  a.rows("temperature", plain.temperature);
+  a.number("temperature_steps", s.temperature.steps);
 }
 
 Plain plain_of(const Checkpoint& c) {
-  Plain p{c.state.driven, c.state.quiet, c.state.settled.reached, tables_of(c.state.contacts), {}, {}};
+  Plain p{c.state.driven,
+          c.state.quiet,
+          c.state.settled.reached,
+          tables_of(c.state.contacts),
+          {},
+          {},
+          {c.state.temperature.all, c.state.temperature.coarse}};
   for (const Segment& s : c.segments) {
     p.segment_frames.push_back(s.frames);
     p.segment_digests += s.sha256 + "\n";
@@ -163,6 +172,8 @@ void take(const Plain& p, Checkpoint& c) {
   c.state.driven = p.driven != 0;
   c.state.quiet = static_cast<int>(p.quiet);
   c.state.settled.reached = p.reached != 0;
+  if (p.temperature.size() == 2)
+    c.state.temperature.all = p.temperature[0], c.state.temperature.coarse = p.temperature[1];
   const std::size_t contacts = p.contacts.pairs.size() / 2;
   const std::size_t each = contacts == 0 ? 0 : p.contacts.values.size() / contacts;
   for (std::size_t k = 0; k < contacts; ++k) {

@@ -12,7 +12,7 @@
 namespace twincell::sim {
 
 /// Version of the state file; another one is refused.
-inline constexpr int kCheckpointVersion = 2;
+inline constexpr int kCheckpointVersion = 3;
 
 /// A finished file of frames that the state counts on.
 struct Segment {

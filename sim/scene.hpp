@@ -125,6 +125,7 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   std::string stepping = "auto";      ///< auto | steps | flights
   std::int64_t discard = 10, cycles = 200;
   int phases = 20;
+  int samples = 400;               ///< a cycle, of what is averaged over time in the run; 0: none
   std::optional<Precision> until;  ///< heeded by whoever analyses while the run goes on (sweep/measure.hpp)
   Scale scale;
 

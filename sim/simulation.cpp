@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/temperature.hpp"
 #include "sim/cell_grid.hpp"
 #include "sim/demand.hpp"
 
@@ -105,7 +106,8 @@ Simulation::Simulation(Scene scene, RunState state, KernelKind kind, int threads
       quiet_(state.quiet),
       settled_(state.settled),
       looked_at_(state.looked_at),
-      touching_(state.touching) {
+      touching_(state.touching),
+      temperature_(state.temperature) {
   GuardLimits limits = guard_limits(plan_);
   // A height that the scene names without a lid binds; the one we chose merely keeps the box of the file
   // finite.
@@ -118,6 +120,7 @@ Simulation::Simulation(Scene scene, RunState state, KernelKind kind, int threads
     system_.drive.amplitude = 0;  // the plate rests at its mean
   system_.step = state.step;
   system_.beads = std::move(state.beads);
+  for (const Bead& b : system_.beads) masses_.push_back(b.mass);
   system_.forces_known = !state.forces.empty();
   system_.forces = std::move(state.forces);
   system_.rim_speeds = std::move(state.rim_speeds);
@@ -191,6 +194,7 @@ RunState Simulation::state() const {
   state.tracer = tracer_;
   state.looked_at = looked_at_;
   state.touching = touching_;
+  state.temperature = temperature_;
   return state;
 }
 
@@ -204,6 +208,8 @@ TrajectoryInfo Simulation::trajectory_info() const {
   info.n_beads = system_.beads.size();
   info.columns = {
       .velocity = true, .spin = plan_.rotation, .identity = false, .phase = true, .plate_height = true};
+  info.columns.time_mean = samples_per_phase() > 0;
+  info.samples_per_cycle = static_cast<int>(samples_per_phase()) * scene_.phases;
   const auto boundary = [](Edge e) {
     return e == Edge::periodic ? Boundary::periodic : e == Edge::wall ? Boundary::wall : Boundary::open;
   };
@@ -238,14 +244,38 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
     frame.velocity.emplace_back(b.vx, b.vy, b.vz);
     if (plan_.rotation) frame.spin.emplace_back(b.spin_x, -b.spin, b.spin_z);
   }
+  if (temperature_.steps == steps_per_phase()) {
+    const auto steps = static_cast<double>(temperature_.steps);
+    frame.time_mean = {temperature_.all / steps, temperature_.coarse / steps};
+  }
   return frame;
+}
+
+std::int64_t Simulation::samples_per_phase() const {
+  if (scene_.samples == 0 || steps_per_phase() < 2) return 0;
+  const std::int64_t pairs = (scene_.samples + 2 * scene_.phases - 1) / (2 * scene_.phases);
+  return 2 * std::min(pairs, steps_per_phase() / 2);
+}
+
+std::int64_t Simulation::sample_at(std::int64_t j) const {
+  const std::int64_t samples = samples_per_phase();
+  return (j * steps_per_phase() + samples - 1) / samples;
+}
+
+void Simulation::take_sample(std::int64_t j) {
+  sampled_.velocity.clear();
+  for (const Bead& b : system_.beads) sampled_.velocity.emplace_back(b.vx, b.vy, b.vz);
+  const Vec3 t = temperature_components(sampled_, masses_);
+  temperature_.all += static_cast<double>(sample_at(j) - sample_at(j - 1)) * t;
+  if (j % 2 == 0) temperature_.coarse += static_cast<double>(sample_at(j) - sample_at(j - 2)) * t;
+  temperature_.steps += sample_at(j) - sample_at(j - 1);
 }
 
 void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most) {
   settle(progress);
   if (!driven_) begin_drive(scene_, system_);
   driven_ = true;
-  const std::int64_t per_phase = plan_.steps_per_period / scene_.phases;
+  const std::int64_t per_phase = steps_per_phase(), samples = samples_per_phase();
   const std::int64_t last = plan_.steps;
   std::int64_t handed_over = 0;
   while (system_.step < last) {
@@ -259,8 +289,14 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
       touching_ += touching;
       looked_at_ += static_cast<std::int64_t>(system_.beads.size());
     }
-    const std::int64_t piece = std::min(per_phase - into, unnoticed_steps(system_));
+    if (into == 0) temperature_ = {};
+    std::int64_t piece = std::min(per_phase - into, unnoticed_steps(system_));
+    // Samples of the time before a frame that will be handed over.
+    const bool sampling = samples > 0 && (frame + 1) / scene_.phases >= plan_.cycles_before;
+    const std::int64_t next = sampling ? into * samples / per_phase + 1 : 0;
+    if (sampling) piece = std::min(piece, sample_at(next) - into);
     kernel_->advance(system_, piece);
+    if (sampling && into + piece == sample_at(next)) take_sample(next);
     steps_done_ += piece;
     progress.update(system_.step, last);
   }

@@ -24,6 +24,13 @@ struct Settled {
   bool reached = false;        ///< below scene.rest_energy; otherwise the time limit ended it
 };
 
+/// Of the samples taken since the last frame (Frame::time_mean), each weighted by the steps since the one
+/// before.
+struct TemperatureSums {
+  Vec3 all = Vec3::Zero(), coarse = Vec3::Zero();
+  std::int64_t steps = 0;  ///< that they stand for
+};
+
 /// All that the rest of a run depends on, besides its scene. A run taken up from it goes on bit for bit.
 struct RunState {
   bool driven = false;    ///< false: still settling on the resting plate
@@ -38,6 +45,7 @@ struct RunState {
   std::vector<double> kernel;                ///< Kernel::memory()
   std::vector<std::uint8_t> tracer;          ///< empty: not chosen yet
   std::int64_t looked_at = 0, touching = 0;  ///< beads in frames so far, and those of them in contact
+  TemperatureSums temperature;
 };
 
 /// The state in which a scene begins: beads placed, nothing moved.
@@ -93,6 +101,12 @@ class Simulation {
 
  private:
   [[nodiscard]] Frame snapshot(std::int64_t cycle, int phase) const;
+  /// Steps between frames, and samples taken in them: an even number, or none.
+  [[nodiscard]] std::int64_t steps_per_phase() const { return plan_.steps_per_period / scene_.phases; }
+  [[nodiscard]] std::int64_t samples_per_phase() const;
+  /// Whole steps from a frame to sample j = 0 .. samples_per_phase() after it.
+  [[nodiscard]] std::int64_t sample_at(std::int64_t j) const;
+  void take_sample(std::int64_t j);
 
   Scene scene_;
   Plan plan_;
@@ -105,6 +119,9 @@ class Simulation {
   Settled settled_;
   std::int64_t steps_done_ = 0;
   std::int64_t looked_at_ = 0, touching_ = 0;  ///< beads in frames, and those of them in contact
+  TemperatureSums temperature_;
+  std::vector<double> masses_;
+  Frame sampled_;  ///< velocities of a sample
 };
 
 }  // namespace twincell::sim

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "analysis/barycentre.hpp"
-#include "analysis/granular_temperature.hpp"
+#include "analysis/trajectory/temperature.hpp"
 
 namespace twincell::sweep {
 
@@ -53,7 +53,9 @@ bool PrecisionRule::reached(const Frame& frame) {
   if (name == "h_cm") {
     sum_ += barycentre_height(frame, mass_);
   } else {
-    const Vec3 t = temperature_components(frame, mass_);
+    // Over time as `analyze` takes it; the first frame of a run has nothing before it but itself.
+    const Vec3 t = frame.time_mean.temperature.allFinite() ? frame.time_mean.temperature
+                                                           : temperature_components(frame, mass_);
     double value = t.sum() / dimension_;
     if (name == "T_g") value = t.sum() / 2;
     if (name == "T_x") value = t.x();

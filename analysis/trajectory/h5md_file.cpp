@@ -18,6 +18,8 @@ namespace {
 
 constexpr hsize_t kFramesPerFlush = 64;
 constexpr std::int64_t kEmptySlot = -1;
+constexpr const char* kTemperature = "temperature_time_mean";
+constexpr const char* kTemperatureCoarse = "temperature_time_mean_coarse";
 
 const char* word_of(Boundary b) {
   switch (b) {
@@ -49,7 +51,8 @@ struct H5mdWriter::Impl {
   AtomicPath path;
   TrajectoryInfo info;
   h5::Handle file;
-  h5::Series step, time, position, position_sigma, edges, velocity, spin, id, plate_height, phase, cycle;
+  h5::Series step, time, position, position_sigma, edges, velocity, spin, id, plate_height, phase, cycle,
+      temperature, temperature_coarse;
   std::int64_t last_step = 0;
 
   Impl(const fs::path& final_path, TrajectoryInfo i)
@@ -112,13 +115,17 @@ void H5mdWriter::Impl::create_particles() {
   if (!info.tracer.empty())
     h5::write_dataset(group.get(), "tracer", info.tracer.data(), {info.tracer.size()});
 
-  if (!info.columns.plate_height && !info.columns.phase) return;
+  if (!info.columns.plate_height && !info.columns.phase && !info.columns.time_mean) return;
   const h5::Handle observables = h5::create_group(file.get(), "observables");
   if (info.columns.plate_height)
     plate_height = element(observables.get(), "plate_height", H5T_IEEE_F64LE, {});
   if (info.columns.phase) {
     phase = element(observables.get(), "drive_phase", H5T_STD_I32LE, {});
     cycle = element(observables.get(), "cycle", H5T_STD_I64LE, {});
+  }
+  if (info.columns.time_mean) {
+    temperature = element(observables.get(), kTemperature, H5T_IEEE_F64LE, {3});
+    temperature_coarse = element(observables.get(), kTemperatureCoarse, H5T_IEEE_F64LE, {3});
   }
 }
 
@@ -137,6 +144,8 @@ void H5mdWriter::Impl::create_parameters() {
   }
   if (info.phases_per_cycle > 0)
     h5::write_dataset(parameters.get(), "phases_per_cycle", &info.phases_per_cycle, {});
+  if (info.samples_per_cycle > 0)
+    h5::write_dataset(parameters.get(), "samples_per_cycle", &info.samples_per_cycle, {});
   const h5::Handle scale = h5::create_group(parameters.get(), "scale");
   const std::pair<const char*, std::optional<double>> scales[] = {
       {"sigma_m", info.scale.sigma_m},
@@ -163,7 +172,7 @@ void H5mdWriter::Impl::create_parameters() {
 
 void H5mdWriter::Impl::close() {
   for (h5::Series* s : {&step, &time, &position, &position_sigma, &edges, &velocity, &spin, &id,
-                        &plate_height, &phase, &cycle})
+                        &plate_height, &phase, &cycle, &temperature, &temperature_coarse})
     *s = h5::Series();
   h5::check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path.final().string() + ": writing to disk");
   file.reset();
@@ -209,6 +218,10 @@ void H5mdWriter::append(const Frame& frame) {
     w.phase.append(h5::native<int>(), &frame.phase);
     w.cycle.append(h5::native<std::int64_t>(), &frame.cycle);
   }
+  if (w.temperature) {
+    w.temperature.append(h5::native<double>(), frame.time_mean.temperature.data());
+    w.temperature_coarse.append(h5::native<double>(), frame.time_mean.temperature_coarse.data());
+  }
   if (w.step.size() % kFramesPerFlush == 0)
     h5::check(H5Fflush(w.file.get(), H5F_SCOPE_GLOBAL), w.path.final().string() + ": writing to disk");
 }
@@ -230,7 +243,8 @@ struct H5mdReader::Impl {
   fs::path path;
   TrajectoryInfo info;
   h5::Handle file;
-  h5::Series step, time, position, position_sigma, velocity, spin, id, plate_height, phase, cycle;
+  h5::Series step, time, position, position_sigma, velocity, spin, id, plate_height, phase, cycle,
+      temperature, temperature_coarse;
 
   [[noreturn]] void refuse(const std::string& key, const std::string& complaint) const {
     throw InputError({path.string(), 0, 0, key}, complaint);
@@ -354,19 +368,26 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
   velocity = column("velocity", {info.n_beads, 3});
   spin = column("angular_velocity", {info.n_beads, 3});
   id = column("id", {info.n_beads});
-  auto observable = [&](const char* name) {
+  auto observable = [&](const char* name, const std::vector<hsize_t>& record = {}) {
     const std::string where = std::string("observables/") + name + "/value";
     if (!h5::exists(file.get(), where)) return h5::Series();
     h5::Series s(file.get(), where);
-    if (s && (s.size() != frames || !s.record().empty())) refuse(where, "one value per frame is needed.");
+    if (s && (s.size() != frames || s.record() != record))
+      refuse(where, record.empty() ? "one value per frame is needed." : "three values per frame are needed.");
     return s;
   };
   plate_height = observable("plate_height");
   phase = observable("drive_phase");
   cycle = observable("cycle");
-  info.columns = {static_cast<bool>(velocity),     static_cast<bool>(spin),
-                  static_cast<bool>(id),           phase && cycle,
-                  static_cast<bool>(plate_height), static_cast<bool>(position_sigma)};
+  temperature = observable(kTemperature, {3});
+  temperature_coarse = observable(kTemperatureCoarse, {3});
+  info.columns = {static_cast<bool>(velocity),
+                  static_cast<bool>(spin),
+                  static_cast<bool>(id),
+                  phase && cycle,
+                  static_cast<bool>(plate_height),
+                  static_cast<bool>(position_sigma),
+                  temperature && temperature_coarse};
 
   auto per_bead = [&]<class T>(const char* name, std::vector<T>& out) {
     out = h5::read_dataset<T>(g.get(), name);
@@ -459,6 +480,9 @@ void H5mdReader::Impl::read_parameters() {
       info.phases_per_cycle = std::max(info.phases_per_cycle, std::min(k, 2'000'000'000) + 1);
     }
   }
+  if (h5::exists(file.get(), "parameters/samples_per_cycle") &&
+      h5::read_scalar(file.get(), "parameters/samples_per_cycle", value))
+    info.samples_per_cycle = value >= 0 && value <= 2e9 ? static_cast<int>(value) : 0;
   auto scale = [&](const char* name, std::optional<double>& out) {
     if (h5::exists(file.get(), std::string("parameters/scale/") + name) &&
         h5::read_scalar(file.get(), std::string("parameters/scale/") + name, value))
@@ -514,6 +538,11 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
     column(r.id, h5::native<std::int64_t>(), frame.id);
     frame.plate_height = Frame::kNoHeight;
     if (r.plate_height) r.plate_height.read(index, h5::native<double>(), &frame.plate_height);
+    frame.time_mean = {};
+    if (r.info.columns.time_mean) {
+      r.temperature.read(index, h5::native<double>(), frame.time_mean.temperature.data());
+      r.temperature_coarse.read(index, h5::native<double>(), frame.time_mean.temperature_coarse.data());
+    }
     frame.phase = -1;
     frame.cycle = -1;
     if (r.info.columns.phase) {

@@ -28,6 +28,7 @@ struct Columns {
   bool phase = false;           ///< Frame::phase and Frame::cycle
   bool plate_height = false;    ///< Frame::plate_height
   bool position_sigma = false;  ///< Frame::position_sigma
+  bool time_mean = false;       ///< Frame::time_mean
 };
 
 /// What is the same for all frames.
@@ -36,7 +37,8 @@ struct TrajectoryInfo {
   Columns columns;
   Box box;
   std::optional<Drive> drive;
-  int phases_per_cycle = 0;  ///< N_k, frames per drive cycle; 0 if not phase-locked
+  int phases_per_cycle = 0;   ///< N_k, frames per drive cycle; 0 if not phase-locked
+  int samples_per_cycle = 0;  ///< of Frame::time_mean; 0 without
   Scale scale;
   std::string source = "unknown";    ///< "simulation", "experiment" or "unknown"
   std::vector<double> radius;        ///< per slot, sigma; empty if absent
@@ -44,6 +46,15 @@ struct TrajectoryInfo {
   std::vector<std::uint8_t> tracer;  ///< per slot, 1 for a tracer bead; empty if absent
   std::string provenance_json;       ///< provenance.hpp; empty if absent
   std::string tracking_json;         ///< what the tracking of an experiment says of itself; empty if absent
+};
+
+/// Granular temperature averaged over the time since the frame before, m g sigma, per component as
+/// temperature_components (temperature.hpp) defines it: what a few phases a cycle would alias, because it
+/// jumps when the bed lands. NaN where it is not known, as before the first frame of a run.
+struct TimeMean {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  Vec3 temperature = Vec3::Constant(kUnknown);
+  Vec3 temperature_coarse = Vec3::Constant(kUnknown);  ///< from every second sample of those
 };
 
 /// One moment.
@@ -55,6 +66,7 @@ struct Frame {
   std::int32_t phase = -1;           ///< k in 0 .. N_k-1: at k/N_k of a cycle; -1 unknown
   std::int64_t cycle = -1;           ///< j, from 0; -1 unknown
   double plate_height = kNoHeight;   ///< z_b, sigma; NaN unknown
+  TimeMean time_mean;                ///< over the time since the frame before
   std::vector<Vec3> position;        ///< [n_beads], sigma; NaN where empty; not wrapped across periods
   std::vector<Vec3> position_sigma;  ///< [n_beads] or empty, standard uncertainty of each coordinate, sigma;
                                      ///< NaN where empty or not measured

@@ -23,7 +23,9 @@ bool same_bits(const RunState& a, const RunState& b) {
               a.settled.time == b.settled.time && a.settled.energy_per_bead == b.settled.energy_per_bead &&
               a.settled.reached == b.settled.reached && a.height == b.height && same_bits(a.beads, b.beads) &&
               same_bits(a.forces, b.forces) && same_bits(a.rim_speeds, b.rim_speeds) &&
-              same_bits(a.tracer, b.tracer) && a.contacts.size() == b.contacts.size();
+              same_bits(a.tracer, b.tracer) && a.temperature.all == b.temperature.all &&
+              a.temperature.coarse == b.temperature.coarse && a.temperature.steps == b.temperature.steps &&
+              a.contacts.size() == b.contacts.size();
   for (std::size_t k = 0; same && k < a.contacts.size(); ++k)
     same = a.contacts[k].i == b.contacts[k].i && a.contacts[k].j == b.contacts[k].j &&
            same_bits(a.contacts[k].values, b.contacts[k].values);
@@ -46,8 +48,8 @@ class Keeping : public Progress {
 
 class Nowhere : public TrajectorySink {
  public:
-  void append(const Frame& /*frame*/) override { ++frames; }
-  int frames = 0;
+  void append(const Frame& frame) override { means.push_back(frame.time_mean.temperature); }
+  std::vector<Vec3> means;
 };
 
 const std::string kScene =
@@ -85,6 +87,12 @@ void expect_resumable(const std::string& laws, const std::string& integrator, co
       Nowhere others;
       rest.run(others);
       EXPECT_TRUE(same_bits(rest.state(), end)) << text << " from step " << state.step;
+      // The frames after it, with their means over time; the first of a run has none.
+      ASSERT_GE(sink.means.size(), others.means.size());
+      for (std::size_t k = 1; k <= others.means.size(); ++k) {
+        const Vec3 &mean = others.means[others.means.size() - k], &truth = sink.means[sink.means.size() - k];
+        EXPECT_TRUE(mean == truth || (k == sink.means.size() && mean.hasNaN() && truth.hasNaN())) << text;
+      }
     }
   EXPECT_TRUE(remembered > 0 || !whole.plan().history) << text;
 }

@@ -18,11 +18,17 @@ namespace fs = std::filesystem;
 TrajectoryInfo experiment_info() {
   TrajectoryInfo info;
   info.n_beads = 3;
-  info.columns = {.velocity = true, .spin = false, .identity = true, .phase = true, .plate_height = true};
+  info.columns = {.velocity = true,
+                  .spin = false,
+                  .identity = true,
+                  .phase = true,
+                  .plate_height = true,
+                  .time_mean = true};
   info.box.upper = Vec3(20, 1.15, 110);
   info.box.side_tilt = {0.6, -0.25};
   info.drive = Drive{Axis::z, 1.8, 1.0};
   info.phases_per_cycle = 20;
+  info.samples_per_cycle = 400;
   info.scale = {0.002, 9.81, std::nullopt};
   info.source = "experiment";
   info.radius = {0.5, 0.5, 0.49};
@@ -39,6 +45,7 @@ Frame frame_number(int f) {
   frame.phase = f % 20;
   frame.cycle = f / 20;
   frame.plate_height = std::sin(0.1 * f);
+  if (f > 0) frame.time_mean = {Vec3(0.1, 0, f / 3.0), Vec3(0.2, 0, f / 7.0)};
   const double nan = std::nan("");
   const bool there = f % 2 == 0;
   frame.position = {Vec3(0.5, 0, 0.5 + f), Vec3(1.5, 0, 0.5),
@@ -71,6 +78,8 @@ TEST(H5mdFile, WhatIsWrittenIsReadBitForBit) {
   ASSERT_TRUE(info.drive);
   EXPECT_EQ(info.drive->amplitude, 1.8);
   EXPECT_EQ(info.phases_per_cycle, 20);
+  EXPECT_EQ(info.samples_per_cycle, 400);
+  EXPECT_TRUE(info.columns.time_mean);
   EXPECT_EQ(info.scale.sigma_m, 0.002);
   EXPECT_FALSE(info.scale.pixels_per_sigma);
   EXPECT_EQ(info.radius, (std::vector<double>{0.5, 0.5, 0.49}));
@@ -86,6 +95,11 @@ TEST(H5mdFile, WhatIsWrittenIsReadBitForBit) {
     EXPECT_EQ(frame.phase, truth.phase);
     EXPECT_EQ(frame.cycle, truth.cycle);
     EXPECT_EQ(frame.plate_height, truth.plate_height);
+    EXPECT_EQ(frame.time_mean.temperature.hasNaN(), truth.time_mean.temperature.hasNaN());
+    if (!truth.time_mean.temperature.hasNaN()) {
+      EXPECT_EQ(frame.time_mean.temperature, truth.time_mean.temperature);
+      EXPECT_EQ(frame.time_mean.temperature_coarse, truth.time_mean.temperature_coarse);
+    }
     EXPECT_EQ(frame.id, truth.id);
     EXPECT_TRUE(frame.spin.empty());
     for (std::size_t i = 0; i < 3; ++i)

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "analysis/trajectory/temperature.hpp"
 #include "sim/simulation.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
@@ -273,6 +274,40 @@ TEST(Bed, DriveReturnsToTheSameBitsEveryPeriod) {  // H14, H33
     EXPECT_EQ(out.frames()[f].phase, static_cast<int>(f % 20));
     EXPECT_EQ(out.frames()[f].cycle, static_cast<std::int64_t>(f / 20));
   }
+}
+
+TEST(Bed, TimeMeansAreThoseOfDenseFrames) {
+  const auto film = [](const char* phases, const char* samples) {
+    const Simulation settled(read_scene_text(
+        "preset = \"fortini-huang-2015\"\n[beads]\nlayers = 4\n[cell]\nwidth = 10.0\n[drive]\ngamma = 2.2\n",
+        "landing",
+        {"time.discard=1", "time.cycles=3", "time.steps_per_contact=49.95",
+         std::string("time.phases=") + phases, std::string("time.samples=") + samples}));
+    Simulation run(settled.scene(), settled.state());
+    MemoryTrajectory out(run.trajectory_info());
+    run.run(out);
+    EXPECT_EQ(run.plan().steps_per_period % 400, 0);  // or the two would not see the same moments
+    return out;
+  };
+  const MemoryTrajectory sparse = film("20", "400"), dense = film("400", "0");
+  EXPECT_EQ(sparse.info().samples_per_cycle, 400);
+  EXPECT_FALSE(dense.info().columns.time_mean);
+  EXPECT_TRUE(dense.frames().back().time_mean.temperature.hasNaN());
+  const auto& mass = dense.info().mass;
+  double largest = 0;
+  for (std::size_t f = 1; f < sparse.n_frames(); ++f) {
+    Vec3 all = Vec3::Zero(), coarse = Vec3::Zero();
+    for (std::size_t k = 20 * f - 19; k <= 20 * f; ++k) {
+      const Vec3 t = temperature_components(dense.frames()[k], mass);
+      all += t / 20;
+      if (k % 2 == 0) coarse += t / 10;
+    }
+    const TimeMean& mean = sparse.frames()[f].time_mean;
+    largest = std::max(largest, mean.temperature.norm());
+    EXPECT_LE((mean.temperature - all).norm(), 1e-12);
+    EXPECT_LE((mean.temperature_coarse - coarse).norm(), 1e-12);
+  }
+  EXPECT_GT(largest, 0.01);  // a bed that rests would show nothing
 }
 
 TEST(Bed, SmoothBeadsHaveNoSpinColumn) {

@@ -152,3 +152,54 @@ TEST(GranularTemperature, AbsentWithoutVelocitiesOrDrive) {
   for (const char* name : {"T_g", "T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar"})
     EXPECT_FALSE(find_result(analyze(still), name).present()) << name;
 }
+
+namespace {
+
+/// T_g over time is 1, 2, 3, … from cycle to cycle, and 1.1 and 0.98 times that by the frames and by every
+/// second sample: two beads that part.
+MemoryTrajectory aliased(bool with_means) {
+  TrajectoryInfo info;
+  info.n_beads = 2;
+  info.columns.velocity = info.columns.phase = true;
+  info.columns.time_mean = with_means;
+  info.box.upper = Vec3(20, 1, 30);
+  info.phases_per_cycle = 4;
+  info.samples_per_cycle = with_means ? 400 : 0;
+  MemoryTrajectory t(info);
+  for (int f = 0; f < 4 * 60; ++f) {
+    Frame frame;
+    frame.step = f;
+    frame.cycle = f / 4;
+    frame.phase = f % 4;
+    frame.position = {Vec3(1, 0, 1), Vec3(3, 0, 1)};
+    const double over_time = 1 + frame.cycle % 3;
+    const double v = std::sqrt(2 * 1.1 * over_time);
+    frame.velocity = {Vec3(0, 0, v), Vec3(0, 0, -v)};
+    if (with_means && f > 0) frame.time_mean = {Vec3(0, 0, 2 * over_time), Vec3(0, 0, 2 * 0.98 * over_time)};
+    t.append(frame);
+  }
+  return t;
+}
+
+}  // namespace
+
+TEST(GranularTemperature, IsOverTimeWhereTheFramesBringItAndSaysWhatTheyAlias) {
+  const auto results = analyze(aliased(true));
+  // Cycle 0 has no mean before its first frame: 59 cycles of 2, 3, 1, 2, 3, 1, …, 2, 3.
+  EXPECT_NEAR(find_result(results, "T_g").value(), (19 * 6 + 5) / 59.0, 1e-12);
+  EXPECT_NE(find_result(results, "T_g").convention.find("time, 400 samples a cycle"), std::string::npos);
+  EXPECT_NEAR(find_result(results, "T_z").value(), 2 * (19 * 6 + 5) / 59.0, 1e-12);
+  EXPECT_NEAR(find_result(results, "T_g_aliasing").value(), 0.1, 1e-12);
+  EXPECT_NEAR(find_result(results, "T_z_aliasing").value(), 0.1, 1e-12);
+  EXPECT_NEAR(find_result(results, "T_g_sampling").value(), -0.02, 1e-12);
+  EXPECT_EQ(find_result(results, "T_g_aliasing").n, 59U);
+}
+
+TEST(GranularTemperature, AliasingIsNotKnownWithoutMeansOverTime) {
+  const auto results = analyze(aliased(false));
+  EXPECT_NEAR(find_result(results, "T_g").value(), 2.2, 1e-12);
+  EXPECT_NE(find_result(results, "T_g").convention.find("what 4 phases a cycle alias is not known"),
+            std::string::npos);
+  for (const char* name : {"T_g_aliasing", "T_z_aliasing", "T_g_sampling"})
+    EXPECT_NE(find_result(results, name).absent.find("not known"), std::string::npos) << name;
+}
