@@ -136,7 +136,9 @@ void add_analyze(CLI::App& program, Common& common) {
   verb.add_option("--s-b", options->s_b, "reading of eq. B4")
       ->check(CLI::IsMember({"variance", "about_rest", "as_printed"}))
       ->capture_default_str();
-  verb.add_option("--only", options->analysis.only, "results wanted, comma separated")->delimiter(',');
+  verb.add_option("--only", options->analysis.only, "results wanted, comma separated")
+      ->delimiter(',')
+      ->type_name(kWord);
   verb.add_option("--neighbours", options->neighbours, "whose bonds make q6, psi6, psi4, orientation, grains")
       ->check(CLI::IsMember({"cutoff", "delaunay", "voronoi"}))
       ->capture_default_str();

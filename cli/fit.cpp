@@ -206,11 +206,11 @@ void add_fit(CLI::App& program, Common& common) {
   std::string names;
   for (const Law* law : laws()) names += (names.empty() ? "" : ", ") + law->name;
   verb.add_option("table", o->table, "CSV with a line of names")->required();
-  verb.add_option("--law", o->law, names)->required();
-  verb.add_option("--x", o->x, "column of the abscissa; the first if not said");
-  verb.add_option("--y", o->y, "column of the ordinate; the second if not said");
-  verb.add_option("--sigma", o->sigma, "column of y's standard deviation");
-  verb.add_option("--trials", o->trials, "column of the trials of which y is a frequency");
+  verb.add_option("--law", o->law, names)->required()->type_name(kWord);
+  verb.add_option("--x", o->x, "column of the abscissa; the first if not said")->type_name(kWord);
+  verb.add_option("--y", o->y, "column of the ordinate; the second if not said")->type_name(kWord);
+  verb.add_option("--sigma", o->sigma, "column of y's standard deviation")->type_name(kWord);
+  verb.add_option("--trials", o->trials, "column of the trials of which y is a frequency")->type_name(kWord);
   verb.add_option("--window", o->window, "only points with LOW <= x <= HIGH")
       ->delimiter(',')
       ->type_name("LOW,HIGH");

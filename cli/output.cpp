@@ -73,7 +73,7 @@ void guard_outputs(const CLI::App& verb, Common& common) {
                        [&](const Output& o) { return o.option == option; });
   };
   for (const CLI::Option* option : verb.get_options()) {
-    if (is_output(option)) continue;
+    if (is_output(option) || option->get_type_name() == kWord) continue;
     for (const std::string& word : option->results()) {
       protect_input(word);
       if (const auto inside = word.rfind(":/"); inside != std::string::npos)
@@ -121,6 +121,17 @@ std::vector<std::string> with_seed(std::vector<std::string> assignments, const C
     throw ConfigError({"", 0, 0, "--seed"},
                       fmt::format("{} is out of range; the seed of a scene must be at most {}.", *common.seed,
                                   kLargestSeed));
+  for (std::size_t k = 0; k < assignments.size(); ++k) {
+    const std::string key = assignments[k].substr(0, assignments[k].find('='));
+    for (std::size_t m = 0; m < k; ++m)
+      if (assignments[m].substr(0, assignments[m].find('=')) == key && assignments[m] != assignments[k])
+        throw ConfigError({"--set", 0, 0, key},
+                          fmt::format("is said twice, \"{}\" and \"{}\"; say one of the two.", assignments[m],
+                                      assignments[k]));
+    if (common.seed && key == "start.seed" && assignments[k] != fmt::format("start.seed={}", *common.seed))
+      throw ConfigError({"--set", 0, 0, key},
+                        fmt::format("contradicts --seed {}; say one of the two.", *common.seed));
+  }
   if (common.seed) assignments.push_back(fmt::format("start.seed={}", *common.seed));
   return assignments;
 }

@@ -43,12 +43,17 @@ struct Common {
   [[nodiscard]] Provenance provenance() const;
 };
 
-/// The --set of a scene, and --seed as one of them. \throws ConfigError for a seed that no scene can have
+/// The --set of a scene, and --seed as one of them. \throws ConfigError for a seed that no scene can have,
+/// and for a key that is said twice in different words
 std::vector<std::string> with_seed(std::vector<std::string> assignments, const Common& common);
 
 /// Makes a subcommand with the common options and an example in its help.
 CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, const std::string& summary,
                    const std::string& example);
+
+/// type_name() of an option whose value is a word of this program or of a table, and no file even where a
+/// file has that name: `reproduce p1-fig3` goes on in the folder p1-fig3.
+inline constexpr const char* kWord = "WORD";
 
 /// Declares that an option names an output. Before the verb begins its value is held against the rules of
 /// outputs (output_rules.hpp), with all other arguments that name something on the disk as inputs, and

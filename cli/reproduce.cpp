@@ -134,7 +134,7 @@ void add_reproduce(CLI::App& program, Common& common) {
                "twincell reproduce p1-fig3 --budget 10");
   std::string list = "One of:";
   for (const Reproducible& r : reproduce::list()) list += fmt::format("\n{}: {}", r.name, r.what);
-  verb.add_option("name", options->name, list)->required();
+  verb.add_option("name", options->name, list)->required()->type_name(kWord);
   writes(common, verb,
          verb.add_option("-o,--output", options->output,
                          "Folder for runs, figures and results; NAME if not said"),

@@ -73,9 +73,11 @@ nlohmann::json start_of(const sim::Scene& s) {
   nlohmann::json start = {{"kind", kKinds[static_cast<int>(s.start)]},
                           {"seed", s.seed},
                           {"perturbation", s.perturbation},
-                          {"drive", !s.envelope.points.empty() ? "ramp or schedule"
-                                    : s.comoving               ? "comoving"
-                                                               : "abrupt"}};
+                          {"in_motion", s.in_motion},
+                          {"drive", s.in_motion                  ? "goes on"
+                                    : !s.envelope.points.empty() ? "ramp or schedule"
+                                    : s.comoving                 ? "comoving"
+                                                                 : "abrupt"}};
   if (!s.from.empty()) start["from"] = s.from.string();
   return start;
 }
@@ -119,9 +121,12 @@ std::string as_text(const nlohmann::json& d) {
   s += fmt::format("start: {}, seed {}, drive {}\n", start["kind"].get<std::string>(),
                    start["seed"].get<long>(), start["drive"].get<std::string>());
   const auto& settled = d["settled"];
-  s += fmt::format("settled in {:.4g} t0 to {:.3g} m g sigma a bead{}\n", settled["time"].get<double>(),
-                   settled["energy_per_bead"].get<double>(),
-                   settled["reached"].get<bool>() ? "" : " (stopped by start.settle_limit)");
+  if (start["in_motion"].get<bool>())
+    s += "nothing settled: the start is in motion\n";
+  else
+    s += fmt::format("settled in {:.4g} t0 to {:.3g} m g sigma a bead{}\n", settled["time"].get<double>(),
+                     settled["energy_per_bead"].get<double>(),
+                     settled["reached"].get<bool>() ? "" : " (stopped by start.settle_limit)");
   for (const auto& e : d["effects"])
     s += fmt::format("  {:<20} {:<13} {}\n", e["name"].get<std::string>(), e["state"].get<std::string>(),
                      e["reason"].get<std::string>());
@@ -223,7 +228,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   const std::vector<std::string> told =
       sim::make_plan(scene, state.beads).warnings;  // settling may take long
   for (const std::string& warning : told) note(common, warning);
-  const std::int64_t begun_at = state.driven ? state.step : 0;
+  const std::int64_t begun_at = goes_on && state.driven ? state.step : 0;
   sim::Simulation run(std::move(scene), std::move(state), sim::KernelKind::best, common.threads);
 
   constexpr double kTenMinutes = 600;

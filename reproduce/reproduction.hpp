@@ -79,6 +79,7 @@ Reproducible p1_fig4();
 Reproducible p1_fig5();
 Reproducible p1_table1();
 Reproducible p1_appendix();
+Reproducible p1_step();
 Reproducible p2_fig2();
 Reproducible p2_fig3();
 Reproducible p2_fig4();

@@ -27,25 +27,30 @@ double advance_for(double seconds, std::int64_t most, Kernel& kernel, System& sy
 
 Cost measure_cost(const Scene& scene, double seconds, int threads, Progress& progress) {
   constexpr double kSettling = 0.1;
-  std::vector<Bead> beads = placed(scene, progress).beads;
+  RunState state = placed(scene, progress);
   Cost cost;
-  cost.plan = make_plan(scene, beads);
+  cost.plan = make_plan(scene, state.beads);
   const Plan& plan = cost.plan;
   System system = make_system(scene, plan);
-  system.drive.amplitude = 0;
-  system.beads = std::move(beads);
+  if (!state.driven) system.drive.amplitude = 0;
+  system.step = state.step;
+  system.beads = std::move(state.beads);
   const auto kernel = make_kernel(plan, guard_limits(plan), KernelKind::best, threads);
+  kernel->restore(std::move(state.contacts));
   cost.beads = system.beads.size();
   cost.kernel = kernel->description();
   try {
-    const bool falls = scene.g() > 0;
+    const bool falls = scene.g() > 0 && !state.driven;
     advance_for(falls ? kSettling : 0, falls ? static_cast<std::int64_t>(scene.settle_limit / plan.dt) : 0,
                 *kernel, system, progress);
-    cost.settled_for = system.time();
-    begin_drive(scene, system);
+    if (!state.driven) {
+      cost.settled_for = system.time();
+      begin_drive(scene, plan, system);
+    }
+    const std::int64_t begin = system.step;
     const double took = advance_for(seconds, plan.steps, *kernel, system, progress);
-    cost.measured_steps = system.step;
-    cost.seconds_per_step = took / static_cast<double>(system.step);
+    cost.measured_steps = system.step - begin;
+    cost.seconds_per_step = took / static_cast<double>(cost.measured_steps);
   } catch (const RunError& e) {
     cost.stopped = e.what();
   }

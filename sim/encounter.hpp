@@ -38,7 +38,7 @@ struct EncounterEnd {
   bool parted = false;  ///< false: still in contact when the time was over
   double time = 0;
   RelativeMotion motion;
-  double deepest = 0;      ///< overlap, sigma, at the moments that its steps look at
+  double deepest = 0;  ///< overlap, sigma, at the moments that its steps look at
   /// About half way: where the deepest of its steps ended.
   double middle = 0;
   RelativeMotion at_middle;

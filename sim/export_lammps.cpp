@@ -258,14 +258,13 @@ std::vector<DeckBead> beads_of_frame(const Scene& scene, const TrajectoryInfo& i
 
 /// The bed as the drive finds it.
 std::vector<DeckBead> beads_at_start(const Simulation& settled) {
-  const Drive& drive = settled.scene().drive;
-  const Vec3 along = Vec3::Unit(static_cast<int>(drive.axis));
-  const Vec3 push = settled.scene().comoving ? Vec3(drive.peak_velocity() * along) : Vec3(0, 0, 0);
+  System system = settled.system();
+  begin_drive(settled.scene(), settled.plan(), system);
   const TrajectoryInfo info = settled.trajectory_info();
   std::vector<DeckBead> beads;
-  for (const Bead& b : settled.system().beads)
-    beads.push_back({Vec3(b.x, b.y, b.z), Vec3(b.vx, b.vy, b.vz) + push, Vec3(b.spin_x, -b.spin, b.spin_z),
-                     b.radius, b.mass, info.tracer.at(beads.size()) != 0});
+  for (const Bead& b : system.beads)
+    beads.push_back({Vec3(b.x, b.y, b.z), Vec3(b.vx, b.vy, b.vz), Vec3(b.spin_x, -b.spin, b.spin_z), b.radius,
+                     b.mass, info.tracer.at(beads.size()) != 0});
   return beads;
 }
 
@@ -423,8 +422,12 @@ LammpsDeck deck_of(Model& m, const Scene& scene, const Plan& plan) {
 LammpsDeck lammps_deck(const Scene& scene, Progress& progress) {
   static_cast<void>(
       model_of(scene, make_plan(scene)));  // what has no words is refused before the bed settles
+  if (scene.in_motion)
+    refuse(scene, "start.in_motion",
+           "is of a start that another file holds; export that file's frame (--frame).");
   const Simulation start(scene, progress);
   Model m = model_of(scene, start.plan());
+  m.first_step = first_step(start.plan(), scene.phase.value_or(0));
   m.beads = beads_at_start(start);
   return deck_of(m, scene, start.plan());
 }

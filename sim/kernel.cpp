@@ -17,6 +17,10 @@ int threads_for(std::size_t beads, int asked) {
   return static_cast<int>(std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(1, most)));
 }
 
+std::size_t remembered_numbers(const Plan& plan) {
+  return static_cast<std::size_t>(kScalar.find(plan.key).remembered);
+}
+
 const Target& widest_target() {
   static const Target& widest = kAvx512.available() ? kAvx512 : kAvx2.available() ? kAvx2 : kScalar;
   return widest;

@@ -8,18 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trajectory/trajectory.hpp"
 #include "sim/guard.hpp"
 #include "sim/plan.hpp"
 #include "sim/state.hpp"
 
 namespace twincell::sim {
 
-/// What a contact remembers: tangential displacement and whatever else its laws keep while it lasts.
-struct ContactMemory {
-  std::int32_t i = 0;  ///< bead
-  std::int32_t j = 0;  ///< bead, > i; or -1 - w for wall w
-  std::vector<double> values;
-};
+/// Length of ContactMemory::values under a plan: those of its laws, and what its integrator keeps beside.
+std::size_t remembered_numbers(const Plan& plan);
 
 /// Moves a System. One virtual call per block of steps, none inside.
 ///

@@ -7,6 +7,7 @@
 
 #include "analysis/trajectory/error.hpp"
 #include "sim/flight_kernel.hpp"
+#include "sim/kernel.hpp"
 
 namespace twincell::sim {
 
@@ -169,12 +170,17 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
                     s.drive.gamma(s.g() > 0 ? s.g() : 1),
                     !s.envelope.points.empty()
                         ? fmt::format("amplitude led over {:g} cycles", s.envelope.duration())
+                    : s.in_motion ? "from the phase that the start goes on from"
+                    : s.phase.value_or(0) > 0
+                        ? fmt::format("{} start at phase {:g}", s.comoving ? "co-moving" : "abrupt", *s.phase)
                     : s.comoving ? "co-moving start"
                                  : "abrupt start: the plate hits a bed at rest"));
   else
     add("drive", State::off_by_scene, "amplitude 0");
   if (s.g() == 0)
     add("settling", State::off_by_proof, "without gravity there is no rest to come to");
+  else if (s.in_motion)
+    add("settling", State::off_by_scene, "start.in_motion = true: the bed goes on as its file left it");
   else if (s.settle_limit > 0)
     add("settling", State::on,
         fmt::format("on the resting plate to {:g} m g sigma a bead, for {:g} t0 at most", s.rest_energy,
@@ -211,8 +217,8 @@ void choose_stepping(const Scene& s, std::size_t beads, Plan& plan) {
   if (s.stepping == "flights" && !hindrance.empty())
     throw ConfigError(s.where("time.stepping"),
                       fmt::format("is \"flights\", but {}; choose \"auto\" or \"steps\".", hindrance));
-  plan.flights = s.stepping == "flights" ||
-                 (s.stepping == "auto" && hindrance.empty() && !plan.history && w >= kDilute && beads <= kMost);
+  plan.flights = s.stepping == "flights" || (s.stepping == "auto" && hindrance.empty() && !plan.history &&
+                                             w >= kDilute && beads <= kMost);
   const char* name = "free flight";
   if (plan.flights)
     plan.effects.push_back(
@@ -239,6 +245,9 @@ void refuse_to_drop(const Scene& s, const Plan& plan) {
             "is false, but friction turns beads (contact.tangential = \"{}\", mu = {:g}); set mu = 0 at "
             "all contacts or contact.tangential = \"none\" to be rid of both.",
             s.contact.tangential, mu));
+  if (s.springs && remembered_numbers(plan) == 0)
+    throw ConfigError(s.where("time.springs"),
+                      "is true, but no law of this scene's contacts remembers anything.");
   if (!s.history && plan.history)
     throw ConfigError(
         s.where("effects.history"),

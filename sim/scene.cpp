@@ -283,6 +283,9 @@ DriveSpec read_drive(const Section& s, Scene& scene) {
     throw ConfigError(s.where("axis"), "a 2D cell cannot be driven along y.");
   const std::string start = s.word("start", {"comoving", "abrupt", "ramp"}).value_or("comoving");
   scene.comoving = start != "abrupt";
+  scene.phase = s.number_in("phase", 0, 1);
+  if (scene.phase == 1)
+    throw ConfigError(s.where("phase"), "1 is out of range; the value must be less than 1.");
   read_schedule(s, scene.envelope);
   const auto ramp = s.number_in("ramp_cycles", 0, 1e6, true);
   if (start == "ramp") {
@@ -306,6 +309,7 @@ void read_start(const Section& s, const std::filesystem::path& folder, Scene& sc
   scene.rest_energy = s.number_in("rest_energy", 0, std::nullopt, true).value_or(scene.rest_energy);
   scene.settle_limit = s.number_in("settle_limit", 0, 1e6).value_or(scene.settle_limit);
   scene.relax = s.boolean("relax").value_or(scene.relax);
+  scene.in_motion = s.boolean("in_motion").value_or(scene.in_motion);
   const bool trajectory = scene.start == StartKind::trajectory, table = scene.start == StartKind::table;
   if (trajectory && scene.from.empty())
     throw ConfigError(s.where("from"), "a start from a trajectory needs the name of its file.");
@@ -313,6 +317,15 @@ void read_start(const Section& s, const std::filesystem::path& folder, Scene& sc
     throw ConfigError(s.where("from"), "a start from a table needs the name of its file.");
   if (!trajectory && !table)
     voids.refuse(s, {"from"}, "a file is named, but start.kind is neither \"trajectory\" nor \"table\".");
+  if (!trajectory && !table)
+    voids.refuse(
+        s, {"in_motion"},
+        "keeps the motion of a file's beads, but start.kind is neither \"trajectory\" nor \"table\".");
+  if (scene.in_motion) {
+    voids.refuse(s, {"rest_energy", "settle_limit"},
+                 "is of a bed that settles, but start.in_motion keeps it moving.");
+    voids.refuse(s, {"relax"}, "moves beads, but start.in_motion goes on from where they are.");
+  }
   if (!trajectory) voids.refuse(s, {"frame"}, "a frame is named, but start.kind is not \"trajectory\".");
   if (scene.start != StartKind::random)
     voids.refuse(s, {"velocity_scale"}, "is a speed of random starts, but start.kind is not \"random\".");
@@ -335,6 +348,7 @@ void read_time(const Section& s, Scene& scene) {
   scene.discard = s.integer_in("discard", 0, 1'000'000).value_or(scene.discard);
   scene.cycles = s.integer_in("cycles", 1, 100'000'000).value_or(scene.cycles);
   scene.phases = static_cast<int>(s.integer_in("phases", 1, 10'000).value_or(scene.phases));
+  scene.springs = s.boolean("springs").value_or(scene.springs);
   scene.samples = static_cast<int>(s.integer_in("samples", 0, 1'000'000).value_or(scene.samples));
 }
 

@@ -103,14 +103,18 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
 
   // Drive
   Drive drive;
-  Envelope envelope;     ///< preparation: cycles run before `discard` begins
-  bool comoving = true;  ///< false: beads at rest when the plate starts at full speed
+  Envelope envelope;            ///< preparation: cycles run before `discard` begins
+  std::optional<double> phase;  ///< cycles, 0 <= phase < 1: where in its cycle the plate begins; absent: 0,
+                                ///< or that of the frame that a start in motion goes on from
+  bool comoving = true;         ///< false: beads at rest when the plate starts at full speed
 
   // Start
   StartKind start = StartKind::crystal_a;
   std::uint64_t seed = 1;
   std::filesystem::path from;  ///< trajectory or table start; a relative one is below the scene's folder
   std::size_t frame = 0;
+  bool in_motion =
+      false;  ///< trajectory or table start: velocities, spins and springs are kept, nothing settles
   double perturbation = 0;     ///< seeded random displacement of every bead, sigma
   double velocity_scale = 1;   ///< random start: largest speed component, sigma/t0
   double rest_energy = 1e-12;  ///< kinetic energy per bead that counts as rest, m g sigma
@@ -125,6 +129,7 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   std::string stepping = "auto";      ///< auto | steps | flights
   std::int64_t discard = 10, cycles = 200;
   int phases = 20;
+  bool springs = false;            ///< what contacts remember is stored with every frame
   int samples = 400;               ///< a cycle, of what is averaged over time in the run; 0: none
   std::optional<Precision> until;  ///< heeded by whoever analyses while the run goes on (sweep/measure.hpp)
   Scale scale;

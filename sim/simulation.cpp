@@ -43,6 +43,26 @@ std::int64_t beads_in_contact(const System& s, Progress& progress) {
   return std::count(touching.begin(), touching.end(), 1);
 }
 
+/// What contacts of a start in motion remember, if this plan can read it.
+/// \throws ConfigError if other laws or another integrator wrote it
+std::vector<ContactMemory> readable(const Scene& scene, const Plan& plan,
+                                    std::vector<ContactMemory> contacts) {
+  const std::size_t wanted = remembered_numbers(plan);
+  for (const ContactMemory& c : contacts) {
+    if (c.values.size() != wanted)
+      throw ConfigError(
+          scene.where("start.in_motion"),
+          fmt::format("{}: its contacts remember {} numbers, those of this scene's laws and integrator "
+                      "(\"{}\") remember {}; name those that wrote the file.",
+                      scene.from.string(), c.values.size(), scene.integrator, wanted));
+    if (-1 - c.j >= static_cast<std::int64_t>(plan.walls.size()))
+      throw ConfigError(scene.where("start.in_motion"),
+                        fmt::format("{}: bead {} touches wall {}, this cell has {} walls.",
+                                    scene.from.string(), c.i, -1 - c.j, plan.walls.size()));
+  }
+  return contacts;
+}
+
 /// Largest speed at which a moving wall and a bead that touches it differ.
 double largest_kick(const System& s) {
   const Vec3 plate = s.plate_velocity() * Vec3::Unit(static_cast<int>(s.drive.axis));
@@ -68,7 +88,11 @@ RunState placed(const Scene& scene, Progress& progress) {
   const Plan plan = make_plan(scene);
   require_memory(scene, plan, scene.n_beads.value_or(0));
   Start start = make_start(scene, progress);
-  require_sound(start.beads, scene, 0.05, progress);
+  const double phase = start.phase.value_or(scene.phase.value_or(0));
+  const Vec3 plate =
+      scene.in_motion ? Vec3(scene.drive.displacement(phase) * Vec3::Unit(static_cast<int>(scene.drive.axis)))
+                      : Vec3(Vec3::Zero());
+  require_sound(start.beads, scene, 0.05, progress, plate);
   RunState state;
   // High enough never to be reached: the bed, the plate's stroke, twice the ballistic height of the plate's
   // speed, ten diameters.
@@ -78,13 +102,30 @@ RunState placed(const Scene& scene, Progress& progress) {
       scene.height.value_or(std::ceil(top_of(start.beads) + 2 * scene.drive.amplitude + 2 * flight + 10));
   state.beads = std::move(start.beads);
   state.tracer = std::move(start.tracer);
+  if (!scene.in_motion) return state;
+  state.driven = true;
+  state.step = first_step(plan, phase);
+  state.contacts = readable(scene, plan, std::move(start.contacts));
+  state.forces = std::move(start.forces);
+  state.rim_speeds = std::move(start.rim_speeds);
+  if (state.tracer.empty()) state.tracer = choose_tracers(state.beads, scene);
   return state;
 }
 
-void begin_drive(const Scene& scene, System& system) {
+std::int64_t first_step(const Plan& plan, double phase) {
+  return std::llround(phase * static_cast<double>(plan.steps_per_period)) % plan.steps_per_period;
+}
+
+void begin_drive(const Scene& scene, const Plan& plan, System& system) {
   system.drive = scene.drive;
   system.envelope = scene.envelope;
-  system.step = 0;
+  system.step = first_step(plan, scene.phase.value_or(0));
+  if (system.step > 0) {
+    // The bed stands on the plate, wherever that is.
+    const Vec3 shift = system.plate_displacement();
+    for (Bead& b : system.beads) b.x += shift.x(), b.y += shift.y(), b.z += shift.z();
+    system.forces_known = false;
+  }
   // At phase 0 the plate moves at A omega but does not accelerate: beads moving with it are in equilibrium.
   // Beads at rest would be hit by a plate at full speed, which by itself breaks a crystal.
   if (!scene.comoving) return;
@@ -162,14 +203,19 @@ void Simulation::settle(Progress& progress) try {
 
 std::vector<std::string> Simulation::warnings() const {
   std::vector<std::string> all = plan_.warnings;
-  if (!settled_.reached && scene_.g() > 0 && scene_.settle_limit > 0 && !system_.beads.empty())
+  if (!settled_.reached && !scene_.in_motion && scene_.g() > 0 && scene_.settle_limit > 0 &&
+      !system_.beads.empty())
     all.push_back(
         fmt::format("the bed still moved at {:.3g} m g sigma a bead when start.settle_limit = {:g} ended its "
                     "settling.",
                     settled_.energy_per_bead, scene_.settle_limit));
+  if (driven_ && scene_.in_motion && plan_.history && steps_done_ == 0 && kernel_->contacts().empty())
+    all.push_back(
+        "the start in motion brings no springs of contacts (time.springs of the run that wrote it): friction "
+        "begins anew at every contact.");
   if (driven_) return all;
   System at_start = system_;
-  begin_drive(scene_, at_start);
+  begin_drive(scene_, plan_, at_start);
   constexpr double kGentle = 0.01;
   if (const double kick = largest_kick(at_start); kick > kGentle)
     all.push_back(
@@ -209,6 +255,7 @@ TrajectoryInfo Simulation::trajectory_info() const {
   info.columns = {
       .velocity = true, .spin = plan_.rotation, .identity = false, .phase = true, .plate_height = true};
   info.columns.time_mean = samples_per_phase() > 0;
+  info.columns.contacts = scene_.springs;
   info.samples_per_cycle = static_cast<int>(samples_per_phase()) * scene_.phases;
   const auto boundary = [](Edge e) {
     return e == Edge::periodic ? Boundary::periodic : e == Edge::wall ? Boundary::wall : Boundary::open;
@@ -244,6 +291,19 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
     frame.velocity.emplace_back(b.vx, b.vy, b.vz);
     if (plan_.rotation) frame.spin.emplace_back(b.spin_x, -b.spin, b.spin_z);
   }
+  if (scene_.springs) {
+    frame.contacts = kernel_->contacts();
+    const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    const std::size_t n = system_.beads.size();
+    const bool known = system_.forces_known && system_.forces.size() == n;
+    for (std::size_t i = 0; i < n; ++i) {
+      frame.force.push_back(known ? Vec3(system_.forces[i].x, system_.forces[i].y, system_.forces[i].z)
+                                  : unknown);
+      frame.moment.push_back(known ? Vec3(system_.forces[i].q_x, system_.forces[i].q, system_.forces[i].q_z)
+                                   : unknown);
+      frame.rim_speed.push_back(system_.rim_speeds.size() == n ? system_.rim_speeds[i] : unknown);
+    }
+  }
   if (temperature_.steps == steps_per_phase()) {
     const auto steps = static_cast<double>(temperature_.steps);
     frame.time_mean = {temperature_.all / steps, temperature_.coarse / steps};
@@ -273,7 +333,7 @@ void Simulation::take_sample(std::int64_t j) {
 
 void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most) {
   settle(progress);
-  if (!driven_) begin_drive(scene_, system_);
+  if (!driven_) begin_drive(scene_, plan_, system_);
   driven_ = true;
   const std::int64_t per_phase = steps_per_phase(), samples = samples_per_phase();
   const std::int64_t last = plan_.steps;

@@ -55,8 +55,11 @@ RunState placed(const Scene& scene, Progress& progress = Progress::none());
 /// m v^2/2 + I omega^2/2, their mean over beads; 0 without beads.
 double kinetic_energy_per_bead(const System& s);
 
-/// Sets the plate of a settled system going, at phase 0.
-void begin_drive(const Scene& scene, System& system);
+/// The step of a cycle that is nearest to this phase of it, cycles.
+std::int64_t first_step(const Plan& plan, double phase);
+/// Sets the plate of a settled system going, at the scene's phase: beads move along with the plate to where
+/// it is.
+void begin_drive(const Scene& scene, const Plan& plan, System& system);
 
 /// A scene made ready and run: the bed settles on the resting plate, then the plate drives it.
 class Simulation {

@@ -16,6 +16,12 @@ namespace twincell::sim {
 struct Start {
   std::vector<Bead> beads;
   std::vector<std::uint8_t> tracer;  ///< carried over from a trajectory; empty otherwise
+  // Of a trajectory start in motion whose frame holds them; empty otherwise.
+  std::vector<ContactMemory> contacts = {};
+  std::vector<Force> forces = {};
+  std::vector<Vec3> rim_speeds = {};
+  std::optional<double> phase =
+      {};  ///< of the drive, cycles: that of the frame a start in motion goes on from
 };
 
 /// Radii of the scene's beads, drawn from its seed; all the same without a spread.
@@ -41,11 +47,13 @@ Start crystal_b(const Scene& scene, Progress& progress = Progress::none());
 /// still have to fall. Without gravity they fill the cell. \throws ConfigError if they find no places
 Start random_deposit(const Scene& scene, Progress& progress = Progress::none());
 /// Frame `scene.frame` of `scene.from`: positions against the plate, empty slots left out, velocities
-/// forgotten. Radii and masses are the file's if a simulation wrote it, otherwise the scene's: a camera's
-/// radii are measurements. A 2D trajectory in a 3D cell lies in the middle of its gap. What a camera's noise
-/// makes overlap by up to 0.2 of the smaller diameter is pushed apart until no overlap exceeds 1e-4. \throws
-/// InputError if the file cannot be read; ConfigError for a missing frame, beads outside the cell or deeper
-/// in each other than 0.2, overlaps beyond 0.05 that remain
+/// forgotten. With scene.in_motion everything is kept as it is: positions, velocities, spins, the phase of
+/// the drive, and what contacts remember if the frame holds it. Radii and masses are the file's if a
+/// simulation wrote it, otherwise the scene's: a camera's radii are measurements. A 2D trajectory in a 3D
+/// cell lies in the middle of its gap. What a camera's noise makes overlap by up to 0.2 of the smaller
+/// diameter is pushed apart until no overlap exceeds 1e-4. \throws InputError if the file cannot be read;
+/// ConfigError for a missing frame, beads outside the cell or deeper in each other than 0.2, overlaps beyond
+/// 0.05 that remain
 Start from_trajectory(const Scene& scene, Progress& progress = Progress::none());
 /// A CSV table: a line that names the columns (x, z; optional y, vx, vy, vz, spin, spin_x, spin_z, radius,
 /// mass), then one bead a line. A missing radius is the scene's, a missing mass that of the same material, a
@@ -64,9 +72,10 @@ double relax_overlaps(std::vector<Bead>& beads, const Scene& scene, double toler
                       Progress& progress = Progress::none());
 
 /// Refuses, naming beads: positions or velocities that are not finite, beads too large for a period, beads in
-/// each other or in walls deeper than `bound` of the smaller one's diameter.
+/// each other or in walls deeper than `bound` of the smaller one's diameter. \param plate where the
+/// walls that ride with it are, against its mean
 void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bound,
-                   Progress& progress = Progress::none());
+                   Progress& progress = Progress::none(), const Vec3& plate = Vec3::Zero());
 
 /// Tracers at the middle of the resting bed (app. B: "at the centre, in a straight horizontal line"): of
 /// crystal A the lattice layer nearest to half height, otherwise the bead nearest to half height in every

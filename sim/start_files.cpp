@@ -31,6 +31,58 @@ void require_positive(const Scene& scene, const std::vector<double>& column, con
           fmt::format("{} of bead {} is out of range; the value must be greater than 0.", column[i], i));
 }
 
+/// Goes on from a frame as it is.
+Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Frame& frame) {
+  const std::string name = fmt::format("frame {} of {}", scene.frame, scene.from.string());
+  const auto refuse = [&](const std::string& complaint) {
+    throw ConfigError(scene.where("start.in_motion"), name + complaint);
+  };
+  if (info.source != "simulation")
+    refuse(" is of source \"" + info.source + "\"; only a simulation's frames hold a bed's whole motion.");
+  if (!info.columns.velocity) refuse(" has no velocities.");
+  if (info.box.dimension != scene.dimension)
+    refuse(fmt::format(" has {} dimensions, the cell has {}.", info.box.dimension, scene.dimension));
+  if (!scene.phase && (frame.phase < 0 || info.phases_per_cycle <= 0))
+    refuse(" has no drive phase; say drive.phase.");
+  const Vec3 corner(info.box.lower.x(), scene.dimension == 3 ? info.box.lower.y() : 0, 0);
+  Start start;
+  std::vector<std::int32_t> slot(frame.position.size(), -1);  // of the frame's slots among the beads
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    if (!frame.present(i)) continue;
+    const double radius = info.radius.empty() ? scene.radius : info.radius[i];
+    Bead b = bead_at(scene, radius, info.mass.empty() ? scene.mass_of(radius) : info.mass[i],
+                     frame.position[i] - corner);
+    const Vec3& v = frame.velocity[i];
+    b.vx = v.x(), b.vy = v.y(), b.vz = v.z();
+    if (!frame.spin.empty())
+      b.spin_x = frame.spin[i].x(), b.spin = -frame.spin[i].y(), b.spin_z = frame.spin[i].z();
+    slot[i] = static_cast<std::int32_t>(start.beads.size());
+    start.beads.push_back(b);
+    if (!info.tracer.empty()) start.tracer.push_back(info.tracer[i]);
+  }
+  for (ContactMemory c : frame.contacts) {
+    c.i = slot[static_cast<std::size_t>(c.i)];
+    if (c.j >= 0) c.j = slot[static_cast<std::size_t>(c.j)];
+    start.contacts.push_back(std::move(c));
+  }
+  const auto all_known = [&](const std::vector<Vec3>& column) {
+    return column.size() == start.beads.size() &&
+           std::ranges::all_of(column, [](const Vec3& v) { return v.allFinite(); });
+  };
+  if (all_known(frame.force) && all_known(frame.moment))
+    for (std::size_t i = 0; i < frame.force.size(); ++i)
+      start.forces.push_back({.x = frame.force[i].x(),
+                              .z = frame.force[i].z(),
+                              .q = frame.moment[i].y(),
+                              .y = frame.force[i].y(),
+                              .q_x = frame.moment[i].x(),
+                              .q_z = frame.moment[i].z()});
+  if (all_known(frame.rim_speed)) start.rim_speeds = frame.rim_speed;
+  start.phase = scene.phase ? *scene.phase : static_cast<double>(frame.phase) / info.phases_per_cycle;
+  require_count(scene, start.beads.size(), name);
+  return start;
+}
+
 }  // namespace
 
 Start from_trajectory(const Scene& scene, Progress& progress) {
@@ -52,6 +104,7 @@ Start from_trajectory(const Scene& scene, Progress& progress) {
   const std::vector<double> drawn = draw_radii(scene, info.n_beads);
   Frame frame;
   file.read(scene.frame, frame);
+  if (scene.in_motion) return start_in_motion(scene, info, frame);
   // Along the axis of the drive positions count from the plate, which will be at its mean.
   Vec3 origin(info.box.lower.x(), info.box.lower.y(), 0);
   if (!std::isnan(frame.plate_height))

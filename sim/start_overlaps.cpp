@@ -115,11 +115,14 @@ void require_periods(const std::vector<Bead>& beads, const Scene& scene) {
 
 }  // namespace
 
-void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bound, Progress& progress) {
+void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bound, Progress& progress,
+                   const Vec3& plate) {
   Heed heed(progress);
   const Where where = scene.where("start");
   constexpr double kFar = 1e9;  // as high as a cell may be
-  const auto walls = scene.walls();
+  auto walls = scene.walls();
+  for (Wall& wall : walls)
+    if (wall.moves) wall.offset += wall.n.dot(plate);
   for (std::size_t i = 0; i < beads.size(); ++i) {
     const Bead& b = beads[i];
     heed();

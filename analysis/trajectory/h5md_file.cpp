@@ -53,6 +53,7 @@ struct H5mdWriter::Impl {
   h5::Handle file;
   h5::Series step, time, position, position_sigma, edges, velocity, spin, id, plate_height, phase, cycle,
       temperature, temperature_coarse;
+  h5::Series contact_count, contact_pairs, contact_values, force, moment, rim_speed;
   std::int64_t last_step = 0;
 
   Impl(const fs::path& final_path, TrajectoryInfo i)
@@ -61,6 +62,7 @@ struct H5mdWriter::Impl {
   void create();
   void create_particles();
   void create_parameters();
+  void append_contacts(const std::vector<ContactMemory>& contacts);
   void close();
 };
 
@@ -108,6 +110,11 @@ void H5mdWriter::Impl::create_particles() {
     position_sigma = element(group.get(), "position_sigma", H5T_IEEE_F64LE, {n, 3});
   if (info.columns.velocity) velocity = element(group.get(), "velocity", H5T_IEEE_F64LE, {n, 3});
   if (info.columns.spin) spin = element(group.get(), "angular_velocity", H5T_IEEE_F64LE, {n, 3});
+  if (info.columns.contacts) {
+    force = element(group.get(), "force", H5T_IEEE_F64LE, {n, 3});
+    moment = element(group.get(), "moment", H5T_IEEE_F64LE, {n, 3});
+    rim_speed = element(group.get(), "rim_speed", H5T_IEEE_F64LE, {n, 3});
+  }
   if (info.columns.identity) id = element(group.get(), "id", H5T_STD_I64LE, {n}, &kEmptySlot);
   if (!info.radius.empty())
     h5::write_dataset(group.get(), "radius", info.radius.data(), {info.radius.size()});
@@ -159,6 +166,11 @@ void H5mdWriter::Impl::create_parameters() {
   h5::write_attribute(ours.get(), "schema_version", kSchemaVersion);
   h5::write_attribute(ours.get(), "source", info.source);
   if (!info.tracking_json.empty()) h5::write_text(ours.get(), "tracking", info.tracking_json);
+  if (info.columns.contacts) {
+    const h5::Handle contacts = h5::create_group(ours.get(), "contacts");
+    contact_count = h5::Series(contacts.get(), "count", H5T_STD_I64LE, {}, 1024);
+    contact_pairs = h5::Series(contacts.get(), "pairs", H5T_STD_I32LE, {2}, 1024);
+  }
   const h5::Handle cell = h5::create_group(ours.get(), "cell");
   h5::write_attribute(cell.get(), "dimension", info.box.dimension);
   std::vector<std::string> words;
@@ -170,9 +182,34 @@ void H5mdWriter::Impl::create_parameters() {
   if (tilt[0] != 0 || tilt[1] != 0) h5::write_dataset(cell.get(), "side_tilt", tilt.data(), {2});
 }
 
+/// Frames have contacts of different number: all lie one after the other, with the number of each frame
+/// beside.
+void H5mdWriter::Impl::append_contacts(const std::vector<ContactMemory>& contacts) {
+  const auto n = static_cast<std::int64_t>(contacts.size());
+  contact_count.append(h5::native<std::int64_t>(), &n);
+  if (contacts.empty()) return;
+  const std::size_t each = contacts.front().values.size();
+  if (!contact_values) {  // how much a contact remembers is known from the first
+    const h5::Handle group =
+        h5::own(H5Oopen(file.get(), "twincell/contacts", H5P_DEFAULT), "opening contacts");
+    contact_values = h5::Series(group.get(), "values", H5T_IEEE_F64LE, {each}, 1024);
+  }
+  std::vector<std::int32_t> pairs;
+  std::vector<double> values;
+  for (const ContactMemory& c : contacts) {
+    pairs.insert(pairs.end(), {c.i, c.j});
+    values.insert(values.end(), c.values.begin(), c.values.end());
+  }
+  if (values.size() != each * contacts.size())
+    throw RunError(path.final().string() + ": contacts of one frame remember different numbers of values.");
+  contact_pairs.append(h5::native<std::int32_t>(), pairs.data(), contacts.size());
+  contact_values.append(h5::native<double>(), values.data(), contacts.size());
+}
+
 void H5mdWriter::Impl::close() {
   for (h5::Series* s : {&step, &time, &position, &position_sigma, &edges, &velocity, &spin, &id,
-                        &plate_height, &phase, &cycle, &temperature, &temperature_coarse})
+                        &plate_height, &phase, &cycle, &temperature, &temperature_coarse, &contact_count,
+                        &contact_pairs, &force, &moment, &rim_speed, &contact_values})
     *s = h5::Series();
   h5::check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path.final().string() + ": writing to disk");
   file.reset();
@@ -198,6 +235,9 @@ void H5mdWriter::append(const Frame& frame) {
   need(w.info.columns.velocity, frame.velocity.size(), "velocity");
   need(w.info.columns.spin, frame.spin.size(), "spin");
   need(w.info.columns.identity, frame.id.size(), "id");
+  need(w.info.columns.contacts, frame.force.size(), "force");
+  need(w.info.columns.contacts, frame.moment.size(), "moment");
+  need(w.info.columns.contacts, frame.rim_speed.size(), "rim_speed");
   if (w.step.size() > 0 && frame.step <= w.last_step)
     throw RunError(fmt::format("{}: frame {} has step {}, not above the previous one's {}.",
                                w.path.final().string(), w.step.size(), frame.step, w.last_step));
@@ -221,6 +261,12 @@ void H5mdWriter::append(const Frame& frame) {
   if (w.temperature) {
     w.temperature.append(h5::native<double>(), frame.time_mean.temperature.data());
     w.temperature_coarse.append(h5::native<double>(), frame.time_mean.temperature_coarse.data());
+  }
+  if (w.contact_count) {
+    w.append_contacts(frame.contacts);
+    w.force.append(h5::native<double>(), frame.force.data());
+    w.moment.append(h5::native<double>(), frame.moment.data());
+    w.rim_speed.append(h5::native<double>(), frame.rim_speed.data());
   }
   if (w.step.size() % kFramesPerFlush == 0)
     h5::check(H5Fflush(w.file.get(), H5F_SCOPE_GLOBAL), w.path.final().string() + ": writing to disk");
@@ -249,9 +295,14 @@ struct H5mdReader::Impl {
   [[noreturn]] void refuse(const std::string& key, const std::string& complaint) const {
     throw InputError({path.string(), 0, 0, key}, complaint);
   }
+  h5::Series contact_pairs, contact_values, force, moment, rim_speed;
+  std::vector<std::int64_t> contact_count, contact_begin;  ///< of each frame, if there are contacts
+
   std::string particle_group() const;
   void open();
   void open_columns(const std::string& group);
+  void open_contacts();
+  std::vector<ContactMemory> contacts_of(std::size_t frame) const;
   void read_box(const std::string& group);
   bool is_planar() const;
   void read_parameters();
@@ -368,6 +419,9 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
   velocity = column("velocity", {info.n_beads, 3});
   spin = column("angular_velocity", {info.n_beads, 3});
   id = column("id", {info.n_beads});
+  force = column("force", {info.n_beads, 3});
+  moment = column("moment", {info.n_beads, 3});
+  rim_speed = column("rim_speed", {info.n_beads, 3});
   auto observable = [&](const char* name, const std::vector<hsize_t>& record = {}) {
     const std::string where = std::string("observables/") + name + "/value";
     if (!h5::exists(file.get(), where)) return h5::Series();
@@ -389,6 +443,8 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
                   static_cast<bool>(position_sigma),
                   temperature && temperature_coarse};
 
+  open_contacts();
+
   auto per_bead = [&]<class T>(const char* name, std::vector<T>& out) {
     out = h5::read_dataset<T>(g.get(), name);
     if (!out.empty() && out.size() != info.n_beads)
@@ -397,6 +453,55 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
   per_bead("radius", info.radius);
   per_bead("mass", info.mass);
   per_bead("tracer", info.tracer);
+}
+
+void H5mdReader::Impl::open_contacts() {
+  const std::string where = "twincell/contacts";
+  if (!h5::exists(file.get(), where)) return;
+  contact_count = h5::read_dataset<std::int64_t>(file.get(), where + "/count");
+  if (contact_count.size() != position.size()) refuse(where + "/count", "one number per frame is needed.");
+  contact_pairs = h5::Series(file.get(), where + "/pairs");
+  contact_values = h5::Series(file.get(), where + "/values");
+  if (!contact_pairs || contact_pairs.record() != std::vector<hsize_t>{2})
+    refuse(where + "/pairs", "two numbers per contact are needed.");
+  std::int64_t sum = 0;
+  const auto all = static_cast<std::int64_t>(contact_pairs.size());
+  for (const std::int64_t n : contact_count) {
+    if (n < 0 || n > all - sum)
+      refuse(where + "/count", fmt::format("{} contacts are counted beyond the {} there are.", n, all));
+    contact_begin.push_back(sum);
+    sum += n;
+  }
+  if (all > 0 && (!contact_values || contact_values.record().size() != 1 ||
+                  contact_values.size() != contact_pairs.size()))
+    refuse(where + "/values", "as many values for each contact are needed as for the others.");
+  if (!force || !moment || !rim_speed)
+    refuse(where, "contacts stand beside the particles' force, moment and rim_speed, which are missing.");
+  info.columns.contacts = true;
+}
+
+std::vector<ContactMemory> H5mdReader::Impl::contacts_of(std::size_t frame) const {
+  if (!info.columns.contacts || contact_count[frame] == 0) return {};
+  const auto n = static_cast<std::size_t>(contact_count[frame]),
+             each = static_cast<std::size_t>(contact_values.record()[0]);
+  std::vector<std::int32_t> pairs(2 * n);
+  std::vector<double> values(each * n);
+  const auto begin = static_cast<hsize_t>(contact_begin[frame]);
+  contact_pairs.read(begin, h5::native<std::int32_t>(), pairs.data(), n);
+  if (each > 0) contact_values.read(begin, h5::native<double>(), values.data(), n);
+  std::vector<ContactMemory> contacts;
+  constexpr std::int32_t kMostWalls = 100;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::int32_t i = pairs[2 * k], j = pairs[2 * k + 1];
+    const auto beads = static_cast<std::int64_t>(info.n_beads);
+    if (i < 0 || i >= beads || j >= beads || j < -kMostWalls || (j >= 0 && j <= i))
+      refuse("twincell/contacts/pairs", fmt::format("({}, {}) is no contact of {} beads.", i, j, beads));
+    contacts.push_back({i, j, {values.data() + k * each, values.data() + (k + 1) * each}});
+    for (const double v : contacts.back().values)
+      if (!std::isfinite(v))
+        refuse("twincell/contacts/values", fmt::format("that of ({}, {}) is not finite.", i, j));
+  }
+  return contacts;
 }
 
 void H5mdReader::Impl::read_box(const std::string& group) {
@@ -536,8 +641,14 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
     column(r.velocity, h5::native<double>(), frame.velocity);
     column(r.spin, h5::native<double>(), frame.spin);
     column(r.id, h5::native<std::int64_t>(), frame.id);
+    const h5::Series none;  // somebody else's forces are not what a run goes on from
+    const bool restart = r.info.columns.contacts;
+    column(restart ? r.force : none, h5::native<double>(), frame.force);
+    column(restart ? r.moment : none, h5::native<double>(), frame.moment);
+    column(restart ? r.rim_speed : none, h5::native<double>(), frame.rim_speed);
     frame.plate_height = Frame::kNoHeight;
     if (r.plate_height) r.plate_height.read(index, h5::native<double>(), &frame.plate_height);
+    frame.contacts = r.contacts_of(index);
     frame.time_mean = {};
     if (r.info.columns.time_mean) {
       r.temperature.read(index, h5::native<double>(), frame.time_mean.temperature.data());

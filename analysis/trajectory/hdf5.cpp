@@ -355,10 +355,10 @@ Series::Series(hid_t group, const std::string& name) : dataset_(open_dataset(gro
 
 namespace {
 
-/// Selects record `index` and calls `move(memory space, file space)`.
+/// Selects `many` records from `index` on and calls `move(memory space, file space)`.
 template <class Move>
-void with_record(hid_t dataset, const std::vector<hsize_t>& record, hsize_t index, Move move) {
-  std::vector<hsize_t> start{index}, count{1};
+void with_records(hid_t dataset, const std::vector<hsize_t>& record, hsize_t index, hsize_t many, Move move) {
+  std::vector<hsize_t> start{index}, count{many};
   for (hsize_t n : record) {
     start.push_back(0);
     count.push_back(n);
@@ -375,17 +375,25 @@ void with_record(hid_t dataset, const std::vector<hsize_t>& record, hsize_t inde
 }  // namespace
 
 void Series::append(hid_t memory_type, const void* values) {
-  std::vector<hsize_t> shape{size_ + 1};
+  append(memory_type, values, 1);
+}
+
+void Series::append(hid_t memory_type, const void* values, hsize_t count) {
+  std::vector<hsize_t> shape{size_ + count};
   shape.insert(shape.end(), record_.begin(), record_.end());
   check(H5Dset_extent(dataset_.get(), shape.data()), "growing a dataset");
-  with_record(dataset_.get(), record_, size_, [&](hid_t memory, hid_t file) {
+  with_records(dataset_.get(), record_, size_, count, [&](hid_t memory, hid_t file) {
     check(H5Dwrite(dataset_.get(), memory_type, memory, file, H5P_DEFAULT, values), "writing a frame");
   });
-  ++size_;
+  size_ += count;
 }
 
 void Series::read(hsize_t index, hid_t memory_type, void* values) const {
-  with_record(dataset_.get(), record_, index, [&](hid_t memory, hid_t file) {
+  read(index, memory_type, values, 1);
+}
+
+void Series::read(hsize_t index, hid_t memory_type, void* values, hsize_t count) const {
+  with_records(dataset_.get(), record_, index, count, [&](hid_t memory, hid_t file) {
     check(H5Dread(dataset_.get(), memory_type, memory, file, H5P_DEFAULT, values), "reading a frame");
   });
 }

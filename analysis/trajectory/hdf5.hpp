@@ -85,6 +85,9 @@ class Series {
   [[nodiscard]] const std::vector<hsize_t>& record() const { return record_; }
   void append(hid_t memory_type, const void* values);
   void read(hsize_t index, hid_t memory_type, void* values) const;
+  /// `count` records one after the other.
+  void append(hid_t memory_type, const void* values, hsize_t count);
+  void read(hsize_t index, hid_t memory_type, void* values, hsize_t count) const;
 
  private:
   Handle dataset_;

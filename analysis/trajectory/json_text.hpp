@@ -7,8 +7,8 @@
 
 namespace twincell {
 
-/// The document as text, indented by `indent` spaces (-1: on one line). Bytes that are not UTF-8 become U+FFFD;
-/// numbers that are not finite become null.
+/// The document as text, indented by `indent` spaces (-1: on one line). Bytes that are not UTF-8 become
+/// U+FFFD; numbers that are not finite become null.
 inline std::string json_text(const nlohmann::json& document, int indent = -1) {
   return document.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -102,10 +102,10 @@ void reduce_units(Config& config) {
     for (const char* sigma : {"sigma_mm", "sigma_m"}) {
       if (!scale.has(sigma)) continue;
       for (const Dimensional& d : kDimensional)
-        if (drive.has(d.plain) && drive.where(d.plain).file == scale.where(sigma).file)
+        if (drive.has(d.plain))
           throw ConfigError(
               drive.where(d.plain),
-              fmt::format("is {} without a unit in a file whose scale.{} says the laboratory's scale; say "
+              fmt::format("is {} without a unit where scale.{} says the laboratory's scale; say "
                           "drive.{} for reduced units or drive.{} for the laboratory's.",
                           drive.number(d.plain).value_or(0), sigma, d.reduced, d.physical));
     }

@@ -24,7 +24,7 @@ namespace twincell {
 /// spelling and the line that the user wrote. `peak_acceleration_g` is in units of the scene's gravity.
 /// \throws ConfigError for a value that is out of range; for a laboratory unit without the part of [scale]
 ///         that converts it; for two spellings of one quantity that differ by more than 1e-9 of it; and for a
-///         plain drive.amplitude, frequency, omega or peak_velocity in a file whose [scale] says sigma, since
+///         plain drive.amplitude, frequency, omega or peak_velocity beside a [scale] that says sigma, since
 ///         nothing tells whether a laboratory's number is meant
 void reduce_units(Config& config);
 

@@ -29,6 +29,7 @@ struct Columns {
   bool plate_height = false;    ///< Frame::plate_height
   bool position_sigma = false;  ///< Frame::position_sigma
   bool time_mean = false;       ///< Frame::time_mean
+  bool contacts = false;        ///< Frame::contacts, force, moment and rim_speed
 };
 
 /// What is the same for all frames.
@@ -57,6 +58,14 @@ struct TimeMean {
   Vec3 temperature_coarse = Vec3::Constant(kUnknown);  ///< from every second sample of those
 };
 
+/// What a contact remembers: tangential displacement and whatever else its laws keep while it lasts. Only a
+/// simulation of the same laws can read the values.
+struct ContactMemory {
+  std::int32_t i = 0;  ///< bead
+  std::int32_t j = 0;  ///< bead, > i; or -1 - w for wall w
+  std::vector<double> values;
+};
+
 /// One moment.
 struct Frame {
   static constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
@@ -73,6 +82,13 @@ struct Frame {
   std::vector<Vec3> velocity;        ///< [n_beads] or empty, sigma/t0
   std::vector<Vec3> spin;  ///< [n_beads] or empty, angular velocity, 1/t0. A disc's counter-clockwise spin
                            ///< omega in the (x right, z up) drawing is the vector (0, -omega, 0)
+  // What a simulation goes on from, beside positions and velocities; empty if absent.
+  std::vector<ContactMemory> contacts;  ///< sorted by (i, j)
+  std::vector<Vec3> force;              ///< [n_beads], of contacts, m g; NaN where it is not known
+  std::vector<Vec3>
+      moment;  ///< [n_beads], of contacts over the bead's radius, m g, as the simulation turns beads
+  std::vector<Vec3>
+      rim_speed;  ///< [n_beads], radius times angular velocity, sigma/t0; NaN where it is not known
   std::vector<std::int64_t> id;  ///< [n_beads] or empty; slot number where filled, -1 where empty
 
   /// Whether slot i holds a bead in this frame.

@@ -214,7 +214,7 @@ struct Gas {
     system.beads = placed(scene).beads;
     system.drive.amplitude = 0;
     kernel->advance(system, static_cast<std::int64_t>(8 / system.dt));
-    begin_drive(scene, system);
+    begin_drive(scene, plan, system);
   }
   void periods(std::int64_t n) { kernel->advance(system, n * plan.steps_per_period); }
 };

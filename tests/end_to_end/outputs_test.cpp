@@ -233,6 +233,17 @@ TEST(Outputs, AnInputIsNeverAnOutputThroughAnyName) {
   EXPECT_EQ(Sandbox::contents(), before);
 }
 
+TEST(Outputs, AWordOfTheProgramIsNoInputThoughAFileHasItsName) {
+  const Sandbox sandbox;
+  for (int time = 0; time < 2; ++time) {  // the second goes on in the folder that the first made
+    const Ran figure = run_program({"reproduce", "p1-table1", "-q"});
+    EXPECT_EQ(figure.code, 0) << figure.err;
+    std::ofstream("t.csv") << "x,y\n1,2\n2,4.1\n3,5.9\n4,8\n";
+    const Ran fit = run_program({"fit", "t.csv", "--law", "line", "-o", "line", "-q"});
+    EXPECT_EQ(fit.code, 0) << fit.err;
+  }
+}
+
 TEST(Outputs, NamesOfAnyBytesAreWritten) {
   const Sandbox sandbox;
   for (const std::string name : {"with space", "it's \"quoted\"", "new\nline", "./-o", "caf\xc3\xa9",

@@ -109,6 +109,16 @@ TEST(Reproduce, TheAppendixMeetsItsClosedForms) {
   EXPECT_EQ(target_of(document, "steps a period at n = 50")["measured"], "141333");
 }
 
+TEST(Reproduce, WhatTheStepDoesIsSaidForEveryQuantityAndStart) {
+  const TemporaryFolder folder;
+  const auto document = reproduced("p1-step", folder / "s", {"p1-step"});
+  EXPECT_FALSE(document["complete"]);
+  for (const char* quantity : {"T_g", "p_s", "s_b", "s_c"})
+    for (const char* start : {"crystal", "random"})
+      EXPECT_EQ(target_of(document, std::string(quantity) + " of " + start + " beds")["wanted"],
+                "that of split, n = 6.37");
+}
+
 TEST(Reproduce, InitialBedsAndTheirOrientations) {
   const TemporaryFolder folder;
   const auto beds = reproduced("p1-fig1", folder / "one", {"p1-fig1"});

@@ -6,6 +6,7 @@
 #include "analysis/trajectory/atomic_file.hpp"
 #include "imaging/cell.hpp"
 #include "sim/scene.hpp"
+#include "tests/support/complaint.hpp"
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -109,13 +110,22 @@ TEST(Quantities, AScenesUnitsDisplaceItsPresetAndSurviveTheirOwnText) {
 TEST(Quantities, AnAssignmentDisplacesOtherSpellings) {
   const std::string text = kBeads + "[drive]\nfrequency_hz = 8.0\namplitude_mm = 3.2\n" + kScale;
   const sim::Scene slower =
-      sim::read_scene_text(text, "s.toml", {"drive.omega=0.5", "drive.amplitude_sigma=1"});
+      sim::read_scene_text(text, "s.toml", {"drive.omega_per_t0=0.5", "drive.amplitude_sigma=1"});
   EXPECT_EQ(slower.drive.omega, 0.5);
   EXPECT_EQ(slower.drive.amplitude, 1);
   const sim::Scene larger = sim::read_scene_text(text, "s.toml", {"scale.sigma_m=0.004"});
   EXPECT_DOUBLE_EQ(larger.drive.amplitude, 0.8);
   EXPECT_THROW((void)sim::read_scene_text(kBeads + "[drive]\nfrequency = 8.0\n" + kScale, "s.toml"),
                ConfigError);
+  // An assignment is no less a user's number than the file's, whichever of the two says the scale.
+  expect_refusal<ConfigError>([&] { (void)sim::read_scene_text(text, "s.toml", {"drive.frequency=8"}); },
+                              "drive.frequency: is 8 without a unit", "frequency_per_t0", "frequency_hz");
+  expect_refusal<ConfigError>(
+      [&] {
+        (void)sim::read_scene_text(kBeads + "[drive]\namplitude = 1.6\nfrequency = 0.1\n", "s.toml",
+                                   {"scale.sigma_mm=2", "scale.gravity_m_s2=9.81"});
+      },
+      "drive.amplitude: is 1.6 without a unit");
 }
 
 }  // namespace

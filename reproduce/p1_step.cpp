@@ -1,0 +1,303 @@
+// What the time step does to the physics of Fortini & Huang 2015: T_g*, p_s, s_b and s_c of its beds against
+// the steps per contact, for Verlet, whose friction is of first order, and for the split integrator, whose
+// friction is of second.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "analysis/colours.hpp"
+#include "analysis/statistics.hpp"
+#include "analysis/trajectory/json_text.hpp"
+#include "reproduce/estimate.hpp"
+#include "reproduce/p1_scene.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int kLayers = 20;
+constexpr int kPaperCycles = 200;
+const std::vector<std::string> kStarts = {"crystal_a", "random"};
+const std::vector<double> kGammas = {1.5, 2.0, 2.5, 3.0};
+const std::vector<std::string> kIntegrators = {"verlet", "split"};
+constexpr const char *kAliasing = "T_g_aliasing", *kEligible = "bead_cycles";
+constexpr double kUsual = 50;  ///< the paper's and the common choice of n, with Verlet
+
+struct Quantity {
+  const char* name;   ///< result of the analysis
+  const char* label;  ///< gnuplot's
+  bool relative;      ///< drawn over the value of the shortest split step
+};
+constexpr std::array<Quantity, 4> kQuantities = {{{"T_g", "T_g^{*}/T_g^{*}(converged)", true},
+                                                  {"p_s", "p_s", false},
+                                                  {"s_b", "s_b/s_b(converged)", true},
+                                                  {"s_c", "s_c/{/Symbol s}", false}}};
+
+/// What a budget buys.
+struct Size {
+  double core_minutes;
+  int cycles, seeds;
+  std::vector<double> verlet, split;
+  [[nodiscard]] const std::vector<double>& steps(const std::string& integrator) const {
+    return integrator == "verlet" ? verlet : split;
+  }
+};
+const Size& size_for(const Request& request) {
+  static const std::vector<Size> all = {
+      {0, 5, 2, {12.5}, {6.37}},
+      {10, 20, 2, {12.5, 50}, {6.37, 25}},
+      {60, 50, 4, {12.5, 25, 50, 100}, {6.37, 25}},
+      {160, 50, 8, {12.5, 25, 50, 100, 200}, {6.37, 12.5, 25}},
+      {1e300, kPaperCycles, 16, {12.5, 25, 50, 100, 200, 400}, {6.37, 12.5, 25, 50}}};
+  if (request.full) return all.back();
+  const Size* chosen = &all.front();
+  for (const Size& size : all)
+    if (request.minutes * request.threads >= size.core_minutes) chosen = &size;
+  return *chosen;
+}
+
+sweep::Plan plan_of(const Size& size, const std::string& integrator, std::uint64_t seed) {
+  return sweep::read_plan_text(
+      fmt::format("seed = {}\nresults = [\"s_b\", \"s_c\", \"p_s\", \"slips\", \"T_g\", \"T_g_aliasing\"]\n"
+                  "[scene]\npreset = \"fortini-huang-2015\"\nbeads.layers = {}\nstart.perturbation = 1e-9\n"
+                  "time.integrator = \"{}\"\ntime.discard = 10\ntime.cycles = {}\n"
+                  "[axes]\nstart.kind = [\"{}\"]\ndrive.gamma = [{:.1f}]\ntime.steps_per_contact = "
+                  "[{}]\nseeds = {}\n",
+                  seed, kLayers, integrator, size.cycles, fmt::join(kStarts, "\", \""),
+                  fmt::join(kGammas, ", "), fmt::join(size.steps(integrator), ", "), size.seeds),
+      "the step's physics, " + integrator);
+}
+
+/// A quantity of a bed at a step, over the seeds.
+struct Place {
+  std::string quantity, start, integrator;
+  double gamma = 0, steps = 0;
+  auto operator<=>(const Place&) const = default;
+};
+using Values = std::map<Place, std::vector<double>>;
+
+void collect(const std::string& integrator, const sweep::Schedule& schedule, Values& values) {
+  for (const sweep::Curve& curve : schedule.curves())
+    for (std::size_t k = 0; k < curve.points.size(); ++k) {
+      if (!curve.results[k]) continue;
+      const json results = json::parse(*curve.results[k]).value("results", json::object());
+      const auto axis = [&](const char* key) {
+        const auto& axes = schedule.plan().axes;
+        const auto at = std::find_if(axes.begin(), axes.end(), [&](const auto& a) { return a.key == key; });
+        std::string value = curve.values[static_cast<std::size_t>(at - axes.begin())];
+        std::erase_if(value, [](char c) { return c == '\'' || c == '"'; });  // a word as TOML writes it
+        return value;
+      };
+      const auto file_under = [&](const char* name, double value) {
+        values[{name, axis("start.kind"), integrator, std::stod(axis("drive.gamma")),
+                std::stod(axis("time.steps_per_contact"))}]
+            .push_back(value);
+      };
+      if (results.contains("slips")) file_under(kEligible, results["slips"].value("n", 0.0));
+      for (const char* name : {"T_g", "p_s", "s_b", "s_c", kAliasing}) {
+        const json r = results.value(name, json::object());
+        if (!r.contains("value") || !r["value"].is_number()) continue;
+        file_under(name, r["value"].get<double>());
+      }
+    }
+}
+
+std::optional<Estimate> estimate(const Values& values, const Place& place) {
+  const auto at = values.find(place);
+  if (at == values.end()) return std::nullopt;
+  const std::vector<double>& runs = at->second;
+  Estimate e;
+  for (const double v : runs) e.value += v / static_cast<double>(runs.size());
+  if (const auto interval = mean_interval(runs, "runs")) {
+    e.low = place.quantity == kAliasing ? interval->low : std::max(0.0, interval->low);
+    e.high = interval->high;
+  }
+  // Where nothing slips in any run, the number of beads and cycles bounds what could have been missed.
+  const auto trials = values.find({kEligible, place.start, place.integrator, place.gamma, place.steps});
+  if (place.quantity == "p_s" && e.value == 0 && trials != values.end()) {
+    double all = 0;
+    for (const double n : trials->second) all += n;
+    if (all > 0) {
+      const Interval none = binomial_interval(0, all, "bead-cycles");
+      e.low = none.low;
+      e.high = none.high;
+    }
+  }
+  return e;
+}
+
+const char* words_of(const std::string& start) {
+  return start == "random" ? "random" : "crystal";
+}
+
+std::vector<Target> targets_of(const Values& values, const Size& size) {
+  const double finest = size.split.back();
+  const double coarse = std::find(size.verlet.begin(), size.verlet.end(), kUsual) != size.verlet.end()
+                            ? kUsual
+                            : size.verlet.back();
+  std::vector<Target> targets;
+  for (const auto& [integrator, n] :
+       {std::pair<std::string, double>{"verlet", coarse}, {"split", size.split.front()}}) {
+    if (integrator == "split" && size.split.size() == 1) continue;
+    for (const Quantity& q : kQuantities)
+      for (const std::string& start : kStarts) {
+        Target t{fmt::format("{} of {} beds does not hang on the step: {}, n = {:g}", q.name, words_of(start),
+                             integrator, n),
+                 fmt::format("that of split, n = {:g}", finest), "", Fate::absent, ""};
+        std::vector<Fate> fates;
+        for (const double gamma : kGammas) {
+          const auto here = estimate(values, {q.name, start, integrator, gamma, n}),
+                     there = estimate(values, {q.name, start, "split", gamma, finest});
+          if (!here || !there) continue;
+          fates.push_back(agree(*here, *there));
+          t.measured += fmt::format("{}Gamma {:g}: {} against {}", t.measured.empty() ? "" : "; ", gamma,
+                                    here->text(), there->text());
+        }
+        t.fate = all_of(fates);
+        if (fates.empty()) t.reason = "no run is done";
+        targets.push_back(t);
+      }
+  }
+  return targets;
+}
+
+std::string table_of(const Values& values, const Size& size) {
+  std::string text;
+  for (const std::string& start : kStarts)
+    for (const double gamma : kGammas) {
+      text += fmt::format("  {}, Gamma = {:g}\n  {:>8} {:>6} {:>26} {:>26} {:>26} {:>26} {:>10}\n",
+                          words_of(start), gamma, "", "n", "T_g*", "p_s", "s_b", "s_c", "aliasing");
+      for (const std::string& integrator : kIntegrators)
+        for (const double n : size.steps(integrator)) {
+          text += fmt::format("  {:>8} {:6g}", integrator, n);
+          for (const Quantity& q : kQuantities) {
+            const auto e = estimate(values, {q.name, start, integrator, gamma, n});
+            text += fmt::format(" {:>26}", e ? e->text() : "-");
+          }
+          const auto aliasing = estimate(values, {kAliasing, start, integrator, gamma, n});
+          text += fmt::format(" {:>10}\n", aliasing ? fmt::format("{:+.1f} %", 100 * aliasing->value) : "-");
+        }
+    }
+  return text;
+}
+
+std::string json_of(const Values& values) {
+  json all = json::array();
+  for (const auto& [place, runs] : values) {
+    const auto e = estimate(values, place);
+    const auto number = [](const std::optional<double>& v) { return v ? json(*v) : json(nullptr); };
+    all.push_back({{"quantity", place.quantity},
+                   {"start", place.start},
+                   {"integrator", place.integrator},
+                   {"gamma", place.gamma},
+                   {"steps_per_contact", place.steps},
+                   {"value", e->value},
+                   {"low", number(e->low)},
+                   {"high", number(e->high)},
+                   {"runs", runs}});
+  }
+  return json_text(all);
+}
+
+/// Curves over n: Verlet filled and joined, split open and joined by dashes, a colour for each Gamma.
+Figure figure_of(const Values& values, const Size& size) {
+  Figure f{.name = "p1-step", .title = "What the step does to the physics", .width = 1180, .height = 620};
+  const double finest = size.split.back();
+  f.plot = fmt::format(
+      "set multiplot layout {},{}\nset logscale x\nset xrange [5:{:g}]\nset xlabel 'steps per contact "
+      "n'\nset lmargin 8\n"
+      "set xtics (6.37, 12.5, 25, 50, 100, 200, 400)\nset xtics rotate by -45\n",
+      kStarts.size(), kQuantities.size(), 1.4 * size.verlet.back());
+  int block = 0;
+  for (const std::string& start : kStarts)
+    for (const Quantity& q : kQuantities) {
+      f.plot +=
+          fmt::format("set title '{}'\nset ylabel '{}' offset 1.5,0\n{}\n", words_of(start), q.label,
+                      q.relative                                             ? "unset key"
+                      : std::string(q.name) == "p_s" && start == "crystal_a" ? "set key top left samplen 1"
+                                                                             : "unset key");
+      f.plot += q.relative ? "set yrange [*:*]\n" : "set yrange [0:*]\n";
+      std::vector<std::string> curves;
+      for (std::size_t g = 0; g < kGammas.size(); ++g)
+        for (const std::string& integrator : kIntegrators) {
+          const auto converged = estimate(values, {q.name, start, "split", kGammas[g], finest});
+          const double unit = q.relative && converged && converged->value > 0 ? converged->value : 1;
+          std::string points;
+          for (const double n : size.steps(integrator))
+            if (const auto e = estimate(values, {q.name, start, integrator, kGammas[g], n}))
+              // A little apart, so that bars do not lie upon each other.
+              points += fmt::format("{:.5g} {:.6g} {:.6g} {:.6g}\n",
+                                    n * (1 + 0.04 * (static_cast<double>(g) - 1.5)), e->value / unit,
+                                    e->low.value_or(e->value) / unit, e->high.value_or(e->value) / unit);
+          if (points.empty()) continue;
+          f.data += fmt::format("# {}, {}, Gamma = {:g}, {}: n, value, low, high\n{}\n\n", words_of(start),
+                                q.name, kGammas[g], integrator, points);
+          const bool verlet = integrator == "verlet";
+          curves.push_back(fmt::format(
+              "'{}.dat' index {} using 1:2:3:4 with yerrorlines pt {} ps 0.8 lw 1.2 {} lc rgb '{}' {}",
+              f.name, block++, verlet ? 7 : 4, verlet ? "dt 1" : "dt 2", colours::kCurves[g],
+              verlet ? fmt::format("title '{{/Symbol G}} = {:g}'", kGammas[g]) : "notitle"));
+        }
+      f.plot += curves.empty() ? "plot [][0:1] NaN notitle\n"
+                               : fmt::format("plot {}\n", fmt::join(curves, ", \\\n     "));
+    }
+  f.plot += "unset multiplot\n";
+  f.caption = fmt::format(
+      "Granular temperature, slip probability, s_b and s_c of beds of N_l = {} against the steps per contact "
+      "n. Filled "
+      "circles: Verlet, whose friction is of first order in the step. Open squares: split, of second order. "
+      "Bars: 95 % over "
+      "{} runs. T_g* and s_b are over their values for split at n = {:g}.",
+      kLayers, size.seeds, finest);
+  return f;
+}
+
+Reproduction run(const Request& request) {
+  const Size& size = size_for(request);
+  const sweep::Store store(request.folder);
+  std::vector<sweep::Plan> plans;
+  for (const std::string& integrator : kIntegrators) plans.push_back(plan_of(size, integrator, request.seed));
+  std::vector<sweep::Schedule> schedules;
+  for (const sweep::Plan& plan : plans) schedules.emplace_back(plan, store);
+  std::vector<sweep::Schedule*> open;
+  for (sweep::Schedule& s : schedules) open.push_back(&s);
+  Reproduction r;
+  r.title = "What the time step does to the physics of Fortini & Huang 2015";
+  r.complete = run_here(open, store, {request.threads, false}, *request.watch);
+  Values values;
+  for (std::size_t k = 0; k < schedules.size(); ++k) collect(kIntegrators[k], schedules[k], values);
+  r.targets = targets_of(values, size);
+  r.table = table_of(values, size);
+  r.measured = json_of(values);
+  r.figures = {figure_of(values, size)};
+  r.conditions = p1_contact_conditions();
+  r.conditions.push_back(
+      fmt::format("N_l = {}, crystals and random beds, both perturbed by 1e-9 sigma; 10 cycles discarded, {} "
+                  "counted; {} runs of each, "
+                  "seeds drawn from the master seed {}",
+                  kLayers, size.cycles, size.seeds, request.seed));
+  r.conditions.emplace_back(
+      "T_g* is a time average, from 400 samples a cycle; aliasing is what 20 phases would add");
+  if (size.cycles < kPaperCycles)
+    r.cheaper.push_back(
+        fmt::format("{} cycles, where the paper defines s_c by {}", size.cycles, kPaperCycles));
+  if (size.seeds < 8)
+    r.cheaper.push_back(fmt::format("{} seeds: random beds differ by more than the step does", size.seeds));
+  return r;
+}
+
+}  // namespace
+
+Reproducible p1_step() {
+  return {"p1-step", "what the time step does to T_g, p_s, s_b and s_c", run};
+}
+
+}  // namespace twincell::reproduce
