@@ -5,6 +5,7 @@
 
 #include "analysis/report.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/h5md_file.hpp"
 #include "cli/comparing_options.hpp"
 #include "cli/verb.hpp"
 
@@ -14,7 +15,21 @@ namespace {
 struct CompareOptions {
   std::string output;
   ComparingFlags flags;
+  bool trust_stated_drive = false;
 };
+
+/// Refuses experiments of which `track` saw that the plate in the film does not move as their cell says.
+void require_drive_of_film(const std::vector<std::filesystem::path>& experiments) {
+  for (const std::filesystem::path& file : experiments) {
+    const auto tracking = nlohmann::json::parse(H5mdReader(file).info().tracking_json, nullptr, false);
+    if (!tracking.is_object() || !tracking.contains("drive_disagreement")) continue;
+    const auto& clause = tracking["drive_disagreement"];
+    throw ConfigError(
+        {.file = file.string(), .key = "drive"},
+        (clause.is_string() ? clause.get<std::string>() : "the stated drive does not fit the film") +
+            "; correct the cell and track again, or say --trust-stated-drive.");
+  }
+}
 
 void run(const Common& common, CompareOptions& o) {
   resolve(o.flags, common);
@@ -25,6 +40,7 @@ void run(const Common& common, CompareOptions& o) {
                           ? "there is nothing to compare: give --experiment and --simulation trajectories"
                           : "a sweep's results hold no bed to look at: give --simulation or --experiment "
                             "trajectories too, as sweep run --keep-trajectories leaves them in points/");
+  if (!o.trust_stated_drive) require_drive_of_film(options.experiments);
   compare_and_report(common, options, o.output, nlohmann::json::object(), "");
 }
 
@@ -46,6 +62,9 @@ void add_compare(CLI::App& program, Common& common) {
   writes(common, verb, verb.add_option("-o,--output", o->output, "folder of the report")->required(),
          report_folder());
   add_comparing_flags(verb, o->flags);
+  verb.add_flag(
+      "--trust-stated-drive", o->trust_stated_drive,
+      "believe the drive that the experiments' cells state though the plate in the film moves otherwise");
   verb.callback([&common, o] { run(common, *o); });
 }
 

@@ -193,6 +193,11 @@ void run(TrackOptions& o, const Common& common) {
       note(common, "the stated drive does not fit the film: " + disagreement + " (--trust-stated-drive).");
   }
   TrackPlan plan = plan_trajectory(stack, cell, o.locator.diameter_px, o.shortest);
+  if (!disagreement.empty()) {  // compare refuses such a trajectory
+    auto tracking = nlohmann::json::parse(plan.info.tracking_json);
+    tracking["drive_disagreement"] = disagreement;
+    plan.info.tracking_json = tracking.dump();
+  }
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
   provenance.inputs.push_back(file_of_stack(o.stack));
@@ -219,7 +224,6 @@ void run(TrackOptions& o, const Common& common) {
                              {"outside_cell", stack.outside_cell},
                              {"wrong_radius", stack.wrong_radius}};
   document.update(nlohmann::json::parse(plan.info.tracking_json));
-  if (!disagreement.empty()) document["drive_disagreement"] = disagreement;
   std::string text = fmt::format(
       "{} frames, {} beads located, {} tracks ({} written), {} detections outside the cell left out\n",
       stack.frames.size(), beads, stack.n_tracks, plan.info.n_beads, stack.outside_cell);

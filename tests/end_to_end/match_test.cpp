@@ -141,6 +141,26 @@ TEST(Match, AStatedDriveIsHeldAgainstThePlate) {
   EXPECT_NE(refused.err.find("0.5625"), std::string::npos) << refused.err;
   EXPECT_NE(refused.err.find("--trust-stated-drive"), std::string::npos) << refused.err;
   EXPECT_FALSE(fs::exists(folder / "twin"));
+
+  // track notes it and keeps it; compare refuses what it kept.
+  const fs::path kept = folder / "kept.h5", trusted_film = folder / "trusted.h5";
+  const Ran noted = run_program({"track", kStack, "--cell", cell, "-o", kept});
+  ASSERT_EQ(noted.code, 0) << noted.err;
+  EXPECT_NE(noted.err.find("does not fit the film"), std::string::npos) << noted.err;
+  const Ran compared = run_program({"compare", "--experiment", kept, "-o", folder / "report", "-q"});
+  EXPECT_EQ(compared.code, 2);
+  EXPECT_NE(compared.err.find("0.5625"), std::string::npos) << compared.err;
+  EXPECT_NE(compared.err.find("--trust-stated-drive"), std::string::npos) << compared.err;
+  EXPECT_FALSE(fs::exists(folder / "report"));
+  EXPECT_EQ(
+      run_program({"compare", "--experiment", kept, "-o", folder / "report", "-q", "--trust-stated-drive"})
+          .code,
+      0);
+  ASSERT_EQ(
+      run_program({"track", kStack, "--cell", cell, "-o", trusted_film, "-q", "--trust-stated-drive"}).code,
+      0);
+  EXPECT_EQ(run_program({"compare", "--experiment", trusted_film, "-o", folder / "trusted", "-q"}).code, 0);
+
   words.emplace_back("--trust-stated-drive");
   const Ran trusted = run_program(words);
   EXPECT_EQ(trusted.code, 0) << trusted.err;
