@@ -79,6 +79,13 @@ Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Fram
                               .q_z = frame.moment[i].z()});
   if (all_known(frame.rim_speed)) start.rim_speeds = frame.rim_speed;
   start.phase = scene.phase ? *scene.phase : static_cast<double>(frame.phase) / info.phases_per_cycle;
+  constexpr double kSamePlate = 1e-9;
+  if (const double plate = scene.drive.displacement(*start.phase);
+      !std::isnan(frame.plate_height) && std::abs(plate - frame.plate_height) > kSamePlate)
+    refuse(fmt::format(
+        " has its plate at {:g} sigma, this drive puts it at {:g}; another amplitude can begin at a frame of "
+        "phase 0.",
+        frame.plate_height, plate));
   require_count(scene, start.beads.size(), name);
   return start;
 }

@@ -97,6 +97,10 @@ TEST(InMotion, WhatOtherLawsRememberIsRefused) {
   begin({});
   expect_refusal<ConfigError>([&] { begin({"time.integrator=split"}); }, "start.in_motion",
                               "its contacts remember 1 numbers", "name those that wrote the file");
+  expect_refusal<ConfigError>([&] { begin({"drive.gamma=1.5"}); }, "has its plate at 0.40",
+                              "this drive puts it at 0.46");
+  expect_refusal<ConfigError>([&] { begin({"drive.phase=0.5"}); }, "has its plate at 0.40");
+  begin({"drive.gamma=1.5", "start.frame=40"});  // phase 0
   expect_refusal<ConfigError>([&] { begin({"start.frame=60"}); }, "frame 60 was asked for");
   expect_refusal<ConfigError>([&] { begin({"start.settle_limit=3"}); }, "start.settle_limit",
                               "keeps it moving");
