@@ -129,8 +129,10 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   std::string stepping = "auto";      ///< auto | steps | flights
   std::int64_t discard = 10, cycles = 200;
   int phases = 20;
-  bool springs = false;            ///< what contacts remember is stored with every frame
-  int samples = 400;               ///< a cycle, of what is averaged over time in the run; 0: none
+  bool springs = false;  ///< what contacts remember is stored with every frame
+  std::optional<int>
+      samples;  ///< a cycle, of what is averaged over time in the run; 0: none; absent: 400, and two a
+                ///< phase where beads fly, for a dilute gas does not land all at once
   std::optional<Precision> until;  ///< heeded by whoever analyses while the run goes on (sweep/measure.hpp)
   Scale scale;
 

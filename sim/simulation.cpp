@@ -312,8 +312,10 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
 }
 
 std::int64_t Simulation::samples_per_phase() const {
-  if (scene_.samples == 0 || steps_per_phase() < 2) return 0;
-  const std::int64_t pairs = (scene_.samples + 2 * scene_.phases - 1) / (2 * scene_.phases);
+  constexpr int kOfABedThatLands = 400;
+  const int samples = scene_.samples.value_or(plan_.flights ? 2 * scene_.phases : kOfABedThatLands);
+  if (samples == 0 || steps_per_phase() < 2) return 0;
+  const std::int64_t pairs = (samples + 2 * scene_.phases - 1) / (2 * scene_.phases);
   return 2 * std::min(pairs, steps_per_phase() / 2);
 }
 
