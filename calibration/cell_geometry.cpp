@@ -334,7 +334,9 @@ double diameter_for_edges(const std::filesystem::path& stack, bool bright, doubl
   return found > 0 ? found : kUsual_px;
 }
 
-std::optional<double> frame_rate_of(const StackEdges& edges, const std::filesystem::path& stack) {
+std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdges& edges,
+                                    const std::filesystem::path& stack) {
+  if (stated) return stated;
   const auto& t = edges.time_s;
   if (t.size() > 1 && t.back() > t.front()) return static_cast<double>(t.size() - 1) / (t.back() - t.front());
   return open_frames(stack)->info().frame_rate_hz;

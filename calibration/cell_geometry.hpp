@@ -40,8 +40,10 @@ struct StackEdges {
 };
 /// Diameter to read edges with: the known one, else that of the first frame's beads, else a usual one, px.
 double diameter_for_edges(const std::filesystem::path& stack, bool bright, double known_px);
-/// Frames per second, by the camera's stamps, else as the stack says; nothing where neither does.
-std::optional<double> frame_rate_of(const StackEdges& edges, const std::filesystem::path& stack);
+/// Frames per second: as the user states them, else by the camera's stamps, else as the stack says; nothing
+/// where none does.
+std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdges& edges,
+                                    const std::filesystem::path& stack);
 /// Reads the stack once. \throws InputError as FrameSource
 StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px, int threads,
                             Progress& progress = Progress::none());

@@ -68,13 +68,13 @@ std::string complete_drive(CellDescription& cell, const std::filesystem::path& c
       said += fmt::format(" A = {:.5g} +- {:.2g} sigma", *spec.amplitude, lock.amplitude_error / scale);
     }
     if (stated(spec) == 0) {
-      const auto rate = frame_rate_of(edges, stack);
+      const auto rate = frame_rate_of(cell.frame_rate_hz, edges, stack);
       const auto t0 = cell.scale.t0_s();
       if (!rate || !t0)
         throw ConfigError(
             where("drive.omega"),
-            fmt::format("is not stated, and the plate's motion gives it per frame alone: say omega, or {}.",
-                        !rate ? "take a stack that says its frame rate" : "scale.sigma_m and gravity_m_s2"));
+            fmt::format("is not stated, and the plate's motion gives it per frame alone: say it, or {}.",
+                        !rate ? "camera.frame_rate_hz" : "scale.sigma_m and gravity_m_s2"));
       spec.omega = lock.omega * *rate * *t0;
       said += fmt::format("{} omega = {:.6g} +- {:.2g} /t0", said.back() == ':' ? "" : ",", *spec.omega,
                           lock.omega_error * *rate * *t0);
@@ -145,7 +145,7 @@ std::string drive_disagreement(const CellDescription& cell, const std::filesyste
     return fmt::format(
         "the plate in the frames moves by A = {:.4g} +- {:.2g} sigma, and the cell states {:.4g}", amplitude,
         error, drive->amplitude);
-  const auto rate = frame_rate_of(edges, stack);
+  const auto rate = frame_rate_of(cell.frame_rate_hz, edges, stack);
   const auto t0 = cell.scale.t0_s();
   if (rate && t0) {
     const double omega = seen->omega * *rate * *t0, omega_error = seen->omega_error * *rate * *t0;

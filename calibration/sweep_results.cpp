@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/config.hpp"
 #include "analysis/trajectory/json_text.hpp"
+#include "analysis/trajectory/toml_leaves.hpp"
 #include "sim/scene.hpp"
 
 namespace twincell {
@@ -16,21 +18,49 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The base scene of a sweep: a table of its plan, or a file beside the plan, where the sweep's folder is
-/// too.
-ConfigSection base_scene(const std::string& plan, const fs::path& file) {
-  const ConfigSection root = Config::from_text(plan, file.string() + ": plan").root();
-  try {
-    return root.section("scene");
-  } catch (const ConfigError&) {  // no table
-    const fs::path name = root.text("scene").value_or("");
+/// The base scene of a sweep, as far as N_l, Gamma and start hang on it.
+struct BaseScene {
+  std::string preset, start;
+  std::vector<TomlLeaf> leaves;  ///< of the tables that place a point, in whatever unit they are stated
+};
+
+const std::vector<std::string>& placing_tables() {
+  static const std::vector<std::string> tables = {"scale.", "cell.", "beads.", "drive."};
+  return tables;
+}
+
+bool places(const std::string& key) {
+  return std::any_of(placing_tables().begin(), placing_tables().end(),
+                     [&](const std::string& table) { return key.starts_with(table); });
+}
+
+/// The base scene: a table of the plan, or a file beside the plan, where the sweep's folder is too.
+BaseScene base_scene(const std::string& plan, const fs::path& file) {
+  const Config config = Config::from_text(plan, file.string() + ": plan");
+  std::vector<TomlLeaf> leaves = toml_leaves(config.text(), "scene");
+  ConfigSection scene = config.root();
+  if (!leaves.empty()) {
+    scene = scene.section("scene");
+  } else {
+    const fs::path name = scene.text("scene").value_or("");
     const fs::path folder = fs::absolute(file).parent_path();
     for (const fs::path& place : {folder / name, folder.parent_path() / name, name})
-      if (fs::is_regular_file(place)) return Config::from_file(place).root();
-    throw InputError(
-        {.file = file.string(), .key = "plan.scene"},
-        fmt::format("the sweep's scene {} is not there, so N_l and Gamma are not known.", name.string()));
+      if (leaves.empty() && fs::is_regular_file(place)) {
+        const Config found = Config::from_file(place);
+        leaves = toml_leaves(found.text(), "");
+        scene = found.root();
+      }
+    if (leaves.empty())
+      throw InputError(
+          {.file = file.string(), .key = "plan.scene"},
+          fmt::format("the sweep's scene {} is not there, so N_l and Gamma are not known.", name.string()));
   }
+  BaseScene base{.preset = scene.text("preset").value_or(""),
+                 .start = scene.section("start").text("kind").value_or("crystal_a"),
+                 .leaves = {}};
+  for (TomlLeaf& leaf : leaves)
+    if (places(leaf.path)) base.leaves.push_back(std::move(leaf));
+  return base;
 }
 
 /// What places a point in the phase diagram.
@@ -39,33 +69,20 @@ struct Place {
   std::string start;
 };
 
-/// The base scene with the values of a point's axes, as far as N_l, Gamma and start hang on it.
-Place place_of(const ConfigSection& base, const json& axes, const std::string& file) {
+/// The base scene with the values of a point's axes.
+Place place_of(const BaseScene& base, const json& axes, const std::string& file) {
   // Contacts place nothing, but a scene must have some.
-  const auto preset = base.text("preset");
-  const std::string text =
-      preset ? fmt::format("preset = \"{}\"\n", *preset) : "[contact]\nk_n = 1e6\nrestitution = 0.9\n";
+  std::string text = base.preset.empty() ? "contact.k_n = 1e6\ncontact.restitution = 0.9\n"
+                                         : fmt::format("preset = \"{}\"\n", base.preset);
+  for (const TomlLeaf& leaf : base.leaves) text += leaf.path + " = " + leaf.literal + "\n";
   std::vector<std::string> assignments;
-  for (const auto& [table, keys] :
-       {std::pair<std::string, std::vector<std::string>>{"cell", {"width"}},
-        {"beads", {"count", "layers"}},
-        {"drive", {"gamma", "k_m", "amplitude", "omega", "frequency", "peak_velocity"}}})
-    for (const std::string& key : keys) {
-      const std::string name = table + "." + key;
-      const ConfigSection section = base.section(table);
-      if (axes.contains(name))
-        assignments.push_back(name + "=" + json_text(axes[name]));
-      else if (table == "beads" ? section.integer(key).has_value() : section.number(key).has_value())
-        assignments.push_back(fmt::format(
-            "{}={}", name,
-            table == "beads" ? static_cast<double>(*section.integer(key)) : *section.number(key)));
-    }
+  for (const auto& [key, value] : axes.items())
+    if (places(key)) assignments.push_back(key + "=" + json_text(value));
   const sim::Scene scene = sim::read_scene_text(text, file + ": scene", assignments);
   Place place;
   place.n_l = static_cast<double>(scene.n_beads.value_or(0)) / scene.width;
   place.gamma = scene.drive.gamma(scene.g());
-  place.start = axes.contains("start.kind") ? axes["start.kind"].get<std::string>()
-                                            : base.section("start").text("kind").value_or("crystal_a");
+  place.start = axes.contains("start.kind") ? axes["start.kind"].get<std::string>() : base.start;
   return place;
 }
 
@@ -87,7 +104,7 @@ BedPhase phase_of(const json& results) {
   return bed_phase(scalar("s_b"), scalar("s_c"));
 }
 
-void add_points(const json& document, const ConfigSection& base, const std::string& file,
+void add_points(const json& document, const BaseScene& base, const std::string& file,
                 Comparison& comparison) {
   for (const json& point : document["points"]) {
     const BedPhase phase = phase_of(point.value("results", json::object()));
@@ -98,13 +115,18 @@ void add_points(const json& document, const ConfigSection& base, const std::stri
   }
 }
 
-void add_onsets(const json& document, const ConfigSection& base, const std::string& file,
+/// Gamma in either of its words.
+bool is_gamma(const std::string& key) {
+  return key == "drive.gamma" || key == "drive.peak_acceleration_g";
+}
+
+void add_onsets(const json& document, const BaseScene& base, const std::string& file,
                 Comparison& comparison) {
   for (const json& onset : document.value("onsets", json::array())) {
     const BedPhase phase = phase_named(onset.value("verdict", ""));
-    if (phase == BedPhase::undetermined || onset.value("key", "") != "drive.gamma") continue;
+    if (phase == BedPhase::undetermined || !is_gamma(onset.value("key", ""))) continue;
     json axes = onset["axes"];
-    axes["drive.gamma"] = onset["range"][0];  // some Gamma, so that the scene is whole
+    axes[onset["key"].get<std::string>()] = onset["range"][0];  // some Gamma, so that the scene is whole
     const Place place = place_of(base, axes, file);
     comparison.boundaries.push_back({.side = Side::simulation,
                                      .start = place.start,
@@ -126,7 +148,7 @@ void add_sweep(const fs::path& file, Comparison& comparison) {
     throw InputError({.file = file.string()},
                      "is not a sweep's collected results (\"format\": \"twincell sweep 1\").");
   try {
-    const ConfigSection base = base_scene(document["plan"].get<std::string>(), file);
+    const BaseScene base = base_scene(document["plan"].get<std::string>(), file);
     add_points(document, base, file.string(), comparison);
     add_onsets(document, base, file.string(), comparison);
   } catch (const json::exception& e) {

@@ -97,7 +97,7 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
       cell.side_tilt && cell.sides == Boundary::wall
           ? fmt::format("side_tilt = [{:.17g}, {:.17g}]\n", (*cell.side_tilt)[0], (*cell.side_tilt)[1])
           : "";
-  const std::string of_cell = fmt::format(
+  const std::string stated = fmt::format(
       "[cell]\nwidth = {:.17g}\nsides = \"{}\"\n{}[drive]\namplitude = {:.17g}\nomega = {:.17g}\n"
       "[start]\nkind = \"trajectory\"\nfrom = '''{}'''\nframe = {}\n[time]\ndiscard = 0\ncycles = {}\nphases "
       "= {}\n",
@@ -110,12 +110,23 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
                      ? Config::from_text("preset = \"fortini-huang-2015\"\n", "preset of the twin")
                      : Config::from_text(base, base_name);
   reduce_units(scene);
+  // What the scene says in laboratory units was converted with its own scale.
+  for (const auto& [key, of_cell] :
+       {std::pair{"sigma_m", cell.scale.sigma_m}, std::pair{"gravity_m_s2", cell.scale.gravity_m_s2}}) {
+    constexpr double kAgree = 1e-9;
+    if (!of_cell || !scene.root().has("scale")) continue;
+    const ConfigSection own = scene.root().section("scale");
+    if (const auto here = own.number(key); here && std::abs(*here / *of_cell - 1) > kAgree)
+      throw ConfigError(
+          own.where(key),
+          fmt::format("is {:g} and the cell's {} is {:g}; one of them is wrong.", *here, key, *of_cell));
+  }
   // One file speaks for cell and contacts.
   if (!cell.included.file.empty() && !scene.root().has("calibration"))
     scene.assign("calibration.from=" + toml_quoted(fs::absolute(cell.included.file).string()));
   include_calibration(scene, base_name, Includer::scene);
   Config measured =
-      Config::from_text(of_cell + (scale.empty() ? "" : "[scale]\n" + scale), "the cell description");
+      Config::from_text(stated + (scale.empty() ? "" : "[scale]\n" + scale), "the cell description");
   scene.yield_to(measured, "drive", {"amplitude", "omega", "frequency", "gamma", "k_m", "peak_velocity"});
   scene.yield_to(measured, "start", {"kind", "from", "frame", "velocity_scale"});
   scene.overlay(std::move(measured));

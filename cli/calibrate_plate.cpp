@@ -25,6 +25,8 @@ struct PlateOptions {
   std::optional<double> frame_rate_hz;
 };
 
+/// Clocks of cameras differ by less.
+constexpr double kSameRate = 0.01;
 constexpr const char* kPhaseHeading = "frame,cycles\n";
 
 void write_phases(const std::string& path, const PlateLock& lock) {
@@ -99,7 +101,13 @@ void run(const PlateOptions& o, const Common& common) {
         "calibrate camera first");
   }
   // A frame's length in t0 makes frames per cycle an omega.
-  const std::optional<double> rate = o.frame_rate_hz ? o.frame_rate_hz : frame_rate_of(edges, o.flags.stack);
+  const std::optional<double> stated = o.frame_rate_hz ? o.frame_rate_hz : cell.frame_rate_hz;
+  const std::optional<double> rate = frame_rate_of(stated, edges, o.flags.stack);
+  if (stated)
+    if (const auto seen = frame_rate_of({}, edges, o.flags.stack);
+        seen && std::abs(*seen / *stated - 1) > kSameRate)
+      out.notes.push_back(fmt::format("the stack says {:.7g} frames per second; the stated {:.7g} are taken",
+                                      *seen, *stated));
   const auto t0 = cell.scale.t0_s();
   if (rate && t0)
     add("drive.omega", lock.omega * *rate * *t0, lock.omega_error * *rate * *t0,
@@ -181,7 +189,7 @@ void run(const PlateOptions& o, const Common& common) {
                                 seen, error, za);
       }
     } else {
-      out.notes.emplace_back("without a frame rate (--fps) the accelerometer cannot be compared");
+      out.notes.emplace_back("without a frame rate (--frame-rate-hz) the accelerometer cannot be compared");
     }
   }
   if (!o.phases.empty()) {
@@ -203,7 +211,8 @@ void add_calibrate_plate(CLI::App& calibrate, Common& common) {
   verb.add_option("--frames-per-cycle", o->frames_per_cycle,
                   "Where the search for the period begins; absent: the cell's, or sought")
       ->check(CLI::Range(2, 100000));
-  verb.add_option("--fps", o->frame_rate_hz, "Frames per second, where the stack does not say")
+  verb.add_option("--frame-rate-hz,--fps", o->frame_rate_hz,
+                  "Frames per second; absent: as CELL.toml says, or the stack")
       ->check(CLI::PositiveNumber);
   writes(common, verb,
          verb.add_option("--phases", o->phases, "List of each frame's phase (CSV) for track --phase-lock"),

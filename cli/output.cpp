@@ -115,23 +115,30 @@ Provenance Common::provenance() const {
   return p;
 }
 
+void refuse_said_twice(const std::vector<std::string>& assignments) {
+  const auto key_of = [](const std::string& assignment) {
+    return assignment.substr(0, assignment.find('='));
+  };
+  for (std::size_t k = 0; k < assignments.size(); ++k)
+    for (std::size_t m = 0; m < k; ++m)
+      if (key_of(assignments[m]) == key_of(assignments[k]) && assignments[m] != assignments[k])
+        throw ConfigError({"--set", 0, 0, key_of(assignments[k])},
+                          fmt::format("is said twice, \"{}\" and \"{}\"; say one of the two.", assignments[m],
+                                      assignments[k]));
+}
+
 std::vector<std::string> with_seed(std::vector<std::string> assignments, const Common& common) {
   constexpr std::uint64_t kLargestSeed = std::uint64_t{1} << 53;  // docs/scene.md, start.seed
   if (common.seed && *common.seed > kLargestSeed)
     throw ConfigError({"", 0, 0, "--seed"},
                       fmt::format("{} is out of range; the seed of a scene must be at most {}.", *common.seed,
                                   kLargestSeed));
-  for (std::size_t k = 0; k < assignments.size(); ++k) {
-    const std::string key = assignments[k].substr(0, assignments[k].find('='));
-    for (std::size_t m = 0; m < k; ++m)
-      if (assignments[m].substr(0, assignments[m].find('=')) == key && assignments[m] != assignments[k])
-        throw ConfigError({"--set", 0, 0, key},
-                          fmt::format("is said twice, \"{}\" and \"{}\"; say one of the two.", assignments[m],
-                                      assignments[k]));
-    if (common.seed && key == "start.seed" && assignments[k] != fmt::format("start.seed={}", *common.seed))
-      throw ConfigError({"--set", 0, 0, key},
+  refuse_said_twice(assignments);
+  for (const std::string& assignment : assignments)
+    if (common.seed && assignment.starts_with("start.seed=") &&
+        assignment != fmt::format("start.seed={}", *common.seed))
+      throw ConfigError({"--set", 0, 0, "start.seed"},
                         fmt::format("contradicts --seed {}; say one of the two.", *common.seed));
-  }
   if (common.seed) assignments.push_back(fmt::format("start.seed={}", *common.seed));
   return assignments;
 }

@@ -43,6 +43,9 @@ struct Common {
   [[nodiscard]] Provenance provenance() const;
 };
 
+/// \throws ConfigError for a key that --set says twice in different words
+void refuse_said_twice(const std::vector<std::string>& assignments);
+
 /// The --set of a scene, and --seed as one of them. \throws ConfigError for a seed that no scene can have,
 /// and for a key that is said twice in different words
 std::vector<std::string> with_seed(std::vector<std::string> assignments, const Common& common);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <memory>
 
 #include "analysis/trajectory/error.hpp"
@@ -26,10 +27,17 @@ struct RenderOptions {
 CameraOptions camera_of(RenderOptions& o, const Common& common) {
   CameraOptions camera = o.camera_file.empty() ? CameraOptions{} : read_camera(o.camera_file);
   const auto said = camera_option_list(o.flags), kept = camera_option_list(camera);
-  for (const auto& [option, i] : o.given)
-    if (option->count() > 0)
-      std::visit([&said, place = i](auto* value) { *value = *std::get<decltype(value)>(said[place].value); },
-                 kept[i].value);
+  std::map<const CameraUnit*, std::string> spelt;
+  for (const auto& [option, i] : o.given) {
+    if (option->count() == 0) continue;
+    std::visit([&said, place = i](auto* value) { *value = *std::get<decltype(value)>(said[place].value); },
+               kept[i].value);
+    if (kept[i].stated_in == nullptr) continue;
+    if (const auto [other, fresh] = spelt.emplace(kept[i].stated_in, kept[i].key); !fresh)
+      throw ConfigError(Where{.file = {}, .key = kept[i].key},
+                        fmt::format("and {} say the same quantity; say one of the two.", other->second));
+    *kept[i].stated_in = kept[i].unit;
+  }
   if (common.seed) camera.seed = *common.seed;
   return camera;
 }
@@ -67,7 +75,7 @@ void run(RenderOptions& o, const Common& common) {
 void add_render(CLI::App& program, Common& common) {
   auto o = std::make_shared<RenderOptions>();
   CLI::App& verb = add_verb(program, common, "render", "Synthetic camera: frames with known truth, or a film",
-                            "twincell render sim.h5 -o frames/ --exposure 0.05 --movie film.mp4");
+                            "twincell render sim.h5 -o frames/ --exposure-t0 0.05 --movie film.mp4");
   verb.add_option("trajectory", o->trajectory, "Trajectory (H5MD)")->required();
   writes(common, verb,
          verb.add_option("-o,--output", o->job.folder,

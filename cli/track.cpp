@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -26,6 +27,7 @@ namespace {
 struct TrackOptions {
   std::string stack, output, cell_file, csv, truth;
   std::vector<double> scored_rows, origin, diameters;
+  std::vector<std::string> assignments;
   std::string phase_lock;
   std::optional<double> drive_hz;
   std::optional<double> pixels_per_sigma, gamma, amplitude, width, height;
@@ -40,6 +42,12 @@ struct TrackOptions {
 // --phase-lock N, found, or a list of triggers.
 PhaseWay phase_way(const TrackOptions& o, CellDescription& cell) {
   PhaseWay way{.find = false, .triggers = {}, .drive_hz = o.drive_hz};
+  const bool list = o.phase_lock.ends_with(".csv");
+  const Where drive_hz{.file = {}, .key = "--drive-hz"};
+  if (o.drive_hz && !list)
+    throw ConfigError(drive_hz, fmt::format("is {:g}, but only a list of triggers (--phase-lock FILE.csv) is "
+                                            "read with it; the cell's drive is drive.frequency_hz.",
+                                            *o.drive_hz));
   if (o.phase_lock.empty()) return way;
   int n = 0;
   const char* end = o.phase_lock.data() + o.phase_lock.size();
@@ -52,8 +60,19 @@ PhaseWay phase_way(const TrackOptions& o, CellDescription& cell) {
     way.find = true;
   } else if (o.phase_lock == "none") {
     cell.phase_lock = {};
-  } else if (o.phase_lock.ends_with(".csv")) {
+  } else if (list) {
     way.triggers = o.phase_lock;
+    const auto drive = cell.drive();
+    const auto t0 = cell.scale.t0_s();
+    if (drive && t0) {
+      constexpr double kSame = 1e-3;
+      const double stated = drive->omega / (2 * M_PI * *t0);
+      if (o.drive_hz && std::abs(*o.drive_hz / stated - 1) > kSame)
+        throw ConfigError(drive_hz,
+                          fmt::format("is {:g}, and the drive of {} is {:.6g} Hz; say the right one.",
+                                      *o.drive_hz, o.cell_file, stated));
+      if (!way.drive_hz) way.drive_hz = stated;
+    }
   } else {
     throw ConfigError(Where{.file = {}, .key = "phase-lock"},
                       "'" + o.phase_lock +
@@ -65,20 +84,35 @@ PhaseWay phase_way(const TrackOptions& o, CellDescription& cell) {
 
 // Flags override the file.
 CellDescription resolve_cell(const TrackOptions& o) {
-  CellDescription cell = o.cell_file.empty() ? CellDescription{} : read_cell(o.cell_file);
+  // Options that are keys of the file are no less refused without a unit where it says a scale.
+  std::vector<std::string> assignments = o.assignments;
+  const auto assign = [&](const char* key, std::optional<double> value) {
+    if (value) assignments.push_back(fmt::format("{}={}", key, *value));
+  };
+  assign("cell.width", o.width);
+  assign("cell.height", o.height);
+  assign("drive.gamma", o.gamma);
+  assign("drive.amplitude", o.amplitude);
+  refuse_said_twice(assignments);
+  CellDescription cell = read_cell(o.cell_file, assignments);
   if (o.pixels_per_sigma) cell.pixels_per_sigma = o.pixels_per_sigma;
   if (o.origin.size() == 2) cell.origin = PixelPoint{o.origin[0], o.origin[1]};
   if (o.frames_per_cycle) cell.phase_lock.frames_per_cycle = *o.frames_per_cycle;
   if (o.first_phase) cell.phase_lock.first_phase = *o.first_phase;
-  if (o.width) cell.width = o.width;
-  if (o.height) cell.height = o.height;
-  if (o.gamma || o.amplitude)
-    cell.drive_spec = {.amplitude = o.amplitude,
+  // Two words are a whole drive; a third, of the file, would contradict them.
+  if (o.gamma || o.amplitude) {
+    for (const std::string& assignment : o.assignments)
+      if (assignment.starts_with("drive."))
+        throw ConfigError(
+            {"--set", 0, 0, assignment},
+            "and --drive-gamma or --drive-amplitude both speak of the drive; say it in one way.");
+    cell.drive_spec = {.amplitude = o.amplitude ? cell.drive_spec.amplitude : std::nullopt,
                        .omega = {},
                        .frequency = {},
-                       .gamma = o.gamma,
+                       .gamma = o.gamma ? cell.drive_spec.gamma : std::nullopt,
                        .k_m = {},
                        .peak_velocity = {}};
+  }
   cell.phase_lock.check(Where{.file = {}, .key = "first-phase"});
   return cell;
 }
@@ -264,18 +298,25 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--pixels-per-sigma", o->pixels_per_sigma, "Camera pixels per bead diameter")
       ->check(CLI::PositiveNumber);
   verb.add_option("--origin-px", o->origin, "Lower-left inside corner, plate at its mean, px")->expected(2);
-  verb.add_option("--cell-width", o->width, "Between the side walls, sigma")->check(CLI::PositiveNumber);
-  verb.add_option("--cell-height", o->height, "sigma")->check(CLI::PositiveNumber);
+  verb.add_option("--set", o->assignments,
+                  "section.key=value, over CELL.toml's own (cell.width_mm=40); may be repeated")
+      ->take_all();
+  verb.add_option("--cell-width", o->width,
+                  "Between the side walls, sigma; with a [scale] say --set cell.width_sigma= or width_mm=")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--cell-height", o->height, "sigma; likewise")->check(CLI::PositiveNumber);
   verb.add_option("--frames-per-cycle", o->frames_per_cycle, "Frames per drive cycle; 0: not phase-locked")
       ->check(CLI::NonNegativeNumber);
   verb.add_option(
       "--phase-lock", o->phase_lock,
       "Frames per drive cycle, 'found' (from the bed's motion), 'none', or a list of triggers (*.csv)");
-  verb.add_option("--drive-hz", o->drive_hz, "Frequency of the drive, for a list of triggers in seconds")
+  verb.add_option("--drive-hz", o->drive_hz,
+                  "Frequency of the drive, for a list of triggers in seconds; absent: the cell's")
       ->check(CLI::PositiveNumber);
   verb.add_option("--first-phase", o->first_phase, "Phase of the first frame")->check(CLI::NonNegativeNumber);
   verb.add_option("--drive-gamma", o->gamma, "A omega^2/g (with --drive-amplitude)");
-  verb.add_option("--drive-amplitude", o->amplitude, "A, sigma");
+  verb.add_option("--drive-amplitude", o->amplitude,
+                  "A, sigma; with a [scale] say --set drive.amplitude_sigma= or amplitude_mm=");
   verb.add_option("--diameter", o->diameters,
                   "Bead diameter, px, or several; absent: the scale, or found from the first frame")
       ->check(CLI::Range(3.0, 400.0))

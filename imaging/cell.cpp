@@ -17,9 +17,11 @@ PixelFrame CellDescription::pixel_frame(cv::Size picture, double scale_px, Pixel
   return frame;
 }
 
-CellDescription read_cell(const std::filesystem::path& path) {
+CellDescription read_cell(const std::filesystem::path& path, const std::vector<std::string>& assignments) {
   constexpr std::int64_t kMostPhases = 100000;
-  Config config = Config::from_file(path);
+  Config config = path.empty() ? Config::from_text("", "the command line") : Config::from_file(path);
+  for (const std::string& assignment : assignments) displace_spellings(config, assignment);
+  for (const std::string& assignment : assignments) config.assign(assignment);
   CellDescription cell;
   reduce_units(config);
   cell.included = include_calibration(config, path, Includer::cell);
@@ -39,6 +41,7 @@ CellDescription read_cell(const std::filesystem::path& path) {
   cell.rotation_deg = camera.number_in("rotation_deg", -180, 180).value_or(0);
   cell.distortion = camera.number_in("distortion", -0.2, 0.2).value_or(0);
   cell.bright = camera.boolean("bright").value_or(false);
+  cell.frame_rate_hz = camera.number_in("frame_rate_hz", 0, 1e9, true);
 
   const ConfigSection box = root.section("cell");
   cell.width = box.number_in("width", 0, std::nullopt, true);

@@ -11,16 +11,17 @@
 ///     rotation_deg = 0.0           # turn of the picture about its middle, counter-clockwise
 ///     distortion = 0.0             # k1: what lies at r, in half diagonals, is seen at r (1 + k1 r^2)
 ///     bright = false               # discs brighter than their surroundings
+///     frame_rate_hz = 1000.0       # wins over what the stack says of itself
 ///     [cell]
-///     width = 20.0                 # sigma, between the side walls
-///     height = 40.0                # sigma
+///     width_mm = 40.0              # between the side walls; or width_sigma
+///     height_mm = 80.0             # or height_sigma
 ///     sides = "walls"              # "walls", "periodic" or "open"
 ///     side_tilt = [0.0, 0.0]       # degrees by which the left and the right wall lean outward
 ///     [drive]                      # any two that determine A and omega, as in a scene
 ///     gamma = 2.0
-///     amplitude = 1.0
-///     [scale]
-///     sigma_m = 0.002
+///     amplitude_mm = 2.0
+///     [scale]                      # without it, width, height and amplitude are in sigma
+///     sigma_mm = 2.0
 ///     gravity_m_s2 = 9.81
 ///
 ///     [calibration]
@@ -35,6 +36,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analysis/trajectory/box.hpp"
 #include "analysis/trajectory/calibration_file.hpp"
@@ -53,6 +55,7 @@ struct CellDescription {
   double distortion = 0;                   ///< k1 (camera/lens.hpp)
   PhaseLock phase_lock;
   bool bright = false;
+  std::optional<double> frame_rate_hz;             ///< > 0
   std::optional<double> width, height;             ///< sigma, > 0
   std::optional<std::array<double, 2>> side_tilt;  ///< degrees outward, left and right
   Boundary sides = Boundary::wall;
@@ -71,8 +74,9 @@ struct CellDescription {
   [[nodiscard]] std::optional<Drive> drive() const;
 };
 
-/// Reads a CELL.toml. \throws InputError if it cannot be read, ConfigError for syntax, unknown keys, types
-/// and bounds
-CellDescription read_cell(const std::filesystem::path& file);
+/// Reads a CELL.toml, with "section.key=value" laid over it; without a file these alone. \throws InputError
+/// if it cannot be read, ConfigError for syntax, unknown keys, types and bounds
+CellDescription read_cell(const std::filesystem::path& file,
+                          const std::vector<std::string>& assignments = {});
 
 }  // namespace twincell

@@ -69,8 +69,9 @@ class SyntheticCamera::Discs {
   std::map<long, DiscImage> images_;
 };
 
-SyntheticCamera::SyntheticCamera(const CameraOptions& options, const TrajectoryInfo& info)
-    : options_(options), info_(info), shutter_(info) {
+SyntheticCamera::SyntheticCamera(const CameraOptions& stated, const TrajectoryInfo& info)
+    : options_(stated.reduced(info.scale)), info_(info), shutter_(info) {
+  const CameraOptions& options = options_;
   options.check();
   auto& [left_tilt, right_tilt] = info_.box.side_tilt;
   if (options.left_tilt != 0) left_tilt = options.left_tilt;

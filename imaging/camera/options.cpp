@@ -3,17 +3,41 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string_view>
 
 #include "analysis/trajectory/config.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/quantities.hpp"
 
 namespace twincell {
 
+namespace {
+
+constexpr double kMostReduced = 1e6, kMostPhysical = 1e9;
+
+/// The spellings of a length or time: without a unit, reduced, in the laboratory's.
+void add_quantity(std::vector<CameraOption>& list, const std::string& key, const std::string& help,
+                  double& value, CameraUnit& unit, const char* reduced, const char* physical,
+                  bool both_ways = false) {
+  const auto spelling = [&](const std::string& name, const std::string& text, CameraUnit means) {
+    const double most = means == CameraUnit::physical ? kMostPhysical : kMostReduced;
+    list.push_back({name, text, &value, both_ways ? -most : 0, most, {}, &unit, means});
+  };
+  const bool length = std::string_view(reduced) == "sigma";
+  spelling(key, fmt::format("{}, {}; a trajectory with a scale needs one of the next two", help, reduced),
+           CameraUnit::bare);
+  spelling(key + "-" + reduced, fmt::format("{}, {}", help, reduced), CameraUnit::reduced);
+  spelling(key + "-" + physical, fmt::format("{}, {}", help, length ? "mm" : "microseconds"),
+           CameraUnit::physical);
+}
+
+}  // namespace
+
 std::vector<CameraOption> camera_option_list(CameraOptions& o) {
-  return {
+  std::vector<CameraOption> list = {
       {"pixels-per-sigma", "Camera pixels per bead diameter", &o.pixels_per_sigma, 3, 400, {}},
       {"margin", "Wall shown around the cell, px", &o.margin_px, 0, 1000, {}},
-      {"max-height", "Height shown, sigma; 0: as high as beads get", &o.max_height, 0, 1e6, {}},
       {"rotation",
        "Turn of the picture about its middle, degrees, counter-clockwise",
        &o.rotation_deg,
@@ -70,12 +94,18 @@ std::vector<CameraOption> camera_option_list(CameraOptions& o) {
        {"reflected", "transmitted"}},
       {"dust", "Specks on the glass", &o.dust, 0, 10000, {}},
       {"scratches", "Scratches on the glass", &o.scratches, 0, 1000, {}},
-      {"exposure", "Motion blur: exposure, t0, centred on the moment", &o.exposure, 0, 1e6, {}},
-      {"trigger-offset", "Every picture is taken this much too late, t0", &o.trigger_offset, -1e6, 1e6, {}},
-      {"trigger-jitter", "Scatter of the moment, t0, standard deviation", &o.trigger_jitter, 0, 1e6, {}},
       {"drop", "Probability that a frame is lost", &o.drop, 0, 0.9, {}},
       {"double", "Probability that a frame is stored twice", &o.doubled, 0, 0.9, {}},
   };
+  add_quantity(list, "max-height", "Height shown (0: as high as beads get)", o.max_height, o.max_height_unit,
+               "sigma", "mm");
+  add_quantity(list, "exposure", "Motion blur: exposure, centred on the moment", o.exposure, o.exposure_unit,
+               "t0", "us");
+  add_quantity(list, "trigger-offset", "Every picture is taken this much too late", o.trigger_offset,
+               o.trigger_offset_unit, "t0", "us", true);
+  add_quantity(list, "trigger-jitter", "Scatter of the moment, standard deviation", o.trigger_jitter,
+               o.trigger_jitter_unit, "t0", "us");
+  return list;
 }
 
 namespace {
@@ -100,18 +130,44 @@ void check_option(const CameraOption& option, const Where& where) {
 void CameraOptions::check() const {
   CameraOptions copy = *this;
   for (const CameraOption& option : camera_option_list(copy))
-    check_option(option, Where{.file = {}, .key = option.key});
+    if (option.kept()) check_option(option, Where{.file = {}, .key = option.key});
   if (bits % 2 != 0)
     throw ConfigError(Where{.file = {}, .key = "bits"},
                       fmt::format("is {}; cameras have 8, 10, 12, 14 or 16.", bits));
+}
+
+CameraOptions CameraOptions::reduced(const Scale& scale) const {
+  CameraOptions out = *this;
+  const std::vector<CameraOption> all = camera_option_list(out);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const CameraOption& option = all[i];
+    if (option.stated_in == nullptr || !option.kept() || option.unit == CameraUnit::reduced) continue;
+    double& value = *std::get<double*>(option.value);
+    const Where where{.file = {}, .key = option.key};
+    if (option.unit == CameraUnit::physical)
+      value = reduced_quantity(value, option.key.ends_with("-mm") ? Unit::length_mm : Unit::time_us, scale,
+                               where);
+    else if (value != 0 && scale.sigma_m)  // the two other spellings follow it in the list
+      refuse_bare(where, value, "the trajectory's scale.sigma_m", all[i + 1].key, all[i + 2].key);
+    *option.stated_in = CameraUnit::reduced;
+  }
+  return out;
 }
 
 CameraOptions read_camera(const std::filesystem::path& file) {
   const Config config = Config::from_file(file);
   const ConfigSection root = config.root();
   CameraOptions options;
+  std::map<const CameraUnit*, std::string> said;
   for (const CameraOption& option : camera_option_list(options)) {
     const std::string key = toml_key(option.key);
+    if (option.stated_in != nullptr) {
+      if (!root.has(key)) continue;
+      if (const auto [other, fresh] = said.emplace(option.stated_in, key); !fresh)
+        throw ConfigError(root.where(key), fmt::format("and {} say the same quantity; say one of the two.",
+                                                       root.where(other->second).text()));
+      *option.stated_in = option.unit;
+    }
     std::visit(
         [&](auto* value) {
           using T = std::remove_pointer_t<decltype(value)>;
@@ -139,6 +195,7 @@ std::string camera_text(const CameraOptions& options) {
   CameraOptions copy = options;
   std::string text;
   for (const CameraOption& option : camera_option_list(copy)) {
+    if (!option.kept()) continue;
     const std::string value = std::visit(
         [](auto* v) -> std::string {
           if constexpr (std::is_same_v<decltype(v), std::string*>)

@@ -11,14 +11,24 @@
 #include <variant>
 #include <vector>
 
+#include "analysis/trajectory/units.hpp"
+
 namespace twincell {
 
-/// The camera. check() is called by all users.
+/// How a length or a time is stated.
+enum class CameraUnit {
+  reduced,   ///< sigma, t0
+  physical,  ///< mm, us
+  bare       ///< no unit: reduced, unless the trajectory has a laboratory's scale
+};
+
+/// The camera. check() is called by all users, reduced() by those who know the trajectory.
 struct CameraOptions {
   // Geometry
   double pixels_per_sigma = 15;
   double margin_px = 20;
   double max_height = 0;
+  CameraUnit max_height_unit = CameraUnit::reduced;
   double rotation_deg = 0;
   double distortion = 0;
   double left_tilt = 0, right_tilt = 0;
@@ -43,8 +53,11 @@ struct CameraOptions {
   int scratches = 0;
   // Shutter
   double exposure = 0;
+  CameraUnit exposure_unit = CameraUnit::reduced;
   double trigger_offset = 0;
+  CameraUnit trigger_offset_unit = CameraUnit::reduced;
   double trigger_jitter = 0;
+  CameraUnit trigger_jitter_unit = CameraUnit::reduced;
   double drop = 0;
   double doubled = 0;
 
@@ -52,6 +65,10 @@ struct CameraOptions {
 
   /// \throws ConfigError naming the option and its bound
   void check() const;
+  /// The same with every length and time in sigma and t0.
+  /// \throws ConfigError for laboratory units without the part of the scale that converts them, and for a
+  ///         number without a unit, not 0, where the scale says sigma
+  [[nodiscard]] CameraOptions reduced(const Scale& scale) const;
 };
 
 /// One option: its name on the command line (in a CAMERA.toml with underscores), what it means, where it is
@@ -61,6 +78,11 @@ struct CameraOption {
   std::variant<double*, int*, bool*, std::string*> value;
   double lower = 0, upper = 0;
   std::vector<std::string> words;
+  CameraUnit* stated_in = nullptr;        ///< of a length or time: where its unit is kept,
+  CameraUnit unit = CameraUnit::reduced;  ///< and the one that this spelling means
+
+  /// Whether its value is the one that is kept: of the spellings of a length or time one is.
+  [[nodiscard]] bool kept() const { return stated_in == nullptr || *stated_in == unit; }
 };
 
 /// The list: command line, CAMERA.toml, check and documentation are made from it. To add an option: a member

@@ -63,16 +63,17 @@ std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info,
         "# The picture is turned by {} degrees and distorted by {}; origin_px is that of the ideal "
         "picture.\n",
         options.rotation_deg, options.distortion);
-  text += fmt::format("\n[cell]\nwidth = {:.17g}\nheight = {:.17g}\nsides = \"{}\"\n", info.box.size().x(),
-                      info.box.size().z(),
+  // A bare length beside a scale is refused.
+  const char* sigma = info.scale.sigma_m ? "_sigma" : "";
+  text += fmt::format("\n[cell]\nwidth{0} = {1:.17g}\nheight{0} = {2:.17g}\nsides = \"{3}\"\n", sigma,
+                      info.box.size().x(), info.box.size().z(),
                       info.box.boundary[0] == Boundary::wall ? "walls"
                       : info.box.periodic(Axis::x)           ? "periodic"
                                                              : "open");
   if (const auto [left, right] = camera.side_tilt(); left != 0 || right != 0)
     text += fmt::format("# The side walls lean outward by {} and {} degrees.\n", left, right);
   if (info.drive)
-    text += fmt::format("\n[drive]\namplitude{} = {:.17g}\nomega{} = {:.17g}\n",
-                        info.scale.sigma_m ? "_sigma" : "", info.drive->amplitude,
+    text += fmt::format("\n[drive]\namplitude{} = {:.17g}\nomega{} = {:.17g}\n", sigma, info.drive->amplitude,
                         info.scale.sigma_m ? "_per_t0" : "", info.drive->omega);
   if (info.scale.sigma_m || info.scale.gravity_m_s2) text += "\n[scale]\n";
   if (info.scale.sigma_m) text += fmt::format("sigma_m = {:.17g}\n", *info.scale.sigma_m);
@@ -175,8 +176,8 @@ Rendered render(const TrajectorySource& trajectory, const CameraOptions& options
                 Progress& progress) {
   cv::setNumThreads(1);  // one pool only: ours
   const TrajectoryInfo& info = trajectory.info();
-  CameraOptions fitted = options;
-  fitted.check();
+  options.check();
+  CameraOptions fitted = options.reduced(info.scale);
   check_trigger(trajectory, fitted);
   if (fitted.max_height == 0) fitted.max_height = height_of_beads(trajectory, progress);
   const Filming filming(trajectory, fitted);

@@ -17,6 +17,7 @@
 #include "imaging/camera/sensor.hpp"
 #include "imaging/camera_like.hpp"
 #include "imaging/synthetic_camera.hpp"
+#include "tests/support/complaint.hpp"
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -449,6 +450,35 @@ TEST(Camera, OptionsFileIsReadBackAndRefusesWhatItDoesNotKnow) {
     put_file(folder / "bad.toml", bad);
     EXPECT_THROW(read_camera(folder / "bad.toml"), ConfigError) << bad;
   }
+}
+
+// Beads of 2 mm: t0 = 14.2784 ms, so that 714 us are 0.05 t0.
+TEST(Camera, LaboratoryUnitsGiveTheReducedOptions) {
+  const TemporaryFolder folder;
+  const Scale scale{.sigma_m = 0.002, .gravity_m_s2 = 9.81, .pixels_per_sigma = {}};
+  put_file(
+      folder / "c.toml",
+      "exposure_us = 713.92\ntrigger_jitter_us = 142.784\ntrigger_offset_t0 = 0.02\nmax_height_mm = 24\n");
+  const CameraOptions stated = read_camera(folder / "c.toml"), o = stated.reduced(scale);
+  EXPECT_NEAR(o.exposure, 0.05, 1e-6);
+  EXPECT_NEAR(o.trigger_jitter, 0.01, 1e-6);
+  EXPECT_EQ(o.trigger_offset, 0.02);
+  EXPECT_DOUBLE_EQ(o.max_height, 12);
+  put_file(folder / "again.toml", camera_text(o));
+  EXPECT_EQ(read_camera(folder / "again.toml").reduced(scale).exposure, o.exposure);
+  put_file(folder / "again.toml", camera_text(stated));
+  EXPECT_EQ(read_camera(folder / "again.toml").reduced(scale).exposure, o.exposure);
+  expect_refusal<ConfigError>([&] { (void)stated.reduced({}); }, "max-height-mm", "scale.sigma_mm");
+  put_file(folder / "bare.toml", "exposure = 0.05\n");
+  const CameraOptions bare = read_camera(folder / "bare.toml");
+  EXPECT_EQ(bare.reduced({}).exposure, 0.05);
+  expect_refusal<ConfigError>([&] { (void)bare.reduced(scale); }, "exposure: is 0.05 without a unit",
+                              "exposure-t0", "exposure-us");
+  put_file(folder / "twice.toml", "exposure_t0 = 0.05\nexposure_us = 714\n");
+  expect_refusal<ConfigError>([&] { (void)read_camera(folder / "twice.toml"); }, "twice.toml:", "exposure_t0",
+                              "say one of the two");
+  put_file(folder / "low.toml", "exposure_us = -1\n");
+  expect_refusal<ConfigError>([&] { (void)read_camera(folder / "low.toml"); }, "exposure_us", "at least 0");
 }
 
 TEST(Camera, PathsThatCannotBeDrawnAreRefused) {

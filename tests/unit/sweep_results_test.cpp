@@ -51,6 +51,20 @@ TEST(SweepResults, PointsAndOnsetsArePlacedByTheirScene) {
   check(c);
 }
 
+// Beads of 2 mm: 800 of them in 80 mm are 20 layers, and Gamma is a spelling too.
+TEST(SweepResults, ASceneInLaboratoryUnitsIsPlacedByThem) {
+  const TemporaryFolder folder;
+  std::string text = results(
+      R"([scene]\npreset = 'fortini-huang-2015'\nbeads.count = 800\ncell.width_mm = 80.0\nscale.sigma_mm = 2\nscale.gravity_m_s2 = 9.81\n)");
+  const std::string gamma = "drive.gamma";
+  for (std::size_t at = text.find(gamma); at != std::string::npos; at = text.find(gamma, at))
+    text.replace(at, gamma.size(), "drive.peak_acceleration_g");
+  put_file(folder / "results.json", text);
+  Comparison c;
+  add_sweep(folder / "results.json", c);
+  check(c);
+}
+
 TEST(SweepResults, TheSceneMayStandBesideThePlan) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "plan.sweep");
