@@ -89,6 +89,16 @@ void serve(const sweep::Plan& plan, const sweep::Store& store, bool keep_traject
   }
 }
 
+/// Ranks that share this machine's memory.
+int ranks_here() {
+  MPI_Comm here = MPI_COMM_NULL;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+  int n = 1;
+  MPI_Comm_size(here, &n);
+  MPI_Comm_free(&here);
+  return n;
+}
+
 void lead(sweep::Schedule& schedule, const sweep::Plan& plan, const sweep::Store& store,
           bool keep_trajectories, SweepWatch& watch) {
   using Clock = std::chrono::steady_clock;
@@ -148,6 +158,8 @@ MpiJob::~MpiJob() {
 void run_on_ranks(sweep::Schedule* schedule, const sweep::Plan& plan, const sweep::Store& store,
                   bool keep_trajectories, SweepWatch& watch) {
   try {
+    const int together = ranks_here();  // every rank has to ask
+    if (schedule != nullptr) require_memory_together(*schedule, together, "mpirun -n");
     if (schedule != nullptr)
       lead(*schedule, plan, store, keep_trajectories, watch);
     else

@@ -93,6 +93,7 @@ void run_plan(const SweepOptions& options, const Common& common) {
   const sweep::Plan plan = plan_of(options, common);
   const sweep::Store store(folder_of(options));
   const sweep::Schedule schedule(plan, store);
+  require_memory_together(schedule, common.n_threads(), "--threads");
   for (const sweep::Curve& curve : schedule.curves())
     for (const sweep::Point& point : curve.points)
       if (const auto claim = store.claim(point)) store.announce(plan, point);
@@ -118,7 +119,10 @@ void run_run(const SweepOptions& options, const Common& common) {
   const sweep::Store store(folder_of(options));
   std::optional<sweep::Schedule> schedule;
   if (!job || job->is_master()) schedule.emplace(plan, store, shard);
-  if (schedule) note_repeats(*schedule, common);
+  if (schedule) {
+    note_repeats(*schedule, common);
+    if (!job) require_memory_together(*schedule, common.n_threads(), "--threads");
+  }
   {
     SweepWatch watch(common);
     if (job)

@@ -1,5 +1,7 @@
 #include "sweep/farm.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -7,10 +9,14 @@
 #include <condition_variable>
 #include <exception>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
 
+#include "analysis/trajectory/error.hpp"
+#include "sim/demand.hpp"
+#include "sim/scene.hpp"
 #include "sweep/point_run.hpp"
 #include "sweep/until.hpp"
 
@@ -163,6 +169,53 @@ class Farm {
 };
 
 }  // namespace
+
+void require_memory_together(const Schedule& schedule, int together, const std::string& way,
+                             double available) {
+  const Plan& plan = schedule.plan();
+  std::vector<std::pair<double, const Point*>> open;
+  std::vector<std::unique_ptr<const Point>> ends;
+  for (const Curve& curve : schedule.curves()) {
+    if (curve.complete) continue;
+    const Point* end = nullptr;
+    // The strength of the drive, which searches mostly vary, takes no memory.
+    if (plan.search && !plan.search->key.starts_with("drive."))
+      for (const double at : {plan.search->low, plan.search->high}) {
+        ends.push_back(std::make_unique<const Point>(make_point(plan, curve.values, at, 0)));
+        if (end == nullptr || ends.back()->memory > end->memory) end = ends.back().get();
+      }
+    for (std::size_t i = 0; i < curve.points.size(); ++i)
+      if (!curve.results[i]) {
+        const Point* point = end != nullptr ? end : &curve.points[i];
+        open.emplace_back(point->memory, point);
+      }
+  }
+  std::sort(open.begin(), open.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  open.resize(std::min(open.size(), static_cast<std::size_t>(std::max(together, 1))));
+  double sum = 0;
+  std::size_t fit = 0;
+  for (const auto& [memory, point] : open) {
+    sum += memory;
+    if (sum <= available) ++fit;
+  }
+  if (fit == open.size()) return;
+  const Point& largest = *open.front().second;
+  const sim::Scene scene = sim::read_scene_text(largest.scene, plan.scene_name, {}, plan.scene_folder);
+  const char* key = scene.source && scene.source->has("beads.layers") ? "beads.layers" : "beads.count";
+  if (fit == 0)
+    throw ConfigError(
+        {.file = plan.file, .key = key},
+        fmt::format("asks for {} beads in one point, which take about {} of memory; the machine "
+                    "has {} to give.",
+                    scene.n_beads.value_or(0), sim::bytes_text(largest.memory), sim::bytes_text(available)));
+  throw ConfigError(
+      {.file = plan.file, .key = key},
+      fmt::format(
+          "with up to {} beads in a point, {} points that run at once take about {} of memory, and the "
+          "machine has {} to give; with {} {} they fit.",
+          scene.n_beads.value_or(0), open.size(), sim::bytes_text(sum), sim::bytes_text(available), way,
+          fit));
+}
 
 bool run_here(const std::vector<Schedule*>& schedules, const Store& store, const FarmOptions& options,
               Watch& watch) {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <set>
 
 #include "analysis/observable.hpp"
@@ -13,6 +14,7 @@
 #include "analysis/trajectory/sha256.hpp"
 #include "analysis/trajectory/stop.hpp"
 #include "analysis/trajectory/toml_leaves.hpp"
+#include "sim/demand.hpp"
 #include "sim/plan.hpp"
 #include "sim/scene.hpp"
 #include "sim/start.hpp"
@@ -117,7 +119,13 @@ void check_axis(const Plan& plan, const Where& where, const TomlLeaf& leaf) {
   if (leaf.items.empty()) throw ConfigError(where, "has no values.");
   if (plan.search && leaf.path == plan.search->key)
     throw ConfigError(where, "is the key that [search] varies.");
-  const std::set<std::string> different(leaf.items.begin(), leaf.items.end());
+  std::set<std::string> different;  // 1 and 1.0 are one value
+  for (const std::string& item : leaf.items) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), value);
+    const bool number = error == std::errc() && end == item.data() + item.size();
+    different.insert(number ? fmt::format("{}", value + 0.0) : item);
+  }
   if (different.size() < leaf.items.size())
     throw ConfigError(where, "names a value twice; it would be the same run, counted twice.");
   if (leaf.path == "start.seed" && (plan.search || plan.seeds > 1))
@@ -248,6 +256,7 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
   const sim::Plan cost = sim::make_plan(scene);
   point.work = static_cast<double>(cost.steps) *
                static_cast<double>(std::max<std::size_t>(1, scene.n_beads.value_or(1)));
+  point.memory = sim::demand_of(scene, cost, scene.n_beads.value_or(0)).memory;
   return point;
 }
 

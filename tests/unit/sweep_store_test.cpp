@@ -5,7 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/trajectory/error.hpp"
+#include "sweep/farm.hpp"
 #include "sweep/store.hpp"
+#include "tests/support/complaint.hpp"
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -55,6 +57,49 @@ TEST(SweepStore, OnlyASweepsFolderIsWrittenInto) {
   const Store first(folder / "sweep");
   EXPECT_NO_THROW(Store(folder / "sweep"));
   EXPECT_NO_THROW(Store(folder / "thesis", Store::Access::read));
+}
+
+// The first paper's beds take 650 bytes a bead, so that the four points take 1.3, 1.3, 2.6 and 2.6 MB.
+TEST(SweepMemory, PointsThatRunAtOnceMustFitTogether) {
+  const TemporaryFolder folder;
+  const std::string scene = "[scene]\npreset = \"fortini-huang-2015\"\ncell.width = 400.0\n";
+  const Plan grid = read_plan_text(
+      scene + "drive.gamma = 1.5\n[axes]\nbeads.count = [2000, 4000]\ndrive.start = [\"abrupt\", \"ramp\"]\n",
+      "plan.toml");
+  const Store store(folder / "grid");
+  const Schedule schedule(grid, store);
+  EXPECT_NO_THROW(require_memory_together(schedule, 1, "--threads", 2.6e6));
+  EXPECT_NO_THROW(require_memory_together(schedule, 2, "--threads", 5.2e6));
+  EXPECT_NO_THROW(require_memory_together(schedule, 16, "--threads", 7.8e6));
+  expect_refusal<ConfigError>([&] { require_memory_together(schedule, 2, "--threads", 5.1e6); }, "plan.toml",
+                              "beads.count", "4000 beads", "2 points that run at once", "5.2 MB",
+                              "has 5.1 MB to give", "with --threads 1");
+  expect_refusal<ConfigError>([&] { require_memory_together(schedule, 16, "--threads", 7.7e6); },
+                              "4 points that run at once", "with --threads 3");
+  expect_refusal<ConfigError>([&] { require_memory_together(schedule, 2, "--threads", 2.5e6); },
+                              "beads.count", "asks for 4000 beads in one point", "2.6 MB");
+  // Later rounds of a search go to the ends of its range.
+  const Plan search = read_plan_text(scene +
+                                         "drive.gamma = 1.5\n[search]\nkey = \"beads.layers\"\nverdict = "
+                                         "\"convecting\"\nrange = [1.0, 10.0]\n"
+                                         "width = 1.0\nbatch = 3\n",
+                                     "plan.toml");
+  const Store searched(folder / "search");
+  const Schedule rounds(search, searched);
+  EXPECT_NO_THROW(require_memory_together(rounds, 3, "--threads", 7.8e6));
+  expect_refusal<ConfigError>([&] { require_memory_together(rounds, 3, "--threads", 7.7e6); }, "beads.layers",
+                              "4000 beads", "with --threads 2");
+}
+
+TEST(SweepPlan, AValueIsNotNamedTwiceInOtherDigits) {
+  for (const char* values : {"[1, 1.0]", "[1.5, 15e-1]", "[0.0, -0.0]"})
+    expect_refusal<ConfigError>(
+        [&] {
+          (void)read_plan_text(
+              "[scene]\npreset = \"fortini-huang-2015\"\n[axes]\nbeads.count = " + std::string(values) + "\n",
+              "plan.toml");
+        },
+        "plan.toml:4:", "names a value twice");
 }
 
 }  // namespace
