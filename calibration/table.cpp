@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
-#include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/table_text.hpp"
 
 namespace twincell {
 namespace {
@@ -35,6 +36,7 @@ double number_of(const std::string& field, const Where& where) {
   const auto [end, error] = std::from_chars(first, field.data() + field.size(), value);
   if (error != std::errc() || end != field.data() + field.size())
     throw InputError(where, fmt::format("\"{}\" is not a number", field));
+  if (std::isinf(value)) throw InputError(where, fmt::format("\"{}\" is not a finite number", field));
   return value;
 }
 
@@ -51,9 +53,7 @@ const std::vector<double>& Table::column(const std::string& name) const {
 Table read_table(const std::filesystem::path& path) {
   Table table;
   table.file = path.string();
-  std::string text = read_text_file(path);
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  std::istringstream in(text);
+  std::istringstream in(read_table_text(path));
   long line_number = 0;
   for (std::string line; std::getline(in, line);) {
     ++line_number;
@@ -62,6 +62,7 @@ Table read_table(const std::filesystem::path& path) {
     const std::vector<std::string> fields = fields_of(content);
     if (table.names.empty()) {
       table.names = fields;
+      check_column_names(fields, {.file = table.file, .line = line_number, .key = {}});
       table.columns.resize(fields.size());
       continue;
     }

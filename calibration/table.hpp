@@ -21,7 +21,7 @@ struct Table {
 
 /// Reads comma-separated values: a line of names, then rows of as many numbers. Lines that are blank or begin
 /// with # are skipped; spaces around fields too. \throws InputError "FILE:LINE: …" for a missing file, a row
-/// of another length, a field that is no number, a table without rows
+/// of another length, a field that is no finite number, a table without rows; as check_column_names
 Table read_table(const std::filesystem::path& path);
 
 }  // namespace twincell

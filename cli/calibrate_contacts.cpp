@@ -50,7 +50,13 @@ std::vector<BounceSample> samples_of(const BounceFlags& o, std::optional<Drive>&
   } else {
     const Table table = read_table(o.source);
     const auto &t = table.column("time"), &z = table.column("height");
-    for (std::size_t i = 0; i < t.size(); ++i) samples.push_back({t[i], z[i]});
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      samples.push_back({t[i], z[i]});
+      if (i > 0 && t[i] <= t[i - 1])
+        throw InputError(
+            {.file = o.source, .key = "time"},
+            fmt::format("row {} holds {:g} after {:g}; times must rise.", i + 1, t[i], t[i - 1]));
+    }
   }
   return samples;
 }
@@ -63,6 +69,10 @@ void run_bounce(const BounceFlags& o, const Common& common) {
       throw ConfigError({.file = {}, .key = "--amplitude"}, "and --omega say together how the plate moves.");
     drive = Drive{.axis = Axis::z, .amplitude = *o.amplitude, .omega = *o.omega};
   }
+  if (o.phase && !(drive && drive->amplitude > 0))
+    throw ConfigError(
+        {.file = {}, .key = "--phase"},
+        fmt::format("is {:g}, but no plate vibrates: --amplitude and --omega say how.", *o.phase));
   BounceOptions options{.gravity = o.gravity, .drag = !o.no_drag, .plate = {}};
   if (drive && drive->amplitude > 0) {
     const double phase = o.phase.value_or(0);
@@ -197,7 +207,9 @@ struct NumberFlags {
 
 void run_numbers(const NumberFlags& o, const Common& common) {
   const bool forward = o.k_n && o.gamma_n, back = o.restitution && o.contact_time;
-  if (forward == back)
+  const int stated =
+      (o.k_n ? 1 : 0) + (o.gamma_n ? 1 : 0) + (o.restitution ? 1 : 0) + (o.contact_time ? 1 : 0);
+  if (forward == back || stated != 2)
     throw ConfigError(
         {.file = {}, .key = "--restitution"},
         "and --contact-time give k_n and gamma_n; --k-n and --gamma-n give them back. Say one pair.");
@@ -238,8 +250,10 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
     kind.add_option("--bead", o->bead, "Which bead of the trajectory")->capture_default_str();
     kind.add_option("--gravity", o->gravity, "Held at this; absent: fitted")->check(CLI::PositiveNumber);
     kind.add_flag("--no-drag", o->no_drag, "Fit no drag of the air");
-    kind.add_option("--amplitude", o->amplitude, "A of the vibrating plate, in the heights' unit");
-    kind.add_option("--omega", o->omega, "omega of the vibrating plate, in the times' unit");
+    kind.add_option("--amplitude", o->amplitude, "A of the vibrating plate, in the heights' unit")
+        ->check(CLI::NonNegativeNumber);
+    kind.add_option("--omega", o->omega, "omega of the vibrating plate, in the times' unit")
+        ->check(CLI::PositiveNumber);
     kind.add_option("--phase", o->phase, "Its phase at time 0, rad");
     add_output_flags(kind, common, o->out);
     kind.callback([o, &common] { run_bounce(*o, common); });
@@ -251,6 +265,7 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
     kind.add_option("trajectory", o->trajectory, "Trajectory (H5MD) with frames close together")->required();
     kind.add_option("--gravity", o->options.gravity, "Along -z, reduced units")->capture_default_str();
     kind.add_option("--least-speed", o->options.least_speed, "Slower impacts are left out, sigma/t0")
+        ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     kind.add_option("--shape", o->shape, "disc or sphere: moment of inertia")
         ->check(CLI::IsMember({"disc", "sphere"}));

@@ -6,10 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 
 #include "analysis/observable.hpp"
@@ -38,12 +40,22 @@ struct InferFlags {
   std::int64_t discard = 0;
 };
 
+/// A whole text as a finite number. \throws std::invalid_argument
+double number_of(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    throw std::invalid_argument("number");
+  return value;
+}
+
 Sought sought_of(const std::string& said) {
   const auto equals = said.find('='), colon = said.find(':', equals == std::string::npos ? 0 : equals);
   Sought s;
   try {
     if (equals == std::string::npos || colon == std::string::npos) throw std::invalid_argument("form");
-    s = {said.substr(0, equals), std::stod(said.substr(equals + 1)), std::stod(said.substr(colon + 1))};
+    s = {said.substr(0, equals), number_of(said.substr(equals + 1, colon - equals - 1)),
+         number_of(said.substr(colon + 1))};
   } catch (const std::exception&) {
     throw ConfigError({.file = {}, .key = "--vary"}, fmt::format("'{}' is not key=low:high.", said));
   }
@@ -87,8 +99,8 @@ MeasuredOnset onset_of(const std::string& said) {
   if (o.phase != BedPhase::bouncing && o.phase != BedPhase::convecting)
     throw bad("names neither bouncing nor convecting");
   try {
-    o.gamma = std::stod(said.substr(equals + 1, error - equals - 1));
-    o.error = std::stod(said.substr(error + 2));
+    o.gamma = number_of(said.substr(equals + 1, error - equals - 1));
+    o.error = number_of(said.substr(error + 2));
   } catch (const std::exception&) {
     throw bad("is not bouncing=GAMMA+-ERROR or convecting=GAMMA+-ERROR");
   }
@@ -378,7 +390,18 @@ void tell_profiles(const InferFlags& o, const Question& question, const Inferenc
 
 void run_infer(const InferFlags& o, const Common& common) {
   std::vector<Sought> sought;
-  for (const std::string& said : o.vary) sought.push_back(sought_of(said));
+  refuse_said_twice(o.assignments);
+  for (const std::string& said : o.vary) {
+    sought.push_back(sought_of(said));
+    const std::string& name = sought.back().name;
+    for (std::size_t k = 0; k + 1 < sought.size(); ++k)
+      if (sought[k].name == name)
+        throw ConfigError({.file = {}, .key = "--vary"}, fmt::format("names {} twice.", name));
+    for (const std::string& assignment : o.assignments)
+      if (assignment.starts_with(name + "="))
+        throw ConfigError({.file = {}, .key = "--vary"},
+                          fmt::format("varies {}, which --set {} fixes.", name, assignment));
+  }
   if (sought.size() > 3)
     throw ConfigError({.file = {}, .key = "--vary"},
                       fmt::format("names {} parameters; at most 3 can be told apart.", sought.size()));

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -47,11 +48,32 @@ std::vector<DataPoint> points_of(const Table& table, FitOptions& o) {
   const auto &x = table.column(o.x), &y = table.column(o.y);
   std::vector<DataPoint> points(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) points[i] = {x[i], y[i], 0, 0};
+  if (!o.sigma.empty() && !o.trials.empty())
+    throw ConfigError({.file = {}, .key = "--trials"},
+                      "and --sigma both say the error of y; say one of the two");
+  for (const std::string* named : {&o.x, &o.y})
+    if (std::none_of(points.begin(), points.end(),
+                     [&](const DataPoint& p) { return std::isfinite(named == &o.x ? p.x : p.y); }))
+      throw InputError({.file = table.file, .key = *named}, "holds no number");
   if (!o.sigma.empty())
     for (std::size_t i = 0; i < x.size(); ++i) points[i].sigma = table.column(o.sigma)[i];
   if (!o.trials.empty())
     for (std::size_t i = 0; i < x.size(); ++i) points[i].trials = table.column(o.trials)[i];
   return points;
+}
+
+/// Columns that can only hold what is not negative.
+void check_errors(const std::vector<DataPoint>& points, const FitOptions& o) {
+  const auto refuse = [&](const std::string& column, std::size_t row, double value, const char* bound) {
+    throw InputError({.file = o.table, .key = column},
+                     fmt::format("row {} holds {:g}; {}", row + 1, value, bound));
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].sigma < 0) refuse(o.sigma, i, points[i].sigma, "a standard deviation is not negative");
+    if (points[i].trials < 0 ||
+        (std::isfinite(points[i].trials) && points[i].trials != std::floor(points[i].trials)))
+      refuse(o.trials, i, points[i].trials, "trials are counted, 0 or more");
+  }
 }
 
 /// Frequencies lie between 0 and 1; anything else is the wrong column.
@@ -178,6 +200,7 @@ void run(const Common& common, FitOptions o) {
   if (!o.output.empty()) folder.emplace(o.output, fit_folder());
   const Table table = read_table(o.table);
   const std::vector<DataPoint> points = points_of(table, o);
+  check_errors(points, o);
   if (!o.trials.empty()) check_frequencies(points, o);
   CurveFit fit = fit_of(law, points, o);
   if (!fit.weighted && !(o.sigma.empty() && o.trials.empty()))

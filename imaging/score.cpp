@@ -1,5 +1,7 @@
 #include "imaging/score.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -7,8 +9,8 @@
 #include <sstream>
 #include <string>
 
-#include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
+#include "analysis/trajectory/table_text.hpp"
 #include "imaging/frame_source.hpp"
 
 namespace twincell {
@@ -21,7 +23,7 @@ std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> cells;
   std::stringstream in(line);
   for (std::string cell; std::getline(in, cell, ',');) {
-    while (!cell.empty() && (cell.back() == '\r' || cell.back() == ' ')) cell.pop_back();
+    while (!cell.empty() && cell.back() == ' ') cell.pop_back();
     cells.push_back(cell);
   }
   return cells;
@@ -30,10 +32,11 @@ std::vector<std::string> split(const std::string& line) {
 /// A table with named columns.
 class Table {
  public:
-  explicit Table(const fs::path& file) : file_(file), in_(read_text_file(file)) {
+  explicit Table(const fs::path& file) : file_(file), in_(read_table_text(file)) {
     std::string line;
     std::getline(in_, line);
     const std::vector<std::string> names = split(line);
+    check_column_names(names, {.file = file.string(), .line = 1, .key = {}});
     for (std::size_t i = 0; i < names.size(); ++i) column_[names[i]] = i;
     width_ = names.size();
     for (const char* needed : {"x_px", "y_px", "r_px"})
@@ -58,10 +61,20 @@ class Table {
     const std::string& t = text(name);
     double value = 0;
     const auto [end, error] = std::from_chars(t.data(), t.data() + t.size(), value);
-    if (error != std::errc() || end != t.data() + t.size())
-      throw InputError(Where{.file = file_.string(), .line = line_, .key = name},
-                       "is '" + t + "', not a number.");
+    if (error != std::errc() || end != t.data() + t.size() || !std::isfinite(value))
+      throw InputError(where(name), "is '" + t + "', not a finite number.");
     return value;
+  }
+  /// A whole number within bounds.
+  [[nodiscard]] std::int64_t whole(const std::string& name, double lower, double upper) const {
+    const double value = number(name);
+    if (!(value >= lower && value <= upper) || value != std::floor(value))
+      throw InputError(where(name), fmt::format("is {}; it must be a whole number from {:.0f} to {:.0f}.",
+                                                text(name), lower, upper));
+    return static_cast<std::int64_t>(value);
+  }
+  [[nodiscard]] Where where(const std::string& name) const {
+    return {.file = file_.string(), .line = line_, .key = name};
   }
 
  private:
@@ -75,10 +88,12 @@ class Table {
 
 TruthBead bead(const Table& t) {
   TruthBead b;
-  if (t.has("id")) b.id = static_cast<std::int64_t>(t.number("id"));
+  constexpr double kLargestId = 1e15;
+  if (t.has("id")) b.id = t.whole("id", -1, kLargestId);
   b.x = t.number("x_px");
   b.y = t.number("y_px");
   b.r = t.number("r_px");
+  if (!(b.r > 0)) throw InputError(t.where("r_px"), fmt::format("is {:g}; a radius is greater than 0.", b.r));
   if (t.has("u_px")) b.u = t.number("u_px");
   if (t.has("kind")) b.counts = t.text("kind") == "black";
   return b;
@@ -147,12 +162,11 @@ std::vector<std::vector<TruthBead>> read_truth(const fs::path& path) {
   if (!fs::is_directory(path)) {
     Table table(path);
     while (table.next_row()) {
-      const double frame = table.has("frame") ? table.number("frame") : 0;
-      if (!(frame >= 0 && frame < 1e7))
-        throw InputError(Where{.file = path.string(), .key = "frame"}, "must lie in 0 .. 10000000.");
-      if (frames.size() <= static_cast<std::size_t>(frame))
-        frames.resize(static_cast<std::size_t>(frame) + 1);
-      frames[static_cast<std::size_t>(frame)].push_back(bead(table));
+      constexpr double kLastFrame = 1e7 - 1;
+      const auto frame =
+          table.has("frame") ? static_cast<std::size_t>(table.whole("frame", 0, kLastFrame)) : 0;
+      if (frames.size() <= frame) frames.resize(frame + 1);
+      frames[frame].push_back(bead(table));
     }
     return frames;
   }

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/median.hpp"
+#include "analysis/trajectory/table_text.hpp"
 
 namespace twincell {
 
@@ -23,16 +23,16 @@ std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> cells;
   std::istringstream in(line);
   for (std::string cell; std::getline(in, cell, ',');) {
-    const auto begin = cell.find_first_not_of(" \t\r"), end = cell.find_last_not_of(" \t\r");
+    const auto begin = cell.find_first_not_of(" \t"), end = cell.find_last_not_of(" \t");
     cells.push_back(begin == std::string::npos ? "" : cell.substr(begin, end - begin + 1));
   }
+  if (line.ends_with(',')) cells.emplace_back();
   return cells;
 }
 
 /// Cycles elapsed at each frame.
 std::vector<double> read_cycles(const std::filesystem::path& file, std::optional<double> drive_hz) {
-  const std::string text = read_text_file(file);
-  std::istringstream lines(text);
+  std::istringstream lines(read_table_text(file));
   std::string line;
   int number = 0;
   auto refuse = [&](const std::string& key, const std::string& complaint) {
@@ -41,26 +41,29 @@ std::vector<double> read_cycles(const std::filesystem::path& file, std::optional
   auto next_line = [&] {
     while (std::getline(lines, line)) {
       ++number;
-      if (line.find_first_not_of(" \t\r") != std::string::npos && line[0] != '#') return true;
+      if (line.find_first_not_of(" \t") != std::string::npos && line[0] != '#') return true;
     }
     return false;
   };
   if (!next_line()) refuse("", "the list of triggers is empty.");
   const std::vector<std::string> names = split(line);
+  check_column_names(names, Where{.file = file.string(), .line = number, .key = {}});
   auto column = [&](const char* name) { return std::find(names.begin(), names.end(), name) - names.begin(); };
   const auto n = static_cast<std::ptrdiff_t>(names.size());
   const std::ptrdiff_t frame = column("frame"), time = column("time_s"), cycle = column("cycles");
   if (time == n && cycle == n) refuse("", "a column time_s or cycles is needed.");
+  if (time < n && cycle < n) refuse("time_s", "and cycles say the same quantity; leave one of them out.");
   if (cycle == n && !drive_hz)
     throw ConfigError(Where{.file = {}, .key = "drive-hz"},
                       "the list of triggers is in seconds, so the frequency of the drive is needed.");
   std::vector<double> cycles;
   while (next_line()) {
     const std::vector<std::string> cells = split(line);
+    if (cells.size() != names.size())
+      refuse("", fmt::format("{} fields; the line of names has {}.", cells.size(), names.size()));
     auto value = [&](std::ptrdiff_t at) {
       double v = 0;
-      const std::string cell =
-          at < static_cast<std::ptrdiff_t>(cells.size()) ? cells[static_cast<std::size_t>(at)] : "";
+      const std::string& cell = cells[static_cast<std::size_t>(at)];
       const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), v);
       if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(v))
         refuse(names[static_cast<std::size_t>(at)], fmt::format("'{}' is not a number.", cell));
@@ -78,6 +81,10 @@ std::vector<double> read_cycles(const std::filesystem::path& file, std::optional
     cycles.push_back(now);
   }
   if (cycles.empty()) refuse("", "the list of triggers names no frame.");
+  if (cycles.size() > 1 && cycles.back() == cycles.front())
+    refuse(cycle < n ? "cycles" : "time_s",
+           fmt::format("is {:g} in all {} frames; a list of triggers says when each was taken.",
+                       cycle < n ? cycles.front() : cycles.front() / *drive_hz, cycles.size()));
   return cycles;
 }
 

@@ -21,8 +21,10 @@ namespace twincell {
 /// second is doubled; phases passed over: dropped.
 /// \param drive_hz frequency of the drive, needed by `time_s`
 /// \param frames_per_cycle N_k; 0: one over the median step, rounded
-/// \throws InputError naming file and line if the list cannot be read, times fall, or a value is no number;
-///     ConfigError if the frequency is needed and absent
+/// \throws InputError naming file and line if the list cannot be read, times fall or are all the same, a
+/// value
+///     is no number, or both time_s and cycles are there; as check_column_names; ConfigError if the frequency
+///     is needed and absent
 PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double> drive_hz,
                          int frames_per_cycle = 0);
 

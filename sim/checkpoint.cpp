@@ -168,6 +168,25 @@ Plain plain_of(const Checkpoint& c) {
   return p;
 }
 
+/// Whether the lists speak of the same beads, contacts and segments, as the program writes them.
+bool agree(const Plain& p, const Checkpoint& c) {
+  const std::size_t beads = c.state.beads.size(), contacts = p.contacts.pairs.size() / 2;
+  const auto of_each = [&](std::size_t n) { return n == 0 || n == beads; };
+  for (std::size_t k = 0; k < p.contacts.pairs.size(); ++k) {
+    const int slot = p.contacts.pairs[k];
+    // The second of a pair is a wall where it is negative.
+    if (slot >= static_cast<int>(beads) || (k % 2 == 0 && slot < 0)) return false;
+  }
+  const bool frames =
+      std::all_of(p.segment_frames.begin(), p.segment_frames.end(), [](std::int64_t n) { return n > 0; });
+  const auto digests =
+      static_cast<std::size_t>(std::count(p.segment_digests.begin(), p.segment_digests.end(), '\n'));
+  return frames && digests == p.segment_frames.size() && p.contacts.pairs.size() % 2 == 0 &&
+         (contacts == 0 ? p.contacts.values.empty() : p.contacts.values.size() % contacts == 0) &&
+         of_each(c.state.forces.size()) && of_each(c.state.rim_speeds.size()) &&
+         of_each(c.state.tracer.size()) && (p.temperature.empty() || p.temperature.size() == 2);
+}
+
 void take(const Plain& p, Checkpoint& c) {
   c.state.driven = p.driven != 0;
   c.state.quiet = static_cast<int>(p.quiet);
@@ -248,6 +267,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
     pass(reader, c, plain);
     const auto digest = h5::read_text_attribute(file.get(), "sha256");
     if (digest.size() != 1 || digest[0] != reader.digest()) refuse("", damaged);
+    if (!agree(plain, c)) refuse("", damaged);
     take(plain, c);
   } catch (const RunError&) {  // HDF5 stumbled over the file
     refuse("", damaged);

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string_view>
 
-#include "analysis/trajectory/atomic_file.hpp"
 #include "analysis/trajectory/error.hpp"
 #include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/trajectory/table_text.hpp"
 #include "sim/start.hpp"
 #include "sim/start_parts.hpp"
 
@@ -237,7 +237,7 @@ class BeadTable {
 
 Start from_table(const Scene& scene, Progress& progress) {
   Heed heed(progress);
-  const std::string text = read_text_file(scene.from);
+  const std::string text = read_table_text(scene.from);
   std::optional<BeadTable> table;
   Start start;
   long line_number = 0;
@@ -247,7 +247,6 @@ Start from_table(const Scene& scene, Progress& progress) {
     begin = end + 1;
     ++line_number;
     heed();
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (line.empty()) continue;
     if (!table)
       table.emplace(scene, split(line), line_number);

@@ -152,6 +152,26 @@ Calibration read_calibration(const std::filesystem::path& file) {
         .names = {"pixels_per_sigma", "origin_x_px", "origin_y_px", "rotation_deg", "distortion"},
         .matrix = s.numbers("matrix", kNames * kNames).value_or(std::vector<double>{})};
     if (out.camera->matrix.empty()) throw ConfigError(s.where("matrix"), "is missing.");
+    constexpr double kRounding = 1e-5;  // of seven digits, as they are written
+    const auto& m = out.camera->matrix;
+    for (std::size_t r = 0; r < kNames; ++r) {
+      const double variance = m[r * kNames + r];
+      if (variance < 0)
+        throw ConfigError(s.where("matrix"), fmt::format("holds the variance {:g} of {}; none is negative.",
+                                                         variance, out.camera->names[r]));
+      for (std::size_t c = 0; c < r; ++c) {
+        const double one = m[r * kNames + c], other = m[c * kNames + r];
+        if (std::abs(one - other) > kRounding * std::max(std::abs(one), std::abs(other)))
+          throw ConfigError(s.where("matrix"),
+                            fmt::format("is not symmetric: {:g} and {:g} for {} and {}.", one, other,
+                                        out.camera->names[r], out.camera->names[c]));
+        if (std::abs(one) > std::sqrt(variance * m[c * kNames + c]) * (1 + kRounding))
+          throw ConfigError(
+              s.where("matrix"),
+              fmt::format("holds the covariance {:g} of {} and {}, which their variances exclude.", one,
+                          out.camera->names[r], out.camera->names[c]));
+      }
+    }
   }
   config.refuse_unknown_keys();
   return out;

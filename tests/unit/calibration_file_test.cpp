@@ -91,6 +91,26 @@ TEST(CalibrationFile, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(complaint_of("[cell.side_tilt]\nvalue = [1.0]\n").find("2 numbers"), std::string::npos);
 }
 
+TEST(CalibrationFile, ACovarianceThatCannotBeIsRefused) {
+  const auto with = [](std::vector<double> changes) {
+    std::vector<double> m(25, 0.0);
+    for (std::size_t k = 0; k < 5; ++k) m[6 * k] = 4;
+    for (std::size_t k = 0; k + 1 < changes.size(); k += 2)
+      m[static_cast<std::size_t>(changes[k])] = changes[k + 1];
+    std::string text = "[covariance.camera]\nmatrix = [";
+    for (const double x : m) text += std::to_string(x) + ", ";
+    return text + "]\n";
+  };
+  EXPECT_EQ(complaint_of(with({})), "none");
+  EXPECT_EQ(complaint_of(with({1, 2, 5, 2})), "none");
+  const std::string negative = complaint_of(with({0, -1})), skew = complaint_of(with({1, 2})),
+                    large = complaint_of(with({1, 5, 5, 5}));
+  EXPECT_NE(negative.find("c.toml:2:"), std::string::npos) << negative;
+  EXPECT_NE(negative.find("the variance -1 of pixels_per_sigma"), std::string::npos) << negative;
+  EXPECT_NE(skew.find("is not symmetric"), std::string::npos) << skew;
+  EXPECT_NE(large.find("the covariance 5 of origin_x_px and pixels_per_sigma"), std::string::npos) << large;
+}
+
 TEST(CalibrationFile, ACellTakesWhatItDoesNotState) {
   const TemporaryFolder folder;
   put_file(folder / "c.toml", calibration_text(some(), ""));
