@@ -218,6 +218,26 @@ TEST(Outputs, StandardOutputTakesTextAlone) {
   EXPECT_EQ(Sandbox::contents(), before);
 }
 
+// `sweep collect` writes tables under names that nobody said.
+TEST(Outputs, ATableBesideTheCollectedFileIsHeldToTheSameRules) {
+  const Sandbox sandbox;
+  write("plan.toml", "scene = \"scene.toml\"\n[axes]\nstart.kind = [\"random\"]\nseeds = 2\n");
+  EXPECT_EQ(run_program({"sweep", "run", "plan.toml", "-o", "swept", "-q"}).code, 0);
+  const std::vector<std::string> collect = {"sweep", "collect", "plan.toml", "--folder",
+                                            "swept", "-o",      "r.json"};
+  for (const char* table : {"r.csv", "r.pooled.csv"}) {
+    write(table, "mine");
+    const auto before = Sandbox::contents();
+    const Ran ran = run_program(collect);
+    EXPECT_EQ(ran.code, 2) << table;
+    EXPECT_NE(ran.err.find(table), std::string::npos) << ran.err;
+    EXPECT_EQ(Sandbox::contents(), before) << table;
+    fs::remove(table);
+  }
+  for (int time = 0; time < 2; ++time) EXPECT_EQ(run_program(collect).code, 0) << time;
+  EXPECT_TRUE(fs::exists("r.pooled.csv"));
+}
+
 TEST(Outputs, AnInputIsNeverAnOutputThroughAnyName) {
   const Sandbox sandbox;
   fs::create_hard_link("scene.toml", "hard.toml");
