@@ -6,21 +6,21 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/barycentre.hpp"
-#include "analysis/bed_flight.hpp"
-#include "analysis/convection.hpp"
-#include "analysis/defects.hpp"
-#include "analysis/grains.hpp"
-#include "analysis/granular_temperature.hpp"
-#include "analysis/observable.hpp"
-#include "analysis/order.hpp"
-#include "analysis/orientation.hpp"
-#include "analysis/phase_thresholds.hpp"
-#include "analysis/profiles.hpp"
-#include "analysis/slip.hpp"
-#include "analysis/tracers.hpp"
-#include "analysis/trajectory/stop.hpp"
-#include "analysis/volume_fraction.hpp"
+#include "analysis/gas/granular_temperature.hpp"
+#include "analysis/gas/profiles.hpp"
+#include "analysis/gas/volume_fraction.hpp"
+#include "analysis/motion/bed_flight.hpp"
+#include "analysis/motion/centre_of_mass.hpp"
+#include "analysis/motion/convection.hpp"
+#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/motion/slip.hpp"
+#include "analysis/motion/tracers.hpp"
+#include "analysis/observable/observable.hpp"
+#include "analysis/order/defects.hpp"
+#include "analysis/order/grains.hpp"
+#include "analysis/order/order.hpp"
+#include "analysis/order/orientation.hpp"
+#include "core/cancellation.hpp"
 
 namespace twincell {
 namespace {
@@ -56,7 +56,7 @@ const std::vector<Entry>& entries() {
        make_convection},
       {{"profile_z", "phi_z", "T_z_z", "T_x_z", "T_z_frames_z", "T_z_volume"}, make_profiles},
       {{"phi_top", "phi_cm"}, make_volume_fraction},
-      {{"h_cm", "h_cm_k", "h_cm_j", "delta_h_cm", "delta_h_bar"}, make_barycentre},
+      {{"h_cm", "h_cm_k", "h_cm_j", "delta_h_cm", "delta_h_bar"}, make_centre_of_mass},
       {{"flight_time", "flight_share"}, make_bed_flight},
   };
   return list;
@@ -238,7 +238,7 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
   std::size_t used = 0;
   // The number of frames is asked for each time: a run that is analysed while it goes on may end early.
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
-    stop_if_asked();
+    throw_if_cancelled();
     trajectory.read(f, frame);
     progress.update(static_cast<std::int64_t>(f) + 1, static_cast<std::int64_t>(trajectory.n_frames()));
     if (options.discard_cycles > 0 || options.cycles > 0) {
@@ -258,7 +258,7 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
 
   std::vector<Result> results;
   for (const auto& observable : observables) {
-    stop_if_asked();
+    throw_if_cancelled();
     for (Result& r : observable->results()) {
       if (!options.wants(r.name)) continue;
       if (!r.shape.empty() && !r.interval && r.no_interval.empty())

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "imaging/synthetic_camera.hpp"
+#include "imaging/camera/synthetic_camera.hpp"
 
 namespace twincell {
 namespace {

@@ -30,6 +30,7 @@ k_m = 50.0
 [start]
 settle_limit = 2.0
 [time]
+integrator = "verlet"
 steps_per_contact = 50
 stepping = "{stepping}"
 discard = 50
@@ -56,7 +57,7 @@ def measure(build, system, repetitions):
             (own / SCENE).write_text(scene.replace("{cycles}", str(PERIODS * repetitions)))
             return own, running.enter_context(Ours(build, SCENE, PERIODS, own))
 
-        (own, flights), (_, steps) = engine("flights"), engine("steps")
+        (own, flights), (_, steps) = engine("event-driven"), engine("steps")
         for _ in range(repetitions):
             piece = flights.answer()
             steps.answer()

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "imaging/first_steps.hpp"
-#include "imaging/link.hpp"
+#include "imaging/link/initial_velocities.hpp"
+#include "imaging/link/link.hpp"
 
 using namespace twincell;
 
@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
     if (r == 0) out.open(path + ".ids", std::ios::binary);
     Linker linker(options, phases);
     const double begun = cpu_seconds();
-    linker.begin(first_steps(options, phases, frames.size(), [&](std::size_t f) {
+    linker.begin(initial_velocities(options, phases, frames.size(), [&](std::size_t f) {
       return FrameOfBeads{frames[f], {}, moment_of(f)};
     }));
     double seconds = cpu_seconds() - begun;

@@ -58,6 +58,7 @@ kind = "{start}"
 seed = {seed}
 settle_limit = 20.0
 [time]
+integrator = "verlet"
 steps_per_contact = 20
 discard = 3
 cycles = {cycles}

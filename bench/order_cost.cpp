@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bond_order.hpp"
-#include "analysis/trajectory/processor_time.hpp"
-#include "analysis/voronoi.hpp"
+#include "analysis/neighbours/bond_order.hpp"
+#include "analysis/neighbours/voronoi.hpp"
+#include "core/cpu_clock.hpp"
 
 using namespace twincell;
 
@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
   std::vector<double> q6;
   for (int r = 0; r < repetitions; ++r) {
     q6.clear();
-    const double start = processor_seconds();
+    const double start = cpu_seconds();
     for (const Frame& frame : frames) {
       BondOrder order;
       if (rule == "cutoff") {
@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
       }
       q6.insert(q6.end(), order.q6.begin(), order.q6.end());
     }
-    best = std::min(best, processor_seconds() - start);
+    best = std::min(best, cpu_seconds() - start);
   }
   std::ofstream out(path + "." + rule + ".q6", std::ios::binary);
   out.write(reinterpret_cast<const char*>(q6.data()),

@@ -15,9 +15,9 @@
 #include <iostream>
 #include <string>
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "sim/simulation.hpp"
+#include "core/error.hpp"
+#include "sim/run/simulation.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace {
 

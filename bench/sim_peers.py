@@ -50,6 +50,7 @@ gamma = 2.0
 kind = "random"
 settle_limit = 20.0
 [time]
+integrator = "verlet"
 steps_per_contact = 50
 discard = 5
 cycles = {cycles}
@@ -67,6 +68,7 @@ k_m = 50.0
 [start]
 settle_limit = 2.0
 [time]
+integrator = "verlet"
 steps_per_contact = 50
 stepping = "steps"
 discard = {discard}
@@ -159,7 +161,7 @@ def equal_impacts(build):
 
 
 def in_split_steps(scene, n):
-    return re.sub(r"(?m)^steps_per_contact = .*$", f'steps_per_contact = {n}\nintegrator = "split"', scene)
+    return re.sub(r"(?m)^steps_per_contact = .*$", f"steps_per_contact = {n}", scene.replace('"verlet"', '"split"'))
 
 
 def measure(build, name, scene, periods, equal_accuracy, repetitions):

@@ -8,17 +8,17 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "analysis/barycentre.hpp"
-#include "analysis/observable.hpp"
-#include "analysis/pooling.hpp"
-#include "analysis/results.hpp"
-#include "analysis/spatial_figures.hpp"
-#include "analysis/tracers.hpp"
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/motion/centre_of_mass.hpp"
+#include "analysis/motion/tracers.hpp"
+#include "analysis/observable/observable.hpp"
+#include "analysis/observable/results.hpp"
+#include "analysis/report/spatial_figures.hpp"
+#include "analysis/runs/pooling.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -47,7 +47,7 @@ double rest_height_of(const std::string& said) {
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
     trajectory.read(f, frame);
     const auto plate = plate_height(trajectory.info(), frame);
-    const double height = barycentre_height(frame, trajectory.info().mass) - plate.value_or(std::nan(""));
+    const double height = centre_of_mass_height(frame, trajectory.info().mass) - plate.value_or(std::nan(""));
     if (!std::isfinite(height))
       throw InputError({.file = said, .key = "--rest-height"},
                        fmt::format("frame {} has no bead or no plate height", f));

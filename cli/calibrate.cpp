@@ -11,12 +11,12 @@
 #include <cmath>
 #include <filesystem>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/output_rules.hpp"
-#include "analysis/trajectory/sha256.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "core/output_rules.hpp"
+#include "core/sha256.hpp"
 
 namespace twincell::cli {
 namespace {

@@ -1,18 +1,18 @@
 #pragma once
 /// \file
 /// What the kinds of `calibrate` share: options, the table of what was measured, the calibration file. A new
-/// kind is cli/calibrate_NAME.cpp, a line here, a line in calibrate.cpp's table and one in CMakeLists.txt.
+/// kind is cli/calibrate_NAME.cpp, a line here and a line in calibrate.cpp's table.
 
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "analysis/figures.hpp"
-#include "analysis/trajectory/calibration_file.hpp"
-#include "calibration/cell_geometry.hpp"
+#include "analysis/report/figures.hpp"
+#include "calibration/camera/cell_geometry.hpp"
 #include "cli/output.hpp"
-#include "imaging/cell.hpp"
+#include "imaging/cell/cell.hpp"
+#include "trajectory/calibration_file.hpp"
 
 namespace CLI {
 class App;

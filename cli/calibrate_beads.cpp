@@ -6,12 +6,13 @@
 #include <cmath>
 #include <memory>
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "calibration/bead_census.hpp"
-#include "calibration/bead_census_figure.hpp"
+#include "calibration/camera/size_statistics.hpp"
+#include "calibration/camera/size_statistics_figure.hpp"
 #include "cli/calibrate.hpp"
 #include "cli/stack_info.hpp"
+#include "core/error.hpp"
+#include "imaging/stack/open_frames.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -24,7 +25,7 @@ struct BeadOptions {
 void run(const BeadOptions& o, const Common& common) {
   const CellDescription cell = cell_of(o.flags);
   CalibrationResult out;
-  BeadCensus c;
+  SizeStatistics c;
   double unit_px = 1;  // px of the census' unit
   std::optional<double> width = cell.width;
   double width_error = 0;
@@ -82,7 +83,7 @@ void run(const BeadOptions& o, const Common& common) {
                             c.spacing->value * unit_px, c.spacing->error * unit_px,
                             c.spacing->value / c.diameter.value);
   if (c.spread.value < 2 * c.spread.error) out.text += "sizes: no spread beyond that of locating them\n";
-  out.figures = {bead_census_figure(c, unit_px)};
+  out.figures = {size_statistics_figure(c, unit_px)};
   finish_calibration(o.flags, common, std::move(out));
 }
 

@@ -7,13 +7,14 @@
 #include <cmath>
 #include <memory>
 
-#include "analysis/trajectory/error.hpp"
-#include "calibration/bead_census.hpp"
-#include "calibration/edge_map_figure.hpp"
-#include "calibration/plate_lock.hpp"
-#include "calibration/target_fit.hpp"
+#include "calibration/camera/edge_map_figure.hpp"
+#include "calibration/camera/size_statistics.hpp"
+#include "calibration/camera/target_fit.hpp"
+#include "calibration/drive/drive_fit.hpp"
 #include "cli/calibrate.hpp"
 #include "cli/stack_info.hpp"
+#include "core/error.hpp"
+#include "imaging/stack/open_frames.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -32,7 +33,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// rests.
 Estimate mean_row(const CellGeometry& g) {
   try {
-    const PlateLock lock = lock_plate(g.heights_px(), {.model_error = kHeightModelError_px});
+    const DriveFit lock = fit_drive(g.heights_px(), {.model_error = kHeightModelError_px});
     return {g.plate_row - lock.z0, std::hypot(lock.z0_error, g.plate_row_error_of_map)};
   } catch (const InputError&) {
     return {g.plate_row, g.plate_row_error};
@@ -92,7 +93,7 @@ void run(const CameraCalibration& o, const Common& common) {
   locator.diameter_px = o.flags.diameter_px > 0 ? o.flags.diameter_px : cell.pixels_per_sigma.value_or(0);
   std::optional<Lens> lens;
   if (g.rotation_deg != 0 || g.distortion != 0) lens = Lens(g.size, g.rotation_deg, g.distortion);
-  std::optional<BeadCensus> census;
+  std::optional<SizeStatistics> census;
   try {
     const auto frames = open_stack(o.flags.stack, common);
     ProgressBar bar(common, "beads");

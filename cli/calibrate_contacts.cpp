@@ -8,18 +8,18 @@
 #include <cmath>
 #include <memory>
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "analysis/trajectory/json_text.hpp"
-#include "calibration/bounce.hpp"
-#include "calibration/collisions.hpp"
-#include "calibration/contact_figures.hpp"
-#include "calibration/contact_numbers.hpp"
-#include "calibration/table.hpp"
-#include "calibration/walton.hpp"
+#include "calibration/contact/bounce.hpp"
+#include "calibration/contact/collisions.hpp"
+#include "calibration/contact/contact_figures.hpp"
+#include "calibration/contact/contact_numbers.hpp"
+#include "calibration/contact/walton.hpp"
+#include "calibration/fit/table.hpp"
 #include "cli/calibrate.hpp"
 #include "cli/stack_info.hpp"
+#include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "sim/laws/linear_collision.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 namespace {

@@ -14,17 +14,17 @@
 #include <stdexcept>
 #include <thread>
 
-#include "analysis/observable.hpp"
-#include "analysis/phase_thresholds.hpp"
-#include "analysis/statistics.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "analysis/trajectory/in_parallel.hpp"
-#include "calibration/contact_figures.hpp"
-#include "calibration/curve_components.hpp"
-#include "calibration/inference.hpp"
+#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/observable/observable.hpp"
+#include "analysis/statistics/statistics.hpp"
+#include "calibration/contact/contact_figures.hpp"
+#include "calibration/contact/inference.hpp"
+#include "calibration/fit/curve_components.hpp"
 #include "cli/calibrate.hpp"
-#include "sim/simulation.hpp"
+#include "core/error.hpp"
+#include "core/in_parallel.hpp"
+#include "sim/run/simulation.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 namespace {

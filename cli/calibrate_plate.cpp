@@ -7,13 +7,13 @@
 #include <fstream>
 #include <memory>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "calibration/accelerometer.hpp"
-#include "calibration/plate_lock.hpp"
-#include "calibration/plate_lock_figure.hpp"
+#include "calibration/drive/accelerometer.hpp"
+#include "calibration/drive/drive_fit.hpp"
+#include "calibration/drive/drive_fit_figure.hpp"
 #include "cli/calibrate.hpp"
-#include "imaging/frame_source.hpp"
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "imaging/stack/frame_source.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -29,7 +29,7 @@ struct PlateOptions {
 constexpr double kSameRate = 0.01;
 constexpr const char* kPhaseHeading = "frame,cycles\n";
 
-void write_phases(const std::string& path, const PlateLock& lock) {
+void write_phases(const std::string& path, const DriveFit& lock) {
   AtomicPath file(path, Product::table(kPhaseHeading));
   {
     std::ofstream out(file.part());
@@ -43,7 +43,7 @@ void write_phases(const std::string& path, const PlateLock& lock) {
   file.commit();
 }
 
-std::string list_of(const PlateLock& lock, FrameLock kind) {
+std::string list_of(const DriveFit& lock, FrameLock kind) {
   constexpr int kMostNamed = 12;
   std::string s;
   int n = 0;
@@ -52,11 +52,11 @@ std::string list_of(const PlateLock& lock, FrameLock kind) {
   return n > kMostNamed ? s + ", ..." : s;
 }
 
-PlateLock lock_of(const PlateOptions& o, const CellDescription& cell, const CellGeometry& g) {
+DriveFit lock_of(const PlateOptions& o, const CellDescription& cell, const CellGeometry& g) {
   try {
     const int known = o.frames_per_cycle > 0 ? o.frames_per_cycle : cell.phase_lock.frames_per_cycle;
-    return lock_plate(g.heights_px(),
-                      {.frames_per_cycle = known, .mend = true, .model_error = kHeightModelError_px});
+    return fit_drive(g.heights_px(),
+                     {.frames_per_cycle = known, .mend = true, .model_error = kHeightModelError_px});
   } catch (const InputError& e) {
     throw InputError({.file = o.flags.stack, .key = {}}, e.what());
   }
@@ -68,7 +68,7 @@ void run(const PlateOptions& o, const Common& common) {
       o.accelerometer.empty() ? std::nullopt : std::optional(read_vibration(o.accelerometer));
   StackEdges edges;
   const CellGeometry g = geometry_of(o.flags, cell, common, edges);
-  PlateLock lock = lock_of(o, cell, g);
+  DriveFit lock = lock_of(o, cell, g);
   lock.amplitude_error = std::hypot(lock.amplitude_error, lock.amplitude * g.stretch_error);
   const auto scale = scale_of(cell, g);
   const std::string data = data_hash(o.flags.stack);
@@ -197,7 +197,7 @@ void run(const PlateOptions& o, const Common& common) {
     d["phases"] = o.phases;
     out.text += o.phases + "\n";
   }
-  out.figures = {plate_lock_figure(lock)};
+  out.figures = {drive_fit_figure(lock)};
   finish_calibration(o.flags, common, std::move(out));
 }
 

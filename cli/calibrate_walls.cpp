@@ -6,12 +6,12 @@
 #include <cmath>
 #include <memory>
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "calibration/bead_walls.hpp"
-#include "calibration/edge_map_figure.hpp"
+#include "calibration/camera/bead_walls.hpp"
+#include "calibration/camera/edge_map_figure.hpp"
 #include "cli/calibrate.hpp"
 #include "cli/stack_info.hpp"
+#include "core/error.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 namespace {

@@ -3,11 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "analysis/report.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
+#include "analysis/report/report.hpp"
+#include "calibration/drive/plate_drive.hpp"
 #include "cli/comparing_options.hpp"
 #include "cli/verb.hpp"
+#include "core/error.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -18,17 +19,33 @@ struct CompareOptions {
   bool trust_stated_drive = false;
 };
 
-/// Refuses experiments of which `track` saw that the plate in the film does not move as their cell says.
-void require_drive_of_film(const std::vector<std::filesystem::path>& experiments) {
-  for (const std::filesystem::path& file : experiments) {
-    const auto tracking = nlohmann::json::parse(H5mdReader(file).info().tracking_json, nullptr, false);
-    if (!tracking.is_object() || !tracking.contains("drive_disagreement")) continue;
-    const auto& clause = tracking["drive_disagreement"];
-    throw ConfigError(
-        {.file = file.string(), .key = "drive"},
-        (clause.is_string() ? clause.get<std::string>() : "the stated drive does not fit the film") +
-            "; correct the cell and track again, or say --trust-stated-drive.");
+/// By what the film shows another drive than the experiment states, as one clause: as `track` saw it, else as
+/// the beads show it.
+std::string drive_disagreement(const H5mdReader& experiment) {
+  const TrajectoryInfo& info = experiment.info();
+  const auto tracking = nlohmann::json::parse(info.tracking_json, nullptr, false);
+  if (tracking.is_object()) {
+    if (tracking.contains("drive_disagreement"))
+      return tracking["drive_disagreement"].is_string() ? tracking["drive_disagreement"].get<std::string>()
+                                                        : "the stated drive does not fit the film";
+    if (tracking.contains("drive_check")) return {};
   }
+  if (info.source != "experiment" || !info.drive) return {};
+  BedSteps bed(info);
+  Frame frame;
+  for (std::size_t f = 0; f < experiment.n_frames(); ++f) {
+    experiment.read(f, frame);
+    bed.append(frame);
+  }
+  return check_by_bed(bed, info, std::nullopt).disagreement;
+}
+
+/// Refuses experiments whose film does not show the drive that their cell states.
+void require_drive_of_film(const std::vector<std::filesystem::path>& experiments) {
+  for (const std::filesystem::path& file : experiments)
+    if (const std::string clause = drive_disagreement(H5mdReader(file)); !clause.empty())
+      throw ConfigError({.file = file.string(), .key = "drive"},
+                        clause + "; correct the cell and track again, or say --trust-stated-drive.");
 }
 
 void run(const Common& common, CompareOptions& o) {
@@ -64,7 +81,8 @@ void add_compare(CLI::App& program, Common& common) {
   add_comparing_flags(verb, o->flags);
   verb.add_flag(
       "--trust-stated-drive", o->trust_stated_drive,
-      "believe the drive that the experiments' cells state though the plate in the film moves otherwise");
+      "believe the drive that the experiments' cells state though the plate, or the bed, in the film moves "
+      "otherwise");
   verb.callback([&common, o] { run(common, *o); });
 }
 

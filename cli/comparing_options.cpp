@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "analysis/report.hpp"
-#include "analysis/trajectory/error.hpp"
+#include "analysis/report/report.hpp"
+#include "core/error.hpp"
 
 namespace twincell::cli {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "calibration/comparing.hpp"
 #include "cli/output.hpp"
+#include "twin/comparison.hpp"
 
 namespace CLI {
 class App;

@@ -11,16 +11,16 @@
 #include <memory>
 #include <optional>
 
-#include "analysis/colours.hpp"
-#include "analysis/figures.hpp"
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/error.hpp"
+#include "analysis/report/colours.hpp"
+#include "analysis/report/figures.hpp"
 #include "cli/cost_calibration.hpp"
 #include "cli/cost_gas.hpp"
 #include "cli/cost_locate.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
-#include "sim/work_precision.hpp"
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "sim/accuracy/work_precision.hpp"
 
 namespace twincell::cli {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/colours.hpp"
-#include "calibration/calibration_cost.hpp"
+#include "analysis/report/colours.hpp"
+#include "calibration/accuracy/calibration_cost.hpp"
 #include "cli/calibrate.hpp"
 
 namespace twincell::cli {

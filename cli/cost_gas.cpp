@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/work_precision.hpp"
+#include "sim/accuracy/work_precision.hpp"
 
 namespace twincell::cli {
 
@@ -18,12 +18,12 @@ using sim::StepSetting;
 
 struct Method {
   StepSetting setting;
-  bool flights;
+  bool event_driven;
 };
 
 std::string name_of(const GasTemperature& g) {
   const std::string steps = fmt::format("{}, n = {:g}", g.setting.integrator, g.setting.n);
-  return g.gas.flights ? "flights; " + steps : steps;
+  return g.gas.event_driven ? "event-driven; " + steps : steps;
 }
 
 /// The first is what the paper's own simulations did.
@@ -44,9 +44,10 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
   for (const std::string& system : systems) {
     all.emplace_back();
     for (const Method& m : methods(quick)) {
-      const GasCase gas{system, kStrong, m.flights};
-      ProgressBar bar(common, fmt::format("{}, {}{}, n = {:g}", system, m.flights ? "flights, " : "",
-                                          m.setting.integrator, m.setting.n));
+      const GasCase gas{system, kStrong, m.event_driven};
+      ProgressBar bar(common,
+                      fmt::format("{}, {}{}, n = {:g}", system, m.event_driven ? "event-driven, " : "",
+                                  m.setting.integrator, m.setting.n));
       all.back().push_back(sim::gas_temperature(m.setting, gas, quick ? 600 : 3000, bar));
     }
   }
@@ -76,7 +77,7 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
       if (g.seconds / g.periods < cheapest->seconds / cheapest->periods) cheapest = &g;
       report.document["gas"].push_back({{"system", g.gas.system},
                                         {"w", g.gas.w},
-                                        {"stepping", g.gas.flights ? "flights" : "steps"},
+                                        {"stepping", g.gas.event_driven ? "event-driven" : "steps"},
                                         {"integrator", g.setting.integrator},
                                         {"n", g.setting.n},
                                         {"t_z", g.value},
@@ -96,7 +97,7 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
       panels += fmt::format(
           "'{0}.dat' index {1} with lines dt {2} lw 2 lc {3} title '{4}', '' index {1} every ::1::1 "
           "with points pt 7 lc {3} notitle, ",
-          figure.name, index, g.gas.flights ? 1 : 2, 1 + index % 5, name_of(g));
+          figure.name, index, g.gas.event_driven ? 1 : 2, 1 + index % 5, name_of(g));
       ++index;
     }
     panels += fmt::format("{} with lines lc rgb 'grey' notitle\n", accuracy);

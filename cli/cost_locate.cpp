@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "analysis/colours.hpp"
-#include "imaging/locating_cost.hpp"
+#include "analysis/report/colours.hpp"
+#include "imaging/benchmark/locating_cost.hpp"
 
 namespace twincell::cli {
 

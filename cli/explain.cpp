@@ -8,10 +8,10 @@
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
-#include "sim/cost.hpp"
-#include "sim/demand.hpp"
-#include "sim/start.hpp"
-#include "sim/step_error.hpp"
+#include "sim/accuracy/step_error.hpp"
+#include "sim/run/cost.hpp"
+#include "sim/scene/resource_demand.hpp"
+#include "sim/start/start.hpp"
 
 namespace twincell::cli {
 
@@ -54,12 +54,12 @@ std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::C
   if (!plan.warnings.empty()) s += "Warnings\n";
   for (const std::string& warning : plan.warnings) s += "  " + warning + "\n";
   s += fmt::format("Chance\n  {}\n", chance_of(scene));
-  s += fmt::format("Kernel\n  {}; {}\n", plan.kernel_name(), cost.kernel);
+  s += fmt::format("Kernel\n  {}; {}\n", plan.law_names(), cost.kernel);
   s += fmt::format("  {:.0f} bytes a bead", cost.bytes_per_bead);
   if (cost.bytes_per_pair > 0)
     s += fmt::format(", {:.0f} a listed pair, of which there are {:.3g} a bead", cost.bytes_per_pair,
                      cost.pairs_per_bead);
-  const sim::Demand demand = sim::demand_of(scene, plan, cost.beads);
+  const sim::ResourceDemand demand = sim::resource_demand(scene, plan, cost.beads);
   s += fmt::format("\nMachine\n  about {} of memory, of {} available; frames of `simulate`: at least {}",
                    sim::bytes_text(demand.memory), sim::bytes_text(memory_available()),
                    sim::bytes_text(demand.disk));
@@ -94,7 +94,7 @@ void run(const ExplainOptions& o, const Common& common) {
   d["bytes_per_bead"] = cost.bytes_per_bead;
   d["bytes_per_pair"] = cost.bytes_per_pair > 0 ? nlohmann::json(cost.bytes_per_pair) : nlohmann::json();
   d["pairs_per_bead"] = cost.pairs_per_bead;
-  const sim::Demand demand = sim::demand_of(scene, plan, cost.beads);
+  const sim::ResourceDemand demand = sim::resource_demand(scene, plan, cost.beads);
   d["expected_memory_bytes"] = demand.memory;
   d["expected_disk_bytes"] = demand.disk;
   d["particle_steps"] = beads * static_cast<double>(plan.steps);

@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/escape.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
-#include "sim/export_lammps.hpp"
+#include "core/atomic_file.hpp"
+#include "core/escape.hpp"
+#include "sim/lammps/export_lammps.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 
@@ -27,7 +27,18 @@ struct ExportOptions {
 };
 
 void run(const ExportOptions& o, const Common& common) {
-  const sim::Scene scene = sim::read_scene(o.scene, with_seed(o.assignments, common));
+  std::vector<std::string> assignments = with_seed(o.assignments, common);
+  sim::Scene scene = sim::read_scene(o.scene, assignments);
+  std::string otherwise;
+  if (!scene.integrator_stated) {
+    const double own = scene.steps_per_contact;
+    assignments.emplace_back("time.integrator=verlet");
+    scene = sim::read_scene(o.scene, assignments);
+    otherwise = fmt::format(
+        "time.integrator is not stated: the deck takes \"verlet\", LAMMPS's own, at {:g} steps per contact, "
+        "where simulate takes \"{}\" at {:g}; with --set time.integrator=verlet both do the same.",
+        scene.steps_per_contact, sim::kDefaultIntegrator.word, own);
+  }
   AtomicPath folder(o.output, deck_folder());
   ProgressBar settling(common, "settling");
   const sim::LammpsDeck deck = o.from.empty() ? sim::lammps_deck(scene, settling)
@@ -35,6 +46,7 @@ void run(const ExportOptions& o, const Common& common) {
   write_text_file(folder.part() / sim::LammpsDeck::kInputName, deck.input);
   write_text_file(folder.part() / sim::LammpsDeck::kDataName, deck.data);
   folder.commit();
+  if (!otherwise.empty()) note(common, otherwise);
   const std::string run_command =
       fmt::format("cd {} && lmp -in {}", shell_word(folder.final().string()), sim::LammpsDeck::kInputName);
   print_result(common,

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/json_text.hpp"
-#include "calibration/curve_fit.hpp"
-#include "calibration/fit_figure.hpp"
-#include "calibration/table.hpp"
+#include "calibration/fit/curve_fit.hpp"
+#include "calibration/fit/fit_figure.hpp"
+#include "calibration/fit/table.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "core/json_text.hpp"
 
 namespace twincell::cli {
 namespace {

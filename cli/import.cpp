@@ -6,10 +6,10 @@
 #include <map>
 #include <memory>
 
-#include "analysis/trajectory/h5md_file.hpp"
-#include "analysis/trajectory/lammps_dump.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/formats/lammps_dump.hpp"
 
 namespace twincell::cli {
 

@@ -6,11 +6,11 @@
 #include <array>
 #include <memory>
 
-#include "analysis/trajectory/h5md_file.hpp"
-#include "analysis/trajectory/json_text.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
+#include "core/json_text.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 

@@ -11,15 +11,16 @@
 #include <memory>
 #include <optional>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/error.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
-#include "imaging/debug_pictures.hpp"
-#include "imaging/overlay.hpp"
-#include "imaging/pipeline.hpp"
-#include "imaging/score.hpp"
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "imaging/benchmark/score.hpp"
+#include "imaging/settings/configure_locator.hpp"
+#include "imaging/track/debug_pictures.hpp"
+#include "imaging/track/locate_stack.hpp"
+#include "imaging/track/overlay.hpp"
 
 namespace twincell::cli {
 
@@ -155,8 +156,10 @@ void run(LocateOptions& o, const Common& common) {
   constexpr std::int64_t kShown = 20;  // frames with a line of their own
   std::map<Verdict, std::size_t> left_out;
   std::size_t beads = 0, bare = 0;  // frames without a bead
-  const LocatedStack stack = locate_stack(
-      *frames, o.locator, common.n_threads(),
+  FramesAhead ahead(*frames);
+  const auto [locator, settings_frame] = configure_locator(ahead, o.locator);
+  const std::int64_t n = locate_stack(
+      ahead, locator, common.n_threads(),
       [&](std::int64_t frame, const cv::Mat& grey, const Located& located) {
         for (const Detection& b : located.beads) table << row(b, frame);
         for (const std::vector<Detection>* list : {&located.beads, &located.dropped})
@@ -193,47 +196,46 @@ void run(LocateOptions& o, const Common& common) {
           drawn = true;
         }
         if (!o.debug_folder.empty() && frame == o.overlay_frame)
-          write_debug_pictures(o.debug_folder, grey, o.locator);
+          write_debug_pictures(o.debug_folder, grey, locator);
       },
       bar);
-  const std::int64_t n = stack.frames;
   if (!o.overlay.empty() && !drawn)
     throw ConfigError(
         Where{.file = {}, .key = "--overlay-frame"},
         fmt::format("{} was asked for, the stack has {} frames, counted from 0.", o.overlay_frame, n));
-  check_flat(o.flat, o.locator.preprocess.bright);
+  check_flat(o.flat, locator.preprocess.bright);
   table.commit();
   candidates.commit();
-  document["diameter_px"] = o.locator.diameter_px;
-  if (!o.locator.other_diameters_px.empty()) document["other_diameters_px"] = o.locator.other_diameters_px;
-  document["refine"] = o.locator.refine.method;
-  document["bright"] = o.locator.preprocess.bright;
+  document["diameter_px"] = locator.diameter_px;
+  if (!locator.other_diameters_px.empty()) document["other_diameters_px"] = locator.other_diameters_px;
+  document["refine"] = locator.refine.method;
+  document["bright"] = locator.preprocess.bright;
   if (n > kShown) text += fmt::format("... {} more frames\n", n - kShown);
-  const std::string shown =
-      stack.settings_frame == 0 ? "the first frame" : fmt::format("frame {}", stack.settings_frame);
-  if (find_diameter || find_polarity) document["settings_frame"] = stack.settings_frame;
+  const std::string shown = settings_frame == 0 ? "the first frame" : fmt::format("frame {}", settings_frame);
+  if (find_diameter || find_polarity) document["settings_frame"] = settings_frame;
   if (find_diameter) {
-    std::string sizes = fmt::format("{:.2f}", o.locator.diameter_px);
-    for (const double other : o.locator.other_diameters_px) sizes += fmt::format(" and {:.2f}", other);
+    std::string sizes = fmt::format("{:.2f}", locator.diameter_px);
+    for (const double other : locator.other_diameters_px) sizes += fmt::format(" and {:.2f}", other);
     text += fmt::format("bead diameter found from {}: {} px (--diameter)\n", shown, sizes);
   }
-  if (refine != o.locator.refine.method && o.locator.refine.method == "edges")
+  if (refine != locator.refine.method && model_of(locator.refine) == DiscModel::circle)
     text += fmt::format("discs differ inside, as {} shows: fitted by their rims (--refine edges)\n", shown);
-  if (refine != o.locator.refine.method && o.locator.refine.method == "profile")
+  if (refine != locator.refine.method && model_of(locator.refine) == DiscModel::shared_profile)
     text += fmt::format(
         "discs are alike but not plain, as {} shows: fitted by their common profile (--refine profile)\n",
         shown);
-  if (o.locator.preprocess.contrast < 1 && o.locator.refine.method != "edges") {
-    document["contrast"] = o.locator.preprocess.contrast;
+  if (locator.preprocess.contrast < 1 && model_of(locator.refine) != DiscModel::circle) {
+    document["contrast"] = locator.preprocess.contrast;
     text += fmt::format("beads are pale: darkness is in units of {:.2f} of the light\n",
-                        o.locator.preprocess.contrast);
+                        locator.preprocess.contrast);
   }
-  if (find_polarity && o.locator.refine.method == "profile")  // they may have rings of both kinds
+  if (find_polarity &&
+      model_of(locator.refine) == DiscModel::shared_profile)  // they may have rings of both kinds
     text += fmt::format("frames are read as with --{}, which explains {} better (--dark, --bright)\n",
-                        o.locator.preprocess.bright ? "bright" : "dark", shown);
+                        locator.preprocess.bright ? "bright" : "dark", shown);
   else if (find_polarity)
     text += fmt::format("beads are {} than what lies behind them, as {} shows (--dark, --bright)\n",
-                        o.locator.preprocess.bright ? "brighter" : "darker", shown);
+                        locator.preprocess.bright ? "brighter" : "darker", shown);
   document["left_out"] = in_words(left_out);
   text += doubts(left_out, beads, bare, static_cast<std::size_t>(n));
   text += o.output + "\n";
@@ -281,11 +283,8 @@ void add_locate(CLI::App& program, Common& common) {
   verb.add_option("--locator", o->locator.finder, "Finder")->check(CLI::IsMember(finder_names()));
   verb.add_option("--min-score", o->locator.find.min_score,
                   "Share of a circle's edge that must be seen, 0 .. 1");
-  verb.add_option("--refine", o->locator.refine.method,
-                  "exact: fit of the picture; fast: its first step; edges: circles through the edges; "
-                  "profile: fit with "
-                  "the radial profile that the discs share")
-      ->check(CLI::IsMember({"exact", "fast", "edges", "profile"}));
+  verb.add_option("--refine", o->locator.refine.method, refiners_help())
+      ->check(CLI::IsMember(refiner_names()));
   CLI::Option* bright = verb.add_flag("--bright", o->locator.preprocess.bright,
                                       "Beads are brighter than what lies behind them");
   verb.add_flag("--dark", o->dark, "Beads are darker; with neither, found from the first frame")

@@ -8,14 +8,14 @@
 #include <new>
 #include <string>
 
-#include "analysis/trajectory/config.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/escape.hpp"
-#include "analysis/trajectory/hdf5.hpp"
-#include "analysis/trajectory/kept_memory.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
-#include "imaging/opencv_words.hpp"
+#include "core/config.hpp"
+#include "core/error.hpp"
+#include "core/escape.hpp"
+#include "core/hdf5.hpp"
+#include "core/malloc_tuning.hpp"
+#include "imaging/stack/opencv_errors.hpp"
 
 namespace {
 
@@ -128,7 +128,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  keep_freed_memory();
+  tune_malloc();
   watch_signals();
   h5::quiet();
   try {
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return complain_of_memory(argc, argv);
   } catch (const std::exception& e) {
-    const auto fault = opencv_fault(e);
+    const auto fault = opencv_error(e);
     if (fault && fault->out_of_memory) return complain_of_memory(argc, argv);
     if (fault) return complain_of_fault(argc, argv, "the image processing", fault->what.c_str());
     return complain_of_fault(argc, argv, "the program", e.what());

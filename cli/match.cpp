@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "calibration/twin.hpp"
 #include "cli/comparing_options.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
-#include "imaging/frame_source.hpp"
+#include "imaging/stack/open_frames.hpp"
+#include "twin/twin.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -97,8 +97,9 @@ void add_match(CLI::App& program, Common& common) {
   verb.add_option("--diameter", o->twin.locator.diameter_px,
                   "Bead diameter, px; absent: the scale, or estimated")
       ->check(CLI::Range(3.0, 400.0));
-  verb.add_flag("--trust-stated-drive", o->twin.trust_stated_drive,
-                "Believe the drive that the cell states, also where the plate in the frames moves otherwise");
+  verb.add_flag(
+      "--trust-stated-drive", o->twin.trust_stated_drive,
+      "Believe the drive that the cell states, also where the plate, or the bed on it, moves otherwise");
   verb.add_option("--memory", o->twin.link.memory, "Frames for which a bead may be missing");
   add_comparing_flags(verb, o->flags);
   verb.callback([&common, o] { run(common, *o); });

@@ -9,11 +9,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "analysis/results.hpp"
-#include "analysis/trajectory/json_text.hpp"
+#include "analysis/observable/results.hpp"
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
+#include "core/json_text.hpp"
+#include "sim/run/make_solver.hpp"
 
 namespace twincell::cli {
 
@@ -51,7 +52,7 @@ Run run_once(const MeasureOptions& options, const std::vector<std::string>& assi
          fmt::format("at W = {:.4g}, just above 1, a bed may stay as it began for hundreds of cycles; "
                      "--both-starts runs it from rest and from a boiling bed.",
                      w));
-  sim::Simulation run(std::move(scene), std::move(state), sim::KernelKind::best, common.threads);
+  sim::Simulation run(std::move(scene), std::move(state), sim::SolverKind::best, common.threads);
   ProgressBar progress(common, "measuring");
   Run r{.measured = sweep::measure(run, options.analysis, options.scene, progress),
         .about = {},

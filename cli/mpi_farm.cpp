@@ -1,7 +1,7 @@
 #include "cli/mpi_farm.hpp"
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/json_text.hpp"
+#include "core/error.hpp"
+#include "core/json_text.hpp"
 
 #ifdef TWINCELL_MPI
 

@@ -14,12 +14,12 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/escape.hpp"
-#include "analysis/trajectory/json_text.hpp"
-#include "analysis/trajectory/output_rules.hpp"
-#include "analysis/trajectory/stop.hpp"
-#include "analysis/trajectory/temporary.hpp"
+#include "core/cancellation.hpp"
+#include "core/error.hpp"
+#include "core/escape.hpp"
+#include "core/json_text.hpp"
+#include "core/output_rules.hpp"
+#include "core/temporary_files.hpp"
 
 namespace twincell::cli {
 
@@ -29,7 +29,7 @@ namespace {
 constexpr itimerval kPatience{.it_interval = {}, .it_value = {.tv_sec = 0, .tv_usec = 700'000}};
 
 extern "C" void remember_signal(int signal) {
-  if (ask_to_stop(signal)) {
+  if (request_cancellation(signal)) {
     setitimer(ITIMER_REAL, &kPatience, nullptr);
     return;
   }
@@ -47,7 +47,7 @@ extern "C" void end_without_waiting(int /*alarm*/) {
   static constexpr char kSaid[] = "twincell: Stopped by a signal; no unfinished file was left behind.\n";
   const auto written = ::write(STDERR_FILENO, kSaid, sizeof kSaid - 1);
   static_cast<void>(written);
-  std::_Exit(128 + asked_to_stop());
+  std::_Exit(128 + cancellation_requested());
 }
 
 /// A fault ends the program as it would have, but nothing unfinished stays.
@@ -190,7 +190,7 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::update(std::int64_t done, std::int64_t total) {
-  if (const int signal = asked_to_stop()) throw Interrupted(static_cast<ExitCode>(128 + signal));
+  if (const int signal = cancellation_requested()) throw Interrupted(static_cast<ExitCode>(128 + signal));
   if (quiet_ || total <= 0) return;
   if (first_ < 0) first_ = done;  // a run that is taken up begins in the middle
   const int percent = static_cast<int>(100 * done / total);

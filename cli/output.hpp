@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trajectory/product.hpp"
-#include "analysis/trajectory/progress.hpp"
-#include "analysis/trajectory/provenance.hpp"
+#include "core/output_kind.hpp"
+#include "core/progress.hpp"
+#include "core/provenance.hpp"
 
 namespace CLI {
 class App;
@@ -86,8 +86,9 @@ class ProgressBar : public Progress {
   std::int64_t start_ns_;
 };
 
-/// Installs the signal handlers that ProgressBar and stop_if_asked (stop.hpp) heed. Work that has not ended
-/// 0.7 s after it was asked to is ended, and its unfinished outputs are removed, unless it is saving a run.
+/// Installs the signal handlers that ProgressBar and throw_if_cancelled (cancellation.hpp) heed. Work that
+/// has not ended 0.7 s after it was asked to is ended, and its unfinished outputs are removed, unless it is
+/// saving a run.
 void watch_signals();
 
 }  // namespace twincell::cli

@@ -1,14 +1,14 @@
 #include "cli/plan_text.hpp"
 
-#include "analysis/trajectory/json_text.hpp"
 #include "cli/output.hpp"
-#include "sim/simulation.hpp"
-#include "sim/step_error.hpp"
+#include "core/json_text.hpp"
+#include "sim/accuracy/step_error.hpp"
+#include "sim/run/simulation.hpp"
 
 namespace twincell::cli {
 
 nlohmann::json as_json(const sim::Plan& plan) {
-  nlohmann::json d = {{"kernel", plan.kernel_name()},
+  nlohmann::json d = {{"kernel", plan.law_names()},
                       {"steps_per_period", plan.steps_per_period},
                       {"dt", plan.dt},
                       {"dt_set_by", plan.shortest().name},

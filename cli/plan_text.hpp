@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "sim/plan.hpp"
+#include "sim/scene/plan.hpp"
 
 namespace twincell::cli {
 
 struct Common;
 
-/// Kernel, steps, and every effect with its state and reason.
+/// Solver, steps, and every effect with its state and reason.
 nlohmann::json as_json(const sim::Plan& plan);
 
 /// Provenance of a simulated file. \param beads as placed: a file's may set another step than the scene's

@@ -6,11 +6,11 @@
 #include <map>
 #include <memory>
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
-#include "imaging/synthetic_camera.hpp"
+#include "core/error.hpp"
+#include "imaging/camera/synthetic_camera.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 

@@ -12,13 +12,13 @@
 #include <system_error>
 #include <utility>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/json_text.hpp"
-#include "analysis/trajectory/output_rules.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_watch.hpp"
 #include "cli/verb.hpp"
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "core/json_text.hpp"
+#include "core/output_rules.hpp"
 #include "reproduce/reproduction.hpp"
 
 namespace twincell::cli {

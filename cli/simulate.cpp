@@ -9,15 +9,16 @@
 #include <memory>
 #include <optional>
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "analysis/trajectory/stop.hpp"
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
-#include "sim/checkpoint_folder.hpp"
-#include "sim/demand.hpp"
-#include "sim/step_error.hpp"
+#include "core/cancellation.hpp"
+#include "core/error.hpp"
+#include "sim/accuracy/step_error.hpp"
+#include "sim/run/checkpoint_folder.hpp"
+#include "sim/run/make_solver.hpp"
+#include "sim/scene/resource_demand.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 
@@ -229,7 +230,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
       sim::make_plan(scene, state.beads).warnings;  // settling may take long
   for (const std::string& warning : told) note(common, warning);
   const std::int64_t begun_at = goes_on && state.driven ? state.step : 0;
-  sim::Simulation run(std::move(scene), std::move(state), sim::KernelKind::best, common.threads);
+  sim::Simulation run(std::move(scene), std::move(state), sim::SolverKind::best, common.threads);
 
   constexpr double kTenMinutes = 600;
   const double every = options.checkpoint_every.value_or(kTenMinutes);

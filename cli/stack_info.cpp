@@ -7,10 +7,11 @@
 #include <bit>
 #include <cmath>
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/hdf5.hpp"
 #include "cli/output.hpp"
-#include "imaging/flat_field.hpp"
+#include "core/error.hpp"
+#include "core/hdf5.hpp"
+#include "imaging/preprocess/flat_field.hpp"
+#include "imaging/stack/open_frames.hpp"
 
 namespace twincell::cli {
 

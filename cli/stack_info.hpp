@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "imaging/frame_source.hpp"
+#include "imaging/stack/open_frames.hpp"
 
 namespace CLI {
 class App;

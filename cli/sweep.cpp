@@ -9,14 +9,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/escape.hpp"
-#include "analysis/trajectory/output_rules.hpp"
 #include "cli/mpi_farm.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_watch.hpp"
 #include "cli/verb.hpp"
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "core/escape.hpp"
+#include "core/output_rules.hpp"
 #include "sweep/collect.hpp"
 #include "sweep/farm.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "analysis/trajectory/error.hpp"
+#include "core/error.hpp"
 
 namespace twincell::cli {
 

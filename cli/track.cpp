@@ -1,5 +1,7 @@
 // twincell track STACK: locate, phase-lock, link: a trajectory.
 
+#include "imaging/track/track.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,15 +12,16 @@
 #include <memory>
 #include <optional>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "calibration/plate_drive.hpp"
+#include "calibration/drive/plate_drive.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
-#include "imaging/pipeline.hpp"
-#include "imaging/score.hpp"
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "imaging/benchmark/score.hpp"
+#include "imaging/stack/open_frames.hpp"
+#include "imaging/track/write_trajectory.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 
@@ -218,20 +221,22 @@ void run(TrackOptions& o, const Common& common) {
   ProgressBar bar(common, "track");
   const TrackedStack stack =
       track_stack(*frames, o.locator, o.link, cell, common.n_threads(), bar, way, folder);
-  check_flat(o.flat, o.locator.preprocess.bright);
-  std::string disagreement;
-  if (!o.trust_stated_drive) {
+  check_flat(o.flat, stack.locator.preprocess.bright);
+  TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, o.shortest);
+  DriveCheck check{.not_comparable = "the stated drive is trusted"};
+  if (!o.trust_stated_drive && plan.info.drive) {
     ProgressBar edge(common, "the plate's edge");
-    disagreement = drive_disagreement(cell, o.stack, common.n_threads(), edge);
-    if (!disagreement.empty())
-      note(common, "the stated drive does not fit the film: " + disagreement + " (--trust-stated-drive).");
+    check = check_by_plate(cell, o.stack, common.n_threads(), edge);
+    if (check.by.empty() && cell.pixels_per_sigma) {
+      BedSteps bed(plan.info);
+      write_trajectory(stack, plan, cell, bed);
+      check = check_by_bed(bed, plan.info, check.frame_rate_hz);
+    }
+    if (!check.disagreement.empty())
+      note(common,
+           "the stated drive does not fit the film: " + check.disagreement + " (--trust-stated-drive).");
   }
-  TrackPlan plan = plan_trajectory(stack, cell, o.locator.diameter_px, o.shortest);
-  if (!disagreement.empty()) {  // compare refuses such a trajectory
-    auto tracking = nlohmann::json::parse(plan.info.tracking_json);
-    tracking["drive_disagreement"] = disagreement;
-    plan.info.tracking_json = tracking.dump();
-  }
+  if (plan.info.drive) record(check, plan.info);
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
   provenance.inputs.push_back(file_of_stack(o.stack));
@@ -242,8 +247,8 @@ void run(TrackOptions& o, const Common& common) {
   if (!o.csv.empty()) write_csv(o.csv, stack);
 
   if (!cell.pixels_per_sigma)
-    note(common,
-         fmt::format("no scale was given: sigma is the bead diameter of {:.3f} px.", o.locator.diameter_px));
+    note(common, fmt::format("no scale was given: sigma is the bead diameter of {:.3f} px.",
+                             stack.locator.diameter_px));
   if (!plan.info.columns.plate_height)
     note(common,
          "drive or frames per cycle unknown: time is the frame number, and the plate's height is absent.");
@@ -327,7 +332,7 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--range", o->link.range_diameters, "Longest step from the predicted place, diameters");
   verb.add_option("--memory", o->link.memory, "Frames for which a bead may be missing");
   verb.add_flag("--trust-stated-drive", o->trust_stated_drive,
-                "Do not hold the stated drive against the plate in the frames");
+                "Do not hold the stated drive against the plate, or the bed, in the frames");
   verb.add_option("--shortest", o->shortest, "Tracks seen in fewer frames are left out")
       ->check(CLI::PositiveNumber);
   writes(common, verb, verb.add_option("--csv", o->csv, "Table of tracks (trackpy's columns and more)"),

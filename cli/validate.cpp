@@ -5,10 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "core/error.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 

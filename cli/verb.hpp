@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// One verb, one file: NAME.cpp holds its options struct, `add_NAME` (set-up) and what it runs. A new verb is
-/// that file, a line here, a line in main.cpp's table and a line in CMakeLists.txt.
+/// that file, a line here and a line in main.cpp's table.
 
 namespace CLI {
 class App;

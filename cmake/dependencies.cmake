@@ -11,6 +11,5 @@ find_package(CLI11 2.1 REQUIRED)
 find_package(tomlplusplus 3.3 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt 9.1 REQUIRED)
-find_package(spdlog 1.10 REQUIRED)
 # Only for `sweep run --mpi`; without it that option says what to install.
 find_package(MPI QUIET COMPONENTS C)

@@ -1,13 +1,19 @@
 include(GNUInstallDirs)
 
-# twincell_library(NAME SOURCES ... HEADERS ... PUBLIC ... PRIVATE ...)
-#   Target twincell_NAME, alias twincell::NAME. HEADERS are public interface: a file set that is installed and,
-#   with CMAKE_VERIFY_INTERFACE_HEADER_SETS, compiled one by one.
+# twincell_library(NAME ROOMS folder... INTERFACES header... PUBLIC ... PRIVATE ...)
+#   Target twincell_NAME, alias twincell::NAME, of every .cpp in the rooms, folders below the current one ("." is the
+#   folder itself). INTERFACES are the headers that are installed, relative to the current folder; each may include
+#   only installed headers (tests/architecture). With CMAKE_VERIFY_INTERFACE_HEADER_SETS they are compiled one by one.
 function(twincell_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE" ${ARGN})
-  add_library(twincell_${name} ${arg_SOURCES})
+  cmake_parse_arguments(arg "" "" "ROOMS;INTERFACES;PUBLIC;PRIVATE" ${ARGN})
+  set(patterns)
+  foreach(room IN LISTS arg_ROOMS)
+    list(APPEND patterns ${CMAKE_CURRENT_SOURCE_DIR}/${room}/*.cpp)
+  endforeach()
+  file(GLOB sources CONFIGURE_DEPENDS ${patterns})
+  add_library(twincell_${name} ${sources})
   add_library(twincell::${name} ALIAS twincell_${name})
-  target_sources(twincell_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${arg_HEADERS})
+  target_sources(twincell_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${arg_INTERFACES})
   target_include_directories(twincell_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/twincell>)
   target_compile_features(twincell_${name} PUBLIC cxx_std_20)

@@ -16,27 +16,27 @@ Estimate exact(double value) {
   return {value, value, value};
 }
 
-Fate within(const Estimate& e, double low, double high) {
-  if (e.value >= low && e.value <= high) return Fate::met;
-  if ((e.low && *e.low > high) || (e.high && *e.high < low)) return Fate::missed;
-  return Fate::open;
+Verdict within(const Estimate& e, double low, double high) {
+  if (e.value >= low && e.value <= high) return Verdict::met;
+  if ((e.low && *e.low > high) || (e.high && *e.high < low)) return Verdict::missed;
+  return Verdict::open;
 }
 
-Fate above(const Estimate& a, const Estimate& b) {
-  if (a.low && b.high && *a.low > *b.high) return Fate::met;
-  if (a.high && b.low && *a.high < *b.low) return Fate::missed;
-  return Fate::open;
+Verdict above(const Estimate& a, const Estimate& b) {
+  if (a.low && b.high && *a.low > *b.high) return Verdict::met;
+  if (a.high && b.low && *a.high < *b.low) return Verdict::missed;
+  return Verdict::open;
 }
 
-Fate agree(const Estimate& a, const Estimate& b) {
-  if (!a.low || !a.high || !b.low || !b.high) return Fate::open;
-  return *a.low <= *b.high && *b.low <= *a.high ? Fate::met : Fate::missed;
+Verdict agree(const Estimate& a, const Estimate& b) {
+  if (!a.low || !a.high || !b.low || !b.high) return Verdict::open;
+  return *a.low <= *b.high && *b.low <= *a.high ? Verdict::met : Verdict::missed;
 }
 
-Fate all_of(const std::vector<Fate>& fates) {
-  for (const Fate worst : {Fate::missed, Fate::open, Fate::met})
+Verdict all_of(const std::vector<Verdict>& fates) {
+  for (const Verdict worst : {Verdict::missed, Verdict::open, Verdict::met})
     if (std::find(fates.begin(), fates.end(), worst) != fates.end()) return worst;
-  return Fate::absent;
+  return Verdict::absent;
 }
 
 }  // namespace twincell::reproduce

@@ -22,13 +22,13 @@ struct Estimate {
 Estimate exact(double value);
 
 /// met: the value lies within; missed: the whole interval does not; open: the interval does not decide.
-Fate within(const Estimate& e, double low, double high);
+Verdict within(const Estimate& e, double low, double high);
 /// met: a's interval lies above b's; missed: below; else open.
-Fate above(const Estimate& a, const Estimate& b);
+Verdict above(const Estimate& a, const Estimate& b);
 /// met: the intervals overlap; missed: they do not; open: one of them is not closed.
-Fate agree(const Estimate& a, const Estimate& b);
+Verdict agree(const Estimate& a, const Estimate& b);
 /// The verdict on a statement that holds if each of these does: missed if one is, open if one is, absent if
 /// there is none.
-Fate all_of(const std::vector<Fate>& fates);
+Verdict all_of(const std::vector<Verdict>& fates);
 
 }  // namespace twincell::reproduce

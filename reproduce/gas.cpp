@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "analysis/colours.hpp"
-#include "analysis/trajectory/json_text.hpp"
+#include "analysis/report/colours.hpp"
+#include "core/json_text.hpp"
 
 namespace twincell::reproduce {
 
@@ -247,7 +247,7 @@ std::vector<std::string> Gas::conditions() const {
       "dashpot with c_t = c_n and Coulomb slider without history, mu = 0.4; none of k_n, c_t is in the paper",
       "n = 6.37 steps per contact, split at contact entry and exit, where steps are taken; from W = 10 on "
       "beads fly "
-      "from contact to contact and steps act only where three meet (docs/flights.md)",
+      "from contact to contact and steps act only where three meet (docs/event_driven.md)",
       fmt::format("start: random, settled at rest, then moving with the plate; {} cycles discarded",
                   discard_least == discard_most ? fmt::format("{}", discard_most)
                                                 : fmt::format("{} to {}", discard_least, discard_most)),

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figures.hpp"
+#include "analysis/report/figures.hpp"
 #include "reproduce/estimate.hpp"
 #include "reproduce/reproduction.hpp"
 #include "sweep/schedule.hpp"

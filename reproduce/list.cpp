@@ -12,32 +12,32 @@ const std::vector<Reproducible>& list() {
   return all;
 }
 
-std::string word_of(Fate fate) {
+std::string word_of(Verdict fate) {
   switch (fate) {
-    case Fate::met:
+    case Verdict::met:
       return "met";
-    case Fate::missed:
+    case Verdict::missed:
       return "MISSED";
-    case Fate::open:
+    case Verdict::open:
       return "open";
-    case Fate::absent:
+    case Verdict::absent:
       break;
   }
   return "absent";
 }
 
-Fate within(const sweep::Onset& onset, double low, double high) {
-  if (onset.n == 0) return Fate::absent;
-  if (onset.value && *onset.value >= low && *onset.value <= high) return Fate::met;
-  if ((onset.low && *onset.low > high) || (onset.high && *onset.high < low)) return Fate::missed;
-  return Fate::open;
+Verdict within(const sweep::Onset& onset, double low, double high) {
+  if (onset.n == 0) return Verdict::absent;
+  if (onset.value && *onset.value >= low && *onset.value <= high) return Verdict::met;
+  if ((onset.low && *onset.low > high) || (onset.high && *onset.high < low)) return Verdict::missed;
+  return Verdict::open;
 }
 
-Fate above(const sweep::Onset& upper, const sweep::Onset& lower) {
-  if (upper.n == 0 || lower.n == 0) return Fate::absent;
-  if (evidence_above(upper, lower) >= sweep::kLikelihoodDrop) return Fate::met;
-  if (evidence_above(lower, upper) >= sweep::kLikelihoodDrop) return Fate::missed;
-  return Fate::open;
+Verdict above(const sweep::Onset& upper, const sweep::Onset& lower) {
+  if (upper.n == 0 || lower.n == 0) return Verdict::absent;
+  if (evidence_above(upper, lower) >= sweep::kLikelihoodDrop) return Verdict::met;
+  if (evidence_above(lower, upper) >= sweep::kLikelihoodDrop) return Verdict::missed;
+  return Verdict::open;
 }
 
 }  // namespace twincell::reproduce

@@ -8,18 +8,18 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "analysis/colours.hpp"
-#include "analysis/observable.hpp"
-#include "analysis/phase_thresholds.hpp"
-#include "analysis/trajectory/json_text.hpp"
-#include "analysis/trajectory/stop.hpp"
+#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/observable/observable.hpp"
+#include "analysis/report/colours.hpp"
+#include "core/cancellation.hpp"
+#include "core/json_text.hpp"
 #include "reproduce/estimate.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/rigid_bed.hpp"
-#include "sim/kernel.hpp"
+#include "sim/accuracy/work_precision.hpp"
 #include "sim/laws/linear_collision.hpp"
-#include "sim/scene.hpp"
-#include "sim/work_precision.hpp"
+#include "sim/run/make_solver.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace twincell::reproduce {
 
@@ -68,7 +68,7 @@ sim::LinearCollision closed_form(const Contact& contact) {
 /// A bead meets another, or the left wall, with unit speed and without gravity.
 std::vector<Moment> collide(const Contact& contact) {
   const bool pair = contact.m_eff < 1;
-  const sim::Scene scene = scene_of("cell.gravity = 0.0\n");
+  const sim::Scene scene = scene_of("cell.gravity = 0.0\ntime.integrator = \"verlet\"\n");
   const sim::Plan plan = sim::make_plan(scene);
   sim::System system = sim::make_system(scene, plan);
   system.dt = contact.t_c / kSteps;
@@ -79,10 +79,10 @@ std::vector<Moment> collide(const Contact& contact) {
   };
   if (pair) add(10, 0.5);
   add(pair ? 11 + gap : 0.5 + gap, pair ? -0.5 : -1);
-  const auto kernel = sim::make_kernel(plan, {});
+  const auto kernel = sim::make_solver(plan, {});
   std::vector<Moment> moments;
   for (int k = 1; static_cast<double>(k) < 1.15 * kSteps; ++k) {
-    stop_if_asked();
+    throw_if_cancelled();
     kernel->advance(system, 1);
     const double x = system.beads.back().x;
     const double overlap = pair ? 1 - (x - system.beads.front().x) : 0.5 - x;

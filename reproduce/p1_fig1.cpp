@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/neighbours.hpp"
-#include "analysis/voronoi.hpp"
+#include "analysis/neighbours/neighbours.hpp"
+#include "analysis/neighbours/voronoi.hpp"
 #include "reproduce/p1_packings.hpp"
 
 namespace twincell::reproduce {
@@ -58,8 +58,8 @@ double clustering_of(const Packing& p) {
 std::vector<Target> targets_of(const Packings& all) {
   std::vector<Target> targets;
   const Packing* crystal = all.crystal("crystal_a");
-  Target q6{"q6 inside the crystal", "0.7408 +- 0.001", "", Fate::absent, ""};
-  Target psi6{"psi6 inside the crystal", "above 0.999", "", Fate::absent, ""};
+  Target q6{"q6 inside the crystal", "0.7408 +- 0.001", "", Verdict::absent, ""};
+  Target psi6{"psi6 inside the crystal", "above 0.999", "", Verdict::absent, ""};
   if (crystal != nullptr) {
     const Bulk b = bulk_of(*crystal);
     q6.measured = fmt::format("{:.5f}, from {:.5f} to {:.5f} over {} beads",
@@ -67,14 +67,14 @@ std::vector<Target> targets_of(const Packings& all) {
     q6.fate =
         all_of({within(exact(b.least_q6), 0.7398, 0.7418), within(exact(b.largest_q6), 0.7398, 0.7418)});
     psi6.measured = fmt::format("{:.6f} at least, over {} beads", b.least_psi6, b.n);
-    psi6.fate = b.least_psi6 > 0.999 ? Fate::met : Fate::missed;
+    psi6.fate = b.least_psi6 > 0.999 ? Verdict::met : Verdict::missed;
   }
   targets.push_back(q6);
   targets.push_back(psi6);
-  Target ordered{"share of hexagonal beads (psi6 > 0.9) inside random beds", "above 0.5", "", Fate::absent,
+  Target ordered{"share of hexagonal beads (psi6 > 0.9) inside random beds", "above 0.5", "", Verdict::absent,
                  ""};
-  Target lines{"defects of random beds lie together, times chance", "above 1", "", Fate::absent, ""};
-  Target grains{"random beds have grain boundaries", "in every bed", "", Fate::absent, ""};
+  Target lines{"defects of random beds lie together, times chance", "above 1", "", Verdict::absent, ""};
+  Target grains{"random beds have grain boundaries", "in every bed", "", Verdict::absent, ""};
   if (!all.random.empty()) {
     const Estimate share = all.over_random([](const Packing& p) { return p.scalars.at("ordered_fraction"); });
     ordered.measured = fmt::format("{}, {} random", share.text(), all.random.size());
@@ -89,13 +89,13 @@ std::vector<Target> targets_of(const Packings& all) {
         fmt::format("{} of {} beds; {} grains and {} dislocations a bed", with, all.random.size(),
                     all.over_random([](const Packing& p) { return p.scalars.at("grains"); }).text(),
                     all.over_random([](const Packing& p) { return p.scalars.at("dislocations"); }).text());
-    grains.fate = static_cast<std::size_t>(with) == all.random.size() ? Fate::met : Fate::missed;
+    grains.fate = static_cast<std::size_t>(with) == all.random.size() ? Verdict::met : Verdict::missed;
   }
   targets.push_back(ordered);
   targets.push_back(lines);
   targets.push_back(grains);
   targets.push_back(
-      {"initial bed of the experiment", "the same look", "", Fate::absent,
+      {"initial bed of the experiment", "the same look", "", Verdict::absent,
        "its positions are printed in the figure alone; `match` makes a bed from a stack of frames"});
   return targets;
 }

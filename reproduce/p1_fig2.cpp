@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "analysis/colours.hpp"
+#include "analysis/report/colours.hpp"
 #include "reproduce/p1_packings.hpp"
 
 namespace twincell::reproduce {
@@ -30,7 +30,7 @@ std::vector<Target> targets_of(const Packings& all) {
   std::vector<Target> targets;
   for (const Orientation& o : {kA, kB}) {
     Target t{fmt::format("close-packed rows of the crystal in orientation {}", o.name),
-             fmt::format("{:g} +- 1 degrees to the floor", o.angle), "", Fate::absent, ""};
+             fmt::format("{:g} +- 1 degrees to the floor", o.angle), "", Verdict::absent, ""};
     if (const Packing* crystal = all.crystal(o.start)) {
       const double angle = crystal->scalars.at("orientation");
       t.measured = fmt::format("{:.4f} degrees", angle);
@@ -38,17 +38,17 @@ std::vector<Target> targets_of(const Packings& all) {
     }
     targets.push_back(t);
   }
-  Target favoured{"random beds favour A: share of A less share of B", "above 0", "", Fate::absent, ""};
-  Target both{"random beds hold grains of both, with boundaries", "in every bed", "", Fate::absent, ""};
+  Target favoured{"random beds favour A: share of A less share of B", "above 0", "", Verdict::absent, ""};
+  Target both{"random beds hold grains of both, with boundaries", "in every bed", "", Verdict::absent, ""};
   if (!all.random.empty()) {
     const Estimate difference = all.over_random(
         [](const Packing& p) { return share(p, "orientation_a") - share(p, "orientation_b"); });
     favoured.measured = fmt::format("{}, {} random", difference.text(), all.random.size());
-    favoured.fate = difference.low && *difference.low > 0     ? Fate::met
-                    : difference.high && *difference.high < 0 ? Fate::missed
-                                                              : Fate::open;
-    if (favoured.fate == Fate::open) favoured.reason = "beds differ more among each other than A from B";
-    if (favoured.fate == Fate::missed)
+    favoured.fate = difference.low && *difference.low > 0     ? Verdict::met
+                    : difference.high && *difference.high < 0 ? Verdict::missed
+                                                              : Verdict::open;
+    if (favoured.fate == Verdict::open) favoured.reason = "beds differ more among each other than A from B";
+    if (favoured.fate == Verdict::missed)
       favoured.reason = fmt::format(
           "B grows from the side walls, which at N_l = {} are longer than the floor, from which A grows (see "
           "Fig. 1); "
@@ -59,11 +59,11 @@ std::vector<Target> targets_of(const Packings& all) {
              share(p, "grain_boundary_fraction") > 0;
     });
     both.measured = fmt::format("{} of {} beds", with, all.random.size());
-    both.fate = static_cast<std::size_t>(with) == all.random.size() ? Fate::met : Fate::missed;
+    both.fate = static_cast<std::size_t>(with) == all.random.size() ? Verdict::met : Verdict::missed;
   }
   targets.push_back(favoured);
   targets.push_back(both);
-  targets.push_back({"the experiment's beds favour B", "B above A", "", Fate::absent,
+  targets.push_back({"the experiment's beds favour B", "B above A", "", Verdict::absent,
                      "their positions are printed in Fig. 1 alone; `analyze` gives orientation_a and "
                      "orientation_b of a film"});
   return targets;

@@ -10,13 +10,13 @@
 #include <deque>
 #include <nlohmann/json.hpp>
 
-#include "analysis/colours.hpp"
-#include "analysis/observable.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/json_text.hpp"
-#include "calibration/table.hpp"
-#include "reproduce/at_rest.hpp"
+#include "analysis/observable/observable.hpp"
+#include "analysis/report/colours.hpp"
+#include "calibration/fit/table.hpp"
+#include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "reproduce/estimate.hpp"
+#include "reproduce/is_arrested.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/reproduction.hpp"
 
@@ -105,7 +105,7 @@ struct Boundary {
             json::parse(*result)["results"].value("s_j", json::object()).value("value", json());
         std::vector<double> s_j;
         for (const json& x : found) s_j.push_back(x.is_number() ? x.get<double>() : std::nan(""));
-        moves = !came_to_rest(s_j);
+        moves = !is_arrested(s_j);
         all.at_rest += moves ? 0 : 1;
       }
       trials.push_back({*curve.points[k].at, moves});
@@ -222,11 +222,11 @@ std::vector<Filmed> filmed_in(const std::filesystem::path& file) {
 
 /// The paper's random beds begin to convect below the experiment where N_l is 60 and 80.
 Target below_experiment(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
-  Target t{"onset of convection, random, below the experiment at N_l = 60, 80", "below", "", Fate::absent,
+  Target t{"onset of convection, random, below the experiment at N_l = 60, 80", "below", "", Verdict::absent,
            ""};
   if (filmed.empty())
     t.reason = "the paper gives the experiment's numbers only as a drawing; --data takes yours";
-  std::vector<Fate> fates;
+  std::vector<Verdict> fates;
   for (const Filmed& point : filmed) {
     if (point.layers < 60 || !std::isfinite(point.convection)) continue;
     const Boundary* b = find(all, static_cast<int>(std::lround(point.layers)), true, true);
@@ -234,9 +234,9 @@ Target below_experiment(const std::deque<Boundary>& all, const std::vector<Filme
     const Onset& o = b->onset();
     t.measured += fmt::format("{}N_l = {}: {}; experiment {:.4g}", t.measured.empty() ? "" : ", ", b->layers,
                               o.text(), point.convection);
-    fates.push_back(o.high && *o.high < point.convection ? Fate::met
-                    : o.low && *o.low > point.convection ? Fate::missed
-                                                         : Fate::open);
+    fates.push_back(o.high && *o.high < point.convection ? Verdict::met
+                    : o.low && *o.low > point.convection ? Verdict::missed
+                                                         : Verdict::open);
   }
   if (!filmed.empty() && fates.empty())
     t.reason = "no N_l from 60 on has a random bed here and a point in the data";
@@ -251,7 +251,7 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
   for (const int layers : size.layers)
     for (const bool random : {true, false}) {
       Target t{fmt::format("onset of bouncing, {}, N_l = {}", random ? "random" : "crystal", layers),
-               fmt::format("Gamma {:.2f} to {:.2f}", kBounceLow, kBounceHigh), "", Fate::absent, ""};
+               fmt::format("Gamma {:.2f} to {:.2f}", kBounceLow, kBounceHigh), "", Verdict::absent, ""};
       if (const Boundary* b = find(all, layers, random, false)) {
         t.measured = b->onset().text();
         t.fate = within(b->onset(), kBounceLow, kBounceHigh);
@@ -259,36 +259,37 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
       targets.push_back(t);
     }
   for (const int layers : size.layers) {
-    Target t{fmt::format("onset of convection, N_l = {}", layers), "crystal above random", "", Fate::absent,
-             ""};
+    Target t{fmt::format("onset of convection, N_l = {}", layers), "crystal above random", "",
+             Verdict::absent, ""};
     const Boundary *random = find(all, layers, true, true), *crystal = find(all, layers, false, true);
     if (random != nullptr && crystal != nullptr) {
       t.measured =
           fmt::format("crystal {}; random {}; 2 ln(L/L_opposite) = {:.3g}", crystal->onset().text(),
                       random->onset().text(), std::abs(evidence_above(crystal->onset(), random->onset())));
       t.fate = above(crystal->onset(), random->onset());
-      if (t.fate == Fate::open) t.reason = fmt::format("{:g} would decide", sweep::kLikelihoodDrop);
+      if (t.fate == Verdict::open) t.reason = fmt::format("{:g} would decide", sweep::kLikelihoodDrop);
     }
     targets.push_back(t);
   }
   {
     // The paper does not say which N_l its Figs. 4 and 5 are of; the target is that of any.
     constexpr double kLow = 3.3 * 0.75, kHigh = 3.3 * 1.25;
-    Target t{"onset of convection, random, at the N_l of Figs. 4, 5", "K_m 3.3 +- 25 %", "", Fate::absent,
+    Target t{"onset of convection, random, at the N_l of Figs. 4, 5", "K_m 3.3 +- 25 %", "", Verdict::absent,
              "the paper does not state that N_l; any of these counts"};
     for (const int layers : size.layers)
       if (const Boundary* b = find(all, layers, true, true)) {
-        const Fate fate = within(b->onset(), std::sqrt(kLow), std::sqrt(kHigh));
+        const Verdict fate = within(b->onset(), std::sqrt(kLow), std::sqrt(kHigh));
         if (b->onset().value)
           t.measured += fmt::format("{}N_l = {}: K_m {:.3g}", t.measured.empty() ? "" : ", ", layers,
                                     *b->onset().value * *b->onset().value);
-        if (t.fate == Fate::absent || fate == Fate::met || (fate == Fate::open && t.fate == Fate::missed))
+        if (t.fate == Verdict::absent || fate == Verdict::met ||
+            (fate == Verdict::open && t.fate == Verdict::missed))
           t.fate = fate;
       }
     targets.push_back(t);
   }
   {
-    Target t{"onset of bouncing rises slightly with N_l", "rising", "", Fate::absent, ""};
+    Target t{"onset of bouncing rises slightly with N_l", "rising", "", Verdict::absent, ""};
     const Boundary* low = find(all, size.layers.front(), true, false);
     const Boundary* high = find(all, size.layers.back(), true, false);
     if (size.layers.size() < 2) {
@@ -297,19 +298,19 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
       t.measured = fmt::format("N_l = {}: {}; N_l = {}: {}", low->layers, low->onset().text(), high->layers,
                                high->onset().text());
       t.fate = above(high->onset(), low->onset());
-      if (t.fate == Fate::open) t.reason = "the rise is smaller than what these runs can tell";
+      if (t.fate == Verdict::open) t.reason = "the rise is smaller than what these runs can tell";
     }
     targets.push_back(t);
   }
   {
-    Target t{fmt::format("slips of the crystal in A1, N_l = {}", kLayersOfA1), "exactly 0", "", Fate::absent,
-             ""};
+    Target t{fmt::format("slips of the crystal in A1, N_l = {}", kLayersOfA1), "exactly 0", "",
+             Verdict::absent, ""};
     if (!crystals) {
       t.reason = "the analysis has no slip count";
     } else if (const auto count = crystals->count(); count.runs > 0) {
       t.measured = fmt::format("{:.0f} of {:.0f} bead-periods, {} runs, Gamma 1.2 to 2.1", count.slips,
                                count.eligible, count.runs);
-      t.fate = count.slips == 0 ? Fate::met : Fate::missed;
+      t.fate = count.slips == 0 ? Verdict::met : Verdict::missed;
     }
     targets.push_back(t);
   }

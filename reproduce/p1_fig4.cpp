@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/colours.hpp"
-#include "reproduce/p1_ladder.hpp"
+#include "analysis/report/colours.hpp"
+#include "reproduce/p1_sweep.hpp"
 
 namespace twincell::reproduce {
 
 namespace {
 
 /// Rungs whose bed leaves the plate: below, T_g is what contacts tremble with.
-std::vector<DataPoint> points_of(const Ladder& ladder, double above = 0, double below = 1e300) {
+std::vector<DataPoint> points_of(const StrengthSweep& ladder, double above = 0, double below = 1e300) {
   std::vector<DataPoint> points;
-  for (const Rung& r : ladder.rungs)
+  for (const SweepPoint& r : ladder.points)
     if (r.bouncing > 0 && r.k_m() >= above && r.k_m() <= below)
       points.push_back({r.k_m(), r.mean_temperature().value, 0, 0});
   return points;
@@ -23,32 +23,32 @@ std::vector<DataPoint> points_of(const Ladder& ladder, double above = 0, double 
 
 constexpr std::size_t kRunsForScatter = 3;  ///< from which on an interval speaks of beds, not of one run
 
-/// All rungs: how far it rises, and where it falls by more than its error.
-Target rise_of(const Ladder& ladder) {
+/// All points: how far it rises, and where it falls by more than its error.
+Target rise_of(const StrengthSweep& ladder) {
   Target t{fmt::format("{}: T_g* rises monotonically, over many decades",
                        ladder.is_random() ? "(a) random" : "(b) crystal"),
-           "from every rung to the next, 3 decades or more", "", Fate::absent, ""};
-  if (ladder.rungs.size() < 3) return t;
-  std::vector<Fate> rises;
+           "from every rung to the next, 3 decades or more", "", Verdict::absent, ""};
+  if (ladder.points.size() < 3) return t;
+  std::vector<Verdict> rises;
   std::string falls;
-  for (std::size_t i = 1; i < ladder.rungs.size(); ++i) {
-    const Rung &below = ladder.rungs[i - 1], &rung = ladder.rungs[i];
-    const Estimate from = below.mean_temperature(), to = rung.mean_temperature();
-    rises.push_back(to.value > from.value ? Fate::met : above(to, from));
+  for (std::size_t i = 1; i < ladder.points.size(); ++i) {
+    const SweepPoint &below = ladder.points[i - 1], &point = ladder.points[i];
+    const Estimate from = below.mean_temperature(), to = point.mean_temperature();
+    rises.push_back(to.value > from.value ? Verdict::met : above(to, from));
     if (to.value <= from.value)
       falls += fmt::format("{}from {} at K_m {:.3g} to {} at {:.3g}", falls.empty() ? "" : ", ", from.text(),
-                           below.k_m(), to.text(), rung.k_m());
+                           below.k_m(), to.text(), point.k_m());
   }
-  const double decades = std::log10(ladder.rungs.back().mean_temperature().value /
-                                    ladder.rungs.front().mean_temperature().value);
+  const double decades = std::log10(ladder.points.back().mean_temperature().value /
+                                    ladder.points.front().mean_temperature().value);
   t.measured =
-      fmt::format("{:.1f} decades from K_m {:.2g} to {:.3g}; {}", decades, ladder.rungs.front().k_m(),
-                  ladder.rungs.back().k_m(), falls.empty() ? "never falls" : "falls " + falls);
-  rises.push_back(decades >= 3 ? Fate::met : Fate::missed);
+      fmt::format("{:.1f} decades from K_m {:.2g} to {:.3g}; {}", decades, ladder.points.front().k_m(),
+                  ladder.points.back().k_m(), falls.empty() ? "never falls" : "falls " + falls);
+  rises.push_back(decades >= 3 ? Verdict::met : Verdict::missed);
   t.fate = all_of(rises);
-  if (t.fate != Fate::missed || falls.empty()) return t;
-  if (ladder.is_random() && ladder.rungs.front().runs < kRunsForScatter) {
-    t.fate = Fate::open;
+  if (t.fate != Verdict::missed || falls.empty()) return t;
+  if (ladder.is_random() && ladder.points.front().runs < kRunsForScatter) {
+    t.fate = Verdict::open;
     t.reason = "neighbouring rungs are different beds, and beds differ by more than the interval of one run";
   } else {
     t.reason = "above Gamma = 4 a rigid inelastic bed, too, lands where it meets the plate more softly";
@@ -57,7 +57,7 @@ Target rise_of(const Ladder& ladder) {
 }
 
 /// Slope of ln T_g* against ln K_m in a region of the crystal.
-std::optional<Estimate> slope_of(const Ladder& ladder, double above, double below) {
+std::optional<Estimate> slope_of(const StrengthSweep& ladder, double above, double below) {
   const auto points = points_of(ladder, above, below);
   if (points.size() < 3) return std::nullopt;
   const auto fit = fitted("power", points);
@@ -67,23 +67,23 @@ std::optional<Estimate> slope_of(const Ladder& ladder, double above, double belo
 struct Slopes {
   std::optional<Estimate> a1, a2, b;
 };
-Slopes slopes_of(const Ladder& crystal) {
+Slopes slopes_of(const StrengthSweep& crystal) {
   if (!crystal.first_slips || !crystal.convection) return {};
   const double a1 = *crystal.first_slips->low, a2 = *crystal.first_slips->high, b = crystal.convection->value;
   return {slope_of(crystal, 0, a1), slope_of(crystal, a2, b), slope_of(crystal, b, 1e300)};
 }
 
-std::vector<Target> targets_of(const Ladders& all, const std::optional<CurveFit>& bend) {
+std::vector<Target> targets_of(const StrengthSweeps& all, const std::optional<CurveFit>& bend) {
   std::vector<Target> targets = {rise_of(all.random)};
-  Target at{"(a) random: change of slope", "K_m 3.3 +- 0.8", "", Fate::absent, ""};
-  Target same{"(a) random: change of slope where convection begins", "the same K_m", "", Fate::absent, ""};
+  Target at{"(a) random: change of slope", "K_m 3.3 +- 0.8", "", Verdict::absent, ""};
+  Target same{"(a) random: change of slope where convection begins", "the same K_m", "", Verdict::absent, ""};
   if (bend) {
     const Estimate x_b = parameter(*bend, "x_b");
     at.measured = fmt::format("K_m {}, slopes {} and {}", x_b.text(), parameter(*bend, "s_1").text(),
                               parameter(*bend, "s_2").text());
     at.fate = within(x_b, 3.3 - 0.8, 3.3 + 0.8);
     if (!(bend->p_nested < 0.05)) {
-      at.fate = Fate::open;
+      at.fate = Verdict::open;
       at.reason = "one straight line does as well";
     }
     if (all.random.convection) {
@@ -95,7 +95,7 @@ std::vector<Target> targets_of(const Ladders& all, const std::optional<CurveFit>
   targets.push_back(at);
   targets.push_back(same);
   targets.push_back(rise_of(all.crystal));
-  Target three{"(b) crystal: three slopes A1, A2, B", "each differs from its neighbour", "", Fate::absent,
+  Target three{"(b) crystal: three slopes A1, A2, B", "each differs from its neighbour", "", Verdict::absent,
                ""};
   const Slopes s = slopes_of(all.crystal);
   const auto text = [](const std::optional<Estimate>& e) { return e ? e->text() : "too few rungs"; };
@@ -104,11 +104,11 @@ std::vector<Target> targets_of(const Ladders& all, const std::optional<CurveFit>
         fmt::format("A1 {}, A2 {}, B {}; A1 ends at K_m {}, B begins at K_m {}", text(s.a1), text(s.a2),
                     text(s.b), all.crystal.first_slips->text(), all.crystal.convection->text());
     const auto differ = [](const std::optional<Estimate>& a, const std::optional<Estimate>& b) {
-      if (!a || !b) return Fate::open;
-      return agree(*a, *b) == Fate::missed ? Fate::met : Fate::open;
+      if (!a || !b) return Verdict::open;
+      return agree(*a, *b) == Verdict::missed ? Verdict::met : Verdict::open;
     };
     three.fate = all_of({differ(s.a1, s.a2), differ(s.a2, s.b)});
-    if (three.fate == Fate::open) three.reason = "neighbouring intervals overlap";
+    if (three.fate == Verdict::open) three.reason = "neighbouring intervals overlap";
   } else {
     three.reason = "slips or convection not found on the ladder";
   }
@@ -128,12 +128,12 @@ std::string region(const char* name, double from, double to, int label) {
                      std::sqrt(from * to));
 }
 
-Figure figure_of(const Ladders& all, const std::optional<CurveFit>& bend) {
+Figure figure_of(const StrengthSweeps& all, const std::optional<CurveFit>& bend) {
   Figure f{.name = "p1-fig4", .title = "Granular temperature", .width = 820, .height = 400};
   constexpr double kFrom = 0.7, kTo = 36;
   double low = 1, high = 0;  // whole decades around all that is drawn
-  for (const Ladder* l : {&all.random, &all.crystal})
-    for (const Rung& r : l->rungs) {
+  for (const StrengthSweep* l : {&all.random, &all.crystal})
+    for (const SweepPoint& r : l->points) {
       const double t = r.mean_temperature().value;
       if (!(t > 0)) continue;
       low = std::min(low, std::pow(10, std::floor(std::log10(t))));
@@ -146,15 +146,15 @@ Figure figure_of(const Ladders& all, const std::optional<CurveFit>& bend) {
       "'K_m'\nset ylabel 'T_g^{{*}}' offset 0.5,0\nset lmargin 9\n",
       kFrom, kTo, low, high);
   int index = 0;
-  for (const Ladder* l : {&all.random, &all.crystal}) {
+  for (const StrengthSweep* l : {&all.random, &all.crystal}) {
     f.data += fmt::format("# {}: K_m, T_g*, low, high, convecting share\n", l->start);
-    for (const Rung& r : l->rungs) {
+    for (const SweepPoint& r : l->points) {
       const Estimate t = r.mean_temperature();
       f.data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {:.3g}\n", r.k_m(), t.value,
                             std::max(t.low.value_or(t.value), t.value / 1e3), t.high.value_or(t.value),
                             static_cast<double>(r.convecting) / static_cast<double>(r.runs));
     }
-    if (l->rungs.empty()) f.data += "? ? ? ? ?\n";
+    if (l->points.empty()) f.data += "? ? ? ? ?\n";
     f.data += "\n\n";
     f.plot += "unset arrow\nunset label\n";
     f.plot += fmt::format("set title '({}) {}, N_l = {}'\n", l->is_random() ? 'a' : 'b',
@@ -176,7 +176,7 @@ Figure figure_of(const Ladders& all, const std::optional<CurveFit>& bend) {
       law = ", [1.4:*] f(x) with lines lw 1.5 lc rgb '#333333' notitle";
     }
     const char* colour = l->is_random() ? colours::kGreen : colours::kBlue;
-    f.plot += l->rungs.empty()
+    f.plot += l->points.empty()
                   ? std::string("plot NaN notitle\n")
                   : fmt::format(
                         "plot '{0}.dat' index {1} using 1:2:3:4 with yerrorbars pt {2} ps 1 lw 1.3 lc rgb "
@@ -195,7 +195,7 @@ Figure figure_of(const Ladders& all, const std::optional<CurveFit>& bend) {
 }
 
 Reproduction run(const Request& request) {
-  const Ladders all = climb(request);
+  const StrengthSweeps all = climb(request);
   const auto points = points_of(all.random);
   const auto bend = points.size() >= 6 ? fitted("slope_break", points) : std::nullopt;
   Reproduction r = reproduction_of(all, "Fortini & Huang 2015, Fig. 4: granular temperature against K_m");

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "analysis/colours.hpp"
-#include "reproduce/p1_ladder.hpp"
+#include "analysis/report/colours.hpp"
+#include "reproduce/p1_sweep.hpp"
 
 namespace twincell::reproduce {
 
@@ -14,10 +14,10 @@ namespace {
 constexpr double kBarrier = 7, kBarrierError = 1;           ///< random, and crystal in B
 constexpr double kNucleation = 130, kNucleationError = 20;  ///< crystal in A2
 
-/// Rungs with slips. Slips come in rows of beads, so their scatter is not binomial: all rungs count alike.
-std::vector<DataPoint> points_of(const Ladder& ladder, double above = 0, double below = 1e300) {
+/// Rungs with slips. Slips come in rows of beads, so their scatter is not binomial: all points count alike.
+std::vector<DataPoint> points_of(const StrengthSweep& ladder, double above = 0, double below = 1e300) {
   std::vector<DataPoint> points;
-  for (const Rung& r : ladder.rungs)
+  for (const SweepPoint& r : ladder.points)
     if (r.slips > 0 && r.k_m() >= above && r.k_m() <= below) points.push_back({r.k_m(), r.p_s(), 0, 0});
   return points;
 }
@@ -26,7 +26,7 @@ std::vector<DataPoint> points_of(const Ladder& ladder, double above = 0, double 
 struct Barriers {
   std::optional<CurveFit> random, random_bent, a2, b;
 };
-Barriers barriers_of(const Ladders& all) {
+Barriers barriers_of(const StrengthSweeps& all) {
   Barriers fits;
   fits.random = fitted("arrhenius", points_of(all.random));
   fits.random_bent = fitted("arrhenius_break", points_of(all.random));
@@ -45,7 +45,7 @@ constexpr const char* kUntold = "the interval does not leave out 0: too few rung
 
 Target barrier_target(const std::string& name, const std::optional<CurveFit>& fit, double wanted,
                       double error, const char* none) {
-  Target t{name, fmt::format("E_b = {:g} +- {:g}", wanted, error), "", Fate::absent, ""};
+  Target t{name, fmt::format("E_b = {:g} +- {:g}", wanted, error), "", Verdict::absent, ""};
   if (!fit) {
     t.reason = none;
     return t;
@@ -53,50 +53,50 @@ Target barrier_target(const std::string& name, const std::optional<CurveFit>& fi
   const Estimate e = parameter(*fit, "E_b");
   t.measured = fmt::format("E_b = {}, {} rungs", e.text(), fit->n_used);
   t.fate = within(e, wanted - error, wanted + error);
-  if (t.fate == Fate::met && !told(e)) {
-    t.fate = Fate::open;
+  if (t.fate == Verdict::met && !told(e)) {
+    t.fate = Verdict::open;
     t.reason = kUntold;
   }
   return t;
 }
 
-std::vector<Target> targets_of(const Ladders& all, const Barriers& fits) {
+std::vector<Target> targets_of(const StrengthSweeps& all, const Barriers& fits) {
   std::vector<Target> targets;
   constexpr const char* kFew = "fewer than two rungs with slips";
   targets.push_back(barrier_target("(a) random, whole range", fits.random, kBarrier, kBarrierError, kFew));
-  if (targets.back().fate == Fate::missed)
+  if (targets.back().fate == Verdict::missed)
     targets.back().reason = "the paper does not state its N_l, nor how far its window reaches";
-  Target one{"(a) random: one line over the whole range, no break at the onset", "no break", "", Fate::absent,
-             ""};
+  Target one{"(a) random: one line over the whole range, no break at the onset", "no break", "",
+             Verdict::absent, ""};
   if (fits.random_bent) {
     const Estimate x = parameter(*fits.random_bent, "x_b");
     one.measured = fmt::format("best break at K_m {}, from E = {} to {}; by chance with p = {:.2g}", x.text(),
                                parameter(*fits.random_bent, "E_1").text(),
                                parameter(*fits.random_bent, "E_2").text(), fits.random_bent->p_nested);
-    one.fate = fits.random_bent->p_nested < 0.05 ? Fate::missed : Fate::met;
+    one.fate = fits.random_bent->p_nested < 0.05 ? Verdict::missed : Verdict::met;
   }
   targets.push_back(one);
-  Target zero{"(b) crystal: slips in region A1", "exactly 0", "", Fate::absent, ""};
+  Target zero{"(b) crystal: slips in region A1", "exactly 0", "", Verdict::absent, ""};
   if (all.crystal.first_slips) {
     double slips = 0, eligible = 0;
-    std::size_t rungs = 0;
-    for (const Rung& r : all.crystal.rungs)
+    std::size_t points = 0;
+    for (const SweepPoint& r : all.crystal.points)
       if (r.bouncing > 0 && r.k_m() <= *all.crystal.first_slips->low) {
         slips += r.slips;
         eligible += r.eligible;
-        ++rungs;
+        ++points;
       }
     zero.measured = fmt::format(
         "{:.0f} of {:.0f} bead-periods on {} bouncing rungs, up to K_m {:.3g}; first "
         "slips at K_m {:.3g}",
-        slips, eligible, rungs, *all.crystal.first_slips->low, *all.crystal.first_slips->high);
-    // Two bouncing rungs or more: a region, not a rung that happened to see nothing.
-    zero.fate = slips == 0 && rungs >= 2 ? Fate::met : Fate::open;
-  } else if (!all.crystal.rungs.empty()) {
-    for (const Rung& r : all.crystal.rungs)
+        slips, eligible, points, *all.crystal.first_slips->low, *all.crystal.first_slips->high);
+    // Two bouncing points or more: a region, not a point that happened to see nothing.
+    zero.fate = slips == 0 && points >= 2 ? Verdict::met : Verdict::open;
+  } else if (!all.crystal.points.empty()) {
+    for (const SweepPoint& r : all.crystal.points)
       if (r.bouncing > 0 && r.slips > 0) {
         zero.measured = fmt::format("{:.0f} slips already at K_m {:.3g}", r.slips, r.k_m());
-        zero.fate = Fate::missed;
+        zero.fate = Verdict::missed;
         break;
       }
   }
@@ -104,12 +104,12 @@ std::vector<Target> targets_of(const Ladders& all, const Barriers& fits) {
   constexpr const char* kRegion = "convection not found, or fewer than two rungs with slips in the region";
   targets.push_back(barrier_target("(b) crystal, A2", fits.a2, kNucleation, kNucleationError, kRegion));
   targets.push_back(barrier_target("(b) crystal, B", fits.b, kBarrier, kBarrierError, kRegion));
-  if (targets.back().fate == Fate::missed)
+  if (targets.back().fate == Verdict::missed)
     targets.back().reason =
         "p_s nears 1 at strong drives, and the paper does not say how far its window reaches";
   Target order{"(b) crystal: the barrier of A2 is several times that of B", "3 times or more", "",
-               Fate::absent, ""};
-  Target same{"barrier of B, crystal, is that of random beds", "the same", "", Fate::absent, ""};
+               Verdict::absent, ""};
+  Target same{"barrier of B, crystal, is that of random beds", "the same", "", Verdict::absent, ""};
   if (fits.a2 && fits.b) {
     const Estimate a2 = parameter(*fits.a2, "E_b"), b = parameter(*fits.b, "E_b");
     Estimate three_b{3 * b.value, {}, {}};
@@ -122,8 +122,8 @@ std::vector<Target> targets_of(const Ladders& all, const Barriers& fits) {
     const Estimate b = parameter(*fits.b, "E_b"), random = parameter(*fits.random, "E_b");
     same.measured = fmt::format("crystal {}, random {}", b.text(), random.text());
     same.fate = agree(b, random);
-    if (same.fate == Fate::met && !(told(b) && told(random))) {
-      same.fate = Fate::open;
+    if (same.fate == Verdict::met && !(told(b) && told(random))) {
+      same.fate = Verdict::open;
       same.reason = kUntold;
     }
   }
@@ -143,15 +143,15 @@ std::string line_of(const std::optional<CurveFit>& fit, double from, double to, 
       1 / to, 1 / from, c, e.value, dash, e.value);
 }
 
-Figure figure_of(const Ladders& all, const Barriers& fits) {
+Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
   Figure f{.name = "p1-fig5", .title = "Slip probability", .width = 820, .height = 400};
   f.plot =
       "set multiplot layout 1,2\nset logscale y\nset xrange [0:0.75]\nset yrange [3e-7:2]\nset format y "
       "'10^{%L}'\nset xlabel '1/K_m'\nset ylabel 'p_s' offset 0.5,0\nset key top right\nset lmargin 9\n";
   int index = 0;
-  for (const Ladder* l : {&all.random, &all.crystal}) {
+  for (const StrengthSweep* l : {&all.random, &all.crystal}) {
     std::string counted, none;
-    for (const Rung& r : l->rungs) {
+    for (const SweepPoint& r : l->points) {
       if (!(r.eligible > 0)) continue;
       if (r.slips > 0)
         counted += fmt::format("{:.6g} {:.6g}\n", 1 / r.k_m(), r.p_s());
@@ -161,7 +161,7 @@ Figure figure_of(const Ladders& all, const Barriers& fits) {
     f.data +=
         fmt::format("# {}: 1/K_m, p_s\n{}\n\n# {}, no slip: 1/K_m, 95 % upper limit of p_s\n{}\n\n", l->start,
                     counted.empty() ? "? ?\n" : counted, l->start, none.empty() ? "? ?\n" : none);
-    const double last = l->rungs.empty() ? 30 : l->rungs.back().k_m(), first = 1.34;
+    const double last = l->points.empty() ? 30 : l->points.back().k_m(), first = 1.34;
     f.plot += "unset arrow\nunset label\n";
     f.plot += fmt::format("set title '({}) {}, N_l = {}'\n", l->is_random() ? 'a' : 'b',
                           l->is_random() ? "random" : "crystal", all.layers);
@@ -216,7 +216,7 @@ Figure figure_of(const Ladders& all, const Barriers& fits) {
 }
 
 Reproduction run(const Request& request) {
-  const Ladders all = climb(request);
+  const StrengthSweeps all = climb(request);
   const Barriers fits = barriers_of(all);
   Reproduction r = reproduction_of(all, "Fortini & Huang 2015, Fig. 5: slip probability against 1/K_m");
   r.targets = targets_of(all, fits);

@@ -6,10 +6,10 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "analysis/statistics.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "analysis/trajectory/json_text.hpp"
+#include "analysis/statistics/statistics.hpp"
+#include "core/json_text.hpp"
 #include "reproduce/p1_scene.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::reproduce {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/moments.hpp"
+#include "analysis/motion/snapshots.hpp"
 #include "reproduce/estimate.hpp"
 #include "reproduce/reproduction.hpp"
 

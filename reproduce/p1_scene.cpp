@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "sim/plan.hpp"
-#include "sim/scene.hpp"
+#include "sim/scene/plan.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace twincell::reproduce {
 

@@ -11,9 +11,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "analysis/colours.hpp"
-#include "analysis/statistics.hpp"
-#include "analysis/trajectory/json_text.hpp"
+#include "analysis/report/colours.hpp"
+#include "analysis/statistics/statistics.hpp"
+#include "core/json_text.hpp"
 #include "reproduce/estimate.hpp"
 #include "reproduce/p1_scene.hpp"
 
@@ -151,8 +151,8 @@ std::vector<Target> targets_of(const Values& values, const Size& size) {
       for (const std::string& start : kStarts) {
         Target t{fmt::format("{} of {} beds does not hang on the step: {}, n = {:g}", q.name, words_of(start),
                              integrator, n),
-                 fmt::format("that of split, n = {:g}", finest), "", Fate::absent, ""};
-        std::vector<Fate> fates;
+                 fmt::format("that of split, n = {:g}", finest), "", Verdict::absent, ""};
+        std::vector<Verdict> fates;
         for (const double gamma : kGammas) {
           const auto here = estimate(values, {q.name, start, integrator, gamma, n}),
                      there = estimate(values, {q.name, start, "split", gamma, finest});

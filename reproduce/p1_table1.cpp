@@ -5,10 +5,10 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trajectory/json_text.hpp"
+#include "core/json_text.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/reproduction.hpp"
-#include "sim/scene.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace twincell::reproduce {
 
@@ -29,7 +29,7 @@ constexpr std::array<Row, 5> kRows = {{{"k_n", "normal stiffness", "k_0", 1e6},
 
 Target exactly(const std::string& name, double printed, double held) {
   return {name, fmt::format("{:g} exactly", printed), fmt::format("{}", held),
-          held == printed ? Fate::met : Fate::missed, ""};
+          held == printed ? Verdict::met : Verdict::missed, ""};
 }
 
 Reproduction run(const Request&) {

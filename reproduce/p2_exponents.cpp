@@ -1,5 +1,5 @@
-// Bhateja, Sharma & Singh 2016, Tables I and II: exponents of T_z and of the barycentre's lift with V_p, over
-// the windows of W of earlier experiments, or over the user's own.
+// Bhateja, Sharma & Singh 2016, Tables I and II: exponents of T_z and of the centre of mass's lift with V_p,
+// over the windows of W of earlier experiments, or over the user's own.
 
 #include <fmt/format.h>
 
@@ -7,11 +7,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/json_text.hpp"
-#include "calibration/curve_fit.hpp"
-#include "calibration/fit_figure.hpp"
-#include "calibration/table.hpp"
+#include "calibration/fit/curve_fit.hpp"
+#include "calibration/fit/fit_figure.hpp"
+#include "calibration/fit/table.hpp"
+#include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "reproduce/gas.hpp"
 
 namespace twincell::reproduce {
@@ -111,7 +111,7 @@ std::string symbol(bool of_height) {
 Target target_of(const Study& study, const Exponent* e, bool of_height) {
   constexpr double kTolerance = 0.10;
   Target t{fmt::format("{}, {}D rough: {}", study.name, study.dimension, symbol(of_height)),
-           fmt::format("{:g} +- {:g}", study.wanted, kTolerance), "", Fate::absent, ""};
+           fmt::format("{:g} +- {:g}", study.wanted, kTolerance), "", Verdict::absent, ""};
   if (std::isnan(study.high)) {
     t.reason = "its window is only drawn in Fig. 2; --window LOW,HIGH tries one";
     return t;
@@ -151,7 +151,7 @@ Figure figure_of(const std::string& name, const std::vector<Exponent>& all, bool
     series.push_back(line);
   }
   if (series.empty()) series.push_back({.title = "no window with enough points", .x = {}, .y = {}});
-  return series_figure(name, of_height ? "Lift of the barycentre against V_p" : "T_z against V_p",
+  return series_figure(name, of_height ? "Lift of the centre of mass against V_p" : "T_z against V_p",
                        "V_p/(g d)^{1/2}", of_height ? "dh_cm/d" : "T_z/(m g d)", series,
                        "set logscale xy\nset key outside right top\n",
                        "Power laws over windows of W, unweighted least squares in the logarithms.");
@@ -235,7 +235,7 @@ Reproducible p2_table1() {
 }
 
 Reproducible p2_table2() {
-  return {"p2-table2", "exponents of the barycentre's lift over those windows (runs of p2-fig2)",
+  return {"p2-table2", "exponents of the centre of mass's lift over those windows (runs of p2-fig2)",
           [](const Request& request) { return run(request, true); }, "p2-runs", true};
 }
 

@@ -51,22 +51,23 @@ Reproduction run(const Request& request) {
   Reproduction r;
   r.title = "Bhateja et al. 2016, Fig. 11: temperature with amplitude at fixed W";
   r.complete = gas.run();
-  Target rise{"T_z(W = 8.04)/T_z(4.52) at A = d", "1.50 +- 0.05", "", Fate::absent, ""};
+  Target rise{"T_z(W = 8.04)/T_z(4.52) at A = d", "1.50 +- 0.05", "", Verdict::absent, ""};
   if (const auto a = t_z(gas, 2, 0), b = t_z(gas, 0, 0); a && b) {
     const Estimate q = quotient(*a, *b);
     rise.measured = q.text();
     rise.fate = within(q, 1.45, 1.55);
   }
-  Target fall{"A/d from 1 to 0.1 at fixed W, mean change", "-15 % +- 4 %", "", Fate::absent, ""};
+  Target fall{"A/d from 1 to 0.1 at fixed W, mean change", "-15 % +- 4 %", "", Verdict::absent, ""};
   if (const auto change = mean_change(gas, 2, 0)) {
     fall.measured = change->text() + " %";
     fall.fate = within(*change, -19, -11);
   }
-  Target small{"A/d from 0.5 to 0.1 at fixed W, mean change", "3 % +- 2 % in size", "", Fate::absent, ""};
+  Target small{"A/d from 0.5 to 0.1 at fixed W, mean change", "3 % +- 2 % in size", "", Verdict::absent, ""};
   if (const auto change = mean_change(gas, 2, 1)) {
     small.measured = change->text() + " %";
     small.fate = within(*change, -5, 5);
-    if (small.fate == Fate::met && std::abs(change->value) < 1) small.reason = "smaller than the paper's 3 %";
+    if (small.fate == Verdict::met && std::abs(change->value) < 1)
+      small.reason = "smaller than the paper's 3 %";
   }
   r.targets = {rise, fall, small};
   std::vector<Series> all;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "calibration/table.hpp"
+#include "calibration/fit/table.hpp"
 #include "reproduce/gas.hpp"
 
 namespace twincell::reproduce {
@@ -41,13 +41,13 @@ const GasPoint* point_at(const std::vector<GasPoint>& points, double w) {
 }
 
 Target shape_of(const GasSystem& system, const std::vector<GasPoint>& points) {
-  Target t{system.name() + ": shape", "zero, a rise, one maximum, a decay to a constant", "", Fate::absent,
+  Target t{system.name() + ": shape", "zero, a rise, one maximum, a decay to a constant", "", Verdict::absent,
            ""};
   const auto peak = peak_of(points);
   if (!peak) return t;
-  std::vector<Fate> fates = {peak->inside ? Fate::met : Fate::open};
+  std::vector<Verdict> fates = {peak->inside ? Verdict::met : Verdict::open};
   const GasPoint *solid = point_at(points, w_of_rpm(400)), *last = point_at(points, w_of_rpm(4000));
-  if (solid != nullptr) fates.push_back(solid->solid() ? Fate::met : Fate::missed);
+  if (solid != nullptr) fates.push_back(solid->solid() ? Verdict::met : Verdict::missed);
   const GasPoint* top = point_at(points, peak->grid);
   if (last != nullptr && top != nullptr) fates.push_back(above(*top->get("T_bar_z"), *last->get("T_bar_z")));
   t.measured =
@@ -62,10 +62,10 @@ Target shape_of(const GasSystem& system, const std::vector<GasPoint>& points) {
 Target against_table_3(int dimension, const std::vector<GasPoint>& points) {
   constexpr double kTolerance = 0.10;
   Target t{fmt::format("{}D rough: Table III, algebraic, W_f < W <= 89.4", dimension), "each within 10 %", "",
-           Fate::absent, ""};
+           Verdict::absent, ""};
   const auto peak = peak_of(points);
   if (!peak) return t;
-  std::vector<Fate> fates;
+  std::vector<Verdict> fates;
   double low = 1e300, high = 0, sum = 0;
   std::string off;
   int solid = 0;
@@ -89,7 +89,7 @@ Target against_table_3(int dimension, const std::vector<GasPoint>& points) {
   if (!off.empty()) t.measured += "; off by more at W = " + off;
   if (solid > 0) t.measured += fmt::format("; {} left out where the bed is solid", solid);
   t.fate = all_of(fates);
-  if (t.fate != Fate::met && dimension == 2)
+  if (t.fate != Verdict::met && dimension == 2)
     t.reason = "an independent program of the same model lies 9 to 15 % above Table III at W = 35 to 89 too";
   return t;
 }
@@ -97,8 +97,8 @@ Target against_table_3(int dimension, const std::vector<GasPoint>& points) {
 /// Whether one system lies above another wherever both are a gas.
 Target ordered(const std::string& name, const std::vector<GasPoint>& upper,
                const std::vector<GasPoint>& lower) {
-  Target t{name, "at each W >= W_f", "", Fate::absent, ""};
-  std::vector<Fate> fates;
+  Target t{name, "at each W >= W_f", "", Verdict::absent, ""};
+  std::vector<Verdict> fates;
   double least = 1e300, most = 0;
   for (const GasPoint& p : lower) {
     const GasPoint* q = point_at(upper, p.at);
@@ -124,10 +124,10 @@ std::vector<Target> targets_of(const Gas& gas, const Runs& runs) {
   for (std::size_t k = 0; k < runs.systems.size(); ++k)
     targets.push_back(shape_of(gas_systems()[k], gas.points(runs.systems[k])));
   {
-    Target t{"2D rough: W_f", "2 to 4.5", "", Fate::absent, ""};
+    Target t{"2D rough: W_f", "2 to 4.5", "", Verdict::absent, ""};
     if (const auto peak = peak_of(rough_2d)) {
       t.measured = fmt::format("{:.3g}, grid point {:.4g}", peak->w, peak->grid);
-      t.fate = peak->w >= 2 && peak->w <= 4.5 ? Fate::met : peak->inside ? Fate::missed : Fate::open;
+      t.fate = peak->w >= 2 && peak->w <= 4.5 ? Verdict::met : peak->inside ? Verdict::missed : Verdict::open;
     }
     targets.push_back(t);
   }
@@ -139,7 +139,7 @@ std::vector<Target> targets_of(const Gas& gas, const Runs& runs) {
   targets.push_back(ordered("smooth: 2D above 3D", smooth_2d, smooth_3d));
   {
     Target t{"2D smooth: solid at 300 and 400 rpm, not at 500", "T_bar_z < 1e-4, < 1e-4, > 1e-3", "",
-             Fate::absent, ""};
+             Verdict::absent, ""};
     const GasPoint *a = point_at(smooth_2d, w_of_rpm(300)), *b = point_at(smooth_2d, w_of_rpm(400)),
                    *c = point_at(smooth_2d, w_of_rpm(500));
     if (a != nullptr && b != nullptr && c != nullptr && a->get("T_bar_z") && b->get("T_bar_z") &&
@@ -147,14 +147,14 @@ std::vector<Target> targets_of(const Gas& gas, const Runs& runs) {
       const double ta = a->get("T_bar_z")->value, tb = b->get("T_bar_z")->value,
                    tc = c->get("T_bar_z")->value;
       t.measured = fmt::format("{:.2g}, {:.2g}, {:.3g}", ta, tb, tc);
-      t.fate = ta < 1e-4 && tb < 1e-4 && tc > 1e-3 ? Fate::met : Fate::missed;
+      t.fate = ta < 1e-4 && tb < 1e-4 && tc > 1e-3 ? Verdict::met : Verdict::missed;
     }
     targets.push_back(t);
   }
   {
-    Target t{"largest mean volume fraction, at W_f, 2D", "0.2 +- 0.1", "", Fate::absent,
+    Target t{"largest mean volume fraction, at W_f, 2D", "0.2 +- 0.1", "", Verdict::absent,
              "the paper does not say up to which height; here the top of the highest bead"};
-    std::vector<Fate> fates;
+    std::vector<Verdict> fates;
     for (const std::size_t k : {std::size_t{0}, std::size_t{2}}) {
       const auto peak = peak_of(gas.points(runs.systems[k]));
       const GasPoint* p = peak ? point_at(gas.points(runs.systems[k]), peak->grid) : nullptr;
@@ -164,7 +164,7 @@ std::vector<Target> targets_of(const Gas& gas, const Runs& runs) {
       t.measured +=
           fmt::format("{}{} {:.3g}", t.measured.empty() ? "" : ", ", gas_systems()[k].name(), phi->value);
       if (const auto twice = p->get("phi_cm"))
-        t.measured += fmt::format(" ({:.3g} up to twice the barycentre)", twice->value);
+        t.measured += fmt::format(" ({:.3g} up to twice the centre of mass)", twice->value);
     }
     t.fate = all_of(fates);
     targets.push_back(t);
@@ -178,9 +178,9 @@ std::string both_starts(const Gas& gas, const Runs& runs) {
     const GasPoint* rest = point_at(gas.points(runs.systems[0]), boiling.at);
     const auto a = rest != nullptr ? rest->get("T_bar_z") : std::nullopt, b = boiling.get("T_bar_z");
     if (!a || !b) continue;
-    const Fate apart = above(*a, *b);
+    const Verdict apart = above(*a, *b);
     s += fmt::format("  {:>9.4g} from rest {}, from a boiling bed {}: {}\n", boiling.at, a->text(), b->text(),
-                     apart == Fate::open ? "no difference to be seen" : "the result depends on the start");
+                     apart == Verdict::open ? "no difference to be seen" : "the result depends on the start");
   }
   return s;
 }

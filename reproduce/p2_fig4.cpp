@@ -13,8 +13,8 @@ namespace {
 /// T_x < T < T_z. T lies between the two as soon as T_x < T_z, whose intervals must be apart; the ratio is
 /// said.
 Target order_of(const GasSystem& system, const std::vector<GasPoint>& points) {
-  Target t{system.name() + ": T_x < T < T_z", "for all W > 1", "", Fate::absent, ""};
-  std::vector<Fate> fates;
+  Target t{system.name() + ": T_x < T < T_z", "for all W > 1", "", Verdict::absent, ""};
+  std::vector<Verdict> fates;
   double least = 1e300, most = 0;
   for (const GasPoint& p : points) {
     const auto x = p.get("T_x"), z = p.get("T_z");
@@ -31,7 +31,8 @@ Target order_of(const GasSystem& system, const std::vector<GasPoint>& points) {
 }
 
 Target same_shape(const GasSystem& system, const std::vector<GasPoint>& points) {
-  Target t{system.name() + ": T_bar like T_bar_z", "a maximum near W_f, then a decay", "", Fate::absent, ""};
+  Target t{system.name() + ": T_bar like T_bar_z", "a maximum near W_f, then a decay", "", Verdict::absent,
+           ""};
   const auto peak = peak_of(points);
   const GasPoint *top = nullptr, *last = nullptr;
   for (const GasPoint& p : points) {
@@ -44,7 +45,7 @@ Target same_shape(const GasSystem& system, const std::vector<GasPoint>& points) 
   t.measured = fmt::format("T_bar largest at W = {:.3g}, T_bar_z at {:.3g}", top->at, peak->grid);
   // Neighbours on the paper's grid count as the same place.
   const bool near = std::max(top->at, peak->grid) / std::min(top->at, peak->grid) < 2.1;
-  t.fate = all_of({near ? Fate::met : Fate::missed, above(*top->get("T_bar"), *last->get("T_bar"))});
+  t.fate = all_of({near ? Verdict::met : Verdict::missed, above(*top->get("T_bar"), *last->get("T_bar"))});
   return t;
 }
 

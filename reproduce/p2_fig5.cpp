@@ -75,7 +75,7 @@ Reproduction run(const Request& request) {
   const auto without = curve_of(gas.points(0)), with = curve_of(gas.points(1));
   const auto less = [](const auto& a, const auto& b) { return a.second.value < b.second.value; };
 
-  Target constant{"without gravity: T_bar_z", "constant, variation at most 3 %", "", Fate::absent, ""};
+  Target constant{"without gravity: T_bar_z", "constant, variation at most 3 %", "", Verdict::absent, ""};
   if (without.size() >= 2) {
     const auto [low, high] = std::minmax_element(without.begin(), without.end(), less);
     const Estimate q = quotient(high->second, low->second);
@@ -83,7 +83,7 @@ Reproduction run(const Request& request) {
     constant.fate = within(q, 1, 1.03);
   }
   Target peak{"with gravity: rises, then decays to a constant", "a maximum inside the range", "",
-              Fate::absent, ""};
+              Verdict::absent, ""};
   if (with.size() >= 3) {
     const auto top = std::max_element(with.begin(), with.end(), less);
     peak.measured = fmt::format("largest {} at W = {:.3g}; {} at the last, W = {:.3g}", top->second.text(),
@@ -91,18 +91,18 @@ Reproduction run(const Request& request) {
     const bool inside = top != with.begin() && top + 1 != with.end();
     peak.fate =
         inside ? all_of({above(top->second, with.front().second), above(top->second, with.back().second)})
-               : Fate::open;
+               : Verdict::open;
     if (!inside) peak.reason = "the largest lies at an end of the frequencies that were run";
   }
   Target second{"with gravity: a second, smaller peak when beads strike the lid", "a second maximum", "",
-                Fate::absent, ""};
+                Verdict::absent, ""};
   if (with.size() >= 6) {
     const auto top = std::max_element(with.begin(), with.end(), less);
     auto dip = top;
-    Fate fate = Fate::open;
+    Verdict fate = Verdict::open;
     for (auto p = top; p != with.end(); ++p) {
       if (p->second.value < dip->second.value) dip = p;
-      if (above(p->second, dip->second) == Fate::met) fate = Fate::met;
+      if (above(p->second, dip->second) == Verdict::met) fate = Verdict::met;
     }
     second.measured = fmt::format("lowest after the peak {} at W = {:.3g}", dip->second.text(), dip->first);
     second.fate = fate;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "calibration/curve_fit.hpp"
+#include "calibration/fit/curve_fit.hpp"
 #include "reproduce/gas.hpp"
 
 namespace twincell::reproduce {
@@ -50,7 +50,7 @@ std::optional<CurveFit> slope_of(const Gas& gas, const std::vector<std::size_t>&
 }
 
 Target bitwise(const Gas& gas, const Setting& s) {
-  Target t{s.name + ": T_z/V_p^2 at V_p = 1, 2, 4, k_n ~ V_p^2", "the same bits", "", Fate::absent, ""};
+  Target t{s.name + ": T_z/V_p^2 at V_p = 1, 2, 4, k_n ~ V_p^2", "the same bits", "", Verdict::absent, ""};
   std::vector<double> values;
   for (const std::size_t k : s.scaled)
     if (const auto e = gas.points(k).front().get("T_bar_z")) values.push_back(e->value);
@@ -61,12 +61,12 @@ Target bitwise(const Gas& gas, const Setting& s) {
   const double alpha = 2 + std::log(values.back() / values.front()) / std::log(kPeakVelocities[2]);
   t.measured =
       fmt::format("{:.17g}, {:.17g}, {:.17g}: alpha = {:.15g}", values[0], values[1], values[2], alpha);
-  t.fate = same ? Fate::met : Fate::missed;
+  t.fate = same ? Verdict::met : Verdict::missed;
   return t;
 }
 
 Target with_one_k_n(const Gas& gas, const Setting& s, std::vector<Estimate>& alphas) {
-  Target t{s.name + ": alpha at one k_n = 1e6", "2.00 +- 0.02", "", Fate::absent, ""};
+  Target t{s.name + ": alpha at one k_n = 1e6", "2.00 +- 0.02", "", Verdict::absent, ""};
   const auto fit = slope_of(gas, s.fixed);
   if (!fit) return t;
   Estimate e{.value = fit->fit.value("alpha"), .low = {}, .high = {}};
@@ -105,7 +105,7 @@ Reproduction run(const Request& request) {
     std::vector<Estimate> alphas;
     r.targets.push_back(with_one_k_n(gas, s, alphas));
     const auto number = static_cast<double>(k + 1);
-    if (r.targets[2 * k].fate == Fate::met) {
+    if (r.targets[2 * k].fate == Verdict::met) {
       scaled.x.push_back(number);
       scaled.y.push_back({.value = 2, .low = {}, .high = {}});
     }

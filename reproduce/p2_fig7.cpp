@@ -1,4 +1,4 @@
-// Bhateja, Sharma & Singh 2016, Fig. 7: T_bar_z over the scaled lift of the barycentre, against W.
+// Bhateja, Sharma & Singh 2016, Fig. 7: T_bar_z over the scaled lift of the centre of mass, against W.
 
 #include <fmt/format.h>
 
@@ -38,13 +38,13 @@ std::vector<Target> targets_of(const std::string& name, const Series& s) {
   std::vector<Target> targets;
   const Estimate *first = near(s, kPeak), *middle = near(s, kMiddle), *high = near(s, kHigh),
                  *last = near(s, kEnd);
-  Target rises{name + ": T_bar_z/dh_bar is not constant for W < 20", "rises", "", Fate::absent, ""};
+  Target rises{name + ": T_bar_z/dh_bar is not constant for W < 20", "rises", "", Verdict::absent, ""};
   if (first != nullptr && middle != nullptr) {
     rises.measured = fmt::format("{} at W = 2.7, {} near 20", first->text(), middle->text());
     rises.fate = above(*middle, *first);
   }
   Target constant{name + ": it becomes constant at high W", "same at W = 50 ... 89 within 10 %", "",
-                  Fate::absent, ""};
+                  Verdict::absent, ""};
   if (high != nullptr && last != nullptr) {
     const Estimate q = quotient(*last, *high);
     constant.measured = fmt::format("{} over {}, quotient {}", last->text(), high->text(), q.text());
@@ -60,7 +60,7 @@ Reproduction run(const Request& request) {
   std::vector<Series> all;
   for (const GasSystem& system : gas_systems())
     if (system.rough) gas.add(system, size, size.rpm);
-  r.title = "Bhateja et al. 2016, Fig. 7: temperature over the lift of the barycentre";
+  r.title = "Bhateja et al. 2016, Fig. 7: temperature over the lift of the centre of mass";
   r.complete = gas.run();
   for (std::size_t k = 0; k < 2; ++k) {
     all.push_back(ratio_of(gas.curve(k).name, gas.points(k)));
@@ -72,9 +72,9 @@ Reproduction run(const Request& request) {
   r.cheaper = gas.cheaper();
   r.cheaper.emplace_back("the height at rest is that of each run's own bed, settled at A = 0");
   r.figures = {series_figure(
-      "p2-fig7", "T_z over the lift of the barycentre against W", "W = V_p^2/(d g)",
+      "p2-fig7", "T_z over the lift of the centre of mass against W", "W = V_p^2/(d g)",
       "T_z/(m V_p^2) over Δh_{cm} g/V_p^2", all, "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
-      "T_z = m <w'^2> over m g times the lift of the barycentre above its height at rest. Form "
+      "T_z = m <w'^2> over m g times the lift of the centre of mass above its height at rest. Form "
       "of Bhateja et al. 2016, Fig. 7.")};
   return r;
 }
@@ -82,7 +82,7 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig7() {
-  return {"p2-fig7", "temperature over the lift of the barycentre against W (runs of p2-fig2)", run,
+  return {"p2-fig7", "temperature over the lift of the centre of mass against W (runs of p2-fig2)", run,
           "p2-runs"};
 }
 

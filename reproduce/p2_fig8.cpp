@@ -6,9 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trajectory/json_text.hpp"
-#include "calibration/curve_fit.hpp"
-#include "calibration/fit_figure.hpp"
+#include "calibration/fit/curve_fit.hpp"
+#include "calibration/fit/fit_figure.hpp"
+#include "core/json_text.hpp"
 #include "reproduce/gas.hpp"
 
 namespace twincell::reproduce {
@@ -55,10 +55,10 @@ double value_of(const CurveFit& fit, const char* name) {
 void add_targets(std::vector<Target>& targets, const Fitted& f, bool coefficients) {
   const Printed p = printed(f.dimension, f.algebraic);
   Target curve{f.name() + ": the fitted curve beside the printed one", "within 10 % on [W_f, 89.4]", "",
-               Fate::absent, ""};
-  Target close{f.name() + ": correlation of points and curve", "at least 0.99", "", Fate::absent, ""};
+               Verdict::absent, ""};
+  Target close{f.name() + ": correlation of points and curve", "at least 0.99", "", Verdict::absent, ""};
   Target signs{f.name() + ": signs of the residuals",
-               f.algebraic ? "random, p > 0.05" : "systematic, p < 0.05", "", Fate::absent, ""};
+               f.algebraic ? "random, p > 0.05" : "systematic, p < 0.05", "", Verdict::absent, ""};
   if (f.fit) {
     double low = 1e300, high = 0;
     for (double w = f.points.front().x; w <= f.points.back().x; w *= 1.02) {
@@ -67,23 +67,23 @@ void add_targets(std::vector<Target>& targets, const Fitted& f, bool coefficient
       high = std::max(high, ratio);
     }
     curve.measured = fmt::format("fitted/printed from {:.3f} to {:.3f}", low, high);
-    curve.fate = low >= 0.9 && high <= 1.1 ? Fate::met : Fate::missed;
-    if (curve.fate == Fate::missed && f.dimension == 2)
+    curve.fate = low >= 0.9 && high <= 1.1 ? Verdict::met : Verdict::missed;
+    if (curve.fate == Verdict::missed && f.dimension == 2)
       curve.reason =
           "an independent program of the same model lies 9 to 15 % above Table III at W = 35 to 89 too";
     close.measured = fmt::format("{:.4f}, printed {:.4f}", f.fit->correlation, p.correlation);
-    close.fate = f.fit->correlation >= 0.99 ? Fate::met : Fate::missed;
+    close.fate = f.fit->correlation >= 0.99 ? Verdict::met : Verdict::missed;
     signs.measured = fmt::format("{} runs of {} + and {} -, p = {:.3g}", f.fit->runs.runs,
                                  f.fit->runs.positive, f.fit->runs.negative, f.fit->runs.p);
     const bool random = !(f.fit->runs.p < 0.05);
-    signs.fate = random == f.algebraic ? Fate::met : f.algebraic ? Fate::missed : Fate::open;
-    if (signs.fate == Fate::open) signs.reason = "so few or so noisy points do not show it";
+    signs.fate = random == f.algebraic ? Verdict::met : f.algebraic ? Verdict::missed : Verdict::open;
+    if (signs.fate == Verdict::open) signs.reason = "so few or so noisy points do not show it";
   }
   targets.insert(targets.end(), {curve, close, signs});
   if (!coefficients) return;
   const auto coefficient = [&](std::size_t k, const char* name, double wanted, double tolerance) {
     Target t{fmt::format("{}: {}", f.name(), name), fmt::format("{:g} +- {:.3g}", wanted, tolerance), "",
-             Fate::absent, "coefficients are strongly correlated: compare curves"};
+             Verdict::absent, "coefficients are strongly correlated: compare curves"};
     if (f.fit) {
       Estimate e{.value = value_of(*f.fit, name), .low = {}, .high = {}};
       if (const auto& interval = f.fit->intervals[k]) {

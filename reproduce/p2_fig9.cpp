@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "calibration/curve_fit.hpp"
+#include "calibration/fit/curve_fit.hpp"
 #include "reproduce/gas.hpp"
 
 namespace twincell::reproduce {
@@ -60,8 +60,8 @@ std::optional<Estimate> at_w(const Gas& gas, std::size_t curve, double w) {
 }
 
 Target close_to_each_other(const Gas& gas, const Panel& p) {
-  Target t{"(a) k_n = 1e5, 1e6, 1e7: T_bar_z", "the same within 5 %", "", Fate::absent, ""};
-  std::vector<Fate> fates;
+  Target t{"(a) k_n = 1e5, 1e6, 1e7: T_bar_z", "the same within 5 %", "", Verdict::absent, ""};
+  std::vector<Verdict> fates;
   double most = 0;
   for (const double w : {w_of_rpm(900), w_of_rpm(1200), w_of_rpm(2000)})
     for (const std::size_t other : {std::size_t{0}, std::size_t{2}}) {
@@ -80,8 +80,8 @@ Target close_to_each_other(const Gas& gas, const Panel& p) {
 /// At W = 22 the values follow the parameter in one direction, neighbours apart.
 Target monotonic(const Gas& gas, const Panel& p, bool rising, const std::string& name,
                  const std::string& wanted) {
-  Target t{name, wanted, "", Fate::absent, ""};
-  std::vector<Fate> fates;
+  Target t{name, wanted, "", Verdict::absent, ""};
+  std::vector<Verdict> fates;
   std::optional<Estimate> last, first;
   for (std::size_t k = 0; k < p.values.size(); ++k) {
     const auto e = at_w(gas, p.curves[k], w_of_rpm(2000));
@@ -144,14 +144,14 @@ Reproduction run_9(const Request& request) {
                monotonic(gas, panel_of(study.all, "e"), true, "(b) T_bar_z with e", "rises"),
                monotonic(gas, panel_of(study.all, "mu"), false, "(c) T_bar_z with mu", "falls slightly"),
                monotonic(gas, panel_of(study.all, "N"), false, "(d) T_bar_z with N", "falls")};
-  Target order{"most impact: N; least: mu", "N above e above mu", "", Fate::absent, ""};
+  Target order{"most impact: N; least: mu", "N above e above mu", "", Verdict::absent, ""};
   const auto n = reach(gas, panel_of(study.all, "N")), e = reach(gas, panel_of(study.all, "e")),
              mu = reach(gas, panel_of(study.all, "mu"));
   if (n && e && mu) {
     order.measured =
         fmt::format("largest over smallest at W = 22.4: N {:.3g}, e {:.3g}, mu {:.3g}", *n, *e, *mu);
-    order.fate = *n > *mu && *e > *mu ? (*n > *e ? Fate::met : Fate::open) : Fate::missed;
-    if (order.fate == Fate::open)
+    order.fate = *n > *mu && *e > *mu ? (*n > *e ? Verdict::met : Verdict::open) : Verdict::missed;
+    if (order.fate == Verdict::open)
       order.reason = "mu is least; which of N and e is more depends on how far each is varied";
   }
   r.targets.push_back(order);
@@ -208,24 +208,24 @@ Reproduction run_10(const Request& request) {
     }
     const bool enough = s.y.size() == p.values.size();
     if (p.symbol == "e") {
-      Target t{"alpha with e", "rises gently", enough ? said : "", Fate::absent, ""};
+      Target t{"alpha with e", "rises gently", enough ? said : "", Verdict::absent, ""};
       if (enough) t.fate = above(s.y.back(), s.y.front());
       r.targets.push_back(t);
     }
     if (p.symbol == "mu") {
-      Target t{"alpha with mu", "marginal", enough ? said : "", Fate::absent, ""};
+      Target t{"alpha with mu", "marginal", enough ? said : "", Verdict::absent, ""};
       if (enough) {
         const double change = std::abs(s.y.back().value - s.y.front().value);
-        t.fate = change < 0.2 ? Fate::met : Fate::open;
+        t.fate = change < 0.2 ? Verdict::met : Verdict::open;
       }
       r.targets.push_back(t);
     }
     if (p.symbol == "N") {
-      Target t{"alpha with N", "falls", enough ? said : "", Fate::absent, ""};
-      Target deep{"alpha for N >= 6", "1.0 +- 0.2", "", Fate::absent, ""};
+      Target t{"alpha with N", "falls", enough ? said : "", Verdict::absent, ""};
+      Target deep{"alpha for N >= 6", "1.0 +- 0.2", "", Verdict::absent, ""};
       if (enough) {
         t.fate = above(s.y.front(), s.y.back());
-        std::vector<Fate> fates;
+        std::vector<Verdict> fates;
         for (std::size_t k = 0; k < p.values.size(); ++k)
           if (p.values[k] >= 6) {
             fates.push_back(within(s.y[k], 0.8, 1.2));

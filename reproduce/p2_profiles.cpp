@@ -19,7 +19,7 @@ const std::vector<int> kFrequencies = {1000, 2000, 3000, 3500, 3900};
 /// The paper averages "the temperature T_z in a box" about z, and does not say about which mean, nor what a
 /// moment counts when the box is empty. Every target and figure is there in both readings.
 struct Reading {
-  const char* result;  ///< array of the observable, analysis/profiles.hpp
+  const char* result;  ///< array of the observable, analysis/gas/profiles.hpp
   const char* said;    ///< behind a target
   const char* figure;  ///< behind a figure's name
 };
@@ -133,8 +133,8 @@ Reproduction begun(Gas& gas, const std::string& title) {
   return r;
 }
 
-Fate yes(bool holds) {
-  return holds ? Fate::met : Fate::missed;
+Verdict yes(bool holds) {
+  return holds ? Verdict::met : Verdict::missed;
 }
 
 // ---------------------------------------------------------------- Figs. 12 and 13
@@ -145,37 +145,37 @@ using ProfileOf = std::function<std::optional<Profile>(std::size_t depth, std::s
 std::vector<Target> targets_12(const std::vector<double>& depths, const ProfileOf& of,
                                const std::string& said) {
   Target low{"W = 5.58: falls with height, low second peak before vanishing" + said, "every N", "",
-             Fate::absent, ""};
-  std::vector<Fate> fates;
+             Verdict::absent, ""};
+  std::vector<Verdict> fates;
   for (std::size_t d = 0; d < depths.size(); ++d)
     if (const auto p = of(d, 0); p && p->hottest()) {
       low.measured +=
           fmt::format("{}N = {:g}: {}", low.measured.empty() ? "" : "; ", depths[d], described(*p));
-      fates.push_back(p->z[*p->hottest()] > 3 ? Fate::missed : p->second() ? Fate::met : Fate::open);
+      fates.push_back(p->z[*p->hottest()] > 3 ? Verdict::missed : p->second() ? Verdict::met : Verdict::open);
     }
   low.fate = all_of(fates);
-  if (low.fate == Fate::open) low.reason = "a second peak does not stand out of the noise of its slabs";
+  if (low.fate == Verdict::open) low.reason = "a second peak does not stand out of the noise of its slabs";
 
   Target warm{"W = 22.35, N = 4: no second peak, hottest 7 to 10 d above the base" + said, "7 to 10", "",
-              Fate::absent, ""};
+              Verdict::absent, ""};
   if (const auto p = of(0, 1); p && p->hottest()) {
     const double z = p->z[*p->hottest()];
     warm.measured = described(*p);
-    warm.fate = z >= 6.5 && z <= 10.5 && !p->second() ? Fate::met : Fate::missed;
+    warm.fate = z >= 6.5 && z <= 10.5 && !p->second() ? Verdict::met : Verdict::missed;
   }
-  Target back{"W = 50.3, N = 4: the second peak is back" + said, "a second peak", "", Fate::absent, ""};
+  Target back{"W = 50.3, N = 4: the second peak is back" + said, "a second peak", "", Verdict::absent, ""};
   if (const auto p = of(0, 2); p && p->hottest()) {
     back.measured = described(*p);
-    back.fate = p->second() ? Fate::met : Fate::open;
+    back.fate = p->second() ? Verdict::met : Verdict::open;
   }
   Target equal{"W = 85.01, N = 4: second peak comparable to the first" + said, "0.7 to 1.3 of it", "",
-               Fate::absent, ""};
+               Verdict::absent, ""};
   if (const auto p = of(0, 4); p && p->hottest()) {
     equal.measured = described(*p);
     const auto second = p->second();
-    equal.fate = !second ? Fate::open : yes(second->over_first >= 0.7 && second->over_first <= 1.3);
+    equal.fate = !second ? Verdict::open : yes(second->over_first >= 0.7 && second->over_first <= 1.3);
   }
-  Target off{"W = 50.3: hottest off the base for deep beds as well" + said, "z > 1", "", Fate::absent, ""};
+  Target off{"W = 50.3: hottest off the base for deep beds as well" + said, "z > 1", "", Verdict::absent, ""};
   if (const auto p = of(depths.size() - 1, 2); p && p->hottest()) {
     off.measured = fmt::format("N = {:g}: {}", depths.back(), described(*p));
     off.fate = yes(p->z[*p->hottest()] > 1);
@@ -278,8 +278,8 @@ std::vector<Figure> pair_figures(const std::string& name, const Pair& pair, bool
 }
 
 std::vector<Target> targets_14(const Pair& pair, const std::string& said) {
-  Target rises{"T_z(z) rises with W" + said, "at every height below 10 d", "", Fate::absent, ""};
-  std::vector<Fate> fates;
+  Target rises{"T_z(z) rises with W" + said, "at every height below 10 d", "", Verdict::absent, ""};
+  std::vector<Verdict> fates;
   for (const auto* side : {&pair.smooth, &pair.rough})
     for (std::size_t k = 1; k < side->size(); ++k) {
       const auto &lower = (*side)[k - 1], &upper = (*side)[k];
@@ -290,33 +290,33 @@ std::vector<Target> targets_14(const Pair& pair, const std::string& said) {
               std::isfinite(lower->t[i]) && std::isfinite(upper->t[j])) {
             const double gap = upper->t[j] - lower->t[i];
             fates.push_back(
-                gap > 0 ? Fate::met
+                gap > 0 ? Verdict::met
                 : -gap > 3 * std::hypot(upper->error[j] * upper->t[j], lower->error[i] * lower->t[i])
-                    ? Fate::missed
-                    : Fate::open);
+                    ? Verdict::missed
+                    : Verdict::open);
           }
     }
   rises.measured = fates.empty() ? ""
                                  : fmt::format("{} pairs of slabs, {} rise", fates.size(),
-                                               std::count(fates.begin(), fates.end(), Fate::met));
+                                               std::count(fates.begin(), fates.end(), Verdict::met));
   rises.fate = all_of(fates);
   const auto last = kFrequencies.size() - 1;
-  Target smooth{"W = 85: second peak for smooth grains" + said, "yes", "", Fate::absent, ""};
+  Target smooth{"W = 85: second peak for smooth grains" + said, "yes", "", Verdict::absent, ""};
   if (const auto& p = pair.smooth[last]) {
     smooth.measured = described(*p);
-    smooth.fate = p->second() ? Fate::met : Fate::open;
+    smooth.fate = p->second() ? Verdict::met : Verdict::open;
   }
-  Target rough{"no second peak for rough grains" + said, "none at any W", "", Fate::absent, ""};
+  Target rough{"no second peak for rough grains" + said, "none at any W", "", Verdict::absent, ""};
   fates.clear();
   for (std::size_t k = 0; k < pair.rough.size(); ++k)
     if (const auto& p = pair.rough[k]; p && p->hottest()) {
-      fates.push_back(p->second() ? Fate::missed : Fate::met);
+      fates.push_back(p->second() ? Verdict::missed : Verdict::met);
       if (p->second())
         rough.measured += fmt::format("W = {:.4g}: {}. ", w_of_rpm(kFrequencies[k]), described(*p));
     }
   if (!fates.empty() && rough.measured.empty()) rough.measured = fmt::format("none at {} W", fates.size());
   rough.fate = all_of(fates);
-  Target off{"hottest off the base at high W, smooth" + said, "z > 1 at W >= 22", "", Fate::absent, ""};
+  Target off{"hottest off the base at high W, smooth" + said, "z > 1 at W >= 22", "", Verdict::absent, ""};
   fates.clear();
   for (std::size_t k = 1; k < pair.smooth.size(); ++k)
     if (const auto& p = pair.smooth[k]; p && p->hottest()) {
@@ -347,17 +347,17 @@ Reproduction run_15(const Request& request) {
   Reproduction r =
       begun(gas, "Bhateja et al. 2016, Fig. 15: packing fraction over height, 3D smooth and rough");
   const Pair pair = pair_of(gas, kReadings[0]);
-  Target rough{"phi(z) peaks nearer to the base and higher when rough", "at each W", "", Fate::absent, ""};
-  Target moves{"the peak of phi moves up with W", "monotonic", "", Fate::absent, ""};
-  Target apart{"phi and T peak at different heights", "at W >= 22", "", Fate::absent, ""};
-  std::vector<Fate> nearer, up, different;
+  Target rough{"phi(z) peaks nearer to the base and higher when rough", "at each W", "", Verdict::absent, ""};
+  Target moves{"the peak of phi moves up with W", "monotonic", "", Verdict::absent, ""};
+  Target apart{"phi and T peak at different heights", "at W >= 22", "", Verdict::absent, ""};
+  std::vector<Verdict> nearer, up, different;
   for (std::size_t k = 0; k < kFrequencies.size(); ++k) {
     const auto &s = pair.smooth[k], &q = pair.rough[k];
     if (s && q) {
       const double zs = s->z[s->densest()], zq = q->z[q->densest()];
-      nearer.push_back(zq > zs                                       ? Fate::missed
-                       : q->phi[q->densest()] > s->phi[s->densest()] ? Fate::met
-                                                                     : Fate::open);
+      nearer.push_back(zq > zs                                       ? Verdict::missed
+                       : q->phi[q->densest()] > s->phi[s->densest()] ? Verdict::met
+                                                                     : Verdict::open);
       rough.measured += fmt::format("{}W = {:.3g}: {:.2g} at {:g}, rough {:.2g} at {:g}",
                                     rough.measured.empty() ? "" : "; ", w_of_rpm(kFrequencies[k]),
                                     s->phi[s->densest()], zs, q->phi[q->densest()], zq);
@@ -405,7 +405,7 @@ Series station(const Gas& gas, std::size_t curve, const Reading& reading, int di
 /// Whether it falls, or rises, from W = 5 to the largest.
 Target trend(const std::string& name, const Series& s, bool falls) {
   constexpr double kFrom = 5;
-  Target t{name + ", z = " + s.title.substr(4), falls ? "falls with W" : "rises with W", "", Fate::absent,
+  Target t{name + ", z = " + s.title.substr(4), falls ? "falls with W" : "rises with W", "", Verdict::absent,
            "the paper's heights stand in its legend alone"};
   std::size_t first = 0;
   while (first < s.x.size() && s.x[first] < kFrom) ++first;
@@ -420,14 +420,14 @@ Target trend(const std::string& name, const Series& s, bool falls) {
 /// Whether the temperature of all beads is flat in W before that at any height is.
 Target volume_first(const std::string& name, const Series& volume, const std::vector<Series>& stations) {
   Target t{name + ": the mean over the volume flattens before those at fixed heights",
-           "from a smaller W on than at any height", "", Fate::absent,
+           "from a smaller W on than at any height", "", Verdict::absent,
            "flat: within 5 % of the last value, errors counted"};
   const auto whole = flat_from(volume, true);
-  std::vector<Fate> fates;
+  std::vector<Verdict> fates;
   std::string at_heights;
   for (const Series& s : stations)
     if (const auto local = flat_from(s, true); local && whole && std::min(volume.x.size(), s.x.size()) > 2) {
-      fates.push_back(*local > *whole ? Fate::met : *local < *whole ? Fate::missed : Fate::open);
+      fates.push_back(*local > *whole ? Verdict::met : *local < *whole ? Verdict::missed : Verdict::open);
       at_heights += fmt::format("{}{:.3g} ({})", at_heights.empty() ? "" : ", ", *local, s.title);
     }
   if (fates.empty()) return t;

@@ -11,27 +11,27 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/figures.hpp"
+#include "analysis/report/figures.hpp"
 #include "sweep/farm.hpp"
 
 namespace twincell::reproduce {
 
 /// How a target fared.
-enum class Fate {
+enum class Verdict {
   met,
   missed,
   open,    ///< the measurement does not decide
   absent,  ///< not measured
 };
 /// "met", "MISSED", "open", "absent".
-std::string word_of(Fate fate);
+std::string word_of(Verdict fate);
 
 /// One number or statement of the paper beside what was measured.
 struct Target {
   std::string name;      ///< "onset of bouncing, random, N_l = 20"
   std::string wanted;    ///< "1.10 to 1.35"
   std::string measured;  ///< with interval
-  Fate fate = Fate::absent;
+  Verdict fate = Verdict::absent;
   std::string reason;  ///< why, where that is not plain
 };
 
@@ -68,8 +68,7 @@ struct Reproducible {
   std::string shared_runs = {};  ///< folder beside the figure's where runs lie that other figures use too
   bool takes_data = false;       ///< whether Request::window and Request::data mean something to it
 };
-/// All that can be reproduced. To add one: its file, a line here, a word in list.cpp and in CMakeLists.txt, a
-/// test.
+/// All that can be reproduced. To add one: its file, a line here, a word in list.cpp, a test.
 const std::vector<Reproducible>& list();
 
 Reproducible p1_fig1();
@@ -101,9 +100,9 @@ Reproducible p2_table3();
 
 /// Whether an onset lies within [low, high]: met if its value does, missed if its whole interval does not,
 /// else open.
-Fate within(const sweep::Onset& onset, double low, double high);
+Verdict within(const sweep::Onset& onset, double low, double high);
 /// Whether one onset lies above another: met or missed if the opposite is excluded (evidence_above), else
 /// open.
-Fate above(const sweep::Onset& upper, const sweep::Onset& lower);
+Verdict above(const sweep::Onset& upper, const sweep::Onset& lower);
 
 }  // namespace twincell::reproduce

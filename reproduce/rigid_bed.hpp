@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "analysis/trajectory/trajectory.hpp"
+#include "trajectory/trajectory.hpp"
 
 namespace twincell::reproduce {
 

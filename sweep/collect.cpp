@@ -9,10 +9,10 @@
 #include <set>
 #include <vector>
 
-#include "analysis/pooling.hpp"
-#include "analysis/results.hpp"
-#include "analysis/trajectory/escape.hpp"
-#include "analysis/trajectory/json_text.hpp"
+#include "analysis/observable/results.hpp"
+#include "analysis/runs/pooling.hpp"
+#include "core/escape.hpp"
+#include "core/json_text.hpp"
 
 namespace twincell::sweep {
 

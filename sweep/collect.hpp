@@ -13,8 +13,8 @@ namespace twincell::sweep {
 /// that are not done, "onsets": [{"axes", "key", "verdict", "value", "low", "high", "level", "method",
 /// "runs", "yes", "text", "complete"}], "pooled": [{"axes", "runs", "results"}]}. `pooled` holds, for the
 /// points with two runs or more that differ in nothing but the seed, their scalars and words as
-/// analysis/pooling.hpp pools them. The same bytes for the same plan, whoever computed the points in whatever
-/// order.
+/// analysis/runs/pooling.hpp pools them. The same bytes for the same plan, whichever process computed the
+/// points in whatever order.
 std::string collected_json(const Schedule& schedule);
 
 /// A line a point: id, axes, replica, seed, answer, then value, low and high of every scalar result; empty

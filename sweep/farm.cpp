@@ -14,9 +14,9 @@
 #include <thread>
 #include <utility>
 
-#include "analysis/trajectory/error.hpp"
-#include "sim/demand.hpp"
-#include "sim/scene.hpp"
+#include "core/error.hpp"
+#include "sim/scene/resource_demand.hpp"
+#include "sim/scene/scene.hpp"
 #include "sweep/point_run.hpp"
 #include "sweep/until.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trajectory/machine_memory.hpp"
+#include "core/machine_memory.hpp"
 #include "sweep/schedule.hpp"
 
 namespace twincell::sweep {

@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "analysis/trajectory/trajectory.hpp"
-#include "sim/simulation.hpp"
+#include "sim/run/simulation.hpp"
+#include "trajectory/trajectory.hpp"
 
 namespace twincell::sweep {
 

@@ -1,6 +1,6 @@
 #include "sweep/measure.hpp"
 
-#include "analysis/barycentre.hpp"
+#include "analysis/motion/centre_of_mass.hpp"
 #include "sweep/live_trajectory.hpp"
 #include "sweep/precision_rule.hpp"
 
@@ -20,7 +20,7 @@ double height_of_centre(const std::vector<sim::Bead>& beads) {
 }  // namespace
 
 Measured measure(sim::Simulation& run, AnalysisOptions options, const std::string& name, Progress& progress,
-                 const Beside& beside) {
+                 const Observer& beside) {
   Measured measured;
   std::optional<PrecisionRule> rule;
   const LiveTrajectory live(run, name, progress, [&](const Frame& frame) {

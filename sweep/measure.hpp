@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/observable.hpp"
-#include "analysis/trajectory/progress.hpp"
-#include "sim/simulation.hpp"
+#include "analysis/observable/observable.hpp"
+#include "core/progress.hpp"
+#include "sim/run/simulation.hpp"
 
 namespace twincell::sweep {
 
@@ -25,7 +25,7 @@ struct Measured {
 };
 
 /// Called before the first frame and with every frame; `frame` false ends the run with its cycle.
-struct Beside {
+struct Observer {
   std::function<void(const TrajectoryInfo&)> begin = [](const TrajectoryInfo&) {};
   std::function<bool(const Frame&)> frame = [](const Frame&) { return true; };
 };
@@ -36,6 +36,6 @@ struct Beside {
 /// still moves with more than 0.005 m g sigma a bead when settling ends.
 /// \throws ConfigError, RunError, Interrupted
 Measured measure(sim::Simulation& run, AnalysisOptions options, const std::string& name, Progress& progress,
-                 const Beside& beside = {});
+                 const Observer& beside = {});
 
 }  // namespace twincell::sweep

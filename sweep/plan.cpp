@@ -7,17 +7,17 @@
 #include <charconv>
 #include <set>
 
-#include "analysis/observable.hpp"
-#include "analysis/phase_thresholds.hpp"
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/config.hpp"
-#include "analysis/trajectory/sha256.hpp"
-#include "analysis/trajectory/stop.hpp"
-#include "analysis/trajectory/toml_leaves.hpp"
-#include "sim/demand.hpp"
-#include "sim/plan.hpp"
-#include "sim/scene.hpp"
-#include "sim/start.hpp"
+#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/observable/observable.hpp"
+#include "core/atomic_file.hpp"
+#include "core/cancellation.hpp"
+#include "core/config.hpp"
+#include "core/sha256.hpp"
+#include "core/toml_leaves.hpp"
+#include "sim/scene/plan.hpp"
+#include "sim/scene/resource_demand.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/start/start.hpp"
 
 namespace twincell::sweep {
 
@@ -222,7 +222,7 @@ Plan read_plan(const fs::path& path) {
 
 Point make_point(const Plan& plan, const std::vector<std::string>& values, std::optional<double> at,
                  int replica) {
-  stop_if_asked();  // a plan may have a million points
+  throw_if_cancelled();  // a plan may have a million points
   std::vector<std::string> assignments;
   bool seeded = false;
   for (std::size_t a = 0; a < plan.axes.size(); ++a) {
@@ -256,7 +256,7 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
   const sim::Plan cost = sim::make_plan(scene);
   point.work = static_cast<double>(cost.steps) *
                static_cast<double>(std::max<std::size_t>(1, scene.n_beads.value_or(1)));
-  point.memory = sim::demand_of(scene, cost, scene.n_beads.value_or(0)).memory;
+  point.memory = sim::resource_demand(scene, cost, scene.n_beads.value_or(0)).memory;
   return point;
 }
 

@@ -65,7 +65,8 @@ struct Point {
   bool chance = true;  ///< whether another seed makes another run (sim::has_chance)
   std::string scene;   ///< resolved, as TOML
   double work = 0;     ///< particle-steps
-  double memory = 0;   ///< bytes that its run takes (sim/demand.hpp); 0 where a file says the beads
+  double memory =
+      0;  ///< bytes that its run takes (sim/scene/resource_demand.hpp); 0 where a file says the beads
 };
 
 /// The point of a plan at these values. Its seed is drawn from the master seed, the rest of the scene and the

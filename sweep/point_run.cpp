@@ -9,15 +9,15 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "analysis/observable.hpp"
-#include "analysis/results.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "analysis/trajectory/json_text.hpp"
-#include "analysis/trajectory/provenance.hpp"
-#include "sim/simulation.hpp"
+#include "analysis/observable/observable.hpp"
+#include "analysis/observable/results.hpp"
+#include "core/error.hpp"
+#include "core/json_text.hpp"
+#include "core/provenance.hpp"
+#include "sim/run/simulation.hpp"
 #include "sweep/measure.hpp"
 #include "sweep/stop_rule.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::sweep {
 
@@ -98,7 +98,7 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
     sim::Simulation run(std::move(scene), std::move(state));
     std::optional<StopRule> rule;
     std::unique_ptr<SharedWriter> writer;
-    const Beside beside{
+    const Observer beside{
         .begin =
             [&](const TrajectoryInfo& info) {
               if (plan.stop_early && plan.verdict) rule.emplace(*plan.verdict, info, all_cycles);

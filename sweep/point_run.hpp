@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "analysis/trajectory/progress.hpp"
+#include "core/progress.hpp"
 #include "sweep/plan.hpp"
 
 namespace twincell::sweep {

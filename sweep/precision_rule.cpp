@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/barycentre.hpp"
-#include "analysis/trajectory/temperature.hpp"
+#include "analysis/motion/centre_of_mass.hpp"
+#include "trajectory/temperature.hpp"
 
 namespace twincell::sweep {
 
@@ -51,7 +51,7 @@ PrecisionRule::PrecisionRule(const sim::Scene& scene, const TrajectoryInfo& info
 bool PrecisionRule::reached(const Frame& frame) {
   const std::string& name = asked_.quantity;
   if (name == "h_cm") {
-    sum_ += barycentre_height(frame, mass_);
+    sum_ += centre_of_mass_height(frame, mass_);
   } else {
     // Over time as `analyze` takes it; the first frame of a run has nothing before it but itself.
     const Vec3 t = frame.time_mean.temperature.allFinite() ? frame.time_mean.temperature

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/statistics.hpp"
-#include "analysis/trajectory/trajectory.hpp"
-#include "sim/scene.hpp"
+#include "analysis/statistics/statistics.hpp"
+#include "sim/scene/scene.hpp"
+#include "trajectory/trajectory.hpp"
 
 namespace twincell::sweep {
 

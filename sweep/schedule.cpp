@@ -136,7 +136,7 @@ std::optional<Task> Schedule::take(double most) {
     auto claim = store_.claim(point);
     if (!claim) continue;
     store_.announce(plan_, point);
-    // Whoever had the claim before may have finished since we looked.
+    // The former owner of the claim may have finished since we looked.
     if (const auto result = store_.result(point)) {
       file(o.curve, o.number, *result);
       return take(most);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/observable.hpp"
+#include "analysis/observable/observable.hpp"
 
 namespace twincell::sweep {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "analysis/trajectory/trajectory.hpp"
 #include "sweep/plan.hpp"
+#include "trajectory/trajectory.hpp"
 
 namespace twincell::sweep {
 

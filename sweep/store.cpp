@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/json_text.hpp"
-#include "analysis/trajectory/output_rules.hpp"
-#include "analysis/trajectory/sha256.hpp"
+#include "core/atomic_file.hpp"
+#include "core/json_text.hpp"
+#include "core/output_rules.hpp"
+#include "core/sha256.hpp"
 
 namespace twincell::sweep {
 

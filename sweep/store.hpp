@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "analysis/trajectory/error.hpp"
+#include "core/error.hpp"
 #include "sweep/plan.hpp"
 
 namespace twincell::sweep {

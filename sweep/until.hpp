@@ -5,8 +5,8 @@
 #include <atomic>
 #include <cstdint>
 
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/progress.hpp"
+#include "core/error.hpp"
+#include "core/progress.hpp"
 
 namespace twincell::sweep {
 

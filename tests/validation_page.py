@@ -7,49 +7,51 @@ import os
 import re
 import sys
 
-HEAD = """# What is checked against what
+HEAD = """# Validation results
 
-`./run validation` makes this page: it runs the verification tests and writes down what they print. One row is one number from outside the
-code (closed form, paper, other program) and what the program gave. A row without an outside number of its own measures an error, whose
-outside number is 0. Tolerances are absolute and two-sided; those of averages over many beads are at least twice the standard error.
+`./run validation` generates this page: it runs the verification tests and records the numbers that they print. Each row compares one number from
+outside the code (closed form, paper, other program) with the number that the program gives. A row without an outside number of its own measures an
+error, and its outside number is 0. Tolerances are absolute and two-sided. For averages over many beads the tolerance is at least twice the standard
+error.
 
 | id | law or case | outside number | source | measured | error | tolerance | test |
 |---|---|---|---|---|---|---|---|
 """
 
 TAIL = """
-## Readings
+## Notes on individual rows
 
-- **V2.4.** With the spring law and `slip = "rescale"` the spring takes up the dashpot's share at the limit; in a fast oblique impact with a strong
-  tangential dashpot the force then follows k_t v_t instead of staying at μ|F_n|. This is a property of that reading of "truncate"; the
-  sliding test therefore uses the slider law.
-- **V3.1.** Velocity Verlet errs by (ω₀Δt)² θ(1−θ) of the energy of approach where a contact begins a share θ into a step, and by the opposite
-  where it ends. In a gas of N beads the energy walks at random by (π/n)² √(N_c/45)/N of itself in N_c collisions: at n = 50 and N = 256 by 1e-4
-  after about 2000. It does not drift, but 1e-4 over 1e7 steps, what the plan asks for, is not to be had so. Where steps are split the walk is gone:
-  `integrator = "split"` with `steps_per_contact = 100` holds the plan's 1e-4, and its 1e-5 of fitted drift, over the 1e7 steps; with 50 it holds 1e-4
-  over a twentieth of them.
-- **V3.5.** Henderson's formula lies 1.2 % above the virial series at φ = 0.6; there the series is the outside number. Its coefficients are those of Clisby and McCoy's
-  Table 1; B₃ and B₄ are closed forms. The fluid of discs freezes at φ = 0.70 only. Soft beads are compared
-  through the diameter of Barker and Henderson, and by three stiffnesses carried to infinity.
-- **V4.1.** N is 400, not more: in larger systems long shear modes, which cool more slowly than the rest, hold several per cent of the energy
+- **V2.4.** With the spring law and `tangential = "spring"`, the spring takes up the dashpot's share at the Coulomb limit. In a fast oblique impact with a
+  strong tangential dashpot the force then follows k_t v_t instead of staying at μ|F_n|. This is a property of that reading of "truncate". The sliding
+  test therefore uses the dashpot with a slider and no spring (`tangential = "dashpot"`).
+- **V3.1.** A contact that begins a fraction θ into a step gives velocity Verlet an energy error of (ω₀Δt)² θ(1−θ) of the energy of approach. A contact
+  that ends there gives the opposite error. In a gas of N beads the energy performs a random walk: after N_c collisions its relative change is
+  (π/n)² √(N_c/45)/N. At n = 50 and N = 256 this reaches 1e-4 after about 2000 collisions. The energy does not drift, but Verlet cannot keep it to 1e-4
+  over 1e7 steps, which the verification plan requires. The split integrator does not show this random walk: `integrator = "split"` with
+  `steps_per_contact = 100` keeps the required 1e-4, and the required 1e-5 of fitted drift, over the 1e7 steps. With `steps_per_contact = 50` it keeps
+  1e-4 over one twentieth of these steps.
+- **V3.5.** Henderson's formula is 1.2 % above the virial series at φ = 0.6, so the series is the outside number there. Its coefficients are those of Table 1
+  of Clisby and McCoy; B₃ and B₄ are closed forms. The disc fluid freezes only at φ = 0.70. Soft beads are compared through the Barker–Henderson
+  diameter, and by extrapolation from three stiffnesses to infinite stiffness.
+- **V4.1.** N is limited to 400. In larger systems long shear modes, which cool more slowly than the other modes, hold several per cent of the energy
   at t = 5 τ.
-- **V4.7.** Split steps at n = 50 do here what plain steps need n = 500 for: near the bifurcation the scatter of e over entry phases must be
-  below 1e-3.
-- **V4.14.** The middle of the cell is x = 0 there. Elsewhere a mirror image has other digits, and differences grow from 1e-16.
+- **V4.7.** The split integrator at n = 50 reaches here what plain Verlet steps reach at n = 500: near the bifurcation the scatter of e over entry phases
+  must be below 1e-3.
+- **V4.14.** In this test the middle of the cell is at x = 0. With another origin a mirror image is rounded differently, and the differences grow from 1e-16.
 
-## Checked elsewhere
+## Other checks
 
 | what | against | test |
 |---|---|---|
-| lattices at the start | rows of 20 and 19; in space 12 neighbours, 6 in the layer, a mirror plane; gap 0 | `unit.Crystal.*` |
-| spread sizes | variance of a uniform law, of a cut normal one; mass as R² or R³ | `unit.Sizes.*` |
-| near pairs by cells | all pairs and images, 1 : 100 in size; candidates a bead independent of their number | `unit.CellGrid.*` |
-| every kernel, law, dimension and integrator; lists built at every step or never (V2.14) | each other and the all-pairs oracle, bit for bit | `agreement.*` |
+| lattices at the start | 2D: rows of 20 and 19 beads; 3D: 12 neighbours, 6 of them in the layer, a mirror plane; gap 0 | `unit.Crystal.*` |
+| polydisperse bead sizes | variance of a uniform and of a truncated normal distribution; mass proportional to R² or R³ | `unit.Sizes.*` |
+| neighbour search by cells | all pairs and images, size ratio 1 : 100; the number of candidates per bead is independent of the number of beads | `unit.CellGrid.*` |
+| every solver, law, dimension and integrator; neighbour lists built at every step or never (V2.14) | each other and the all-pairs oracle, bit for bit | `agreement.*` |
 | fits | exact data; NIST's certified problems; coverage of the 95 % intervals | `recovery.*Fit*`, `recovery.Nist.*` |
 | block averages, bootstraps, binomial intervals | coverage over synthetic processes with known truth | `unit.Statistics.*` |
-| locator on synthetic frames | recall, precision 1; rms against the Cramér–Rao bound | `tests/recovery/locator_test.cpp` |
-| locator and linker on real frames | published centres and identities (Lafaye de Micheaux et al. 2018) | `tests/recovery/real_images_test.cpp` |
-| camera → tracker → trajectory | the trajectory that was filmed | `tests/recovery/closed_loop_test.cpp` |
+| locator on synthetic frames | recall and precision 1; rms error against the Cramér–Rao bound | `tests/recovery/imaging/locator_test.cpp` |
+| locator and linker on real frames | published centres and identities (Lafaye de Micheaux et al. 2018) | `tests/recovery/imaging/real_images_test.cpp` |
+| camera → tracker → trajectory | the trajectory that was filmed | `tests/recovery/imaging/closed_loop_test.cpp` |
 | both papers' models, driven | LAMMPS's positions, to rounding and its growth | `tests/end_to_end/lammps_test.cpp` |
 | H5MD file | h5py: the same bits; MDAnalysis: the same numbers | `end_to_end.client_*` |
 """

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-#include "imaging/locator.hpp"
+#include "imaging/locate/locator.hpp"
 
 namespace twincell::bench {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "imaging/rendered/cases.hpp"
+#include "imaging/benchmark/cases.hpp"
 
 namespace twincell::bench {
 

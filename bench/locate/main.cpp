@@ -23,10 +23,10 @@
 #include <set>
 #include <sstream>
 
-#include "analysis/trajectory/kept_memory.hpp"
 #include "bench/locate/contestants.hpp"
-#include "imaging/rendered/cases.hpp"
-#include "imaging/rendered/marks.hpp"
+#include "core/malloc_tuning.hpp"
+#include "imaging/benchmark/cases.hpp"
+#include "imaging/benchmark/detection_score.hpp"
 
 using namespace twincell::bench;
 using namespace twincell::rendered;
@@ -246,7 +246,7 @@ void tune() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  twincell::keep_freed_memory();
+  twincell::tune_malloc();
   Wanted wanted;
   CLI::App program("Locators against rendered truth and the Cramér-Rao bound");
   program.add_option("--case", wanted.cases, "Only this case");

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "calibration/law.hpp"
+#include "calibration/fit/law.hpp"
 
 namespace twincell {
 

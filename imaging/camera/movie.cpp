@@ -7,8 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "analysis/trajectory/error.hpp"
-#include "imaging/opencv_words.hpp"
+#include "core/error.hpp"
+#include "imaging/stack/opencv_errors.hpp"
 
 namespace twincell {
 

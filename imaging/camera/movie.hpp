@@ -6,7 +6,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
-#include "analysis/trajectory/atomic_file.hpp"
+#include "core/atomic_file.hpp"
 
 namespace twincell {
 

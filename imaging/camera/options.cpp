@@ -6,9 +6,9 @@
 #include <map>
 #include <string_view>
 
-#include "analysis/trajectory/config.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/quantities.hpp"
+#include "core/config.hpp"
+#include "core/error.hpp"
+#include "trajectory/unit_keys.hpp"
 
 namespace twincell {
 

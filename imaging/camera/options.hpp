@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/trajectory/units.hpp"
+#include "trajectory/units.hpp"
 
 namespace twincell {
 

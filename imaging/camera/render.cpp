@@ -8,12 +8,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/error.hpp"
-#include "analysis/trajectory/in_parallel.hpp"
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "core/in_parallel.hpp"
 #include "imaging/camera/movie.hpp"
 #include "imaging/camera/random.hpp"
-#include "imaging/synthetic_camera.hpp"
+#include "imaging/camera/synthetic_camera.hpp"
 
 namespace twincell {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/trajectory/error.hpp"
+#include "core/error.hpp"
 
 namespace twincell {
 

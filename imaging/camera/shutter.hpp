@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "analysis/trajectory/trajectory.hpp"
+#include "trajectory/trajectory.hpp"
 
 namespace twincell {
 

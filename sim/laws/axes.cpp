@@ -31,6 +31,12 @@ std::vector<std::string> tangential_words() {
 std::vector<std::string> rolling_words() {
   return words<RollingAxis>();
 }
+bool has_history(const std::string& tangential) {
+  bool history = false;
+  for_each_law(TangentialAxis{},
+               [&](const auto& law) { history = history || (law.kHistory && tangential == law.kWord); });
+  return history;
+}
 
 void check_laws(const std::string& normal, const std::string& tangential, const std::string& rolling,
                 const ContactTable& table) {
@@ -63,7 +69,7 @@ KeyReaders readers_of(const std::string& key) {
   const auto collect = [&](const char* axis) {
     return [&readers, &key, axis](const auto& law) {
       if (std::find(std::begin(law.kKeys), std::end(law.kKeys), key) == std::end(law.kKeys)) return;
-      readers.axis = axis;
+      if (readers.axis.empty()) readers.axis = axis;
       readers.laws.emplace_back(law.kWord);
     };
   };

@@ -8,21 +8,25 @@
 
 #include "sim/laws/concepts.hpp"
 #include "sim/laws/normal/clipped.hpp"
+#include "sim/laws/normal/cohesive.hpp"
 #include "sim/laws/normal/falling_restitution.hpp"
 #include "sim/laws/normal/hertz.hpp"
 #include "sim/laws/normal/linear.hpp"
 #include "sim/laws/rolling/none.hpp"
 #include "sim/laws/rolling/spring.hpp"
 #include "sim/laws/tangential/dashpot.hpp"
+#include "sim/laws/tangential/force_clipped.hpp"
+#include "sim/laws/tangential/mindlin.hpp"
 #include "sim/laws/tangential/none.hpp"
 #include "sim/laws/tangential/spring.hpp"
 #include "sim/laws/tangential/spring_only.hpp"
 
 namespace twincell::sim {
 
-using NormalAxis =
-    std::variant<LinearSpringDashpot, ClippedSpringDashpot, HertzViscoelastic, FallingRestitution>;
-using TangentialAxis = std::variant<NoTangential, DashpotSlider, SpringSlider, SpringOnlySlider>;
+using NormalAxis = std::variant<LinearSpringDashpot, ClippedSpringDashpot, HertzViscoelastic,
+                                FallingRestitution, CohesiveSpringDashpot>;
+using TangentialAxis = std::variant<NoTangential, DashpotSlider, SpringSlider, SpringOnlySlider,
+                                    ForceClippedSlider, MindlinSlider>;
 using RollingAxis = std::variant<NoRolling, RollingSpring>;
 
 /// One law per axis, as types: what a kernel is compiled for.
@@ -58,6 +62,8 @@ void check_laws(const std::string& normal, const std::string& tangential, const 
 std::vector<std::string> normal_words();
 std::vector<std::string> tangential_words();
 std::vector<std::string> rolling_words();
+/// Whether the named tangential law has a spring that remembers.
+bool has_history(const std::string& tangential);
 /// The keys that the named laws read.
 std::vector<std::string> keys_of(const std::string& normal, const std::string& tangential,
                                  const std::string& rolling);

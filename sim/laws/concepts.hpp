@@ -43,14 +43,29 @@ concept NormalLaw = ContactLaw<Law> &&
   { law.largest_force(x) } -> std::same_as<double>;        // at an overlap: sets the grain of summed forces
 };
 
+/// A tangential law whose force is also given the overlap, as its last argument: kReadsOverlap = true.
+template <class Law>
+concept ReadsOverlap = requires {
+  requires Law::kReadsOverlap;
+};
+
+/// Tangential force of (constants, v_t, F_n, dt, xi), and of the overlap where the law reads it.
+template <class Law>
+Tangent<float, 3> force_of_law(const float* c, float x, Tangent<float, 3> t, Tangent<double, 3> kept) {
+  if constexpr (ReadsOverlap<Law>)
+    return Law::force(c, t, x, x, kept, x);
+  else
+    return Law::force(c, t, x, x, kept);
+}
+
 /// Tangential force. kActs: beads turn; kHistory: xi lives as long as the contact.
 template <class Law>
 concept TangentialLaw = ContactLaw<Law> && requires(const Law law, const PairScale& pair, const float* c,
                                                     float x, Tangent<float, 3> t, Tangent<double, 3> kept) {
   { Law::kActs } -> std::convertible_to<bool>;
   { Law::kHistory } -> std::convertible_to<bool>;
-  { Law::force(c, t, x, x, kept) } -> std::same_as<Tangent<float, 3>>;  // (constants, v_t, F_n, dt, xi)
-  { law.shortest_time(pair) } -> std::same_as<double>;                  // t0
+  { force_of_law<Law>(c, x, t, kept) } -> std::same_as<Tangent<float, 3>>;
+  { law.shortest_time(pair) } -> std::same_as<double>;  // t0
 };
 
 /// Torque against rolling on i (the opposite on j); its angle lives as long as the contact.

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trajectory/config.hpp"
+#include "core/config.hpp"
 
 namespace twincell::sim {
 

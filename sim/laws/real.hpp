@@ -53,7 +53,7 @@ template <std::floating_point R>
 R sqrt(R a) {
   return std::sqrt(a);
 }
-/// a where true, b where not. Both are reckoned.
+/// a where true, b where not. Both are computed.
 template <std::floating_point R>
 R select(bool where, R a, R b) {
   return where ? a : b;

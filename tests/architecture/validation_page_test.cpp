@@ -22,7 +22,8 @@ TEST(ValidationPage, HasEveryIdThatATestChecks) {
   const std::string page = text_of(root / "docs/validation.md");
   const std::regex id("\"(V[0-9]+(\\.[0-9]+)?)\"");
   std::set<std::string> ids;
-  for (const auto& file : std::filesystem::directory_iterator(root / "tests/verification")) {
+  for (const auto& file : std::filesystem::recursive_directory_iterator(root / "tests/verification")) {
+    if (!file.is_regular_file()) continue;
     const std::string text = text_of(file.path());
     for (std::sregex_iterator it(text.begin(), text.end(), id), end; it != end; ++it) ids.insert((*it)[1]);
   }

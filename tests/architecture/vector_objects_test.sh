@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# The passes compiled for AVX2 and AVX-512 must share no function with the rest of the program: of an inline function that
+# The kernels compiled for AVX2 and AVX-512 must share no function with the rest of the program: of an inline function that
 # both emit, the linker keeps one copy, and a processor without those instructions would meet them anywhere.
 # Usage: vector_objects_test.sh BUILD_FOLDER
 set -euo pipefail
-objects=$(find "$1/sim" -name 'passes_avx*.o')
+objects=$(find "$1/sim" -name 'kernels_avx*.o')
 [ "$(wc -l <<<"$objects")" = 2 ] || { echo "found not the two vector objects under $1/sim: $objects"; exit 1; }
-others=$(find "$1" -name '*.o' ! -name 'passes_avx*.o' ! -path '*/tests/*')
+others=$(find "$1" -name '*.o' ! -name 'kernels_avx*.o' ! -path '*/tests/*')
 shared=$(comm -12 \
   <(nm --defined-only $objects | awk '$2 ~ /^[WVu]$/ {print $3}' | sort -u) \
   <(nm --defined-only $others | awk '$2 ~ /^[WVuTDBR]$/ {print $3}' | sort -u) | c++filt)

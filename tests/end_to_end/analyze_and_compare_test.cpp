@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "analysis/trajectory/hdf5.hpp"
+#include "core/atomic_file.hpp"
+#include "core/hdf5.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/rigid_bed.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
+#include "core/atomic_file.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/rigid_bed.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell {
 namespace {

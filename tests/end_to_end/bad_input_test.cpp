@@ -8,8 +8,8 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
-#include "analysis/trajectory/h5md_file.hpp"
 #include "tests/support/program.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell {
 namespace {
@@ -171,8 +171,8 @@ TEST_F(BadInput, ScenesThatLammpsHasNoWordsFor) {
     expect_refusal({"export", at("s.toml"), "--to", "lammps", "-o", at("deck"), "--set", assignment}, kUsage,
                    mentioned);
   };
-  refused("contact.slip=spring_only", {"s.toml", "contact.tangential", "limit on the spring alone"});
-  refused("contact.normal=falling-restitution", {"contact.normal", "do not know the law"});
+  refused("contact.tangential=spring-limited", {"s.toml", "contact.tangential", "limit on the spring alone"});
+  refused("contact.normal=velocity-dependent-restitution", {"contact.normal", "do not know the law"});
   refused("contact={rolling='spring',k_r=1.0,mu_r=0.1}", {"contact.rolling", "do not know the law"});
   refused("contact.bottom.k_t=0.0", {"contact.bottom.k_t", "divides"});
   refused("cell.side_tilt=5.0", {"cell.side_tilt", "along the axes"});

@@ -9,15 +9,15 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/calibration_file.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "imaging/cell.hpp"
-#include "imaging/synthetic_camera.hpp"
-#include "sim/scene.hpp"
+#include "core/atomic_file.hpp"
+#include "imaging/camera/synthetic_camera.hpp"
+#include "imaging/cell/cell.hpp"
+#include "sim/scene/scene.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
 #include "tests/support/rigid_bed.hpp"
+#include "trajectory/calibration_file.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell {
 namespace {

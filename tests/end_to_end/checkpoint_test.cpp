@@ -1,6 +1,6 @@
 // Runs that are stopped, killed or damaged, as a user meets them: what is resumed ends in the same datasets.
 
-#include "sim/checkpoint.hpp"
+#include "sim/run/checkpoint.hpp"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -11,8 +11,8 @@
 #include <map>
 #include <random>
 
-#include "analysis/trajectory/hdf5.hpp"
-#include "analysis/trajectory/provenance.hpp"
+#include "core/hdf5.hpp"
+#include "core/provenance.hpp"
 #include "tests/support/program.hpp"
 
 namespace twincell {

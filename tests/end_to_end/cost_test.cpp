@@ -85,7 +85,7 @@ TEST(Cost, SaysWhatAGasCosts) {
   const auto d = nlohmann::json::parse(ran.out);
   ASSERT_EQ(d["gas"].size(), 3U);
   EXPECT_EQ(d["gas"][0]["stepping"], "steps");
-  EXPECT_EQ(d["gas"][2]["stepping"], "flights");
+  EXPECT_EQ(d["gas"][2]["stepping"], "event-driven");
   for (const auto& g : d["gas"]) {
     EXPECT_NEAR(g["t_z"], 0.36,
                 0.15);  // Table III: 0.327 at W = 50; ours 0.36; six hundred periods leave some per cent

@@ -7,8 +7,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trajectory/h5md_file.hpp"
 #include "tests/support/program.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell {
 namespace {
@@ -61,8 +61,8 @@ TEST_F(Explain, EachEffectStandsInItsList) {
   EXPECT_EQ(all["single precision"], "off (scene)");
   EXPECT_EQ(states(explained({"--set", "time.precision=single"}))["single precision"], "approximated");
   EXPECT_EQ(all.count("tension"), 0U);
-  all = states(explained(
-      {"--set", "contact.mu=0.0", "--set", "contact.normal=linear-clipped", "--set", "cell.plate_drag=0.1"}));
+  all = states(explained({"--set", "contact.mu=0.0", "--set", "contact.normal=linear-no-tension", "--set",
+                          "cell.plate_drag=0.1"}));
   for (const char* name : {"friction", "rotation", "tangential history"})
     EXPECT_EQ(all[name], "off (proven)");
   EXPECT_EQ(all["tension"], "off (scene)");

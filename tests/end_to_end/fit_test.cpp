@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trajectory/atomic_file.hpp"
+#include "core/atomic_file.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
 

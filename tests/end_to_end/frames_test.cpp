@@ -9,7 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "analysis/trajectory/hdf5.hpp"
+#include "core/hdf5.hpp"
 #include "tests/support/camera_files.hpp"
 #include "tests/support/program.hpp"
 

@@ -10,10 +10,10 @@
 #include <optional>
 #include <sstream>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
+#include "core/atomic_file.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell {
 namespace {
@@ -33,6 +33,7 @@ amplitude = 0.9
 [start]
 settle_limit = 0
 [time]
+integrator = "verlet"
 discard = 0
 cycles = 1
 phases = 40
@@ -48,6 +49,7 @@ kind = "random"
 seed = 3
 settle_limit = 0
 [time]
+integrator = "verlet"
 discard = 0
 cycles = 1
 phases = 40
@@ -63,6 +65,7 @@ kind = "random"
 seed = 3
 settle_limit = 0
 [time]
+integrator = "verlet"
 discard = 0
 cycles = 1
 phases = 40
@@ -248,8 +251,8 @@ TEST_F(Lammps, SecondPaperSmooth) {
 
 // What the papers do not use: no tension, damping constants, walls at rest, a tilted cell.
 TEST_F(Lammps, OtherWords) {
-  simulate(kPaperTwo, {"contact.tension=clipped", "contact.c_n=47.0", "contact.c_t=30.0", "cell.sides=walls",
-                       "cell.side_walls=rest", "cell.tilt=10.0"});
+  simulate(kPaperTwo, {"contact.normal=linear-no-tension", "contact.c_n=47.0", "contact.c_t=30.0",
+                       "cell.sides=walls", "cell.side_walls=rest", "cell.tilt=10.0"});
   export_deck();
   expect_agreement_and_notice(
       {{"pair_style", 8, ""}, {"fix left_right", 15, "wiggle y 1 2.856"}, {"fix weight", 6, "0.18"}});
@@ -303,6 +306,38 @@ TEST_F(Lammps, GoesOnFromAFrame) {
   ASSERT_EQ(d.size(), 30U);
   EXPECT_LT(d.front(), 1e-15);
   EXPECT_LT(over_control(d, kFrame), 10);
+}
+
+// Where the scene states no integrator, ours differs from LAMMPS's.
+TEST(LammpsDeck, WithoutAnIntegratorIsOfLammpssOwnAndSaysSo) {
+  const TemporaryFolder folder;
+  std::string silent = kPaperOne;
+  silent.erase(silent.find("integrator = \"verlet\"\n"), std::string("integrator = \"verlet\"\n").size());
+  put_file(folder / "stated.toml", kPaperOne);
+  put_file(folder / "silent.toml", silent);
+  const auto deck_of = [&](const std::string& name, const std::string& said) {
+    const Ran ran = run_program({"export", folder / (name + ".toml"), "--to", "lammps", "-o", folder / name});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(ran.err.find("time.integrator is not stated") != std::string::npos, !said.empty()) << ran.err;
+    EXPECT_NE(ran.err.find(said), std::string::npos) << ran.err;
+    return read_text_file(folder / name / "in.twincell");
+  };
+  const std::string stated = deck_of("stated", ""),
+                    deck = deck_of("silent", "\"verlet\", LAMMPS's own, at 50 steps per contact");
+  const auto line = [](const std::string& text, const std::string& head) {
+    const std::size_t at = text.find(head);
+    return at == std::string::npos ? "no " + head : text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_EQ(line(deck, "timestep "), line(stated, "timestep "));
+  EXPECT_NE(line(deck, "timestep ").find("e-05"), std::string::npos);  // 2.2e-3 t0 over 50
+  EXPECT_EQ(line(deck, "# integrator"), "# integrator = 'verlet'") << deck;
+  EXPECT_EQ(read_text_file(folder / "silent/data.twincell"), read_text_file(folder / "stated/data.twincell"));
+  // Stated otherwise it is refused.
+  const Ran split = run_program({"export", folder / "silent.toml", "--to", "lammps", "-o", folder / "split",
+                                 "--set", "time.integrator=split"});
+  EXPECT_EQ(split.code, 2);
+  EXPECT_NE(split.err.find("LAMMPS integrates as \"verlet\", not as \"split\""), std::string::npos)
+      << split.err;
 }
 
 }  // namespace

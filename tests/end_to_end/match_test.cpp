@@ -4,11 +4,12 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 
-#include "analysis/trajectory/atomic_file.hpp"
-#include "analysis/trajectory/h5md_file.hpp"
-#include "calibration/twin.hpp"
+#include "core/atomic_file.hpp"
 #include "tests/support/program.hpp"
+#include "trajectory/formats/h5md_file.hpp"
+#include "twin/twin.hpp"
 
 namespace twincell {
 namespace {
@@ -36,6 +37,40 @@ fs::path cell_without(const TemporaryFolder& folder, const std::string& key,
   std::ofstream out(path);
   for (std::string line; std::getline(in, line);)
     if (line.rfind(key, 0) != 0 && line.rfind(other, 0) != 0) out << line << "\n";
+  return path;
+}
+
+/// A simulated bed filmed from so high that the plate never comes into the picture. \return the frames'
+/// folder, with CELL.toml as it truly is
+fs::path film_above_plate(const TemporaryFolder& folder, double gamma, int seed) {
+  const fs::path run = folder / "run.h5", stack = folder / "above";
+  EXPECT_EQ(
+      run_program({"simulate", fs::path(TWINCELL_SOURCE_DIR) / "data_samples/demo/experiment.toml", "-q",
+                   "-o", run, "--set", "drive.gamma=" + std::to_string(gamma), "--set",
+                   "start.seed=" + std::to_string(seed), "--set", "time.discard=2", "--set", "time.cycles=6"})
+          .code,
+      0);
+  EXPECT_EQ(run_program({"render", run, "-q", "-o", stack, "--pixels-per-sigma", "12", "--margin", "20",
+                         "--max-height", "22"})
+                .code,
+            0);
+  const double plate_px = read_cell(stack / "CELL.toml").origin->y_px;
+  for (const auto& entry : fs::directory_iterator(stack))
+    if (entry.path().extension() == ".png") {
+      const cv::Mat all = cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED);
+      const int rows = static_cast<int>(plate_px - 12 * (gamma + 0.3));
+      cv::imwrite(entry.path().string(), all.rowRange(0, rows));
+    }
+  return stack;
+}
+
+/// CELL.toml of a stack with another amplitude.
+fs::path with_amplitude(const fs::path& stack, double amplitude) {
+  std::ifstream in(stack / "CELL.toml");
+  fs::path path = stack / "misstated.toml";
+  std::ofstream out(path);
+  for (std::string line; std::getline(in, line);)
+    out << (line.rfind("amplitude", 0) == 0 ? "amplitude = " + std::to_string(amplitude) : line) << "\n";
   return path;
 }
 
@@ -164,6 +199,45 @@ TEST(Match, AStatedDriveIsHeldAgainstThePlate) {
   words.emplace_back("--trust-stated-drive");
   const Ran trusted = run_program(words);
   EXPECT_EQ(trusted.code, 0) << trusted.err;
+}
+
+TEST(Match, AStatedDriveIsHeldAgainstTheBedWhereThePlateIsNotInThePicture) {
+  for (const double gamma : {0.9, 1.6}) {
+    const TemporaryFolder folder;
+    const fs::path stack = film_above_plate(folder, gamma, 1);
+    const double stated = gamma / 1.6;
+    const fs::path cell = with_amplitude(stack, stated);
+    const Ran refused = run_program({"match", stack, cell, "-o", folder / "twin", "--twins", "1", "--no-film",
+                                     "--set", "time.steps_per_contact=20", "-q"});
+    EXPECT_EQ(refused.code, 2) << refused.err;
+    const auto seen = refused.err.find("A = ");
+    ASSERT_NE(seen, std::string::npos) << refused.err;
+    EXPECT_NEAR(std::stod(refused.err.substr(seen + 4)), gamma, 0.1 * gamma) << refused.err;
+    EXPECT_NE(refused.err.find("the bed"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find(std::to_string(stated).substr(0, 5)), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("--trust-stated-drive"), std::string::npos) << refused.err;
+    EXPECT_FALSE(fs::exists(folder / "twin/experiment.h5"));
+    // A trajectory that track did not check is checked by compare.
+    const fs::path kept = folder / "kept.h5";
+    const Ran noted = run_program({"track", stack, "--cell", cell, "-o", kept});
+    EXPECT_EQ(noted.code, 0);
+    EXPECT_NE(noted.err.find("does not fit the film"), std::string::npos) << noted.err;
+    const Ran compared = run_program({"compare", "--experiment", kept, "-o", folder / "report", "-q"});
+    EXPECT_EQ(compared.code, 2) << compared.err;
+  }
+}
+
+TEST(Match, ACorrectDriveRaisesNoAlarmWhereThePlateIsNotInThePicture) {
+  for (const double gamma : {0.9, 1.6, 2.5})
+    for (const int seed : {1, 2}) {
+      const TemporaryFolder folder;
+      const fs::path stack = film_above_plate(folder, gamma, seed), tracked = folder / "tracked.h5";
+      const Ran ran = run_program({"track", stack, "--cell", stack / "CELL.toml", "-o", tracked, "--json"});
+      ASSERT_EQ(ran.code, 0) << ran.err;
+      EXPECT_EQ(ran.err.find("does not fit"), std::string::npos) << gamma << ", seed " << seed << ran.err;
+      const auto check = nlohmann::json::parse(ran.out)["drive_check"];
+      EXPECT_EQ(check.value("by", ""), gamma < 2 ? "bed" : "") << check;
+    }
 }
 
 TEST(Match, SaysWhatTheCellLacksAndLeavesNothing) {

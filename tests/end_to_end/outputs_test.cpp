@@ -14,7 +14,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trajectory/sha256.hpp"
+#include "core/sha256.hpp"
 #include "tests/support/program.hpp"
 
 namespace twincell {

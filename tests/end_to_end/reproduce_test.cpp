@@ -134,13 +134,13 @@ TEST(Reproduce, TemperatureAndSlipsShareTheirRuns) {
   const auto fig4 = reproduced("p1-fig4", folder / "four", {"p1-fig4"});
   EXPECT_FALSE(fig4["complete"]);
   const auto fig5 = reproduced("p1-fig5", folder / "five", {"p1-fig5"});
-  const auto rungs = [](const nlohmann::json& document) {
+  const auto points = [](const nlohmann::json& document) {
     std::size_t n = 0;
     for (const auto& ladder : document["measured"]) n += ladder["rungs"].size();
     return n;
   };
-  EXPECT_GE(rungs(fig4), 1U);
-  EXPECT_GT(rungs(fig5), rungs(fig4));  // it took up the rungs of Fig. 4, and had time for another
+  EXPECT_GE(points(fig4), 1U);
+  EXPECT_GT(points(fig5), points(fig4));  // it took up the points of Fig. 4, and had time for another
 }
 
 TEST(Reproduce, AnUnknownNameListsTheKnown) {

@@ -1,5 +1,5 @@
-// Sweeps as a user meets them: whoever computes the points, however often he is stopped, the collected file
-// is the same.
+// Sweeps as a user meets them: whichever process computes the points, however often it is stopped, the
+// collected file is the same.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -316,7 +316,8 @@ TEST_F(Sweeps, SeedsThatChangeNothingAreRunOnceAndSaid) {
   EXPECT_NE(seeds.err.find("2 of the plan's runs would repeat another"), std::string::npos) << seeds.err;
   EXPECT_EQ(nlohmann::json::parse(seeds.out)["points"], 1);
   EXPECT_EQ(nlohmann::json::parse(seeds.out)["repeats_left_out"], 2);
-  EXPECT_EQ(nlohmann::json::parse(planned("[axes]\ndrive.gamma = 1.6\nstart.seed = [1, 2]\n").out)["points"], 1);
+  EXPECT_EQ(nlohmann::json::parse(planned("[axes]\ndrive.gamma = 1.6\nstart.seed = [1, 2]\n").out)["points"],
+            1);
   // What is drawn from the seed makes another run of it.
   for (const char* chance :
        {"start.perturbation = 0.01\n", "beads.spread = \"uniform\"\nbeads.spread_width = 0.05\n"}) {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trajectory/h5md_file.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 using namespace twincell;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "analysis/trajectory/h5md_file.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 int main(int argc, char** argv) {
   using namespace twincell;

@@ -1,7 +1,7 @@
 // A calibration file.
 
-#include "analysis/trajectory/calibration_file.hpp"
 #include "tests/fuzz/input.hpp"
+#include "trajectory/calibration_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace twincell;

@@ -1,6 +1,6 @@
 // A CELL.toml.
 
-#include "imaging/cell.hpp"
+#include "imaging/cell/cell.hpp"
 #include "tests/fuzz/input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

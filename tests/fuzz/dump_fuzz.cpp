@@ -1,7 +1,7 @@
 // A dump of LAMMPS, in two and in three dimensions.
 
-#include "analysis/trajectory/lammps_dump.hpp"
 #include "tests/fuzz/input.hpp"
+#include "trajectory/formats/lammps_dump.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace twincell;

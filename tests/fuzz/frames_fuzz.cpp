@@ -12,8 +12,8 @@
 #include <string>
 #include <string_view>
 
-#include "analysis/trajectory/error.hpp"
-#include "imaging/frames/reader.hpp"
+#include "core/error.hpp"
+#include "imaging/stack/formats/reader.hpp"
 #include "tests/fuzz/input.hpp"
 
 namespace twincell::frames {

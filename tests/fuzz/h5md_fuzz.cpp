@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "analysis/trajectory/h5md_file.hpp"
 #include "tests/fuzz/input.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 // HDF5 1.10 itself loses some bytes when it refuses a damaged file. What of it we would have to close is
 // counted below.

@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-#include "analysis/trajectory/error.hpp"
+#include "core/error.hpp"
 
 namespace twincell::fuzz {
 

@@ -1,6 +1,6 @@
 // A scene, as text.
 
-#include "sim/scene.hpp"
+#include "sim/scene/scene.hpp"
 #include "tests/fuzz/input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "analysis/trajectory/h5md_file.hpp"
 #include "tests/support/camera_files.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 using namespace twincell;
 

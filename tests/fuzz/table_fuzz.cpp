@@ -1,6 +1,6 @@
 // A table of comma-separated numbers.
 
-#include "calibration/table.hpp"
+#include "calibration/fit/table.hpp"
 #include "tests/fuzz/input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,6 +1,6 @@
 // A list of triggers: frames per cycle found, and stated.
 
-#include "imaging/trigger_list.hpp"
+#include "imaging/phase/trigger_list.hpp"
 #include "tests/fuzz/input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "sim/kernel.hpp"
+#include "sim/run/make_solver.hpp"
 
 namespace twincell::sim {
 
@@ -15,15 +15,17 @@ struct Bench {
   Scene scene;
   Plan plan;
   System system;
-  std::unique_ptr<Kernel> kernel;
+  std::unique_ptr<Solver> kernel;
 
   /// \param n steps per contact time of the bead-bead contact. Use numbers like 50.37: a step that divides
   /// t_c hides errors.
-  explicit Bench(const std::string& extra, double n = 50.37, KernelKind kind = KernelKind::best) {
+  explicit Bench(const std::string& extra, double n = 50.37, SolverKind kind = SolverKind::best) {
     scene = read_scene_text(
         "preset = \"fortini-huang-2015\"\n[beads]\ncount = 1\n[drive]\namplitude = 0.0\n" + extra, "bench");
     scene.steps_per_contact = n;
-    if (scene.stepping == "auto") scene.stepping = "steps";  // these tests are of the steps
+    if (!scene.integrator_stated) scene.integrator = "verlet";
+    if (scene.stepping == Stepping::automatic)
+      scene.stepping = Stepping::steps;  // these tests are of the steps
     plan = make_plan(scene);
     system = make_system(scene, plan);
     // The plan rounds the step so that phases are whole; here the step itself is what is studied.
@@ -33,7 +35,7 @@ struct Bench {
     system.dt = shortest / n;
     GuardLimits limits;
     limits.travel_per_step = 1;
-    kernel = make_kernel(plan, limits, kind);
+    kernel = make_solver(plan, limits, kind);
   }
 
   Bead& add(double x, double z, double vx, double vz, double spin = 0) {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "imaging/cell_edges.hpp"
-#include "imaging/synthetic_camera.hpp"
+#include "imaging/camera/synthetic_camera.hpp"
+#include "imaging/cell/cell_edges.hpp"
 #include "tests/support/rigid_bed.hpp"
 
 namespace twincell::test {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trajectory/error.hpp"
-#include "imaging/frame_source.hpp"
+#include "core/error.hpp"
+#include "imaging/stack/open_frames.hpp"
 
 namespace twincell {
 

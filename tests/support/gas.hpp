@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/cell_grid.hpp"
-#include "sim/kernel.hpp"
+#include "sim/run/make_solver.hpp"
+#include "sim/system/cell_grid.hpp"
 
 namespace twincell::sim {
 
@@ -65,7 +65,7 @@ class Gas {
           system.beads.push_back(bead);
         }
     stand_still();
-    kernel = make_kernel(plan, {.overlap = 0.3, .travel_per_step = 1});
+    kernel = make_solver(plan, {.overlap = 0.3, .travel_per_step = 1});
   }
 
   /// Takes the motion of the whole away.
@@ -125,7 +125,7 @@ class Gas {
 
   GasOptions options;
   System system;
-  std::unique_ptr<Kernel> kernel;
+  std::unique_ptr<Solver> kernel;
   double contact_time = 0;
 
  private:

@@ -4,8 +4,8 @@
 
 #include <cstring>
 
-#include "sim/kernel.hpp"
-#include "sim/start.hpp"
+#include "sim/run/make_solver.hpp"
+#include "sim/start/start.hpp"
 
 namespace twincell::sim {
 
@@ -19,9 +19,9 @@ struct ShakenBed {
   Scene scene;
   Plan plan;
   System system;
-  std::unique_ptr<Kernel> kernel;
+  std::unique_ptr<Solver> kernel;
 
-  explicit ShakenBed(const std::vector<std::string>& set = {}, KernelKind kind = KernelKind::best,
+  explicit ShakenBed(const std::vector<std::string>& set = {}, SolverKind kind = SolverKind::best,
                      int threads = 1)
       : scene(read_scene_text(
             "[beads]\ncount = 60\n[drive]\nomega = 1.0\ngamma = 3.0\n[start]\nkind = \"random\"\nseed = 5\n"
@@ -29,7 +29,7 @@ struct ShakenBed {
             "shaken", set)),
         plan(make_plan(scene)),
         system(make_system(scene, plan)),
-        kernel(make_kernel(plan, guard_limits(plan), kind, threads)) {
+        kernel(make_solver(plan, guard_limits(plan), kind, threads)) {
     system.beads = make_start(scene).beads;
     for (Bead& b : system.beads) b.vz -= 2, b.vx *= 2, b.spin = b.vx;
   }

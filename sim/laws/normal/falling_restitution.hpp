@@ -14,7 +14,7 @@ namespace twincell::sim {
 
 /// One number is remembered per contact: its eta, fixed at first touch.
 struct FallingRestitution {
-  static constexpr std::string_view kWord = "falling-restitution",
+  static constexpr std::string_view kWord = "velocity-dependent-restitution",
                                     kName = "linear spring, restitution falling with speed";
   static constexpr const char* kKeys[] = {"k_n", "restitution_fast", "restitution_speed"};
   static constexpr int kConstants = 4, kMemory = 1;

@@ -16,7 +16,7 @@ struct LinearSpringDashpot {
   static constexpr std::string_view kWord = "linear", kName = "linear spring-dashpot";
   static constexpr const char* kKeys[] = {"k_n", "gamma_n", "c_n", "restitution"};
   static constexpr int kConstants = 2, kMemory = 0;
-  static constexpr bool kSmooth = true;  ///< one formula, also just beyond the contact (encounter.hpp)
+  static constexpr bool kSmooth = true;  ///< one formula, also just beyond the contact (binary_collision.hpp)
 
   double k_n = 1e6;  ///< m g/sigma
   ViscousDamping damping;

@@ -37,7 +37,7 @@ struct DashpotSlider {
     return limited(c[0] * v_t, c[1] * abs(f_n)).value;
   }
   // The same in its two regimes, each continued beyond where it holds: what an integrator needs that goes
-  // from one to the other only at the ends of its steps (encounter.hpp).
+  // from one to the other only at the ends of its steps (binary_collision.hpp).
   template <class V, class T>
   static T sticking(const V* c, const T& v_t) {
     return c[0] * v_t;

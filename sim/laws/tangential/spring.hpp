@@ -16,7 +16,7 @@ namespace twincell::sim {
 /// together give exactly the limit. The paper says only "truncate"; this is the common reading.
 struct SpringSlider {
   static constexpr std::string_view kWord = "spring", kName = "spring with history, dashpot, Coulomb limit";
-  static constexpr const char* kKeys[] = {"mu", "k_t", "gamma_t", "c_t", "c_t_over_c_n", "slip"};
+  static constexpr const char* kKeys[] = {"mu", "k_t", "gamma_t", "c_t", "c_t_over_c_n"};
   static constexpr int kConstants = 4;
   static constexpr bool kActs = true, kHistory = true;
 

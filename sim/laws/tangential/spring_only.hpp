@@ -9,7 +9,7 @@ namespace twincell::sim {
 
 /// A different law from SpringSlider: single collisions differ by per cents.
 struct SpringOnlySlider : SpringSlider {
-  static constexpr std::string_view kWord = "spring-only",
+  static constexpr std::string_view kWord = "spring-limited",
                                     kName = "spring with history, dashpot, limit on the spring alone";
 
   static SpringOnlySlider read(const ContactTable& t) { return {SpringSlider::read(t)}; }

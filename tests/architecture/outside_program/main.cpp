@@ -1,6 +1,6 @@
 // A user's own program against the installed package.
-#include <analysis/trajectory/drive.hpp>
 #include <cstdio>
+#include <trajectory/drive.hpp>
 
 int main() {
   const twincell::Drive drive = twincell::solve_drive({.omega = 1.0, .gamma = 1.8}, 1.0, {});

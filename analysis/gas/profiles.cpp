@@ -1,0 +1,166 @@
+#include "analysis/gas/profiles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "trajectory/centre_of_mass.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const char* const kSource = "Bhateja, Sharma & Singh 2016, Figs. 12 to 16";
+
+/// Mean and variance of a velocity, weighted by mass, in one pass.
+struct Spread {
+  double mass = 0, mean = 0, sum = 0;
+  std::size_t n = 0;
+  void add(double m, double v) {
+    ++n;
+    mass += m;
+    const double off = v - mean;
+    mean += off * m / mass;
+    sum += m * off * (v - mean);
+  }
+  /// m <(v - <v>)^2>
+  [[nodiscard]] double temperature() const {
+    return n < kProfileSamples ? kNaN : sum / static_cast<double>(n);
+  }
+};
+
+struct Slab {
+  double filled = 0;
+  Spread w, u;
+  double now = 0;  ///< of this frame: sum of m (w - w_cm)^2
+  std::size_t n_now = 0;
+  double over_frames = 0;  ///< sum over frames of the mean over beads
+};
+
+class Profiles : public Observable {
+ public:
+  explicit Profiles(const AnalysisContext& context) : info_(context.info) {}
+
+  void add(const FrameView& view) override {
+    const Frame& frame = view.frame();
+    ++frames_;
+    const double drift = centre_of_mass_velocity(frame, info_.mass).value_or(Vec3::Zero()).z();
+    for (std::size_t i = 0; i < frame.position.size(); ++i) {
+      if (!frame.present(i) || !frame.position[i].allFinite()) continue;
+      const double z = frame.position[i].z();
+      const double radius = info_.radius.empty() ? 0.5 : info_.radius[i];
+      const auto below = [&](double height) {
+        return info_.box.dimension == 2 ? disc_below(radius, height) : sphere_below(radius, height);
+      };
+      const auto top = static_cast<std::int64_t>(std::floor(z + radius));
+      double under = 0;
+      for (auto k = static_cast<std::int64_t>(std::floor(z - radius)); k <= top; ++k) {
+        const double up_to = below(static_cast<double>(k) + 1 - z);
+        slabs_[k].filled += up_to - under;
+        under = up_to;
+      }
+      if (frame.velocity.empty() || !frame.velocity[i].allFinite()) continue;
+      const double mass = info_.mass.empty() ? 1 : info_.mass[i];
+      Slab& slab = slabs_[static_cast<std::int64_t>(std::floor(z))];
+      slab.w.add(mass, frame.velocity[i].z());
+      slab.u.add(mass, frame.velocity[i].x());
+      slab.now += mass * (frame.velocity[i].z() - drift) * (frame.velocity[i].z() - drift);
+      ++slab.n_now;
+    }
+    for (auto& [k, slab] : slabs_) {
+      if (slab.n_now > 0) slab.over_frames += slab.now / static_cast<double>(slab.n_now);
+      slab.now = 0, slab.n_now = 0;
+    }
+  }
+
+  [[nodiscard]] std::vector<Result> results() const override {
+    std::vector<double> z, phi, t_z, t_x, t_frames;
+    const Vec3 size = info_.box.size();
+    const double slab_size = size.x() * (info_.box.dimension == 2 ? 1 : size.y());
+    for (const auto& [k, slab] : slabs_) {
+      if (!(slab.filled > 0)) continue;  // a bead that ends at the border of a slab
+      z.push_back(static_cast<double>(k) + 0.5);
+      phi.push_back(slab.filled / slab_size / static_cast<double>(frames_));
+      t_z.push_back(slab.w.temperature());
+      t_x.push_back(slab.u.temperature());
+      t_frames.push_back(slab.w.n < kProfileSamples ? kNaN : slab.over_frames / static_cast<double>(frames_));
+    }
+    const std::string none = "no frame holds a bead";
+    const std::string cold =
+        !info_.columns.velocity ? "the trajectory has no velocities" : "no slab holds enough velocities";
+    const auto array = [&](const char* name, const std::vector<double>& values, const char* unit,
+                           const char* convention, const std::string& why) {
+      return array_of(
+          values, {.name = name, .unit = unit, .n_of = "slabs", .convention = convention, .source = kSource},
+          why);
+    };
+    const char* temperature =
+        "m <(v - <v>)^2>, <v> the mean of the slab over all frames, no factor 1/2; NaN with fewer than 100 "
+        "velocities";
+    return {
+        array("profile_z", z, "sigma", "centres of slabs of thickness sigma, plate mean at 0", none),
+        array("phi_z", phi, "1",
+              info_.box.dimension == 2 ? "area of discs in the slab over its area, mean over frames"
+                                       : "volume of spheres in the slab over its volume, mean over frames",
+              none),
+        array("T_z_z", t_z, "m g sigma", temperature, cold),
+        array("T_x_z", t_x, "m g sigma", temperature, cold),
+        array("T_z_frames_z", t_frames, "m g sigma",
+              "mean over frames of the mean over beads of m (w - w_cm)^2, a frame in which the slab is empty "
+              "counting as 0; no factor 1/2; NaN with fewer than 100 velocities",
+              cold),
+        volume_mean()};
+  }
+
+ private:
+  /// The local temperature averaged over volume, not over beads: with an open top the volume is that of the
+  /// lowest slabs that hold kMostOfTheBeads of the velocities.
+  [[nodiscard]] Result volume_mean() const {
+    std::size_t all = 0;
+    for (const auto& [k, slab] : slabs_) all += slab.w.n;
+    double sum = 0;
+    std::size_t held = 0, n = 0;
+    for (const auto& [k, slab] : slabs_) {
+      if (static_cast<double>(held) >= kMostOfTheBeads * static_cast<double>(all)) break;
+      held += slab.w.n;
+      if (slab.w.n < kProfileSamples) continue;
+      sum += slab.w.temperature();
+      ++n;
+    }
+    if (n == 0) return absent_result("T_z_volume", "no slab holds enough velocities", kSource);
+    Result r{.name = "T_z_volume",
+             .values = {sum / static_cast<double>(n)},
+             .unit = "m g sigma",
+             .n = n,
+             .n_of = "slabs"};
+    r.no_interval = "a mean over slabs that share their beads";
+    r.convention = "mean of T_z_z over the lowest slabs that hold 99 % of the beads, all slabs alike";
+    r.source = "Bhateja, Sharma & Singh 2016, eq. 1";
+    return r;
+  }
+
+  static constexpr double kMostOfTheBeads = 0.99;
+  const TrajectoryInfo& info_;
+  std::size_t frames_ = 0;
+  std::map<std::int64_t, Slab> slabs_;  // sparse: a bead far above the bed makes two slabs, not thousands
+};
+
+}  // namespace
+
+double disc_below(double radius, double height) {
+  const double u = std::clamp(height / radius, -1.0, 1.0);
+  return radius * radius * (std::numbers::pi / 2 + std::asin(u) + u * std::sqrt(1 - u * u));
+}
+
+double sphere_below(double radius, double height) {
+  const double u = std::clamp(height / radius, -1.0, 1.0);
+  return std::numbers::pi * radius * radius * radius * (2.0 / 3 + u - u * u * u / 3);
+}
+
+std::unique_ptr<Observable> make_profiles(const AnalysisContext& context) {
+  return std::make_unique<Profiles>(context);
+}
+
+}  // namespace twincell

@@ -1,0 +1,242 @@
+#include "analysis/motion/bed_flight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace twincell {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+const char* const kSource = "Mehta & Luck 1990, the completely inelastic case";
+const char* const kNoCycle = "no whole cycle after a moment on the plate";
+constexpr double kThrowingSupport = 2;  // a bed at rest is carried with less than its weight before it leaves
+constexpr double kThrownSpeed = 0.1;    // of the plate's: faster off the plate, and it was thrown
+constexpr int kFewestPhases = 8;
+constexpr int kMomentsPerCycle = 20;  // between which second differences are taken
+
+struct Moment {
+  std::int64_t tick = 0;  ///< cycle N_k + phase
+  double time = 0, height = 0;
+};
+
+/// z = a + b s - s^2/2 through moments from a time on, s counted from the first of all so that sums stay
+/// exact.
+class Parabola {
+ public:
+  /// \pre two moments of different times
+  Parabola(const std::vector<Moment>& moments, double from) : origin_(moments.front().time) {
+    double n = 0, t = 0, tt = 0, y = 0, ty = 0;
+    for (const Moment& m : moments) {
+      if (m.time < from) continue;
+      const double s = m.time - origin_, v = m.height + s * s / 2;
+      n += 1, t += s, tt += s * s, y += v, ty += s * v;
+    }
+    b_ = (n * ty - t * y) / (n * tt - t * t);
+    a_ = (y - b_ * t) / n;
+  }
+  [[nodiscard]] double velocity(double time) const { return b_ - (time - origin_); }
+  [[nodiscard]] double height(double time) const {
+    const double s = time - origin_;
+    return a_ + b_ * s - s * s / 2;
+  }
+
+ private:
+  double origin_, a_ = 0, b_ = 0;
+};
+
+/// Where between `holds`, at which it does, and `not_any_more` a condition ceases to hold.
+template <class Condition>
+double boundary(double holds, double not_any_more, const Condition& condition) {
+  constexpr int kHalvings = 30;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = (holds + not_any_more) / 2;
+    (condition(middle) ? holds : not_any_more) = middle;
+  }
+  return not_any_more;
+}
+
+class BedFlight : public Observable {
+ public:
+  explicit BedFlight(const AnalysisContext& context)
+      : info_(context.info),
+        stride_(std::max<std::int64_t>(
+            1, std::llround(static_cast<double>(context.info.phases_per_cycle) / kMomentsPerCycle))) {
+    if (!info_.drive || info_.drive->amplitude == 0)
+      reason_ = "the trajectory does not say how it was driven";
+    else if (info_.drive->axis != Axis::z)
+      reason_ = "the drive is not along z";
+    else if (!info_.columns.phase || info_.phases_per_cycle < kFewestPhases)
+      reason_ = fmt::format("flights are told from at least {} frames per cycle", kFewestPhases);
+  }
+
+  void add(const FrameView& view) override {
+    const Frame& frame = view.frame();
+    if (!reason_.empty() || frame.phase < 0 || frame.cycle < 0) return;
+    if (!rise(frame)) return;
+    const Moment now{frame.cycle * info_.phases_per_cycle + frame.phase, frame.time, height_};
+    // A gap in the film: what flew before it is cut off.
+    if (!last_.empty() && now.tick != last_.back().tick + 1) {
+      last_.clear();
+      since_.reset();
+      in_cycle_ = 0;
+      flight_.clear();
+    }
+    last_.push_back(now);
+    if (last_.size() < static_cast<std::size_t>(2 * stride_ + 1)) return;
+    const Moment &before = last_.front(), &middle = last_[static_cast<std::size_t>(stride_)];
+    const double step = (now.time - before.time) / 2;
+    judge(middle, 1 + (before.height - 2 * middle.height + now.height) / (step * step));
+    last_.pop_front();
+  }
+
+  [[nodiscard]] std::vector<Result> results() const override {
+    if (!reason_.empty())
+      return {absent_result("flight_time", reason_, kSource),
+              absent_result("flight_share", reason_, kSource)};
+    const std::string rule = fmt::format(
+        "from the parabola of the centre of mass while the plate carries less than {:g} of the bed's weight",
+        kFlyingSupport);
+    return {
+        mean_of(durations_,
+                {.name = "flight_time",
+                 .unit = "t0",
+                 .n_of = "flights",
+                 .convention = "mean duration of a flight, " + rule,
+                 .source = kSource},
+                share_.n() == 0 ? kNoCycle : "the bed did not leave the plate"),
+        mean_of(share_,
+                {.name = "flight_share",
+                 .unit = "1",
+                 .n_of = "cycles",
+                 .convention = "share of the time in flight, each flight counted in the cycle in which it "
+                               "ends; " +
+                               rule,
+                 .source = kSource},
+                kNoCycle)};
+  }
+
+ private:
+  /// Adds to the height how far the beads that were there in the frame before have risen: a bead that is seen
+  /// in one frame and not in the next shifts the centre of mass of those seen, and no bead. \returns whether
+  /// there was any, or this is the first
+  bool rise(const Frame& frame) {
+    double moment = 0, mass = 0;
+    const bool first = before_.empty();
+    before_.resize(frame.position.size(), kNaN);
+    for (std::size_t i = 0; i < frame.position.size(); ++i) {
+      const double z = frame.present(i) ? frame.position[i].z() : kNaN;
+      const double m = info_.mass.empty() ? 1 : info_.mass[i];
+      if (std::isfinite(z - before_[i])) moment += m * (z - before_[i]), mass += m;
+      before_[i] = z;
+    }
+    if (mass > 0) height_ += moment / mass;
+    return first || mass > 0;
+  }
+
+  /// A moment and what carries the bed then, in weights of the bed.
+  void judge(const Moment& m, double support) {
+    if (support < kFlyingSupport) {
+      if (flight_.empty()) thrown_ = std::max(carried_[0], carried_[1]) > kThrowingSupport;
+      flight_.push_back(m);
+    } else {
+      if (since_ && flight_.size() >= 2) land(m.time);
+      // Cycles are counted from the first moment on the plate: a flight that the film's beginning cuts off
+      // counts neither as one nor as time.
+      if (!since_) since_ = m.tick;
+      carried_ = {carried_[1], support};
+      flight_.clear();
+    }
+    while (since_ && m.tick - *since_ >= info_.phases_per_cycle) {
+      share_.add(in_cycle_ / info_.drive->period());
+      in_cycle_ = 0;
+      *since_ += info_.phases_per_cycle;
+    }
+  }
+
+  [[nodiscard]] double turns(double time) const {
+    const double turns = time / info_.drive->period();
+    return turns - std::floor(turns);
+  }
+
+  /// The flight has ended before `carried`, the first moment at which the plate carries the bed again.
+  void land(double carried) {
+    const double frame = carried - flight_.back().time, reach = static_cast<double>(stride_) * frame,
+                 fine = frame / 32;
+    Parabola way(flight_, -HUGE_VAL);
+    auto take_off = taken_off(way, reach, frame);
+    if (!take_off) return;
+    // The first moments may be of a plate that still carried a little: now without them.
+    if (flight_.end()[-2].time > *take_off) {
+      way = Parabola(flight_, *take_off);
+      take_off = taken_off(way, reach, frame);
+      if (!take_off) return;
+    }
+    const double least = above(way, *take_off), latest = carried + reach;
+    double landing = std::max(*take_off + 2 * fine, flight_.back().time - reach);
+    while (landing < latest && above(way, landing) > least) landing += fine;
+    if (landing < latest)
+      landing = boundary(landing - fine, landing, [&](double t) { return above(way, t) > least; });
+    durations_.add(landing - *take_off);
+    in_cycle_ += landing - *take_off;
+    landed_ = landing;
+  }
+
+  /// Height of the parabola over the plate.
+  [[nodiscard]] double above(const Parabola& way, double t) const {
+    return way.height(t) - info_.drive->displacement(turns(t));
+  }
+
+  [[nodiscard]] std::optional<double> taken_off(const Parabola& way, double reach, double frame) const {
+    const double first = flight_.front().time, fine = frame / 32;
+    const Drive& drive = *info_.drive;
+    // A bed that rested has h' = h'' = 0 where it leaves. Noise parts the two zeros, or lifts h' above its
+    // own: the later of both is then nearest.
+    const auto rises = [&](double t) { return way.velocity(t) - drive.velocity(turns(t)); };
+    const auto leaves = [&](double t) {
+      return rises(t) > 0 && drive.omega * drive.omega * drive.displacement(turns(t)) > 1;
+    };
+    const double earliest = std::max(first - 2 * reach, landed_);
+    double inside = first + reach;
+    if (!thrown_)
+      while (inside < flight_.back().time && !leaves(inside)) inside += fine;
+    double take_off = inside;
+    while (take_off > earliest && leaves(take_off)) take_off -= fine;
+    if (take_off < inside) take_off = boundary(take_off + fine, take_off, leaves);
+    const bool fast = thrown_ && rises(take_off) > kThrownSpeed * drive.peak_velocity();
+    if (take_off < inside && take_off > earliest && !fast) return take_off;
+    // A plate that falls away by less than g is never left. Thrown, a bed leaves at any phase: the throw is
+    // part of the second differences up to here.
+    if (!thrown_) return std::nullopt;
+    return std::max(first - reach - frame / 2, landed_);
+  }
+
+  const TrajectoryInfo& info_;
+  std::int64_t stride_;
+  std::string reason_;
+  double height_ = 0;           ///< of the centre of mass, from where it was in the first frame
+  std::vector<double> before_;  ///< of each bead in the last frame; NaN where it was not seen
+  std::deque<Moment> last_;
+  std::optional<std::int64_t> since_;  ///< first tick of the cycle that is being counted
+  double in_cycle_ = 0;                ///< time of flights that ended in it
+  std::vector<Moment> flight_;         ///< moments of the flight under way
+  double landed_ = -HUGE_VAL;          ///< when the flight before it ended
+  std::array<double, 2> carried_{};    ///< support at the last two moments on the plate
+  bool thrown_ = false;                ///< the flight began with a throw
+  BlockAverage durations_, share_;
+};
+
+}  // namespace
+
+std::unique_ptr<Observable> make_bed_flight(const AnalysisContext& context) {
+  return std::make_unique<BedFlight>(context);
+}
+
+}  // namespace twincell

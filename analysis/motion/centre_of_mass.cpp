@@ -1,0 +1,154 @@
+#include "analysis/motion/centre_of_mass.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/motion/tracers.hpp"
+
+namespace twincell {
+namespace {
+
+const char* const kSource = "Bhateja, Sharma & Singh 2016, Table II and Fig. 7";
+
+class CentreOfMass : public Observable {
+ public:
+  explicit CentreOfMass(const AnalysisContext& context)
+      : info_(context.info),
+        context_(context),
+        phases_(context.info.columns.phase ? static_cast<std::size_t>(context.info.phases_per_cycle) : 0),
+        by_phase_(phases_) {}
+
+  void add(const FrameView& view) override {
+    const Frame& frame = view.frame();
+    const double height = centre_of_mass_height(frame, info_.mass);
+    if (!std::isfinite(height)) return;
+    if (phases_ == 0) {
+      mean_.add(height);
+      return;
+    }
+    if (frame.phase < 0 || static_cast<std::size_t>(frame.phase) >= phases_) return;
+    by_phase_[static_cast<std::size_t>(frame.phase)].add(height);
+    if (frame.cycle != cycle_) {
+      cycle_ = frame.cycle;
+      sum_ = 0;
+      count_ = 0;
+    }
+    sum_ += height;
+    // A part of a cycle would weigh the phases it has.
+    if (++count_ == phases_) {
+      by_cycle_.push_back(sum_ / static_cast<double>(phases_));
+      mean_.add(by_cycle_.back());
+    }
+  }
+
+  [[nodiscard]] std::vector<Result> results() const override {
+    const char* of = phases_ > 0 ? "cycles" : "frames";
+    const std::string none = phases_ > 0 ? "no whole cycle" : "no frame holds a bead";
+    const std::string rule =
+        fmt::format("mean over {} of the height of the centre of mass above the plate's mean",
+                    phases_ > 0 ? "whole cycles" : "frames");
+    const Result h = mean_of(
+        mean_, {.name = "h_cm", .unit = "sigma", .n_of = of, .convention = rule, .source = kSource}, none);
+    std::vector<double> phases;
+    for (const BlockAverage& phase : by_phase_) phases.push_back(phase.mean());
+    const std::string no_phase = phases_ > 0 ? none : "the frames have no phase";
+    return {h,
+            array_of(phases,
+                     {.name = "h_cm_k",
+                      .unit = "sigma",
+                      .n_of = "phases",
+                      .convention = "height of the centre of mass at each phase, mean over cycles",
+                      .source = kSource},
+                     no_phase),
+            array_of(by_cycle_,
+                     {.name = "h_cm_j",
+                      .unit = "sigma",
+                      .n_of = "cycles",
+                      .convention = "height of the centre of mass, mean of each whole cycle",
+                      .source = kSource},
+                     no_phase),
+            lift("delta_h_cm", h, "sigma", 1), lift("delta_h_bar", h, "1", velocity_scale())};
+  }
+
+ private:
+  /// V_p^2/g in sigma; NaN if the drive is not known or at rest.
+  [[nodiscard]] double velocity_scale() const {
+    if (!info_.drive || info_.drive->peak_velocity() == 0) return std::numeric_limits<double>::quiet_NaN();
+    return info_.drive->peak_velocity() * info_.drive->peak_velocity();
+  }
+
+  [[nodiscard]] Result lift(const std::string& name, const Result& h, const std::string& unit,
+                            double scale) const {
+    if (!h.present()) return absent_result(name, h.absent, kSource);
+    if (!context_.rest_height)
+      return absent_result(name, "the height at rest is neither given nor seen: " + context_.no_rest_height,
+                           kSource);
+    const double rest = *context_.rest_height;
+    if (std::isnan(scale))
+      return absent_result(name, "the trajectory does not say how it was driven", kSource);
+    Result r = h;
+    r.name = name;
+    r.unit = unit;
+    r.values = {(h.value() - rest) / scale};
+    if (r.interval) {
+      r.interval->low = (r.interval->low - rest) / scale;
+      r.interval->high = (r.interval->high - rest) / scale;
+    }
+    r.convention = fmt::format("h_cm above its height at rest, {:.6g} sigma ({}){}; {}", rest,
+                               context_.options.rest_height ? "as given" : "of the first frame, at rest",
+                               scale == 1 && unit != "1" ? "" : ", over V_p^2/g", h.convention);
+    return r;
+  }
+
+  const TrajectoryInfo& info_;
+  const AnalysisContext& context_;
+  std::size_t phases_;
+  std::vector<BlockAverage> by_phase_;
+  std::vector<double> by_cycle_;
+  std::int64_t cycle_ = -1;
+  double sum_ = 0;
+  std::size_t count_ = 0;
+  BlockAverage mean_;
+};
+
+}  // namespace
+
+std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& frame, std::string& why_not) {
+  const auto plate = plate_height(info, frame);
+  const double height = centre_of_mass_height(frame, info.mass);
+  if (!plate || !std::isfinite(height)) {
+    why_not = plate ? "the first frame holds no bead" : "the plate's height is not known";
+    return std::nullopt;
+  }
+  if (frame.velocity.empty()) {
+    why_not = "the trajectory has no velocities by which to see whether its first frame is a bed at rest";
+    return std::nullopt;
+  }
+  Vec3 of_plate = Vec3::Zero();
+  if (info.drive && frame.phase >= 0 && info.phases_per_cycle > 0)
+    of_plate[static_cast<int>(info.drive->axis)] =
+        info.drive->velocity(static_cast<double>(frame.phase) / info.phases_per_cycle);
+  double riding = 0, still = 0, n = 0;
+  for (std::size_t i = 0; i < frame.velocity.size(); ++i) {
+    if (!frame.present(i) || !frame.velocity[i].allFinite()) continue;
+    riding += (frame.velocity[i] - of_plate).squaredNorm() / 2;
+    still += frame.velocity[i].squaredNorm() / 2;
+    ++n;
+  }
+  // A bed at the top of its flight stands still as well, but not at time 0.
+  const double energy = (frame.time == 0 ? std::min(riding, still) : riding) / n;
+  if (energy <= kAtRest) return height - *plate;
+  why_not = fmt::format(
+      "beads of the first frame move by {:.2g} m g sigma each against the plate; at most {:g} at rest",
+      energy, kAtRest);
+  return std::nullopt;
+}
+
+std::unique_ptr<Observable> make_centre_of_mass(const AnalysisContext& context) {
+  return std::make_unique<CentreOfMass>(context);
+}
+
+}  // namespace twincell

@@ -1,0 +1,331 @@
+#include "analysis/motion/convection.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/motion/rolls.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kMostRows = 4096;  // one bead on its way to the moon makes no table of that height
+constexpr std::size_t kMostBlocks = 20;
+constexpr std::size_t kFewestBlocks = 4;
+/// A roll carries at least this far in the whole run, sigma, across the side of a cell: half a pixel of paper
+/// 1's camera. Less is the creep of a bed that yields elastically.
+constexpr double kLeastCarried = 1.0 / 30;
+const char* const kSource = "Fortini & Huang 2015, sec. V";
+
+/// Sums of displacements per cell.
+struct FieldSums {
+  std::vector<double> ux, uz;
+  std::vector<std::size_t> n;
+  std::size_t cycles = 0;
+
+  void grow(std::size_t size) {
+    if (n.size() >= size) return;
+    ux.resize(size, 0);
+    uz.resize(size, 0);
+    n.resize(size, 0);
+  }
+  void add(const FieldSums& other, int sign = 1) {
+    grow(other.n.size());
+    for (std::size_t c = 0; c < other.n.size(); ++c) {
+      ux[c] += sign * other.ux[c];
+      uz[c] += sign * other.uz[c];
+      n[c] = sign > 0 ? n[c] + other.n[c] : n[c] - other.n[c];
+    }
+    cycles = sign > 0 ? cycles + other.cycles : cycles - other.cycles;
+  }
+};
+
+class Convection : public Observable {
+ public:
+  explicit Convection(const AnalysisContext& context)
+      : box_(context.info.box), has_cycles_(context.info.columns.phase) {
+    const double width = box_.size().x();
+    columns_ = static_cast<std::size_t>(std::max(1.0, std::round(width / context.options.field_cell)));
+    cell_ = width / static_cast<double>(columns_);
+    // Close packing: 2/sqrt(3) discs to sigma^2, sqrt(2) spheres to sigma^3.
+    full_ = cell_ * cell_ * (box_.dimension == 2 ? 2 / std::sqrt(3.0) : std::sqrt(2.0) * box_.size().y());
+    blocks_.emplace_back();
+  }
+
+  void add(const FrameView& view) override {
+    const Frame& frame = view.frame();
+    if (!has_cycles_ || frame.phase != 0) return;
+    if (frame.cycle == last_cycle_ + 1 && !last_.empty()) add_cycle(frame);
+    last_cycle_ = frame.cycle;
+    last_.assign(frame.position.size(), Vec3::Constant(kNaN));
+    for (std::size_t i = 0; i < frame.position.size(); ++i)
+      if (frame.present(i)) last_[i] = frame.position[i];
+  }
+
+  [[nodiscard]] std::vector<Result> results() const override {
+    FieldSums total;
+    for (const FieldSums& block : blocks_) total.add(block);
+    const DisplacementField field = mean_field(total, cells_of(total));
+    const std::string why = !has_cycles_        ? "the frames have no cycle number"
+                            : total.cycles == 0 ? "no two consecutive beginnings of cycles"
+                            : field.rows == 0   ? "no cell has enough displacements"
+                                                : "";
+    const std::string rule = fmt::format(
+        "displacements between beginnings of consecutive cycles, averaged in cells of {:.4g} sigma that are "
+        "at least {:.2g} full on average and hold at least {} displacements",
+        cell_, kFieldFilling, kFieldSamples);
+    std::vector<Result> all;
+    const auto add = [&](Result r, const std::string& absent) {
+      r.convention = r.convention.empty() ? rule : r.convention + "; " + rule;
+      r.source = kSource;
+      if (r.n_of.empty()) r.n_of = "cycles";
+      if (r.n == 0) r.n = total.cycles;
+      all.push_back(absent.empty() ? r : absent_result(r.name, absent, r.source));
+    };
+
+    Result u{.name = "displacement_field", .unit = "sigma per cycle"};
+    Result x{.name = "field_x", .unit = "sigma", .convention = "centres of the cells"};
+    Result z{.name = "field_z", .unit = "sigma", .convention = "centres of the cells"};
+    for (std::size_t c = 0; c < field.ux.size(); ++c)
+      u.values.insert(u.values.end(), {field.ux[c], field.uz[c]});
+    u.shape = {field.rows, field.columns, 2};
+    for (std::size_t c = 0; c < field.columns; ++c)
+      x.values.push_back(box_.lower.x() + (static_cast<double>(c) + 0.5) * cell_);
+    for (std::size_t r = 0; r < field.rows; ++r)
+      z.values.push_back(box_.lower.z() + (static_cast<double>(r) + 0.5) * cell_);
+    x.shape = {x.values.size()};
+    z.shape = {z.values.size()};
+    for (const Result& r : {u, x, z}) add(r, why);
+    if (field.rows < 2 || field.columns < 2) {
+      for (const char* name : {"circulation_left", "circulation_right", "rolls", "convection_sense"})
+        add({.name = name}, why.empty() ? "the field is less than two cells wide or high" : why);
+      return all;
+    }
+
+    const Circulation circulation = circulation_of(field);
+    const bool knows_left = std::isfinite(circulation.left), knows_right = std::isfinite(circulation.right);
+    const std::string no_cells = "no four adjoining cells have enough displacements";
+    if (why.empty() && !knows_left && !knows_right) {
+      for (const char* name : {"circulation_left", "circulation_right", "rolls", "convection_sense"})
+        add({.name = name}, no_cells);
+      return all;
+    }
+    const auto left = interval(total, circulation.left, [](const Circulation& c) { return c.left; });
+    const auto right = interval(total, circulation.right, [](const Circulation& c) { return c.right; });
+    const std::string sign = "counter-clockwise (x right, z up) is positive";
+    const std::string few = fmt::format("fewer than {} blocks of cycles", kFewestBlocks);
+    add({.name = "circulation_left",
+         .values = {circulation.left},
+         .unit = "sigma^2 per cycle",
+         .interval = left,
+         .no_interval = left ? "" : few,
+         .convention = sign},
+        why.empty() && !knows_left ? no_cells + " in this half" : why);
+    add({.name = "circulation_right",
+         .values = {circulation.right},
+         .unit = "sigma^2 per cycle",
+         .interval = right,
+         .no_interval = right ? "" : few,
+         .convention = sign},
+        why.empty() && !knows_right ? no_cells + " in this half" : why);
+    const bool enough = blocks_.size() >= kFewestRollBlocks;
+    const std::string untold = !why.empty()                   ? why
+                               : !(knows_left && knows_right) ? no_cells + " in one half"
+                               : !left                        ? few + ": the sense cannot be told from chance"
+                                                              : "";
+    const double least = kLeastCarried * cell_ / static_cast<double>(total.cycles);
+    add({.name = "rolls",
+         .values = {why.empty() && enough ? static_cast<double>(count_rolls(shares(total), least)) : kNaN},
+         .unit = "1",
+         .no_interval = "a count of what is no chance",
+         .convention =
+             fmt::format("regions of one sense of the stream function psi of the circulation, psi = 0 at "
+                         "walls, floor and "
+                         "surface; |t| of psi over {} blocks of cycles exceeds what {:g} % of 999 draws with "
+                         "random signs of "
+                         "the blocks reach anywhere: a bed without steady flow shows a roll with that "
+                         "probability; |psi| at "
+                         "least {:g} of the largest and {:.3g} sigma^2 in the whole run",
+                         blocks_.size(), 100 * kRollFalseAlarm, kSmallestRoll, kLeastCarried * cell_)},
+        why.empty() && !enough
+            ? fmt::format("fewer than {} blocks of cycles: rolls cannot be told from chance",
+                          kFewestRollBlocks)
+            : why);
+    Result sense{.name = "convection_sense"};
+    if (untold.empty()) sense.text = words(*left, *right);
+    sense.convention = "from the signs of both circulations where their intervals leave out 0";
+    add(sense, untold);
+    return all;
+  }
+
+ private:
+  void add_cycle(const Frame& frame) {
+    if (blocks_.back().cycles == block_length_) {
+      if (blocks_.size() == kMostBlocks) {
+        for (std::size_t b = 0; b < kMostBlocks / 2; ++b) {
+          FieldSums two = std::move(blocks_[2 * b]);
+          two.add(blocks_[2 * b + 1]);
+          blocks_[b] = std::move(two);
+        }
+        blocks_.resize(kMostBlocks / 2);
+        block_length_ *= 2;
+      }
+      blocks_.emplace_back();
+    }
+    FieldSums& block = blocks_.back();
+    ++block.cycles;
+    for (std::size_t i = 0; i < frame.position.size(); ++i) {
+      if (!frame.present(i) || !frame.position[i].allFinite() || !last_[i].allFinite()) continue;
+      const Vec3 step = frame.position[i] - last_[i];
+      const Vec3 middle = box_.wrap(last_[i] + 0.5 * step);
+      const double column = std::floor((middle.x() - box_.lower.x()) / cell_);
+      const double row = std::floor((middle.z() - box_.lower.z()) / cell_);
+      // Beads touch walls with their surface, so that no centre is outside; one that is has no cell.
+      if (column < 0 || column >= static_cast<double>(columns_) || row < 0 || row >= kMostRows) continue;
+      const std::size_t c = static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column);
+      block.grow((static_cast<std::size_t>(row) + 1) * columns_);
+      block.ux[c] += step.x();
+      block.uz[c] += step.z();
+      ++block.n[c];
+    }
+  }
+
+  /// Cells that hold enough in all cycles together. Fields of fewer cycles keep them: a cell that came and
+  /// went would be taken for a change of the flow.
+  [[nodiscard]] std::vector<bool> cells_of(const FieldSums& total) const {
+    const double least = std::max(static_cast<double>(kFieldSamples),
+                                  kFieldFilling * full_ * static_cast<double>(total.cycles));
+    std::vector<bool> enough;
+    for (const std::size_t n : total.n) enough.push_back(static_cast<double>(n) >= least);
+    while (!enough.empty() && !enough.back()) enough.pop_back();
+    return enough;
+  }
+
+  [[nodiscard]] DisplacementField mean_field(const FieldSums& sums, const std::vector<bool>& cells) const {
+    DisplacementField field{
+        .columns = columns_, .dx = cell_, .dz = cell_, .periodic = box_.periodic(Axis::x)};
+    field.rows = (cells.size() + columns_ - 1) / columns_;
+    field.ux.assign(field.rows * columns_, kNaN);
+    field.uz.assign(field.rows * columns_, kNaN);
+    for (std::size_t c = 0; c < cells.size() && c < sums.n.size(); ++c) {
+      if (!cells[c] || sums.n[c] == 0) continue;
+      field.ux[c] = sums.ux[c] / static_cast<double>(sums.n[c]);
+      field.uz[c] = sums.uz[c] / static_cast<double>(sums.n[c]);
+    }
+    return field;
+  }
+
+  /// Values of `statistic` with one block of cycles left out at a time; empty with too few full blocks.
+  template <class Statistic>
+  [[nodiscard]] std::vector<double> left_out(const FieldSums& total, const Statistic& statistic) const {
+    std::vector<double> values;
+    for (const FieldSums& block : blocks_) {
+      if (block.cycles < block_length_) continue;
+      FieldSums rest = total;
+      rest.add(block, -1);
+      values.push_back(statistic(mean_field(rest, cells_of(total))));
+    }
+    if (values.size() < kFewestBlocks) values.clear();
+    return values;
+  }
+
+  /// Standard error of the jackknife.
+  static double spread(const std::vector<double>& values) {
+    double mean = 0, sum = 0;
+    const double n = static_cast<double>(values.size());
+    for (const double v : values) mean += v / n;
+    for (const double v : values) sum += (v - mean) * (v - mean);
+    return std::sqrt((n - 1) / n * sum);
+  }
+
+  template <class Part>
+  [[nodiscard]] std::optional<Interval> interval(const FieldSums& total, double value,
+                                                 const Part& part) const {
+    const auto values = left_out(total, [&](const DisplacementField& f) { return part(circulation_of(f)); });
+    if (values.empty() || !std::ranges::all_of(values, [](double v) { return std::isfinite(v); }))
+      return std::nullopt;
+    // The strength of a roll outlasts a block. Leaving blocks out turns signs about, which a correlation does
+    // not see.
+    const double tau = correlation_time(values), count = static_cast<double>(values.size());
+    const double half =
+        student_t_95(std::max(1.0, count / (2 * tau) - 1)) * spread(values) * std::sqrt(2 * tau);
+    return Interval{
+        value - half, value + half, 0.95,
+        fmt::format("jackknife over {} blocks of cycles, correlation time {:.3g} blocks", count, tau)};
+  }
+
+  /// The blocks' shares of the mean field: in cells that a block hardly visits it has little to say.
+  [[nodiscard]] CirculationBlocks shares(const FieldSums& total) const {
+    const std::vector<bool> cells = cells_of(total);
+    CirculationBlocks shares;
+    for (const FieldSums& block : blocks_) {
+      FieldSums share = total;
+      for (std::size_t c = 0; c < share.n.size(); ++c) {
+        const auto count = static_cast<double>(blocks_.size());
+        share.ux[c] = c < block.n.size() ? count * block.ux[c] : 0;
+        share.uz[c] = c < block.n.size() ? count * block.uz[c] : 0;
+      }
+      const Circulation circulation = circulation_of(mean_field(share, cells));
+      shares.columns = circulation.columns;
+      shares.blocks.push_back(circulation.plaquettes);
+    }
+    shares.periodic = box_.periodic(Axis::x);
+    return shares;
+  }
+
+  static std::string words(const Interval& left, const Interval& right) {
+    const auto sign = [](const Interval& i) { return i.low > 0 ? 1 : i.high < 0 ? -1 : 0; };
+    const int l = sign(left), r = sign(right);
+    if (l > 0 && r < 0) return "down at the walls, up in the middle";
+    if (l < 0 && r > 0) return "up at the walls, down in the middle";
+    if (l > 0 && r > 0) return "one sense, counter-clockwise";
+    if (l < 0 && r < 0) return "one sense, clockwise";
+    if (l != 0)
+      return l > 0 ? "left half counter-clockwise, right half none" : "left half clockwise, right half none";
+    if (r != 0)
+      return r > 0 ? "right half counter-clockwise, left half none" : "right half clockwise, left half none";
+    return "none";
+  }
+
+  const Box& box_;
+  bool has_cycles_;
+  std::size_t columns_ = 1;
+  double cell_ = 1, full_ = 1;
+  std::vector<Vec3> last_;
+  std::int64_t last_cycle_ = -2;
+  std::vector<FieldSums> blocks_;
+  std::size_t block_length_ = 2;  // beds may repeat after two cycles: a block of one would see half of that
+};
+
+}  // namespace
+
+Circulation circulation_of(const DisplacementField& field) {
+  Circulation c;
+  if (field.rows < 2 || field.columns < 2) return c;
+  c.columns = field.periodic ? field.columns : field.columns - 1;
+  const std::size_t rows = field.rows - 1;
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t k = 0; k < c.columns; ++k) {
+      const std::size_t a = r * field.columns + k, b = r * field.columns + (k + 1) % field.columns;
+      const std::size_t a2 = a + field.columns, b2 = b + field.columns;
+      const double loop = 0.5 * (field.dx * (field.ux[a] + field.ux[b] - field.ux[a2] - field.ux[b2]) +
+                                 field.dz * (field.uz[b] + field.uz[b2] - field.uz[a] - field.uz[a2]));
+      c.plaquettes.push_back(loop);
+      if (!std::isfinite(loop)) continue;
+      // Plaquette k lies on the border of columns k and k + 1.
+      const std::size_t twice = 2 * (k + 1);
+      const double to_left = twice < field.columns ? 1 : twice == field.columns ? 0.5 : 0;
+      if (to_left > 0) c.left = (std::isfinite(c.left) ? c.left : 0) + to_left * loop;
+      if (to_left < 1) c.right = (std::isfinite(c.right) ? c.right : 0) + (1 - to_left) * loop;
+    }
+  return c;
+}
+
+std::unique_ptr<Observable> make_convection(const AnalysisContext& context) {
+  return std::make_unique<Convection>(context);
+}
+
+}  // namespace twincell

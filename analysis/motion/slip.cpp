@@ -1,0 +1,287 @@
+#include "analysis/motion/slip.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace twincell {
+namespace {
+
+constexpr std::size_t kDirections = 36;
+constexpr double kWithin = 15;  ///< degrees about a direction
+
+/// Bonds of one period that moved, by direction.
+struct Moved {
+  double all = 0, oblique = 0, vertical = 0, horizontal = 0;
+};
+
+/// Direction of a displacement in the (x, z) plane as a line, degrees in [0, 180).
+double direction_of(const Vec3& d) {
+  const double degrees = std::atan2(d.z(), d.x()) * 180 / std::numbers::pi;
+  const double line = degrees < 0 ? degrees + 180 : degrees;
+  return line >= 180 ? 0 : line;
+}
+
+double between_lines(double a, double b) {
+  const double d = std::abs(a - b);
+  return std::min(d, 180 - d);
+}
+
+/// 99th percentile of the heights of the beads in `frame`: the surface, without those that fly.
+double free_surface(const Frame& frame) {
+  std::vector<double> z;
+  for (std::size_t i = 0; i < frame.position.size(); ++i)
+    if (frame.present(i) && std::isfinite(frame.position[i].z())) z.push_back(frame.position[i].z());
+  if (z.empty()) return -INFINITY;
+  const auto at = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(z.size() - 1));
+  std::nth_element(z.begin(), z.begin() + at, z.end());
+  return z[static_cast<std::size_t>(at)];
+}
+
+class Slip : public Observable {
+ public:
+  explicit Slip(const AnalysisContext& context) : context_(context) {}
+
+  void add(const FrameView& view) override {
+    const Frame& frame = view.frame();
+    if (frame.phase != 0 || frame.cycle < 0) return;
+    if (have_start_ && frame.cycle == start_.cycle + 1) close_period(frame);
+    start_ = frame;
+    neighbours_ = view.neighbours();
+    have_start_ = true;
+  }
+
+  [[nodiscard]] std::vector<Result> results() const override {
+    const std::string source = "Fortini & Huang 2015, sec. V";
+    const std::string reason = why_none();
+    if (!reason.empty()) {
+      std::vector<Result> none;
+      for (const char* name :
+           {"p_s", "slips", "p_s_j", "slip_directions", "slip_oblique", "slip_vertical", "slip_horizontal"})
+        none.push_back(absent_result(name, reason, source));
+      return none;
+    }
+    std::vector<Result> all;
+    add_probability(all, source);
+    add_directions(all, source);
+    return all;
+  }
+
+ private:
+  [[nodiscard]] Vec3 moved(const Frame& end, std::size_t i) const {
+    return context_.info.box.nearest_image(end.position[i] - start_.position[i]);
+  }
+  [[nodiscard]] bool seen(const Frame& end, std::size_t i) const {
+    return start_.present(i) && end.present(i) && start_.position[i].allFinite() &&
+           end.position[i].allFinite();
+  }
+
+  void close_period(const Frame& end) {
+    const double deepest = free_surface(start_) - kSlipDepth;
+    const std::size_t n = start_.position.size();
+    std::size_t eligible = 0, slipping = 0;
+    slips_now_.assign(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!seen(end, i) || start_.position[i].z() > deepest) continue;
+      std::size_t known = 0, broken = 0;
+      const Vec3 own = moved(end, i);
+      neighbours_.for_each(i, [&](std::size_t j, const Vec3&) {
+        if (!seen(end, j)) return;
+        ++known;
+        broken += (moved(end, j) - own).norm() > kSlipDistance ? 1 : 0;
+      });
+      if (known < kSlipBonds) {
+        ++lost_;
+        continue;
+      }
+      ++eligible;
+      if (broken >= kSlipBonds) {
+        ++slipping;
+        slips_now_[i] = 1;
+      }
+    }
+    ++periods_;
+    if (eligible == 0) return;
+    slips_ += slipping;
+    trials_ += eligible;
+    const double fraction = static_cast<double>(slipping) / static_cast<double>(eligible);
+    fraction_.add(fraction);
+    p_s_j_.push_back(fraction);
+    if (slipping > 0) count_directions(end);
+  }
+
+  /// Each bond once, though both of its beads may slip.
+  void count_directions(const Frame& end) {
+    Moved now;
+    for (std::size_t i = 0; i < slips_now_.size(); ++i) {
+      if (slips_now_[i] == 0) continue;
+      const Vec3 own = moved(end, i);
+      neighbours_.for_each(i, [&](std::size_t j, const Vec3&) {
+        if (!seen(end, j) || (slips_now_[j] != 0 && j < i)) return;
+        const Vec3 d = moved(end, j) - own;
+        if (!(d.norm() > kSlipDistance)) return;
+        const double line = direction_of(d);
+        directions_[static_cast<std::size_t>(line * kDirections / 180 + 0.5) % kDirections] += 1;
+        now.all += 1;
+        now.oblique += std::min(between_lines(line, 60), between_lines(line, 120)) <= kWithin ? 1 : 0;
+        now.vertical += between_lines(line, 90) < kWithin ? 1 : 0;
+        now.horizontal += between_lines(line, 0) <= kWithin ? 1 : 0;
+      });
+    }
+    moved_.push_back(now);
+  }
+
+  [[nodiscard]] std::string why_none() const {
+    if (!context_.info.columns.phase) return "the frames are not locked to the drive's phase";
+    if (periods_ == 0)
+      return "slip is counted from the beginning of a cycle to that of the next, and no two consecutive ones "
+             "are there";
+    if (trials_ == 0)
+      return fmt::format(
+          "no eligible bead: none lies {:g} sigma below the free surface with two neighbours in {} periods",
+          kSlipDepth, periods_);
+    return "";
+  }
+
+  /// Beads that slip together are not independent trials. The scatter from period to period says by how much.
+  [[nodiscard]] std::pair<double, std::string> design_effect() const {
+    const auto interval = fraction_.interval("periods");
+    if (!interval)
+      return {1, "beads and periods taken as independent: " + fraction_.why_no_interval("periods")};
+    const double p = fraction_.mean();
+    const double error = (interval->high - interval->low) / 2 / student_t_95(1e9);
+    const double variance = error * error;
+    const double independent = p * (1 - p) / static_cast<double>(trials_);
+    const double effect = independent > 0 ? std::max(1.0, variance / independent) : 1;
+    return {effect,
+            fmt::format("counts divided by {:.3g}, the scatter between periods over that of independent "
+                        "beads, correlation time {:.3g} periods",
+                        effect, fraction_.correlation_time())};
+  }
+
+  void add_probability(std::vector<Result>& all, const std::string& source) const {
+    const std::string rule = fmt::format(
+        "at least {} neighbours at its start moved relative to the bead by more than {:g} sigma in one "
+        "period; beads "
+        "{:g} sigma or more below the 99th percentile of heights; {}",
+        kSlipBonds, kSlipDistance, kSlipDepth, neighbour_rule_text(context_));
+    Result p_s{
+        .name = "p_s", .values = {fraction_.mean()}, .unit = "1", .n = trials_, .n_of = "bead-periods"};
+    const auto trials = static_cast<double>(trials_);
+    if (slips_ == 0) {
+      p_s.interval = binomial_interval(0, trials, "bead-periods");
+    } else {
+      const auto [effect, how] = design_effect();
+      const double counts = fraction_.mean() * trials;
+      p_s.interval = effect > 1 && counts < trials
+                         ? wilson_interval(counts / effect, trials / effect, "effective bead-periods")
+                         : binomial_interval(counts, trials, "bead-periods");
+      p_s.interval->method += "; " + how;
+    }
+    p_s.convention = fmt::format("mean over {} periods of slipping/eligible; {} slips in {} trials; {}",
+                                 p_s_j_.size(), slips_, trials_, rule);
+    if (p_s_j_.size() < periods_)
+      p_s.convention += fmt::format("; {} periods without an eligible bead", periods_ - p_s_j_.size());
+    if (lost_ > 0)
+      p_s.convention += fmt::format("; {} deep bead-periods with fewer than two neighbours left out", lost_);
+    p_s.source = source;
+
+    Result slips{.name = "slips",
+                 .values = {static_cast<double>(slips_)},
+                 .unit = "1",
+                 .n = trials_,
+                 .n_of = "bead-periods"};
+    slips.convention = rule;
+    slips.no_interval = "a count, exact; its probability is p_s";
+    slips.source = source;
+
+    Result each{.name = "p_s_j",
+                .values = p_s_j_,
+                .shape = {p_s_j_.size()},
+                .unit = "1",
+                .n = p_s_j_.size(),
+                .n_of = "periods"};
+    each.convention = "slipping/eligible in each period, in order; " + rule;
+    each.no_interval = "single periods; p_s has the interval of their mean";
+    each.source = source;
+    all.push_back(std::move(p_s));
+    all.push_back(std::move(slips));
+    all.push_back(std::move(each));
+  }
+
+  void add_directions(std::vector<Result>& all, const std::string& source) const {
+    if (moved_.empty()) {
+      for (const char* name : {"slip_directions", "slip_oblique", "slip_vertical", "slip_horizontal"})
+        all.push_back(absent_result(name, fmt::format("no bead slipped in {} trials", trials_), source));
+      return;
+    }
+    double bonds = 0;
+    for (const Moved& m : moved_) bonds += m.all;
+    Result histogram{.name = "slip_directions",
+                     .values = {directions_.begin(), directions_.end()},
+                     .shape = {kDirections},
+                     .unit = "1",
+                     .n = static_cast<std::size_t>(bonds),
+                     .n_of = "bonds"};
+    histogram.convention = fmt::format(
+        "number of bonds of slipping beads by the direction in which they moved: about 0 (horizontal), "
+        "{:g}, ... degrees, 90 is vertical",
+        180.0 / kDirections);
+    histogram.no_interval = "counts, exact";
+    histogram.source = source;
+    all.push_back(std::move(histogram));
+    add_share(all, "slip_oblique", &Moved::oblique, "+-60 degrees; 1/3 without a preferred direction",
+              source);
+    add_share(all, "slip_vertical", &Moved::vertical, "90 degrees; 1/6 without a preferred direction",
+              source);
+    add_share(all, "slip_horizontal", &Moved::horizontal, "0 degrees; 1/6 without a preferred direction",
+              source);
+  }
+
+  void add_share(std::vector<Result>& all, const std::string& name, double Moved::*kind,
+                 const std::string& about, const std::string& source) const {
+    std::vector<std::size_t> every(moved_.size());
+    for (std::size_t p = 0; p < every.size(); ++p) every[p] = p;
+    const auto share = [&](const std::vector<std::size_t>& periods) {
+      double some = 0, bonds = 0;
+      for (const std::size_t p : periods) {
+        some += moved_[p].*kind;
+        bonds += moved_[p].all;
+      }
+      return some / bonds;
+    };
+    Result r{.name = name, .values = {share(every)}, .unit = "1", .n = moved_.size(), .n_of = "periods"};
+    r.interval = bootstrap_interval(moved_.size(), share, "periods with slips");
+    if (!r.interval)
+      r.no_interval = moved_.size() < 2 ? "slips in one period only" : "the same in every period with slips";
+    r.convention =
+        fmt::format("share of the moved bonds of slipping beads within {:g} degrees of {}", kWithin, about);
+    r.source = source;
+    all.push_back(std::move(r));
+  }
+
+  const AnalysisContext& context_;
+  Frame start_;
+  Neighbours neighbours_;
+  bool have_start_ = false;
+  std::size_t periods_ = 0;
+  std::size_t lost_ = 0;
+  std::size_t slips_ = 0;
+  std::size_t trials_ = 0;
+  std::vector<char> slips_now_;
+  BlockAverage fraction_;
+  std::vector<double> p_s_j_;
+  std::array<double, kDirections> directions_ = {};
+  std::vector<Moved> moved_;
+};
+
+}  // namespace
+
+std::unique_ptr<Observable> make_slip(const AnalysisContext& context) {
+  return std::make_unique<Slip>(context);
+}
+
+}  // namespace twincell

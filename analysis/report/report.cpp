@@ -1,0 +1,561 @@
+#include "analysis/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <string_view>
+
+#include "analysis/observable/results.hpp"
+#include "analysis/report/figures.hpp"
+#include "analysis/report/report_data.hpp"
+#include "core/atomic_file.hpp"
+#include "core/escape.hpp"
+#include "core/json_text.hpp"
+#include "core/provenance.hpp"
+
+namespace twincell {
+
+namespace embedded {  // files of analysis/report/, put into the program by cmake/embed.cmake
+extern const std::string_view page_css, page_js, plotly_js, plotly_license;
+}
+
+namespace {
+
+/// Escaped, with s_b, q6 and the like set as symbols with an index.
+std::string typeset(const std::string& text) {
+  return std::regex_replace(
+      std::regex_replace(html_text(text), std::regex("\\b([sTNK])_([a-z])\\b"), "$1<sub>$2</sub>"),
+      std::regex("\\bq6\\b"), "q<sub>6</sub>");
+}
+
+std::string number(double v, const char* absent = "–") {
+  return std::isfinite(v) ? fmt::format("{:.4g}", v) : absent;
+}
+
+/// Value and, on a line of its own, its interval; or "absent".
+std::string value_and_interval(const Run& run, const std::string& name) {
+  const Result& r = find_result(run.results, name);
+  if (!r.present()) return "absent";
+  std::string html = fmt::format("{:.3g}", r.value());
+  if (r.interval)
+    html += fmt::format("<br><small>[{:.3g}, {:.3g}]</small>", r.interval->low, r.interval->high);
+  return html;
+}
+
+std::string phases_of(const std::vector<Run>& runs, const std::vector<std::size_t>& members) {
+  if (members.empty()) return "no run";
+  const BedPhase common = common_phase(runs, members);
+  if (common != BedPhase::undetermined || members.size() == 1) return phase_name(common);
+  std::vector<std::string> names;
+  names.reserve(members.size());
+  for (const std::size_t i : members) names.push_back(phase_name(runs[i].phase));
+  return fmt::format("{}", fmt::join(names, " / "));
+}
+
+/// What the end of the text says: where the sides differ.
+std::string conclusion(const std::vector<Run>& runs, const std::vector<Match>& matches) {
+  std::vector<std::string> differ;
+  std::size_t paired = 0, same = 0;
+  for (const Match& match : matches) {
+    const std::string word = verdict(runs, match);
+    if (!match.experiments.empty() && !match.simulations.empty()) ++paired;
+    if (word == "same") ++same;
+    if (word == "differ")
+      differ.push_back(fmt::format("Gamma {:.3g} ({} in the experiment, {} in the simulation)", match.gamma,
+                                   phases_of(runs, match.experiments), phases_of(runs, match.simulations)));
+  }
+  if (paired == 0) return "No drive strength was run on both sides.";
+  std::string text = fmt::format("Same phase on both sides at {} of {} drive strengths.", same, paired);
+  if (!differ.empty()) text += fmt::format(" They differ at {}.", fmt::join(differ, "; "));
+  if (const std::size_t open = paired - same - differ.size(); open > 0)
+    text += fmt::format(" Undetermined at {}.", open);
+  return text;
+}
+
+nlohmann::json or_null(double v) {
+  return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr);
+}
+
+/// Names of the results that are one number, in the order of the observables.
+std::vector<std::string> scalar_names(const std::vector<Run>& runs) {
+  std::vector<std::string> names;
+  for (const std::string& name : result_names()) {
+    const auto is_number = [&](const Run& run) {
+      const Result* r = seek_result(run.results, name);
+      return r != nullptr && r->present() && r->shape.empty() && r->text.empty();
+    };
+    if (std::any_of(runs.begin(), runs.end(), is_number)) names.push_back(name);
+  }
+  return names;
+}
+
+double value_of(const Result* r) {
+  return r != nullptr ? r->value() : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string csv_number(double v) {
+  return std::isfinite(v) ? fmt::format("{:.9g}", v) : std::string();
+}
+
+/// One line per run; an empty field is an absent value.
+std::string runs_csv(const std::vector<Run>& runs) {
+  const auto names = scalar_names(runs);
+  std::string text = "side,run,start,gamma,k_m,n_l,n_beads,n_frames,phase";
+  for (const std::string& name : names) text += fmt::format(",{0},{0}_low,{0}_high", name);
+  text += "\n";
+  for (const Run& run : runs) {
+    text += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{},{},{}", side_name(run.side), csv_field(run.name),
+                        csv_field(run.start), run.gamma, run.k_m, run.n_l, run.n_beads, run.n_frames,
+                        phase_name(run.phase));
+    for (const std::string& name : names) {
+      const Result* r = seek_result(run.results, name);
+      text += fmt::format(",{}", csv_number(value_of(r)));
+      text += r != nullptr && r->interval ? fmt::format(",{:.9g},{:.9g}", r->interval->low, r->interval->high)
+                                          : ",,";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// One line per match and number; an empty field was not determined.
+std::string differences_csv(const Comparison& c) {
+  std::string text =
+      "gamma,number,unit,experiment,experiment_error,simulation,simulation_error,difference,filmed,camera,"
+      "statistics,"
+      "seeds,tracers,defects,remainder,error,attribution\n";
+  const auto part = [](const std::optional<double>& v) {
+    return csv_number(v.value_or(std::numeric_limits<double>::quiet_NaN()));
+  };
+  for (const Difference& d : c.differences)
+    text +=
+        fmt::format("{:.9g},{},{},{:.9g},{},{:.9g},{},{:.9g},{},{},{},{},{},{},{:.9g},{},{}\n",
+                    c.matches[d.match].gamma, d.quantity, d.unit, d.experiment.value,
+                    part(d.experiment.error), d.simulation.value, part(d.simulation.error), d.difference(),
+                    part(d.filmed), part(d.camera), part(d.statistics), part(d.seeds), part(d.tracers),
+                    part(d.defects), d.remainder(), part(d.error()), csv_field(d.attribution()));
+  return text;
+}
+
+/// Long form: one line per run and element.
+std::string series_csv(const std::vector<Run>& runs, const std::string& name, const std::string& index) {
+  std::string text = fmt::format("side,run,gamma,{},{}\n", index, name);
+  for (const Run& run : runs) {
+    const Result& r = find_result(run.results, name);
+    for (std::size_t i = 0; i < r.values.size(); ++i)
+      text += fmt::format("{},{},{:.9g},{},{}\n", side_name(run.side), csv_field(run.name), run.gamma, i,
+                          std::isfinite(r.values[i]) ? fmt::format("{:.9g}", r.values[i]) : "");
+  }
+  return text;
+}
+
+std::string chips(const std::vector<Run>& runs, const std::vector<std::size_t>& members) {
+  if (members.empty()) return "no run";
+  std::set<BedPhase> phases;
+  for (const std::size_t i : members) phases.insert(runs[i].phase);
+  std::string html;
+  for (const BedPhase phase : phases)
+    html += fmt::format("<span class=\"chip {0}\">{0}</span> ", phase_name(phase));
+  return html;
+}
+
+std::string numbers_of(const std::vector<Run>& runs, const std::vector<std::size_t>& members,
+                       const std::string& name) {
+  std::vector<std::string> lines;
+  lines.reserve(members.size());
+  for (const std::size_t i : members) lines.push_back(value_and_interval(runs[i], name));
+  return fmt::format("{}", fmt::join(lines, "<br>"));
+}
+
+/// A table that sorts by its headings and can be saved, once the page is alive.
+class Table {
+ public:
+  Table(const std::string& name, const std::vector<std::string>& heads)
+      : html_(fmt::format("<div class=\"scroll\"><table data-name=\"{}\"><thead><tr>", name)) {
+    for (const std::string& head : heads) html_ += "<th>" + head + "</th>";
+    html_ += "</tr></thead><tbody>\n";
+  }
+  void row(const std::string& attributes = {}) {
+    if (open_) html_ += "</tr>\n";
+    html_ += "<tr" + attributes + ">";
+    open_ = true;
+  }
+  void cell(const std::string& html, const char* kind = "") {
+    html_ += fmt::format("<td{}>{}</td>", *kind != 0 ? fmt::format(" class=\"{}\"", kind) : "", html);
+  }
+  void cell(const std::optional<double>& v) { cell(v ? number(*v) : "–"); }
+  [[nodiscard]] std::string html() const {
+    return html_ + (open_ ? "</tr>\n" : "") + "</tbody></table></div>\n";
+  }
+
+ private:
+  std::string html_;
+  bool open_ = false;
+};
+
+std::string verdict_table(const std::vector<Run>& runs, const std::vector<Match>& matches) {
+  Table table("phases", {"Γ", "K<sub>m</sub>", "N<sub>l</sub>σ", "experiment", "simulation", "verdict",
+                         "s<sub>b</sub>/σ experiment", "s<sub>b</sub>/σ simulation",
+                         "s<sub>c</sub>/σ experiment", "s<sub>c</sub>/σ simulation"});
+  for (const Match& match : matches) {
+    const std::size_t first =
+        match.experiments.empty() ? match.simulations.front() : match.experiments.front();
+    const std::string word = verdict(runs, match);
+    table.row(fmt::format(" data-run=\"{}\"{}", first, word == "differ" ? " class=\"differ\"" : ""));
+    table.cell(match.gamma);
+    table.cell(runs[first].k_m);
+    table.cell(runs[first].n_l);
+    table.cell(chips(runs, match.experiments));
+    table.cell(chips(runs, match.simulations));
+    table.cell(word == "differ" ? "<strong>differ</strong>" : word);
+    for (const char* name : {"s_b", "s_c"})
+      for (const auto& members : {match.experiments, match.simulations})
+        table.cell(numbers_of(runs, members, name), "nowrap");
+  }
+  return table.html();
+}
+
+std::string runs_table(const std::vector<Run>& runs) {
+  const auto names = scalar_names(runs);
+  std::vector<std::string> heads = {"run", "side", "start", "Γ", "beads", "frames", "phase"};
+  for (const std::string& name : names) heads.push_back(typeset(name));
+  Table table("runs", heads);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Run& run = runs[i];
+    table.row(fmt::format(" data-run=\"{}\"", i));
+    table.cell(html_text(run.name));
+    table.cell(side_name(run.side));
+    table.cell(run.start.empty() ? "–" : html_text(run.start));
+    table.cell(run.gamma);
+    table.cell(fmt::format("{}", run.n_beads));
+    table.cell(fmt::format("{}", run.n_frames));
+    table.cell(phase_name(run.phase));
+    for (const std::string& name : names) {
+      const Result* r = seek_result(run.results, name);
+      table.cell(number(value_of(r), "absent"));
+    }
+  }
+  return table.html();
+}
+
+std::string boundary_table(const std::vector<PhaseBoundary>& boundaries) {
+  Table table("boundaries", {"onset of", "of", "N<sub>l</sub>σ", "Γ", "half width", "runs"});
+  for (const PhaseBoundary& b : boundaries) {
+    table.row();
+    table.cell(phase_name(b.onset));
+    table.cell(html_text(boundary_of(b)));
+    table.cell(b.n_l);
+    if (b.half_width()) {
+      table.cell(b.gamma());
+      table.cell(b.half_width());
+    } else {
+      table.cell(boundary_text(b));
+      table.cell("–");
+    }
+    table.cell(fmt::format("{}{}", b.n_runs, b.overlap ? ", which overlap" : ""));
+  }
+  return table.html();
+}
+
+std::string with_error(const Measured& m) {
+  return m.error ? fmt::format("{:.4g} ± {:.2g}", m.value, *m.error) : fmt::format("{:.4g}", m.value);
+}
+
+std::string differences_table(const Comparison& c) {
+  Table table("differences", {"Γ", "number", "experiment", "simulation", "difference", "attributed to",
+                              "by camera and tracking", "what is left", "error by statistics", "by seed",
+                              "by tracers", "between starts"});
+  for (const Difference& d : c.differences) {
+    table.row(fmt::format(" data-run=\"{}\"", c.matches[d.match].experiments.front()));
+    table.cell(c.matches[d.match].gamma);
+    table.cell(typeset(d.quantity));
+    table.cell(with_error(d.experiment), "nowrap");
+    table.cell(with_error(d.simulation), "nowrap");
+    table.cell(d.difference());
+    table.cell(d.attribution(), "words");
+    table.cell(d.camera);
+    table.cell(d.remainder());
+    for (const auto& part : {d.statistics, d.seeds, d.tracers, d.defects}) table.cell(part);
+  }
+  return table.html();
+}
+
+/// How each number was made, once per distinct sentence and with the runs it holds for.
+std::string conventions(const std::vector<Run>& runs) {
+  std::string html = "<ul>\n";
+  for (const std::string& name : result_names()) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> sentences;
+    for (const Run& run : runs) {
+      const auto found = std::find_if(run.results.begin(), run.results.end(),
+                                      [&](const Result& r) { return r.name == name; });
+      if (found == run.results.end()) continue;
+      std::string sentence = found->present() ? found->convention : "absent: " + found->absent;
+      if (found->interval) sentence += "; interval: " + found->interval->method;
+      const auto same = std::find_if(sentences.begin(), sentences.end(),
+                                     [&](const auto& s) { return s.first == sentence; });
+      if (same == sentences.end())
+        sentences.push_back({sentence, {run.name}});
+      else
+        same->second.push_back(run.name);
+    }
+    if (sentences.empty()) continue;
+    const std::string source = find_result(runs.front().results, name).source;
+    html += fmt::format("<li><strong>{}</strong> ({})", name, html_text(source));
+    for (const auto& [sentence, of] : sentences)
+      html += of.size() == runs.size() ? fmt::format(" {}.", html_text(sentence))
+                                       : fmt::format("<br>{} <small>[{}]</small>", html_text(sentence),
+                                                     html_text(fmt::format("{}", fmt::join(of, ", "))));
+    html += "</li>\n";
+  }
+  return html + "</ul>\n";
+}
+
+/// The drawing alone, its identifiers made its own: several drawings share one page.
+std::string inline_svg(const std::string& file, const std::string& prefix, const std::string& title) {
+  std::string svg = file.substr(file.find("<svg"));
+  svg = std::regex_replace(svg, std::regex("(\\sid\\s*=\\s*[\"'])"), fmt::format("$1{}-", prefix));
+  svg = std::regex_replace(svg, std::regex("(href\\s*=\\s*[\"']#)"), fmt::format("$1{}-", prefix));
+  svg = std::regex_replace(svg, std::regex("(url[(]['\"]?#)"), fmt::format("$1{}-", prefix));
+  return svg.replace(0, 4, fmt::format("<svg role=\"img\" aria-label=\"{}\"", html_text(title)));
+}
+
+/// Text for the inside of a script element.
+std::string script(std::string_view text) {
+  std::string safe(text);
+  for (std::size_t at = safe.find("</script"); at != std::string::npos; at = safe.find("</script", at))
+    safe.insert(at + 1, 1, '\\');
+  return safe;
+}
+
+/// Where the script draws. Hidden without it: the figures by gnuplot, further down, then stand alone.
+constexpr std::string_view kLive = R"(
+<div class="needs-script">
+<h2>Phase diagram</h2>
+<p>Open symbols: experiment; filled: simulation. A click on one shows its bed below.</p>
+<div id="phase-diagram"></div>
+<section id="point">
+<h2 id="point-title">A point</h2>
+<div class="controls"><label>Point <select id="which"></select></label></div>
+<div class="controls"><button id="play">Play</button><input id="moment" type="range" min="0" value="0" aria-label="moment"><span id="moment-label"></span></div>
+<div class="controls">
+<label><input type="checkbox" id="layer-raw" checked> camera frame</label>
+<label><input type="checkbox" id="layer-found" checked> beads</label>
+<label><input type="checkbox" id="layer-other"> other side on top</label>
+<label><input type="checkbox" id="layer-tracks" checked> tracks</label>
+<label>colour <select id="colour"><option value="q6">q6</option><option value="psi6">ψ6</option><option value="structure">local structure</option><option value="coordination">Voronoi neighbours (defects)</option><option value="none">none</option></select></label>
+</div>
+<p id="key"></p>
+<div class="pair">
+<figure id="panel-experiment"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
+<figure id="panel-simulation"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
+</div>
+<p><small>The wheel zooms (with Ctrl outwards from the whole picture), a drag moves, a double click goes back.</small></p>
+<div class="pair">
+<div><h3>Height of the tracers above the plate, s(k)</h3><div id="series-s_k"></div></div>
+<div><h3>Spread of the tracer line, s<sub>j</sub></h3><div id="series-s_j"></div></div>
+</div>
+<div class="pair">
+<figure id="convection-experiment" hidden><svg class="field" role="img"></svg><figcaption></figcaption></figure>
+<figure id="convection-simulation" hidden><svg class="field" role="img"></svg><figcaption></figcaption></figure>
+</div>
+</section>
+<h2>s<sub>b</sub> and s<sub>c</sub> against the drive</h2>
+<div class="pair"><div id="curve-s_b"></div><div id="curve-s_c"></div></div>
+</div>
+)";
+
+std::string filmed_words(const Comparison& c) {
+  std::vector<std::string> names;
+  for (const Checks::Filmed& f : c.checks.filmed)
+    names.push_back(fmt::format("{} ({})", c.runs[f.run].name, f.camera));
+  return names.empty()
+             ? "Nothing was filmed, so what camera and tracking do is not known."
+             : fmt::format("Filmed by the synthetic camera, located, linked and analysed again: {}.",
+                           fmt::join(names, "; "));
+}
+
+std::string static_figures(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
+  std::string html = "<div class=\"static\">\n";
+  for (const Figure& figure : figures)
+    html += fmt::format(
+        "<h3>{}</h3>\n<figure><div class=\"picture\">{}</div><figcaption>{} <small>(figures/{}.svg, .pdf, "
+        ".png, "
+        ".gp, .dat)</small></figcaption></figure>\n",
+        typeset(figure.title),
+        inline_svg(read_text_file(folder / (figure.name + ".svg")), figure.name, figure.title),
+        typeset(figure.caption), figure.name);
+  return html + "</div>\n";
+}
+
+std::string page(const Comparison& c, const std::vector<Figure>& figures,
+                 const std::filesystem::path& figure_folder, const std::string& provenance_json) {
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n"
+      "<title>Experiment and simulation</title><style>{}</style></head><body>\n<h1>Experiment and "
+      "simulation, side by side</h1>\n<p class=\"lead\">{}</p>\n",
+      embedded::page_css, html_text(conclusion(c.runs, c.matches)));
+  html +=
+      "<p>Both sides went through the same analysis. A bed <em>bounces</em> if s<sub>b</sub> &gt; σ/30 and "
+      "<em>convects</em> if also s<sub>c</sub> &gt; σ "
+      "(Fortini &amp; Huang 2015, app. B). In brackets: 95 % intervals.</p>\n";
+  html += "<h2>Phases</h2>\n" + verdict_table(c.runs, c.matches);
+  html += kLive;
+  if (!c.boundaries.empty())
+    html +=
+        "<h2>Boundaries</h2>\n<p>Each lies between the strongest drive without the phase and the weakest "
+        "with it: "
+        "a bracket, no fit; those of a sweep are fitted, with their 95 % interval.</p>\n" +
+        boundary_table(c.boundaries);
+  if (!c.differences.empty())
+    html +=
+        "<h2>Differences</h2>\n<p>Experiment minus simulation. What camera and tracking make of it is the "
+        "difference between the simulation as filmed and tracked and the simulation itself; what is left is "
+        "held "
+        "against the errors (± one standard error). " +
+        html_text(filmed_words(c)) + "</p>\n" + differences_table(c);
+  html += "<h2>Runs</h2>\n" + runs_table(c.runs);
+  html += "<details><summary>The same figures, drawn by gnuplot</summary>\n" +
+          static_figures(figures, figure_folder) + "</details>\n";
+  html +=
+      "<h2>How each number was made</h2>\n<details><summary>Convention, interval and source of every "
+      "number</summary>\n" +
+      conventions(c.runs) + "</details>\n";
+  html += "<h2>Provenance</h2>\n<p>" + html_text(version_line()) +
+          "</p>\n<details><summary>Command, inputs and their digests</summary><pre>" +
+          html_text(json_text(nlohmann::json::parse(provenance_json), 2)) +
+          "</pre></details>\n<details><summary>Licence of plotly.js, which draws the graphs</summary><pre>" +
+          html_text(std::string(embedded::plotly_license)) + "</pre></details>\n";
+  html += "<script type=\"application/json\" id=\"data\">" + report_data(c) + "</script>\n";
+  html += "<script>" + script(embedded::plotly_js) + "</script>\n<script>" + script(embedded::page_js) +
+          "</script>\n</body></html>\n";
+  return html;
+}
+
+nlohmann::json differences_json(const std::vector<Difference>& differences,
+                                const std::vector<Match>& matches) {
+  nlohmann::json list = nlohmann::json::array();
+  const auto part = [](const std::optional<double>& v) {
+    return or_null(v.value_or(std::numeric_limits<double>::quiet_NaN()));
+  };
+  const auto measured = [&](const Measured& m) {
+    return nlohmann::json{{"value", m.value}, {"error", part(m.error)}};
+  };
+  for (const Difference& d : differences)
+    list.push_back({{"gamma", matches[d.match].gamma},
+                    {"number", d.quantity},
+                    {"unit", d.unit},
+                    {"experiment", measured(d.experiment)},
+                    {"simulation", measured(d.simulation)},
+                    {"difference", d.difference()},
+                    {"filmed", part(d.filmed)},
+                    {"camera", part(d.camera)},
+                    {"statistics", part(d.statistics)},
+                    {"seeds", part(d.seeds)},
+                    {"tracers", part(d.tracers)},
+                    {"defects", part(d.defects)},
+                    {"remainder", d.remainder()},
+                    {"error", part(d.error())},
+                    {"attribution", d.attribution()}});
+  return list;
+}
+
+nlohmann::json boundaries_json(const std::vector<PhaseBoundary>& boundaries) {
+  nlohmann::json list = nlohmann::json::array();
+  const auto part = [](const std::optional<double>& v) {
+    return or_null(v.value_or(std::numeric_limits<double>::quiet_NaN()));
+  };
+  for (const PhaseBoundary& b : boundaries)
+    list.push_back({{"onset", phase_name(b.onset)},
+                    {"of", boundary_of(b)},
+                    {"n_l", b.n_l},
+                    {"gamma", part(b.gamma())},
+                    {"half_width", part(b.half_width())},
+                    {"below", part(b.below)},
+                    {"above", part(b.above)},
+                    {"runs", b.n_runs},
+                    {"overlap", b.overlap}});
+  return list;
+}
+
+}  // namespace
+
+std::string comparison_text(const Comparison& c) {
+  std::string text = fmt::format("{:>7}  {:>7}  {:>6}  {:<22}  {:<22}  {}\n", "Gamma", "K_m", "N_l",
+                                 "experiment", "simulation", "verdict");
+  for (const Match& match : c.matches) {
+    const Run& any =
+        c.runs[match.experiments.empty() ? match.simulations.front() : match.experiments.front()];
+    text += fmt::format("{:>7.3f}  {:>7.3f}  {:>6.2f}  {:<22}  {:<22}  {}\n", match.gamma, any.k_m, any.n_l,
+                        phases_of(c.runs, match.experiments), phases_of(c.runs, match.simulations),
+                        verdict(c.runs, match));
+  }
+  for (const PhaseBoundary& b : c.boundaries)
+    text += fmt::format("onset of {}, {}, N_l = {:.3g}: Gamma {}\n", phase_name(b.onset), boundary_of(b),
+                        b.n_l, boundary_text(b));
+  return text + differences_text(c.differences, c.matches) + conclusion(c.runs, c.matches) + "\n";
+}
+
+std::string comparison_json(const Comparison& c) {
+  nlohmann::json document;
+  document["conclusion"] = conclusion(c.runs, c.matches);
+  document["runs"] = nlohmann::json::array();
+  for (const Run& run : c.runs)
+    document["runs"].push_back({{"side", side_name(run.side)},
+                                {"run", run.name},
+                                {"start", run.start},
+                                {"gamma", or_null(run.gamma)},
+                                {"k_m", or_null(run.k_m)},
+                                {"n_l", or_null(run.n_l)},
+                                {"n_beads", run.n_beads},
+                                {"n_frames", run.n_frames},
+                                {"phase", phase_name(run.phase)},
+                                {"results", nlohmann::json::parse(results_json(run.results))}});
+  document["matches"] = nlohmann::json::array();
+  const auto names = [&](const std::vector<std::size_t>& members) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const std::size_t i : members)
+      list.push_back({{"run", c.runs[i].name}, {"phase", phase_name(c.runs[i].phase)}});
+    return list;
+  };
+  for (const Match& match : c.matches)
+    document["matches"].push_back({{"gamma", match.gamma},
+                                   {"experiments", names(match.experiments)},
+                                   {"simulations", names(match.simulations)},
+                                   {"verdict", verdict(c.runs, match)}});
+  document["boundaries"] = boundaries_json(c.boundaries);
+  document["differences"] = differences_json(c.differences, c.matches);
+  return json_text(document);
+}
+
+void write_report(const std::filesystem::path& folder, const Comparison& c,
+                  const std::string& provenance_json, Progress& progress) {
+  AtomicPath output(folder, report_folder());
+  const std::filesystem::path figure_folder = output.part() / "figures";
+  std::filesystem::create_directories(figure_folder);
+
+  std::vector<Figure> figures = {phase_strip_figure(c.runs), phase_diagram_figure(c.runs),
+                                 thresholds_figure(c.runs), s_k_figure(c.runs), s_j_figure(c.runs)};
+  for (std::size_t m = 0; m < c.matches.size(); ++m)
+    figures.push_back(snapshots_figure(c.runs, c.matches[m], fmt::format("snapshots_{}", m + 1)));
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    draw(figures[i], figure_folder);
+    progress.update(static_cast<std::int64_t>(i) + 1, static_cast<std::int64_t>(figures.size()));
+  }
+  write_text_file(output.part() / "runs.csv", runs_csv(c.runs));
+  write_text_file(output.part() / "differences.csv", differences_csv(c));
+  write_text_file(output.part() / "series_s_k.csv", series_csv(c.runs, "s_k", "k"));
+  write_text_file(output.part() / "series_s_j.csv", series_csv(c.runs, "s_j", "j"));
+  write_text_file(output.part() / "phases.txt", comparison_text(c));
+  write_text_file(output.part() / "results.json", comparison_json(c) + "\n");
+  write_text_file(output.part() / "provenance.json", provenance_json + "\n");
+  write_text_file(output.part() / "report.html", page(c, figures, figure_folder, provenance_json));
+  output.commit();
+}
+
+}  // namespace twincell

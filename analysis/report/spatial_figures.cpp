@@ -1,0 +1,254 @@
+#include "analysis/report/spatial_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "analysis/neighbours/bond_order.hpp"
+#include "analysis/neighbours/voronoi.hpp"
+#include "analysis/report/colours.hpp"
+
+namespace twincell {
+namespace {
+
+using namespace colours;
+
+std::string cell_text(double v) {
+  return std::isfinite(v) ? fmt::format("{:.6g}", v) : "?";
+}
+
+/// What a bead of the lattice figure looks like.
+struct BeadStyle {
+  const char* colour;
+  const char* name;
+};
+constexpr std::array<BeadStyle, 4> kLattice = {{{kSky, "A: rows along the floor"},
+                                                {colours::kGreen, "between"},
+                                                {kOrange, "B: rows along the walls"},
+                                                {kPale, "ψ6 below 0.9"}}};
+std::size_t style_of(double psi6, double angle) {
+  if (!(psi6 > 0.9)) return 3;
+  if (misorientation(angle, 0) <= 10) return 0;
+  return misorientation(angle, 30) <= 10 ? 2 : 1;
+}
+
+}  // namespace
+
+Figure convection_figure(const std::vector<Result>& results, const Box& box) {
+  const Result& u = find_result(results, "displacement_field");
+  const Result& x = find_result(results, "field_x");
+  const Result& z = find_result(results, "field_z");
+  double longest = 0;
+  for (std::size_t c = 0; c < u.values.size(); c += 2)
+    if (std::isfinite(u.values[c])) longest = std::max(longest, std::hypot(u.values[c], u.values[c + 1]));
+  const double cell = x.values.size() > 1 ? x.values[1] - x.values[0] : box.size().x();
+  const double scale = longest > 0 ? cell / longest : 1;
+
+  Figure f{.name = "convection_field", .title = "Displacement per cycle"};
+  const double top = (z.values.empty() ? 1 : z.values.back()) + cell;
+  f.height = static_cast<int>(std::clamp(160 + 430 * (top - box.lower.z()) / box.size().x(), 300.0, 1100.0));
+  for (const bool up : {true, false}) {
+    f.data += fmt::format("# beads on their way {}: x, z, u_x, u_z per cycle (sigma)\n", up ? "up" : "down");
+    bool any = false;
+    for (std::size_t r = 0; r < z.values.size(); ++r)
+      for (std::size_t c = 0; c < x.values.size(); ++c) {
+        const std::size_t at = 2 * (r * x.values.size() + c);
+        if (!std::isfinite(u.values[at]) || (u.values[at + 1] >= 0) != up) continue;
+        any = true;
+        f.data +=
+            fmt::format("{} {} {:.6g} {:.6g}\n", x.values[c], z.values[r], u.values[at], u.values[at + 1]);
+      }
+    f.data += any ? "\n\n" : "? ? ? ?\n\n\n";
+  }
+  f.plot = fmt::format(
+      "set size ratio -1\nset title 'longest arrow: {:.3g} σ per cycle'\nset xlabel 'x / σ'\nset ylabel 'z / "
+      "σ'\n"
+      "set xrange [{}:{}]\nset yrange [{}:{}]\n"
+      "set key outside below center horizontal samplen 2\n"
+      "s = {:.6g} # magnification\n"
+      "plot for [i=0:1] '{}.dat' index i using ($1-s*$3/2):($2-s*$4/2):(s*$3):(s*$4) with vectors filled "
+      "head size graph 0.015,20 lw 1.8 lc rgb (i == 0 ? '{}' : '{}') title (i == 0 ? 'up' : 'down')\n",
+      longest, box.lower.x(), box.upper.x(), box.lower.z(), top, scale, f.name, kVermilion, kBlue);
+  f.caption = fmt::format(
+      "Mean displacement from the beginning of one cycle to that of the next in cells of {:.3g} σ, {:.3g} "
+      "times "
+      "enlarged: the longest arrow is {:.3g} σ per cycle.",
+      cell, scale, longest);
+  return f;
+}
+
+Figure profiles_figure(const std::vector<Result>& results) {
+  Figure f{.name = "profiles", .title = "Packing and temperature over height"};
+  f.width = 720;
+  f.height = 420;
+  const Result& z = find_result(results, "profile_z");
+  const auto find = [&](const char* name) {
+    return std::find_if(results.begin(), results.end(),
+                        [&](const Result& r) { return r.name == name && r.present(); });
+  };
+  const auto column = [&](const char* name, std::size_t k) {
+    const auto r = find(name);
+    return r != results.end() ? cell_text(r->values[k]) : std::string("?");
+  };
+  f.data = "# z (sigma), packing fraction, T_z, T_x (m g sigma)\n";
+  for (std::size_t k = 0; k < z.values.size(); ++k)
+    f.data +=
+        fmt::format("{} {} {} {}\n", z.values[k], column("phi_z", k), column("T_z_z", k), column("T_x_z", k));
+  const bool hot = find("T_z_z") != results.end();
+  f.plot = fmt::format(
+      "set multiplot layout 1,2\nset ylabel 'z / σ'\nset key top right samplen 1.5\nset xrange [0:*]\nset "
+      "yrange "
+      "[{2}:{3}]\nset xtics 0.2\nset xlabel 'packing fraction'\n"
+      "plot '{0}.dat' using 2:1 with linespoints pt 7 ps 0.6 lw 1.8 lc rgb '{1}' notitle\n"
+      "set xtics autofreq\nset xlabel 'temperature / m g σ'\n",
+      f.name, kBlue, z.values.front() - 1, z.values.back() + 1);
+  f.plot += hot ? fmt::format(
+                      "plot '{0}.dat' using 3:1 with linespoints pt 7 ps 0.6 lw 1.8 lc rgb '{1}' title "
+                      "'vertical', '' "
+                      "using 4:1 with linespoints pt 6 ps 0.6 lw 1.8 lc rgb '{2}' title 'horizontal'\n",
+                      f.name, kVermilion, kBlue)
+                : "set label 9 'no value' at graph 0.5,0.5 center\nplot NaN notitle\nunset label 9\n";
+  f.plot += "unset multiplot\n";
+  f.caption =
+      "Slabs one σ thick, mean over all frames. Left: share of the slab that beads fill. Right: m⟨(v − "
+      "⟨v⟩)²⟩ of "
+      "beads whose centres are in the slab.";
+  return f;
+}
+
+Figure defect_evolution_figure(const std::vector<Result>& results) {
+  Figure f{.name = "defect_evolution", .title = "Defects through time"};
+  f.height = 340;
+  const Result& series = find_result(results, "defect_fraction_j");
+  f.data = fmt::format("# {}, share of enclosed beads that have not 6 neighbours\n", series.n_of);
+  for (std::size_t j = 0; j < series.values.size(); ++j)
+    f.data += fmt::format("{} {}\n", j, cell_text(series.values[j]));
+  f.plot = fmt::format(
+      "set xlabel '{} since the first analysed'\nset ylabel 'share of beads without 6 neighbours'\nset "
+      "yrange "
+      "[0:*]\nplot '{}.dat' using 1:2 with linespoints pt 7 ps 0.6 lw 1.8 lc rgb '{}' notitle\n",
+      series.n_of, f.name, kBlue);
+  f.caption = "Share of the beads, walls, free surfaces and holes left out, that have not six neighbours.";
+  return f;
+}
+
+Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const AnalysisOptions& options) {
+  const VoronoiCells cells = voronoi_cells(frame, info.box, options.cell_radius);
+  const BondOrder order = bond_order(cells.neighbours, cells.edge);
+  const double left = info.box.lower.x(), right = info.box.upper.x();
+  std::vector<double> heights;
+  double low = info.box.lower.z();
+  for (std::size_t i = 0; i < frame.position.size(); ++i)
+    if (frame.present(i) && frame.position[i].allFinite()) {
+      heights.push_back(frame.position[i].z());
+      low = std::min(low, frame.position[i].z() - 0.5);
+    }
+  std::sort(heights.begin(), heights.end());
+  // One high flyer shall not shrink the bed.
+  const double high =
+      heights.empty() ? low + 1
+                      : heights[static_cast<std::size_t>(0.99 * static_cast<double>(heights.size() - 1))] + 2;
+
+  Figure f{.name = "lattice", .title = "Lattice and defects"};
+  constexpr double kMargin = 12, kLegend = 66;
+  const double scale = (f.width - 2 * kMargin) / (right - left);
+  f.height = static_cast<int>(std::ceil(scale * (high - low) + kMargin + kLegend));
+  std::array<std::string, 4> circles;
+  std::string marks,
+      data = "# x, z, radius, class (0 A, 1 between, 2 B, 3 disordered), coordination (0 at a surface)\n";
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    if (!frame.present(i) || !frame.position[i].allFinite() || frame.position[i].z() > high) continue;
+    const Vec3 r = info.box.wrap(frame.position[i]);
+    const double radius = info.radius.empty() ? 0.5 : info.radius[i];
+    const std::size_t style = style_of(order.psi6[i], order.angle[i]);
+    const std::size_t coordination = cells.enclosed[i] != 0 ? cells.neighbours.count(i) : 0;
+    data += fmt::format("{:.5f} {:.5f} {:.4g} {} {}\n", r.x(), r.z(), radius, style, coordination);
+    const double x = kMargin + scale * (r.x() - left), y = scale * (high - r.z());
+    circles[style] +=
+        fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.3g}\"/>\n", x, y, scale * radius);
+    const double s = 0.28 * scale;
+    if (coordination == 5)
+      marks += fmt::format("<path d=\"M{:.2f} {:.2f}l{:.2f} {:.2f}h{:.2f}z\" fill=\"{}\"/>\n", x, y - s, s,
+                           2 * s, -2 * s, kVermilion);
+    else if (coordination == 7)
+      marks +=
+          fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\"/>\n",
+                      x - s, y - s, 2 * s, 2 * s, kBlue);
+  }
+  f.data = data;
+  std::string svg = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 "
+      "{0} {1}\" "
+      "font-family=\"Arial, sans-serif\" font-size=\"14\">\n<rect width=\"{0}\" height=\"{1}\" "
+      "fill=\"white\"/>\n",
+      f.width, f.height);
+  for (std::size_t s = 0; s < circles.size(); ++s)
+    svg += fmt::format("<g fill=\"{}\" stroke=\"#555555\" stroke-width=\"0.6\">\n{}</g>\n",
+                       kLattice[s].colour, circles[s]);
+  svg += fmt::format("<g stroke=\"#222222\" stroke-width=\"0.6\">\n{}</g>\n", marks);
+  const double floor = scale * (high - low);
+  svg += fmt::format(
+      "<path d=\"M{0:.1f} 0V{1:.1f}H{2:.1f}V0\" fill=\"none\" stroke=\"#222222\" stroke-width=\"2\"/>\n",
+      kMargin, floor + 1, kMargin + scale * (right - left));
+  for (std::size_t s = 0; s < kLattice.size(); ++s)
+    svg += fmt::format(
+        "<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"7\" fill=\"{2}\" stroke=\"#555555\"/><text x=\"{3:.1f}\" "
+        "y=\"{4:.1f}\">{5}</text>\n",
+        20 + 265.0 * static_cast<double>(s % 2), floor + 22 + 20 * static_cast<double>(s / 2),
+        kLattice[s].colour, 33 + 265.0 * static_cast<double>(s % 2),
+        floor + 27 + 20 * static_cast<double>(s / 2), kLattice[s].name);
+  svg += fmt::format(
+      "<path d=\"M484 {0:.1f}l6 12h-12z\" fill=\"{2}\"/><text x=\"496\" y=\"{1:.1f}\">5</text>"
+      "<rect x=\"508\" y=\"{0:.1f}\" width=\"11\" height=\"11\" fill=\"{3}\"/><text x=\"524\" "
+      "y=\"{1:.1f}\">7</text>\n</svg>\n",
+      floor + 36, floor + 47, kVermilion, kBlue);
+  f.svg = svg;
+  f.plot = fmt::format(
+      "set size ratio -1\nunset tics\nunset grid\nunset border\nset xrange [{0}:{1}]\nset yrange [{2}:{3}]\n"
+      "set key outside below center maxrows 3 samplen 1 Left reverse\n"
+      "set arrow 1 from {0},{2} to {0},{3} nohead lw 2\nset arrow 2 from {1},{2} to {1},{3} nohead lw 2\n"
+      "set arrow 3 from {0},{2} to {1},{2} nohead lw 2\nplot ",
+      left, right, low, high);
+  for (std::size_t s = 0; s < kLattice.size(); ++s)
+    f.plot += fmt::format(
+        "'{0}.dat' using ($4=={1}?$1:NaN):2:3 with circles fs solid border lc rgb '#555555' lw 0.5 fc rgb "
+        "'{2}' "
+        "notitle, keyentry with points pt 7 ps 1.4 lc rgb '{2}' title '{3}', ",
+        f.name, s, kLattice[s].colour, kLattice[s].name);
+  f.plot += fmt::format(
+      "'{0}.dat' using 1:($5==5?$2:NaN) with points pt 9 ps 1 lc rgb '{1}' title '5 neighbours', '{0}.dat' "
+      "using "
+      "1:($5==7?$2:NaN) with points pt 5 ps 0.8 lc rgb '{2}' title '7 neighbours'\n",
+      f.name, kVermilion, kBlue);
+  f.caption =
+      "The last frame. Orientation A: close-packed rows within 10 degrees of the floor; B: of the side "
+      "walls. "
+      "Triangles and squares: five and seven neighbours by Voronoi cells; beads at walls, free surfaces and "
+      "holes "
+      "bear no mark.";
+  return f;
+}
+
+std::vector<Figure> spatial_figures(const std::vector<Result>& results, const TrajectorySource& trajectory,
+                                    const AnalysisOptions& options) {
+  const auto there = [&](const char* name) {
+    return std::any_of(results.begin(), results.end(),
+                       [&](const Result& r) { return r.name == name && r.present(); });
+  };
+  std::vector<Figure> figures;
+  const TrajectoryInfo& info = trajectory.info();
+  if (there("displacement_field") && there("field_x") && there("field_z"))
+    figures.push_back(convection_figure(results, info.box));
+  if (there("profile_z") && there("phi_z")) figures.push_back(profiles_figure(results));
+  if (there("defect_fraction_j")) figures.push_back(defect_evolution_figure(results));
+  if (info.box.dimension == 2 && there("coordination_beads")) {
+    Frame last;
+    trajectory.read(trajectory.n_frames() - 1, last);
+    figures.push_back(lattice_figure(last, info, options));
+  }
+  return figures;
+}
+
+}  // namespace twincell

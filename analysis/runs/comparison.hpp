@@ -1,0 +1,31 @@
+#pragma once
+/// \file
+/// All that is known when experiment and simulation are put beside each other: what a report is made from.
+
+#include <string>
+#include <vector>
+
+#include "analysis/runs/differences.hpp"
+#include "analysis/runs/phase_boundaries.hpp"
+#include "analysis/runs/phase_diagram.hpp"
+
+namespace twincell {
+
+/// A point of a sweep: analysed elsewhere, its frames are not kept.
+struct SweepPoint {
+  double n_l = 0;  ///< N_l sigma
+  double gamma = 0;
+  std::string start;
+  BedPhase phase = BedPhase::undetermined;
+};
+
+struct Comparison {
+  std::vector<Run> runs;
+  std::vector<Match> matches;
+  std::vector<PhaseBoundary> boundaries;  ///< of the runs and of the sweep
+  std::vector<Difference> differences;
+  Checks checks;
+  std::vector<SweepPoint> sweep;
+};
+
+}  // namespace twincell

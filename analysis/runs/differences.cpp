@@ -1,0 +1,263 @@
+#include "analysis/runs/differences.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "analysis/motion/tracers.hpp"
+#include "analysis/statistics/statistics.hpp"
+
+namespace twincell {
+namespace {
+
+/// A difference is one if it exceeds this many standard errors.
+constexpr double kSignificant = 2;
+/// Fewer runs of a start than these hardly say how much seeds differ.
+constexpr std::size_t kFewSeeds = 5;
+/// Heights of the lines of tracers over mid-height, sigma.
+constexpr std::array<double, 3> kLines = {-1, 0, 1};
+
+/// The scalar of that name, or nothing.
+const Result* scalar(const std::vector<Result>& results, const std::string& name) {
+  const Result* found = seek_result(results, name);
+  const bool usable = found != nullptr && found->present() && found->shape.empty() && found->text.empty() &&
+                      std::isfinite(found->value());
+  return usable ? found : nullptr;
+}
+
+/// Standard error behind a result's interval. A number that never changed has an interval of rounding errors,
+/// which says nothing of how well it is known.
+std::optional<double> standard_error(const Result& r) {
+  if (!r.interval || !std::isfinite(r.interval->high - r.interval->low)) return std::nullopt;
+  const double error = standard_error(*r.interval);
+  return error > 1e-12 * std::abs(r.value()) ? std::optional(error) : std::nullopt;
+}
+
+std::optional<double> in_quadrature(std::initializer_list<std::optional<double>> parts) {
+  double sum = 0;
+  bool any = false;
+  for (const auto& part : parts)
+    if (part) {
+      sum += *part * *part;
+      any = true;
+    }
+  return any ? std::optional(std::sqrt(sum)) : std::nullopt;
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+double deviation(const std::vector<double>& values) {
+  const double m = mean(values);
+  double sum = 0;
+  for (const double v : values) sum += (v - m) * (v - m);
+  return std::sqrt(sum / static_cast<double>(values.size() - 1));
+}
+
+/// Mean of a number over some runs; its error from their intervals.
+std::optional<Measured> measured(const std::vector<Run>& runs, const std::vector<std::size_t>& members,
+                                 const std::string& name) {
+  std::vector<double> values;
+  double squares = 0;
+  bool all = true;
+  for (const std::size_t i : members) {
+    const Result* r = scalar(runs[i].results, name);
+    if (r == nullptr) continue;
+    values.push_back(r->value());
+    const auto error = standard_error(*r);
+    all = all && error;
+    squares += error ? *error * *error : 0;
+  }
+  if (values.empty()) return std::nullopt;
+  Measured m{.value = mean(values)};
+  if (all) m.error = std::sqrt(squares) / static_cast<double>(values.size());
+  return m;
+}
+
+/// Spread over seeds within a start, and between starts.
+void compare_simulations(const std::vector<Run>& runs, const Match& match, Difference& d) {
+  std::map<std::string, std::vector<double>> of_start;
+  for (const std::size_t i : match.simulations)
+    if (const Result* r = scalar(runs[i].results, d.quantity)) of_start[runs[i].start].push_back(r->value());
+  double low = INFINITY, high = -INFINITY;
+  for (const auto& [start, values] : of_start) {
+    low = std::min(low, mean(values));
+    high = std::max(high, mean(values));
+    // Crystals hardly differ from each other; the experiment may be of the kind that does.
+    if (values.size() < 2) continue;
+    const double spread = deviation(values);
+    if (d.seeds && spread <= *d.seeds) continue;
+    d.seeds = spread;
+    d.seed_runs = values.size();
+  }
+  if (of_start.size() > 1) d.defects = high - low;
+}
+
+/// Standard deviation of E - S from line to line. Both sides move along: what the choice does to both alike
+/// is no difference.
+std::optional<double> spread_over_lines(const Checks& checks, const Match& match, const std::string& name) {
+  std::vector<double> differences(kLines.size(), 0);
+  for (const auto& [members, sign] :
+       {std::pair{&match.experiments, 1.0}, std::pair{&match.simulations, -1.0}}) {
+    std::vector<std::vector<double>> values;
+    for (const auto& lines : checks.tracers)
+      if (lines.quantity == name && std::find(members->begin(), members->end(), lines.run) != members->end())
+        values.push_back(lines.values);
+    if (values.empty()) return std::nullopt;
+    for (std::size_t k = 0; k < differences.size(); ++k)
+      for (const auto& v : values) differences[k] += sign * v[k] / static_cast<double>(values.size());
+  }
+  return deviation(differences);
+}
+
+/// A trajectory with other beads marked as tracers.
+class Marked : public TrajectorySource {
+ public:
+  Marked(const TrajectorySource& base, const std::vector<std::size_t>& slots)
+      : base_(base), info_(base.info()) {
+    info_.tracer.assign(info_.n_beads, 0);
+    for (const std::size_t slot : slots) info_.tracer[slot] = 1;
+  }
+  [[nodiscard]] const TrajectoryInfo& info() const override { return info_; }
+  [[nodiscard]] std::size_t n_frames() const override { return base_.n_frames(); }
+  void read(std::size_t index, Frame& frame) const override { base_.read(index, frame); }
+  [[nodiscard]] std::string name() const override { return base_.name(); }
+
+ private:
+  const TrajectorySource& base_;
+  TrajectoryInfo info_;
+};
+
+}  // namespace
+
+std::optional<double> Difference::error() const {
+  return in_quadrature({statistics, seed_error(), tracers});
+}
+
+std::optional<double> Difference::seed_error() const {
+  if (!seeds || seed_runs < 2) return seeds;
+  const auto n = static_cast<double>(seed_runs);
+  return *seeds * std::sqrt(1 + 1 / n) * student_t_95(n - 1) / 1.96;
+}
+
+std::optional<double> Difference::in_errors() const {
+  const auto e = error();
+  if (!e || *e <= 0) return std::nullopt;
+  return remainder() / *e;
+}
+
+std::string Difference::attribution() const {
+  const double size = std::abs(difference());
+  if (size == 0 && remainder() == 0) return "none: the same on both sides";
+  const auto t = in_errors();
+  if (!t) return "no error is known, so nothing can be said";
+  std::string by_camera;
+  if (camera && std::abs(*camera) > 0.5 * size && *camera * difference() > 0)
+    by_camera = *camera / difference() < 1
+                    ? fmt::format("camera and tracking make {:.0f} % of it", 100 * *camera / difference())
+                    : "camera and tracking make all of it";
+  if (std::abs(*t) <= kSignificant) {
+    if (!by_camera.empty() && size > kSignificant * *error())
+      return by_camera + "; the rest is within its error";
+    const std::pair<const char*, std::optional<double>> sources[] = {
+        {"statistics", statistics}, {"seeds", seed_error()}, {"choice of tracers", tracers}};
+    const auto largest = std::max_element(
+        std::begin(sources), std::end(sources),
+        [](const auto& a, const auto& b) { return a.second.value_or(0) < b.second.value_or(0); });
+    std::string text = fmt::format("within its error, of which most is {}", largest->first);
+    if (largest->second == seed_error() && seeds && seed_runs < kFewSeeds)
+      text += fmt::format(", known from {} runs only", seed_runs);
+    return text;
+  }
+  if (defects && std::abs(remainder()) <= *defects)
+    return fmt::format("{:.1f} errors; no more than starts with other defects differ by", std::abs(*t));
+  return fmt::format("{:.1f} errors: a real difference{}{}{}", std::abs(*t),
+                     by_camera.empty() ? "" : ", though " + by_camera,
+                     camera ? "" : ", unless camera and tracking make it: nothing was filmed",
+                     defects ? "" : "; whether defects make it, one start alone cannot tell");
+}
+
+std::vector<Checks::TracerLines> tracer_lines(const TrajectorySource& trajectory, std::size_t run,
+                                              const AnalysisOptions& options) {
+  AnalysisOptions few = options;
+  few.only = {"s_b", "s_c"};
+  few.tracers.clear();
+  few.tracer_band.reset();
+  Frame first;
+  const std::size_t n = trajectory.n_frames();
+  for (std::size_t i = 0; i < n; ++i) {
+    trajectory.read(i, first);
+    if (first.phase == 0 || !trajectory.info().columns.phase) break;
+  }
+  std::map<std::string, std::vector<double>> values;
+  for (const double above : kLines) {
+    const TracerChoice line = line_of_tracers(trajectory.info(), first, above);
+    if (line.slots.empty()) return {};
+    for (const Result& r : analyze(Marked(trajectory, line.slots), few))
+      if (r.present() && std::isfinite(r.value())) values[r.name].push_back(r.value());
+  }
+  std::vector<Checks::TracerLines> lines;
+  for (const auto& [name, v] : values)
+    if (v.size() == kLines.size()) lines.push_back({run, name, v});
+  return lines;
+}
+
+std::vector<Difference> find_differences(const std::vector<Run>& runs, const std::vector<Match>& matches,
+                                         const Checks& checks) {
+  std::vector<Difference> differences;
+  for (std::size_t m = 0; m < matches.size(); ++m) {
+    const Match& match = matches[m];
+    if (match.experiments.empty() || match.simulations.empty()) continue;
+    for (const Result& r : runs[match.experiments.front()].results) {
+      const auto experiment = measured(runs, match.experiments, r.name),
+                 simulation = measured(runs, match.simulations, r.name);
+      if (!experiment || !simulation) continue;
+      Difference d{.match = m,
+                   .quantity = r.name,
+                   .unit = r.unit,
+                   .experiment = *experiment,
+                   .simulation = *simulation};
+      std::optional<double> other_error = simulation->error;
+      for (const Checks::Filmed& filmed : checks.filmed) {
+        if (std::find(match.simulations.begin(), match.simulations.end(), filmed.run) ==
+            match.simulations.end())
+          continue;
+        const Result *seen = scalar(filmed.seen, r.name), *after = scalar(filmed.filmed, r.name);
+        if (seen == nullptr || after == nullptr) continue;
+        d.camera = after->value() - seen->value();
+        d.filmed = simulation->value + *d.camera;  // the camera's share, on the mean of all seeds
+        if (const auto error = standard_error(*after))
+          other_error = std::max(*error, other_error.value_or(0));
+      }
+      d.statistics = in_quadrature({experiment->error, other_error});
+      d.tracers = spread_over_lines(checks, match, r.name);
+      compare_simulations(runs, match, d);
+      differences.push_back(std::move(d));
+    }
+  }
+  return differences;
+}
+
+std::string differences_text(const std::vector<Difference>& differences, const std::vector<Match>& matches) {
+  if (differences.empty()) return {};
+  const auto part = [](const std::optional<double>& v) {
+    return v ? fmt::format("{:.3g}", *v) : std::string("-");
+  };
+  std::string text = fmt::format("{:>7}  {:<22}{:>11}{:>11}{:>11}{:>10}{:>10}{:>10}{:>10}  {}\n", "Gamma",
+                                 "number", "experiment", "simulation", "difference", "camera", "statist.",
+                                 "seeds", "tracers", "attributed to");
+  for (const Difference& d : differences)
+    text += fmt::format("{:>7.3f}  {:<22}{:>11.4g}{:>11.4g}{:>11.3g}{:>10}{:>10}{:>10}{:>10}  {}\n",
+                        matches[d.match].gamma, d.quantity, d.experiment.value, d.simulation.value,
+                        d.difference(), part(d.camera), part(d.statistics), part(d.seeds), part(d.tracers),
+                        d.attribution());
+  return text;
+}
+
+}  // namespace twincell

@@ -1,0 +1,91 @@
+#include "analysis/runs/phase_boundaries.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace twincell {
+namespace {
+
+/// Drive strengths of the runs with and without a phase.
+struct Gammas {
+  std::vector<double> with, without;
+};
+
+void bracket(const Gammas& gammas, PhaseBoundary& boundary) {
+  for (const double g : gammas.without) boundary.below = std::max(boundary.below.value_or(g), g);
+  for (const double g : gammas.with) boundary.above = std::min(boundary.above.value_or(g), g);
+  if (!boundary.below || !boundary.above || *boundary.above > *boundary.below) return;
+  // Seeds differ: the bracket reaches to the next runs on either side that are all of one kind.
+  boundary.overlap = true;
+  const double first = *boundary.above, last = *boundary.below;
+  boundary.below = first;
+  boundary.above = last;
+  std::optional<double> lower, upper;
+  for (const double g : gammas.without)
+    if (g < first) lower = std::max(lower.value_or(g), g);
+  for (const double g : gammas.with)
+    if (g > last) upper = std::min(upper.value_or(g), g);
+  if (lower) boundary.below = lower;
+  if (upper) boundary.above = upper;
+}
+
+}  // namespace
+
+std::optional<double> PhaseBoundary::gamma() const {
+  if (fitted || !below || !above) return fitted;
+  return (*below + *above) / 2;
+}
+
+std::optional<double> PhaseBoundary::half_width() const {
+  if (!below || !above) return std::nullopt;
+  return std::abs(*above - *below) / 2;
+}
+
+std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs) {
+  std::vector<PhaseBoundary> found;
+  std::vector<Gammas> gammas;
+  for (const BedPhase onset : {BedPhase::bouncing, BedPhase::convecting}) {
+    std::vector<double> leaders;  // N_l of the first run of each
+    const std::size_t first = found.size();
+    for (const Run& run : runs) {
+      if (run.phase == BedPhase::undetermined) continue;
+      std::size_t b = first;
+      while (b < found.size() && !(found[b].side == run.side && found[b].start == run.start &&
+                                   std::abs(run.n_l - leaders[b - first]) <= 0.1 * leaders[b - first]))
+        ++b;
+      if (b == found.size()) {
+        found.push_back({.side = run.side, .start = run.start, .onset = onset});
+        gammas.emplace_back();
+        leaders.push_back(run.n_l);
+      }
+      PhaseBoundary& boundary = found[b];
+      const bool has = run.phase == BedPhase::convecting ||
+                       (onset == BedPhase::bouncing && run.phase == BedPhase::bouncing);
+      (has ? gammas[b].with : gammas[b].without).push_back(run.gamma);
+      ++boundary.n_runs;
+      boundary.n_l += (run.n_l - boundary.n_l) / static_cast<double>(boundary.n_runs);
+    }
+  }
+  for (std::size_t b = 0; b < found.size(); ++b) bracket(gammas[b], found[b]);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const PhaseBoundary& a, const PhaseBoundary& b) { return a.n_l < b.n_l; });
+  return found;
+}
+
+std::string boundary_of(const PhaseBoundary& boundary) {
+  return (boundary.sweep ? "sweep" : side_name(boundary.side)) +
+         (boundary.start.empty() ? "" : ", " + boundary.start);
+}
+
+std::string boundary_text(const PhaseBoundary& boundary) {
+  if (boundary.fitted && !boundary.half_width())
+    return fmt::format("{:.3g}, interval open", *boundary.fitted);
+  if (boundary.gamma()) return fmt::format("{:.3g} ± {:.2g}", *boundary.gamma(), *boundary.half_width());
+  if (!boundary.below && !boundary.above) return "not found";
+  return boundary.below ? fmt::format("above {:.3g}", *boundary.below)
+                        : fmt::format("below {:.3g}", *boundary.above);
+}
+
+}  // namespace twincell

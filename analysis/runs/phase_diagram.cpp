@@ -1,0 +1,115 @@
+#include "analysis/runs/phase_diagram.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "analysis/motion/tracers.hpp"
+#include "core/config.hpp"
+
+namespace twincell {
+namespace {
+
+/// Index of the first frame at phase 0 from `start` in steps of `step`; `start` itself if there is none.
+std::size_t find_phase_0(const TrajectorySource& trajectory, std::size_t start, bool forward) {
+  Frame frame;
+  const std::size_t n = trajectory.n_frames();
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t index = forward ? i : n - 1 - i;
+    trajectory.read(index, frame);
+    if (frame.phase == 0 || !trajectory.info().columns.phase) return index;
+  }
+  return start;
+}
+
+}  // namespace
+
+std::string start_of(const TrajectoryInfo& info) {
+  const auto provenance = nlohmann::json::parse(info.provenance_json, nullptr, false);
+  if (info.source != "simulation" || !provenance.is_object() || !provenance.contains("config")) return {};
+  const std::string text = provenance["config"].get<std::string>();
+  return Config::from_text(text, "scene").root().section("start").text("kind").value_or("");
+}
+
+std::string side_name(Side side) {
+  return side == Side::experiment ? "experiment" : "simulation";
+}
+
+Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOptions& options,
+                Progress& progress) {
+  const TrajectoryInfo& info = trajectory.info();
+  if (!info.drive)
+    throw InputError({.file = trajectory.name(), .key = "drive"},
+                     "the trajectory does not say how it was driven, so that it has no Gamma");
+  Run run;
+  run.side = side;
+  run.start = start_of(info);
+  run.name = std::filesystem::path(trajectory.name()).filename().string();
+  run.results = analyze(trajectory, options, progress);
+  run.phase = phase_named(find_result(run.results, "phase").text);
+  run.cutoff = neighbour_cutoff(info, options);
+  run.gamma = info.drive->gamma();
+  run.k_m = info.drive->k_m();
+  run.omega = info.drive->omega;
+  run.box = info.box;
+  run.radius = info.radius;
+  run.phases_per_cycle = info.phases_per_cycle;
+  run.n_frames = trajectory.n_frames();
+  run.first = snapshot(trajectory, find_phase_0(trajectory, 0, true), run.cutoff);
+  run.last = snapshot(trajectory, find_phase_0(trajectory, run.n_frames - 1, false), run.cutoff);
+  run.tracers = choose_tracers(info, run.first.frame, {options.tracers, options.tracer_band}).slots;
+  run.n_beads = run.first.frame.n_present();
+  run.n_l = static_cast<double>(run.n_beads) / info.box.size().x();
+  return run;
+}
+
+std::vector<Match> match_runs(const std::vector<Run>& runs, double tolerance) {
+  std::vector<std::size_t> order(runs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return runs[a].gamma < runs[b].gamma; });
+  std::vector<Match> matches;
+  std::vector<std::size_t> leaders;  // the run with the smallest Gamma of each match
+  for (const std::size_t i : order) {
+    const auto fits = [&](std::size_t leader) {
+      return runs[i].gamma <= runs[leader].gamma * (1 + tolerance) &&
+             std::abs(runs[i].n_l - runs[leader].n_l) <= 0.1 * runs[leader].n_l;
+    };
+    const auto found = std::find_if(leaders.rbegin(), leaders.rend(), fits);
+    const auto m =
+        found == leaders.rend() ? matches.size() : static_cast<std::size_t>(leaders.rend() - found) - 1;
+    if (found == leaders.rend()) {
+      matches.emplace_back();
+      leaders.push_back(i);
+    }
+    (runs[i].side == Side::experiment ? matches[m].experiments : matches[m].simulations).push_back(i);
+  }
+  for (Match& match : matches) {
+    double sum = 0;
+    for (const std::size_t i : match.experiments) sum += runs[i].gamma;
+    for (const std::size_t i : match.simulations) sum += runs[i].gamma;
+    match.gamma = sum / static_cast<double>(match.experiments.size() + match.simulations.size());
+  }
+  return matches;
+}
+
+BedPhase common_phase(const std::vector<Run>& runs, const std::vector<std::size_t>& members) {
+  if (members.empty()) return BedPhase::undetermined;
+  const BedPhase phase = runs[members.front()].phase;
+  const bool agree =
+      std::all_of(members.begin(), members.end(), [&](std::size_t i) { return runs[i].phase == phase; });
+  return agree ? phase : BedPhase::undetermined;
+}
+
+std::string verdict(const std::vector<Run>& runs, const Match& match) {
+  if (match.simulations.empty()) return "only experiment";
+  if (match.experiments.empty()) return "only simulation";
+  const BedPhase experiment = common_phase(runs, match.experiments),
+                 simulation = common_phase(runs, match.simulations);
+  if (experiment == BedPhase::undetermined || simulation == BedPhase::undetermined) return "undetermined";
+  return experiment == simulation ? "same" : "differ";
+}
+
+}  // namespace twincell

@@ -1,0 +1,353 @@
+#include "analysis/runs/pooling.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <string_view>
+
+#include "analysis/runs/phase_diagram.hpp"
+#include "analysis/statistics/statistics.hpp"
+#include "core/error.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Degrees that bring a hexagonal lattice back.
+constexpr double kTurn = 60;
+
+/// What is averaged over runs.
+enum class Rule { mean, squares, sum, angle };
+
+struct Ruled {
+  std::string_view name;
+  Rule rule;
+};
+constexpr std::array kRules = {Ruled{"s_b", Rule::squares},
+                               Ruled{"s_b_variance", Rule::squares},
+                               Ruled{"s_b_about_rest", Rule::squares},
+                               Ruled{"s_b_as_printed", Rule::squares},
+                               Ruled{"s_j", Rule::squares},
+                               Ruled{"s_c", Rule::squares},
+                               Ruled{"slips", Rule::sum},
+                               Ruled{"slip_directions", Rule::sum},
+                               Ruled{"orientation", Rule::angle}};
+
+Rule rule_of(const std::string& name) {
+  const auto found =
+      std::find_if(kRules.begin(), kRules.end(), [&](const Ruled& ruled) { return ruled.name == name; });
+  return found == kRules.end() ? Rule::mean : found->rule;
+}
+
+/// Arrays with a place for each bead.
+bool of_single_beads(const std::string& name) {
+  return name.ends_with("_beads") || name == "tracers" || name == "tracer_heights";
+}
+
+double mean_angle(const std::vector<double>& degrees) {
+  std::complex<double> sum = 0;
+  for (const double a : degrees) sum += std::polar(1.0, 2 * std::numbers::pi * a / kTurn);
+  return std::arg(sum) * kTurn / (2 * std::numbers::pi);
+}
+
+/// The number of which the mean over runs is taken, and back.
+double onto(Rule rule, double value, double centre) {
+  if (rule == Rule::squares) return value * value;
+  return rule == Rule::angle ? centre + std::remainder(value - centre, kTurn) : value;
+}
+double back(Rule rule, double value) {
+  return rule == Rule::squares ? std::sqrt(std::max(0.0, value)) : value;
+}
+
+/// The scalar values of those runs that have one.
+struct Values {
+  std::vector<double> values;                 ///< in the scale in which means are taken
+  std::vector<std::optional<double>> errors;  ///< standard errors behind the runs' own intervals, same scale
+  std::vector<std::string> methods;           ///< of those intervals
+};
+
+Values values_of(const std::vector<const Result*>& runs, Rule rule) {
+  std::vector<double> plain;
+  for (const Result* r : runs) plain.push_back(r->value());
+  const double centre = rule == Rule::angle ? mean_angle(plain) : 0;
+  Values v;
+  for (const Result* r : runs) {
+    v.values.push_back(onto(rule, r->value(), centre));
+    std::optional<double> error;
+    if (r->interval && std::isfinite(r->interval->high - r->interval->low)) {
+      error = (onto(rule, r->interval->high, centre) - onto(rule, r->interval->low, centre)) /
+              (2 * kStandardErrors);
+      v.methods.push_back(r->interval->method.substr(0, r->interval->method.find_first_of(":;(")));
+      while (v.methods.back().ends_with(' ')) v.methods.back().pop_back();
+    }
+    v.errors.push_back(error);
+  }
+  return v;
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+/// How runs scatter, and how well each is known.
+std::optional<Interval> interval_over_runs(const Values& v) {
+  const std::size_t n = v.values.size();
+  const double centre = mean(v.values), count = static_cast<double>(n);
+  double squares = 0, own = 0;
+  for (const double x : v.values) squares += (x - centre) * (x - centre);
+  for (const auto& e : v.errors) own += e ? *e * *e : 0;
+  const double scatter = std::sqrt(squares / (count - 1) / count);
+  const double half_own = kStandardErrors * std::sqrt(own) / count;
+  if (scatter <= 1e-12 * std::abs(centre) && half_own <= 1e-12 * std::abs(centre)) return std::nullopt;
+  const std::string of = fmt::format("{} runs", n);
+  std::optional<Interval> interval = mean_interval(v.values, of);
+  if (!interval) interval = Interval{centre, centre, 0.95, of + " that agree"};
+  if (interval->low <= centre - half_own && interval->high >= centre + half_own) return interval;
+  interval->low = std::min(interval->low, centre - half_own);
+  interval->high = std::max(interval->high, centre + half_own);
+  interval->method += fmt::format(", widened to what each run's own interval allows ({})", v.methods.front());
+  return interval;
+}
+
+/// How many runs have it, and how one of them made it.
+std::string convention_of(const std::vector<const Result*>& with, std::size_t runs, const std::string& how) {
+  const std::string part = with.size() == runs
+                               ? fmt::format("{} runs", runs)
+                               : fmt::format("the {} of {} runs that have it", with.size(), runs);
+  return fmt::format("{} over {}; in the first: {}", how, part, with.front()->convention);
+}
+
+Result pooled_word(const std::vector<const Result*>& with, std::size_t runs) {
+  std::map<std::string, std::size_t> count;
+  for (const Result* r : with) ++count[r->text];
+  std::vector<std::pair<std::size_t, std::string>> ranked;
+  for (const auto& [word, n] : count) ranked.emplace_back(n, word);
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::string> counts;
+  for (const auto& [n, word] : ranked) counts.push_back(fmt::format("{} in {}", word, n));
+  const std::string said = fmt::format("{} of {} runs", fmt::join(counts, ", "), runs);
+  const Result& first = *with.front();
+  if (ranked.size() > 1 && ranked[0].first == ranked[1].first)
+    return absent_result(first.name, "the runs do not agree: " + said, first.source);
+  Result r{.name = first.name, .text = ranked.front().second, .n = with.size(), .n_of = "runs"};
+  r.convention = said + "; in the first: " + first.convention;
+  r.source = first.source;
+  return r;
+}
+
+Result pooled_scalar(const std::vector<const Result*>& with, const std::vector<double>& of_runs) {
+  const Result& first = *with.front();
+  const Rule rule = rule_of(first.name);
+  Result r{.name = first.name, .unit = first.unit, .n = with.size(), .n_of = "runs"};
+  r.of_runs = of_runs;
+  r.source = first.source;
+  const Values v = values_of(with, rule);
+  if (rule == Rule::sum) {
+    r.values = {mean(v.values) * static_cast<double>(with.size())};
+    r.convention = convention_of(with, of_runs.size(), "sum");
+    r.no_interval = "a count, exact";
+    return r;
+  }
+  r.values = {back(rule, mean(v.values))};
+  r.convention = convention_of(with, of_runs.size(), rule == Rule::squares ? "root mean square" : "mean");
+  if (with.size() == 1) {
+    r.interval = first.interval;
+    r.no_interval = first.no_interval;
+    if (r.interval) r.interval->method += ", of the only run that has it";
+    return r;
+  }
+  const bool is_probability = first.name == "p_s";
+  if (is_probability && *std::max_element(v.values.begin(), v.values.end()) == 0) {
+    double trials = 0;
+    for (const Result* run : with) trials += static_cast<double>(run->n);
+    r.interval =
+        binomial_interval(0, trials, fmt::format("{} {} of {} runs", trials, first.n_of, with.size()));
+    return r;
+  }
+  r.interval = interval_over_runs(v);
+  if (!r.interval) {
+    r.no_interval = "the same in every run";
+    return r;
+  }
+  r.interval->low = back(rule, r.interval->low);
+  r.interval->high = back(rule, r.interval->high);
+  if (is_probability) {
+    r.interval->low = std::max(0.0, r.interval->low);
+    r.interval->high = std::min(1.0, r.interval->high);
+  }
+  return r;
+}
+
+Result pooled_array(const std::vector<const Result*>& with, std::size_t runs) {
+  const Result& first = *with.front();
+  if (of_single_beads(first.name))
+    return absent_result(first.name, "values of single beads: the beads of another run are other beads",
+                         first.source);
+  std::vector<std::size_t> shape = first.shape;
+  bool cut = false;
+  for (const Result* r : with) {
+    if (r->shape.size() != shape.size() || !std::equal(shape.begin() + 1, shape.end(), r->shape.begin() + 1))
+      return absent_result(first.name, "its shape differs from run to run", first.source);
+    cut = cut || r->shape.front() != shape.front();
+    shape.front() = std::min(shape.front(), r->shape.front());
+  }
+  const Rule rule = rule_of(first.name);
+  Result r{.name = first.name, .shape = shape, .unit = first.unit, .n = with.size(), .n_of = "runs"};
+  std::size_t size = 1;
+  for (const std::size_t s : shape) size *= s;
+  for (std::size_t e = 0; e < size; ++e) {
+    std::vector<double> of_element;
+    for (const Result* run : with)
+      if (std::isfinite(run->values[e])) of_element.push_back(onto(rule, run->values[e], 0));
+    const double scale = rule == Rule::sum ? static_cast<double>(of_element.size()) : 1;
+    r.values.push_back(of_element.empty() ? kNaN : back(rule, scale * mean(of_element)));
+  }
+  r.convention = convention_of(with, runs,
+                               rule == Rule::squares ? "root mean square"
+                               : rule == Rule::sum   ? "sum"
+                                                     : "mean");
+  if (cut) r.convention += fmt::format("; up to the end of the shortest, {}", shape.front());
+  r.no_interval = "an array: one value for each element";
+  r.source = first.source;
+  return r;
+}
+
+/// Whether a number can be the same in two runs by chance: a count, or a share of few counts.
+bool may_recur(double value) {
+  constexpr int kLargest = 1000;
+  if (!std::isfinite(value)) return true;
+  for (int q = 1; q <= kLargest; ++q)
+    if (std::abs(value * q - std::round(value * q)) <= 1e-11 * std::abs(value * q)) return true;
+  return false;
+}
+
+/// Of counts, or of the camera alone.
+bool recurs(const std::string& name) {
+  return name.starts_with("p_s") || name.starts_with("slip") || name == "half_pixel";
+}
+
+bool same_run(const std::vector<Result>& a, const std::vector<Result>& b) {
+  const auto same = [](double u, double v) { return u == v || (std::isnan(u) && std::isnan(v)); };
+  bool told = false;
+  if (a.size() != b.size()) return false;
+  for (const Result& r : a) {
+    const Result* other = seek_result(b, r.name);
+    if (other == nullptr || r.text != other->text || r.values.size() != other->values.size() ||
+        !std::equal(r.values.begin(), r.values.end(), other->values.begin(), same))
+      return false;
+    told = told || (!recurs(r.name) && !std::all_of(r.values.begin(), r.values.end(), may_recur));
+  }
+  return told;
+}
+
+}  // namespace
+
+std::vector<std::size_t> repeated_runs(const std::vector<std::vector<Result>>& runs) {
+  std::vector<std::size_t> first(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    first[i] = i;
+    for (std::size_t k = 0; k < i && first[i] == i; ++k)
+      if (same_run(runs[k], runs[i])) first[i] = k;
+  }
+  return first;
+}
+
+std::vector<Result> pool(const std::vector<std::vector<Result>>& runs) {
+  assert(!runs.empty());
+  const std::vector<std::size_t> first = repeated_runs(runs);
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (first[i] != i)
+      throw ConfigError({.file = {}, .key = "runs"},
+                        fmt::format("runs {} and {} are the same run, to the last digit; another seed or "
+                                    "repeat is needed to see its scatter",
+                                    first[i] + 1, i + 1));
+  std::vector<Result> pooled;
+  for (const Result& like : runs.front()) {
+    std::vector<const Result*> with;
+    std::vector<double> of_runs;
+    const Result* none = nullptr;
+    for (const auto& results : runs) {
+      const Result* r = seek_result(results, like.name);
+      const bool has = r != nullptr && r->present();
+      if (has) with.push_back(r);
+      if (!has && r != nullptr && none == nullptr) none = r;
+      of_runs.push_back(has && r->shape.empty() && r->text.empty() ? r->value() : kNaN);
+    }
+    if (with.empty())
+      pooled.push_back(*none);
+    else if (!with.front()->text.empty())
+      pooled.push_back(pooled_word(with, runs.size()));
+    else if (with.front()->shape.empty())
+      pooled.push_back(pooled_scalar(with, of_runs));
+    else
+      pooled.push_back(pooled_array(with, runs.size()));
+  }
+  return pooled;
+}
+
+void require_one_condition(const std::vector<const TrajectorySource*>& trajectories) {
+  constexpr double kSameDrive = 0.02, kSameBeads = 0.1;
+  const auto refuse = [](const TrajectorySource& a, const TrajectorySource& b, const std::string& why) {
+    throw ConfigError({.file = b.name(), .key = "conditions"},
+                      fmt::format("cannot be pooled with {}: {}", a.name(), why));
+  };
+  struct Ends {
+    Frame first, last;
+  };
+  std::vector<Ends> ends;
+  for (const TrajectorySource* t : trajectories) {
+    ends.emplace_back();
+    t->read(0, ends.back().first);
+    t->read(t->n_frames() - 1, ends.back().last);
+  }
+  for (std::size_t i = 1; i < trajectories.size(); ++i) {
+    const TrajectorySource &a = *trajectories.front(), &b = *trajectories[i];
+    const TrajectoryInfo &p = a.info(), &q = b.info();
+    const auto words = [&](const std::string& what, const std::string& of_a, const std::string& of_b) {
+      if (of_a != of_b) refuse(a, b, fmt::format("{} {} there, {} here", what, of_a, of_b));
+    };
+    const auto numbers = [&](const std::string& what, double of_a, double of_b, double tolerance) {
+      if (std::abs(of_a - of_b) > tolerance * std::max(std::abs(of_a), std::abs(of_b)))
+        refuse(a, b,
+               fmt::format("{} is {:.6g} there, {:.6g} here; at most {:g} % apart", what, of_a, of_b,
+                           100 * tolerance));
+    };
+    words("source:", p.source, q.source);
+    numbers("the dimension", p.box.dimension, q.box.dimension, 0);
+    numbers("the number of phases per cycle", p.phases_per_cycle, q.phases_per_cycle, 0);
+    words("drive:", p.drive ? "known" : "not known", q.drive ? "known" : "not known");
+    if (p.drive) {
+      numbers("Gamma", p.drive->gamma(), q.drive->gamma(), kSameDrive);
+      numbers("omega", p.drive->omega, q.drive->omega, kSameDrive);
+    }
+    numbers("the cell's width", p.box.size().x(), q.box.size().x(), kSameDrive);
+    numbers("the number of beads", static_cast<double>(ends[0].first.n_present()),
+            static_cast<double>(ends[i].first.n_present()), kSameBeads);
+    words("start:", start_of(p), start_of(q));
+    for (std::size_t k = 0; k < i; ++k) {
+      const auto same = [](const Frame& f, const Frame& g) {
+        return f.position.size() == g.position.size() &&
+               std::equal(f.position.begin(), f.position.end(), g.position.begin(),
+                          [](const Vec3& u, const Vec3& v) { return u == v || (u.hasNaN() && v.hasNaN()); });
+      };
+      if (trajectories[k]->n_frames() == b.n_frames() && same(ends[k].first, ends[i].first) &&
+          same(ends[k].last, ends[i].last))
+        refuse(*trajectories[k], b,
+               "both hold the same run, bead for bead; another seed or repeat is needed to see its scatter");
+    }
+  }
+}
+
+}  // namespace twincell

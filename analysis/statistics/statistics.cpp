@@ -1,0 +1,336 @@
+#include "analysis/statistics/statistics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/beta.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+namespace twincell {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kCoarse = 4096;
+/// Numbers that differ by less, relative to their size, differ by rounding.
+constexpr double kSame = 1e-12;
+/// What rounding leaves of the variance of equal numbers, over their square: they are summed.
+constexpr double kRounding = 1e-13;
+/// Few long blocks: a shaken gas breathes, and what it was 18 cycles ago it is again when the first zero of
+/// its correlation is long past. With 20 blocks, disjoint, 81 to 87 % of intervals of such series (N = 2,
+/// W = 22, 143 to 600 cycles) held the mean.
+constexpr std::size_t kMaxBlocks = 8;
+constexpr std::size_t kMinBlocks = 5;
+constexpr double kBlockTimes = 5;
+/// Degrees of freedom of overlapping blocks over those of disjoint ones.
+constexpr double kOverlap = 1.2;
+/// Below this a short series shows no correlation; its values are blocks of their own.
+constexpr double kUncorrelated = 0.65;
+
+/// From this many items on the interval is a bootstrap over items; Student's t below it, where a resample has
+/// too few items to choose from. Of normal values t covers 95 % at every number; of exponentially distributed
+/// ones it covers 87 % of the means of 6, the bootstrap 94 %.
+constexpr std::size_t kItemsToResample = 6;
+
+double mean_of(const std::vector<double>& x) {
+  return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+}
+
+double normal_cdf(double z) {
+  return boost::math::cdf(boost::math::normal(), z);
+}
+double normal_quantile(double p) {
+  return boost::math::quantile(boost::math::normal(), p);
+}
+
+}  // namespace
+
+double student_t_95(double degrees) {
+  if (degrees <= 0) return std::numeric_limits<double>::infinity();
+  return boost::math::quantile(boost::math::students_t(degrees), 0.975);
+}
+
+double correlation_time(const std::vector<double>& series) {
+  const std::size_t n = series.size();
+  if (n < 2) return kNaN;
+  const double mean = mean_of(series);
+  const auto covariance = [&](std::size_t lag) {
+    double sum = 0;
+    for (std::size_t i = 0; i + lag < n; ++i) sum += (series[i] - mean) * (series[i + lag] - mean);
+    return sum / static_cast<double>(n - lag);
+  };
+  const double variance = covariance(0);
+  // A series that is constant to the last digits has no correlation to speak of.
+  if (variance <= 1e-28 * mean * mean) return 0.5;
+  double tau = 0.5;
+  std::size_t window = 1;
+  for (; window < n / 2; ++window) {
+    tau += covariance(window) / variance;
+    if (static_cast<double>(window) >= 5 * tau) break;
+  }
+  const double bias = 1 + static_cast<double>(2 * window + 1) / static_cast<double>(n);
+  return std::max(0.5, tau * bias);
+}
+
+void BlockAverage::add(double value) {
+  ++n_;
+  const double off = value - mean_, n = static_cast<double>(n_), step = off / n;
+  mean_ += step;
+  cubes_ += off * step * step * (n - 1) * (n - 2) - 3 * step * squares_;
+  squares_ += off * (value - mean_);
+  open_sum_ += value;
+  if (++open_count_ < coarse_length_) return;
+  coarse_.push_back(open_sum_ / static_cast<double>(coarse_length_));
+  open_sum_ = 0;
+  open_count_ = 0;
+  if (coarse_.size() < kCoarse) return;
+  for (std::size_t b = 0; b < kCoarse / 2; ++b) coarse_[b] = (coarse_[2 * b] + coarse_[2 * b + 1]) / 2;
+  coarse_.resize(kCoarse / 2);
+  coarse_length_ *= 2;
+}
+
+double BlockAverage::mean() const {
+  return n_ > 0 ? mean_ : kNaN;
+}
+
+double BlockAverage::variance() const {
+  return n_ > 1 ? squares_ / static_cast<double>(n_ - 1) : kNaN;
+}
+
+double BlockAverage::correlation_time() const {
+  const double coarse = twincell::correlation_time(coarse_);
+  if (coarse_length_ == 1 || !(variance() > 0)) return coarse;
+  // The variance of the mean is the same number seen in either series.
+  const double centre = mean_of(coarse_);
+  double squares = 0;
+  for (const double block : coarse_) squares += (block - centre) * (block - centre);
+  const double of_blocks = squares / static_cast<double>(coarse_.size() - 1);
+  return std::max(0.5, coarse * static_cast<double>(coarse_length_) * of_blocks / variance());
+}
+
+/// Length of a block in entries of coarse_; 0 if the series is too short for an interval.
+std::size_t BlockAverage::block_length() const {
+  if (n_ < 4) return 0;
+  const double tau = correlation_time() / static_cast<double>(coarse_length_);
+  const std::size_t count = coarse_.size();
+  const bool uncorrelated = coarse_length_ == 1 && tau < kUncorrelated;
+  const auto least = uncorrelated ? std::size_t{1} : static_cast<std::size_t>(std::ceil(kBlockTimes * tau));
+  const std::size_t length = std::max(least, (count + kMaxBlocks - 1) / kMaxBlocks);
+  return count / length >= (uncorrelated ? 4 : kMinBlocks) ? length : 0;
+}
+
+std::string BlockAverage::why_no_interval(const std::string& of_what) const {
+  if (has_no_scatter()) {
+    return all_the_same()
+               ? fmt::format("the same in all {} {}", n_, of_what)
+               : fmt::format("{} {} repeat with a period that fits into a block: the blocks do not scatter",
+                             n_, of_what);
+  }
+  if (block_length() > 0) return "";
+  if (n_ < 4) return fmt::format("too few {} for an error: {} of at least 4", of_what, n_);
+  return fmt::format("{} {} with a correlation time of {:.3g} do not hold {} independent blocks", n_, of_what,
+                     correlation_time(), kMinBlocks);
+}
+
+bool BlockAverage::all_the_same() const {
+  return n_ >= 4 && !(variance() > kRounding * mean_ * mean_);
+}
+
+bool BlockAverage::has_no_scatter() const {
+  if (all_the_same()) return true;  // rounding looks correlated, so that no block would be long enough
+  const std::size_t length = block_length();
+  // A mean that is zero by cancellation has the values' own size as its scale.
+  return length > 0 && !(half_width(length) > kSame * std::sqrt(mean_ * mean_ + variance()));
+}
+
+double BlockAverage::half_width(std::size_t length) const {
+  const std::size_t n = coarse_.size(), count = n / length;
+  const double centre = mean_of(coarse_);
+  double block = std::accumulate(coarse_.begin(), coarse_.begin() + static_cast<std::ptrdiff_t>(length), 0.0);
+  double squares = 0;
+  for (std::size_t b = 0;; ++b) {
+    const double off = block / static_cast<double>(length) - centre;
+    squares += off * off;
+    if (b + length == n) break;
+    block += coarse_[b + length] - coarse_[b];
+  }
+  const auto m = static_cast<double>(length), all = static_cast<double>(n);
+  const double of_coarse = m * squares / ((all - m + 1) * (all - m));
+  // Neighbouring blocks still share a little: for exponential correlation the variance of their means falls
+  // short by (tau - 1/(4 tau))/length.
+  const std::size_t values = length * coarse_length_;
+  const double tau = correlation_time();
+  const double shared = (tau - 1 / (4 * tau)) / static_cast<double>(values);
+  const double error = std::sqrt(of_coarse * all * static_cast<double>(coarse_length_) /
+                                 static_cast<double>(n_) / (1 - shared));
+  // Overlapping blocks tell half as much again as disjoint ones, but the correlation time that made them is
+  // uncertain too: with half as many degrees again, 88 to 93 % of intervals of 40 values held the mean.
+  const double degrees = static_cast<double>(count - 1) * (length > 1 ? kOverlap : 1);
+  return student_t_95(degrees) * error;
+}
+
+/// By how much the interval lies above the mean rather than about it, in standard errors: a few values of a
+/// skewed distribution show a mean that is too low together with a scatter that is too small. The second term
+/// of the Edgeworth series of Student's t (Hall 1992), (2 z^2 + 1)/6 times the skewness of the mean.
+double BlockAverage::lift() const {
+  if (n_ < 3) return 0;
+  const auto n = static_cast<double>(n_);
+  const double skewness = std::sqrt(n * (n - 1)) / (n - 2) * std::sqrt(n) * cubes_ / std::pow(squares_, 1.5);
+  return (2 * kStandardErrors * kStandardErrors + 1) / 6 * skewness / std::sqrt(n / (2 * correlation_time()));
+}
+
+std::optional<Interval> BlockAverage::interval(const std::string& of_what) const {
+  const std::size_t length = block_length();
+  if (length == 0 || has_no_scatter()) return std::nullopt;
+  const double half = half_width(length);
+  // The mean stays well inside.
+  const double lifted = mean() + half * std::clamp(lift() / kStandardErrors, -0.5, 0.5);
+  return Interval{
+      lifted - half, lifted + half, 0.95,
+      fmt::format("overlapping block averages over {}: {} times {}, correlation time {:.3g} {}", of_what,
+                  coarse_.size() / length, length * coarse_length_, correlation_time(), of_what)};
+}
+
+std::optional<Interval> bootstrap_interval(
+    std::size_t n, const std::function<double(const std::vector<std::size_t>&)>& statistic,
+    const std::string& of_what, std::uint64_t seed, std::size_t resamples) {
+  if (n < 2 || resamples < 40) return std::nullopt;
+  std::vector<std::size_t> pick(n);
+  std::iota(pick.begin(), pick.end(), std::size_t{0});
+  const double value = statistic(pick);
+  if (!std::isfinite(value)) return std::nullopt;
+
+  std::vector<double> left_out;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<std::size_t> others;
+    for (std::size_t k = 0; k < n; ++k)
+      if (k != i) others.push_back(k);
+    const double without = statistic(others);
+    if (std::isfinite(without)) left_out.push_back(without);
+  }
+  double acceleration = 0;
+  if (left_out.size() == n) {
+    const double centre = mean_of(left_out);
+    double second = 0, third = 0;
+    for (const double v : left_out) {
+      second += (centre - v) * (centre - v);
+      third += (centre - v) * (centre - v) * (centre - v);
+    }
+    if (second > 0) acceleration = third / (6 * std::pow(second, 1.5));
+  }
+
+  std::mt19937_64 generator(seed);
+  std::vector<double> values;
+  values.reserve(resamples);
+  for (std::size_t r = 0; r < resamples; ++r) {
+    for (auto& index : pick) index = static_cast<std::size_t>(generator() % n);  // bias below n/2^64
+    const double resampled = statistic(pick);
+    if (std::isfinite(resampled)) values.push_back(resampled);
+  }
+  if (values.size() < 40) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  const auto count = static_cast<double>(values.size());
+  const auto below =
+      static_cast<double>(std::lower_bound(values.begin(), values.end(), value) - values.begin());
+  const auto equal =
+      static_cast<double>(std::upper_bound(values.begin(), values.end(), value) - values.begin()) - below;
+  const double share = std::clamp((below + equal / 2) / count, 0.5 / count, 1 - 0.5 / count);
+  const double shift = normal_quantile(share);
+  const double wide = student_t_95(static_cast<double>(n - 1)) *
+                      std::sqrt(static_cast<double>(n) / static_cast<double>(n - 1));
+  const auto at = [&](double z) {
+    const double stretched = (shift + z) / std::max(0.1, 1 - acceleration * (shift + z));
+    return values[static_cast<std::size_t>(std::lround(normal_cdf(shift + stretched) * (count - 1)))];
+  };
+  const Interval interval{at(-wide), at(wide), 0.95, "bootstrap over " + of_what};
+  // What differs by rounding alone does not scatter.
+  if (interval.high - interval.low <= 1e-12 * std::abs(value)) return std::nullopt;
+  if (interval.low <= value && value <= interval.high) return interval;
+  // Resamples that all lie on one side tell nothing of how far the value may be off on the other.
+  if (left_out.size() != n) return std::nullopt;
+  const double centre = mean_of(left_out);
+  double squares = 0;
+  for (const double v : left_out) squares += (v - centre) * (v - centre);
+  const auto items = static_cast<double>(n);
+  const double half = student_t_95(items - 1) * std::sqrt((items - 1) / items * squares);
+  if (!(half > 0)) return std::nullopt;
+  return Interval{std::min(interval.low, value - half), std::max(interval.high, value + half), 0.95,
+                  "bootstrap over " + of_what + ", widened to Student's t of the jackknife"};
+}
+
+std::optional<Interval> mean_interval(const std::vector<double>& items, const std::string& of_what,
+                                      std::uint64_t seed, std::size_t resamples) {
+  const std::size_t n = items.size();
+  if (n < 2) return std::nullopt;
+  const auto mean_and_error = [n](const auto& value) {
+    double sum = 0, squares = 0;
+    for (std::size_t i = 0; i < n; ++i) sum += value(i);
+    const double mean = sum / static_cast<double>(n);
+    for (std::size_t i = 0; i < n; ++i) squares += (value(i) - mean) * (value(i) - mean);
+    return std::pair(mean, std::sqrt(squares / static_cast<double>(n - 1) / static_cast<double>(n)));
+  };
+  const auto [mean, error] = mean_and_error([&](std::size_t i) { return items[i]; });
+  if (!std::isfinite(mean) || error <= 1e-12 * std::abs(mean)) return std::nullopt;
+  if (n < kItemsToResample) {
+    const double half = student_t_95(static_cast<double>(n - 1)) * error;
+    return Interval{mean - half, mean + half, 0.95, "Student's t over " + of_what};
+  }
+  std::mt19937_64 generator(seed);
+  std::vector<std::size_t> pick(n);
+  std::vector<double> t;
+  for (std::size_t r = 0; r < resamples; ++r) {
+    for (auto& index : pick) index = static_cast<std::size_t>(generator() % n);  // bias below n/2^64
+    const auto [again, its_error] = mean_and_error([&](std::size_t i) { return items[pick[i]]; });
+    if (its_error > 1e-9 * error) t.push_back((again - mean) / its_error);
+  }
+  const std::string method = "bootstrap (studentised) over " + of_what;
+  // A few items show less skewness than their distribution has: without this, 20 squares of Gaussians are
+  // covered to 93.8 %.
+  const double wide = error * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 2));
+  if (t.size() < 40) return std::nullopt;
+  std::sort(t.begin(), t.end());
+  const auto at = [&](double share) {
+    return t[static_cast<std::size_t>(std::lround(share * static_cast<double>(t.size() - 1)))];
+  };
+  return Interval{mean - at(0.975) * wide, mean - at(0.025) * wide, 0.95, method};
+}
+
+std::string why_no_mean_interval(const std::vector<double>& items, const std::string& of_what) {
+  if (mean_interval(items, of_what)) return "";
+  const std::size_t n = items.size();
+  if (n < 2) return fmt::format("too few {} for an error: {} of at least 2", of_what, n);
+  if (!std::all_of(items.begin(), items.end(), [](double x) { return std::isfinite(x); }))
+    return fmt::format("not every one of {} {} has a value", n, of_what);
+  const auto [least, largest] = std::minmax_element(items.begin(), items.end());
+  if (*largest - *least <= kSame * static_cast<double>(n) * std::abs(*largest))
+    return fmt::format("the same in all {} {}", n, of_what);
+  return fmt::format("the {} {} scatter too little beside their size to be resampled", n, of_what);
+}
+
+Interval binomial_interval(double successes, double trials, const std::string& of_what) {
+  constexpr double kTail = 0.05;
+  const double failures = trials - successes;
+  if (successes <= 0)
+    return {0, -std::expm1(std::log(kTail) / trials), 0.95,
+            "exact binomial over " + of_what + ": no success, one-sided upper limit"};
+  if (failures <= 0)
+    return {std::exp(std::log(kTail) / trials), 1, 0.95,
+            "exact binomial over " + of_what + ": no failure, one-sided lower limit"};
+  return {boost::math::ibeta_inv(successes, failures + 1, kTail / 2),
+          boost::math::ibeta_inv(successes + 1, failures, 1 - kTail / 2), 0.95,
+          "exact binomial (Clopper-Pearson) over " + of_what};
+}
+
+Interval wilson_interval(double successes, double trials, const std::string& of_what) {
+  const double z = normal_quantile(0.975), p = successes / trials;
+  const double centre = (p + z * z / (2 * trials)) / (1 + z * z / trials);
+  const double half =
+      z * std::sqrt(p * (1 - p) / trials + z * z / (4 * trials * trials)) / (1 + z * z / trials);
+  return {std::max(0.0, centre - half), std::min(1.0, centre + half), 0.95, "Wilson's over " + of_what};
+}
+
+}  // namespace twincell

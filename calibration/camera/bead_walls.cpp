@@ -1,0 +1,83 @@
+#include "calibration/camera/bead_walls.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <tuple>
+#include <vector>
+
+#include "calibration/fit/curve_fit.hpp"
+#include "core/error.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr double kSlice = 0.5;  // sigma
+constexpr std::size_t kFewest = 20;
+
+/// Height and outermost place of each slice; `sign` -1: the left wall.
+std::vector<DataPoint> outermost_places(const std::map<long, std::vector<std::pair<double, double>>>& slices,
+                                        double sign) {
+  std::vector<DataPoint> points;
+  for (auto [slice, beads] : slices) {
+    if (beads.size() < kFewest) continue;
+    std::sort(beads.begin(), beads.end(),
+              [&](const auto& a, const auto& b) { return sign * a.second > sign * b.second; });
+    const std::size_t n = std::max<std::size_t>(3, beads.size() / 100);
+    double z = 0, x = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      z += beads[i].first / static_cast<double>(n);
+      x += beads[i].second / static_cast<double>(n);
+    }
+    points.push_back({z, x, 0, 0});
+  }
+  return points;
+}
+
+}  // namespace
+
+BeadWalls walls_from_beads(const TrajectorySource& trajectory) {
+  const TrajectoryInfo& info = trajectory.info();
+  std::map<long, std::vector<std::pair<double, double>>> left, right;  // slice -> (z, x)
+  Frame frame;
+  const double middle = 0.5 * (info.box.lower.x() + info.box.upper.x());
+  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
+    trajectory.read(f, frame);
+    const double plate = std::isfinite(frame.plate_height) ? frame.plate_height : 0;
+    for (std::size_t i = 0; i < info.n_beads; ++i) {
+      if (!frame.present(i) || !std::isfinite(frame.position[i].x())) continue;
+      const double r = info.radius.empty() ? 0.5 : info.radius[i], x = frame.position[i].x(),
+                   z = frame.position[i].z() - plate;
+      auto& slices = x < middle ? left : right;
+      slices[std::lround(std::floor(z / kSlice))].emplace_back(z, x < middle ? x - r : x + r);
+    }
+  }
+  const std::vector<DataPoint> l = outermost_places(left, -1), r = outermost_places(right, 1);
+  if (l.size() < 3 || r.size() < 3)
+    throw InputError(
+        {.file = trajectory.name(), .key = {}},
+        fmt::format("has beads enough at {} heights of the left and {} of the right wall; 3 are needed.",
+                    l.size(), r.size()));
+  const CurveFit a = fit_curve(law_named("line"), l), b = fit_curve(law_named("line"), r);
+  const auto degrees = [](double slope, double error) {
+    return std::pair{std::atan(slope) * 180 / std::numbers::pi,
+                     error / (1 + slope * slope) * 180 / std::numbers::pi};
+  };
+  BeadWalls w;
+  w.x_left = a.fit.values[0];
+  w.x_left_error = a.fit.standard_errors.empty() ? std::nan("") : a.fit.standard_errors[0];
+  w.x_right_error = b.fit.standard_errors.empty() ? std::nan("") : b.fit.standard_errors[0];
+  w.width = b.fit.values[0] - a.fit.values[0];
+  w.width_error = std::hypot(w.x_left_error, w.x_right_error);
+  std::tie(w.tilt_left, w.tilt_left_error) =
+      degrees(-a.fit.values[1], a.fit.standard_errors.empty() ? std::nan("") : a.fit.standard_errors[1]);
+  std::tie(w.tilt_right, w.tilt_right_error) =
+      degrees(b.fit.values[1], b.fit.standard_errors.empty() ? std::nan("") : b.fit.standard_errors[1]);
+  w.rows = std::min(l.size(), r.size());
+  return w;
+}
+
+}  // namespace twincell

@@ -1,0 +1,621 @@
+#include "calibration/camera/cell_geometry.hpp"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "core/in_parallel.hpp"
+#include "core/median.hpp"
+#include "imaging/settings/auto_configuration.hpp"
+#include "imaging/stack/open_frames.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::size_t kWallFrames = 40;   // frames whose walls are read
+constexpr std::size_t kPlateFrames = 40;  // frames whose plates tell turn and bend
+constexpr double kWindow_px = 0.6;        // within which points are of one edge
+constexpr double kWorstSigma = 4;         // beyond it a point is not of the edge
+
+/// A point seen along an edge: u along, v across, larger v further inside the cell.
+struct Along {
+  double u, v;
+};
+
+/// v = offset + slope u.
+struct Line {
+  double slope = 0, offset = 0;
+  std::size_t support = 0;
+  [[nodiscard]] double distance(const Along& p) const { return p.v - offset - slope * p.u; }
+};
+
+/// The outermost window in which at least `need` of the sorted values lie: its median and their number.
+std::pair<double, std::size_t> outermost(const std::vector<double>& sorted, std::size_t need) {
+  for (std::size_t a = 0, b = 0; a < sorted.size(); ++a) {
+    b = std::max(b, a);
+    while (b < sorted.size() && sorted[b] <= sorted[a] + kWindow_px) ++b;
+    if (b - a < need) continue;
+    // The first window that is full enough may have caught only the edge's near half.
+    std::size_t best = b - a, at = a;
+    for (std::size_t c = a, e = b; c < sorted.size() && sorted[c] <= sorted[a] + kWindow_px; ++c) {
+      while (e < sorted.size() && sorted[e] <= sorted[c] + kWindow_px) ++e;
+      if (e - c > best) best = e - c, at = c;
+    }
+    return {sorted[at + best / 2], best};
+  }
+  return {0, 0};
+}
+
+std::optional<Line> outermost_line(std::vector<Along> points, double steepest, double share) {
+  constexpr std::size_t kMost = 400;
+  if (points.size() > kMost) {
+    std::vector<Along> thinned;
+    for (std::size_t i = 0; i < kMost; ++i) thinned.push_back(points[i * points.size() / kMost]);
+    points = std::move(thinned);
+  }
+  const auto need =
+      std::max<std::size_t>(4, static_cast<std::size_t>(share * static_cast<double>(points.size())));
+  if (points.size() < need) return std::nullopt;
+  double middle = 0, reach = 1;
+  for (const Along& p : points) middle += p.u / static_cast<double>(points.size());
+  for (const Along& p : points) reach = std::max(reach, std::abs(p.u - middle));
+  const double step = 0.5 * kWindow_px / reach;
+  Line best;
+  std::vector<double> r(points.size());
+  for (double slope = -steepest; slope <= steepest; slope += step) {
+    for (std::size_t i = 0; i < points.size(); ++i) r[i] = points[i].v - slope * (points[i].u - middle);
+    std::sort(r.begin(), r.end());
+    const auto [offset, support] = outermost(r, need);
+    // A tie goes to the line that is less steep.
+    if (support > best.support || (support == best.support && std::abs(slope) < std::abs(best.slope)))
+      best = {slope, offset - slope * middle, support};
+  }
+  if (best.support < need) return std::nullopt;
+  return best;
+}
+
+double spread_of(std::vector<double> r) {
+  for (double& x : r) x = std::abs(x);
+  return r.empty() ? 0 : 1.4826 * upper_median(std::move(r));
+}
+
+/// Ideal place of a point of the picture; the formulae of Lens, for Ceres' numbers.
+template <class T>
+void ideal(const T& rotation_deg, const T& k1, double x, double y, cv::Size size, T* out) {
+  const double mx = 0.5 * (size.width - 1), my = 0.5 * (size.height - 1),
+               unit = 0.5 * std::hypot(size.width, size.height);
+  const double u = x - mx, v = y - my, seen = std::hypot(u, v) / unit;
+  T r = T(seen);
+  for (int i = 0; i < 8; ++i) r -= (r * (1.0 + k1 * r * r) - seen) / (1.0 + 3.0 * k1 * r * r);
+  const T shrink = seen > 1e-9 ? r / seen : T(1.0);
+  const T c = cos(rotation_deg * kDegree), s = sin(rotation_deg * kDegree);
+  out[0] = mx + shrink * (c * u - s * v);
+  out[1] = my + shrink * (s * u + c * v);
+}
+
+/// Which parameter is where; -1: not fitted, 0.
+struct Places {
+  int x_left = -1, tilt_left = -1, x_right = -1, tilt_right = -1, rotation = -1, distortion = -1;
+  std::vector<std::string> names;
+  int add(const char* name) {
+    names.emplace_back(name);
+    return static_cast<int>(names.size()) - 1;
+  }
+};
+template <class T>
+T value_at(const T* p, int place) {
+  return place < 0 ? T(0.0) : p[place];
+}
+
+/// Distance of a wall's point from its line, over `error`. plate_row is held: the walls' feet are counted
+/// from it.
+struct WallResidual {
+  PixelPoint at;
+  double error, plate_row;
+  bool left;
+  Places places;
+  cv::Size size;
+  template <class T>
+  bool operator()(T const* const* parameters, T* residual) const {
+    const T* p = parameters[0];
+    T q[2];
+    ideal(value_at(p, places.rotation), value_at(p, places.distortion), at.x_px, at.y_px, size, q);
+    const T height = plate_row - q[1];
+    residual[0] = left ? q[0] - (p[places.x_left] - tan(p[places.tilt_left] * kDegree) * height)
+                       : q[0] - (p[places.x_right] + tan(p[places.tilt_right] * kDegree) * height);
+    residual[0] /= error;
+    return true;
+  }
+};
+
+/// Rows of one frame's plate about their mean: the plate's height drops out.
+struct PlateResidual {
+  std::vector<PixelPoint> at;
+  double error;
+  Places places;
+  cv::Size size;
+  template <class T>
+  bool operator()(T const* const* parameters, T* residual) const {
+    const T* p = parameters[0];
+    T mean = T(0.0);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      T q[2];
+      ideal(value_at(p, places.rotation), value_at(p, places.distortion), at[i].x_px, at[i].y_px, size, q);
+      residual[i] = q[1];
+      mean += q[1] / static_cast<double>(at.size());
+    }
+    for (std::size_t i = 0; i < at.size(); ++i) residual[i] = (residual[i] - mean) / error;
+    return true;
+  }
+};
+
+template <class Functor>
+ceres::CostFunction* cost_of(Functor* functor, std::size_t parameters, std::size_t residuals) {
+  auto* cost = new ceres::DynamicAutoDiffCostFunction<Functor, 8>(functor);
+  cost->AddParameterBlock(static_cast<int>(parameters));
+  cost->SetNumResiduals(static_cast<int>(residuals));
+  return cost;
+}
+
+Along along_of(const PixelPoint& p, int side) {
+  return side == 0 ? Along{p.y_px, p.x_px} : side == 1 ? Along{p.y_px, -p.x_px} : Along{p.x_px, -p.y_px};
+}
+
+/// A wall's place in a row: the mean of `frames` of them.
+struct WallRow {
+  PixelPoint at;
+  double frames = 1;
+  std::vector<std::size_t> seen = {};  // in these: beads and plate hide a row in some phases only
+  double floor = 0;                    // mean row of the plate in them, ideal picture
+};
+
+/// One point a row: the mean over the frames of what lies on the wall.
+std::vector<WallRow> rows_of_wall(const std::vector<std::vector<EdgePoint>>& frames, int side) {
+  constexpr double kSteepest = 0.25;
+  std::vector<Along> all;
+  for (const auto& frame : frames)
+    for (const EdgePoint& p : frame) all.push_back(along_of(p.at, side));
+  const auto line = outermost_line(all, kSteepest, 0.05);
+  std::vector<WallRow> rows;
+  if (!line) return rows;
+  // A bent wall leaves the straight line: a parabola follows it, in a window that closes about it.
+  Eigen::Vector3d bend(line->offset, line->slope, 0);
+  double middle = 0;
+  const auto distance = [&](const Along& p) {
+    const double u = p.u - middle;
+    return p.v - bend[0] - bend[1] * u - bend[2] * u * u;
+  };
+  double u_sum = 0;
+  for (const Along& p : all) u_sum += p.u;
+  middle = u_sum / static_cast<double>(all.size());
+  bend[0] += bend[1] * middle;
+  double window = 4 * kWindow_px;
+  for (int round = 0; round < 6; ++round) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    std::vector<double> r;
+    for (const Along& p : all) {
+      if (std::abs(distance(p)) > window) continue;
+      const Eigen::Vector3d b(1, p.u - middle, (p.u - middle) * (p.u - middle));
+      normal += b * b.transpose();
+      right += p.v * b;
+    }
+    bend = normal.ldlt().solve(right);
+    for (const Along& p : all)
+      if (std::abs(distance(p)) <= window) r.push_back(distance(p));
+    if (r.size() < 8) break;
+    window = std::clamp(kWorstSigma * spread_of(r), 0.05, window);
+  }
+  std::map<int, WallRow> sums;
+  for (std::size_t f = 0; f < frames.size(); ++f)
+    for (const EdgePoint& p : frames[f]) {
+      if (std::abs(distance(along_of(p.at, side))) > window) continue;
+      WallRow& row = sums.try_emplace(static_cast<int>(p.at.y_px), WallRow{.at = {0, p.at.y_px}, .frames = 0})
+                         .first->second;
+      row.at.x_px += p.at.x_px;
+      row.seen.push_back(f);
+      ++row.frames;
+    }
+  for (auto& [y, row] : sums) {
+    // A row that few frames show is one that beads hide most of the time.
+    if (row.frames * 4 < static_cast<double>(frames.size())) continue;
+    row.at.x_px /= row.frames;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// The plate's points in a frame; `line` says its slope.
+std::vector<PixelPoint> on_plate(const std::vector<EdgePoint>& frame, double slope, double window) {
+  std::vector<double> r;
+  for (const EdgePoint& p : frame) r.push_back(along_of(p.at, 2).v - slope * p.at.x_px);
+  std::vector<double> sorted = r;
+  std::sort(sorted.begin(), sorted.end());
+  const auto [offset, support] = outermost(
+      sorted, std::max<std::size_t>(3, static_cast<std::size_t>(0.03 * static_cast<double>(r.size()))));
+  std::vector<PixelPoint> points;
+  if (support == 0) return points;
+  for (std::size_t i = 0; i < r.size(); ++i)
+    if (std::abs(r[i] - offset) < window) points.push_back(frame[i].at);
+  return points;
+}
+
+/// Rows of the plate in the ideal picture: its place and error from the points' own scatter.
+PlateSighting sighting(const std::vector<PixelPoint>& points, double rotation_deg, double k1, cv::Size size) {
+  PlateSighting s{.height_px = kNaN, .sigma_px = kNaN, .points = 0};
+  std::vector<double> rows;
+  for (const PixelPoint& p : points) {
+    double q[2];
+    ideal(rotation_deg, k1, p.x_px, p.y_px, size, q);
+    rows.push_back(-q[1]);
+  }
+  if (rows.size() < 3) return s;
+  const double middle = upper_median(rows);
+  std::vector<double> r;
+  for (const double z : rows) r.push_back(z - middle);
+  const double width = std::max(0.02, 3 * spread_of(r));
+  double sum = 0, squares = 0, n = 0;
+  for (const double z : rows)
+    if (std::abs(z - middle) < width) sum += z, squares += (z - middle) * (z - middle), ++n;
+  s.height_px = sum / n;
+  const double variance = squares / n - (s.height_px - middle) * (s.height_px - middle);
+  s.sigma_px = std::sqrt(std::max(variance, 1e-6) / std::max(1.0, n - 1));
+  s.points = static_cast<std::size_t>(n);
+  return s;
+}
+
+struct Chosen {
+  std::vector<WallRow> left, right;
+  std::vector<std::vector<PixelPoint>> plate;  // [some frames]
+};
+
+FitReport solve_geometry(const Chosen& c, const Places& places, std::vector<double>& p, cv::Size size,
+                         const double (&error)[3], Residuals residuals) {
+  ceres::Problem problem;
+  const std::size_t n = places.names.size();
+  for (const bool left : {true, false})
+    for (const WallRow& row : left ? c.left : c.right)
+      problem.AddResidualBlock(cost_of(new WallResidual{row.at, error[left ? 0 : 1] / std::sqrt(row.frames),
+                                                        row.floor, left, places, size},
+                                       n, 1),
+                               nullptr, p.data());
+  for (const auto& frame : c.plate)
+    if (frame.size() >= 3)
+      problem.AddResidualBlock(cost_of(new PlateResidual{frame, error[2], places, size}, n, frame.size()),
+                               nullptr, p.data());
+  return solve(problem, p.data(), places.names, residuals);
+}
+
+/// By how much the squared error of a mean of residuals is larger than if each were by itself: what stands in
+/// the light beside an edge, a bead, a speck of dust, moves the points of one block alike. `block` numbers
+/// them; `fitted` numbers were taken from all.
+double block_factor(const std::vector<std::pair<int, double>>& block_and_residual, double fitted) {
+  std::map<int, double> sums;
+  double squares = 0, of_blocks = 0;
+  for (const auto& [block, r] : block_and_residual) sums[block] += r, squares += r * r;
+  for (const auto& [block, sum] : sums) of_blocks += sum * sum;
+  const auto n = static_cast<double>(sums.size());
+  if (n < fitted + 3 || squares <= 0) return 1;
+  return std::max(1.0, of_blocks / squares * n / (n - fitted));
+}
+
+}  // namespace
+
+std::vector<double> CellGeometry::heights_px() const {
+  std::vector<double> h;
+  for (const PlateSighting& s : heights) h.push_back(s.height_px);
+  return h;
+}
+double CellGeometry::width_px() const {
+  return fit.value("x_right") - fit.value("x_left");
+}
+double CellGeometry::width_error_px() const {
+  if (fit.covariance.size() == 0) return kNaN;
+  const auto place = [&](const char* name) {
+    return std::find(fit.names.begin(), fit.names.end(), name) - fit.names.begin();
+  };
+  const auto l = place("x_left"), r = place("x_right");
+  return std::sqrt(fit.covariance(l, l) + fit.covariance(r, r) - 2 * fit.covariance(l, r));
+}
+
+double diameter_for_edges(const std::filesystem::path& stack, bool bright, double known_px) {
+  constexpr double kUsual_px = 15;
+  if (known_px > 0) return known_px;
+  cv::Mat first;
+  const double found = open_frames(stack)->next(first) ? estimate_diameter(first, {.bright = bright}) : 0;
+  return found > 0 ? found : kUsual_px;
+}
+
+std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdges& edges,
+                                    const std::filesystem::path& stack) {
+  if (stated) return stated;
+  const auto& t = edges.time_s;
+  if (t.size() > 1 && t.back() > t.front()) return static_cast<double>(t.size() - 1) / (t.back() - t.front());
+  return open_frames(stack)->info().frame_rate_hz;
+}
+
+StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px, int threads,
+                            Progress& progress) {
+  StackEdges out;
+  const std::size_t stride = std::max<std::size_t>(1, frames.announced() / kWallFrames);
+  out.stride = stride;
+  out.diameter_px = diameter_px;
+  const auto batch_size = static_cast<std::size_t>(std::max(1, threads)) * 2;
+  std::vector<double> blurs;
+  bool stamped = true;
+  std::size_t done = 0;
+  for (bool more = true; more;) {
+    std::vector<cv::Mat> batch;
+    for (cv::Mat frame; batch.size() < batch_size && (more = frames.next(frame)); frame = cv::Mat()) {
+      batch.push_back(frame);
+      if (const auto t = frames.time_s(); t && stamped)
+        out.time_s.push_back(*t);
+      else
+        stamped = false;
+    }
+    std::vector<CellEdges> found(batch.size());
+    in_parallel(batch.size(), threads,
+                [&](std::size_t i) { found[i] = find_cell_edges(batch[i], bright, diameter_px); });
+    for (std::size_t i = 0; i < batch.size(); ++i, ++done) {
+      out.size = batch[i].size();
+      if (done % stride == 0) {
+        out.left.push_back(std::move(found[i].left));
+        out.right.push_back(std::move(found[i].right));
+      }
+      out.plate.push_back(std::move(found[i].plate));
+      if (found[i].blur_px > 0) blurs.push_back(found[i].blur_px);
+    }
+    progress.update(static_cast<std::int64_t>(done), static_cast<std::int64_t>(frames.announced()));
+  }
+  if (done == 0) throw InputError(Where{.file = frames.current(), .key = {}}, "holds no frame.");
+  if (!stamped) out.time_s.clear();
+  if (!blurs.empty()) out.blur_px = upper_median(blurs);
+  return out;
+}
+
+CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
+  constexpr double kSteepestPlate = 0.1;
+  CellGeometry g;
+  g.size = edges.size;
+  g.blur_px = edges.blur_px;
+  // The plate's slope: each frame says one; beads that lie in a row high above never win where the plate is
+  // seen.
+  const std::size_t stride = std::max<std::size_t>(1, edges.plate.size() / kPlateFrames);
+  std::vector<double> slopes;
+  for (std::size_t f = 0; f < edges.plate.size(); f += stride) {
+    std::vector<Along> points;
+    for (const EdgePoint& p : edges.plate[f]) points.push_back(along_of(p.at, 2));
+    if (const auto line = outermost_line(points, kSteepestPlate, 0.03)) slopes.push_back(line->slope);
+  }
+  g.has_plate = !slopes.empty();
+  const double slope = g.has_plate ? upper_median(slopes) : 0;
+  const double window = with_distortion ? 3 * kWindow_px : kWindow_px;
+  Chosen all;
+  for (std::size_t f = 0; f < edges.plate.size(); f += stride)
+    all.plate.push_back(on_plate(edges.plate[f], slope, window));
+
+  // Where the walls' feet are in each frame that shows walls, in the ideal picture; the mean where no plate
+  // is seen.
+  const auto put_floors = [&](double rotation_deg, double k1) {
+    std::vector<double> floors;
+    double known = 0, sum = 0;
+    for (std::size_t w = 0; w < std::max(edges.left.size(), edges.right.size()); ++w) {
+      const std::size_t f = w * edges.stride;
+      const PlateSighting s =
+          f < edges.plate.size() ? sighting(on_plate(edges.plate[f], slope, window), rotation_deg, k1, g.size)
+                                 : PlateSighting{.height_px = kNaN};
+      floors.push_back(-s.height_px);
+      if (std::isfinite(s.height_px)) sum -= s.height_px, ++known;
+    }
+    g.plate_row = known > 0 ? sum / known : edges.size.height - 1;
+    for (std::vector<WallRow>* wall : {&all.left, &all.right})
+      for (WallRow& row : *wall) {
+        row.floor = 0;
+        for (const std::size_t f : row.seen)
+          row.floor += (std::isfinite(floors[f]) ? floors[f] : g.plate_row) / row.frames;
+      }
+  };
+  all.left = rows_of_wall(edges.left, 0);
+  all.right = rows_of_wall(edges.right, 1);
+  put_floors(std::atan(slope) / kDegree, 0);
+  g.has_left = all.left.size() >= 8;
+  g.has_right = all.right.size() >= 8;
+  if (!g.has_left) all.left.clear();
+  if (!g.has_right) all.right.clear();
+  if (!g.has_plate && !g.has_left && !g.has_right)
+    throw InputError(
+        {.file = {}, .key = "edges"},
+        "neither a plate nor a wall is seen: each needs 3 px of dark border and light beside it.");
+
+  Places places;
+  std::vector<double> p;
+  const auto add = [&](const char* name, double start) {
+    p.push_back(start);
+    return places.add(name);
+  };
+  // No plate, no level: the turn then cannot be told from tilts of the walls.
+  if (g.has_plate) places.rotation = add("rotation", std::atan(slope) / kDegree);
+  const auto mean_x = [](const std::vector<WallRow>& wall) {
+    double sum = 0;
+    for (const WallRow& row : wall) sum += row.at.x_px / static_cast<double>(wall.size());
+    return sum;
+  };
+  if (g.has_left) {
+    places.x_left = add("x_left", mean_x(all.left));
+    places.tilt_left = add("tilt_left", 0);
+  }
+  if (g.has_right) {
+    places.x_right = add("x_right", mean_x(all.right));
+    places.tilt_right = add("tilt_right", 0);
+  }
+  if (with_distortion) places.distortion = add("distortion", 0);
+
+  double error[3] = {1, 1, 1};
+  Chosen kept = all;
+  const auto residual_of = [&](const WallRow& row, bool left) {
+    const double* values = p.data();
+    double r = 0;
+    WallResidual{row.at, 1, row.floor, left, places, g.size}(&values, &r);
+    return r;
+  };
+  const auto plate_residuals = [&](const std::vector<PixelPoint>& frame) {
+    std::vector<double> r(frame.size());
+    std::vector<double> q;
+    for (const PixelPoint& at : frame) {
+      double place[2];
+      ideal(value_at(p.data(), places.rotation), value_at(p.data(), places.distortion), at.x_px, at.y_px,
+            g.size, place);
+      q.push_back(place[1]);
+    }
+    const double middle = q.empty() ? 0 : upper_median(q);
+    for (std::size_t i = 0; i < q.size(); ++i) r[i] = q[i] - middle;
+    return r;
+  };
+  constexpr int kRounds = 4;
+  for (int round = 0; round < kRounds; ++round) {
+    const bool last = round == kRounds - 1;
+    if (last) {
+      // Blocks of one bead's width; three numbers of each edge are fitted.
+      const auto block_of = [&](double place) { return static_cast<int>(place / edges.diameter_px); };
+      for (const bool left : {true, false}) {
+        std::vector<std::pair<int, double>> r;
+        for (const WallRow& row : left ? kept.left : kept.right)
+          r.emplace_back(block_of(row.at.y_px), residual_of(row, left) * std::sqrt(row.frames));
+        error[left ? 0 : 1] *= std::sqrt(block_factor(r, 3));
+      }
+      std::vector<std::pair<int, double>> r;
+      for (const auto& frame : kept.plate) {
+        const auto of_frame = plate_residuals(frame);
+        for (std::size_t i = 0; i < frame.size(); ++i) r.emplace_back(block_of(frame[i].x_px), of_frame[i]);
+      }
+      error[2] *= std::sqrt(block_factor(r, 3));
+    }
+    g.fit =
+        solve_geometry(kept, places, p, g.size, error, last ? Residuals::weighted : Residuals::unweighted);
+    if (last) break;
+    put_floors(value_at(p.data(), places.rotation), value_at(p.data(), places.distortion));
+    // Each kind of edge is known as well as its points scatter; those too far away are not of it.
+    kept = {};
+    for (const bool left : {true, false}) {
+      const auto& points = left ? all.left : all.right;
+      std::vector<double> r;
+      for (const WallRow& row : points) r.push_back(residual_of(row, left) * std::sqrt(row.frames));
+      error[left ? 0 : 1] = std::max(1e-3, spread_of(r));
+      for (std::size_t i = 0; i < r.size(); ++i)
+        if (std::abs(r[i]) < kWorstSigma * error[left ? 0 : 1])
+          (left ? kept.left : kept.right).push_back(points[i]);
+    }
+    std::vector<double> pooled;
+    for (const auto& frame : all.plate)
+      for (const double r : plate_residuals(frame)) pooled.push_back(r);
+    error[2] = std::max(1e-3, spread_of(pooled));
+    for (const auto& frame : all.plate) {
+      const auto r = plate_residuals(frame);
+      kept.plate.emplace_back();
+      for (std::size_t i = 0; i < r.size(); ++i)
+        if (std::abs(r[i]) < kWorstSigma * error[2]) kept.plate.back().push_back(frame[i]);
+    }
+  }
+  if (g.fit.covariance.size() > 0) {
+    // A line that is off by so much at one end leans.
+    const auto add_error = [&](int place, double more) {
+      if (place < 0) return;
+      g.fit.covariance(place, place) += more * more;
+      g.fit.standard_errors[static_cast<std::size_t>(place)] = std::sqrt(g.fit.covariance(place, place));
+    };
+    const auto span = [](const std::vector<WallRow>& wall) {
+      return wall.empty() ? 1.0 : std::max(1.0, wall.back().at.y_px - wall.front().at.y_px);
+    };
+    constexpr double e = kEdgeModelError_px;
+    add_error(places.x_left, e);
+    add_error(places.x_right, e);
+    add_error(places.tilt_left, e / span(kept.left) / kDegree);
+    add_error(places.tilt_right, e / span(kept.right) / kDegree);
+    add_error(places.rotation, e / edges.size.width / kDegree);
+    add_error(places.distortion, 4 * e / std::hypot(edges.size.width, edges.size.height));
+  }
+  // Rims of beads that a frame cuts are no wall: they are in no line.
+  const auto is_line = [&](const char* name) {
+    constexpr double kLargest_px = 0.25;
+    return g.fit.standard_errors.empty() || g.fit.standard_error(name) < kLargest_px;
+  };
+  if ((g.has_left && !is_line("x_left")) || (g.has_right && !is_line("x_right"))) {
+    StackEdges lines = edges;
+    if (g.has_left && !is_line("x_left")) lines.left.clear();
+    if (g.has_right && !is_line("x_right")) lines.right.clear();
+    return fit_cell_geometry(lines, with_distortion);
+  }
+  if (with_distortion) {
+    g.distortion_found = g.fit.value("distortion");
+    g.distortion_error = g.fit.standard_error("distortion");
+    // A bend that is not there costs accuracy everywhere else.
+    if (!(std::abs(*g.distortion_found) > 3 * *g.distortion_error)) {
+      CellGeometry straight = fit_cell_geometry(edges, false);
+      straight.distortion_found = g.distortion_found;
+      straight.distortion_error = g.distortion_error;
+      return straight;
+    }
+    g.distortion = *g.distortion_found;
+  }
+  g.rotation_deg = g.has_plate ? g.fit.value("rotation") : 0;
+
+  for (const bool left : {true, false})
+    for (const WallRow& row : left ? kept.left : kept.right)
+      g.residuals.push_back({row.at, residual_of(row, left)});
+  for (const auto& frame : kept.plate) {
+    const auto r = plate_residuals(frame);
+    for (std::size_t i = 0; i < r.size(); ++i) g.residuals.push_back({frame[i], r[i]});
+  }
+
+  double sum = 0, squares = 0, n = 0;
+  for (const auto& frame : edges.plate) {
+    g.heights.push_back(sighting(on_plate(frame, slope, window), g.rotation_deg, g.distortion, g.size));
+    if (std::isfinite(g.heights.back().height_px)) {
+      sum -= g.heights.back().height_px;
+      squares += g.heights.back().sigma_px * g.heights.back().sigma_px;
+      ++n;
+    }
+  }
+  if (n > 0) {
+    const double row = sum / n;
+    g.plate_row = row;
+    // What turn and bend leave open moves and stretches the heights too.
+    if (g.fit.covariance.size() > 0) {
+      const PlateSighting *low = nullptr, *high = nullptr;
+      for (const PlateSighting& s : g.heights) {
+        if (!std::isfinite(s.height_px)) continue;
+        if (!low || s.height_px < low->height_px) low = &s;
+        if (!high || s.height_px > high->height_px) high = &s;
+      }
+      const auto moved = [&](const PlateSighting& s, int place) {
+        const auto& points = edges.plate[static_cast<std::size_t>(&s - g.heights.data())];
+        const double step = g.fit.standard_errors[static_cast<std::size_t>(place)];
+        const double turn = place == places.rotation ? step : 0, bend = place == places.distortion ? step : 0;
+        return sighting(on_plate(points, slope, window), g.rotation_deg + turn, g.distortion + bend, g.size)
+                   .height_px -
+               s.height_px;
+      };
+      for (const int place : {places.rotation, places.distortion}) {
+        if (place < 0) continue;
+        const double up = moved(*high, place), down = moved(*low, place);
+        g.plate_row_error_of_map = std::hypot(g.plate_row_error_of_map, 0.5 * (up + down));
+        if (high->height_px > low->height_px)
+          g.stretch_error = std::hypot(g.stretch_error, (up - down) / (high->height_px - low->height_px));
+      }
+    }
+    g.plate_row_error = std::hypot(std::sqrt(squares) / n, g.plate_row_error_of_map);
+    for (PlateSighting& s : g.heights) s.height_px += row;
+  }
+  return g;
+}
+
+}  // namespace twincell

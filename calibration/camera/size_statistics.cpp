@@ -1,0 +1,280 @@
+#include "calibration/camera/size_statistics.hpp"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "calibration/fit/fit.hpp"
+#include "core/error.hpp"
+#include "core/median.hpp"
+#include "imaging/settings/configure_locator.hpp"
+#include "imaging/track/locate_stack.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+double median_spread(const std::vector<double>& v, double middle) {
+  std::vector<double> r;
+  for (const double x : v) r.push_back(std::abs(x - middle));
+  return 1.4826 * upper_median(r);
+}
+
+/// The middle of the shortest half, again and again (Robertson & Cryer 1974): the mode of few numbers.
+double half_sample_mode(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  while (v.size() > 3) {
+    const std::size_t half = (v.size() + 1) / 2;
+    std::size_t best = 0;
+    for (std::size_t a = 0; a + half <= v.size(); ++a)
+      if (v[a + half - 1] - v[a] < v[best + half - 1] - v[best]) best = a;
+    v = std::vector<double>(v.begin() + static_cast<std::ptrdiff_t>(best),
+                            v.begin() + static_cast<std::ptrdiff_t>(best + half));
+  }
+  return v[v.size() / 2];
+}
+
+/// Distances of pairs that may touch: up to a tenth further than the mean diameter.
+std::vector<double> near_pairs(const std::vector<SizedBead>& frame, double diameter) {
+  std::vector<SizedBead> sorted = frame;
+  std::sort(sorted.begin(), sorted.end(), [](const SizedBead& a, const SizedBead& b) { return a.x < b.x; });
+  std::vector<double> r;
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    for (std::size_t k = i + 1; k < sorted.size() && sorted[k].x - sorted[i].x < 1.1 * diameter; ++k) {
+      const double d = std::hypot(sorted[k].x - sorted[i].x, sorted[k].y - sorted[i].y);
+      if (d < 1.1 * diameter) r.push_back(d);
+    }
+  return r;
+}
+
+/// Counts in a bin of distances: beads that touch at d, and beads that nearly do, at any distance above it
+/// alike; both as the camera sees them, blurred by s. 2 sqrt(n + 3/8) of a count n scatters by 1.
+struct PairsInBin {
+  double at, width, count;
+  template <class T>
+  bool operator()(const T* p, T* residual) const {
+    using std::erfc, std::exp, std::sqrt;
+    const T u = (at - p[0]) * exp(-p[1]);
+    const T touching = p[2] * p[2] * exp(-0.5 * u * u - p[1]) / std::sqrt(2 * std::numbers::pi);
+    const T apart = p[3] * p[3] * 0.5 * erfc(-u / std::numbers::sqrt2);
+    residual[0] = 2.0 * (sqrt(width * (touching + apart) + 0.375) - std::sqrt(count + 0.375));
+    return true;
+  }
+};
+
+/// Distance of touching beads, from all pairs that are near. In a bed that moves, most are only nearly in
+/// touch: the mean about the mode, which this replaces, came out eight of its errors too large.
+std::optional<Estimate> touching(const std::vector<double>& pairs, double diameter, std::size_t frames) {
+  constexpr std::size_t kFewest = 20;
+  constexpr double kBin = 0.5, kBelow = 5, kAbove = 0.015;  // widths of the pile, twice; of the diameter
+  if (pairs.size() < kFewest) return std::nullopt;
+  const double mode = half_sample_mode(pairs);
+  std::vector<double> below;
+  for (const double r : pairs)
+    if (r < mode) below.push_back(mode - r);
+  if (below.size() < kFewest / 2) return std::nullopt;
+  // Only the side on which no gap can be tells the noise.
+  const double width = std::max(1e-4 * diameter, 1.4826 * upper_median(below));
+  const double low = mode - kBelow * width, high = mode + std::max(kBelow * width, kAbove * diameter),
+               bin = kBin * width;
+  std::vector<double> counts(static_cast<std::size_t>(std::ceil((high - low) / bin)));
+  double n = 0;
+  for (const double r : pairs)
+    if (r > low && r < low + bin * static_cast<double>(counts.size()))
+      ++counts[static_cast<std::size_t>((r - low) / bin)], ++n;
+  if (n < kFewest) return std::nullopt;
+  std::vector<double> p = {mode, std::log(width), std::sqrt(0.8 * n), std::sqrt(0.2 * n / (high - mode))};
+  ceres::Problem problem;
+  for (std::size_t k = 0; k < counts.size(); ++k)
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PairsInBin, 1, 4>(
+                                 new PairsInBin{low + bin * (static_cast<double>(k) + 0.5), bin, counts[k]}),
+                             nullptr, p.data());
+  const FitReport fit =
+      solve(problem, p.data(), {"distance", "noise", "touching", "apart"}, Residuals::weighted);
+  const double moved = std::abs(fit.values[0] - mode);
+  // Without a pile there is no such distance.
+  if (!fit.usable || !(moved < 3 * width) || !(fit.values[2] * fit.values[2] > kFewest / 2.0))
+    return std::nullopt;
+  const double error = fit.standard_errors.empty() ? width / std::sqrt(n) : fit.standard_errors[0];
+  // The same pairs come back in other frames.
+  return Estimate{fit.values[0], error * std::sqrt(static_cast<double>(frames))};
+}
+
+/// Straight line of the diameters in x and y, of what lies within `width` of their middle.
+void add_gradient(SizeStatistics& c, const BeadFrames& beads, double middle, double width,
+                  double independent) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero(), centre = Eigen::Vector3d::Zero();
+  double n = 0, squares = 0;
+  const auto each = [&](const auto& use) {
+    for (const auto& frame : beads.frames)
+      for (const SizedBead& b : frame)
+        if (std::abs(2 * b.radius - middle) <= width) use(b);
+  };
+  each([&](const SizedBead& b) { centre += Eigen::Vector3d(0, b.x, b.y), ++n; });
+  centre /= std::max(1.0, n);
+  each([&](const SizedBead& b) {
+    const Eigen::Vector3d at(1, b.x - centre[1], b.y - centre[2]);
+    normal += at * at.transpose();
+    right += (2 * b.radius - middle) * at;
+  });
+  const Eigen::Vector3d line = normal.ldlt().solve(right);
+  each([&](const SizedBead& b) {
+    const Eigen::Vector3d at(1, b.x - centre[1], b.y - centre[2]);
+    squares += std::pow(2 * b.radius - middle - line.dot(at), 2);
+  });
+  // The same beads come back in other frames, but not at the same places: their sizes are as many as they
+  // are.
+  const Eigen::Matrix3d covariance =
+      squares / std::max(1.0, n - 3) * (n / std::max(4.0, independent)) * normal.inverse();
+  c.gradient_x = {line[1] / middle, std::sqrt(covariance(1, 1)) / middle};
+  c.gradient_y = {line[2] / middle, std::sqrt(covariance(2, 2)) / middle};
+}
+
+}  // namespace
+
+BeadFrames locate_beads(FrameSource& frames, const LocatorOptions& options, const std::optional<Lens>& lens,
+                        int most, int threads, Progress& progress) {
+  /// Every so-and-so-many-th frame of another source.
+  class Thinned : public FrameSource {
+   public:
+    Thinned(FrameSource& whole, std::size_t stride) : whole_(whole), stride_(stride) {}
+    bool next(cv::Mat& frame) override {
+      for (std::size_t skip = first_ ? 0 : stride_ - 1; skip > 0; --skip) {
+        cv::Mat passed;
+        if (!whole_.next(passed)) return false;
+      }
+      first_ = false;
+      return whole_.next(frame);
+    }
+    [[nodiscard]] std::size_t announced() const override {
+      return (whole_.announced() + stride_ - 1) / stride_;
+    }
+    [[nodiscard]] std::string current() const override { return whole_.current(); }
+
+   private:
+    FrameSource& whole_;
+    std::size_t stride_;
+    bool first_ = true;
+  };
+  Thinned some(frames,
+               std::max<std::size_t>(1, frames.announced() / static_cast<std::size_t>(std::max(1, most))));
+  BeadFrames out;
+  out.mean_model_error = kDiameterModelError_px;
+  out.model_scatter = kDiameterModelScatter_px;
+  FramesAhead ahead(some);
+  const LocatorOptions locator = configure_locator(ahead, options).locator;
+  locate_stack(
+      ahead, locator, threads,
+      [&](std::int64_t, const cv::Mat&, const Located& found) {
+        out.frames.emplace_back();
+        out.counts.push_back(found.beads.size());
+        for (const Detection& b : found.beads) {
+          if (b.edge) continue;
+          SizedBead bead{b.x, b.y, b.radius, b.sigma_radius};
+          if (lens) {
+            const PixelPoint at = lens->ideal_from_picture({b.x, b.y});
+            bead = {at.x_px, at.y_px, b.radius / lens->magnification(at), b.sigma_radius};
+          }
+          out.frames.back().push_back(bead);
+        }
+      },
+      progress);
+  return out;
+}
+
+BeadFrames beads_of(const TrajectorySource& trajectory, int most) {
+  const TrajectoryInfo& info = trajectory.info();
+  if (info.radius.empty())
+    throw InputError({.file = trajectory.name(), .key = {}},
+                     "has no radii; calibrate beads on the stack itself.");
+  BeadFrames out;
+  const std::size_t stride =
+      std::max<std::size_t>(1, trajectory.n_frames() / static_cast<std::size_t>(std::max(1, most)));
+  Frame frame;
+  for (std::size_t f = 0; f < trajectory.n_frames(); f += stride) {
+    trajectory.read(f, frame);
+    out.frames.emplace_back();
+    for (std::size_t i = 0; i < info.n_beads; ++i)
+      if (frame.present(i) && std::isfinite(frame.position[i].x()))
+        out.frames.back().push_back({frame.position[i].x(), frame.position[i].z(), info.radius[i], 0});
+    out.counts.push_back(out.frames.back().size());
+  }
+  return out;
+}
+
+SizeStatistics count_beads(const BeadFrames& beads) {
+  SizeStatistics c;
+  c.frames = beads.frames.size();
+  std::vector<double> diameters, counts;
+  double noise = 0, most = 0;
+  for (std::size_t f = 0; f < beads.frames.size(); ++f) {
+    counts.push_back(static_cast<double>(beads.counts[f]));
+    most = std::max(most, static_cast<double>(beads.frames[f].size()));
+    for (const SizedBead& b : beads.frames[f]) {
+      diameters.push_back(2 * b.radius);
+      noise += 4 * b.sigma_radius * b.sigma_radius;
+    }
+  }
+  c.sizes = diameters.size();
+  if (diameters.size() < 3)
+    throw InputError({.file = {}, .key = "beads"},
+                     fmt::format("{} beads are too few to measure.", diameters.size()));
+  noise /= static_cast<double>(diameters.size());
+  c.count.value = upper_median(counts);
+  c.count.error = counts.size() > 1 ? 1.2533 * median_spread(counts, c.count.value) /
+                                          std::sqrt(static_cast<double>(counts.size()))
+                                    : kNaN;
+
+  // Discs that are none, or half hidden, are not of the distribution.
+  const double middle = upper_median(diameters),
+               width = std::max(median_spread(diameters, middle), 1e-6 * middle);
+  double sum = 0, squares = 0, cubes = 0, n = 0;
+  for (const double d : diameters) {
+    if (std::abs(d - middle) > 5 * width) continue;
+    sum += d, ++n;
+    c.diameters.push_back(d);
+  }
+  std::sort(c.diameters.begin(), c.diameters.end());
+  const double mean = sum / n;
+  double fourth = 0;
+  for (const double d : c.diameters) {
+    squares += (d - mean) * (d - mean);
+    fourth += std::pow(d - mean, 4);
+    cubes += std::pow(d / mean, 3);
+  }
+  const double variance = squares / std::max(1.0, n - 1), kurtosis = fourth / n;
+  // Independent are the beads of one frame, and no more than were kept.
+  const double independent = std::max(2.0, std::min(n, most));
+  c.diameter = {mean, std::hypot(std::sqrt(variance / independent), beads.mean_model_error)};
+  const double true_variance = std::max(0.0, variance - noise);
+  // Near zero the spread is no better known than its square is.
+  // The variance of a variance of n beads, mu_4/n - (n - 3)/(n (n - 1)) s^4, its own bias in mu_4 taken off.
+  const double of_few = std::max(1.0, independent - 3);
+  const double error_of_variance = std::sqrt(
+      std::max(kurtosis * independent / of_few - variance * variance * of_few / (independent - 1), 0.0) /
+      independent);
+  const double error_of_true = std::hypot(error_of_variance, beads.model_scatter * beads.model_scatter);
+  c.spread.value = std::sqrt(true_variance) / mean;
+  c.spread.error = true_variance > error_of_true ? error_of_true / (2 * std::sqrt(true_variance)) / mean
+                                                 : std::sqrt(error_of_true) / mean;
+  c.mass.value = cubes / n - 3 * noise / (mean * mean);
+  c.mass.error = 3 * c.spread.value * c.spread.error * 2;
+
+  add_gradient(c, beads, middle, 5 * width, independent);
+
+  std::vector<double> pairs;
+  for (const auto& frame : beads.frames)
+    for (const double r : near_pairs(frame, mean))
+      if (r > 0.9 * mean) pairs.push_back(r);
+  c.spacing = touching(pairs, mean, std::max<std::size_t>(1, beads.frames.size()));
+  return c;
+}
+
+}  // namespace twincell

@@ -1,0 +1,109 @@
+#include "calibration/contact/contact_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/report/gnuplot_text.hpp"
+
+namespace twincell {
+
+Figure bounce_figure(const BounceFit& fit) {
+  Figure f{.name = "bounce", .title = "Restitution of each impact", .width = 560, .height = 400};
+  f.data = "# speed, e_n, error\n";
+  for (const BounceImpact& i : fit.impacts)
+    f.data += fmt::format("{:.6g} {:.6g} {:.3g}\n", i.speed, i.restitution, i.error);
+  f.plot = fmt::format(
+      "set xlabel 'impact speed'\nset ylabel 'e_n'\nset key top left\n"
+      "plot [*:*] {:.8g} with lines lw 2 lc rgb blue title 'mean', {:.8g} with lines dt 2 lc rgb "
+      "blue title "
+      "'± 95 %', {:.8g} with lines dt 2 lc rgb blue notitle, 'bounce.dat' using 1:2:3 with yerrorbars "
+      "pt 7 lc rgb "
+      "'#222222' title 'impacts'\n",
+      fit.restitution, fit.restitution + 1.96 * fit.restitution_error,
+      fit.restitution - 1.96 * fit.restitution_error);
+  f.caption = fmt::format("{} impacts between {} flights", fit.impacts.size(), fit.flights);
+  return f;
+}
+
+Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, double shape) {
+  Figure f{.name = "collisions", .title = "Collisions of two beads", .width = 900, .height = 420};
+  double largest = 0;
+  f.data = "# speed, e_n, psi_1, psi_2\n";
+  for (const Impact& i : found.impacts) {
+    f.data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}\n", i.speed, i.restitution, i.psi_1, i.psi_2);
+    if (std::isfinite(i.psi_1)) largest = std::max(largest, i.psi_1);
+  }
+  std::string curve;
+  if (fit.has_tangential) {
+    const double mu = fit.tangential.values[0], beta = fit.tangential.values[1],
+                 reach = (1 + fit.restitution) * (1 + 1 / shape);
+    curve = fmt::format(
+        "(-({:.8g})*x > x-({:.8g})) ? -({:.8g})*x : x-({:.8g}) with lines lw 2 lc rgb blue title "
+        "'fit', ",
+        beta, mu * reach, beta, mu * reach);
+  }
+  f.plot = fmt::format(
+      "set multiplot layout 1,2\nset xlabel 'impact speed, σ/t_0'\nset ylabel 'e_n'\nset yrange [0:1.1]\n"
+      "plot {:.8g} with lines lw 2 lc rgb blue title 'mean', 'collisions.dat' using 1:2 with points pt "
+      "7 ps 0.4 lc "
+      "rgb '#222222' title 'collisions'\n"
+      "set xlabel 'Ψ_1'\nset ylabel 'Ψ_2'\nset yrange [*:*]\nset xrange [0:{:.6g}]\nset key top left\nset "
+      "samples 600\n"
+      "plot {}{}\nunset multiplot\n",
+      fit.restitution, std::min(std::max(largest, 1.0), 8.0), curve,
+      found.spins ? "'collisions.dat' using 3:4 with points pt 7 ps 0.4 lc rgb '#222222' title 'collisions'"
+                  : "NaN title 'no spins'");
+  f.caption = fmt::format("{} collisions", fit.impacts);
+  return f;
+}
+
+Figure profile_figure(const Inference& inference) {
+  const std::size_t n = inference.profiles.size();
+  double highest = 0;
+  for (const Profile& p : inference.profiles) highest = std::max(highest, p.drop);
+  Figure f{.name = "profile",
+           .title = "What the measurement determines",
+           .width = static_cast<int>(420 * n),
+           .height = 400};
+  f.plot = fmt::format(
+      "set multiplot layout 1,{}\nset yrange [0:{:.6g}]\nset ylabel 'χ^2 above its least'\nunset key\n", n,
+      3 * highest);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Profile& p = inference.profiles[i];
+    f.data += fmt::format("# {}, chi^2 above its least\n", gnuplot_plain_text(p.sought.name));
+    for (std::size_t k = 0; k < p.at.size(); ++k)
+      f.data += fmt::format("{:.6g} {:.6g}\n", p.at[k], p.chi2[k] - inference.chi2);
+    f.data += "\n\n";
+    std::string label = p.sought.name;
+    std::replace(label.begin(), label.end(), '_', ' ');
+    f.plot += fmt::format(
+        "set xlabel '{}'\nset xrange [{:.6g}:{:.6g}]\nplot 'profile.dat' index {} using 1:2 with lines lw 2 "
+        "lc rgb "
+        "blue, {:.6g} with lines dt 2 lc rgb vermilion\n",
+        gnuplot_text(label), p.sought.lower, p.sought.upper, i, p.drop);
+  }
+  f.plot += "unset multiplot\n";
+  f.caption = "The dashed line cuts the 95 % interval";
+  return f;
+}
+
+Figure curve_figure(const std::string& name, const std::vector<double>& measured,
+                    const std::vector<double>& predicted) {
+  Figure f{.name = name, .title = name + ", measured and of the best parameters"};
+  f.data = "# element, measured, of the best parameters\n";
+  for (std::size_t k = 0; k < measured.size(); ++k)
+    f.data += fmt::format("{} {:.8g} {:.8g}\n", k, measured[k], predicted[k]);
+  std::string label = name;
+  std::replace(label.begin(), label.end(), '_', ' ');
+  f.plot = fmt::format(
+      "set xlabel 'element'\nset ylabel '{0}'\nset key top right\n"
+      "plot '{1}.dat' using 1:2 with points pt 7 lc rgb '#222222' title 'measured', '{1}.dat' using 1:3 with "
+      "lines lw 2 lc rgb blue title 'best parameters'\n",
+      gnuplot_text(label), name);
+  f.caption = "The curve of the best parameters is made of the forms in which the curves of the runs differ";
+  return f;
+}
+
+}  // namespace twincell

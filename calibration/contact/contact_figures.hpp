@@ -1,0 +1,26 @@
+#pragma once
+/// \file
+/// Pictures of what collisions say.
+
+#include <string>
+#include <vector>
+
+#include "analysis/report/figures.hpp"
+#include "calibration/contact/bounce.hpp"
+#include "calibration/contact/collisions.hpp"
+#include "calibration/contact/inference.hpp"
+#include "calibration/contact/walton.hpp"
+
+namespace twincell {
+
+/// "bounce": e_n of each impact against its speed, with the mean and its error.
+Figure bounce_figure(const BounceFit& fit);
+/// "collisions": e_n against speed, and Walton's plane with the fitted branches. \param shape K
+Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, double shape);
+/// "profile": chi^2 of each parameter above its least, with the 95 % line.
+Figure profile_figure(const Inference& inference);
+/// NAME: a measured curve and that of the best parameters, element by element.
+Figure curve_figure(const std::string& name, const std::vector<double>& measured,
+                    const std::vector<double>& predicted);
+
+}  // namespace twincell

@@ -1,0 +1,206 @@
+#include "calibration/contact/walton.hpp"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calibration/fit/curve_fit.hpp"
+#include "core/error.hpp"
+#include "core/median.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kWorstSigma = 4;
+
+double spread_of(std::vector<double> r, double middle) {
+  for (double& x : r) x = std::abs(x - middle);
+  return 1.4826 * upper_median(std::move(r));
+}
+
+struct Branches {
+  double psi_1, psi_2, reach, error;  // reach: (1 + e)(1 + 1/K)
+  template <class T>
+  bool operator()(const T* p, T* residual) const {
+    const T stick = -p[1] * psi_1, slide = psi_1 - p[0] * reach;
+    residual[0] = ((stick > slide ? stick : slide) - psi_2) / error;
+    return true;
+  }
+};
+
+struct Point {
+  double psi_1, psi_2, error;
+};
+
+FitReport solve_branches(const std::vector<Point>& points, double reach, double mu, double beta,
+                         bool weighted) {
+  double p[2] = {mu, beta};
+  ceres::Problem problem;
+  for (const Point& q : points)
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<Branches, 1, 2>(new Branches{q.psi_1, q.psi_2, reach, q.error}),
+        nullptr, p);
+  return solve(problem, p, {"mu", "beta_0"}, weighted ? Residuals::weighted : Residuals::unweighted);
+}
+
+/// Sum of Cauchy's losses: a start that outliers do not choose.
+double loss_of(const std::vector<Point>& points, double reach, double mu, double beta, double scale) {
+  double sum = 0;
+  for (const Point& q : points) {
+    const double p[2] = {mu, beta};
+    double r = 0;
+    Branches{q.psi_1, q.psi_2, reach, scale}(p, &r);
+    sum += std::log1p(r * r);
+  }
+  return sum;
+}
+
+void fit_tangential(const std::vector<Impact>& impacts, double shape, WaltonFit& out) {
+  std::vector<Point> points;
+  bool weighted = true;
+  for (const Impact& i : impacts)
+    if (std::isfinite(i.psi_1) && std::isfinite(i.psi_2)) {
+      points.push_back({i.psi_1, i.psi_2, i.psi_error});
+      weighted = weighted && i.psi_error > 0;
+    }
+  if (points.size() < 4) {
+    out.notes.emplace_back("mu and beta_0 are undetermined: fewer than 4 impacts with known spins");
+    return;
+  }
+  if (!weighted)
+    for (Point& p : points) p.error = 1;
+  const double reach = (1 + out.restitution) * (1 + 1 / shape);
+  double best = std::numeric_limits<double>::infinity(), mu = 0.1, beta = 0;
+  for (double m = 0; m <= 1.5; m += 0.025)
+    for (double b = -1; b <= 1; b += 0.05)
+      if (const double loss = loss_of(points, reach, m, b, weighted ? 1 : 0.05); loss < best)
+        best = loss, mu = m, beta = b;
+  std::vector<Point> kept = points;
+  for (int round = 0; round < 3; ++round) {
+    out.tangential = solve_branches(kept, reach, mu, beta, weighted);
+    mu = out.tangential.values[0];
+    beta = out.tangential.values[1];
+    std::vector<double> r;
+    for (const Point& q : points) {
+      double value = 0;
+      Branches{q.psi_1, q.psi_2, reach, q.error}(out.tangential.values.data(), &value);
+      r.push_back(value);
+    }
+    const double width = kWorstSigma * std::max(spread_of(r, 0), 1e-12);
+    kept.clear();
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (std::abs(r[i]) <= width) kept.push_back(points[i]);
+    if (kept.size() < 4) break;
+  }
+  out.has_tangential = true;
+  // mu is a slope over (1 + e_n): what e_n leaves open, it leaves open too.
+  if (!out.tangential.standard_errors.empty()) {
+    const double share = mu / (1 + out.restitution) * out.restitution_error;
+    out.tangential.covariance(0, 0) += share * share;
+    out.tangential.standard_errors[0] = std::sqrt(out.tangential.covariance(0, 0));
+  }
+  for (const Point& q : kept) (-beta * q.psi_1 >= q.psi_1 - mu * reach ? out.sticking : out.sliding) += 1;
+  // A branch of two or three impacts is no branch: scatter can make it.
+  constexpr std::size_t kFewest = 4;
+  const auto leave_open = [&](const char* name, const char* branch, std::size_t n) {
+    if (n >= kFewest) return;
+    auto& open = out.tangential.undetermined;
+    if (std::find(open.begin(), open.end(), name) == open.end()) open.emplace_back(name);
+    out.notes.push_back(fmt::format("{} is undetermined: {} of {} impacts {}", name, n, kept.size(), branch));
+  };
+  leave_open("mu", "slide", out.sliding);
+  leave_open("beta_0", "stick", out.sticking);
+}
+
+}  // namespace
+
+WaltonFit fit_walton(const std::vector<Impact>& impacts, double shape) {
+  require_range({.file = {}, .key = "K"}, shape, 0, {}, true);
+  WaltonFit out;
+  std::vector<Impact> finite;
+  for (const Impact& i : impacts)
+    if (std::isfinite(i.restitution) && i.speed > 0) finite.push_back(i);
+  if (finite.size() < 3)
+    throw InputError(
+        {.file = {}, .key = "impacts"},
+        fmt::format("{} impacts cannot determine a restitution and its error; 3 are needed.", finite.size()));
+  std::vector<double> e;
+  for (const Impact& i : finite) e.push_back(i.restitution);
+  const double middle = upper_median(e),
+               width = std::max(spread_of(e, middle), 1e-12 * std::abs(middle) + 1e-15);
+  const bool known =
+      std::all_of(finite.begin(), finite.end(), [](const Impact& i) { return i.restitution_error > 0; });
+  std::vector<Impact> kept;
+  double typical = 0;
+  if (known) {
+    std::vector<double> errors;
+    for (const Impact& i : finite) errors.push_back(i.restitution_error);
+    typical = upper_median(errors);
+  }
+  for (const Impact& i : finite) {
+    const double own = known ? std::hypot(width, std::max(0.0, i.restitution_error - typical)) : width;
+    if (std::abs(i.restitution - middle) <= kWorstSigma * own)
+      kept.push_back(i);
+    else
+      ++out.outliers;
+  }
+  out.impacts = kept.size();
+  const auto n = static_cast<double>(kept.size());
+  // Weights 1/(s^2 + error^2), s^2 such that chi^2 comes to n - 1 (Mandel & Paule 1982).
+  const auto chi = [&](double s2, double& mean, double& weight) {
+    double sum = 0;
+    weight = 0;
+    for (const Impact& i : kept) {
+      const double w = 1 / (s2 + (known ? i.restitution_error * i.restitution_error : 0));
+      sum += w * i.restitution;
+      weight += w;
+    }
+    mean = sum / weight;
+    double chi2 = 0;
+    for (const Impact& i : kept)
+      chi2 +=
+          std::pow(i.restitution - mean, 2) / (s2 + (known ? i.restitution_error * i.restitution_error : 0));
+    return chi2;
+  };
+  double mean = 0, weight = 0, s2 = 0;
+  double low = 1e-30, high = 16 * width * width + 1e-20;
+  if (known && chi(low, mean, weight) <= n - 1) {
+    s2 = low;
+  } else {
+    for (int i = 0; i < 200; ++i) {
+      s2 = std::sqrt(low * high);
+      (chi(s2, mean, weight) > n - 1 ? low : high) = s2;
+    }
+  }
+  chi(s2, mean, weight);
+  out.restitution = mean;
+  out.restitution_error = 1 / std::sqrt(weight);
+  out.scatter = std::sqrt(s2);
+
+  std::vector<DataPoint> points;
+  for (const Impact& i : kept)
+    points.push_back(
+        {std::log(i.speed), i.restitution, known ? std::hypot(i.restitution_error, out.scatter) : 0, 0});
+  out.slope = out.slope_error = kNaN;
+  try {
+    const CurveFit line = fit_curve(law_named("line"), points);
+    if (!line.fit.standard_errors.empty()) {
+      out.slope = line.fit.values[1];
+      out.slope_error = line.fit.standard_errors[1];
+      if (std::abs(out.slope) > 3 * out.slope_error)
+        out.notes.push_back(fmt::format(
+            "e_n changes with speed: {:.3g} +- {:.1g} per e-fold; one number for all speeds is an average",
+            out.slope, out.slope_error));
+    }
+  } catch (const InputError&) {
+    // All speeds alike: no slope to speak of.
+  }
+  fit_tangential(kept, shape, out);
+  return out;
+}
+
+}  // namespace twincell

@@ -1,0 +1,46 @@
+#include "calibration/drive/accelerometer.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "calibration/drive/drive_fit.hpp"
+#include "calibration/fit/table.hpp"
+#include "core/error.hpp"
+
+namespace twincell {
+
+VibrationTable read_vibration(const std::filesystem::path& file) {
+  const Table table = read_table(file);
+  return {.file = table.file,
+          .time_s = table.column("time_s"),
+          .acceleration = table.column("acceleration_m_s2")};
+}
+
+VibrationFit fit_vibration(const VibrationTable& table) {
+  constexpr std::size_t kFewest = 8;  // for amplitude, period and phase
+  const std::size_t n = table.time_s.size();
+  if (n < kFewest)
+    throw InputError({.file = table.file, .key = "acceleration_m_s2"},
+                     fmt::format("holds {} values; a fit needs {}.", n, kFewest));
+  const double step = n > 1 ? (table.time_s.back() - table.time_s.front()) / static_cast<double>(n - 1) : 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (!(std::abs(table.time_s[i] - table.time_s.front() - static_cast<double>(i) * step) <=
+          0.01 * step * static_cast<double>(n)) ||
+        !(step > 0))
+      throw InputError({.file = table.file, .key = "time_s"}, "does not rise in equal steps.");
+  DriveFit lock;
+  try {
+    lock = fit_drive(table.acceleration, {.frames_per_cycle = 0, .mend = false});
+  } catch (const InputError& e) {
+    throw InputError({.file = table.file, .key = "acceleration_m_s2"}, e.what());
+  }
+  const double hz = 1 / (2 * std::numbers::pi * step);
+  return {.frequency_hz = lock.omega * hz,
+          .frequency_error = lock.omega_error * hz,
+          .acceleration = lock.amplitude,
+          .acceleration_error = lock.amplitude_error};
+}
+
+}  // namespace twincell

@@ -1,0 +1,169 @@
+#include "calibration/drive/bed_drive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/median.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+/// Fewer beads say nothing of a bed.
+constexpr std::size_t kFewestBeads = 5;
+/// Cycles that tell a scatter.
+constexpr std::size_t kFewestCycles = 3;
+/// Steps that tell two components and a misfit.
+constexpr std::size_t kFewestSteps = 4;
+/// For how long after its landing the bed is still set in motion by it, cycles.
+constexpr double kImpact = 0.1;
+/// Of the steps' own size, by how much a rigid bed may depart from its plate, in the mean over the cycles.
+constexpr double kMisfit = 0.06;
+/// rad by which it may be ahead or behind.
+constexpr double kPhaseError = 0.15;
+/// Amplitudes that are tried: as many times the stated one, and from one to the next.
+constexpr double kSmallest = 0.2, kLargest = 5, kRatio = 1.01;
+
+/// What the steps that lie wholly in [from, to] give.
+struct Fit {
+  double a = 0, b = 0, error = 0, misfit = 0;
+  std::size_t steps = 0, cycles = 0;
+};
+
+Fit fit_steps(const std::vector<BedSteps::Step>& all, double from, double to) {
+  struct Sums {
+    double ss = 0, sc = 0, cc = 0, sz = 0, cz = 0;
+    std::size_t n = 0;
+  };
+  struct Mean {
+    double s = 0, c = 0, dz = 0;
+    std::size_t n = 0;
+  };
+  std::map<std::int64_t, Sums> cycles;
+  std::map<std::pair<int, std::int32_t>, Mean> phases;
+  constexpr double kRound = 1e-9;
+  for (const BedSteps::Step& step : all)
+    for (const int turn : {0, -1}) {  // [from, to] may begin in the cycle before
+      const double begin = step.begin + turn, end = step.end + turn;
+      if (begin < from - kRound || end > to + kRound) continue;
+      if (to - from >= 1 && turn != 0) continue;
+      const double s = std::sin(kTurn * end) - std::sin(kTurn * begin),
+                   c = std::cos(kTurn * end) - std::cos(kTurn * begin);
+      Sums& sums = cycles[step.cycle - turn];
+      sums.ss += s * s, sums.sc += s * c, sums.cc += c * c, sums.sz += s * step.dz, sums.cz += c * step.dz;
+      ++sums.n;
+      Mean& mean = phases[{turn, step.phase}];
+      mean.s = s, mean.c = c, mean.dz += step.dz;
+      ++mean.n;
+    }
+  Fit fit;
+  fit.steps = phases.size();
+  std::vector<double> a;
+  for (const auto& [cycle, sums] : cycles) {
+    const double det = sums.ss * sums.cc - sums.sc * sums.sc;
+    if (sums.n < fit.steps || !(det > kRound * sums.ss * sums.cc)) continue;
+    a.push_back((sums.sz * sums.cc - sums.cz * sums.sc) / det);
+    fit.b += (sums.cz * sums.ss - sums.sz * sums.sc) / det;
+  }
+  fit.cycles = a.size();
+  if (a.size() < kFewestCycles) return fit;
+  const auto n = static_cast<double>(a.size());
+  for (const double value : a) fit.a += value / n;
+  fit.b /= n;
+  double squares = 0;
+  for (const double value : a) squares += (value - fit.a) * (value - fit.a);
+  fit.error = std::sqrt(squares / (n * (n - 1)));
+  double off = 0, size = 0;
+  for (const auto& [phase, mean] : phases) {
+    const double dz = mean.dz / static_cast<double>(mean.n), expected = fit.a * mean.s + fit.b * mean.c;
+    off += (dz - expected) * (dz - expected);
+    size += dz * dz;
+  }
+  fit.misfit = size > 0 ? std::sqrt(off / size) : 1;
+  return fit;
+}
+
+}  // namespace
+
+std::optional<TimeOnPlate> time_on_plate(double gamma) {
+  if (gamma <= 1) return TimeOnPlate{};
+  const double off = std::asin(1 / gamma);
+  const auto height = [&](double th) {
+    return std::sin(off) + std::cos(off) * (th - off) - (th - off) * (th - off) / (2 * gamma) - std::sin(th);
+  };
+  constexpr double kStep = 1e-3;
+  for (double th = off + 2 * kStep; th < off + kTurn; th += kStep)
+    if (height(th) < 0) return TimeOnPlate{th / kTurn - 1, off / kTurn};
+  return std::nullopt;
+}
+
+void BedSteps::append(const Frame& frame) {
+  if (frame.phase >= 0 && before_.phase >= 0 && frame.step == before_.step + 1 &&
+      frame.position.size() == before_.position.size()) {
+    std::map<std::int64_t, std::size_t> lowest;  // of each column
+    for (std::size_t i = 0; i < frame.position.size(); ++i) {
+      if (!frame.present(i) || !before_.present(i)) continue;
+      const Vec3 &r = before_.position[i], &next = frame.position[i];
+      if (!std::isfinite(r.x()) || !std::isfinite(r.z()) || !std::isfinite(next.z())) continue;
+      const auto column = static_cast<std::int64_t>(std::floor(r.x()));
+      const auto [at, isnew] = lowest.try_emplace(column, i);
+      if (!isnew && r.z() < before_.position[at->second].z()) at->second = i;
+    }
+    if (lowest.size() >= kFewestBeads) {
+      std::vector<double> dz, down;
+      for (const auto& [column, i] : lowest) {
+        dz.push_back(frame.position[i].z() - before_.position[i].z());
+        down.push_back(-dz.back());
+      }
+      Step step{.cycle = before_.cycle, .phase = before_.phase};
+      const double period = info_.drive->period();
+      // Time may be counted from another cycle than cycles are.
+      const double phase = static_cast<double>(before_.phase) / info_.phases_per_cycle;
+      step.begin = phase + std::remainder(before_.time / period - phase, 1.0);
+      step.end = step.begin + (frame.time - before_.time) / period;
+      // The upper of two middle values would lift the bed a little in every step.
+      step.dz = (upper_median(std::move(dz)) - upper_median(std::move(down))) / 2;
+      steps_.push_back(step);
+    }
+  }
+  before_ = frame;
+}
+
+BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
+  BedDrive none;
+  const auto because = [&](std::string why) {
+    none.not_comparable = std::move(why);
+    return none;
+  };
+  if (info.phases_per_cycle == 0) return because("the frames keep no phase");
+  if (bed.steps().empty())
+    return because(fmt::format("no {} columns of beads are seen in consecutive frames", kFewestBeads));
+  const double stated = info.drive->amplitude, per = info.drive->omega * info.drive->omega;
+  // a(A)/A falls through 1 where the phases in which a bed of amplitude A lies give that amplitude back.
+  std::optional<BedDrive> found;
+  double last = 0;
+  std::string why = "in no phase of the cycle do its lowest beads move as a plate would";
+  for (double amplitude = kSmallest * stated; amplitude < kLargest * stated; amplitude *= kRatio) {
+    const auto on = time_on_plate(amplitude * per);
+    if (!on) break;
+    const double from = amplitude * per <= 1 ? on->from : on->from + kImpact;
+    const Fit fit = fit_steps(bed.steps(), from, on->to);
+    if (fit.cycles < kFewestCycles || fit.steps < kFewestSteps) break;  // flights only grow longer
+    const double ratio = fit.a / amplitude;
+    const bool through = last > 1 && ratio <= 1;
+    last = ratio;
+    if (!through || fit.misfit > kMisfit || std::abs(fit.b) > kPhaseError * fit.a) continue;
+    const BedDrive here{
+        .amplitude = fit.a, .amplitude_error = fit.error, .cycles = fit.cycles, .from = from, .to = on->to};
+    // Of several that explain the motion the stated one is believed.
+    if (!found || std::abs(std::log(here.amplitude / stated)) < std::abs(std::log(found->amplitude / stated)))
+      found = here;
+  }
+  return found ? *found : because(why);
+}
+
+}  // namespace twincell

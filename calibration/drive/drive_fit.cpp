@@ -1,0 +1,469 @@
+#include "calibration/drive/drive_fit.hpp"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "analysis/statistics/statistics.hpp"
+#include "core/error.hpp"
+#include "core/median.hpp"
+#include "imaging/phase/phase_estimation.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kWorstSigma = 4;
+constexpr std::size_t kSearched = 2000;  // samples of the periodogram
+constexpr double kSuspicious = 0.01;
+
+struct Sample {
+  double t, z;
+  std::size_t frame;
+};
+
+/// Fit minus height; with a second harmonic, or with four parameters only.
+template <bool kSecond>
+struct Motion {
+  double t, z;
+  template <class T>
+  bool operator()(const T* p, T* residual) const {
+    const T theta = p[3] * t + p[2];
+    residual[0] = p[0] + p[1] * sin(theta) - z;
+    if constexpr (kSecond) residual[0] += p[1] * (p[4] * sin(2.0 * theta) + p[5] * cos(2.0 * theta));
+    return true;
+  }
+};
+
+ceres::CostFunction* cost_of(const Sample& s, double middle, bool second) {
+  if (second) return new ceres::AutoDiffCostFunction<Motion<true>, 1, 6>(new Motion<true>{s.t - middle, s.z});
+  return new ceres::AutoDiffCostFunction<Motion<false>, 1, 4>(new Motion<false>{s.t - middle, s.z});
+}
+
+double residual_of(const Sample& s, double middle, bool second, const std::vector<double>& p) {
+  double r = 0;
+  if (second)
+    Motion<true>{s.t - middle, s.z}(p.data(), &r);
+  else
+    Motion<false>{s.t - middle, s.z}(p.data(), &r);
+  return r;
+}
+
+double spread_of(std::vector<double> r) {
+  for (double& x : r) x = std::abs(x);
+  return 1.4826 * upper_median(std::move(r));
+}
+
+/// Heights without their wildest: what a periodogram, which has no loss function, can stand.
+std::vector<Sample> clipped(std::vector<Sample> samples) {
+  std::vector<double> z;
+  for (const Sample& s : samples) z.push_back(s.z);
+  std::sort(z.begin(), z.end());
+  const double low = z[z.size() / 10], high = z[z.size() - 1 - z.size() / 10], reach = 0.75 * (high - low);
+  const double middle = 0.5 * (low + high);
+  for (Sample& s : samples) s.z = std::clamp(s.z, middle - reach, middle + reach);
+  return samples;
+}
+
+/// Sum of squares that a sine of this omega leaves, and its parameters.
+double left_by(const std::vector<Sample>& samples, double omega, Eigen::Vector3d& c) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  double zz = 0;
+  for (const Sample& s : samples) {
+    const Eigen::Vector3d b(1, std::sin(omega * s.t), std::cos(omega * s.t));
+    normal += b * b.transpose();
+    right += s.z * b;
+    zz += s.z * s.z;
+  }
+  c = normal.ldlt().solve(right);
+  return zz - c.dot(right);
+}
+
+double search_omega(const std::vector<Sample>& all) {
+  const std::vector<Sample> samples = clipped(std::vector<Sample>(
+      all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), kSearched))));
+  const double length = samples.back().t - samples.front().t;
+  const double step = 2 * kPi / (6 * length);  // a sixth of the peak's own width
+  double best = 0, least = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d c;
+  // Below one cycle a drift looks like a drive; above half a cycle a frame a drive looks like a slower one.
+  for (double omega = 2 * kPi / length; omega <= kPi * 0.999; omega += step)
+    if (const double left = left_by(samples, omega, c); left < least) least = left, best = omega;
+  return best;
+}
+
+/// Parameters at the middle of the samples' time.
+struct Fitted {
+  FitReport report;
+  double middle = 0;
+  bool second = false;
+};
+
+/// Cauchy's loss from a start; the frequency walks from the first samples to all.
+std::vector<double> robust_start(const std::vector<Sample>& all, double omega, double middle, bool second) {
+  std::vector<double> p(second ? 6 : 4, 0.0);
+  for (std::size_t n = std::min(all.size(), kSearched);; n = std::min(all.size(), 4 * n)) {
+    const std::vector<Sample> part(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n));
+    Eigen::Vector3d c;
+    const double now = p[3] > 0 ? p[3] : omega;
+    std::vector<Sample> shifted = clipped(part);
+    for (Sample& s : shifted) s.t -= middle;
+    left_by(shifted, now, c);
+    p[0] = c[0], p[1] = std::hypot(c[1], c[2]), p[2] = std::atan2(c[2], c[1]), p[3] = now;
+    std::vector<double> r;
+    r.reserve(part.size());
+    for (const Sample& s : part) r.push_back(residual_of(s, middle, false, p));
+    for (int round = 0; round < 3; ++round) {
+      const double scale = std::max(spread_of(r), 1e-9 * std::max(1.0, p[1]));
+      ceres::Problem problem;
+      for (const Sample& s : part)
+        problem.AddResidualBlock(cost_of(s, middle, second), new ceres::CauchyLoss(scale), p.data());
+      ceres::Solver::Options options;
+      options.linear_solver_type = ceres::DENSE_QR;
+      options.logging_type = ceres::SILENT;
+      ceres::Solver::Summary summary;
+      ceres::Solve(options, &problem, &summary);
+      for (std::size_t i = 0; i < part.size(); ++i) r[i] = residual_of(part[i], middle, second, p);
+    }
+    if (n == all.size()) return p;
+  }
+}
+
+/// What residuals scatter by: the heights' own noise, and what jittering moments add where the plate is fast.
+struct Scatter {
+  double still = 0, moving = 0;  // moving: at full speed
+  [[nodiscard]] double at(double theta) const { return std::hypot(still, moving * std::cos(theta)); }
+};
+
+Scatter scatter_of(const std::vector<Sample>& all, const Fitted& f, const std::vector<double>& p,
+                   const std::vector<double>& residuals) {
+  // Medians over the slow and the fast half: <cos^2> is 0.1817 in the one, 0.8183 in the other.
+  constexpr double kSlow = 0.1817, kFast = 0.8183;
+  std::vector<double> slow, fast;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double c = std::cos(p[3] * (all[i].t - f.middle) + p[2]);
+    (c * c < 0.5 ? slow : fast).push_back(residuals[i]);
+  }
+  const double floor = 1e-9 * std::max(1.0, std::abs(p[1]));
+  if (slow.size() < 10 || fast.size() < 10) return {std::max(spread_of(residuals), floor), 0};
+  const double a = std::pow(spread_of(slow), 2), b = std::pow(spread_of(fast), 2);
+  const double moving = (b - a) / (kFast - kSlow), still = a - kSlow * moving;
+  if (moving <= 0 || still <= 0) return {std::max(spread_of(residuals), floor), 0};
+  return {std::max(std::sqrt(still), floor), std::sqrt(moving)};
+}
+
+Fitted fit_motion(const std::vector<Sample>& all, double omega, bool second, std::vector<double>& residuals,
+                  Scatter& scatter) {
+  Fitted f;
+  f.second = second;
+  f.middle = 0.5 * (all.front().t + all.back().t);
+  std::vector<double> p = robust_start(all, omega, f.middle, second);
+  std::vector<std::string> names = {"z0", "A", "phi", "omega"};
+  if (second) names.insert(names.end(), {"h_s", "h_c"});
+  residuals.assign(all.size(), 0);
+  for (int round = 0; round < 3; ++round) {
+    for (std::size_t i = 0; i < all.size(); ++i) residuals[i] = residual_of(all[i], f.middle, second, p);
+    scatter = scatter_of(all, f, p, residuals);
+    const double usual = std::hypot(scatter.still, scatter.moving);
+    ceres::Problem problem;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double s = scatter.at(p[3] * (all[i].t - f.middle) + p[2]);
+      if (std::abs(residuals[i]) > kWorstSigma * s) continue;
+      // Relative weights only: the size of the errors comes from the residuals themselves.
+      problem.AddResidualBlock(
+          cost_of(all[i], f.middle, second),
+          scatter.moving > 0 ? new ceres::ScaledLoss(nullptr, std::pow(usual / s, 2), ceres::TAKE_OWNERSHIP)
+                             : nullptr,
+          p.data());
+    }
+    f.report = solve(problem, p.data(), names);
+    p = f.report.values;
+  }
+  if (p[1] < 0) {
+    p[1] = -p[1];
+    p[2] += kPi;
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) residuals[i] = residual_of(all[i], f.middle, second, p);
+  f.report.values = p;
+  return f;
+}
+
+struct Attempt {
+  Fitted fitted;
+  std::vector<Sample> samples;
+  std::vector<double> residuals;
+  Scatter scatter;
+  std::size_t off = 0, longest_run = 0;
+  [[nodiscard]] bool follows(std::size_t i, double model_error = 0) const {
+    const std::vector<double>& p = fitted.report.values;
+    const double s = scatter.at(p[3] * (samples[i].t - fitted.middle) + p[2]);
+    return std::abs(residuals[i]) <= kWorstSigma * std::hypot(s, model_error);
+  }
+};
+
+Attempt attempt(std::vector<Sample> samples, double omega) {
+  Attempt a;
+  a.samples = std::move(samples);
+  // Four phases a cycle or fewer do not tell a second harmonic.
+  const bool second = omega < 2 * kPi / 4.5 && a.samples.size() >= 12;
+  a.fitted = fit_motion(a.samples, omega, second, a.residuals, a.scatter);
+  if (second && a.fitted.report.standard_errors.empty())
+    a.fitted = fit_motion(a.samples, omega, false, a.residuals, a.scatter);
+  std::size_t run = 0;
+  for (std::size_t i = 0; i < a.residuals.size(); ++i) {
+    const bool off = !a.follows(i);
+    a.off += off ? 1 : 0;
+    run = off ? run + 1 : 0;
+    a.longest_run = std::max(a.longest_run, run);
+  }
+  return a;
+}
+
+std::vector<Sample> samples_of(const std::vector<double>& heights, const std::vector<double>& ticks) {
+  std::vector<Sample> samples;
+  for (std::size_t f = 0; f < heights.size(); ++f)
+    if (std::isfinite(heights[f])) samples.push_back({ticks[f], heights[f], f});
+  return samples;
+}
+
+/// Gaps filled on straight lines: for the path search, which wants every frame.
+std::vector<double> filled(std::vector<double> h) {
+  std::size_t last = h.size();
+  for (std::size_t f = 0; f < h.size(); ++f) {
+    if (!std::isfinite(h[f])) continue;
+    const std::size_t from = last == h.size() ? 0 : last + 1;
+    for (std::size_t g = from; g < f; ++g)
+      h[g] = last == h.size()
+                 ? h[f]
+                 : h[last] + (h[f] - h[last]) * static_cast<double>(g - last) / static_cast<double>(f - last);
+    last = f;
+  }
+  for (std::size_t g = last + 1; last < h.size() && g < h.size(); ++g) h[g] = h[last];
+  return h;
+}
+
+/// What comes back every cycle is no noise: the residuals' power at the drive's third and higher harmonics,
+/// over that of noise as white. Beads that hide the plate at the same phase of each cycle do that, and no
+/// number of cycles averages it away. At least 1; `harmonics` is how many were looked at.
+double cyclic_factor(const Attempt& a, int& harmonics) {
+  constexpr int kFirst = 3, kMost = 10;
+  const std::vector<double>& p = a.fitted.report.values;
+  const int last = std::min(kMost, static_cast<int>(std::ceil(kPi / p[3] - 1e-6)) - 1);
+  harmonics = std::max(0, last - kFirst + 1);
+  if (harmonics == 0) return 1;
+  double power = 0, squares = 0;
+  for (int m = kFirst; m <= last; ++m) {
+    double s = 0, c = 0;
+    for (std::size_t i = 0; i < a.samples.size(); ++i) {
+      if (!a.follows(i)) continue;
+      const double theta = p[3] * (a.samples[i].t - a.fitted.middle) + p[2];
+      s += a.residuals[i] * std::sin(m * theta);
+      c += a.residuals[i] * std::cos(m * theta);
+    }
+    power += s * s + c * c;
+  }
+  for (std::size_t i = 0; i < a.samples.size(); ++i)
+    if (a.follows(i)) squares += a.residuals[i] * a.residuals[i];
+  return squares > 0 ? std::max(1.0, power / (harmonics * squares)) : 1;
+}
+
+void add_jitter(DriveFit& lock, const Attempt& a) {
+  // E r^2 = s_z^2 + (A omega cos theta)^2 s_t^2: a straight line whose slope is the variance of the moments.
+  const double v = lock.amplitude * lock.omega;
+  std::vector<double> x, y;
+  for (std::size_t i = 0; i < a.samples.size(); ++i) {
+    if (lock.frames[a.samples[i].frame].lock != FrameLock::locked) continue;
+    const double c = std::cos(2 * kPi * lock.frames[a.samples[i].frame].cycles);
+    x.push_back(v * v * c * c);
+    y.push_back(a.residuals[i] * a.residuals[i]);
+  }
+  const auto n = static_cast<double>(x.size());
+  double mx = 0, my = 0, xx = 0, xy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) mx += x[i] / n, my += y[i] / n;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mx) * (x[i] - mx);
+    xy += (x[i] - mx) * (y[i] - my);
+  }
+  if (!(xx > 0) || n < 10) return;
+  const double variance = xy / xx;
+  double e = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double r = y[i] - my - variance * (x[i] - mx);
+    e += (x[i] - mx) * (x[i] - mx) * r * r;
+  }
+  const double error = std::sqrt(e) / xx;
+  lock.jitter_limit = std::sqrt(std::max(0.0, variance) + 1.645 * error);
+  if (variance > 2 * error) {
+    lock.jitter = std::sqrt(variance);
+    lock.jitter_error = error / (2 * *lock.jitter);
+  }
+}
+
+void add_phases(DriveFit& lock, std::size_t n_frames) {
+  lock.period = 2 * kPi / lock.omega;
+  lock.period_error = lock.period * lock.omega_error / lock.omega;
+  const double n = std::round(lock.period),
+               drift = std::abs(1 / lock.period - 1 / n) * n * static_cast<double>(n_frames);
+  const double fraction = lock.phi / (2 * kPi);
+  if (n >= 2 && drift < 0.25) {
+    lock.frames_per_cycle = static_cast<int>(n);
+    // In the middle of the stack, where it is known best.
+    const double half = 0.5 * static_cast<double>(n_frames - 1);
+    const double at = fraction * n + half * (n / lock.period - 1);
+    const double whole = std::round(at);
+    lock.first_phase = static_cast<int>(
+        ((static_cast<long>(whole) % lock.frames_per_cycle) + lock.frames_per_cycle) % lock.frames_per_cycle);
+    lock.phase_offset = at - whole;
+  } else {
+    lock.notes.push_back(
+        fmt::format("the period of {:.5g} frames is no whole number: phases drift by {:.2g} frames over the "
+                    "stack. Hand the list "
+                    "of --phases to track --phase-lock",
+                    lock.period, drift));
+  }
+}
+
+}  // namespace
+
+DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& options) {
+  constexpr std::size_t kFewest = 8;
+  std::vector<double> ticks(heights.size());
+  for (std::size_t f = 0; f < ticks.size(); ++f) ticks[f] = static_cast<double>(f);
+  std::vector<Sample> samples = samples_of(heights, ticks);
+  if (samples.size() < kFewest)
+    throw InputError(
+        {.file = {}, .key = "plate"},
+        fmt::format("is seen in {} of {} frames; at least {} are needed for amplitude, period and phase.",
+                    samples.size(), heights.size(), kFewest));
+  const auto start = [&](const std::vector<Sample>& s) {
+    return options.frames_per_cycle > 0 ? 2 * kPi / options.frames_per_cycle : search_omega(s);
+  };
+  Attempt a = attempt(samples, start(samples));
+  DriveFit lock;
+  const auto followed = [](const Attempt& b) {
+    return 1 - static_cast<double>(b.off) / static_cast<double>(b.samples.size());
+  };
+  // A fit through slipped phases scatters widely, and then nothing is off.
+  const auto scatters = [](const Attempt& b) { return b.scatter.at(0) > 0.05 * b.fitted.report.values[1]; };
+  if (options.mend && (followed(a) < 0.97 || a.longest_run >= 3 || scatters(a))) {
+    // Dropped frames shorten the period as it seems.
+    std::vector<int> candidates = {options.frames_per_cycle};
+    const double period = 2 * kPi / a.fitted.report.values[3];
+    constexpr int kMost = 24;
+    for (int n = std::max(3, static_cast<int>(0.85 * period));
+         options.frames_per_cycle == 0 && n <= static_cast<int>(1.3 * period) + 1 &&
+         candidates.size() < kMost;
+         ++n)
+      candidates.push_back(n);
+    const std::vector<double> whole = filled(heights);
+    for (const int n : candidates) try {
+        const PhaseTable table =
+            estimate_phases({whole, {}}, {.frames_per_cycle = n, .gamma = {}, .amplitude = {}});
+        if (table.dropped + table.doubled == 0) continue;
+        std::vector<double> mended(heights.size());
+        double tick = 0;
+        for (std::size_t f = 0; f < mended.size(); ++f) {
+          if (f > 0) tick += table.frames[f].interval;
+          mended[f] = tick;
+        }
+        Attempt b = attempt(samples_of(heights, mended), 2 * kPi / table.frames_per_cycle);
+        if (b.scatter.at(0) < 0.5 * a.scatter.at(0) ||
+            (b.scatter.at(0) < 2 * a.scatter.at(0) && b.off < a.off)) {
+          a = std::move(b);
+          ticks = mended;
+          lock.dropped = table.dropped;
+          lock.doubled = table.doubled;
+        }
+      } catch (const InputError&) {
+        // No period by that way: the plain fit stands, with its frames out of lock.
+      }
+    if (scatters(a))
+      lock.notes.push_back(
+          fmt::format("the heights scatter by {:.2g} of A about a sine: frames may be missing; "
+                      "--frames-per-cycle would help",
+                      a.scatter.at(0) / a.fitted.report.values[1]));
+  }
+
+  const FitReport& report = a.fitted.report;
+  lock.fit = report;
+  const double z0 = report.values[0], amplitude = report.values[1], omega = report.values[3];
+  lock.z0 = z0;
+  lock.amplitude = amplitude;
+  lock.omega = omega;
+  const double t0 = ticks.front() - a.fitted.middle;
+  lock.phi = std::remainder(report.values[2] + omega * t0, 2 * kPi);
+  int harmonics = 0;
+  lock.cyclic_factor = cyclic_factor(a, harmonics);
+  const double cyclic = std::sqrt(lock.cyclic_factor);
+  const double angle = options.model_error / amplitude;  // of the phase, and of a harmonic
+  lock.z0_error = std::hypot(cyclic * report.standard_error("z0"), options.model_error);
+  lock.amplitude_error = std::hypot(cyclic * report.standard_error("A"), options.model_error);
+  // Over few cycles what comes back every cycle looks like a drift of the phase too: eps sin(omega t)
+  // regressed on A t cos(omega t) over a time T gives 6 eps/(A omega T^2) at most.
+  const double turned = omega * (ticks.back() - ticks.front());
+  lock.omega_error = std::hypot(report.standard_error("omega"), omega * angle * 6 / (turned * turned));
+  if (report.covariance.size() > 0)
+    lock.phi_error = std::sqrt(angle * angle + lock.cyclic_factor * report.covariance(2, 2) +
+                               t0 * t0 * report.covariance(3, 3) + 2 * t0 * report.covariance(2, 3));
+  if (!(amplitude > 5 * lock.amplitude_error) || !(a.scatter.at(0) < amplitude))
+    throw InputError(
+        {.file = {}, .key = "plate"},
+        fmt::format("does not move by more than its heights scatter: amplitude {:.3g}, error {:.2g}, "
+                    "scatter {:.2g}.",
+                    amplitude, lock.amplitude_error, a.scatter.at(0)));
+  if (a.fitted.second && report.covariance.size() > 0) {
+    const Eigen::Vector2d h(report.values[4], report.values[5]);
+    const Eigen::Matrix2d c = lock.cyclic_factor * report.covariance.block<2, 2>(4, 4) +
+                              angle * angle * Eigen::Matrix2d::Identity();
+    lock.second_harmonic = h.norm();
+    lock.second_harmonic_error = std::sqrt(c.trace() / 2);
+    const double freedom = lock.cyclic_factor > 1 ? std::min(2.0 * harmonics, report.n_residuals - 6.0)
+                                                  : report.n_residuals - 6.0;
+    const double f = h.dot(c.ldlt().solve(h)) / 2;
+    if (freedom > 0)
+      lock.p_sinusoidal = boost::math::cdf(boost::math::complement(boost::math::fisher_f(2, freedom), f));
+    if (lock.p_sinusoidal && *lock.p_sinusoidal < kSuspicious)
+      lock.notes.push_back(
+          fmt::format("the drive is not a pure sine: second harmonic {:.2g} +- {:.1g} of A (p = {:.1g})",
+                      *lock.second_harmonic, *lock.second_harmonic_error, *lock.p_sinusoidal));
+  } else {
+    lock.notes.emplace_back("too few phases a cycle to tell a second harmonic");
+  }
+
+  lock.frames.resize(heights.size());
+  for (std::size_t f = 0; f < heights.size(); ++f) {
+    lock.frames[f].tick = ticks[f];
+    lock.frames[f].cycles = (lock.phi + omega * (ticks[f] - ticks.front())) / (2 * kPi);
+    lock.frames[f].residual = kNaN;
+  }
+  double squares = 0;
+  for (std::size_t i = 0; i < a.samples.size(); ++i) {
+    LockedFrame& frame = lock.frames[a.samples[i].frame];
+    frame.residual = -a.residuals[i];  // Ceres has fit minus height
+    frame.lock = a.follows(i, 2 * options.model_error) ? FrameLock::locked : FrameLock::out_of_lock;
+    if (frame.lock == FrameLock::locked)
+      squares += a.residuals[i] * a.residuals[i], ++lock.locked;
+    else
+      ++lock.out_of_lock;
+  }
+  lock.unseen = static_cast<std::int64_t>(heights.size() - a.samples.size());
+  lock.rms = std::sqrt(squares / static_cast<double>(std::max<std::int64_t>(1, lock.locked)));
+  add_phases(lock, static_cast<std::size_t>(std::lround(ticks.back() - ticks.front())) + 1);
+  if (lock.frames_per_cycle > 0) {
+    // The phase at the middle of the stack; its own covariance, not that of the first frame.
+    lock.phase_offset_error =
+        std::hypot(angle, cyclic * report.standard_error("phi")) * lock.frames_per_cycle / (2 * kPi);
+  }
+  add_jitter(lock, a);
+  return lock;
+}
+
+}  // namespace twincell

@@ -1,0 +1,215 @@
+#include "calibration/drive/plate_drive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "calibration/camera/cell_geometry.hpp"
+#include "calibration/drive/drive_fit.hpp"
+#include "core/error.hpp"
+#include "core/json_text.hpp"
+#include "imaging/stack/open_frames.hpp"
+
+namespace twincell {
+namespace {
+
+/// Numbers of the drive that are stated, amplitude apart.
+int stated(const DriveSpec& s) {
+  int n = 0;
+  for (const auto& number : {s.omega, s.frequency, s.gamma, s.k_m, s.peak_velocity}) n += number ? 1 : 0;
+  return n;
+}
+
+bool is_whole(const DriveSpec& s) {
+  return stated(s) + (s.amplitude ? 1 : 0) >= 2;
+}
+
+/// Pixels per sigma: as stated, else by the walls.
+double scale_of(const CellDescription& cell, const CellGeometry& geometry, const Where& where) {
+  if (cell.pixels_per_sigma) return *cell.pixels_per_sigma;
+  if (cell.width && geometry.has_left && geometry.has_right) return geometry.width_px() / *cell.width;
+  throw ConfigError(where,
+                    "is not stated, and the plate's motion gives it in pixels alone: say "
+                    "camera.pixels_per_sigma, or cell.width where both walls are in the picture.");
+}
+
+}  // namespace
+
+bool lacks_drive(const CellDescription& cell) {
+  return !is_whole(cell.drive_spec) || !cell.phase_lock.locked();
+}
+
+std::string complete_drive(CellDescription& cell, const std::filesystem::path& cell_file,
+                           const std::filesystem::path& stack, int threads, Progress& progress) {
+  const auto where = [&](const char* key) { return Where{.file = cell_file.string(), .key = key}; };
+  const double diameter = diameter_for_edges(stack, cell.bright, cell.pixels_per_sigma.value_or(0));
+  const StackEdges edges = read_stack_edges(*open_frames(stack), cell.bright, diameter, threads, progress);
+  const auto seen = [&] {
+    try {
+      const CellGeometry geometry = fit_cell_geometry(edges);
+      return std::pair(geometry,
+                       fit_drive(geometry.heights_px(), {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
+                                                         .mend = true,
+                                                         .model_error = kHeightModelError_px}));
+    } catch (const InputError& e) {
+      throw InputError({.file = stack.string()},
+                       fmt::format("the drive is not stated, and cannot be seen on the plate: {}", e.what()));
+    }
+  }();
+  const auto& [geometry, lock] = seen;
+  std::string said = "by the plate's edge:";
+  DriveSpec& spec = cell.drive_spec;
+  if (!is_whole(spec)) {
+    if (!spec.amplitude) {
+      const double scale = scale_of(cell, geometry, where("drive.amplitude"));
+      spec.amplitude = lock.amplitude / scale;
+      said += fmt::format(" A = {:.5g} +- {:.2g} sigma", *spec.amplitude, lock.amplitude_error / scale);
+    }
+    if (stated(spec) == 0) {
+      const auto rate = frame_rate_of(cell.frame_rate_hz, edges, stack);
+      const auto t0 = cell.scale.t0_s();
+      if (!rate || !t0)
+        throw ConfigError(
+            where("drive.omega"),
+            fmt::format("is not stated, and the plate's motion gives it per frame alone: say it, or {}.",
+                        !rate ? "camera.frame_rate_hz" : "scale.sigma_m and gravity_m_s2"));
+      spec.omega = lock.omega * *rate * *t0;
+      said += fmt::format("{} omega = {:.6g} +- {:.2g} /t0", said.back() == ':' ? "" : ",", *spec.omega,
+                          lock.omega_error * *rate * *t0);
+    }
+  }
+  if (!cell.phase_lock.locked()) {
+    if (lock.frames_per_cycle == 0)
+      throw ConfigError(
+          where("camera.frames_per_cycle"),
+          fmt::format("is missing, and {:.5g} frames per cycle, as the plate moves, is no whole "
+                      "number that lasts: the frames keep no phase.",
+                      lock.period));
+    cell.phase_lock = {lock.frames_per_cycle, lock.first_phase, lock.phase_offset};
+    said += fmt::format("{} {} frames per cycle, the first at phase {}", said.back() == ':' ? "" : ",",
+                        lock.frames_per_cycle, lock.first_phase);
+  }
+  return said;
+}
+
+namespace {
+
+/// The beginning of a stack.
+class FirstFrames : public FrameSource {
+ public:
+  FirstFrames(const std::filesystem::path& stack, std::size_t most)
+      : all_(open_frames(stack)), most_(most), left_(most) {}
+  bool next(cv::Mat& frame) override {
+    if (left_ == 0) return false;
+    --left_;
+    return all_->next(frame);
+  }
+  [[nodiscard]] std::size_t announced() const override { return std::min(all_->announced(), most_); }
+  [[nodiscard]] std::string current() const override { return all_->current(); }
+  [[nodiscard]] StackInfo info() const override { return all_->info(); }
+  [[nodiscard]] std::optional<double> time_s() const override { return all_->time_s(); }
+
+ private:
+  std::unique_ptr<FrameSource> all_;
+  std::size_t most_, left_;
+};
+
+constexpr double kErrors = 5, kShare = 0.03, kPixels = 0.3;
+/// A bed's lower side departs from its plate by up to 3 % of A (recovery.BedDrive): landings, beads pushed
+/// up.
+constexpr double kShareOfBed = 0.1;
+
+/// Compares what `check` has seen with what is stated.
+void compare_amplitude(DriveCheck& check, const std::string& what, double stated, double share,
+                       double scale) {
+  if (std::abs(check.amplitude - stated) >
+      std::max({kErrors * check.amplitude_error, share * stated, kPixels / scale}))
+    check.disagreement = fmt::format("{} moves by A = {:.4g} +- {:.2g} sigma, and the cell states {:.4g}",
+                                     what, check.amplitude, check.amplitude_error, stated);
+}
+void compare_omega(DriveCheck& check, const std::string& what, const DriveFit& seen, double stated,
+                   const std::optional<double>& t0) {
+  if (!check.frame_rate_hz || !t0 || !check.disagreement.empty()) return;
+  const double omega = seen.omega * *check.frame_rate_hz * *t0,
+               error = seen.omega_error * *check.frame_rate_hz * *t0;
+  if (std::abs(omega - stated) > std::max(kErrors * error, kShare * stated))
+    check.disagreement =
+        fmt::format("{} moves at omega = {:.4g} +- {:.2g} per t0, and the cell states {:.4g}", what, omega,
+                    error, stated);
+}
+
+}  // namespace
+
+void record(const DriveCheck& check, TrajectoryInfo& info) {
+  auto tracking = nlohmann::json::parse(info.tracking_json);
+  if (check.by.empty())
+    tracking["drive_check"] = {{"not_comparable", check.not_comparable}};
+  else
+    tracking["drive_check"] = {
+        {"by", check.by}, {"amplitude", check.amplitude}, {"amplitude_error", check.amplitude_error}};
+  if (!check.disagreement.empty()) tracking["drive_disagreement"] = check.disagreement;
+  info.tracking_json = json_text(tracking);
+}
+
+DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::path& stack, int threads,
+                          Progress& progress) {
+  DriveCheck check;
+  const auto drive = cell.drive();
+  if (!drive || !cell.pixels_per_sigma) {
+    check.not_comparable = drive ? "the cell states no scale" : "the cell states no drive";
+    return check;
+  }
+  const double scale = *cell.pixels_per_sigma;
+  // Three cycles tell an amplitude; the rest of a long film would cost as much as locating its beads.
+  constexpr std::size_t kCycles = 3, kFewest = 40;
+  FirstFrames beginning(
+      stack, std::max(kFewest, kCycles * static_cast<std::size_t>(cell.phase_lock.frames_per_cycle)));
+  const StackEdges edges = read_stack_edges(beginning, cell.bright,
+                                            diameter_for_edges(stack, cell.bright, scale), threads, progress);
+  check.frame_rate_hz = frame_rate_of(cell.frame_rate_hz, edges, stack);
+  try {
+    const DriveFit seen = fit_drive(fit_cell_geometry(edges).heights_px(),
+                                    {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
+                                     .mend = true,
+                                     .model_error = kHeightModelError_px});
+    check.by = "plate";
+    check.amplitude = seen.amplitude / scale;
+    check.amplitude_error = seen.amplitude_error / scale;
+    const std::string what = "the plate in the frames";
+    compare_amplitude(check, what, drive->amplitude, kShare, scale);
+    compare_omega(check, what, seen, drive->omega, cell.scale.t0_s());
+  } catch (const InputError& e) {  // no plate in the picture, or none that moves
+    check.not_comparable = e.what();
+  }
+  return check;
+}
+
+DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info,
+                        std::optional<double> frame_rate_hz) {
+  DriveCheck check;
+  check.frame_rate_hz = frame_rate_hz;
+  const BedDrive seen = drive_of_bed(bed, info);
+  if (!seen.not_comparable.empty()) {
+    check.not_comparable = seen.not_comparable;
+    return check;
+  }
+  check.by = "bed";
+  check.amplitude = seen.amplitude;
+  check.amplitude_error = seen.amplitude_error;
+  const std::string what = "the bed on its plate";
+  compare_amplitude(check, what, info.drive->amplitude, kShareOfBed,
+                    info.scale.pixels_per_sigma.value_or(1e9));
+  try {
+    std::vector<double> heights = {0};
+    for (const BedSteps::Step& step : bed.steps()) heights.push_back(heights.back() + step.dz);
+    compare_omega(check, what, fit_drive(heights, {.frames_per_cycle = info.phases_per_cycle, .mend = false}),
+                  info.drive->omega, info.scale.t0_s());
+  } catch (const InputError&) {  // the amplitude was told from phases, the period cannot be
+  }
+  return check;
+}
+
+}  // namespace twincell

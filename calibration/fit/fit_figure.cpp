@@ -1,0 +1,127 @@
+#include "calibration/fit/fit_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/report/gnuplot_text.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr int kSteps = 200;
+
+double error_of(const DataPoint& p) {
+  if (p.sigma > 0) return p.sigma;
+  return p.trials > 0 ? std::sqrt(std::max(0.0, p.y * (1 - p.y)) / p.trials) : 0;
+}
+
+/// The plot with the name of its data file put in.
+std::string reading(const std::string& name, std::string plot) {
+  static const std::string kFile = "'fit.dat'";
+  for (std::size_t at = plot.find(kFile); at != std::string::npos; at = plot.find(kFile, at + name.size()))
+    plot.replace(at, kFile.size(), "'" + name + ".dat'");
+  return plot;
+}
+
+}  // namespace
+
+Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, const std::string& x_name,
+                  const std::string& y_name, const std::string& name) {
+  const Law& law = *fit.law;
+  const auto drawn = [&](double x) { return law.axis == Law::Axis::reciprocal ? 1 / x : x; };
+  Figure f{.name = name, .title = law.formula, .width = 560, .height = 640};
+
+  double low = INFINITY, high = -INFINITY;
+  std::string used, left_out, limits;
+  double left = INFINITY, right = -INFINITY;  // of the picture
+  std::size_t limit = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const DataPoint& p = points[i];
+    if (fit.use[i] != PointUse::invalid) {
+      left = std::min(left, drawn(p.x));
+      right = std::max(right, drawn(p.x));
+    }
+    if (fit.use[i] == PointUse::used) {
+      low = std::min(low, p.x);
+      high = std::max(high, p.x);
+      const double error = error_of(p), curve = fit.at(p.x);
+      const double off = law.logarithmic ? std::log(p.y / curve) : p.y - curve;
+      const double unit = !fit.weighted ? 1 : law.logarithmic ? error / p.y : error;
+      used += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", drawn(p.x), p.y,
+                          law.logarithmic ? p.y * std::exp(-error / p.y) : p.y - error,
+                          law.logarithmic ? p.y * std::exp(error / p.y) : p.y + error, off / unit);
+    } else if (fit.use[i] == PointUse::zero && p.trials > 0) {
+      limits += fmt::format("{:.9g} {:.9g}\n", drawn(p.x), fit.upper_limits[limit++]);
+    } else if (fit.use[i] == PointUse::outside && (!law.logarithmic || p.y > 0)) {
+      left_out += fmt::format("{:.9g} {:.9g}\n", drawn(p.x), p.y);
+    }
+  }
+  std::string curve;
+  const double reach = fit.weighted ? student_t_95(1e9)
+                                    : student_t_95(static_cast<double>(fit.n_used - fit.fit.values.size()));
+  const bool steps_in_ratio = law.axis == Law::Axis::logarithmic && low > 0;
+  for (int s = 0; s <= kSteps; ++s) {
+    const double share = static_cast<double>(s) / kSteps;
+    const double x = steps_in_ratio ? low * std::pow(high / low, share) : low + (high - low) * share;
+    const double y = fit.at(x), error = fit.error_at(x);
+    const double half = std::isfinite(error) ? reach * error : 0;
+    curve += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", drawn(x), y,
+                         law.logarithmic ? y * std::exp(-half) : y - half,
+                         law.logarithmic ? y * std::exp(half) : y + half);
+  }
+  f.data = "# points used: x, y, low, high, residual\n" + used + "\n\n# curve: x, y, 95 % band\n" + curve;
+  std::string more;
+  int index = 2;
+  if (!left_out.empty()) {
+    f.data += "\n\n# points outside the window: x, y\n" + left_out;
+    more += fmt::format(
+        ", 'fit.dat' index {} using 1:2 with points pt 6 ps 1.1 lw 1.5 lc rgb grey title "
+        "'outside the window'",
+        index++);
+  }
+  if (!limits.empty()) {
+    f.data += "\n\n# zeros: x, 95 % upper limit\n" + limits;
+    more += fmt::format(
+        ", 'fit.dat' index {} using 1:2 with points pt 11 ps 1.3 lc rgb vermilion title "
+        "'zero: 95 % upper limit'",
+        index++);
+  }
+  // Both panels need the same axis, which gnuplot would choose for each alone.
+  const bool ratio = law.axis == Law::Axis::logarithmic;
+  const double pad = ratio ? std::pow(right / left, 0.04) : 0.04 * (right - left);
+  const std::string x_range = ratio ? fmt::format("[{:.9g}:{:.9g}]", left / pad, right * pad)
+                                    : fmt::format("[{:.9g}:{:.9g}]", left - pad, right + pad);
+  std::string law_label = law.name;
+  std::replace(law_label.begin(), law_label.end(), '_', ' ');
+  const std::string x_label =
+      law.axis == Law::Axis::reciprocal ? "1/" + gnuplot_symbol(x_name) : gnuplot_symbol(x_name);
+  f.plot = fmt::format(
+      "set multiplot\nset lmargin at screen 0.19\nset rmargin at screen 0.95\nset xrange {}\n"
+      "{}{}set tmargin at screen 0.95\nset bmargin at screen 0.40\nset format x ''\nset ylabel '{}'\n"
+      "set key top {} samplen 2\n"
+      "plot 'fit.dat' index 1 using 1:3:4 with filledcurves fc rgb sky fs transparent solid 0.35 "
+      "noborder "
+      "title '95 % band', 'fit.dat' index 1 using 1:2 with lines lw 2 lc rgb blue title '{}', 'fit.dat' "
+      "index 0 using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1.3 lc rgb '#222222' title 'points'{}\n"
+      "unset logscale y\nset ytics autofreq\nunset key\nset tmargin at screen 0.35\nset bmargin at screen "
+      "0.12\nset format x '%g'\n"
+      "set format y '%g'\nset xlabel '{}'\nset ylabel '{}'\nset yrange [*:*]\n"
+      "plot 0 with lines lw 1.5 lc rgb blue, 'fit.dat' index 0 using 1:5 with impulses lw 1.3 lc rgb "
+      "grey, 'fit.dat' index 0 using 1:5 with points pt 7 ps 0.9 lc rgb '#222222'\nunset multiplot\n",
+      x_range, ratio ? "set logscale x\n" : "",
+      law.logarithmic ? "set logscale y\nset format y '10^{%T}'\n" : "", gnuplot_symbol(y_name),
+      law.axis == Law::Axis::reciprocal || (law.logarithmic && fit.at(high) < fit.at(low)) || !law.logarithmic
+          ? "right"
+          : "left",
+      gnuplot_text(law_label), more, x_label,
+      fit.weighted      ? "residual/error"
+      : law.logarithmic ? "residual in ln y"
+                        : "residual");
+  f.plot = reading(name, f.plot);
+  f.caption = law.formula + ", fitted to " + fmt::format("{} points", fit.n_used);
+  return f;
+}
+
+}  // namespace twincell

@@ -1,0 +1,256 @@
+#include "core/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/manifest.hpp"
+#include "core/output_rules.hpp"
+
+namespace twincell {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Waits until a file, or the names in a folder, are on the disk; false if the disk refused. What cannot be
+/// waited for (some network file systems) counts as done.
+bool sync_to_disk(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return true;
+  const bool refused = ::fsync(file) != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT);
+  ::close(file);
+  return !refused;
+}
+
+/// Whether a new file of this name may take its place in a folder: nothing is there, or a listed, unchanged
+/// file, and no link or file stands where a folder is needed.
+bool replaceable(const fs::path& folder, const Manifest& manifest, const std::string& name) {
+  std::error_code ec;
+  fs::path at = folder;
+  for (const fs::path& part : fs::path(name).parent_path()) {
+    at /= part;
+    const fs::file_status status = fs::symlink_status(at, ec);
+    if (!fs::exists(status)) return true;
+    if (!fs::is_directory(status)) return false;
+  }
+  return !fs::exists(fs::symlink_status(folder / name, ec)) || manifest.unchanged(folder, name);
+}
+
+/// Whether a folder holds nothing but what its manifest lists, unchanged.
+bool only_listed(const fs::path& folder, const Manifest& manifest) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_directory() && !entry.is_symlink()) continue;
+    const std::string name = entry.path().lexically_relative(folder).string();
+    if (name != Manifest::kName && !manifest.unchanged(folder, name)) return false;
+  }
+  return true;
+}
+
+/// Removes the listed, unchanged files of a folder, its manifest, and the folders that are then empty.
+void remove_listed(const fs::path& folder, const Manifest& manifest) {
+  std::error_code ec;
+  for (const auto& [name, hashes] : manifest.files)
+    if (manifest.unchanged(folder, name)) fs::remove(folder / name, ec);
+  fs::remove(folder / Manifest::kName, ec);
+  std::vector<fs::path> folders = {folder};
+  for (const auto& entry : fs::recursive_directory_iterator(folder, ec))
+    if (entry.is_directory(ec) && !entry.is_symlink(ec)) folders.push_back(entry.path());
+  for (std::size_t i = folders.size(); i-- > 0;) fs::remove(folders[i], ec);  // fails where something is left
+}
+
+}  // namespace
+
+AtomicPath::AtomicPath(const fs::path& final_path, Product product)
+    : given_(final_path), final_(require_output(final_path, product)), product_(std::move(product)) {
+  while (!given_.empty() && !given_.has_filename() && given_ != given_.root_path())
+    given_ = given_.parent_path();  // "report/" means "report"
+  if (final_ == kStandardOutput) {
+    part_ = make_temporary(folder_for_temporaries() / "standard-output", false);
+    return;
+  }
+  lock_.emplace(final_);
+  part_ = make_temporary(final_, product_.folder);
+}
+
+AtomicPath::AtomicPath(AtomicPath&& other) noexcept
+    : given_(std::move(other.given_)),
+      final_(std::move(other.final_)),
+      product_(std::move(other.product_)),
+      lock_(std::move(other.lock_)),
+      part_(std::move(other.part_)),
+      open_(std::exchange(other.open_, false)) {
+  other.lock_.reset();
+}
+
+AtomicPath::~AtomicPath() {
+  if (!open_) return;
+  std::error_code ec;
+  fs::remove_all(part_, ec);
+  forget_temporary(part_);
+}
+
+void AtomicPath::commit() {
+  if (final_ == kStandardOutput) return print();  // the destructor removes the file
+  if (product_.folder)
+    place_folder(final_);
+  else
+    place_file(final_);
+  open_ = false;
+  forget_temporary(part_);
+  sync_to_disk(final_.parent_path());
+}
+
+void AtomicPath::commit_as(const fs::path& other_name) {
+  given_ = other_name;
+  final_ = require_output(other_name, product_);
+  commit();
+}
+
+void AtomicPath::give_way(const fs::path& target, const std::string& obstacle) {
+  for (int k = 1; k < 10000; ++k) {
+    const fs::path other =
+        target.parent_path() / fmt::format("{}.twincell-{}", target.filename().string(), k);
+    if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, other.c_str(), RENAME_NOREPLACE) != 0) continue;
+    open_ = false;
+    forget_temporary(part_);
+    throw RunError(
+        fmt::format("{}: {} appeared or changed during the run and is not replaced; the finished output is "
+                    "{}.",
+                    given_.string(), obstacle, other.string()));
+  }
+  throw RunError(given_.string() + ": " + obstacle + " is in the way, and no other name is free beside it.");
+}
+
+void AtomicPath::place_file(const fs::path& target) {
+  if (!sync_to_disk(part_))
+    throw RunError(part_.string() + ": the disk did not take it (" + std::strerror(errno) + ").");
+  std::error_code ec;
+  if (fs::exists(fs::symlink_status(target, ec)) &&
+      (!fs::is_regular_file(target, ec) || !may_replace(target, product_)))
+    give_way(target, "a file of that name");
+  fs::rename(part_, target, ec);
+  if (ec)
+    throw RunError(given_.string() + ": the finished output cannot be given its name (" + ec.message() +
+                   ").");
+}
+
+void AtomicPath::print() {
+  std::ifstream stream(part_, std::ios::binary);
+  bool good = static_cast<bool>(stream);
+  for (std::vector<char> piece(1 << 16); good && stream;) {
+    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto got = static_cast<std::size_t>(stream.gcount());
+    good = std::fwrite(piece.data(), 1, got, stdout) == got;
+  }
+  if (!good || std::fflush(stdout) != 0) throw RunError("The output cannot be written to standard output.");
+}
+
+void AtomicPath::place_folder(const fs::path& target) {
+  const auto fail = [&](const std::error_code& ec) {
+    throw RunError(given_.string() + ": the finished output cannot be given its name (" + ec.message() +
+                   ").");
+  };
+  Manifest fresh = Manifest::of(part_, product_.name);
+  std::error_code ec;
+  const auto old = Manifest::read(target);
+  if (!old) {
+    // Absent or empty; anything else has come meanwhile.
+    fresh.write(part_);
+    fs::rename(part_, target, ec);
+    if (ec == std::errc::directory_not_empty || ec == std::errc::file_exists ||
+        ec == std::errc::not_a_directory)
+      give_way(target, "a folder or file of that name");
+    if (ec) fail(ec);
+    return;
+  }
+  if (!product_.shared && only_listed(target, *old)) {
+    // All of it is ours: the folders change places in one step.
+    fresh.write(part_);
+    if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) {
+      remove_listed(part_, *old);
+      return;
+    }
+  }
+  for (const auto& [name, hashes] : fresh.files)
+    if (!replaceable(target, *old, name)) give_way(target, "'" + name + "' in it");
+  // File by file. At every instant the manifest lists each file of ours, old or new.
+  Manifest both = *old;
+  for (const auto& [name, hashes] : fresh.files) both.files[name].insert(hashes.begin(), hashes.end());
+  both.write(target);
+  for (const auto& [name, hashes] : fresh.files) {
+    fs::create_directories((target / name).parent_path(), ec);
+    fs::rename(part_ / name, target / name, ec);
+    if (ec) fail(ec);
+  }
+  for (const auto& [name, hashes] : old->files) {
+    if (fresh.files.contains(name)) continue;
+    if (product_.shared)
+      fresh.files[name] = hashes;
+    else if (old->unchanged(target, name))
+      fs::remove(target / name, ec);
+  }
+  fresh.write(target);
+  fs::remove_all(part_, ec);
+}
+
+void write_text_file(const fs::path& path, const std::string& text, const Product& product) {
+  AtomicPath out(path, product);
+  {
+    std::ofstream stream(out.part(), std::ios::binary);
+    stream << text;
+    stream.flush();
+    if (!stream) throw RunError(path.string() + ": writing failed (" + std::strerror(errno) + ").");
+  }
+  out.commit();
+}
+
+std::string read_text_file(const fs::path& path, std::uintmax_t most) {
+  const auto refuse = [&](const std::string& complaint) {
+    throw InputError({path.string(), 0, 0, ""}, complaint);
+  };
+  struct File {
+    int number;
+    ~File() {
+      if (number >= 0) ::close(number);
+    }
+  };
+  // Not blocking: to open a pipe that nobody writes into would never end.
+  const File file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)};
+  if (file.number < 0)
+    refuse(errno == ENOENT || errno == ENOTDIR
+               ? "the file does not exist."
+               : std::string("the file cannot be read (") + std::strerror(errno) + ").");
+  struct stat about {};
+  if (::fstat(file.number, &about) != 0)
+    refuse(std::string("the file cannot be read (") + std::strerror(errno) + ").");
+  if (S_ISDIR(about.st_mode)) refuse("this is a folder, a file is needed.");
+  if (!S_ISREG(about.st_mode)) refuse("this is a device, a pipe or a socket; a regular file is needed.");
+  const auto too_large = [&] {
+    refuse("the file is larger than the " + std::to_string(most) + " bytes that such a file may have.");
+  };
+  if (static_cast<std::uintmax_t>(about.st_size) > most) too_large();
+  std::string text;
+  text.reserve(static_cast<std::size_t>(about.st_size) + 1);
+  for (std::string piece(1 << 16, '\0');;) {
+    const ssize_t got = ::read(file.number, piece.data(), piece.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) refuse(std::string("the file cannot be read (") + std::strerror(errno) + ").");
+    if (got == 0) return text;
+    text.append(piece, 0, static_cast<std::size_t>(got));
+    if (text.size() > most) too_large();  // it grew meanwhile
+  }
+}
+
+}  // namespace twincell

@@ -1,0 +1,423 @@
+#include "core/config.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "core/atomic_file.hpp"
+
+namespace twincell {
+
+struct ConfigSection::Shared {
+  std::string name;  ///< file, for complaints about what is absent
+  toml::table table;
+  std::set<std::string> asked;         ///< full keys somebody asked for
+  std::map<std::string, Where> stood;  ///< of keys restated under another name: what was written, and where
+
+  Where where_of(const toml::node& node, const std::string& key) const {
+    const toml::source_region& at = node.source();
+    return {at.path ? *at.path : name, static_cast<long>(at.begin.line), static_cast<long>(at.begin.column),
+            key};
+  }
+};
+
+namespace {
+
+/// What a TOML type is called in a complaint.
+std::string kind_of(const toml::node& node) {
+  std::ostringstream text;
+  text << node.type();
+  return text.str();
+}
+
+}  // namespace
+
+namespace {
+const toml::node* find(const toml::table& root, const std::string& path) {
+  const toml::node* node = &root;
+  for (std::size_t begin = 0; node != nullptr && begin <= path.size() && !path.empty();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const toml::table* table = node->as_table();
+    node = table == nullptr ? nullptr : table->get(std::string_view(path).substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return node;
+}
+}  // namespace
+
+Where ConfigSection::where(const std::string& key) const {
+  const std::string path = full(key);
+  if (const toml::node* node = find(shared_->table, path)) {
+    const auto written = shared_->stood.find(path);
+    return written != shared_->stood.end() ? written->second : shared_->where_of(*node, path);
+  }
+  if (const std::size_t dot = path.rfind('.'); dot != std::string::npos)
+    if (const toml::node* table = find(shared_->table, path.substr(0, dot)))
+      return shared_->where_of(*table, path);
+  return {shared_->name, 0, 0, path};
+}
+
+bool ConfigSection::has(const std::string& key) const {
+  shared_->asked.insert(full(key));
+  return find(shared_->table, full(key)) != nullptr;
+}
+
+namespace {
+template <class T>
+std::optional<T> value_of(const toml::node* node, const Where& where, const char* wanted) {
+  if (node == nullptr) return std::nullopt;
+  std::optional<T> value = node->value_exact<T>();
+  if (!value) throw ConfigError(where, fmt::format("{} is needed, not a {}.", wanted, kind_of(*node)));
+  return value;
+}
+}  // namespace
+
+std::optional<double> ConfigSection::number(const std::string& key) const {
+  if (!has(key)) return std::nullopt;
+  const toml::node* node = find(shared_->table, full(key));
+  if (const auto whole = node->value_exact<std::int64_t>()) return static_cast<double>(*whole);
+  const auto value = value_of<double>(node, where(key), "a number");
+  if (value && !std::isfinite(*value)) throw ConfigError(where(key), "a finite number is needed.");
+  return value;
+}
+
+std::optional<std::int64_t> ConfigSection::integer(const std::string& key) const {
+  return has(key) ? value_of<std::int64_t>(find(shared_->table, full(key)), where(key), "a whole number")
+                  : std::nullopt;
+}
+
+std::optional<double> ConfigSection::number_in(const std::string& key, std::optional<double> lower,
+                                               std::optional<double> upper, bool open_lower) const {
+  auto value = number(key);
+  if (value) require_range(where(key), *value, lower, upper, open_lower);
+  return value;
+}
+
+std::optional<std::int64_t> ConfigSection::integer_in(const std::string& key, std::int64_t lower,
+                                                      std::int64_t upper) const {
+  auto value = integer(key);
+  // As whole numbers: beyond 2^53 a double is their neighbour.
+  if (value && (*value < lower || *value > upper))
+    throw ConfigError(where(key),
+                      fmt::format("{} is out of range; the value must be at least {} and at most {}.", *value,
+                                  lower, upper));
+  return value;
+}
+
+std::optional<bool> ConfigSection::boolean(const std::string& key) const {
+  return has(key) ? value_of<bool>(find(shared_->table, full(key)), where(key), "true or false")
+                  : std::nullopt;
+}
+
+std::optional<std::string> ConfigSection::text(const std::string& key) const {
+  return has(key) ? value_of<std::string>(find(shared_->table, full(key)), where(key), "a text in quotes")
+                  : std::nullopt;
+}
+
+namespace {
+/// The finite numbers of a list; nothing if it is no list or holds anything else.
+std::optional<std::vector<double>> finite_numbers(const toml::node& node) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr) return std::nullopt;
+  std::vector<double> values;
+  for (const toml::node& item : *list)
+    if (const auto value = item.value<double>(); value && std::isfinite(*value)) values.push_back(*value);
+  return values.size() == list->size() ? std::optional(values) : std::nullopt;
+}
+}  // namespace
+
+std::optional<std::vector<double>> ConfigSection::numbers(const std::string& key, std::size_t count) const {
+  if (!has(key)) return std::nullopt;
+  auto values = finite_numbers(*find(shared_->table, full(key)));
+  if (!values || values->size() != count)
+    throw ConfigError(where(key), fmt::format("a list of {} numbers is needed.", count));
+  return values;
+}
+
+std::optional<std::vector<std::pair<double, double>>> ConfigSection::pairs(const std::string& key) const {
+  if (!has(key)) return std::nullopt;
+  const toml::array* list = find(shared_->table, full(key))->as_array();
+  std::vector<std::pair<double, double>> values;
+  if (list != nullptr)
+    for (const toml::node& item : *list)
+      if (const auto pair = finite_numbers(item); pair && pair->size() == 2)
+        values.emplace_back(pair->front(), pair->back());
+  if (list == nullptr || list->empty() || values.size() != list->size())
+    throw ConfigError(where(key), "a list of pairs of numbers is needed, [[a, b], [c, d]].");
+  return values;
+}
+
+bool ConfigSection::is_list(const std::string& key) const {
+  return has(key) && find(shared_->table, full(key))->is_array();
+}
+
+std::optional<std::string> ConfigSection::word(const std::string& key,
+                                               const std::vector<std::string>& words) const {
+  auto value = text(key);
+  if (value && std::find(words.begin(), words.end(), *value) == words.end())
+    throw ConfigError(where(key), fmt::format("'{}' is not one of {}.", *value, fmt::join(words, ", ")));
+  return value;
+}
+
+ConfigSection ConfigSection::section(const std::string& key) const {
+  const toml::node* node = has(key) ? find(shared_->table, full(key)) : nullptr;
+  if (node != nullptr && !node->is_table())
+    throw ConfigError(where(key), fmt::format("a table is needed, not a {}.", kind_of(*node)));
+  return {shared_, full(key)};
+}
+
+namespace {
+
+/// Refuses text whose tables would lie deeper in each other than kDeepest: the parser, and every visitor of
+/// its tables, go down by calling themselves, and a key of ten thousand dots would exhaust the stack. Depth
+/// is counted from the text: dots of the table's header, of the key, and the same of each list and inline
+/// table that is open. (A number's point counts as a dot, which does no harm.) Up to the first mistake in the
+/// text this reads strings and comments as the parser does; behind it the parser does not come.
+void refuse_deep(const std::string& text, const std::string& name) {
+  constexpr std::size_t kDeepest = 100;
+  std::size_t header = 0, line = 1;
+  std::vector<std::size_t> dots = {0};  // of the key that is being read: outermost, then of each bracket
+  std::size_t outer = 0;                // depth of all but the last
+  bool in_header = false, line_is_empty = true;
+  const auto look = [&] {
+    if (header + outer + dots.size() - 1 + dots.back() <= kDeepest) return;
+    throw ConfigError({name, static_cast<long>(line), 0, ""},
+                      fmt::format("tables and lists lie more than {} deep in each other.", kDeepest));
+  };
+  const auto at = [&](std::size_t k) { return k < text.size() ? text[k] : '\0'; };
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (c == '#') {
+      k = std::min(text.find('\n', k), text.size()) - 1;
+    } else if (c == '"' || c == '\'') {
+      const bool several = at(k + 1) == c && at(k + 2) == c;
+      for (k += several ? 3 : 1; k < text.size(); ++k) {
+        if (text[k] == '\n') {
+          ++line;
+          if (!several) break;
+        }
+        if (text[k] == '\\' && c == '"') {
+          ++k;
+          line += at(k) == '\n' ? 1 : 0;
+        } else if (text[k] == c && (!several || (at(k + 1) == c && at(k + 2) == c))) {
+          if (several)
+            for (k += 2; at(k + 1) == c;) ++k;  // quotes that belong to the text's end
+          break;
+        }
+      }
+      line_is_empty = false;
+    } else if (c == '\n') {
+      ++line;
+      if (in_header) header = dots.front() + 1;
+      if (dots.size() == 1) dots.front() = 0;
+      in_header = false;
+      line_is_empty = true;
+    } else if (c == '.') {
+      ++dots.back();
+      look();
+    } else if (c == ',') {
+      if (!in_header) dots.back() = 0;
+    } else if (c == '[' && dots.size() == 1 && (line_is_empty || in_header)) {
+      in_header = true, line_is_empty = false, header = 0;
+    } else if (c == '[' || c == '{') {
+      outer += dots.back();
+      dots.push_back(0);
+      look();
+    } else if ((c == ']' || c == '}') && dots.size() > 1) {
+      dots.pop_back();
+      outer -= dots.back();
+    } else if (c != ' ' && c != '\t' && c != '\r') {
+      line_is_empty = false;
+    }
+  }
+}
+
+}  // namespace
+
+Config Config::from_text(const std::string& text, const std::string& name) {
+  if (text.size() > kLargestConfig)
+    throw ConfigError({name, 0, 0, ""},
+                      fmt::format("{} bytes are more than the {} that a configuration may have.", text.size(),
+                                  kLargestConfig));
+  refuse_deep(text, name);
+  auto shared = std::make_shared<ConfigSection::Shared>();
+  shared->name = name;
+  try {
+    shared->table = toml::parse(text, name);
+  } catch (const toml::parse_error& e) {
+    const auto& at = e.source().begin;
+    throw ConfigError({name, static_cast<long>(at.line), static_cast<long>(at.column), ""},
+                      std::string(e.description()) + ".");
+  }
+  return Config(std::move(shared));
+}
+
+Config Config::from_file(const std::filesystem::path& path) {
+  return from_text(read_text_file(path, kLargestConfig), path.string());
+}
+
+namespace {
+
+/// Puts what `lower` has and `upper` has not into `upper`, whose tables thus keep their own place in the
+/// file. Moves, because a copied node forgets where it stood.
+void fill_in(toml::table& upper, toml::table&& lower) {
+  for (auto&& [key, node] : lower) {
+    toml::node* above = upper.get(key);
+    if (above == nullptr)
+      node.visit(
+          [&upper, k = std::string(key.str())](auto& value) { upper.insert_or_assign(k, std::move(value)); });
+    else if (above->is_table() && node.is_table())
+      fill_in(*above->as_table(), std::move(*node.as_table()));
+  }
+}
+
+}  // namespace
+
+void Config::overlay(Config&& upper) {
+  for (auto& [key, written] : shared_->stood)
+    if (find(upper.shared_->table, key) == nullptr) upper.shared_->stood[key] = written;
+  shared_->stood = std::move(upper.shared_->stood);
+  fill_in(upper.shared_->table, std::move(shared_->table));
+  shared_->table = std::move(upper.shared_->table);
+  shared_->name = upper.shared_->name;
+}
+
+void Config::yield_to(const Config& upper, const std::string& section,
+                      const std::vector<std::string>& alternatives) {
+  const auto named = [&](const std::string& key) {
+    return find(upper.shared_->table, section + "." + key) != nullptr;
+  };
+  if (std::none_of(alternatives.begin(), alternatives.end(), named)) return;
+  const toml::node_view<toml::node> table = shared_->table.at_path(section);
+  if (!table.is_table()) return;
+  for (const auto& key : alternatives) {
+    table.as_table()->erase(key);
+    shared_->stood.erase(section + "." + key);
+  }
+}
+
+namespace {
+
+/// The table that holds the last word of `path`; \param make whether missing ones are made, else nullptr.
+toml::table* table_above(toml::table& root, const std::string& path, bool make) {
+  toml::table* table = &root;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; table != nullptr && (end = path.find('.', begin)) != std::string::npos;
+       begin = end + 1) {
+    const std::string_view word = std::string_view(path).substr(begin, end - begin);
+    toml::node* below = table->get(word);
+    if (below == nullptr && make) below = &table->insert_or_assign(word, toml::table{}).first->second;
+    table = below == nullptr ? nullptr : below->as_table();
+  }
+  return table;
+}
+
+std::string_view last_word(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  return std::string_view(path).substr(dot == std::string::npos ? 0 : dot + 1);
+}
+
+}  // namespace
+
+void Config::adopt(Config& lower, const std::string& from, const std::string& to) {
+  toml::table* source = table_above(lower.shared_->table, from, false);
+  toml::table* target = table_above(shared_->table, to, true);
+  if (source == nullptr || target == nullptr) return;
+  // Moved, because a copied node forgets where it stood.
+  if (toml::node* node = source->get(last_word(from)))
+    node->visit([&](auto& value) { target->insert_or_assign(last_word(to), std::move(value)); });
+}
+
+void Config::restate(const std::string& from, const std::string& to, double value) {
+  const Where written = root().where(from);
+  erase(from);
+  if (toml::table* table = table_above(shared_->table, to, true))
+    table->insert_or_assign(last_word(to), value);
+  shared_->stood[to] = written;
+}
+
+void Config::erase(const std::string& path) {
+  shared_->stood.erase(path);
+  if (toml::table* table = table_above(shared_->table, path, false)) table->erase(last_word(path));
+}
+
+void Config::assign(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  const Where where{"--set", 0, 0, assignment};
+  if (equals == std::string::npos || equals == 0)
+    throw ConfigError(where, "must have the form section.key=value.");
+  const std::string key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
+  const std::string name = shared_->name;
+  auto parsed = [&](const std::string& text) { return from_text(key + " = " + text + "\n", "--set " + key); };
+  try {
+    overlay(parsed(value));
+  } catch (const ConfigError&) {
+    std::string quoted = "\"";
+    for (char c : value) quoted += (c == '"' || c == '\\' ? std::string("\\") : std::string()) + c;
+    overlay(parsed(quoted + "\""));
+  }
+  shared_->name = name;
+}
+
+ConfigSection Config::root() const {
+  return {shared_, ""};
+}
+
+namespace {
+
+void walk(const toml::table& table, const std::string& path, const std::set<std::string>& asked,
+          const std::function<void(const std::string&, const toml::node&)>& complain) {
+  for (auto&& [key, node] : table) {
+    const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
+    // A point in quotes is part of a name: "cell.width" is not the width of the cell.
+    const bool quoted = key.str().empty() || key.str().find('.') != std::string_view::npos;
+    if (quoted || !asked.contains(full)) complain(full, node);
+    if (const toml::table* below = node.as_table()) walk(*below, full, asked, complain);
+  }
+}
+
+}  // namespace
+
+void Config::refuse_unknown_keys() const {
+  walk(shared_->table, "", shared_->asked, [&](const std::string& key, const toml::node& node) {
+    const std::string* nearest = nullptr;
+    std::size_t smallest = 4;
+    for (const std::string& known : shared_->asked)
+      if (const std::size_t d = edit_distance(known, key); d < smallest) {
+        smallest = d;
+        nearest = &known;
+      }
+    throw ConfigError(shared_->where_of(node, key),
+                      nearest != nullptr ? fmt::format("there is no such key; did you mean '{}'?", *nearest)
+                                         : "there is no such key.");
+  });
+}
+
+std::string Config::text() const {
+  std::ostringstream out;
+  out << shared_->table << "\n";
+  return out.str();
+}
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = std::exchange(row[j], std::min({substituted, row[j] + 1, row[j - 1] + 1}));
+    }
+  }
+  return row.back();
+}
+
+}  // namespace twincell

@@ -1,0 +1,92 @@
+#include "core/output_kind.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/hdf5.hpp"
+
+namespace twincell {
+
+namespace {
+
+std::string head_of(const std::filesystem::path& file, std::size_t bytes) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string head(bytes, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(bytes));
+  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+  return head;
+}
+
+/// HDF5 that opens and of which `says` is true.
+template <class Says>
+bool hdf5_says(const std::filesystem::path& file, Says says) {
+  h5::quiet();
+  if (head_of(file, 8) != "\x89HDF\r\n\x1a\n") return false;
+  try {
+    const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (id < 0) return false;
+    const h5::Handle handle = h5::own(id, "opening");
+    return says(handle.get());
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+bool made_by_twincell(hid_t file) {
+  if (H5Lexists(file, "h5md", H5P_DEFAULT) <= 0 || H5Lexists(file, "h5md/creator", H5P_DEFAULT) <= 0)
+    return false;
+  const h5::Handle creator = h5::own(H5Gopen2(file, "h5md/creator", H5P_DEFAULT), "creator");
+  return H5Aexists(creator.get(), "name") > 0 &&
+         h5::read_text_attribute(creator.get(), "name") == std::vector<std::string>{"twincell"};
+}
+
+}  // namespace
+
+Product Product::table(const std::string& heading) {
+  return {.name = "a table with these columns",
+          .sign = Sign::first_line,
+          .mark = heading.substr(0, heading.find('\n'))};
+}
+
+bool is_product(const std::filesystem::path& file, const Product& product) {
+  switch (product.sign) {
+    case Product::Sign::none:
+      return false;
+    case Product::Sign::h5md_creator:
+      return hdf5_says(file, made_by_twincell);
+    case Product::Sign::results_group:
+      return hdf5_says(file, [](hid_t id) {
+        return H5Lexists(id, "results", H5P_DEFAULT) > 0 && H5Lexists(id, "provenance", H5P_DEFAULT) > 0;
+      });
+    case Product::Sign::checkpoint:
+      return hdf5_says(file, [](hid_t id) { return H5Aexists(id, "sha256") > 0; });
+    case Product::Sign::first_line: {
+      const std::string head = head_of(file, product.mark.size() + 1);
+      return head == product.mark + "\n" || head == product.mark + "\r";
+    }
+    case Product::Sign::beginning:
+      return head_of(file, product.mark.size()) == product.mark;
+    case Product::Sign::ending: {
+      std::ifstream stream(file, std::ios::binary);
+      stream.seekg(-static_cast<std::streamoff>(product.mark.size()), std::ios::end);
+      std::string tail(product.mark.size(), '\0');
+      return stream.read(tail.data(), static_cast<std::streamsize>(tail.size())) && tail == product.mark;
+    }
+    case Product::Sign::json_member: {
+      std::ifstream stream(file, std::ios::binary);
+      const auto document = nlohmann::json::parse(stream, nullptr, false);
+      return document.is_object() && document.contains(product.mark);
+    }
+    case Product::Sign::picture_software: {
+      // IHDR ends at byte 33; the text chunk follows it.
+      const std::string head = head_of(file, 64);
+      return head.substr(0, 4) == "\x89PNG" &&
+             head.find(std::string("tEXtSoftware\0twincell", 21)) == std::size_t{37};
+    }
+  }
+  return false;
+}
+
+}  // namespace twincell

@@ -1,0 +1,10 @@
+#include "core/progress.hpp"
+
+namespace twincell {
+
+Progress& Progress::none() {
+  static Progress silent;
+  return silent;
+}
+
+}  // namespace twincell

@@ -1,0 +1,42 @@
+#include "imaging/camera/noise_matched_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "imaging/preprocess/preprocess.hpp"
+
+namespace twincell {
+
+CameraOptions with_noise_of(FrameSource& stack, double diameter_px, bool bright, CameraOptions camera) {
+  constexpr int kFrames = 3;
+  constexpr double kMostReadNoise = 50, kFewestElectrons = 0.1, kMostElectrons = 1e9;
+  double dark = 0, light = 0;
+  int n = 0;
+  cv::Mat frame;
+  cv::RNG chance(1);
+  for (; n < kFrames && stack.next(frame); ++n) {
+    // Medians of whole levels are whole levels: noise below a level or two would be told wrongly by a factor.
+    cv::Mat1f grey, dither(frame.size());
+    frame.convertTo(grey, CV_32F);
+    const bool counted = frame.depth() != CV_32F;
+    chance.fill(dither, cv::RNG::UNIFORM, -0.5, 0.5);
+    if (counted) grey += dither;
+    const Prepared prepared = prepare(grey, {.bright = bright}, diameter_px / 2);
+    const Noise noise = noise_of(prepared.darkness);
+    const double level = counted ? 1 / static_cast<double>(prepared.light[0]) : 0;
+    dark += std::max(0.0, noise.dark - level * level / 12);
+    light += noise.light;
+  }
+  if (n == 0) throw InputError({.file = stack.current(), .key = {}}, "the stack holds no frame");
+  const double levels = camera.backlight;
+  const double counted = std::pow(2.0, 8 - camera.bits);
+  const double read = dark / n * levels * levels - counted * counted / 12;
+  camera.bright = bright;
+  camera.read_noise = std::min(kMostReadNoise, std::sqrt(std::max(0.0, read)));
+  camera.electrons_per_level =
+      light > 0 ? std::clamp(n / (light * levels), kFewestElectrons, kMostElectrons) : 0;  // 0: no shot noise
+  return camera;
+}
+
+}  // namespace twincell

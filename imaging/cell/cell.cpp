@@ -1,0 +1,67 @@
+#include "imaging/cell/cell.hpp"
+
+#include "core/config.hpp"
+#include "trajectory/unit_keys.hpp"
+
+namespace twincell {
+
+std::optional<Drive> CellDescription::drive() const {
+  const DriveSpec& s = drive_spec;
+  if (!s.amplitude && !s.omega && !s.frequency && !s.gamma && !s.k_m && !s.peak_velocity) return std::nullopt;
+  return solve_drive(s, 1, Where{.file = {}, .key = "drive"});
+}
+
+PixelFrame CellDescription::pixel_frame(cv::Size picture, double scale_px, PixelPoint zero) const {
+  PixelFrame frame{scale_px, zero};
+  if (rotation_deg != 0 || distortion != 0) frame.lens = Lens(picture, rotation_deg, distortion);
+  return frame;
+}
+
+CellDescription read_cell(const std::filesystem::path& path, const std::vector<std::string>& assignments) {
+  constexpr std::int64_t kMostPhases = 100000;
+  Config config = path.empty() ? Config::from_text("", "the command line") : Config::from_file(path);
+  for (const std::string& assignment : assignments) displace_spellings(config, assignment);
+  for (const std::string& assignment : assignments) config.assign(assignment);
+  CellDescription cell;
+  reduce_units(config);
+  cell.included = include_calibration(config, path, Includer::cell);
+  const ConfigSection root = config.root();
+  cell.text = resolved_text(config);
+
+  const ConfigSection camera = root.section("camera");
+  cell.pixels_per_sigma = camera.number_in("pixels_per_sigma", 1, 1e4);
+  if (const auto origin = camera.numbers("origin_px", 2))
+    cell.origin = PixelPoint{(*origin)[0], (*origin)[1]};
+  cell.phase_lock.frames_per_cycle =
+      static_cast<int>(camera.integer_in("frames_per_cycle", 0, kMostPhases).value_or(0));
+  cell.phase_lock.first_phase =
+      static_cast<int>(camera.integer_in("first_phase", 0, kMostPhases).value_or(0));
+  cell.phase_lock.check(camera.where("first_phase"));
+  cell.phase_lock.offset = camera.number_in("phase_offset", -1, 1).value_or(0);
+  cell.rotation_deg = camera.number_in("rotation_deg", -180, 180).value_or(0);
+  cell.distortion = camera.number_in("distortion", -0.2, 0.2).value_or(0);
+  cell.bright = camera.boolean("bright").value_or(false);
+  cell.frame_rate_hz = camera.number_in("frame_rate_hz", 0, 1e9, true);
+
+  const ConfigSection box = root.section("cell");
+  cell.width = box.number_in("width", 0, std::nullopt, true);
+  cell.height = box.number_in("height", 0, std::nullopt, true);
+  if (const auto sides = box.word("sides", {"walls", "periodic", "open"}))
+    cell.sides = *sides == "walls"      ? Boundary::wall
+                 : *sides == "periodic" ? Boundary::periodic
+                                        : Boundary::open;
+
+  if (const auto tilt = box.numbers("side_tilt", 2)) {
+    for (const double t : *tilt) require_range(box.where("side_tilt"), t, -45, 45);
+    cell.side_tilt = {(*tilt)[0], (*tilt)[1]};
+  }
+
+  cell.drive_spec = read_drive_spec(root.section("drive"));
+  const ConfigSection scale = root.section("scale");
+  cell.scale.sigma_m = scale.number_in("sigma_m", 0, std::nullopt, true);
+  cell.scale.gravity_m_s2 = scale.number_in("gravity_m_s2", 0, std::nullopt, true);
+  config.refuse_unknown_keys();
+  return cell;
+}
+
+}  // namespace twincell

@@ -1,0 +1,82 @@
+#pragma once
+/// \file
+/// CELL.toml: what is known of a filmed cell.
+///
+///     [camera]
+///     pixels_per_sigma = 15.0      # camera pixels per bead diameter
+///     origin_px = [40.0, 560.0]    # lower-left inside corner, plate at its mean height
+///     frames_per_cycle = 20        # 0 or absent: not phase-locked
+///     first_phase = 0              # phase of the first frame
+///     phase_offset = 0.0           # frames by which each was taken later than its phase says
+///     rotation_deg = 0.0           # turn of the picture about its middle, counter-clockwise
+///     distortion = 0.0             # k1: what lies at r, in half diagonals, is seen at r (1 + k1 r^2)
+///     bright = false               # discs brighter than their surroundings
+///     frame_rate_hz = 1000.0       # wins over what the stack says of itself
+///     [cell]
+///     width_mm = 40.0              # between the side walls; or width_sigma
+///     height_mm = 80.0             # or height_sigma
+///     sides = "walls"              # "walls", "periodic" or "open"
+///     side_tilt = [0.0, 0.0]       # degrees by which the left and the right wall lean outward
+///     [drive]                      # any two that determine A and omega, as in a scene
+///     gamma = 2.0
+///     amplitude_mm = 2.0
+///     [scale]                      # without it, width, height and amplitude are in sigma
+///     sigma_mm = 2.0
+///     gravity_m_s2 = 9.81
+///
+///     [calibration]
+///     from = "cell.calibration.toml"  # what calibrate measured (calibration_file.hpp); keys above win over
+///     it
+///
+/// Every key may be absent; an unknown one is an error. With a turn or a distortion, origin_px is a place of
+/// the picture as it would be without them.
+
+#include <array>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "imaging/geometry/pixel_frame.hpp"
+#include "imaging/phase/phase_lock.hpp"
+#include "trajectory/box.hpp"
+#include "trajectory/calibration_file.hpp"
+#include "trajectory/drive.hpp"
+#include "trajectory/units.hpp"
+
+namespace twincell {
+
+/// The cell as far as it is known.
+struct CellDescription {
+  std::optional<double> pixels_per_sigma;  ///< > 0
+  std::optional<PixelPoint> origin;        ///< px
+  double rotation_deg = 0;                 ///< of the picture, counter-clockwise
+  double distortion = 0;                   ///< k1 (camera/lens.hpp)
+  PhaseLock phase_lock;
+  bool bright = false;
+  std::optional<double> frame_rate_hz;             ///< > 0
+  std::optional<double> width, height;             ///< sigma, > 0
+  std::optional<std::array<double, 2>> side_tilt;  ///< degrees outward, left and right
+  Boundary sides = Boundary::wall;
+  DriveSpec drive_spec;  ///< empty: unknown
+  Scale scale;           ///< pixels_per_sigma is not repeated here
+  Included included;     ///< what a calibration gave
+  std::string text;      ///< the file's own text, for provenance
+
+  /// Map between a picture of that size and the cell. \pre origin and pixels_per_sigma are known
+  [[nodiscard]] PixelFrame pixel_frame(cv::Size picture) const {
+    return pixel_frame(picture, *pixels_per_sigma, *origin);
+  }
+  /// The same with scale and origin given.
+  [[nodiscard]] PixelFrame pixel_frame(cv::Size picture, double scale_px, PixelPoint zero) const;
+  /// A and omega, if the drive is stated. \throws ConfigError as solve_drive
+  [[nodiscard]] std::optional<Drive> drive() const;
+};
+
+/// Reads a CELL.toml, with "section.key=value" laid over it; without a file these alone. \throws InputError
+/// if it cannot be read, ConfigError for syntax, unknown keys, types and bounds
+CellDescription read_cell(const std::filesystem::path& file,
+                          const std::vector<std::string>& assignments = {});
+
+}  // namespace twincell

@@ -1,0 +1,305 @@
+#include "imaging/cell/cell_edges.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "core/median.hpp"
+#include "imaging/locate/locator.hpp"
+
+namespace twincell {
+namespace {
+
+constexpr int kBorder = 3;     // px of dark that make a wall
+constexpr double kEdge = 3.2;  // standard deviations of the blur within which an edge shows
+// A bead that leaves less than this of the light hides what is behind it. At 0.75 the edges of an agitated
+// bed filmed with an exposure lay 0.01 px off: its beads are drawn out, each its own way, which their discs
+// do not have.
+constexpr float kLeastShare = 0.97F;
+
+enum class From { left, right, bottom };
+
+/// A line of pixels from the border inwards.
+struct Line {
+  From from;
+  int number, light;  // row or column; its first pixel that is light
+};
+
+cv::Point pixel(const cv::Size& size, From from, int number, int i) {
+  return from == From::left    ? cv::Point(i, number)
+         : from == From::right ? cv::Point(size.width - 1 - i, number)
+                               : cv::Point(number, size.height - 1 - i);
+}
+
+int length(const cv::Size& size, From from) {
+  return from == From::bottom ? size.height : size.width;
+}
+
+std::optional<int> first_light(const cv::Mat1f& d, From from, int number) {
+  const int n = length(d.size(), from);
+  if (n < 2 * kBorder) return std::nullopt;
+  for (int i = 0; i < n; ++i)
+    if (d(pixel(d.size(), from, number, i)) < 0.5F) return i < kBorder ? std::nullopt : std::optional(i);
+  return std::nullopt;
+}
+
+double normal_cdf(double x) {
+  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
+}
+double normal_density(double x) {
+  return std::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi);
+}
+
+/// Share of the light that the beads let through, by their fitted discs (ring_normal_equations.hpp).
+cv::Mat1f light_past_beads(const Located& located, cv::Size size) {
+  constexpr double kSeen = 4;  // standard deviations of the blur
+  cv::Mat1f share(size, 1.0F);
+  const double s = located.blur_px;
+  for (const Detection& bead : located.beads) {
+    const double reach = bead.radius + kSeen * s, edge = bead.radius - s * s / (2 * bead.radius);
+    const int left = std::max(0, cvCeil(bead.x - reach)),
+              right = std::min(size.width - 1, cvFloor(bead.x + reach)),
+              top = std::max(0, cvCeil(bead.y - reach)),
+              bottom = std::min(size.height - 1, cvFloor(bead.y + reach));
+    for (int y = top; y <= bottom; ++y)
+      for (int x = left; x <= right; ++x)
+        share(y, x) -=
+            static_cast<float>(bead.darkness * normal_cdf((edge - std::hypot(x - bead.x, y - bead.y)) / s));
+  }
+  return share;
+}
+
+/// Quadratic surface through grey levels, least squares from `start`; share(x, y): what part of the surface a
+/// pixel shows, 0 where it shows another thing.
+template <class Share>
+Surface surface_through(const Prepared& image, Surface start, const Share& share) {
+  constexpr double kWild = 0.1, kFewest = 60, kSamples = 30000;
+  const cv::Mat1f& d = image.darkness;
+  const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(d.total()) / kSamples)));
+  for (int round = 0; round < 3; ++round) {
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    Surface right = Surface::Zero();
+    double n = 0;
+    for (int y = 0; y < d.rows; y += stride)
+      for (int x = 0; x < d.cols; x += stride) {
+        const auto t = static_cast<double>(share(x, y));
+        if (t <= 0) continue;
+        const Surface at = surface_basis(x, y, d.size());
+        const double light = image.light.dot(at), seen = (1 - static_cast<double>(d(y, x))) * light;
+        if (std::abs(seen - start.dot(at) * t) > kWild * light) continue;
+        normal.noalias() += t * t * at * at.transpose();
+        right += t * seen * at;
+        ++n;
+      }
+    if (n < kFewest) return start;
+    normal.diagonal().tail<5>().array() += 1e-4 * n;
+    start = normal.ldlt().solve(right);
+  }
+  return start;
+}
+
+/// The light: prepare() takes it from the brightest pixels, which the beads' shadows draw down where they
+/// crowd. Here it goes through what is seen past the beads, `inside` of all edges.
+Surface light_inside(const Prepared& image, const cv::Mat1f& share, const cv::Mat1b& inside) {
+  return surface_through(image, image.light, [&](int x, int y) {
+    return inside(y, x) == 0 || share(y, x) < kLeastShare ? 0 : share(y, x);
+  });
+}
+
+/// The walls' own light, from the border to 6 px before the edges: lit from the front, they are not equally
+/// bright.
+Surface light_of_walls(const Prepared& image, const std::vector<Line>& lines) {
+  constexpr int kBefore = 6;
+  const cv::Mat1f& d = image.darkness;
+  cv::Mat1b wall(d.size(), uchar{0});
+  double sum = 0, n = 0;
+  for (const Line& line : lines)
+    for (int i = 0; i < line.light - kBefore; ++i) {
+      const cv::Point at = pixel(d.size(), line.from, line.number, i);
+      wall(at) = 1;
+      sum += (1 - static_cast<double>(d(at))) * image.light.dot(surface_basis(at.x, at.y, d.size()));
+      ++n;
+    }
+  Surface start = Surface::Zero();
+  start[0] = n > 0 ? sum / n : 0;
+  return surface_through(image, start, [&](int x, int y) { return static_cast<float>(wall(y, x)); });
+}
+
+/// Where noise about black is cut at zero the walls look brighter than they are, by a part of the noise:
+/// black is then zero.
+bool clipped_black(const cv::Mat1f& d, const std::vector<Line>& lines) {
+  constexpr double kShare = 0.2;
+  double zeros = 0, n = 0;
+  for (const Line& line : lines)
+    for (int i = 0; i < kBorder; ++i, ++n)
+      if (d(pixel(d.size(), line.from, line.number, i)) >= 1) ++zeros;
+  return zeros > kShare * n;
+}
+
+/// Pixels 4 px and more behind the first that is light, seen from every side.
+cv::Mat1b inside_of(const std::vector<Line>& lines, const cv::Size& size) {
+  constexpr int kInside = 4;
+  cv::Mat1b inside(size, uchar{1});
+  for (const Line& line : lines)
+    for (int i = 0; i < std::min(length(size, line.from), line.light + kInside); ++i)
+      inside(pixel(size, line.from, line.number, i)) = 0;
+  return inside;
+}
+
+/// In a corner each edge takes light from the other: points that near are left out.
+void leave_corners_out(CellEdges& edges, double reach) {
+  constexpr std::size_t kNear = 25;  // points that say where the other edge passes
+  const auto median = [](std::vector<double> v) {
+    return v.empty() ? std::nan("") : upper_median(std::move(v));
+  };
+  const auto lowest = [&](const std::vector<EdgePoint>& wall) {  // column of a wall's foot
+    std::vector<double> x;
+    for (std::size_t i = wall.size() - std::min(kNear, wall.size()); i < wall.size(); ++i)
+      x.push_back(wall[i].at.x_px);
+    return median(std::move(x));
+  };
+  const auto row_beside = [&](bool left) {
+    std::vector<double> y;
+    const std::size_t n = std::min(kNear, edges.plate.size());
+    for (std::size_t i = 0; i < n; ++i)
+      y.push_back(edges.plate[left ? i : edges.plate.size() - 1 - i].at.y_px);
+    return median(std::move(y));
+  };
+  const double left = lowest(edges.left), right = lowest(edges.right), row_left = row_beside(true),
+               row_right = row_beside(false);
+  // Comparisons with what is not there are false.
+  std::erase_if(edges.plate,
+                [&](const EdgePoint& p) { return p.at.x_px < left + reach || p.at.x_px > right - reach; });
+  std::erase_if(edges.left, [&](const EdgePoint& p) { return p.at.y_px > row_left - reach; });
+  std::erase_if(edges.right, [&](const EdgePoint& p) { return p.at.y_px > row_right - reach; });
+}
+
+/// Lit from the front, what lies behind is black, and likewise cut at zero: it is then exactly that. Grey
+/// levels from the brightest down, as prepare() turns them.
+std::optional<Surface> clipped_background(const cv::Mat& grey, const cv::Mat1f& d) {
+  constexpr double kShare = 0.2;
+  constexpr float kClear = 0.15F;
+  const cv::Mat1b clear = d < kClear, zero = clear & (grey <= 0);
+  const double n = cv::countNonZero(clear);
+  if (cv::countNonZero(zero) <= kShare * n) return std::nullopt;
+  double top = 0;
+  cv::minMaxLoc(grey, nullptr, &top);
+  Surface light = Surface::Zero();
+  light[0] = top;
+  return light;
+}
+
+struct Step {
+  double at = 0, blur = 0, error = 0;  // px from the border's first pixel centre; error for a pixel's error 1
+};
+
+/// What is seen of a step: pixels i = first ..., in shares of the local light, and what beads leave of it.
+struct Window {
+  int first = 0;
+  std::vector<double> light, share;
+};
+
+/// l_i = T_i Phi((i - e)/s) by Gauss and Newton's steps on e, and on s if it is not given.
+std::optional<Step> fit_step(const Window& w, double start, double s, bool free_blur, double noise) {
+  constexpr double kLargestMisfit = 3.5, kModelError = 0.015;
+  double e = start;
+  Eigen::Matrix2d normal;
+  double squares = 0;
+  for (int step = 0; step < 20; ++step) {
+    normal.setZero();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    squares = 0;
+    for (std::size_t k = 0; k < w.light.size(); ++k) {
+      const double near = (w.first + static_cast<int>(k) - e) / s,
+                   rise = w.share[k] * normal_density(near) / s;
+      const double r = w.light[k] - w.share[k] * normal_cdf(near);
+      const Eigen::Vector2d slope(-rise, free_blur ? -rise * near : 0.0);
+      normal += slope * slope.transpose();
+      right += r * slope;
+      squares += r * r;
+    }
+    if (!free_blur) normal(1, 1) = 1;
+    if (!(normal.determinant() > 1e-9)) return std::nullopt;
+    const Eigen::Vector2d delta = normal.ldlt().solve(right);
+    e += std::clamp(delta[0], -1.0, 1.0);
+    s = std::clamp(s + delta[1], 0.5 * s, 2 * s);
+    if (!(e > w.first && e < w.first + static_cast<double>(w.light.size()))) return std::nullopt;
+    if (delta.cwiseAbs().maxCoeff() < 1e-6) break;
+  }
+  const double freedom = static_cast<double>(w.light.size()) - (free_blur ? 2 : 1);
+  if (freedom < 2 || std::sqrt(squares / freedom) > kLargestMisfit * noise + kModelError) return std::nullopt;
+  return Step{e, s, std::sqrt(normal.inverse()(0, 0))};
+}
+
+}  // namespace
+
+CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) {
+  constexpr double kCorner = 4.5, kUsualBlur = 0.9, kLargestBlur = 5, kLargestError = 0.12;
+  const Prepared image = prepare(grey, {.bright = bright}, 0.5 * diameter_px);
+  const cv::Mat1f& d = image.darkness;
+  const Noise variance = noise_of(d);
+  const double noise = std::sqrt(variance.dark + variance.light);
+  CellEdges edges;
+  std::vector<Line> lines;
+  for (const From from : {From::left, From::right, From::bottom})
+    for (int number = 0; number < (from == From::bottom ? d.cols : d.rows); ++number)
+      if (const auto light = first_light(d, from, number)) lines.push_back({from, number, *light});
+  if (lines.empty()) return edges;
+  LocatorOptions locator;
+  locator.diameter_px = diameter_px;
+  locator.preprocess.bright = bright;
+  const cv::Mat1f share = light_past_beads(locate(grey, locator), d.size());
+  const auto background = bright ? clipped_background(grey, d) : std::nullopt;
+  const Surface light = background ? *background : light_inside(image, share, inside_of(lines, d.size()));
+  const Surface walls = light_of_walls(image, lines);
+
+  const bool black_is_clipped = clipped_black(d, lines);
+
+  const auto window_of = [&](const Line& line, double s) {
+    const int reach = static_cast<int>(std::ceil(kEdge * s)) + 1, n = length(d.size(), line.from);
+    Window w{.first = std::max(1, line.light - reach), .light = {}, .share = {}};
+    for (int i = w.first; i < std::min(n, line.light + reach); ++i) {
+      const cv::Point at = pixel(d.size(), line.from, line.number, i);
+      if (share(at) < kLeastShare) break;
+      const Surface basis = surface_basis(at.x, at.y, d.size());
+      const double b = image.light.dot(basis), level = 1 - light.dot(basis) / b,
+                   dark = black_is_clipped ? 1 : 1 - walls.dot(basis) / b;
+      if (dark - level < 0.5) return Window{};
+      w.light.push_back((dark - static_cast<double>(d(at))) / (dark - level));
+      w.share.push_back(static_cast<double>(share(at)));
+    }
+    return w;
+  };
+  // Side walls share one blur, the plate, which moves, has its own.
+  double blur[2] = {kUsualBlur, kUsualBlur};
+  for (int round = 0; round < 2; ++round) {
+    std::vector<double> found[2];
+    for (const Line& line : lines) {
+      const int kind = line.from == From::bottom ? 1 : 0;
+      const auto step = fit_step(window_of(line, blur[kind]), line.light - 0.5, blur[kind], true, noise);
+      if (step && step->blur < kLargestBlur) found[kind].push_back(step->blur);
+    }
+    for (int kind = 0; kind < 2; ++kind)
+      if (!found[kind].empty()) blur[kind] = upper_median(std::move(found[kind]));
+  }
+  edges.blur_px = blur[1];
+  for (const Line& line : lines) {
+    const double s = blur[line.from == From::bottom ? 1 : 0];
+    const auto step = fit_step(window_of(line, s), line.light - 0.5, s, false, noise);
+    if (!step) continue;
+    const double sigma = step->error * noise;
+    if (sigma > kLargestError) continue;
+    if (line.from == From::left)
+      edges.left.push_back({{step->at, double(line.number)}, sigma});
+    else if (line.from == From::right)
+      edges.right.push_back({{d.cols - 1 - step->at, double(line.number)}, sigma});
+    else
+      edges.plate.push_back({{double(line.number), d.rows - 1 - step->at}, sigma});
+  }
+  leave_corners_out(edges, kCorner * std::max(blur[0], blur[1]));
+  return edges;
+}
+
+}  // namespace twincell

@@ -1,0 +1,21 @@
+#pragma once
+/// \file
+/// Proposals by OpenCV's Hough transform: the baseline.
+
+#include <string_view>
+#include <vector>
+
+#include "imaging/find/finder.hpp"
+
+namespace twincell {
+
+/// cv::HoughCircles (HOUGH_GRADIENT) on the darkness enlarged three times, radius +- 10 %, centres at least
+/// 0.8 d apart. Its centres sit on accumulator cells, so it must be followed by a refinement; it loses some
+/// beads at contacts (recall 0.996 in a random packing at SNR 51), and those cut by the frame. The score
+/// falls with the rank.
+struct HoughFinder {
+  static constexpr std::string_view name = "hough";
+  static std::vector<Proposal> find(const Prepared& image, const FindOptions& options);
+};
+
+}  // namespace twincell

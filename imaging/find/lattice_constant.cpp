@@ -1,0 +1,78 @@
+#include "imaging/find/lattice_constant.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+#include <vector>
+
+namespace twincell {
+
+double lattice_constant(const cv::Mat& grey) {
+  constexpr double kBroad = 10;       // px; walls and the bed's shape are broader
+  constexpr double kStandsOut = 0.2;  // of the fall to the first minimum; random packings stay below
+  constexpr double kRing = 0.12;
+  constexpr double kNearly = 0.6;  // gaps are nearer to each other than discs, and stand out less
+  constexpr double kSmallest = 5.5, kLargest = 4 * kBroad;  // px
+  const double largest = std::min(kLargest, static_cast<double>(std::min(grey.cols, grey.rows)));
+  if (largest < 2 * kSmallest) return 0;
+  cv::Mat1f levels;
+  grey.convertTo(levels, CV_32F);
+  cv::Mat1f broad;
+  cv::GaussianBlur(levels, broad, {0, 0}, kBroad);
+  levels -= broad;
+  const auto reach = static_cast<int>(std::ceil(1.5 * largest));
+  const cv::Size size(cv::getOptimalDFTSize(levels.cols + reach), cv::getOptimalDFTSize(levels.rows + reach));
+  const auto correlated = [&](const cv::Mat1f& picture) {
+    cv::Mat1f padded = cv::Mat1f::zeros(size);
+    picture.copyTo(padded(cv::Rect({0, 0}, picture.size())));
+    cv::Mat2f waves;
+    cv::dft(padded, waves, cv::DFT_COMPLEX_OUTPUT);
+    cv::mulSpectrums(waves, waves, waves, 0, true);
+    cv::Mat1f out;
+    cv::dft(waves, out, cv::DFT_INVERSE | cv::DFT_REAL_OUTPUT | cv::DFT_SCALE);
+    return out;
+  };
+  const cv::Mat1f products = correlated(levels), pairs = correlated(cv::Mat1f::ones(levels.size()));
+  const auto each = [&](auto&& use) {  // half the plane, the other is the same
+    for (int y = -reach; y <= reach; ++y)
+      for (int x = 0; x <= reach; ++x) {
+        if (x >= levels.cols || std::abs(y) >= levels.rows) continue;
+        const cv::Point at(x, y < 0 ? y + size.height : y);
+        use(std::hypot(x, y), static_cast<double>(products(at)), static_cast<double>(pairs(at)));
+      }
+  };
+  std::vector<double> sum(static_cast<std::size_t>(reach) + 1), count(sum.size());
+  each([&](double distance, double product, double pair) {
+    const auto r = static_cast<std::size_t>(std::lround(distance));
+    if (r < sum.size()) sum[r] += product, count[r] += pair;
+  });
+  std::vector<double> mean;
+  for (std::size_t r = 0; r < sum.size(); ++r) mean.push_back(sum[r] / std::max(count[r], 1.0));
+  std::vector<std::pair<double, double>> tops;  // distance, and by how much it stands out
+  std::size_t low = 0, first = 0;               // the minimum before, and of all
+  for (std::size_t r = 1; r + 1 < mean.size() && static_cast<double>(r) <= largest; ++r) {
+    if (mean[r] < mean[r - 1] && mean[r] <= mean[r + 1]) low = r, first = first > 0 ? first : r;
+    if (low == 0 || mean[r] < mean[r - 1] || mean[r] <= mean[r + 1] || static_cast<double>(r) < kSmallest)
+      continue;
+    std::size_t next = r + 1;
+    while (next + 1 < mean.size() && mean[next + 1] < mean[next]) ++next;
+    tops.emplace_back(static_cast<double>(r), mean[r] - 0.5 * (mean[low] + mean[next]));
+  }
+  double most = 0;
+  for (const auto& [at, stands_out] : tops) most = std::max(most, stands_out);
+  if (tops.empty() || most < kStandsOut * (mean[0] - mean[first])) return 0;
+  const double about = std::find_if(tops.begin(), tops.end(), [&](const auto& top) {
+                         return top.second >= kNearly * most;
+                       })->first;
+  // Where discs are nearest neighbours the average is broad; the spots it is made of are not.
+  double highest = 0, constant = about;
+  each([&](double distance, double product, double pair) {
+    if (std::abs(distance / about - 1) > kRing || product <= highest * pair) return;
+    highest = product / pair;
+    constant = distance;
+  });
+  return constant;
+}
+
+}  // namespace twincell

@@ -1,0 +1,104 @@
+#include "imaging/link/initial_velocities.hpp"
+
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+namespace twincell {
+
+namespace {
+
+constexpr std::size_t kMost = 40;  // frames that are looked through for a calm one
+
+FrameAhead ahead_of(const FrameOfBeads& frame, const FrameMoment& moment) {
+  return {frame.places, moment, frame.tracers};
+}
+
+/// How unlike free flight beads go on the tracks that they were given: sum of log(1 + r^2/u^2), r by how much
+/// a step differs from the one before with its fall. A track that begins counts like two differences of a
+/// diameter. Of simulated beds that convect the true tracks have less than those that a linker gives them.
+double roughness(const LinkOptions& options, const std::vector<FrameOfBeads>& frames,
+                 const std::vector<std::vector<std::int64_t>>& tracks) {
+  constexpr double kUnit = 0.02;  // diameters
+  struct Last {
+    std::size_t frame = 0;
+    PixelPoint place, step;
+    bool stepped = false;
+  };
+  std::unordered_map<std::int64_t, Last> lasts;
+  double sum = 0;
+  const double unit = kUnit * options.diameter_px;
+  for (std::size_t f = 0; f < tracks.size(); ++f) {
+    const double interval = frames[f].moment.interval;
+    for (std::size_t k = 0; k < tracks[f].size(); ++k) {
+      const PixelPoint p = frames[f].places[k];
+      const auto at = lasts.find(tracks[f][k]);
+      const bool goes_on = at != lasts.end() && at->second.frame + 1 == f && interval > 0;
+      Last now{.frame = f, .place = p, .step = {}, .stepped = goes_on};
+      if (goes_on) {
+        const Last& last = at->second;
+        now.step = {(p.x_px - last.place.x_px) / interval, (p.y_px - last.place.y_px) / interval};
+        if (last.stepped)
+          sum += std::log1p((std::pow(now.step.x_px - last.step.x_px, 2) +
+                             std::pow(now.step.y_px - last.step.y_px - options.fall_px, 2)) /
+                            (unit * unit));
+      } else if (f > 0) {
+        sum += 2 * std::log1p(1 / (kUnit * kUnit));
+      }
+      lasts[tracks[f][k]] = now;
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<PixelPoint> initial_velocities(const LinkOptions& options, int phases_per_cycle,
+                                           std::size_t frames,
+                                           const std::function<FrameOfBeads(std::size_t)>& read) {
+  if (frames < 3) return {};
+  Linker linker(options, phases_per_cycle);
+  std::vector<FrameOfBeads> seen;
+  seen.push_back(read(0));
+  std::vector<std::vector<std::int64_t>> there;  // tracks by frame and place
+  bool calm = false;
+  for (std::size_t f = 0; !calm && f < frames && f <= kMost; ++f) {
+    const bool more = f + 1 < frames;
+    if (more) seen.push_back(read(f + 1));
+    const FrameOfBeads& frame = seen[f];
+    const FrameAhead ahead = more ? ahead_of(seen[f + 1], seen[f + 1].moment) : FrameAhead{};
+    there.push_back(linker.next(frame.places, frame.moment, frame.tracers, more ? &ahead : nullptr));
+    const LinkReport& last = linker.last();
+    calm = f > 0 && last.rematched == 0 && last.ambiguous == 0 && last.births == 0;
+    if (calm && f == 1) return {};
+  }
+  seen.resize(static_cast<std::size_t>(linker.total().frames));
+  const double interval = seen[1].moment.interval;
+  if (interval <= 0) return {};  // the first frame, taken twice
+  // Back, each frame as long after the one before as it lay ahead of it.
+  const auto moment_back = [&](std::size_t f) {
+    return FrameMoment{.interval = seen[f + 1].moment.interval,
+                       .phase = seen[f].moment.phase,
+                       .cycle = -seen[f].moment.cycle};
+  };
+  Linker back = linker.turned();
+  std::vector<std::vector<std::int64_t>> again = there;
+  for (std::size_t f = seen.size() - 1; f-- > 0;) {
+    const FrameAhead ahead = f > 0 ? ahead_of(seen[f - 1], moment_back(f - 1)) : FrameAhead{};
+    again[f] = back.next(seen[f].places, moment_back(f), seen[f].tracers, f > 0 ? &ahead : nullptr);
+  }
+  const auto& before = again[1];
+  const auto& ids = again[0];
+  if (roughness(options, seen, again) >= roughness(options, seen, there)) return {};
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  std::vector<PixelPoint> steps(seen[0].places.size(), {kNaN, kNaN});
+  std::unordered_map<std::int64_t, PixelPoint> second;
+  for (std::size_t k = 0; k < before.size(); ++k) second[before[k]] = seen[1].places[k];
+  for (std::size_t k = 0; k < ids.size(); ++k)
+    if (const auto to = second.find(ids[k]); to != second.end() && back.ambiguous()[k] == 0)
+      steps[k] = {(to->second.x_px - seen[0].places[k].x_px) / interval,
+                  (to->second.y_px - seen[0].places[k].y_px) / interval - options.fall_px * interval};
+  return steps;
+}
+
+}  // namespace twincell

@@ -1,0 +1,182 @@
+#include "imaging/locate/locator.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
+
+#include "core/cancellation.hpp"
+#include "core/error.hpp"
+#include "core/median.hpp"
+#include "imaging/locate/picture_orientation.hpp"
+#include "imaging/refine/size_assignment.hpp"
+
+namespace twincell {
+
+namespace {
+
+/// By y, then x.
+void sort_by_place(std::vector<Detection>& detections) {
+  std::vector<std::pair<std::pair<double, double>, std::size_t>> order;
+  order.reserve(detections.size());
+  for (std::size_t k = 0; k < detections.size(); ++k)
+    order.push_back({{detections[k].y, detections[k].x}, k});
+  std::sort(order.begin(), order.end());
+  std::vector<Detection> sorted;
+  sorted.reserve(order.size());
+  for (const auto& entry : order) sorted.push_back(detections[entry.second]);
+  detections = std::move(sorted);
+}
+
+/// Gradients do not point at the centre of a large disc well enough for their votes to meet within a pixel:
+/// it is sought on a smaller picture.
+std::vector<Proposal> propose_at_scale(const std::string& finder, const Prepared& image,
+                                       const FindOptions& wanted) {
+  constexpr double kLarge = 25, kGoal = 16;  // px
+  if (wanted.radius_px <= kLarge) {
+    std::vector<Proposal> found = propose(finder, image, wanted);
+    for (Proposal& p : found) p.radius = wanted.radius_px;
+    return found;
+  }
+  const double shrink = wanted.radius_px / kGoal;
+  if (std::min(image.darkness.cols, image.darkness.rows) < shrink) return {};  // nothing would be left of it
+  Prepared small;
+  small.light = image.light;
+  cv::resize(image.darkness, small.darkness, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);
+  if (!image.opaque.empty())
+    cv::resize(image.opaque, small.opaque, small.darkness.size(), 0, 0, cv::INTER_NEAREST);
+  const double by_x = static_cast<double>(image.darkness.cols) / small.darkness.cols,
+               by_y = static_cast<double>(image.darkness.rows) / small.darkness.rows;
+  FindOptions at = wanted;
+  at.radius_px = wanted.radius_px / shrink;
+  std::vector<Proposal> found = propose(finder, small, at);
+  for (Proposal& p : found) {
+    p.x = (p.x + 0.5) * by_x - 0.5;
+    p.y = (p.y + 0.5) * by_y - 0.5;
+    p.radius = wanted.radius_px;
+  }
+  return found;
+}
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+void LocatorOptions::check() const {
+  auto range = [](const char* key, double value, double lower, double upper) {
+    require_range(Where{.file = {}, .key = key}, value, lower, upper);
+  };
+  range("diameter", diameter_px, 3, 400);
+  range("min-score", find.min_score, 0.01, 1);
+  for (const double other : other_diameters_px) range("diameter", other, 3, 400);
+  if (!other_diameters_px.empty() && model_of(refine) == DiscModel::shared_profile)
+    throw ConfigError(Where{.file = {}, .key = "diameter"},
+                      "has several values; discs of several sizes have no profile in common.");
+  (void)refiner_named(refine.method);
+  range("contrast", preprocess.contrast, 0.01, 2);
+  range("sweeps", refine.sweeps, 1, 100);
+  range("tolerance", refine.tolerance_px, 1e-9, 1);
+  if (refine.ring_px != 0) range("ring", refine.ring_px, 1, 50);
+  range("blur", refine.blur_px, 0, 10);
+  range("radius-spread", refine.radius_spread, 1e-6, 1);
+  range("radius-tolerance", judge.radius_tolerance, 0, 1);
+  std::string names;
+  for (const std::string& name : finder_names()) {
+    if (name == finder) return;
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  throw ConfigError(Where{.file = {}, .key = "locator"},
+                    fmt::format("there is no locator '{}'; there are: {}.", finder, names));
+}
+
+namespace {
+
+/// Discs of every size asked for; those of several sizes each say which.
+std::vector<Proposal> propose_all(const Prepared& image, const LocatorOptions& options) {
+  // Circles through edges stand each for itself: which of them overlap is for the judge to say.
+  const bool choose = !options.other_diameters_px.empty() && model_of(options.refine) != DiscModel::circle;
+  FindOptions wanted = options.find;
+  // One that is of the wrong size must not drive out its neighbours.
+  constexpr double kApart = 0.2;
+  if (choose) wanted.apart = kApart;
+  wanted.radius_px = options.diameter_px / 2;
+  std::vector<Proposal> all = propose_at_scale(options.finder, image, wanted);
+  for (const double other : options.other_diameters_px) {
+    wanted.radius_px = other / 2;
+    const std::vector<Proposal> more = propose_at_scale(options.finder, image, wanted);
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  return choose ? assign_sizes(image, all) : all;
+}
+
+}  // namespace
+
+LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) {
+  options.check();
+  if (grey.empty()) return {};
+  const double radius = options.diameter_px / 2;
+  LocatorStages result;
+  Stopwatch watch;
+  throw_if_cancelled();
+  double largest = radius;
+  RefineOptions refined = options.refine;
+  for (const double other : options.other_diameters_px) {
+    largest = std::max(largest, other / 2);
+    refined.other_radii_px.push_back(other / 2);
+  }
+  result.image = prepare(grey, options.preprocess, largest);
+  result.reports.push_back({"prepare", watch.lap(), 0});
+  throw_if_cancelled();
+  result.proposals = propose_all(result.image, options);
+  result.reports.push_back({"find", watch.lap(), result.proposals.size()});
+  throw_if_cancelled();
+  const Refiner& refiner = refiner_named(options.refine.method);
+  result.refined = refiner.fit(result.image, result.proposals, radius, refined);
+  result.reports.push_back({"refine", watch.lap(), result.refined.beads.size()});
+  JudgeOptions judged = options.judge;
+  // Patterned discs differ in brightness without being tracers.
+  if (refiner.model == DiscModel::shared_profile ||
+      (refiner.model == DiscModel::circle && options.preprocess.contrast != 1))
+    judged.tracer_below = 0;
+  // A disc may look like anything inside if all do.
+  if (refiner.model == DiscModel::shared_profile) judged.min_interior = -HUGE_VAL;
+  judged.other_radii_px = refined.other_radii_px;
+  result.judged = judge(result.refined.beads, radius, grey.cols, grey.rows, judged);
+  result.reports.push_back({"judge", watch.lap(), result.judged.beads.size()});
+  return result;
+}
+
+Located locate(const cv::Mat& picture, const LocatorOptions& options) {
+  const PictureOrientation way = canonical_picture_orientation(picture);
+  LocatorStages stages = locate_stages(way.turned(picture), options);
+  Located result;
+  result.blur_px = stages.refined.blur_px;
+  result.path_px = way.back(stages.refined.path_px);
+  result.beads = std::move(stages.judged.beads);
+  result.dropped = std::move(stages.refined.dropped);
+  result.dropped.insert(result.dropped.end(), stages.judged.dropped.begin(), stages.judged.dropped.end());
+  for (std::vector<Detection>* list : {&result.beads, &result.dropped}) {
+    for (Detection& d : *list) d = way.back(d, picture.size());
+    sort_by_place(*list);
+  }
+  result.stages = std::move(stages.reports);
+  return result;
+}
+
+}  // namespace twincell

@@ -1,0 +1,131 @@
+#include "imaging/phase/trigger_list.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/median.hpp"
+#include "core/table_text.hpp"
+
+namespace twincell {
+
+namespace {
+
+constexpr double kMostCycles = 1e15;
+constexpr int kMostPhases = 100000;
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');) {
+    const auto begin = cell.find_first_not_of(" \t"), end = cell.find_last_not_of(" \t");
+    cells.push_back(begin == std::string::npos ? "" : cell.substr(begin, end - begin + 1));
+  }
+  if (line.ends_with(',')) cells.emplace_back();
+  return cells;
+}
+
+/// Cycles elapsed at each frame.
+std::vector<double> read_cycles(const std::filesystem::path& file, std::optional<double> drive_hz) {
+  std::istringstream lines(read_table_text(file));
+  std::string line;
+  int number = 0;
+  auto refuse = [&](const std::string& key, const std::string& complaint) {
+    throw InputError(Where{.file = file.string(), .line = number, .column = 0, .key = key}, complaint);
+  };
+  auto next_line = [&] {
+    while (std::getline(lines, line)) {
+      ++number;
+      if (line.find_first_not_of(" \t") != std::string::npos && line[0] != '#') return true;
+    }
+    return false;
+  };
+  if (!next_line()) refuse("", "the list of triggers is empty.");
+  const std::vector<std::string> names = split(line);
+  check_column_names(names, Where{.file = file.string(), .line = number, .key = {}});
+  auto column = [&](const char* name) { return std::find(names.begin(), names.end(), name) - names.begin(); };
+  const auto n = static_cast<std::ptrdiff_t>(names.size());
+  const std::ptrdiff_t frame = column("frame"), time = column("time_s"), cycle = column("cycles");
+  if (time == n && cycle == n) refuse("", "a column time_s or cycles is needed.");
+  if (time < n && cycle < n) refuse("time_s", "and cycles say the same quantity; leave one of them out.");
+  if (cycle == n && !drive_hz)
+    throw ConfigError(Where{.file = {}, .key = "drive-hz"},
+                      "the list of triggers is in seconds, so the frequency of the drive is needed.");
+  std::vector<double> cycles;
+  while (next_line()) {
+    const std::vector<std::string> cells = split(line);
+    if (cells.size() != names.size())
+      refuse("", fmt::format("{} fields; the line of names has {}.", cells.size(), names.size()));
+    auto value = [&](std::ptrdiff_t at) {
+      double v = 0;
+      const std::string& cell = cells[static_cast<std::size_t>(at)];
+      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), v);
+      if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(v))
+        refuse(names[static_cast<std::size_t>(at)], fmt::format("'{}' is not a number.", cell));
+      return v;
+    };
+    if (frame < n && value(frame) != static_cast<double>(cycles.size()))
+      refuse("frame", fmt::format("{} where {} was expected; every frame of the stack needs its line.",
+                                  cells[static_cast<std::size_t>(frame)], cycles.size()));
+    const double now = cycle < n ? value(cycle) : value(time) * *drive_hz;
+    if (std::abs(now) > kMostCycles)
+      refuse(cycle < n ? "cycles" : "time_s", "the time is beyond all bounds.");
+    if (!cycles.empty() && now < cycles.back())
+      refuse(cycle < n ? "cycles" : "time_s",
+             "the time falls; frames must be in the order in which they were taken.");
+    cycles.push_back(now);
+  }
+  if (cycles.empty()) refuse("", "the list of triggers names no frame.");
+  if (cycles.size() > 1 && cycles.back() == cycles.front())
+    refuse(cycle < n ? "cycles" : "time_s",
+           fmt::format("is {:g} in all {} frames; a list of triggers says when each was taken.",
+                       cycle < n ? cycles.front() : cycles.front() / *drive_hz, cycles.size()));
+  return cycles;
+}
+
+}  // namespace
+
+PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double> drive_hz,
+                         int frames_per_cycle) {
+  const std::vector<double> cycles = read_cycles(file, drive_hz);
+  PhaseTable table;
+  table.way = "triggers";
+  std::vector<double> steps;
+  for (std::size_t f = 1; f < cycles.size(); ++f) steps.push_back(cycles[f] - cycles[f - 1]);
+  const double step = steps.empty() ? 0 : upper_median(std::move(steps));
+  if (frames_per_cycle <= 0) {
+    if (!(step > 0) || 1 / step > kMostPhases)
+      throw InputError(
+          Where{.file = file.string(), .key = {}},
+          "the frames per cycle do not follow from the list; give them with --frames-per-cycle.");
+    frames_per_cycle = std::max(1, static_cast<int>(std::lround(1 / step)));
+  }
+  table.frames_per_cycle = frames_per_cycle;
+  const double n = frames_per_cycle;
+  const auto first_cycle = static_cast<std::int64_t>(std::floor(std::round(cycles.front() * n) / n));
+  double squares = 0;
+  std::int64_t before = 0;
+  for (std::size_t f = 0; f < cycles.size(); ++f) {
+    const auto tick = static_cast<std::int64_t>(std::llround(cycles[f] * n)) - first_cycle * frames_per_cycle;
+    const double late = cycles[f] * n - std::round(cycles[f] * n);
+    squares += late * late;
+    const std::int64_t passed = f == 0 ? 1 : tick - before;
+    table.frames.push_back({static_cast<std::int32_t>(tick % frames_per_cycle), tick / frames_per_cycle,
+                            static_cast<double>(passed)});
+    if (passed == 0) ++table.doubled;
+    if (passed > 1) table.dropped += passed - 1;
+    before = tick;
+  }
+  if (const double elapsed = cycles.back() - cycles.front(); elapsed > 0)
+    table.period_frames = std::round(elapsed * n) / elapsed;
+  table.first_phase = table.frames.front().phase;
+  table.jitter = std::sqrt(squares / static_cast<double>(cycles.size()));
+  return table;
+}
+
+}  // namespace twincell

@@ -1,0 +1,116 @@
+#include "imaging/preprocess/flat_field.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "imaging/preprocess/preprocess.hpp"
+
+namespace twincell {
+
+namespace {
+
+/// What each pixel has of the frame's own smooth light.
+cv::Mat1f share_of_light(const cv::Mat& frame) {
+  constexpr double kRadius = 10;  // px, of discs that are no walls, which are not asked for here
+  return 1 - prepare(frame, {}, kRadius).darkness;
+}
+
+/// The least of all within so many pixels.
+cv::Mat1f least_within(const cv::Mat1f& values, int reach) {
+  cv::Mat1f least;
+  cv::erode(values, least, cv::getStructuringElement(cv::MORPH_RECT, {2 * reach + 1, 2 * reach + 1}));
+  return least;
+}
+
+/// Noise of single pixels shall not say how bright a place is.
+cv::Mat1f smoothed(const cv::Mat1f& values) {
+  cv::Mat1f smooth;
+  cv::blur(values, smooth, {3, 3});
+  return smooth;
+}
+
+[[noreturn]] void refuse(const FrameSource& source, const std::string& why) {
+  throw InputError(Where{.file = source.current(), .key = {}}, why);
+}
+
+class Flattened : public FrameSource {
+ public:
+  Flattened(std::unique_ptr<FrameSource> frames, cv::Mat1f flat)
+      : frames_(std::move(frames)), flat_(std::move(flat)) {}
+  bool next(cv::Mat& frame) override {
+    cv::Mat raw;
+    if (!frames_->next(raw)) return false;
+    if (raw.size() != flat_.size())
+      refuse(*frames_, fmt::format("is of {} x {} px, the flat field of {} x {} px.", raw.cols, raw.rows,
+                                   flat_.cols, flat_.rows));
+    // A new one: the caller may keep the last.
+    frame = cv::Mat();
+    cv::divide(raw, flat_, frame, 1, CV_32F);
+    return true;
+  }
+  [[nodiscard]] std::size_t announced() const override { return frames_->announced(); }
+  [[nodiscard]] std::string current() const override { return frames_->current(); }
+  [[nodiscard]] StackInfo info() const override { return frames_->info(); }
+  [[nodiscard]] std::optional<double> time_s() const override { return frames_->time_s(); }
+
+ private:
+  std::unique_ptr<FrameSource> frames_;
+  cv::Mat1f flat_;
+};
+
+}  // namespace
+
+cv::Mat1f flat_of_blank(FrameSource& blank) {
+  constexpr double kTypical = 0.9, kWall = 0.2;
+  cv::Mat1d sum;
+  int frames = 0;
+  for (cv::Mat frame; blank.next(frame); ++frames) {
+    cv::Mat1d levels;
+    frame.convertTo(levels, CV_64F);
+    sum = sum.empty() ? levels : cv::Mat1d(sum + levels);
+  }
+  if (frames == 0) refuse(blank, "holds no frame.");
+  std::vector<double> sorted(sum.begin(), sum.end());
+  const auto at = static_cast<std::ptrdiff_t>(kTypical * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
+  const double typical = sorted[static_cast<std::size_t>(at)];
+  if (!(typical > 0)) refuse(blank, "shows no light: no flat field can be made of it.");
+  cv::Mat1f flat;
+  sum.convertTo(flat, CV_32F, 1 / typical);
+  flat.setTo(1, flat < kWall);
+  return flat;
+}
+
+cv::Mat1f flat_of_stack(FrameSource& first, FrameSource& second) {
+  constexpr double kAsBright = 0.9, kLeast = 0.5, kDrawn = 2;
+  constexpr int kAround = 1, kClear = 3;  // px
+  cv::Mat1f brightest;
+  for (cv::Mat frame; first.next(frame);) {
+    const cv::Mat1f light = smoothed(share_of_light(frame));
+    brightest = brightest.empty() ? light : cv::Mat1f(cv::max(brightest, light));
+  }
+  if (brightest.empty()) refuse(first, "holds no frame.");
+  const cv::Mat1f enough = kAsBright * brightest;
+  cv::Mat1f sum = cv::Mat1f::zeros(brightest.size()), count = sum.clone();
+  for (cv::Mat frame; second.next(frame);) {
+    const cv::Mat1f light = share_of_light(frame);
+    const cv::Mat1f over = least_within(smoothed(light) - enough, kAround);
+    const cv::Mat1b seen = over >= 0;
+    cv::add(sum, light, sum, seen);
+    cv::add(count, 1, count, seen);
+  }
+  cv::Mat1f flat = (sum + kDrawn) / (count + kDrawn);
+  flat.setTo(1, least_within(brightest, kClear) < kLeast);
+  return flat;
+}
+
+std::unique_ptr<FrameSource> flattened(std::unique_ptr<FrameSource> frames, cv::Mat1f flat) {
+  return std::make_unique<Flattened>(std::move(frames), std::move(flat));
+}
+
+}  // namespace twincell

@@ -1,0 +1,357 @@
+#include "imaging/preprocess/preprocess.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <type_traits>
+#include <vector>
+
+#include "imaging/disc/ring_normal_equations.hpp"
+
+namespace twincell {
+
+namespace {
+
+double scaled(double i, int n) {
+  return n > 1 ? 2.0 * i / (n - 1) - 1.0 : 0.0;
+}
+
+float quantile(std::vector<float> values, double q) {
+  const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+/// Rows of a frame as the beads' darkness wants them: in floats, dark beads on light.
+class Rows {
+ public:
+  Rows(const cv::Mat& grey, bool bright) : grey_(grey), bright_(bright) {
+    double top = 0;
+    if (bright) cv::minMaxLoc(grey, nullptr, &top);
+    top_ = static_cast<float>(top);
+  }
+  [[nodiscard]] cv::Size size() const { return grey_.size(); }
+  void read(int y, float* to) const {
+    if (grey_.depth() == CV_8U)
+      copy(grey_.ptr<std::uint8_t>(y), to);
+    else if (grey_.depth() == CV_16U)
+      copy(grey_.ptr<std::uint16_t>(y), to);
+    else
+      copy(grey_.ptr<float>(y), to);
+    if (!bright_) return;
+    for (int x = 0; x < grey_.cols; ++x) to[x] = top_ - to[x];
+  }
+
+ private:
+  template <class T>
+  void copy(const T* from, float* to) const {
+    for (int x = 0; x < grey_.cols; ++x) to[x] = static_cast<float>(from[x]);
+    if constexpr (std::is_floating_point_v<T>)
+      for (int x = 0; x < grey_.cols; ++x) to[x] = std::isnan(to[x]) ? 0.0F : to[x];
+  }
+  const cv::Mat& grey_;
+  bool bright_;
+  float top_ = 0;
+};
+
+// The light is seen only through the gaps. Starting from a bright quantile, a quadratic is fitted again and
+// again to the pixels that come near it; pixels above count three times as much as those below, which are
+// often gap edges.
+Surface bright_envelope(const Rows& image) {
+  constexpr double kSamples = 5000;
+  const cv::Size size = image.size();
+  const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size.area()) / kSamples)));
+  const auto columns = static_cast<std::size_t>((size.width + stride - 1) / stride);
+  std::vector<float> values;
+  std::vector<float> row(static_cast<std::size_t>(size.width));
+  for (int y = 0; y < size.height; y += stride) {
+    image.read(y, row.data());
+    for (int x = 0; x < size.width; x += stride) values.push_back(row[static_cast<std::size_t>(x)]);
+  }
+  std::vector<double> across;
+  for (int x = 0; x < size.width; x += stride) across.push_back(scaled(x, size.width));
+  Surface c = Surface::Zero();
+  c[0] = static_cast<double>(quantile(values, 0.99));
+  for (const double near : {0.7, 0.8, 0.85, 0.9, 0.9, 0.9}) {
+    // Sums of w u^p v^q, p + q <= 4, and of w value u^p v^q, p + q <= 2; those over u row by row.
+    std::array<std::array<double, 5>, 5> moment{};
+    std::array<std::array<double, 3>, 3> of_value{};
+    int used = 0;
+    for (std::size_t first = 0; first < values.size(); first += columns) {
+      const double v = scaled(static_cast<int>(first / columns) * stride, size.height);
+      const double flat = c[0] + c[2] * v + c[5] * v * v, slope = c[1] + c[4] * v, curve = c[3];
+      std::array<double, 5> sums{};
+      std::array<double, 3> value_sums{};
+      for (std::size_t k = 0; k < columns; ++k) {
+        const auto value = static_cast<double>(values[first + k]);
+        const double u = across[k], level = flat + u * (slope + u * curve);
+        const double w = value < near * level ? 0.0 : value > level ? 3.0 : 1.0;
+        const double wu = w * u, wuu = wu * u;
+        used += w > 0 ? 1 : 0;
+        sums[0] += w, sums[1] += wu, sums[2] += wuu, sums[3] += wuu * u, sums[4] += wuu * u * u;
+        value_sums[0] += w * value, value_sums[1] += wu * value, value_sums[2] += wuu * value;
+      }
+      double power = 1;
+      for (std::size_t q = 0; q < 5; ++q, power *= v) {
+        for (std::size_t p = 0; p + q < 5; ++p) moment[p][q] += power * sums[p];
+        for (std::size_t p = 0; p + q < 3; ++p) of_value[p][q] += power * value_sums[p];
+      }
+    }
+    if (used < 60) break;  // too little light to see a slope: the level stands
+    constexpr std::array<std::array<std::size_t, 2>, 6> kPowers = {
+        {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};  // as surface_basis has them
+    Eigen::Matrix<double, 6, 6> a;
+    Surface rhs;
+    for (std::size_t m = 0; m < kPowers.size(); ++m) {
+      const auto [p, q] = kPowers[m];
+      rhs[static_cast<Eigen::Index>(m)] = of_value[p][q];
+      for (std::size_t n = 0; n < kPowers.size(); ++n)
+        a(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(n)) =
+            moment[p + kPowers[n][0]][q + kPowers[n][1]];
+    }
+    a.diagonal().tail<5>().array() += 1e-3 * used;
+    c = a.ldlt().solve(rhs);
+  }
+  return c;
+}
+
+// Morphological opening of the dark region by a disc, through two distance maps, at a fraction of the
+// resolution: the opening reaches a few pixels too far or not far enough, but only over what is dark itself.
+// The frame is continued beyond its border, so that a thin strip of plate at the bottom of a frame is as
+// thick as the plate is. Empty if there is nothing.
+cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double disc_radius_px) {
+  constexpr double kCoarse = 6;  // pixels of the coarse picture across the disc's radius
+  const int shrink = std::max(1, static_cast<int>(disc_radius_px / kCoarse));
+  const cv::Size size((darkness.cols + shrink - 1) / shrink, (darkness.rows + shrink - 1) / shrink);
+  const double reach = disc_radius_px / shrink;
+  // A block is dark if all of it is: the gaps between beads are narrow.
+  const cv::Mat1b dark_pixels = darkness > limit;
+  cv::Mat1b dark = dark_pixels;
+  if (shrink > 1) {
+    dark = cv::Mat1b(size, uchar{255});
+    // Copies, or the compiler thinks that what is written might be the number itself, and makes no vectors.
+    const int columns = darkness.cols, blocks = size.width;
+    std::vector<uchar> dark_down(static_cast<std::size_t>(blocks * shrink));
+    for (int block = 0; block < size.height; ++block) {
+      std::fill(dark_down.begin(), dark_down.end(), uchar{255});
+      uchar *all = dark_down.data(), *to = dark[block];
+      for (int y = block * shrink; y < std::min(darkness.rows, (block + 1) * shrink); ++y) {
+        const uchar* pixel = dark_pixels[y];
+        for (int x = 0; x < columns; ++x) all[x] &= pixel[x];
+      }
+      for (int k = 0; k < shrink; ++k)
+        for (int b = 0; b < blocks; ++b) to[b] &= all[b * shrink + k];
+    }
+  }
+  const int pad = cvCeil(2 * reach);
+  cv::copyMakeBorder(dark, dark, pad, pad, pad, pad, cv::BORDER_REPLICATE);
+  // In a corner it goes on only where a wall leads there, dark along one of the borders: not a bead.
+  for (const bool right : {false, true})
+    for (const bool low : {false, true}) {
+      const int x = right ? pad + size.width - 1 : pad, y = low ? pad + size.height - 1 : pad;
+      const auto dark_along = [&](cv::Point step) {
+        const int far = std::min(pad, (step.x != 0 ? size.width : size.height) - 1);
+        for (int k = 0; k <= far; ++k)
+          if (dark(cv::Point(x, y) + k * step) == 0) return false;
+        return true;
+      };
+      if (dark_along({right ? -1 : 1, 0}) || dark_along({0, low ? -1 : 1})) continue;
+      dark(cv::Rect(right ? x + 1 : 0, low ? y + 1 : 0, pad, pad)).setTo(0);
+    }
+  if (cv::countNonZero(dark) == static_cast<int>(dark.total())) return {};
+  // A square that lies in the disc, whichever way its distances are rounded, is sought much faster: most
+  // frames have not even that.
+  constexpr double kSquare = 0.65;
+  const int side = 2 * static_cast<int>(kSquare * reach) + 1;
+  cv::Mat1b squares;
+  cv::erode(dark, squares, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+  if (cv::countNonZero(squares) == 0) return {};
+  cv::Mat1f inside;
+  cv::distanceTransform(dark, inside, cv::DIST_L2, cv::DIST_MASK_5);
+  const cv::Mat1b core = inside > reach;
+  if (cv::countNonZero(core) == 0) return {};
+  cv::Mat1f to_core;
+  cv::distanceTransform(~core, to_core, cv::DIST_L2, cv::DIST_MASK_5);
+  const cv::Mat1b coarse =
+      to_core(cv::Rect(pad, pad, size.width, size.height)) < reach + (shrink > 1 ? 1 : 0);
+  cv::Mat1b regions;
+  cv::resize(coarse, regions, cv::Size(), shrink, shrink, cv::INTER_NEAREST);
+  regions = regions(cv::Rect(0, 0, darkness.cols, darkness.rows)) & dark_pixels;
+  cv::dilate(regions, regions, cv::Mat(), cv::Point(-1, -1), 2);  // their blurred edge
+  return regions;
+}
+
+// Out of focus, a wall's edge darkens what lies beside it, the gaps of a crystal are nearly as dark as its
+// discs, and a wall is only a little darker than both.
+cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double radius_px, double in_radii) {
+  constexpr float kDark = 0.75F, kOfDarkest = 0.94F;
+  constexpr double kSharp = 1.3, kSmooth = 1;                          // px
+  constexpr double kOutOfFocus = 0.22;                                 // of the radius
+  constexpr double kTail = 1.5, kFromDark = 0.7, kFromDarkest = 1.55;  // blurs, to either side of an edge
+  cv::Mat1b regions = regions_darker_than(kDark, darkness, in_radii * radius_px);
+  const double blur = regions.empty() ? 0 : blur_of(darkness);
+  if (blur < kSharp) return regions;
+  double beside = (kTail + kFromDark) * blur;
+  if (blur > kOutOfFocus * radius_px) {
+    cv::Mat1f smooth;
+    cv::GaussianBlur(darkness, smooth, {0, 0}, kSmooth);
+    std::vector<float> levels;
+    for (int y = 0; y < smooth.rows; ++y)
+      for (int x = 0; x < smooth.cols; ++x)
+        if (regions(y, x) != 0) levels.push_back(smooth(y, x));
+    constexpr double kNearlyAll = 0.9;
+    const auto at =
+        levels.begin() + static_cast<std::ptrdiff_t>(kNearlyAll * static_cast<double>(levels.size()));
+    std::nth_element(levels.begin(), at, levels.end());
+    regions = regions_darker_than(kOfDarkest * *at, smooth, in_radii * radius_px);
+    beside = (kTail + kFromDarkest) * blur;
+  }
+  const int wide = 2 * std::max(0, cvRound(beside) - 2) + 1;
+  if (!regions.empty())
+    cv::dilate(regions, regions, cv::getStructuringElement(cv::MORPH_ELLIPSE, {wide, wide}));
+  return regions;
+}
+
+}  // namespace
+
+double contrast_of(const cv::Mat1f& darkness) {
+  constexpr double kSamples = 40000, kLow = -0.5, kHigh = 1.5;
+  constexpr std::size_t kBins = 200;
+  constexpr double kEnough = 0.6;  // discs as dark as that are well served as they are
+  constexpr double kClear = 6;     // so many times the noise
+  const int stride =
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
+  std::array<double, kBins> share{};
+  double n = 0, sum = 0;
+  const auto value = [&](std::size_t bin) {
+    return kLow + (kHigh - kLow) * (static_cast<double>(bin) + 0.5) / static_cast<double>(kBins);
+  };
+  for (int y = stride / 2; y < darkness.rows; y += stride)
+    for (int x = stride / 2; x < darkness.cols; x += stride) {
+      const double d = std::clamp(static_cast<double>(darkness(y, x)), kLow, kHigh);
+      const auto bin = static_cast<std::size_t>((d - kLow) / (kHigh - kLow) * static_cast<double>(kBins));
+      share[std::min(bin, kBins - 1)] += 1;
+    }
+  for (std::size_t b = 0; b < kBins; ++b) n += share[b], sum += share[b] * value(b);
+  double below = 0, sum_below = 0, best = 0, dark = 0, light = 0;
+  for (std::size_t b = 0; b + 1 < kBins; ++b) {
+    below += share[b];
+    sum_below += share[b] * value(b);
+    if (below == 0 || below == n) continue;
+    const double low = sum_below / below, high = (sum - sum_below) / (n - below);
+    const double between = below * (n - below) * (high - low) * (high - low);
+    if (between > best) best = between, light = low, dark = high;
+  }
+  if (best == 0 || dark > kEnough) return 1;
+  const Noise noise = noise_of(darkness);
+  return dark - light > kClear * std::sqrt(noise.dark + noise.light) ? std::max(dark, 0.02) : 1;
+}
+
+Noise noise_of(const cv::Mat1f& darkness) {
+  constexpr float kLight = 0.15F, kDark = 0.85F;
+  constexpr std::size_t kEnough = 50;
+  constexpr double kSamples = 20000, kLeast = 1e-6, kLeastShare = 0.1;
+  std::vector<float> light, dark;
+  const int stride = std::max(1, static_cast<int>(static_cast<double>(darkness.total()) / kSamples));
+  for (int y = stride / 2; y < darkness.rows; y += stride) {
+    const float* d = darkness[y];
+    for (int x = 1; x + 1 < darkness.cols; ++x) {
+      const float low = std::min({d[x - 1], d[x], d[x + 1]}), high = std::max({d[x - 1], d[x], d[x + 1]});
+      if (high < kLight) light.push_back(std::abs(d[x - 1] - 2 * d[x] + d[x + 1]));
+      if (low > kDark) dark.push_back(std::abs(d[x - 1] - 2 * d[x] + d[x + 1]));
+    }
+  }
+  const auto variance = [&](std::vector<float>& v) {
+    constexpr double kFromMedian = 1 / (0.6745 * 0.6745 * 6);  // of 1, -2, 1 times the noise
+    const auto middle = static_cast<double>(quantile(std::move(v), 0.5));
+    return middle * middle * kFromMedian;
+  };
+  if (light.size() < kEnough) return {};
+  const double lit = std::max(kLeast, variance(light));
+  const double black = dark.size() < kEnough ? lit : variance(dark);
+  Noise n;
+  n.dark = std::max({kLeast, kLeastShare * lit, black});
+  n.light = std::max(0.0, lit - n.dark);
+  return n;
+}
+
+SurfaceRow surface_row(const Surface& c, int y, cv::Size size) {
+  const double v = surface_basis(0, y, size)[2];
+  // u = step x + first
+  const double first = surface_basis(0, y, size)[1], step = size.width > 1 ? 2.0 / (size.width - 1) : 0;
+  const double flat = c[0] + c[2] * v + c[5] * v * v, slope = c[1] + c[4] * v, curve = c[3];
+  return {static_cast<float>(flat + slope * first + curve * first * first),
+          static_cast<float>(step * (slope + 2 * curve * first)), static_cast<float>(step * step * curve)};
+}
+
+Surface surface_basis(double x, double y, cv::Size size) {
+  const double u = scaled(x, size.width), v = scaled(y, size.height);
+  Surface b;
+  b << 1, u, v, u * u, u * v, v * v;
+  return b;
+}
+
+double blur_of(const cv::Mat1f& darkness) {
+  constexpr float kEdge = 0.05F;                       // darkness per pixel
+  constexpr double kSteepest = 0.01, kDarkest = 0.05;  // shares of the pixels
+  constexpr double kLeast = 0.5, kMost = 5;            // px
+  constexpr double kKernel = 0.5;     // px^2, by which the kernel itself blurs an edge, more or less
+  constexpr double kSamples = 20000;  // pixels that are looked at
+  const int stride = std::max(1, cvRound(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
+  std::vector<float> steep, seen;
+  for (int y = 1; y + 1 < darkness.rows; y += stride) {
+    const float *above = darkness[y - 1], *row = darkness[y], *below = darkness[y + 1];
+    for (int x = 1; x + 1 < darkness.cols; x += stride) {
+      seen.push_back(row[x]);
+      // Scharr's kernel, which sums to 32 over a step of two pixels.
+      const float left = 3 * (above[x - 1] + below[x - 1]) + 10 * row[x - 1],
+                  right = 3 * (above[x + 1] + below[x + 1]) + 10 * row[x + 1],
+                  up = 3 * (above[x - 1] + above[x + 1]) + 10 * above[x],
+                  down = 3 * (below[x - 1] + below[x + 1]) + 10 * below[x];
+      const float across = (right - left) / 32, along = (down - up) / 32;
+      if (const float g2 = across * across + along * along; g2 > kEdge * kEdge) steep.push_back(g2);
+    }
+  }
+  if (steep.empty()) return kLeast;
+  const auto highest = [](std::vector<float>& values, double share) {
+    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+    std::nth_element(values.begin(), values.begin() + at, values.end(), std::greater<>());
+    return static_cast<double>(values[static_cast<std::size_t>(at)]);
+  };
+  const double dark = std::min(1.0, highest(seen, kDarkest));
+  const double variance = dark * dark / (2 * std::numbers::pi * highest(steep, kSteepest));
+  return std::clamp(std::sqrt(std::max(0.0, variance - kKernel)), kLeast, kMost);
+}
+
+Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double radius_px) {
+  const Rows image(grey, options.bright);
+  const cv::Size size = image.size();
+  Prepared p;
+  p.light = bright_envelope(image);
+  cv::Mat1f with_spare(size.height, size.width + kSpareColumns);
+  with_spare.colRange(size.width, with_spare.cols).setTo(kUnseen);
+  p.darkness = with_spare.colRange(0, size.width);
+  constexpr float kLeastLight = 1e-20F;
+  const auto gain = static_cast<float>(1 / options.contrast);
+  std::vector<float> grey_levels(static_cast<std::size_t>(size.width));
+  for (int y = 0; y < size.height; ++y) {
+    const SurfaceRow light = surface_row(p.light, y, size);
+    image.read(y, grey_levels.data());
+    const float* i = grey_levels.data();
+    float* d = p.darkness[y];
+    for (int x = 0; x < size.width; ++x) {
+      const float bright = light.at(x), dark = (1 - i[x] / std::max(bright, kLeastLight)) * gain;
+      const float above = dark > -1 ? dark : -1.0F, bounded = above > 2 ? 2.0F : above;
+      d[x] = bright > 0 ? bounded : 0.0F;
+    }
+  }
+  p.opaque = large_dark_regions(p.darkness, radius_px, options.opaque_radii);
+  return p;
+}
+
+}  // namespace twincell

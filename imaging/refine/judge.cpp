@@ -1,0 +1,97 @@
+#include "imaging/refine/judge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/median.hpp"
+#include "imaging/refine/sparse_gauss_newton.hpp"
+
+namespace twincell {
+
+namespace {
+
+Verdict verdict_on(const Detection& b, double radius_px, int width, int height, const JudgeOptions& o) {
+  if (!std::isfinite(b.x) || !std::isfinite(b.y)) return Verdict::unexplained;
+  const auto near = [&](double radius) { return std::abs(b.radius - radius) <= o.radius_tolerance * radius; };
+  if (!near(radius_px) && std::none_of(o.other_radii_px.begin(), o.other_radii_px.end(), near))
+    return Verdict::wrong_radius;
+  if (b.interior < o.min_interior) return Verdict::bright_inside;
+  if (b.score < o.min_score) return Verdict::unexplained;
+  if (b.x < -0.5 || b.y < -0.5 || b.x >= width - 0.5 || b.y >= height - 0.5) return Verdict::outside;
+  return Verdict::bead;
+}
+
+// Two opaque discs cannot overlap: of a pair that does, the better explained one stays.
+void forbid_overlaps(std::vector<Detection>& beads, double max_overlap) {
+  std::vector<Disc> discs;
+  discs.reserve(beads.size());
+  for (const Detection& b : beads) discs.push_back({b.x, b.y, b.radius, 1});
+  struct Clash {
+    std::size_t better, lesser;
+  };
+  std::vector<Clash> clashes;
+  for (const auto& [i, j] : near_pairs(discs, 0)) {
+    auto better = static_cast<std::size_t>(i), lesser = static_cast<std::size_t>(j);
+    const Detection &a = beads[better], &b = beads[lesser];
+    const double touch = a.radius + b.radius;
+    if (std::hypot(a.x - b.x, a.y - b.y) >= touch - max_overlap * std::min(a.radius, b.radius)) continue;
+    if (b.score > a.score) std::swap(better, lesser);
+    clashes.push_back({better, lesser});
+  }
+  // The best first: what has been dropped itself drops nobody.
+  std::sort(clashes.begin(), clashes.end(), [&](const Clash& a, const Clash& b) {
+    return std::pair(-beads[a.better].score, a.lesser) < std::pair(-beads[b.better].score, b.lesser);
+  });
+  for (const Clash& c : clashes)
+    if (beads[c.better].verdict == Verdict::bead) beads[c.lesser].verdict = Verdict::overlaps;
+}
+
+void flag_tracers(std::vector<Detection>& beads, double below) {
+  if (beads.empty()) return;
+  std::vector<double> interior;
+  interior.reserve(beads.size());
+  for (const Detection& b : beads) interior.push_back(b.interior);
+  const double typical = upper_median(interior), limit = below * typical;
+  for (double& v : interior) v = std::abs(v - typical);
+  constexpr double kLeastScatter = 0.005;
+  const double scatter = std::max(kLeastScatter, 1.4826 * upper_median(std::move(interior)));
+  for (Detection& b : beads) {
+    b.tracer = b.interior < limit;
+    b.tracer_margin = std::abs(b.interior - limit) / scatter;
+  }
+}
+
+}  // namespace
+
+std::string_view word_of(Verdict verdict) {
+  constexpr std::array<std::string_view, 9> kWords = {"bead",        "in a wall", "bright inside",
+                                                      "pale",        "unseen",    "wrong radius",
+                                                      "unexplained", "overlaps",  "outside"};
+  return kWords[static_cast<std::size_t>(verdict)];
+}
+
+Judged judge(std::vector<Detection> candidates, double radius_px, int width, int height,
+             const JudgeOptions& options) {
+  Judged judged;
+  for (Detection& b : candidates) b.verdict = verdict_on(b, radius_px, width, height, options);
+  std::vector<Detection> possible;
+  possible.reserve(candidates.size());
+  judged.beads.reserve(candidates.size());
+  for (const Detection& b : candidates)
+    if (b.verdict == Verdict::bead)
+      possible.push_back(b);
+    else
+      judged.dropped.push_back(b);
+  forbid_overlaps(possible, options.max_overlap);
+  for (Detection& b : possible) {
+    b.edge = b.x - b.radius < -0.5 || b.y - b.radius < -0.5 || b.x + b.radius > width - 0.5 ||
+             b.y + b.radius > height - 0.5;
+    (b.verdict == Verdict::bead ? judged.beads : judged.dropped).push_back(b);
+  }
+  flag_tracers(judged.beads, options.tracer_below);
+  return judged;
+}
+
+}  // namespace twincell

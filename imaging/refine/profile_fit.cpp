@@ -1,0 +1,403 @@
+#include "imaging/refine/profile_fit.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "core/cancellation.hpp"
+#include "core/median.hpp"
+#include "imaging/refine/disc_measures.hpp"
+#include "imaging/refine/sparse_gauss_newton.hpp"
+
+namespace twincell {
+
+namespace {
+
+constexpr double kReach = 3;            // px beyond the radius: where the outer rim has ended
+constexpr int kLessons = 2;             // of learning and looking for what is alike
+constexpr int kRounds = 3;              // of fitting and learning
+constexpr int kSweeps = 4;              // of a round
+constexpr double kSettled = 2e-3;       // px
+constexpr double kMinScore = 0.5;       // as the judge asks
+constexpr double kMinLevel = 0.4;       // of a, as the opaque fit asks
+constexpr double kRadiusSpread = 0.04;  // prior of R_k, of R
+constexpr double kLevelSpread = 0.1;    // prior of a_k
+constexpr double kDoubled = 0.5;        // of R: centres nearer than that are of one disc
+constexpr double kLike = 0.4;           // correlation of what may be a disc with the profile
+constexpr double kApart = 1.6;          // of R: no disc is looked for nearer to another, as in the vote
+
+class ProfileFit {
+ public:
+  ProfileFit(const Prepared& image, double radius)
+      : image_(image), radius_(radius), noise_(noise_of(image.darkness)) {
+    const double deviation = std::sqrt(noise_.dark + noise_.light);
+    huber_ = std::max(0.1, 4 * deviation);
+    shared_.radius_px = radius;
+    shared_.levels.assign(static_cast<std::size_t>(std::ceil((radius + kReach) * DiscProfile::kPerPixel)) + 1,
+                          0.0F);
+    model_ = cv::Mat1f::zeros(image.darkness.size());
+    taken_.create(image.darkness.rows + 2 * reach(), image.darkness.cols + 2 * reach());
+  }
+
+  void start(const std::vector<Proposal>& proposals) {
+    for (const Proposal& p : proposals) {
+      Detection b;
+      b.x = p.x, b.y = p.y, b.radius = radius_, b.darkness = 1, b.score = p.score;
+      if (in_wall(image_, b)) {
+        b.verdict = Verdict::in_wall;
+        dropped_.push_back(b);
+      } else {
+        beads_.push_back(b);
+      }
+    }
+  }
+
+  /// f and g from the discs whose score is no less than `least`; the model follows.
+  void learn(double least) {
+    const auto n = static_cast<Eigen::Index>(shared_.levels.size());  // the last is g
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+    // What each pixel sees of each level, of all discs that reach it; first as it comes, then by pixel.
+    struct Term {
+      std::size_t row;
+      int level;
+      double share;
+    };
+    std::vector<Term> seen;
+    cv::Mat1i of_pixel(image_.darkness.size(), -1);
+    std::vector<cv::Point> pixels;
+    const int last = static_cast<int>(n) - 1;
+    for (const Detection& b : beads_) {
+      if (b.score < least) continue;
+      over(b, [&](int x, int y, double r) {
+        const double t = r * radius_ / b.radius * DiscProfile::kPerPixel;
+        const auto k = static_cast<int>(t);
+        if (k >= last) return;
+        int& row = of_pixel(y, x);
+        if (row < 0) {
+          row = static_cast<int>(pixels.size());
+          pixels.emplace_back(x, y);
+        }
+        const double part = t - k;
+        seen.push_back({static_cast<std::size_t>(row), k, b.darkness * (1 - part)});
+        if (k + 1 < last) seen.push_back({static_cast<std::size_t>(row), k + 1, b.darkness * part});
+      });
+    }
+    std::vector<std::size_t> first(pixels.size() + 1, 0);
+    for (const Term& t : seen) ++first[t.row + 1];
+    for (std::size_t row = 0; row < pixels.size(); ++row) first[row + 1] += first[row];
+    std::vector<Term> terms(seen.size());
+    std::vector<std::size_t> at(first.begin(), first.end());
+    for (const Term& t : seen) terms[at[t.row]++] = t;
+    std::vector<Term> of_one;
+    for (std::size_t row = 0; row < pixels.size(); ++row) {
+      of_one.assign(terms.begin() + static_cast<std::ptrdiff_t>(first[row]),
+                    terms.begin() + static_cast<std::ptrdiff_t>(first[row + 1]));
+      of_one.push_back({row, last, 1});
+      const double d = static_cast<double>(image_.darkness(pixels[row]));
+      double weight = 1;
+      if (learnt_) {
+        double now = 0;
+        for (const Term& t : of_one)
+          now += t.share * (t.level == last
+                                ? shared_.ground
+                                : static_cast<double>(shared_.levels[static_cast<std::size_t>(t.level)]));
+        weight = std::min(1.0, huber_ / std::max(1e-9, std::abs(d - now)));
+      }
+      for (const Term& t : of_one) {
+        right[t.level] += weight * t.share * d;
+        for (const Term& u : of_one) a(t.level, u.level) += weight * t.share * u.share;
+      }
+    }
+    // Levels that few pixels see, as at the centre, go on like their neighbours.
+    const double smooth = 0.02 * static_cast<double>(pixels.size()) / static_cast<double>(n);
+    for (Eigen::Index k = 1; k + 2 < n; ++k) {
+      a(k - 1, k - 1) += smooth, a(k, k) += smooth;
+      a(k - 1, k) -= smooth, a(k, k - 1) -= smooth;
+    }
+    a(n - 2, n - 2) += 100 * smooth;  // 0 where the disc has ended
+    a.diagonal().array() += 1e-9 * static_cast<double>(pixels.size() + 1);
+    const Eigen::VectorXd solved = a.ldlt().solve(right);
+    for (Eigen::Index k = 0; k + 1 < n; ++k)
+      shared_.levels[static_cast<std::size_t>(k)] = static_cast<float>(solved[k]);
+    shared_.levels.back() = 0;
+    shared_.ground = solved[n - 1];
+    learnt_ = true;
+    render();
+  }
+
+  /// One step of each disc, all others as they stand. \returns how far the farthest of all but the worst
+  /// fiftieth moved, px
+  double sweep() {
+    throw_if_cancelled();
+    std::vector<double> far;
+    far.reserve(beads_.size());
+    covariance_.resize(beads_.size());
+    for (std::size_t k = 0; k < beads_.size(); ++k) far.push_back(step(beads_[k], covariance_[k]));
+    if (far.empty()) return 0;
+    const auto most = static_cast<std::ptrdiff_t>(far.size() - 1 - far.size() / 50);
+    std::nth_element(far.begin(), far.begin() + most, far.end());
+    return far[static_cast<std::size_t>(most)];
+  }
+
+  /// Drops what the profile does not explain, and of two centres in one disc the lesser.
+  void prune() {
+    std::vector<Disc> discs;
+    std::vector<bool> stays(beads_.size(), true);
+    for (std::size_t k = 0; k < beads_.size(); ++k) {
+      Detection& b = beads_[k];
+      b.score = explained(b);
+      discs.push_back({b.x, b.y, b.radius, 1});
+      const bool inside = b.x > -radius_ && b.y > -radius_ && b.x < image_.darkness.cols - 1 + radius_ &&
+                          b.y < image_.darkness.rows - 1 + radius_;
+      if (b.darkness < kMinLevel) stays[k] = false, b.verdict = Verdict::pale;
+      if (b.score < kMinScore) stays[k] = false, b.verdict = Verdict::unexplained;
+      if (!inside) stays[k] = false, b.verdict = Verdict::outside;
+    }
+    for (const auto& [i, j] : near_pairs(discs, 0)) {
+      const auto p = static_cast<std::size_t>(i), q = static_cast<std::size_t>(j);
+      if (!stays[p] || !stays[q] ||
+          std::hypot(discs[p].x - discs[q].x, discs[p].y - discs[q].y) > 2 * radius_ * (1 - kDoubled / 2))
+        continue;
+      const std::size_t lesser = beads_[p].score < beads_[q].score ? p : q;
+      stays[lesser] = false;
+      beads_[lesser].verdict = Verdict::overlaps;
+    }
+    std::vector<Detection> kept;
+    for (std::size_t k = 0; k < beads_.size(); ++k) (stays[k] ? kept : dropped_).push_back(beads_[k]);
+    if (kept.size() == beads_.size()) return;
+    beads_ = std::move(kept);
+    render();
+  }
+
+  /// Replaces the discs by the places that look like the profile. In a packing votes lie a pixel or two off,
+  /// from where no step leads home, and miss discs of which little more than the rims of their neighbours is
+  /// beside them; of these places all of a disc's pixels speak. A disc stays where nothing looks like one, as
+  /// beyond the frame, but teaches nothing.
+  void propose_alike() {
+    std::vector<Detection> voted;
+    std::swap(voted, beads_);
+    taken_.setTo(0);
+    add_alike(image_.darkness);
+    for (Detection& b : voted) {
+      if (taken(b)) continue;
+      b.score = 0;
+      beads_.push_back(b);
+    }
+    render();
+  }
+
+  /// Adds the places where what is left of the picture looks like the profile.
+  void add_missed() {
+    taken_.setTo(0);
+    for (const Detection& b : beads_) take(b);
+    const std::size_t before = beads_.size();
+    add_alike(image_.darkness - model_);
+    if (beads_.size() > before) render();
+  }
+
+  [[nodiscard]] double typical_score() const {
+    std::vector<double> scores;
+    for (const Detection& b : beads_) scores.push_back(b.score);
+    return scores.empty() ? 0 : upper_median(std::move(scores));
+  }
+
+  Refined result(int sweeps) {
+    for (std::size_t k = 0; k < beads_.size(); ++k) {
+      Detection& b = beads_[k];
+      const Normal& c = covariance_[k];
+      b.sigma_x = std::sqrt(c(0, 0));
+      b.sigma_y = std::sqrt(c(1, 1));
+      b.sigma_radius = std::sqrt(c(2, 2));
+      measure_disc(image_, b);
+    }
+    return {std::move(beads_), std::move(dropped_), 0, {}, sweeps};
+  }
+  [[nodiscard]] const DiscProfile& profile() const { return shared_; }
+  [[nodiscard]] bool empty() const { return beads_.empty(); }
+
+ private:
+  /// Pixels to each side of a disc's centre that show it.
+  [[nodiscard]] int reach() const { return cvCeil(radius_) + 1; }
+  [[nodiscard]] cv::Point pixel_of(const Detection& b) const {
+    return {std::clamp(cvRound(b.x) + reach(), 0, taken_.cols - 1),
+            std::clamp(cvRound(b.y) + reach(), 0, taken_.rows - 1)};
+  }
+  [[nodiscard]] bool taken(const Detection& b) const { return taken_(pixel_of(b)) != 0; }
+  void take(const Detection& b) {
+    cv::circle(taken_, pixel_of(b), cvRound(kApart * radius_), 255, cv::FILLED);
+  }
+
+  /// Adds discs where the picture looks like the profile, the most like first, where there is room.
+  void add_alike(const cv::Mat1f& picture) {
+    const cv::Mat1f like = likeness(picture);
+    std::vector<Detection> tops;
+    for (int y = 0; y < like.rows; ++y)
+      for (int x = 0; x < like.cols; ++x) {
+        const float v = like(y, x);
+        if (static_cast<double>(v) < kLike) continue;
+        const cv::Rect around = cv::Rect(x - 1, y - 1, 3, 3) & cv::Rect({}, like.size());
+        double most = 0;
+        cv::minMaxLoc(like(around), nullptr, &most);
+        if (static_cast<double>(v) < most) continue;
+        Detection b;
+        b.x = x, b.y = y, b.radius = radius_, b.darkness = 1, b.score = static_cast<double>(v);
+        tops.push_back(b);
+      }
+    std::stable_sort(tops.begin(), tops.end(),
+                     [](const Detection& a, const Detection& b) { return a.score > b.score; });
+    for (const Detection& b : tops) {
+      if (taken(b) || in_wall(image_, b)) continue;
+      beads_.push_back(b);
+      take(b);
+    }
+  }
+
+  /// Correlation of the picture around each pixel with the profile, over r < R: what is outside belongs to
+  /// neighbours as well. 0 where the profile fits best with a level that no disc has. Beyond its border the
+  /// picture goes on as at the border.
+  [[nodiscard]] cv::Mat1f likeness(const cv::Mat1f& picture) const {
+    const int side = 2 * reach() + 1;
+    cv::Mat1f disc = cv::Mat1f::zeros(side, side), profile = disc.clone();
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        const double r = std::hypot(x - reach(), y - reach());
+        if (r >= radius_) continue;
+        disc(y, x) = 1;
+        profile(y, x) = static_cast<float>(level_at(shared_, r).value);
+      }
+    profile -= disc * (cv::sum(profile)[0] / cv::sum(disc)[0]);
+    const double n = cv::sum(disc)[0], of_profile = profile.dot(profile);
+    cv::Mat1f wide, both, sum, squares;
+    cv::copyMakeBorder(picture, wide, reach(), reach(), reach(), reach(), cv::BORDER_REPLICATE);
+    cv::matchTemplate(wide, profile, both, cv::TM_CCORR);
+    cv::matchTemplate(wide, disc, sum, cv::TM_CCORR);
+    cv::matchTemplate(wide.mul(wide), disc, squares, cv::TM_CCORR);
+    cv::Mat1f like = cv::Mat1f::zeros(picture.size());
+    for (int y = 0; y < like.rows; ++y)
+      for (int x = 0; x < like.cols; ++x) {
+        const double s = static_cast<double>(sum(y, x)), common = static_cast<double>(both(y, x)),
+                     of_picture = static_cast<double>(squares(y, x)) - s * s / n;
+        if (common > kMinLevel * of_profile && of_picture > 0)
+          like(y, x) = static_cast<float>(common / std::sqrt(of_profile * of_picture));
+      }
+    return like;
+  }
+
+  /// Calls use(x, y, r) for the pixels of the frame that a disc reaches.
+  template <class Use>
+  void over(const Detection& b, Use&& use, double beyond = kReach) const {
+    const double reach = b.radius + beyond;
+    const int last_row = std::min(image_.darkness.rows - 1, cvFloor(b.y + reach));
+    for (int y = std::max(0, cvCeil(b.y - reach)); y <= last_row; ++y) {
+      const double dy = y - b.y, half = std::sqrt(std::max(0.0, reach * reach - dy * dy));
+      const int last = std::min(image_.darkness.cols - 1, cvFloor(b.x + half));
+      for (int x = std::max(0, cvCeil(b.x - half)); x <= last; ++x)
+        use(x, y, std::sqrt((x - b.x) * (x - b.x) + dy * dy));
+    }
+  }
+
+  void add(const Detection& b, double sign) {
+    over(b, [&](int x, int y, double r) {
+      model_(y, x) += static_cast<float>(sign * b.darkness * level_at(shared_, r * radius_ / b.radius).value);
+    });
+  }
+  void render() {
+    model_.setTo(static_cast<float>(shared_.ground));
+    for (const Detection& b : beads_) add(b, 1);
+  }
+
+  double step(Detection& b, Normal& covariance) {
+    Normal a = Normal::Zero();
+    Step right = Step::Zero();
+    double squares = 0, pixels = 0;
+    over(b, [&](int x, int y, double r) {
+      const double scale = radius_ / b.radius;
+      const ProfileLevel f = level_at(shared_, r * scale);
+      const double slope = b.darkness * f.slope * scale, far = std::max(r, 1e-6);
+      const double t = static_cast<double>(model_(y, x)),
+                   left = static_cast<double>(image_.darkness(y, x)) - t;
+      const Step j(-slope * (x - b.x) / far, -slope * (y - b.y) / far, -slope * r / b.radius, f.value);
+      const double v = noise_.dark + noise_.light * std::clamp(1 - t, 0.0, 1.0);
+      const double w = std::min(1.0, huber_ / std::max(1e-9, std::abs(left))) / v;
+      a += w * j * j.transpose();
+      right += w * left * j;
+      squares += w * left * left;
+      ++pixels;
+    });
+    const double by_radius = 1 / std::pow(kRadiusSpread * radius_, 2), by_level = std::pow(kLevelSpread, -2);
+    a(2, 2) += by_radius, right[2] += by_radius * (radius_ - b.radius);
+    a(3, 3) += by_level, right[3] += by_level * (1 - b.darkness);
+    a(0, 0) += 0.25, a(1, 1) += 0.25;
+    const Normal inverse = a.inverse();
+    covariance = std::max(1.0, squares / std::max(1.0, pixels - kFitted)) * inverse;
+    const Step step = inverse * right;
+    add(b, -1);
+    const double dx = std::clamp(step[0], -1.0, 1.0), dy = std::clamp(step[1], -1.0, 1.0);
+    b.x += dx, b.y += dy;
+    b.radius = std::clamp(b.radius + std::clamp(step[2], -0.5, 0.5), 0.7 * radius_, 1.4 * radius_);
+    b.darkness = std::clamp(b.darkness + step[3], 0.0, 2.0);
+    add(b, 1);
+    return std::hypot(dx, dy);
+  }
+
+  /// Share of the variance of its own pixels that a disc explains, neighbours subtracted.
+  [[nodiscard]] double explained(const Detection& b) const {
+    double n = 0, sum = 0, squares = 0, left_squares = 0;
+    const double bound = 3 * huber_;
+    over(
+        b,
+        [&](int x, int y, double r) {
+          const double left = std::clamp(
+              static_cast<double>(image_.darkness(y, x)) - static_cast<double>(model_(y, x)), -bound, bound);
+          const double own = left + b.darkness * level_at(shared_, r * radius_ / b.radius).value;
+          ++n, sum += own, squares += own * own, left_squares += left * left;
+        },
+        1.0);
+    const double total = n > 0 ? squares - sum * sum / n : 0;
+    return total > 0 ? std::clamp(1 - left_squares / total, 0.0, 1.0) : 0;
+  }
+
+  const Prepared& image_;
+  double radius_;
+  Noise noise_;
+  double huber_ = 0.1;
+  DiscProfile shared_;
+  bool learnt_ = false;
+  cv::Mat1f model_;
+  cv::Mat1b taken_;  // by the discs that there are: no other has its centre there
+  std::vector<Detection> beads_, dropped_;
+  std::vector<Normal> covariance_;
+};
+
+}  // namespace
+
+Refined refine_by_profile(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
+                          const RefineOptions& options) {
+  const int most_sweeps = options.sweeps;
+  ProfileFit fit(image, radius_px);
+  fit.start(proposals);
+  fit.learn(fit.typical_score());  // from the better half of the proposals
+  for (int k = 0; k < kLessons && !fit.empty(); ++k) {
+    fit.propose_alike();
+    fit.learn(kLike);
+  }
+  int sweeps = 0;
+  for (int round = 0; round < kRounds && !fit.empty(); ++round) {
+    const int most = round + 1 == kRounds ? most_sweeps : std::min(kSweeps, most_sweeps);
+    for (int k = 0; k < most; ++k, ++sweeps)
+      if (fit.sweep() < kSettled) break;
+    fit.prune();
+    if (round + 1 < kRounds) fit.learn(kMinScore);
+    if (round == 0) fit.add_missed();
+  }
+  if (!fit.empty()) fit.sweep();
+  Refined refined = fit.result(sweeps);
+  refined.profile = fit.profile();
+  return refined;
+}
+
+}  // namespace twincell

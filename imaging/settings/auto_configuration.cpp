@@ -1,0 +1,254 @@
+#include "imaging/settings/auto_configuration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "core/cancellation.hpp"
+#include "core/median.hpp"
+#include "imaging/find/lattice_constant.hpp"
+#include "imaging/find/vote_finder.hpp"
+#include "imaging/locate/picture_orientation.hpp"
+#include "imaging/refine/edge_fit.hpp"
+#include "imaging/refine/picture_fit.hpp"
+#include "imaging/refine/profile_fit.hpp"
+#include "imaging/settings/hypothesis_test.hpp"
+#include "imaging/settings/polydisperse_settings.hpp"
+#include "imaging/settings/profile_model_selection.hpp"
+
+namespace twincell {
+
+namespace {
+
+constexpr int kSide = 600;        // px, of the part of a frame that is looked at
+constexpr double kClearly = 1.2;  // so much more must pale discs explain
+
+/// Radii (px) at which votes meet more sharply than at those beside them, sharpest first.
+std::vector<double> sharp_radii(const cv::Mat1f& darkness, double smallest, double largest) {
+  constexpr double kRatio = 1.03;
+  constexpr std::size_t kMost = 3;
+  constexpr double kLeast = 0.1;  // of the sharpest
+  std::vector<double> sharpness;
+  const int steps = static_cast<int>(std::log(largest / smallest) / std::log(kRatio));
+  for (int k = 0; k <= steps; ++k) {
+    throw_if_cancelled();
+    sharpness.push_back(vote_sharpness(darkness, smallest * std::pow(kRatio, k)));
+  }
+  std::vector<std::pair<double, double>> tops;
+  // A rise that goes on to the last one is no top.
+  for (std::size_t k = 0; k + 1 < sharpness.size(); ++k) {
+    const double before = k > 0 ? sharpness[k - 1] : 0, here = sharpness[k], after = sharpness[k + 1];
+    if (here <= 0 || here < before || here <= after) continue;
+    // What is sharpest at the smallest radius of all may be texture: only if nothing else is.
+    if (k == 0 && here < *std::max_element(sharpness.begin(), sharpness.end())) continue;
+    // The top of the parabola through it and its neighbours.
+    double at = static_cast<double>(k);
+    const double curvature = before - 2 * here + after;
+    if (k > 0 && curvature < 0) at += 0.5 * (before - after) / curvature;
+    tops.emplace_back(here, smallest * std::pow(kRatio, at));
+  }
+  std::sort(tops.rbegin(), tops.rend());
+  std::vector<double> radii;
+  for (const auto& [sharp, radius] : tops)
+    if (radii.size() < kMost && sharp > kLeast * tops[0].first) radii.push_back(radius);
+  return radii;
+}
+
+}  // namespace
+
+double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options) {
+  const double largest = std::min(kLargestRadius, 0.5 * std::min(grey.cols, grey.rows));
+  if (largest < kSmallestRadius) return 0;
+  const std::vector<double> radii =
+      sharp_radii(prepare(grey, options, largest).darkness, kSmallestRadius, largest);
+  return radii.empty() ? 0 : 2 * radii[0];
+}
+
+double find_contrast(const cv::Mat& grey, const LocatorOptions& options) {
+  PreprocessOptions plain = options.preprocess;
+  plain.contrast = 1;
+  if (model_of(options.refine) == DiscModel::shared_profile) return 1;
+  const double contrast = contrast_of(prepare(grey, plain, options.diameter_px / 2).darkness);
+  if (model_of(options.refine) == DiscModel::circle) return contrast;
+  if (contrast >= kPale) return 1;
+  const cv::Mat part = busiest(grey, kSide);
+  const auto explained = [&](double by) {
+    return settle_plain(part, options, {plain.bright, options.diameter_px, by}).explained;
+  };
+  return explained(contrast) > kClearly * explained(1) ? contrast : 1;
+}
+
+std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given) {
+  constexpr double kLeast = 80, kMost = 400, kRatio = 1.04;  // px
+  constexpr double kShrink = 4;
+  constexpr double kApart = 1.15, kComparable = 0.7;  // of a second size: ratio to the first; sharpness
+  constexpr double kCovered = 0.2;                    // share of the frame
+  constexpr double kNoise = 0.035;  // of a disc's contrast: makes no edges where there are none
+  constexpr double kSeen = 0.7;     // mean share of the rims
+  constexpr std::ptrdiff_t kEnough = 3;
+  const double largest = std::min(kMost, 0.5 * std::min(grey.cols, grey.rows));
+  std::optional<FoundSettings> best;
+  for (const bool bright : {false, true}) {
+    if (largest < kLeast || (given.polarity_known && bright != given.preprocess.bright)) continue;
+    LocatorOptions options = given;
+    options.refine.method = kEdgeRefiner.word;
+    options.preprocess.bright = bright;
+    options.diameter_px = kLeast;
+    options.preprocess.contrast = find_contrast(grey, options);
+    const Prepared image = prepare(grey, options.preprocess, largest / 2);
+    const Noise noise = noise_of(image.darkness);
+    if (noise.dark + noise.light > kNoise * kNoise) continue;
+    cv::Mat1f small;
+    cv::resize(image.darkness, small, {}, 1 / kShrink, 1 / kShrink, cv::INTER_AREA);
+    std::vector<std::pair<double, double>> tops;  // sharpness, diameter
+    double before = 0, last = 0;
+    for (double d = kLeast; d <= largest; d *= kRatio) {
+      throw_if_cancelled();
+      const double now = vote_sharpness(small, 0.5 * d / kShrink);
+      if (last > before && last >= now) tops.emplace_back(last, d / kRatio);
+      before = std::exchange(last, now);
+    }
+    if (tops.empty()) continue;
+    std::sort(tops.rbegin(), tops.rend());
+    options.diameter_px = tops[0].second;
+    for (const auto& [sharp, d] : tops)
+      if (options.other_diameters_px.empty() && sharp > kComparable * tops[0].first &&
+          std::max(d / tops[0].second, tops[0].second / d) > kApart)
+        options.other_diameters_px = {d};
+    std::vector<Detection> beads = locate(grey, options).beads;
+    // Each size as the median of its discs; a size of which there are hardly any is none.
+    const auto settle = [&](double d) {
+      std::vector<double> radii;
+      for (const Detection& b : beads)
+        if (std::abs(2 * b.radius / d - 1) < kApart - 1) radii.push_back(b.radius);
+      return std::ssize(radii) < kEnough ? 0.0 : 2 * upper_median(std::move(radii));
+    };
+    const double first = settle(options.diameter_px);
+    if (first == 0) continue;
+    options.diameter_px = first;
+    if (!options.other_diameters_px.empty()) {
+      const double second = settle(options.other_diameters_px[0]);
+      options.other_diameters_px.clear();
+      if (second > 0) options.other_diameters_px.push_back(second);
+    }
+    beads = locate(grey, options).beads;
+    double covered = 0, explained = 0, rims = 0;
+    for (const Detection& b : beads) {
+      rims += b.score;
+      covered += std::numbers::pi * b.radius * b.radius;
+      explained -= b.radius * b.radius * std::log(std::max(1 - b.score, 1e-6));
+    }
+    if (covered < kCovered * grey.cols * grey.rows || std::ssize(beads) < kEnough ||
+        rims < kSeen * static_cast<double>(beads.size()))
+      continue;
+    if (!best || explained > best->explained)
+      best = FoundSettings{options.diameter_px, bright, explained, options.other_diameters_px, std::string(kEdgeRefiner.word)};
+  }
+  return best;
+}
+
+namespace {
+
+/// Sizes that the votes of one or both polarities propose, and the lattice constant; the given one where one
+/// was given.
+/// \param pale  instead those of pale discs, if there may be some, which would not vote
+std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& given, double lattice,
+                                   bool pale = false) {
+  constexpr double kNoisy = 0.04, kSmooth = 1;  // darkness; px
+  std::vector<Hypothesis> all;
+  const double largest = std::min(kLargestRadius, 0.5 * std::min(grey.cols, grey.rows));
+  for (const bool bright : {false, true}) {
+    if (given.polarity_known && bright != given.preprocess.bright) continue;
+    if (largest < kSmallestRadius && given.diameter_px <= 0) continue;
+    PreprocessOptions options = given.preprocess;
+    options.bright = bright;
+    cv::Mat1f darkness =
+        prepare(grey, options, given.diameter_px > 0 ? given.diameter_px / 2 : largest).darkness;
+    const double contrast = pale ? contrast_of(darkness) : 1;
+    if (pale && contrast >= kPale) continue;
+    if (given.diameter_px > 0) {
+      all.push_back({bright, given.diameter_px, contrast});
+      continue;
+    }
+    darkness /= contrast;
+    // The gradients of noise alone would vote, and meet most sharply at the smallest radius.
+    const Noise noise = noise_of(darkness);
+    if (noise.dark + noise.light > kNoisy * kNoisy)
+      cv::GaussianBlur(darkness.clone(), darkness, {0, 0}, kSmooth);
+    for (const double radius : sharp_radii(darkness, kSmallestRadius, largest))
+      all.push_back({bright, 2 * radius, contrast});
+    if (lattice > 0) all.push_back({bright, lattice, contrast});
+  }
+  return all;
+}
+
+/// Pale plain discs, if they explain clearly more than the best so far. With grey discs a dark rim does
+/// little harm: where a common profile is the best, it must have the shape of a plain disc's.
+std::optional<FoundSettings> find_pale(const cv::Mat& grey, const LocatorOptions& given, double lattice,
+                                       const std::optional<FoundSettings>& best) {
+  if (model_of(given.refine) != DiscModel::plain) return std::nullopt;
+  const std::vector<Hypothesis> all = hypotheses(grey, given, lattice, true);
+  if (all.empty()) return std::nullopt;
+  double to_beat = best ? kClearly * best->explained : 0;
+  if (best && best->method == kProfileRefiner.word) {
+    const ProfileTrial trial = try_profile(grey, given, {best->bright, best->diameter_px});
+    if (trial.explained > 0 && !trial.has_plain_shape()) return std::nullopt;
+    to_beat = trial.explained;
+  }
+  std::optional<FoundSettings> pale;
+  for (const Hypothesis& h : all) {
+    const Trial trial = settle_plain(grey, given, h);
+    if (trial.explained <= to_beat) continue;
+    to_beat = trial.explained;
+    pale = FoundSettings{trial.diameter_px, h.bright, trial.explained, {}, {}, h.contrast};
+  }
+  return pale;
+}
+
+}  // namespace
+
+std::optional<FoundSettings> find_settings(const cv::Mat& picture, const LocatorOptions& given) {
+  // As `locate` does, so that a turned picture has the same settings.
+  // A frame on which no disc of the smallest radius fits says nothing of a size.
+  if (given.diameter_px <= 0 && std::min(picture.cols, picture.rows) < 2 * kSmallestRadius)
+    return std::nullopt;
+  const cv::Mat frame = canonical_picture_orientation(picture).turned(picture);
+  std::optional<FoundSettings> patterned;
+  if (given.diameter_px <= 0) patterned = find_patterned(frame, given);
+  constexpr double kShrink = 4;
+  const cv::Mat grey = busiest(frame, kSide);
+  const double lattice = lattice_constant(grey);
+  const std::vector<Hypothesis> all = hypotheses(grey, given, lattice);
+  std::optional<FoundSettings> best;
+  const auto try_all = [&](const std::vector<Hypothesis>& some) {
+    for (const Hypothesis& h : some) {
+      const Trial trial = settle_plain(grey, given, h);
+      if (!best || trial.explained > best->explained)
+        best = FoundSettings{trial.diameter_px, h.bright, trial.explained, {}, {}};
+    }
+  };
+  try_all(all);
+  if (given.diameter_px <= 0 && (!best || best->explained <= 0)) {
+    // A few large discs, up to 320 px.
+    cv::Mat small;
+    cv::resize(grey, small, {}, 1 / kShrink, 1 / kShrink, cv::INTER_AREA);
+    std::vector<Hypothesis> larger = hypotheses(small, given, 0);
+    for (Hypothesis& h : larger) h.diameter_px *= kShrink;
+    try_all(larger);
+  }
+  // Rims of large circles are seen in a packing of small discs, too, but explain less of it.
+  const double part = static_cast<double>(grey.total()) / static_cast<double>(frame.total());
+  if (patterned && (!best || part * patterned->explained > best->explained)) return patterned;
+  if (best && given.refine.method == kExactRefiner.word)
+    if (auto alike = select_profile_model(frame, given, all, *best, lattice)) best = alike;
+  if (auto pale = find_pale(grey, given, lattice, best)) best = pale;
+  const bool by_picture = model_of(given.refine) == DiscModel::plain;
+  if (best && best->explained > 0 && given.diameter_px <= 0 && by_picture)
+    if (auto mixed = find_polydisperse(grey, given, all, *best)) return mixed;
+  if (best && best->explained <= 0 && given.diameter_px <= 0) return std::nullopt;
+  return best;
+}
+
+}  // namespace twincell

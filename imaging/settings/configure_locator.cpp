@@ -1,0 +1,62 @@
+#include "imaging/settings/configure_locator.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/error.hpp"
+#include "imaging/settings/auto_configuration.hpp"
+
+namespace twincell {
+
+namespace {
+
+/// Options as given, with what was found.
+LocatorOptions with(const FoundSettings& found, LocatorOptions options) {
+  options.diameter_px = found.diameter_px;
+  options.preprocess.bright = found.bright;
+  if (options.other_diameters_px.empty()) options.other_diameters_px = found.other_diameters_px;
+  if (!found.method.empty()) options.refine.method = found.method;
+  options.preprocess.contrast = found.contrast;
+  options.polarity_known = true;
+  return options;
+}
+
+/// Looks at frames 0, 1, 2, 4, ... since each look takes as long as locating many frames, until one shows a
+/// bead with the settings found in it.
+LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
+  constexpr std::size_t kLast = 32;
+  std::optional<LocatorOptions> first;  // found where no bead was seen
+  for (std::size_t k = 0; k <= kLast; k = std::max<std::size_t>(2 * k, k + 1)) {
+    const cv::Mat* frame = frames.look(k);
+    if (frame == nullptr) break;
+    const auto found = find_settings(*frame, given);
+    if (!found) continue;
+    LocatorOptions settled = with(*found, given);
+    if (model_of(settled.refine) == DiscModel::circle)
+      settled.preprocess.contrast = find_contrast(*frame, settled);
+    if (!first) first = settled;
+    if (locate(*frame, settled).beads.empty()) continue;
+    return {settled, static_cast<std::int64_t>(k)};
+  }
+  if (!first && given.diameter_px <= 0)
+    throw InputError(
+        Where{.file = frames.source().current(), .key = {}},
+        "shows no discs from which a bead diameter could be estimated; give it with --diameter.");
+  LocatorOptions found = first.value_or(given);
+  found.polarity_known = true;
+  return {found, 0};
+}
+
+}  // namespace
+
+LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions& given) {
+  cv::setNumThreads(1);  // one pool only: ours
+  const cv::Mat* first = frames.look(0);
+  if (first == nullptr) return {given, 0};
+  if (given.diameter_px <= 0 || !given.polarity_known) return search(frames, given);
+  LocatorOptions found = given;
+  found.preprocess.contrast = find_contrast(*first, given);
+  return {found, 0};
+}
+
+}  // namespace twincell

@@ -1,0 +1,98 @@
+// A folder of pictures, in the order in which a person would put their names.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "imaging/stack/formats/byte_file.hpp"
+#include "imaging/stack/formats/reader.hpp"
+#include "imaging/stack/formats/size_guard.hpp"
+
+namespace twincell::frames {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_listed(const std::string& extensions, const fs::path& file) {
+  std::string e = file.extension().string();
+  std::transform(e.begin(), e.end(), e.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return !e.empty() && (extensions + " ").find(e + " ") != std::string::npos;
+}
+
+class Folder final : public FrameSource {
+ public:
+  Folder(std::vector<fs::path> files, std::size_t other_files) : files_(std::move(files)) {
+    open(0);
+    info_ = source_->info();
+    info_.format = fmt::format("{} files, the first: {}", files_.size(), info_.format);
+    info_.other_files = other_files;
+    info_.frame_rate_hz.reset();
+    announced_ = files_.size();
+    // Stacks of many pages, cut into files: then every file is asked how many it holds.
+    if (source_->announced() > 1) {
+      announced_ = source_->announced();
+      for (std::size_t i = 1; i < files_.size(); ++i)
+        announced_ += reader_of(head_of(files_[i])).open(files_[i], "")->announced();
+    }
+  }
+
+  bool next(cv::Mat& frame) override {
+    for (; !source_->next(frame); open(at_ + 1))
+      if (at_ + 1 == files_.size()) return false;
+    guard_.check(frame, source_->current());
+    return true;
+  }
+  [[nodiscard]] std::size_t announced() const override { return announced_; }
+  [[nodiscard]] std::string current() const override { return source_->current(); }
+  [[nodiscard]] StackInfo info() const override { return info_; }
+
+ private:
+  void open(std::size_t i) {
+    source_ = reader_of(head_of(files_[i])).open(files_[i], "");
+    at_ = i;
+  }
+
+  std::vector<fs::path> files_;
+  std::size_t at_ = 0, announced_ = 0;
+  std::unique_ptr<FrameSource> source_;
+  SizeGuard guard_;
+  StackInfo info_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_folder(const fs::path& folder) {
+  const std::string pictures = ".png .tif .tiff .jpg .jpeg .bmp .pgm";
+  std::string all;
+  for (const Reader* reader : readers()) all += fmt::format("{} ", reader->extensions);
+  std::vector<fs::path> files;
+  std::size_t others = 0;
+  std::string stack;  // a file in the folder that is a stack by itself
+  std::error_code error, ignored;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const fs::path& file = entry.path();
+    if (file.filename().string().starts_with('.') || entry.is_directory(ignored)) continue;
+    if (is_listed(pictures, file)) {
+      files.push_back(file);
+    } else {
+      ++others;
+      if (stack.empty() && is_listed(all, file)) stack = file.filename().string();
+    }
+  }
+  if (error) refuse(folder, "cannot be listed: " + error.message() + ".");
+  if (files.empty())
+    refuse(folder, stack.empty()
+                       ? "holds no PNG, TIFF, JPEG, BMP or PGM picture."
+                       : fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture; it holds {}: name that "
+                                     "file.",
+                                     stack));
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return natural_less(a.filename().string(), b.filename().string());
+  });
+  return std::make_unique<Folder>(std::move(files), others);
+}
+
+}  // namespace twincell::frames

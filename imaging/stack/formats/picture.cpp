@@ -1,0 +1,164 @@
+// Single pictures: PNG, JPEG, BMP, PGM. A decoder hands out the readable top of a damaged picture and stays
+// silent, so each is walked first: whole, of a size that its bytes can explain, and unspoilt where it carries
+// a sum.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <opencv2/imgcodecs.hpp>
+#include <utility>
+
+#include "imaging/stack/formats/byte_file.hpp"
+#include "imaging/stack/formats/raw_pixels.hpp"
+#include "imaging/stack/formats/reader.hpp"
+
+namespace twincell::frames {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::uint8_t>;
+
+std::uint32_t crc32(const std::uint8_t* data, std::size_t n) {
+  static const std::array<std::uint32_t, 256> table = [] {
+    std::array<std::uint32_t, 256> t{};
+    for (std::uint32_t i = 0; i < 256; ++i) {
+      std::uint32_t c = i;
+      for (int bit = 0; bit < 8; ++bit) c = (c & 1u) != 0 ? 0xEDB88320u ^ (c >> 1) : c >> 1;
+      t[i] = c;
+    }
+    return t;
+  }();
+  std::uint32_t crc = 0xFFFFFFFFu;
+  for (std::size_t i = 0; i < n; ++i) crc = table[(crc ^ data[i]) & 0xFFu] ^ (crc >> 8);
+  return ~crc;
+}
+
+void require_size(const fs::path& file, const Bytes& b, std::uint64_t width, std::uint64_t height) {
+  require_plausible_size(file, width, height, 8, b.size());  // four channels of 16 bits
+}
+
+void check_png(const fs::path& file, const Bytes& b) {
+  if (b.size() >= 24) require_size(file, b, number_at(&b[16], 4, true), number_at(&b[20], 4, true));
+  for (std::size_t at = 8; at + 12 <= b.size();) {
+    const std::size_t length = number_at(&b[at], 4, true);
+    if (length > b.size() - at - 12) break;
+    if (crc32(&b[at + 4], length + 4) != number_at(&b[at + 8 + length], 4, true))
+      refuse(file, fmt::format("is damaged: the PNG chunk at byte {} fails its checksum.", at));
+    if (std::equal(&b[at + 4], &b[at + 8], "IEND")) return;
+    at += 12 + length;
+  }
+  refuse(file, fmt::format("is truncated: the PNG picture does not end within its {} bytes.", b.size()));
+}
+
+void check_jpeg(const fs::path& file, const Bytes& b) {
+  std::size_t end = b.size();
+  while (end > 2 && b[end - 1] == 0) --end;  // some cameras pad with zeros
+  if (b[end - 2] != 0xFF || b[end - 1] != 0xD9)
+    refuse(file, fmt::format("is truncated: the JPEG picture does not end within its {} bytes.", b.size()));
+  for (std::size_t at = 2; at + 9 <= b.size() && b[at] == 0xFF;) {
+    const std::uint8_t kind = b[at + 1];
+    const bool frame = kind >= 0xC0 && kind <= 0xCF && kind != 0xC4 && kind != 0xC8 && kind != 0xCC;
+    if (frame) return require_size(file, b, number_at(&b[at + 7], 2, true), number_at(&b[at + 5], 2, true));
+    at += 2 + number_at(&b[at + 2], 2, true);
+  }
+}
+
+void check_bmp(const fs::path& file, const Bytes& b) {
+  if (b.size() < 26 || number_at(&b[2], 4, false) > b.size())
+    refuse(file, fmt::format("is truncated: the BMP picture does not end within its {} bytes.", b.size()));
+  const auto side = [&](std::size_t at) {
+    const auto n = static_cast<std::int32_t>(number_at(&b[at], 4, false));
+    return static_cast<std::uint64_t>(n < 0 ? -std::int64_t{n}
+                                            : n);  // a negative height is counted from the top
+  };
+  require_size(file, b, side(18), side(22));
+}
+
+// "P5 width height largest" and the pixels, comments after '#'. \returns the largest value
+std::uint64_t check_pgm(const fs::path& file, const Bytes& b) {
+  std::size_t at = 2;
+  const auto number = [&]() -> std::uint64_t {
+    while (at < b.size() && (std::isspace(b[at]) != 0 || b[at] == '#'))
+      if (b[at++] == '#')
+        while (at < b.size() && b[at] != '\n') ++at;
+    std::uint64_t n = 0;
+    const std::size_t first = at;
+    for (; at < b.size() && std::isdigit(b[at]) != 0 && at - first < 10; ++at) n = 10 * n + (b[at] - '0');
+    if (at == first) refuse(file, "is damaged: the PGM header lacks a number.");
+    return n;
+  };
+  const std::uint64_t width = number(), height = number(), largest = number();
+  require_size(file, b, width, height);
+  const std::uint64_t needed = width * height * (largest > 255 ? 2 : 1);
+  if (b[1] == '5' && (at + 1 > b.size() || b.size() - at - 1 < needed))
+    refuse(file, fmt::format("is truncated: the PGM picture does not end within its {} bytes.", b.size()));
+  return largest;
+}
+
+struct Kind {
+  std::string_view name, magic;
+};
+constexpr std::array<Kind, 5> kKinds = {{{"PNG", "\x89PNG\r\n\x1a\n"},
+                                         {"JPEG", "\xff\xd8\xff"},
+                                         {"BMP", "BM"},
+                                         {"PGM", "P5"},
+                                         {"PGM", "P2"}}};  // the second in digits
+
+const Kind* kind_of(const Head& head) {
+  for (const Kind& kind : kKinds)
+    if (head.starts_with(kind.magic)) return &kind;
+  return nullptr;
+}
+
+class Picture final : public FrameSource {
+ public:
+  explicit Picture(const fs::path& file) : file_(file) {
+    const ByteFile in(file);
+    const std::string_view kind = kind_of(head_of(file))->name;
+    const Bytes bytes = in.bytes(0, in.size(), "the picture");
+    if (kind == "PNG") check_png(file, bytes);
+    if (kind == "JPEG") check_jpeg(file, bytes);
+    if (kind == "BMP") check_bmp(file, bytes);
+    if (kind == "PGM") info_.bits = std::bit_width(check_pgm(file, bytes));
+    cv::Mat picture;
+    try {
+      picture = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+    } catch (const cv::Exception&) {  // becomes our sentence
+    }
+    if (picture.empty()) in.refuse(fmt::format("cannot be decoded as a {} picture.", kind));
+    frame_ = grey(picture, file);
+    info_.format = fmt::format("{} picture, {} bit", kind, 8 * picture.elemSize1());
+    info_.width = frame_.cols;
+    info_.height = frame_.rows;
+  }
+
+  bool next(cv::Mat& frame) override {
+    if (frame_.empty()) return false;
+    frame = std::exchange(frame_, cv::Mat());
+    return true;
+  }
+  [[nodiscard]] std::size_t announced() const override { return 1; }
+  [[nodiscard]] std::string current() const override { return file_.string(); }
+  [[nodiscard]] StackInfo info() const override { return info_; }
+
+ private:
+  fs::path file_;
+  cv::Mat frame_;
+  StackInfo info_;
+};
+
+}  // namespace
+
+extern const Reader picture_reader;
+const Reader picture_reader = {
+    .extensions = ".png .jpg .jpeg .bmp .pgm",
+    .owns = [](const Head& head) { return kind_of(head) != nullptr; },
+    .open = [](const fs::path& file, const std::string&) -> std::unique_ptr<FrameSource> {
+      return std::make_unique<Picture>(file);
+    }};
+
+}  // namespace twincell::frames

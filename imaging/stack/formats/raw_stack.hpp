@@ -1,0 +1,57 @@
+#pragma once
+/// \file
+/// A file of uncompressed frames: what all camera files share once their headers are read.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "imaging/stack/formats/byte_file.hpp"
+#include "imaging/stack/formats/raw_pixels.hpp"
+#include "imaging/stack/frame_source.hpp"
+
+namespace twincell::frames {
+
+/// A derived class reads its header in its constructor, sets frames_, layout_ and info_ there, and says where
+/// a frame lies.
+class RawStack : public FrameSource {
+ public:
+  bool next(cv::Mat& frame) override;
+  [[nodiscard]] std::size_t announced() const override { return frames_; }
+  [[nodiscard]] std::string current() const override;
+  [[nodiscard]] StackInfo info() const override { return info_; }
+  [[nodiscard]] std::optional<double> time_s() const override { return time_; }
+
+ protected:
+  explicit RawStack(const std::filesystem::path& file) : in_(file) {}
+
+  /// First byte of frame i, from 0. \throws InputError if the frame is not whole
+  [[nodiscard]] virtual std::uint64_t place(std::uint64_t i) const = 0;
+  /// Its time, s after info_.time_origin.
+  [[nodiscard]] virtual std::optional<double> stamp_s(std::uint64_t /*i*/) const { return {}; }
+  /// What is left to do to the unpacked values.
+  virtual void finish(cv::Mat& /*frame*/) const {}
+  /// For messages: "frame 3".
+  [[nodiscard]] virtual std::string name(std::uint64_t i) const;
+
+  /// Sets layout_ and info_ from a header. \throws InputError if no file of this size holds such frames
+  void set_layout(std::uint64_t width, std::uint64_t height, int stored_bits);
+  /// What a constructor ends with, before any work is done. \throws InputError if there are no frames
+  void require_frames() const;
+  /// \throws InputError if the file ends before its last frame, which begins at `last`
+  void require_last(std::uint64_t last) const;
+  /// Sets the rate by the time stamps of the first and the last frame.
+  void set_stamped_rate(std::optional<double> first_s, std::optional<double> last_s);
+
+  ByteFile in_;
+  StackInfo info_;
+  RawLayout layout_;
+  std::uint64_t frames_ = 0;
+
+ private:
+  std::uint64_t read_ = 0;
+  std::optional<double> time_;
+  std::vector<std::uint8_t> raw_;
+};
+
+}  // namespace twincell::frames

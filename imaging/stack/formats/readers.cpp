@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+#include "imaging/stack/formats/byte_file.hpp"
+#include "imaging/stack/formats/reader.hpp"
+
+// The list. Formats with a mark of their own come first; what is known by its name alone comes after them,
+// and the one that tries anything comes last.
+#define TWINCELL_READERS(EACH) \
+  EACH(tiff) EACH(picture) EACH(cine) EACH(seq) EACH(mrf) EACH(hdf5) EACH(mraw) EACH(video)
+
+namespace twincell::frames {
+
+#define TWINCELL_DECLARE(name) extern const Reader name##_reader;
+TWINCELL_READERS(TWINCELL_DECLARE)
+#undef TWINCELL_DECLARE
+
+const std::vector<const Reader*>& readers() {
+#define TWINCELL_ADDRESS(name) &name##_reader,
+  static const std::vector<const Reader*> list = {TWINCELL_READERS(TWINCELL_ADDRESS)};
+#undef TWINCELL_ADDRESS
+  return list;
+}
+
+bool Head::starts_with(std::string_view magic, std::size_t at) const {
+  return bytes.size() >= at + magic.size() &&
+         std::equal(magic.begin(), magic.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                    [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
+}
+
+Head head_of(const std::filesystem::path& file) {
+  const ByteFile in(file);
+  if (in.size() == 0) in.refuse("is empty.");
+  Head head{.file = file, .extension = file.extension().string(), .bytes = {}};
+  std::transform(head.extension.begin(), head.extension.end(), head.extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  head.bytes = in.bytes(0, std::min<std::uint64_t>(kHeadBytes, in.size()), "its head");
+  return head;
+}
+
+const Reader& reader_of(const Head& head) {
+  std::string known;
+  for (const Reader* reader : readers()) {
+    if (reader->owns(head)) return *reader;
+    known += fmt::format("{}{}", known.empty() ? "" : " ", reader->extensions);
+  }
+  const bool named_so =
+      !head.extension.empty() && (known + " ").find(head.extension + " ") != std::string::npos;
+  if (named_so)
+    refuse(head.file,
+           fmt::format("is not what its name says: its content is that of no {} file, nor of any other "
+                       "stack that can be read.",
+                       head.extension));
+  refuse(head.file,
+         fmt::format(
+             "is not a stack of frames: a folder of pictures is expected, or a file of one of the kinds {}.",
+             known));
+}
+
+}  // namespace twincell::frames

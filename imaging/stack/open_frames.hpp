@@ -1,0 +1,21 @@
+#pragma once
+/// \file
+/// Opens stacks of frames: folders of pictures, TIFF stacks, camera files, HDF5 stacks, videos.
+
+#include <filesystem>
+#include <memory>
+
+#include "imaging/stack/frame_source.hpp"
+
+namespace twincell {
+
+/// Opens a stack: a folder (its PNG, TIFF, JPEG, BMP and PGM files in natural order, all pages of each), one
+/// such file, a camera file (.cine; .mraw, .cih or .cihx; .seq; .mrf), a 3-D dataset of an HDF5 file
+/// ("file.h5:/path", or the only one), or a video. A file's content decides, not its name. docs/frames.md
+/// has the table. \throws InputError if there is nothing to read
+std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& stack);
+
+/// The file or folder on the disk behind a stack: "file.h5" of "file.h5:/path".
+std::filesystem::path file_of_stack(const std::filesystem::path& stack);
+
+}  // namespace twincell

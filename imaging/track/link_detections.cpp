@@ -1,0 +1,141 @@
+#include "imaging/track/link_detections.hpp"
+
+#include <cmath>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "core/error.hpp"
+#include "imaging/link/initial_velocities.hpp"
+#include "imaging/phase/phase_estimation.hpp"
+#include "imaging/phase/trigger_list.hpp"
+
+namespace twincell {
+
+namespace {
+
+PixelPoint place_of(const TrackedBead& b) {
+  return {b.x_px, b.y_px};
+}
+
+// The bed's motion without knowing phases: steps common to all beads, added up, and whether there were any.
+BedMotion bed_motion(const DetectionStore& located, const LinkOptions& link, double unit_px) {
+  Linker linker(link);
+  BedMotion motion;
+  std::vector<PixelPoint> places;
+  std::vector<std::uint8_t> tracers;
+  std::unordered_map<std::int64_t, TrackedBead> before, now;
+  std::vector<double> steps;
+  double height = 0;
+  for (std::size_t f = 0; f < located.size(); ++f) {
+    const std::vector<TrackedBead> beads = located[f];
+    places.clear();
+    tracers.clear();
+    for (const TrackedBead& b : beads) {
+      places.push_back(place_of(b));
+      tracers.push_back(b.tracer ? 1 : 0);
+    }
+    const std::vector<std::int64_t> ids = linker.next(places, {}, tracers);
+    now.clear();
+    steps.clear();
+    for (std::size_t k = 0; k < beads.size(); ++k) {
+      const TrackedBead& b = now[ids[k]] = beads[k];
+      const auto old = before.find(ids[k]);
+      if (old == before.end()) continue;
+      const TrackedBead& a = old->second;
+      steps.push_back(std::hypot((b.x_px - a.x_px) / std::hypot(a.sigma_x_px, b.sigma_x_px),
+                                 (b.y_px - a.y_px) / std::hypot(a.sigma_y_px, b.sigma_y_px)));
+    }
+    std::swap(before, now);
+    height -= f > 0 ? linker.mean_step().y_px / unit_px : 0;
+    motion.heights.push_back(height);
+    motion.repeats.push_back(log_odds_of_repeat(steps));
+  }
+  return motion;
+}
+
+PhaseTable learn_phases(const DetectionStore& located, const LinkOptions& link, const CellDescription& cell,
+                        const PhaseWay& way) {
+  if (way.triggers) {
+    PhaseTable table = read_triggers(*way.triggers, way.drive_hz, cell.phase_lock.frames_per_cycle);
+    if (table.frames.size() != located.size())
+      throw InputError(Where{.file = way.triggers->string(), .key = {}},
+                       "has " + std::to_string(table.frames.size()) + " lines for " +
+                           std::to_string(located.size()) +
+                           " frames; every frame of the stack needs its line.");
+    return table;
+  }
+  if (!way.find) return fixed_phases(cell.phase_lock);
+  PhaseEstimationOptions options{
+      .frames_per_cycle = cell.phase_lock.frames_per_cycle, .gamma = {}, .amplitude = {}};
+  if (const auto drive = cell.drive()) options.gamma = drive->gamma();
+  return estimate_phases(bed_motion(located, link, cell.pixels_per_sigma.value_or(link.diameter_px)),
+                         options);
+}
+
+}  // namespace
+
+std::vector<std::int64_t> LinkedDetections::broken_tracers() const {
+  std::vector<std::int64_t> broken;
+  const auto end = static_cast<std::int64_t>(frames.size()) - 1;
+  for (std::size_t t = 0; t < tracks.size(); ++t)
+    if (tracks[t].is_tracer() && (tracks[t].first > 0 || tracks[t].last < end))
+      broken.push_back(static_cast<std::int64_t>(t));
+  return broken;
+}
+
+LinkedDetections link_detections(const DetectionStore& located, LinkOptions link, const CellDescription& cell,
+                                 const PhaseWay& way, const std::filesystem::path& folder,
+                                 Progress& progress) {
+  LinkedDetections stack{.frames = DetectionStore(folder), .tracks = {}, .phases = {}, .links = {}};
+  stack.phases = learn_phases(located, link, cell, way);
+  if (const auto drive = cell.drive(); drive && stack.phases.locked() && cell.pixels_per_sigma) {
+    const double dt = drive->period() / stack.phases.frames_per_cycle;
+    link.fall_px = dt * dt * *cell.pixels_per_sigma;
+  }
+  Linker linker(link, stack.phases.frames_per_cycle);
+  // A frame and the one after it, by which its links are judged too.
+  struct Seen : FrameOfBeads {
+    std::vector<TrackedBead> beads;
+  };
+  auto read = [&](std::size_t f) {
+    Seen frame;
+    if (f >= located.size()) return frame;
+    frame.beads = located[f];
+    for (const TrackedBead& b : frame.beads) {
+      frame.places.push_back(place_of(b));
+      frame.tracers.push_back(b.tracer ? 1 : 0);
+    }
+    const FramePhase at = stack.phases.at(static_cast<std::int64_t>(f));
+    frame.moment = {.interval = at.interval, .phase = at.phase, .cycle = at.cycle};
+    return frame;
+  };
+  linker.begin(initial_velocities(link, stack.phases.frames_per_cycle, located.size(), read));
+  Seen next = read(0);
+  for (std::size_t f = 0; f < located.size(); ++f) {
+    Seen frame = std::exchange(next, read(f + 1));
+    std::vector<TrackedBead>& beads = frame.beads;
+    const FrameAhead ahead{next.places, next.moment, next.tracers};
+    const std::vector<std::int64_t> ids =
+        linker.next(frame.places, frame.moment, frame.tracers, f + 1 < located.size() ? &ahead : nullptr);
+    stack.tracks.resize(static_cast<std::size_t>(linker.n_tracks()));
+    for (std::size_t k = 0; k < beads.size(); ++k) {
+      beads[k].track = ids[k];
+      beads[k].ambiguous = linker.ambiguous()[k] != 0;
+      TrackSummary& track = stack.tracks[static_cast<std::size_t>(ids[k])];
+      if (track.seen == 0) track.first = static_cast<std::int64_t>(f);
+      track.last = static_cast<std::int64_t>(f);
+      ++track.seen;
+      track.tracer += beads[k].tracer ? 1 : 0;
+      track.ambiguous += beads[k].ambiguous ? 1 : 0;
+      track.radius_px += (beads[k].radius_px - track.radius_px) / static_cast<double>(track.seen);
+    }
+    stack.frames.append(beads);
+    if (f % 64 == 0) progress.update(static_cast<std::int64_t>(f), static_cast<std::int64_t>(located.size()));
+  }
+  stack.n_tracks = linker.n_tracks();
+  stack.links = linker.total();
+  return stack;
+}
+
+}  // namespace twincell

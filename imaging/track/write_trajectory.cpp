@@ -1,0 +1,148 @@
+#include "imaging/track/write_trajectory.hpp"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/json_text.hpp"
+
+namespace twincell {
+
+namespace {
+
+constexpr std::size_t kMostNamed = 1000;  // dropped or doubled frames that are listed one by one
+
+}  // namespace
+
+TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell, double diameter_px,
+                          int shortest) {
+  TrackPlan plan;
+  const double scale = cell.pixels_per_sigma.value_or(diameter_px);
+  plan.pixel_frame = cell.pixel_frame({stack.width_px, stack.height_px}, scale,
+                                      cell.origin.value_or(PixelPoint{-0.5, stack.height_px - 0.5}));
+  TrajectoryInfo& info = plan.info;
+  plan.slot_of_track.assign(stack.tracks.size(), -1);
+  for (std::size_t t = 0; t < stack.tracks.size(); ++t) {
+    const TrackSummary& track = stack.tracks[t];
+    if (track.seen < shortest) continue;
+    plan.slot_of_track[t] = static_cast<std::int64_t>(info.n_beads++);
+    info.radius.push_back(track.radius_px / scale);
+    info.tracer.push_back(track.is_tracer() ? 1 : 0);
+  }
+  info.drive = cell.drive();
+  info.columns.identity = true;
+  info.columns.position_sigma = true;
+  info.columns.phase = stack.phases.locked();
+  info.columns.plate_height = info.drive && stack.phases.locked();
+  info.phases_per_cycle = stack.phases.frames_per_cycle;
+  info.box.lower = Vec3(0, -0.5, 0);
+  info.box.upper =
+      Vec3(cell.width.value_or(stack.width_px / scale), 0.5, cell.height.value_or(stack.height_px / scale));
+  info.box.boundary = {cell.width ? cell.sides : Boundary::open, Boundary::open,
+                       cell.origin ? Boundary::wall : Boundary::open};
+  if (info.box.boundary[0] == Boundary::wall && cell.side_tilt) info.box.side_tilt = *cell.side_tilt;
+  info.scale = cell.scale;
+  info.scale.pixels_per_sigma = scale;
+  info.source = "experiment";
+  info.tracking_json = tracking_json(stack, plan, cell);
+  return plan;
+}
+
+std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell) {
+  const PhaseTable& phases = stack.phases;
+  nlohmann::json lock = {{"way", phases.way}};
+  if (phases.locked()) lock["frames_per_cycle"] = phases.frames_per_cycle;
+  if (phases.locked()) lock["first_phase"] = phases.first_phase;
+  if (phases.period_frames) lock["period_frames"] = *phases.period_frames;
+  if (phases.jitter) lock["jitter_frames"] = *phases.jitter;
+  if (phases.agreement) lock["agreement"] = *phases.agreement;
+  if (!phases.frames.empty()) {
+    lock["dropped"] = phases.dropped;
+    lock["doubled"] = phases.doubled;
+    for (std::size_t f = 1; f < phases.frames.size(); ++f) {
+      const double interval = phases.frames[f].interval;
+      if (interval > 1 && lock["dropped_before"].size() < kMostNamed) lock["dropped_before"].push_back(f);
+      if (interval == 0 && lock["doubled_frames"].size() < kMostNamed) lock["doubled_frames"].push_back(f);
+    }
+  }
+  const LinkReport& l = stack.links;
+  nlohmann::json tracers = {
+      {"count", 0}, {"broken", nlohmann::json::array()}, {"uncertain", nlohmann::json::array()}};
+  std::int64_t count = 0;
+  for (std::size_t t = 0; t < stack.tracks.size(); ++t)
+    if (stack.tracks[t].is_tracer() && plan.slot_of_track[t] >= 0) {
+      ++count;
+      if (const std::int64_t links = stack.tracks[t].ambiguous; links > 0)
+        tracers["uncertain"].push_back({{"slot", plan.slot_of_track[t]}, {"ambiguous", links}});
+    }
+  tracers["count"] = count;
+  for (const std::int64_t t : stack.broken_tracers())
+    if (const std::int64_t slot = plan.slot_of_track[static_cast<std::size_t>(t)]; slot >= 0)
+      tracers["broken"].push_back({{"slot", slot},
+                                   {"first", stack.tracks[static_cast<std::size_t>(t)].first},
+                                   {"last", stack.tracks[static_cast<std::size_t>(t)].last}});
+  if (cell.phase_lock.offset != 0) lock["offset_frames"] = cell.phase_lock.offset;
+  nlohmann::json document = {{"phase_lock", lock},
+                             {"links",
+                              {{"made", l.links},
+                               {"settled", l.settled},
+                               {"bridged", l.bridged},
+                               {"ambiguous", l.ambiguous},
+                               {"births", l.births},
+                               {"losses", l.losses},
+                               {"networks", l.networks},
+                               {"largest_network", l.largest_network},
+                               {"unsolved", l.unsolved},
+                               {"rematched", l.rematched},
+                               {"unclear_shifts", l.unclear_shifts}}},
+                             {"tracers", tracers},
+                             {"camera",
+                              {{"pixels_per_sigma", plan.pixel_frame.pixels_per_sigma},
+                               {"origin_px", {plan.pixel_frame.origin.x_px, plan.pixel_frame.origin.y_px}},
+                               {"width_px", stack.width_px},
+                               {"height_px", stack.height_px},
+                               {"bright", cell.bright}}}};
+  if (plan.pixel_frame.lens) {
+    document["camera"]["rotation_deg"] = cell.rotation_deg;
+    document["camera"]["distortion"] = cell.distortion;
+  }
+  if (cell.included.camera)
+    document["camera"]["covariance"] = {{"names", cell.included.camera->names},
+                                        {"matrix", cell.included.camera->matrix}};
+  return json_text(document);
+}
+
+void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell,
+                      TrajectorySink& sink) {
+  const TrajectoryInfo& info = plan.info;
+  const double nan = std::numeric_limits<double>::quiet_NaN(), scale = plan.pixel_frame.pixels_per_sigma;
+  Frame frame;
+  for (std::size_t f = 0; f < stack.frames.size(); ++f) {
+    const auto number = static_cast<std::int64_t>(f);
+    const FramePhase at = stack.phases.at(number);
+    if (f > 0 && at.interval == 0) continue;
+    frame.step = number;
+    frame.phase = at.phase;
+    frame.cycle = at.cycle;
+    frame.time = static_cast<double>(f);
+    if (info.drive && stack.phases.locked()) {
+      const double fraction = (at.phase + cell.phase_lock.offset) / stack.phases.frames_per_cycle;
+      frame.time = (static_cast<double>(at.cycle) + fraction) * info.drive->period();
+      frame.plate_height = info.drive->displacement(fraction - std::floor(fraction));
+    }
+    frame.position.assign(info.n_beads, Vec3(nan, nan, nan));
+    frame.position_sigma.assign(info.n_beads, Vec3(nan, nan, nan));
+    frame.id.assign(info.n_beads, -1);
+    for (const TrackedBead& b : stack.frames[f]) {
+      const std::int64_t slot = plan.slot_of_track[static_cast<std::size_t>(b.track)];
+      if (slot < 0) continue;
+      const auto i = static_cast<std::size_t>(slot);
+      frame.id[i] = slot;
+      frame.position[i] = plan.pixel_frame.cell_from_pixel({b.x_px, b.y_px});
+      frame.position_sigma[i] = Vec3(b.sigma_x_px / scale, nan, b.sigma_y_px / scale);
+    }
+    sink.append(frame);
+  }
+}
+
+}  // namespace twincell

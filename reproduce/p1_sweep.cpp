@@ -1,0 +1,285 @@
+#include "reproduce/p1_sweep.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/statistics/statistics.hpp"
+#include "core/json_text.hpp"
+#include "reproduce/p1_scene.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+using nlohmann::json;
+
+/// What a budget buys. The paper does not say of which N_l its Figs. 4 and 5 are.
+struct Size {
+  double core_minutes;
+  int layers, cycles, seeds, every;  ///< every so manieth point
+};
+constexpr int kPaperCycles = 200;
+constexpr double kOnsetWidth = 0.2;  ///< of Gamma; about the distance of points
+
+const Size& size_for(const Request& request) {
+  static constexpr std::array<Size, 7> all = {{{0, 20, 30, 1, 4},
+                                               {1, 20, 60, 1, 2},
+                                               {6, 20, 200, 1, 1},
+                                               {20, 20, 200, 3, 1},
+                                               {120, 40, 200, 3, 1},
+                                               {500, 60, 200, 4, 1},
+                                               {1e300, 60, 200, 10, 1}}};
+  if (request.full) return all.back();
+  const Size* chosen = &all.front();
+  for (const Size& size : all)
+    if (request.minutes * request.threads >= size.core_minutes) chosen = &size;
+  return *chosen;
+}
+
+/// K_m from 0.8 to 30; close together where slips and convection begin.
+const std::vector<double>& gammas(bool random) {
+  static const std::vector<double> of_random = {0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8,
+                                                1.9, 2.0, 2.2, 2.4, 2.7, 3.0, 3.5, 4.2, 5.0, 5.5};
+  static const std::vector<double> of_crystal = {0.9, 1.1, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.3, 2.4, 2.5,
+                                                 2.6, 2.7, 2.8, 2.9, 3.0, 3.2, 3.5, 4.0, 4.5, 5.0, 5.5};
+  return random ? of_random : of_crystal;
+}
+
+/// Every so manieth, in an order in which any beginning is spread over the whole: where the time is up early,
+/// the curve is coarse, not cut off. (Van der Corput's sequence.)
+std::vector<double> spread(const std::vector<double>& all, int every) {
+  std::vector<double> some;
+  for (std::size_t i = 0; i < all.size(); i += static_cast<std::size_t>(every)) some.push_back(all[i]);
+  std::vector<std::pair<double, double>> keyed;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    double key = 0, digit = 0.5;
+    for (std::size_t k = i; k > 0; k /= 2, digit /= 2) key += digit * static_cast<double>(k % 2);
+    keyed.emplace_back(key, 0);
+  }
+  // The i-th place to be taken is the rank of the i-th key.
+  std::vector<double> ordered;
+  for (const auto& [key, unused] : keyed) {
+    const auto rank =
+        std::count_if(keyed.begin(), keyed.end(), [bound = key](const auto& k) { return k.first < bound; });
+    ordered.push_back(some[static_cast<std::size_t>(rank)]);
+  }
+  return ordered;
+}
+
+sweep::Plan plan_of(const Size& size, const P1Run& run, std::uint64_t seed) {
+  return sweep::read_plan_text(
+      fmt::format(
+          "seed = {}\nresults = [\"T_g\", \"p_s\", \"slips\", \"s_b\", \"s_c\", \"s_j_growth_late\"]\n"
+          "{}[axes]\ndrive.gamma = [{:.2f}]\nseeds = {}\n",
+          seed, p1_scene(run), fmt::join(spread(gammas(run.start == "random"), size.every), ", "),
+          size.seeds),
+      fmt::format("ladder, {}, {} layers", run.start, run.layers));
+}
+
+/// The value of a result, if it has one.
+std::optional<double> value_of(const json& results, const char* name) {
+  const json r = results.value(name, json::object());
+  if (!r.contains("value") || !r["value"].is_number()) return std::nullopt;
+  return r["value"].get<double>();
+}
+
+StrengthSweep ladder_of(const std::string& start, const sweep::Schedule& schedule) {
+  std::vector<SweepRun> runs;
+  for (const sweep::Curve& curve : schedule.curves())
+    for (const auto& text : curve.results) {
+      if (!text) continue;
+      const json results = json::parse(*text).value("results", json::object());
+      const auto t_g = value_of(results, "T_g"), s_b = value_of(results, "s_b"),
+                 s_c = value_of(results, "s_c"), slips = value_of(results, "slips");
+      if (!t_g || !s_b || !s_c) continue;
+      Estimate temperature{*t_g, {}, {}};
+      if (const json& t = results["T_g"]; t.contains("interval")) {
+        temperature.low = t["interval"]["low"].get<double>();
+        temperature.high = t["interval"]["high"].get<double>();
+      }
+      runs.push_back({std::stod(curve.values.front()), temperature, *s_b, *s_c, slips.value_or(0),
+                      slips ? results["slips"].value("n", 0.0) : 0});
+    }
+  return make_strength_sweep(start, runs);
+}
+
+std::string or_dash(const std::optional<Estimate>& e) {
+  return e ? e->text() : "not found";
+}
+
+json as_json(const std::optional<Estimate>& e) {
+  if (!e) return nullptr;
+  const auto number = [](const std::optional<double>& v) { return v ? json(*v) : json(nullptr); };
+  return {{"value", e->value}, {"low", number(e->low)}, {"high", number(e->high)}};
+}
+
+}  // namespace
+
+Estimate SweepPoint::mean_temperature() const {
+  if (temperature.size() == 1) return temperature.front();
+  std::vector<double> values;
+  for (const Estimate& t : temperature) values.push_back(t.value);
+  Estimate e;
+  for (const double t : values) e.value += t / static_cast<double>(values.size());
+  if (const auto interval = mean_interval(values, "runs")) {
+    e.low = interval->low;
+    e.high = interval->high;
+  }
+  return e;
+}
+
+StrengthSweep make_strength_sweep(const std::string& start, const std::vector<SweepRun>& runs) {
+  std::map<double, SweepPoint> points;
+  std::vector<sweep::Trial> trials;
+  for (const SweepRun& run : runs) {
+    SweepPoint& point = points[run.gamma];
+    point.gamma = run.gamma;
+    ++point.runs;
+    point.temperature.push_back(run.temperature);
+    point.bouncing += run.s_b > kBouncingThreshold ? 1 : 0;
+    point.convecting += run.s_c > kConvectionThreshold ? 1 : 0;
+    point.slips += run.slips;
+    point.eligible += run.eligible;
+    trials.push_back({run.gamma, run.s_c > kConvectionThreshold});
+  }
+  StrengthSweep ladder;
+  ladder.start = start;
+  for (const auto& [gamma, point] : points) ladder.points.push_back(point);
+  if (ladder.points.size() >= 4) {
+    const sweep::Onset onset =
+        estimate_onset(trials, ladder.points.front().gamma, ladder.points.back().gamma, kOnsetWidth);
+    if (onset.value) {
+      Estimate e{*onset.value * *onset.value, {}, {}};
+      if (onset.low) e.low = *onset.low * *onset.low;
+      if (onset.high) e.high = *onset.high * *onset.high;
+      ladder.convection = e;
+    }
+  }
+  const auto slipping = std::find_if(ladder.points.begin(), ladder.points.end(),
+                                     [](const SweepPoint& r) { return r.slips > 0; });
+  if (slipping != ladder.points.begin() && slipping != ladder.points.end() &&
+      std::prev(slipping)->bouncing > 0) {
+    const double low = std::prev(slipping)->k_m(), high = slipping->k_m();
+    ladder.first_slips = Estimate{std::sqrt(low * high), low, high};
+  }
+  return ladder;
+}
+
+StrengthSweeps climb(const Request& request) {
+  const Size& size = size_for(request);
+  const sweep::Store store(request.runs);
+  const P1Run random{size.layers, "random", size.cycles}, crystal{size.layers, "crystal_a", size.cycles};
+  const sweep::Plan of_random = plan_of(size, random, request.seed),
+                    of_crystal = plan_of(size, crystal, request.seed);
+  sweep::Schedule r(of_random, store), c(of_crystal, store);
+  StrengthSweeps all;
+  all.layers = size.layers;
+  all.complete = run_here({&r, &c}, store, {request.threads, false}, *request.watch);
+  all.random = ladder_of("random", r);
+  all.crystal = ladder_of("crystal_a", c);
+  all.conditions = p1_conditions(crystal);
+  all.conditions.push_back(
+      fmt::format("N_l = {} (the paper does not state that of Figs. 4 and 5); {} run{} of each start and "
+                  "strength, seeds drawn from the master seed {}",
+                  size.layers, size.seeds, size.seeds == 1 ? "" : "s", request.seed));
+  all.conditions.emplace_back(
+      "A1: no slip; B: above the onset of convection, s_c > sigma, by logistic regression over runs; A2 in "
+      "between");
+  all.cheaper.push_back(p1_cheaper_steps());
+  if (size.cycles < kPaperCycles)
+    all.cheaper.push_back(
+        fmt::format("{} cycles, where the paper counts slips over {} and s_c is defined by "
+                    "as many: onsets come out high",
+                    size.cycles, kPaperCycles));
+  if (size.every > 1)
+    all.cheaper.push_back(
+        fmt::format("every {} strength of the drive", size.every == 2 ? "second" : "fourth"));
+  if (size.seeds < 4)
+    all.cheaper.push_back(fmt::format("{} seed{}: random beds differ by as much as onsets do", size.seeds,
+                                      size.seeds == 1 ? "" : "s"));
+  return all;
+}
+
+namespace {
+
+std::string text_of(const StrengthSweeps& ladders) {
+  std::string text;
+  for (const StrengthSweep* l : {&ladders.random, &ladders.crystal}) {
+    text += fmt::format("  {}, N_l = {}\n  {:>6} {:>7} {:>5} {:>24} {:>10} {:>20}\n",
+                        l->is_random() ? "random" : "crystal", ladders.layers, "Gamma", "K_m", "runs", "T_g*",
+                        "convecting", "slips");
+    for (const SweepPoint& r : l->points)
+      text += fmt::format("  {:6.2f} {:7.3f} {:5} {:>24} {:>10} {:>20}\n", r.gamma, r.k_m(), r.runs,
+                          r.mean_temperature().text(), r.convecting,
+                          fmt::format("{:.0f} of {:.0f}", r.slips, r.eligible));
+    text += fmt::format("  convection from K_m {}; first slips at K_m {}\n", or_dash(l->convection),
+                        or_dash(l->first_slips));
+  }
+  return text;
+}
+
+std::string json_of(const StrengthSweeps& ladders) {
+  json all = json::array();
+  for (const StrengthSweep* l : {&ladders.random, &ladders.crystal}) {
+    json points = json::array();
+    for (const SweepPoint& r : l->points) {
+      json temperatures = json::array();
+      for (const Estimate& t : r.temperature) temperatures.push_back(as_json(t));
+      points.push_back({{"gamma", r.gamma},
+                        {"k_m", r.k_m()},
+                        {"T_g", temperatures},
+                        {"slips", r.slips},
+                        {"bead_periods", r.eligible},
+                        {"runs", r.runs},
+                        {"bouncing", r.bouncing},
+                        {"convecting", r.convecting}});
+    }
+    all.push_back({{"start", l->start},
+                   {"layers", ladders.layers},
+                   {"rungs", points},
+                   {"convection_k_m", as_json(l->convection)},
+                   {"first_slips_k_m", as_json(l->first_slips)}});
+  }
+  return json_text(all);
+}
+
+}  // namespace
+
+Reproduction reproduction_of(const StrengthSweeps& ladders, const std::string& title) {
+  Reproduction r;
+  r.title = title;
+  r.complete = ladders.complete;
+  r.conditions = ladders.conditions;
+  r.cheaper = ladders.cheaper;
+  r.table = text_of(ladders);
+  r.measured = json_of(ladders);
+  return r;
+}
+
+std::optional<CurveFit> fitted(const std::string& law, const std::vector<DataPoint>& points) {
+  try {
+    return fit_curve(law_named(law), points);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+Estimate parameter(const CurveFit& fit, const std::string& name) {
+  const auto at = std::find(fit.fit.names.begin(), fit.fit.names.end(), name) - fit.fit.names.begin();
+  const auto i = static_cast<std::size_t>(at);
+  Estimate e{fit.fit.values[i], {}, {}};
+  if (fit.intervals[i]) {
+    e.low = fit.intervals[i]->low;
+    e.high = fit.intervals[i]->high;
+  }
+  return e;
+}
+
+}  // namespace twincell::reproduce

@@ -1,0 +1,137 @@
+#include "sim/accuracy/step_error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/run/make_solver.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+/// The beads and laws of a scene, with nothing around them.
+Scene in_empty_space(Scene s, const Plan& plan) {
+  s.radius = plan.usual_radius, s.mass = plan.usual_mass;
+  s.gravity = Vec3::Zero();
+  s.plate_drag = 0;
+  s.sides = s.plates = s.bottom = Edge::absent;
+  s.lid = false;
+  s.height.reset();
+  s.drive.amplitude = 0;
+  s.spread = SizeSpread::none;
+  s.intruder.reset();
+  s.start = StartKind::crystal_a;
+  s.stepping = Stepping::steps;  // without gravity beads would fly, and no step would err
+  return s;
+}
+
+/// How fast beads of the scene meet, as far as it can be told beforehand.
+double meeting_speed(const Scene& s, const Plan& plan) {
+  const double fast = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
+  // Beads of the linear law overlap by v t_c/pi at most.
+  const double gentle = std::numbers::pi * plan.overlap_bound / (2 * s.steps_per_contact * plan.dt);
+  return std::min({fast, gentle, plan.travel_bound / (2 * plan.dt)});
+}
+
+/// e of one collision for each of `phases` entry phases; nothing if a pair does not part.
+std::vector<double> restitutions(const Scene& space, double dt, double v, int phases) {
+  constexpr double kPatience = 100;  // contact times
+  const Plan plan = make_plan(space);
+  System system = make_system(space, plan);
+  system.dt = dt;
+  const double reach = 2 * space.radius;
+  const int side = static_cast<int>(std::ceil(std::sqrt(phases)));
+  for (int k = 0; k < phases; ++k) {
+    const int column = k % side, row = k / side;
+    // Never in contact at the start, never the same fraction of a step.
+    const double half = (reach + (5 + (k + 0.5) / phases) * v * dt) / 2;
+    for (const int i : {-1, 1})
+      system.beads.push_back({.x = 4 * reach * column + i * half,
+                              .z = 4 * reach * row,
+                              .vx = -i * v / 2,
+                              .radius = space.radius,
+                              .mass = space.mass,
+                              .inertia = space.inertia_factor * space.mass * space.radius * space.radius});
+  }
+  const auto apart = [&] {
+    for (std::size_t k = 0; k < system.beads.size(); k += 2) {
+      const Bead &i = system.beads[k], &j = system.beads[k + 1];
+      if (j.x - i.x <= reach || j.vx <= i.vx) return false;
+    }
+    return true;
+  };
+  const auto kernel = make_solver(plan, guard_limits(plan));
+  const double contact = plan.shortest().time / dt;
+  for (double waited = 0; !apart(); waited += 1) {
+    if (waited > kPatience) return {};
+    kernel->advance(system, static_cast<std::int64_t>(std::ceil(contact)) + 6);
+  }
+  kernel->advance(system, 2);  // half of what a force does falls into the next step
+  std::vector<double> e;
+  for (std::size_t k = 0; k < system.beads.size(); k += 2)
+    e.push_back((system.beads[k + 1].vx - system.beads[k].vx) / v);
+  return e;
+}
+
+std::optional<ImpactErrors> friction_error(const Scene& space, const Plan& plan, double speed) {
+  constexpr int kOblique = 16;  // entry phases of each
+  if (!plan.rotation || !(remembers(plan.bead) || integrable_alone(plan.bead))) return std::nullopt;
+  std::vector<Impact> impacts;
+  for (const double degrees : {15.0, 30.0, 45.0, 60.0, 75.0})
+    impacts.push_back(Impact::at(degrees, false, speed));
+  // n that gives the plan's step where nothing is left but two beads: walls, drive and gravity have set it,
+  // too.
+  const double n = make_plan(space).shortest().time / plan.dt;
+  try {
+    return impact_errors(impacts, space, {.integrator = space.integrator, .n = n, .single = space.single},
+                         kOblique);
+  } catch (const RunError&) {
+    return std::nullopt;  // they do not part
+  }
+}
+
+}  // namespace
+
+std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int phases) {
+  constexpr double kFiner = 8, kFine = 2000;
+  const Scene space = in_empty_space(scene, plan);
+  Scene fine = space;
+  fine.integrator = "split";
+  fine.single = false;
+  const double v = meeting_speed(scene, plan);
+  const auto exact =
+      restitutions(fine, plan.dt / std::max(kFiner, std::ceil(kFine / scene.steps_per_contact)), v, 1);
+  const auto measured = restitutions(space, plan.dt, v, phases);
+  if (exact.empty() || measured.empty()) return std::nullopt;
+  return StepError{v, exact.front(), PhaseSpread::of(measured, exact.front()),
+                   friction_error(space, plan, v)};
+}
+
+namespace {
+
+std::string sentence(const StepError& error) {
+  std::string s = fmt::format(
+      ": e of two beads that meet at v = {:.3g} is {:.4g} and errs by up to {:.2g}, by {:.2g} in the mean "
+      "over collisions",
+      error.speed, error.restitution, error.error.largest, error.error.mean);
+  if (error.friction)
+    s += fmt::format(
+        "; at 15 to 75 degrees friction changes R w by {:.2g} v, with an error of {:.2g} v rms and up to "
+        "{:.2g} v",
+        error.friction->spin_change, error.friction->spin.rms, error.friction->spin.largest);
+  return s;
+}
+
+}  // namespace
+
+void state_step_error(const Scene& scene, Plan& plan) {
+  const auto error = step_error(scene, plan);
+  for (Effect& effect : plan.effects)
+    if (effect.name == kTimeIntegration)
+      effect.reason += error ? sentence(*error) : ": beads that meet do not part";
+}
+
+}  // namespace twincell::sim

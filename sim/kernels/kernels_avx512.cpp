@@ -1,0 +1,19 @@
+// The passes with AVX-512. CMake compiles this file, and no other, for processors that have it.
+
+#include "sim/contact/collocation_body.hpp"
+#include "sim/kernels/simd_highway.hpp"
+#include "sim/kernels/simd_kernels.hpp"
+
+static_assert(HWY_TARGET == HWY_AVX3, "compile this file for AVX-512");
+
+namespace twincell::sim {
+
+const Target kAvx512 = {"AVX-512", HWY_NAMESPACE::HighwayLanes::kWidth,
+                        [] { return (hwy::SupportedTargets() & HWY_AVX3) != 0; },
+                        [](const KernelKey& key) {
+                          return key.single ? KernelTable<HWY_NAMESPACE::SingleLanes>::find(key)
+                                            : KernelTable<HWY_NAMESPACE::HighwayLanes>::find(key);
+                        },
+                        &CollocationTable<HWY_NAMESPACE::HighwayLanes>::find};
+
+}  // namespace twincell::sim

@@ -1,0 +1,116 @@
+#pragma once
+/// \file
+/// One contact at a time, in plain C++, computed in double or in single precision: for machines without the
+/// vector units, and as the text against which they are tested.
+
+#include "sim/kernels/kernels.hpp"
+
+namespace twincell::sim {
+
+template <class R>
+struct ScalarLanes {
+  using V = R;  ///< of a contact
+  using Number = R;
+  using Wide = double;
+  using InDouble = ScalarLanes<double>;
+  static constexpr int kJoined = 1;  ///< packets that make a V
+  static constexpr int kWidth = 1;
+  static constexpr int kBlock = 0;  ///< beads that integrate_blocks() would take at a time
+
+  /// Four numbers of a record.
+  struct Row {
+    double c[4];
+    static Row all(double a) { return {{a, a, a, a}}; }
+    static Row high(double a, double b) { return {{0, 0, a, b}}; }
+    static Row low(double a) { return {{a, a, 0, 0}}; }
+    static Row three(const double* p) { return {{p[0], p[1], p[2], 0}}; }
+    static Row load(const double* p) { return {{p[0], p[1], p[2], p[3]}}; }
+    void store(double* p) const {
+      for (int k = 0; k < 4; ++k) p[k] = c[k];
+    }
+    [[nodiscard]] Row swapped() const { return {{c[2], c[3], c[0], c[1]}}; }
+    template <class F>
+    static Row each(F f) {
+      return {{f(0), f(1), f(2), f(3)}};
+    }
+    friend Row operator+(Row a, Row b) {
+      return each([&](int k) { return a.c[k] + b.c[k]; });
+    }
+    friend Row operator-(Row a, Row b) {
+      return each([&](int k) { return a.c[k] - b.c[k]; });
+    }
+    friend Row abs(Row a) {
+      return each([&](int k) { return std::abs(a.c[k]); });
+    }
+    friend Row operator*(Row a, Row b) {
+      return each([&](int k) { return a.c[k] * b.c[k]; });
+    }
+    friend Row fma(Row a, Row b, Row c) {
+      return each([&](int k) { return std::fma(a.c[k], b.c[k], c.c[k]); });
+    }
+    friend Row max(Row a, Row b) {
+      return each([&](int k) { return sim::max(a.c[k], b.c[k]); });
+    }
+    friend Row min(Row a, Row b) {
+      return each([&](int k) { return sim::min(a.c[k], b.c[k]); });
+    }
+  };
+
+  static double load(const double* p) { return *p; }
+  static void store(double v, double* p) { *p = v; }
+  static void put(double v, R* p) { *p = static_cast<R>(v); }
+  static double get(const R* p) { return *p; }
+  static V load_joined(const R* p) { return *p; }
+  static void store_joined(V v, R* p) { *p = v; }
+  static double load_from(double* const* p, int at) { return p[0][at]; }
+  static void store_to(double v, double* const* p, int at) { p[0][at] = v; }
+  static double largest(V v) { return v; }
+  static unsigned bits(bool m) { return m ? 1 : 0; }
+
+  template <int D>
+  static void columns(const double* records, const std::int32_t* i, double* r, double* v) {
+    const double* a = records + *i;
+    for (int k = 0; k < D; ++k) {
+      r[k] = a[k];
+      v[k] = a[kRecord<D> / 2 + k];
+    }
+  }
+  template <int D>
+  static void difference(const double* records, const std::int32_t* i, const std::int32_t* j, double* d,
+                         double* v) {
+    double rj[D], vj[D];
+    columns<D>(records, i, d, v);
+    columns<D>(records, j, rj, vj);
+    for (int k = 0; k < D; ++k) {
+      d[k] -= rj[k];
+      v[k] -= vj[k];
+    }
+  }
+  template <int D>
+  static void spins(const double* spin, const std::int32_t* i, double* s) {
+    for (int k = 0; k < kTurns<D>; ++k) s[k] = spin[spin_place<D>(*i) + k];
+  }
+  template <int D>
+  static void spin_sums(const double* spin, const std::int32_t* i, const std::int32_t* j, double* s) {
+    double s_j[kTurns<D>];
+    spins<D>(spin, i, s);
+    spins<D>(spin, j, s_j);
+    for (int k = 0; k < kTurns<D>; ++k) s[k] += s_j[k];
+  }
+  template <int D, bool kSpin>
+  static void add_one(double* forces, const std::int32_t* i, const double* f, const double* q,
+                      double sign = 1) {
+    double* a = forces + *i;
+    for (int k = 0; k < D; ++k) a[k] += sign * f[k];
+    if constexpr (kSpin)
+      for (int k = 0; k < kTurns<D>; ++k) a[(D == 2 ? 2 : 4) + k] += q[k];
+  }
+  template <int D, bool kSpin, bool kRolling>
+  static void add(double* forces, const std::int32_t* i, const std::int32_t* j, const double* f,
+                  const double* q_i, const double* q_j) {
+    add_one<D, kSpin>(forces, i, f, q_i);
+    add_one<D, kSpin>(forces, j, f, q_j, -1);
+  }
+};
+
+}  // namespace twincell::sim

@@ -1,0 +1,465 @@
+#include "sim/lammps/export_lammps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <sstream>
+#include <variant>
+#include <vector>
+
+#include "core/provenance.hpp"
+#include "sim/run/simulation.hpp"
+#include "sim/scene/plan.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+/// A kind of contact in the numbers of pair_style gran/hooke: dampings are rates, which LAMMPS multiplies by
+/// m_eff.
+struct Hooke {
+  double k_n = 0, k_t = 0, gamma_n = 0, gamma_t = 0, mu = 0;
+  bool history = false, friction = false, clipped = false;
+  bool operator==(const Hooke&) const = default;
+};
+
+/// Flat walls across one axis, where they are when the plate is at its mean.
+struct FlatWalls {
+  std::string name;
+  Axis axis;
+  std::optional<double> lower, upper;
+  bool move;  ///< with the plate
+  Hooke law;
+};
+
+struct DeckBead {
+  Vec3 position, velocity, spin;
+  double radius, mass;
+  bool tracer;
+};
+
+/// A scene as far as LAMMPS has words for it. Below `beads_at_start` nothing knows the simulator.
+struct Model {
+  int dimension = 2;
+  std::array<std::string, 3> boundary;  ///< per axis of ours, LAMMPS's words
+  Vec3 lower, upper;                    ///< corners of LAMMPS's box, which grows where beads fly
+  Hooke bead;
+  std::vector<FlatWalls> walls;
+  Vec3 gravity;
+  double skin = 0.2;
+  bool disc = true, rotation = true;
+  Drive drive;
+  double width = 0, dt = 0;
+  std::int64_t steps_per_period = 1, discard = 0, cycles = 1, first_step = 0;
+  int phases = 1;
+  std::vector<DeckBead> beads;
+  std::string resolved;  ///< the scene's TOML
+};
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+[[noreturn]] void refuse(const Scene& scene, const std::string& key, const std::string& why) {
+  throw ConfigError(scene.where(key), why);
+}
+
+/// \param table the scene's table with what is special to this kind of contact
+Hooke hooke_of(const ContactLaws& laws, double m_eff, const Scene& scene, const std::string& table) {
+  const auto no_word = [&](const char* axis, std::string_view law) {
+    refuse(scene, std::string("contact.") + axis,
+           fmt::format("LAMMPS's gran/hooke styles do not know the law '{}'.", law));
+  };
+  Hooke h;
+  const auto spring_dashpot = [&](const LinearSpringDashpot& law) {
+    h.k_n = law.k_n;
+    h.gamma_n = law.damping.eta(m_eff) / m_eff;
+  };
+  const auto slider = [&](const auto& law) {
+    h.gamma_t = law.damping.eta(m_eff) / m_eff;
+    h.mu = law.mu;
+    h.friction = true;
+  };
+  std::visit(Overloaded{[&](const LinearSpringDashpot& law) { spring_dashpot(law); },
+                        [&](const ClippedSpringDashpot& law) {
+                          spring_dashpot(law);
+                          h.clipped = true;
+                        },
+                        [&](const auto& law) { no_word("normal", law.kName); }},
+             laws.normal);
+  std::visit(Overloaded{[](const NoTangential&) {}, [&](const DashpotSlider& law) { slider(law); },
+                        [&](const SpringSlider& law) {
+                          slider(law);
+                          h.k_t = law.k_t;
+                          h.history = true;
+                          if (law.k_t == 0)
+                            refuse(
+                                scene, table + ".k_t",
+                                "LAMMPS's history style divides by it; 0 is for all contacts or for none.");
+                        },
+                        [&](const auto& law) { no_word("tangential", law.kName); }},
+             laws.tangential);
+  std::visit(Overloaded{[](const NoRolling&) {}, [&](const auto& law) { no_word("rolling", law.kName); }},
+             laws.rolling);
+  constexpr double kMostFriction = 1e4;  // LAMMPS stops at a larger xmu
+  if (h.mu > kMostFriction)
+    refuse(scene, table + ".mu", fmt::format("{:g} is more than LAMMPS takes, {:g}.", h.mu, kMostFriction));
+  return h;
+}
+
+/// LAMMPS's dampings are rates, the same for all masses: constants and restitutions need equal ones.
+void refuse_unlike_masses(const Scene& scene, const Plan& plan) {
+  const auto check = [&](const auto& law) {
+    if constexpr (requires { law.damping; })
+      if (law.damping.constant != 0 || law.damping.root != 0)
+        refuse(
+            scene, "contact",
+            "beads of unlike masses need their dampings as rates, gamma_n and gamma_t: LAMMPS knows one rate "
+            "for all of them.");
+  };
+  const auto check_laws = [&](const ContactLaws& laws) {
+    std::visit(check, laws.normal);
+    std::visit(check, laws.tangential);
+  };
+  check_laws(plan.bead);
+  for (const ContactLaws& laws : plan.wall_laws) check_laws(laws);
+}
+
+/// The walls of a plan, opposite ones with the same law as one fix, which looks at each bead once.
+std::vector<FlatWalls> flat_walls(const Scene& scene, const Plan& plan) {
+  const std::map<std::string, std::string> table = {
+      {"left", "sides"}, {"right", "sides"}, {"front", "plates"}, {"back", "plates"}};
+  std::vector<FlatWalls> all;
+  for (std::size_t w = 0; w < plan.walls.size(); ++w) {
+    const Wall& wall = plan.walls[w];
+    int axis = 0;
+    wall.n.cwiseAbs().maxCoeff(&axis);
+    if (std::abs(wall.n[axis]) != 1)
+      refuse(scene, "cell.side_tilt", "LAMMPS's fix wall/gran knows walls along the axes only.");
+    const auto known = table.find(wall.name);
+    const Hooke law = hooke_of(plan.wall_laws[w], scene.mass, scene,
+                               "contact." + (known == table.end() ? wall.name : known->second));
+    const double at = wall.n[axis] * wall.offset;
+    const bool lower = wall.n[axis] > 0;
+    // A fix keeps one history per bead: in a narrow gap it would be carried from one wall to the other.
+    const auto opposite = std::find_if(all.begin(), all.end(), [&](const FlatWalls& o) {
+      return o.axis == static_cast<Axis>(axis) && o.move == wall.moves && o.law == law && !lower &&
+             !o.upper && o.lower && at - *o.lower > 4 * scene.radius;
+    });
+    if (opposite != all.end()) {
+      opposite->upper = at;
+      opposite->name += "_" + wall.name;
+    } else {
+      all.push_back({wall.name, static_cast<Axis>(axis), lower ? std::optional(at) : std::nullopt,
+                     lower ? std::nullopt : std::optional(at), wall.moves, law});
+    }
+  }
+  return all;
+}
+
+/// Everything of a model but its beads.
+Model model_of(const Scene& scene, const Plan& plan) {
+  if (!integrator_named(scene.integrator).lammps)
+    refuse(scene, "time.integrator",
+           fmt::format("LAMMPS integrates as \"verlet\", not as \"{}\".", scene.integrator));
+  if (!scene.envelope.points.empty()) refuse(scene, "drive", "LAMMPS's walls know no ramp and no schedule.");
+  if (scene.plate_drag > 0) refuse(scene, "cell.plate_drag", "LAMMPS has no drag against a moving cell.");
+  if (scene.spread != SizeSpread::none || scene.intruder) refuse_unlike_masses(scene, plan);
+  Model m;
+  m.dimension = plan.dimension;
+  m.bead = hooke_of(plan.bead, scene.mass / 2, scene, "contact");
+  m.walls = flat_walls(scene, plan);
+  m.gravity = scene.gravity;
+  m.skin = 0.4 * scene.radius;
+  m.disc = scene.inertia_factor == 0.5;
+  m.rotation = plan.rotation;
+  m.drive = scene.drive;
+  m.width = scene.width;
+  m.dt = plan.dt;
+  m.steps_per_period = plan.steps_per_period;
+  m.discard = scene.discard;
+  m.cycles = scene.cycles;
+  m.phases = scene.phases;
+  m.resolved = scene.resolved;
+
+  // Where there are walls the box is fixed and reaches as far as they travel; elsewhere it grows with the
+  // bed.
+  m.lower = Vec3(0, plan.dimension == 3 ? 0 : -scene.radius, 0);
+  m.upper = Vec3(scene.width, plan.dimension == 3 ? scene.depth : scene.radius, scene.height.value_or(0));
+  const std::array<double, 3> period = scene.period();
+  for (int k = 0; k < 3; ++k) {
+    std::string& word = m.boundary[static_cast<std::size_t>(k)];
+    if (period[static_cast<std::size_t>(k)] > 0 || (k == 1 && plan.dimension == 2)) {
+      word = "p";
+      continue;
+    }
+    const auto has = [&](bool lower) {
+      return std::any_of(m.walls.begin(), m.walls.end(), [&](const FlatWalls& w) {
+        return w.axis == static_cast<Axis>(k) && (lower ? w.lower : w.upper).has_value();
+      });
+    };
+    word = std::string(has(true) ? "f" : "m") + (has(false) ? "f" : "m");
+    if (static_cast<Axis>(k) == m.drive.axis) {
+      m.lower[k] -= m.drive.amplitude;
+      m.upper[k] += m.drive.amplitude;
+    }
+  }
+
+  if (m.drive.amplitude > 0 && m.steps_per_period % 4 != 0)
+    refuse(
+        scene, "time.phases",
+        fmt::format("the cycle's {} steps have no whole quarter, by which LAMMPS's cosine is shifted to our "
+                    "sine; make the phases, {}, a multiple of 4.",
+                    m.steps_per_period, m.phases));
+  constexpr std::int64_t kLongestRun = 2'000'000'000;  // steps; LAMMPS counts those of a run in 32 bits
+  if (m.steps_per_period > kLongestRun / (m.discard + m.cycles))
+    refuse(scene, "time.cycles",
+           fmt::format("{} cycles of {} steps are more than the {:.0e} steps that LAMMPS does in a run.",
+                       m.discard + m.cycles, m.steps_per_period, static_cast<double>(kLongestRun)));
+  return m;
+}
+
+std::vector<DeckBead> beads_of_frame(const Scene& scene, const TrajectoryInfo& info, const Frame& frame,
+                                     bool rotation, const std::string& name) {
+  if (!info.columns.velocity) refuse(scene, "", name + " has no velocities, from which a run could go on.");
+  if (rotation && !info.columns.spin)
+    refuse(scene, "", name + " has no spins, but in this scene friction turns beads.");
+  if (info.box.dimension != scene.dimension)
+    refuse(scene, "cell.dimension",
+           fmt::format("{}, but {} has {}.", scene.dimension, name, info.box.dimension));
+  const bool equal = scene.spread == SizeSpread::none && !scene.intruder && scene.start != StartKind::table &&
+                     scene.start != StartKind::trajectory;
+  const Vec3 corner(info.box.lower.x(), scene.dimension == 3 ? info.box.lower.y() : 0, 0);
+  std::vector<DeckBead> beads;
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    if (!frame.present(i)) continue;
+    if (equal && !info.radius.empty() && info.radius[i] != scene.radius)
+      refuse(scene, "beads.radius",
+             fmt::format("{:g}, but bead {} of {} has {:g}.", scene.radius, i, name, info.radius[i]));
+    beads.push_back(
+        {frame.position[i] - corner, frame.velocity[i], frame.spin.empty() ? Vec3(0, 0, 0) : frame.spin[i],
+         info.radius.empty() ? scene.radius : info.radius[i], info.mass.empty() ? scene.mass : info.mass[i],
+         !info.tracer.empty() && info.tracer[i] != 0});
+  }
+  if (const std::size_t announced = scene.n_beads.value_or(0) + (scene.intruder ? 1 : 0);
+      scene.n_beads && announced != beads.size())
+    refuse(scene, "beads.count",
+           fmt::format("{} beads were announced, the frame of {} holds {}.", announced, name, beads.size()));
+  return beads;
+}
+
+/// The bed as the drive finds it.
+std::vector<DeckBead> beads_at_start(const Simulation& settled) {
+  System system = settled.system();
+  begin_drive(settled.scene(), settled.plan(), system);
+  const TrajectoryInfo info = settled.trajectory_info();
+  std::vector<DeckBead> beads;
+  for (const Bead& b : system.beads)
+    beads.push_back({Vec3(b.x, b.y, b.z), Vec3(b.vx, b.vy, b.vz), Vec3(b.spin_x, -b.spin, b.spin_z), b.radius,
+                     b.mass, info.tracer.at(beads.size()) != 0});
+  return beads;
+}
+
+/// Our axes in LAMMPS's: it wants the plane of a 2D system to be (x, y), so there our z is its y and our y
+/// its -z.
+Vec3 to_lammps(const Model& m, const Vec3& v) {
+  return m.dimension == 2 ? Vec3(v.x(), v.z(), -v.y()) : v;
+}
+
+char axis_name(const Model& m, Axis axis) {
+  return m.dimension == 2 ? (axis == Axis::z ? 'y' : 'x') : "xyz"[static_cast<int>(axis)];
+}
+
+std::string triple(const Vec3& v) {
+  // + 0.0 makes -0 a plain 0.
+  return fmt::format("{} {} {}", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
+}
+
+std::string data_text(const Model& m) {
+  const Vec3 a = to_lammps(m, m.lower), b = to_lammps(m, m.upper);
+  std::string text = fmt::format("Beads for {}. Type 2 marks tracers.\n\n{} atoms\n2 atom types\n",
+                                 LammpsDeck::kInputName, m.beads.size());
+  for (int k = 0; k < 3; ++k)
+    text += fmt::format("{} {} {}lo {}hi\n", std::min(a[k], b[k]), std::max(a[k], b[k]), "xyz"[k], "xyz"[k]);
+  text += "\nAtoms # sphere\n\n";
+  for (std::size_t i = 0; i < m.beads.size(); ++i) {
+    const DeckBead& bead = m.beads[i];
+    const double density = bead.mass / (4 * std::numbers::pi / 3 * std::pow(bead.radius, 3));
+    text += fmt::format("{} {} {} {} {}\n", i + 1, bead.tracer ? 2 : 1, 2 * bead.radius, density,
+                        triple(to_lammps(m, bead.position)));
+  }
+  text += "\nVelocities\n\n";
+  for (std::size_t i = 0; i < m.beads.size(); ++i)
+    text += fmt::format("{} {} {}\n", i + 1, triple(to_lammps(m, m.beads[i].velocity)),
+                        triple(to_lammps(m, m.beads[i].spin)));
+  return text;
+}
+
+std::string hooke_words(const Hooke& h) {
+  return fmt::format("{} {} {} {} {} {}{}", h.k_n, h.k_t, h.gamma_n, h.gamma_t, h.mu, h.friction ? 1 : 0,
+                     h.clipped ? " limit_damping" : "");
+}
+
+std::string boundary_words(const Model& m) {
+  return m.dimension == 2 ? fmt::format("{} {} p", m.boundary[0], m.boundary[2])
+                          : fmt::format("{}", fmt::join(m.boundary, " "));
+}
+
+/// fix wall/gran of each pair of walls. `wiggle` displaces a wall by A - A cos(omega t) from where it is
+/// defined, so the mean of a wall that is driven along its normal lies A above that.
+std::string wall_fixes(const Model& m) {
+  std::string text;
+  for (const FlatWalls& w : m.walls) {
+    const bool driven = w.move && m.drive.amplitude > 0;
+    const auto place = [&](const std::optional<double>& at) {
+      return at ? fmt::format("{}", *at - (driven && w.axis == m.drive.axis ? m.drive.amplitude : 0))
+                : "NULL";
+    };
+    text += fmt::format("fix             {} all wall/gran {} {} {}plane {} {}", w.name,
+                        w.law.history ? "hooke/history" : "hooke", hooke_words(w.law), axis_name(m, w.axis),
+                        place(w.lower), place(w.upper));
+    if (driven)
+      text +=
+          fmt::format(" wiggle {} {} {}", axis_name(m, m.drive.axis), m.drive.amplitude, m.drive.period());
+    text += "\n";
+  }
+  return text;
+}
+
+std::string import_command(const Model& m) {
+  return fmt::format(
+      "twincell import dump.lammpstrj -o lammps.h5 --dimension {} --timestep {} --cell-width {} --drive-axis "
+      "{} "
+      "--drive-amplitude {} --drive-omega {} --frames-per-cycle {} --tracer-type 2 --bead-mass 1",
+      m.dimension, m.dt, m.width, "xyz"[static_cast<int>(m.drive.axis)], m.drive.amplitude, m.drive.omega,
+      m.phases);
+}
+
+std::string commented(const std::string& text) {
+  std::istringstream lines(text);
+  std::string out;
+  for (std::string line; std::getline(lines, line);) out += line.empty() ? "#\n" : "# " + line + "\n";
+  return out;
+}
+
+std::string input_text(const Model& m) {
+  const std::int64_t per_phase = m.steps_per_period / m.phases;
+  std::string text = fmt::format(
+      "# {}: a scene for LAMMPS; docs/lammps.md says what is the same in both programs.\n"
+      "# Reduced units: bead diameter, bead mass, gravity.{}\n"
+      "# Then: {}\n\n",
+      version_line(), m.dimension == 2 ? " The height is y." : "", import_command(m));
+  text += fmt::format(
+      "units           lj\n"
+      "dimension       {}\n"
+      "atom_style      sphere\n"
+      "boundary        {}\n"
+      "newton          off\n"
+      "comm_modify     vel yes\n"
+      "read_data       {}\n",
+      m.dimension, boundary_words(m), LammpsDeck::kDataName);
+  // Exactly, where it can be said in one line; densities give masses to rounding.
+  const double mass = m.beads.front().mass;
+  if (std::all_of(m.beads.begin(), m.beads.end(), [&](const DeckBead& b) { return b.mass == mass; }))
+    text += fmt::format("set             group all mass {}\n", mass);
+  text += fmt::format(
+      "\n# k_n k_t gamma_n gamma_t mu; LAMMPS multiplies the rates gamma by m_eff, which at a wall is the "
+      "bead's mass.\n"
+      "pair_style      gran/{} {}\n"
+      "pair_coeff      * *\n"
+      "neighbor        {} bin\n"
+      "neigh_modify    delay 0 every 1 check yes\n"
+      "timestep        {}\n\n",
+      m.bead.history ? "hooke/history" : "hooke", hooke_words(m.bead), m.skin, m.dt);
+  if (m.drive.amplitude > 0)
+    text += fmt::format(
+        "# wiggle moves a wall by A - A cos(w t), t from the step at which its fix is defined. Defined A "
+        "lower and three\n"
+        "# quarters of a period after phase 0, it is at A sin(w t), t from phase 0.\n"
+        "reset_timestep  {}\n",
+        3 * m.steps_per_period / 4);
+  text += wall_fixes(m);
+  text += fmt::format("reset_timestep  {}\n", m.first_step);
+  if (m.gravity.norm() > 0)
+    text += fmt::format("fix             weight all gravity {} vector {}\n", m.gravity.norm(),
+                        triple(to_lammps(m, m.gravity)));
+  text += fmt::format("fix             motion all {}\n\n", !m.rotation ? "nve"
+                                                           : m.disc    ? "nve/sphere disc"
+                                                                       : "nve/sphere");
+  // Unwrapped where there are periods, so that displacements are differences.
+  const bool periods =
+      m.boundary[0] == "p" || (m.dimension == 3 && m.boundary[1] == "p") || m.boundary[2] == "p";
+  text += fmt::format(
+      "dump            frames all custom {} dump.lammpstrj id type radius mass {} vx vy vz omegax omegay "
+      "omegaz\n"
+      "dump_modify     frames delay {} sort id format float %.17g\n"
+      "thermo          {}\n"
+      "run             {}\n\n",
+      per_phase, periods ? "xu yu zu" : "x y z", m.first_step + m.discard * m.steps_per_period,
+      m.steps_per_period, (m.discard + m.cycles) * m.steps_per_period - per_phase);
+  return text + "# The scene:\n#\n" + commented(m.resolved);
+}
+
+LammpsDeck deck_of(Model& m, const Scene& scene, const Plan& plan) {
+  if (m.beads.empty()) refuse(scene, "beads.count", "LAMMPS does not read a system without beads.");
+  if (std::any_of(m.beads.begin(), m.beads.end(), [&](const DeckBead& b) { return b.mass != scene.mass; }))
+    refuse_unlike_masses(scene, plan);
+  if (m.boundary[2] != "p")
+    for (const DeckBead& b : m.beads) m.upper.z() = std::max(m.upper.z(), b.position.z() + 2 * b.radius);
+  return {input_text(m), data_text(m), import_command(m)};
+}
+
+}  // namespace
+
+LammpsDeck lammps_deck(const Scene& scene, Progress& progress) {
+  static_cast<void>(
+      model_of(scene, make_plan(scene)));  // what has no words is refused before the bed settles
+  if (scene.in_motion)
+    refuse(scene, "start.in_motion",
+           "is of a start that another file holds; export that file's frame (--frame).");
+  const Simulation start(scene, progress);
+  Model m = model_of(scene, start.plan());
+  m.first_step = first_step(start.plan(), scene.phase.value_or(0));
+  m.beads = beads_at_start(start);
+  return deck_of(m, scene, start.plan());
+}
+
+LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, std::size_t index) {
+  const Plan plan = make_plan(scene);
+  Model m = model_of(scene, plan);
+  const TrajectoryInfo& info = trajectory.info();
+  if (index >= trajectory.n_frames())
+    refuse(
+        scene, "",
+        fmt::format("frame {} was asked for, {} has {}.", index, trajectory.name(), trajectory.n_frames()));
+  Frame frame;
+  trajectory.read(index, frame);
+  const std::string name = fmt::format("frame {} of {}", index, trajectory.name());
+  if (frame.phase < 0 || info.phases_per_cycle <= 0)
+    refuse(scene, "", name + " has no drive phase, so the plate's place in it is unknown.");
+  const std::int64_t steps = m.steps_per_period * frame.phase;
+  if (steps % info.phases_per_cycle != 0)
+    refuse(scene, "time.phases",
+           fmt::format("phase {}/{} of {} falls between two of the cycle's {} steps.", frame.phase,
+                       info.phases_per_cycle, name, m.steps_per_period));
+  m.first_step = steps / info.phases_per_cycle;
+  constexpr double kSamePlate = 1e-9;
+  const double ours =
+      m.drive.displacement(static_cast<double>(m.first_step) / static_cast<double>(m.steps_per_period));
+  if (!std::isnan(frame.plate_height) && std::abs(frame.plate_height - ours) > kSamePlate)
+    refuse(scene, "drive",
+           fmt::format("the plate of {} is at {:g}, this drive puts it at {:g}.", name, frame.plate_height,
+                       ours));
+  m.beads = beads_of_frame(scene, info, frame, m.rotation, name);
+  return deck_of(m, scene, plan);
+}
+
+}  // namespace twincell::sim

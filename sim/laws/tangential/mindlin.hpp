@@ -1,0 +1,55 @@
+#pragma once
+/// \file
+/// Tangential spring whose stiffness follows the contact area, F_t = -8 G* sqrt(R_eff delta) xi, G* = Y/(4 (2
+/// - nu) (1 + nu)) for two bodies of one material, with a Coulomb limit (Mindlin 1949; Mindlin & Deresiewicz
+/// 1953 without partial slip).
+
+#include <cmath>
+#include <string_view>
+
+#include "sim/laws/parameters.hpp"
+#include "sim/laws/tangent.hpp"
+
+namespace twincell::sim {
+
+/// For Hertzian contacts ("hertz"), whose keys it shares. The stiffness depends on the present overlap alone,
+/// not on the history of the normal load: unloading at constant xi lowers the force without work, so a closed
+/// cycle of loading may gain energy. Beyond the limit mu |F_n| the spring is cut so that it gives exactly the
+/// limit. No dashpot.
+struct MindlinSlider {
+  static constexpr std::string_view kWord = "mindlin", kName = "Mindlin spring with history, Coulomb limit";
+  static constexpr const char* kKeys[] = {"mu", "youngs_modulus", "poisson_ratio"};
+  static constexpr int kConstants = 2;
+  static constexpr bool kActs = true, kHistory = true, kReadsOverlap = true;
+
+  double youngs_modulus = 0;  ///< Y, m g/sigma^2
+  double poisson_ratio = 0;   ///< nu, 0 .. 0.5
+  double mu = 0.6;
+
+  static MindlinSlider read(const ContactTable& t) {
+    return {t.required("youngs_modulus", 0, 1e15, true), t.number("poisson_ratio", 0, 0.5).value_or(0.3),
+            t.number("mu", 0, 1e12).value_or(0.6)};
+  }
+  /// 8 G* sqrt(R_eff): times sqrt(delta) it is the stiffness.
+  [[nodiscard]] double stiffness(double r_eff) const {
+    return 2 * youngs_modulus * std::sqrt(r_eff) / ((2 - poisson_ratio) * (1 + poisson_ratio));
+  }
+  /// No limit of its own: the tangential period is longer than the duration of the impact that Hertz's law
+  /// resolves, since the stiffness stays below that of the normal force.
+  [[nodiscard]] double shortest_time(const PairScale& /*p*/) const { return HUGE_VAL; }
+  [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
+    return {-stiffness(p.r_eff), mu};
+  }
+
+  template <class V, class T, class X>
+  static T force(const V* c, const T& v_t, V f_n, V dt, X& xi, V overlap) {
+    xi = fma(dt, v_t, xi);
+    const V k = c[0] * sqrt(max(overlap, V(0.0)));  // negative, as the formula wants it
+    const auto [force, slips] = limited(k * xi, c[1] * abs(f_n));
+    const V back = V(1.0) / min(k, V(-kTiny<V>));
+    xi = select(slips, back * force, xi);
+    return force;
+  }
+};
+
+}  // namespace twincell::sim

@@ -1,0 +1,150 @@
+#include "sim/run/checkpoint_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <regex>
+
+#include "core/error.hpp"
+#include "core/provenance.hpp"
+#include "core/sha256.hpp"
+
+namespace twincell::sim {
+
+namespace fs = std::filesystem;
+
+namespace {
+constexpr const char* kState = "state.h5";
+}
+
+fs::path CheckpointFolder::of(const fs::path& output) {
+  fs::path folder = output;
+  return folder += ".checkpoint";
+}
+
+bool CheckpointFolder::holds_a_run(const fs::path& folder) {
+  return fs::exists(folder / kState);
+}
+
+fs::path CheckpointFolder::segment(std::size_t index) const {
+  return folder_ / fmt::format("segment-{:04}.h5", index + 1);
+}
+
+CheckpointFolder::CheckpointFolder(fs::path folder, const Scene& scene,
+                                   const std::function<std::string()>& make_provenance)
+    : folder_(std::move(folder)) {
+  const Where where{folder_.string(), 0, 0, ""};
+  std::error_code ec;
+  fs::create_directory(folder_, ec);
+  if (ec || !fs::is_directory(folder_, ec) || ::access(folder_.c_str(), R_OK | W_OK | X_OK) != 0)
+    throw ConfigError(where, "the folder of checkpoints cannot be made or written to.");
+  // Held until the process ends, however it ends.
+  lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw ConfigError(where, "another process is running this scene into the same output.");
+
+  found_ = holds_a_run(folder_);
+  if (found_) {
+    checkpoint_ = read_checkpoint(folder_ / kState);
+    require_same_run(scene, checkpoint_, folder_);
+    for (std::size_t k = 0; k < checkpoint_.segments.size(); ++k)
+      if (!fs::exists(segment(k)) || sha256_of(segment(k)) != checkpoint_.segments[k].sha256)
+        throw InputError({segment(k).string(), 0, 0, ""},
+                         "the file is missing or damaged, and the run cannot be resumed without it.");
+  } else {
+    checkpoint_.scene = scene.resolved;
+    checkpoint_.provenance = make_provenance();
+  }
+  remove_strays();
+}
+
+CheckpointFolder::~CheckpointFolder() {
+  writer_.reset();
+  std::error_code ec;
+  if (!found_) fs::remove(folder_, ec);  // nothing was saved; what others put there stays
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void CheckpointFolder::remove_strays() const {
+  // Segments that no state counts, and what a killed run left unfinished (temporary_files.hpp).
+  static const std::regex ours(
+      R"(segment-[0-9]{4,}\.h5|state\.h5|\.twincell-[0-9a-f]{16}(-[0-9a-v]{12}\.part\.h5|\.lock))");
+  std::vector<fs::path> strays;
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const fs::path& path = entry.path();
+    bool counted = found_ && path.filename() == kState;
+    for (std::size_t k = 0; k < checkpoint_.segments.size(); ++k) counted = counted || path == segment(k);
+    if (!counted && std::regex_match(path.filename().string(), ours)) strays.push_back(path);
+  }
+  for (const fs::path& stray : strays) fs::remove(stray);
+}
+
+template <class Work>
+void CheckpointFolder::saving(Work work) const {
+  try {
+    work();
+  } catch (const Error& e) {
+    if (!found_) throw NotSaved(ExitCode::failed, e.what());
+    throw NotSaved(ExitCode::partial, fmt::format("{} The run up to step {} is in {}; --resume continues it.",
+                                                  e.what(), checkpoint_.state.step, folder_.string()));
+  }
+}
+
+void CheckpointFolder::append(const Frame& frame) {
+  saving([&] {
+    if (!writer_) writer_ = std::make_unique<H5mdWriter>(segment(checkpoint_.segments.size()), info_);
+    writer_->append(frame);
+    ++frames_;
+  });
+}
+
+void CheckpointFolder::finish_segment() {
+  if (!writer_) return;
+  writer_->finish();
+  writer_.reset();
+  checkpoint_.segments.push_back({frames_, sha256_of(segment(checkpoint_.segments.size()))});
+  frames_ = 0;
+}
+
+void CheckpointFolder::save(RunState state) {
+  saving([&] {
+    finish_segment();
+    Checkpoint next{checkpoint_.scene, checkpoint_.provenance, version_line(), checkpoint_.segments,
+                    std::move(state)};
+    write_checkpoint(folder_ / kState, next);
+    checkpoint_ = std::move(next);
+    found_ = true;
+  });
+}
+
+void CheckpointFolder::gather(TrajectorySink& out, const std::function<void()>& finish) {
+  saving([&] {
+    finish_segment();
+    Frame frame;
+    for (std::size_t k = 0; k < checkpoint_.segments.size(); ++k) {
+      const H5mdReader reader(segment(k));
+      for (std::size_t f = 0; f < reader.n_frames(); ++f) {
+        reader.read(f, frame);
+        out.append(frame);
+      }
+    }
+    finish();
+  });
+  remove();
+}
+
+void CheckpointFolder::remove() {
+  // The state first: a folder without one is begun anew.
+  fs::remove(folder_ / kState);
+  checkpoint_.segments.clear();
+  found_ = false;
+  writer_.reset();
+  remove_strays();
+  std::error_code ec;
+  fs::remove(folder_, ec);  // stays if someone else's files are in it
+}
+
+}  // namespace twincell::sim

@@ -1,0 +1,368 @@
+#include "sim/run/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "sim/run/make_solver.hpp"
+#include "sim/scene/resource_demand.hpp"
+#include "sim/system/cell_grid.hpp"
+#include "trajectory/temperature.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+/// Steps of about a tenth of a second at most, so that a signal is noticed.
+std::int64_t unnoticed_steps(const System& s) {
+  return 1 + 2'000'000 / (1 + static_cast<std::int64_t>(s.beads.size()));
+}
+
+double top_of(const std::vector<Bead>& beads) {
+  double top = 0;
+  for (const Bead& b : beads) top = std::max(top, b.z + b.radius);
+  return top;
+}
+
+bool touches(const System& s, const Bead& b, const Wall& wall) {
+  return wall.n.dot(centre_of(b)) - offset_now(s, wall) < b.radius;
+}
+
+std::int64_t beads_in_contact(const System& s, Progress& progress) {
+  Heed heed(progress);
+  std::vector<char> touching(s.beads.size(), 0);
+  for_each_near_pair(s.beads, s.dimension, s.period, 0,
+                     [&](std::int32_t i, std::int32_t j, double, const Vec3&) {
+                       heed();
+                       touching[static_cast<std::size_t>(i)] = touching[static_cast<std::size_t>(j)] = 1;
+                     });
+  for (const Wall& wall : s.walls)
+    for (std::size_t i = 0; i < s.beads.size(); ++i)
+      if (touches(s, s.beads[i], wall)) touching[i] = 1;
+  return std::count(touching.begin(), touching.end(), 1);
+}
+
+/// What contacts of a start in motion remember, if this plan can read it.
+/// \throws ConfigError if other laws or another integrator wrote it
+std::vector<ContactMemory> readable(const Scene& scene, const Plan& plan,
+                                    std::vector<ContactMemory> contacts) {
+  const std::size_t wanted = remembered_numbers(plan);
+  for (const ContactMemory& c : contacts) {
+    if (c.values.size() != wanted)
+      throw ConfigError(
+          scene.where("start.in_motion"),
+          fmt::format("{}: its contacts remember {} numbers, those of this scene's laws and integrator "
+                      "(\"{}\") remember {}; name those that wrote the file.",
+                      scene.from.string(), c.values.size(), scene.integrator, wanted));
+    if (-1 - c.j >= static_cast<std::int64_t>(plan.walls.size()))
+      throw ConfigError(scene.where("start.in_motion"),
+                        fmt::format("{}: bead {} touches wall {}, this cell has {} walls.",
+                                    scene.from.string(), c.i, -1 - c.j, plan.walls.size()));
+  }
+  return contacts;
+}
+
+/// Largest speed at which a moving wall and a bead that touches it differ.
+double largest_kick(const System& s) {
+  const Vec3 plate = s.plate_velocity() * Vec3::Unit(static_cast<int>(s.drive.axis));
+  double kick = 0;
+  for (const Wall& wall : s.walls)
+    for (const Bead& b : s.beads)
+      if (wall.moves && touches(s, b, wall)) kick = std::max(kick, (Vec3(b.vx, b.vy, b.vz) - plate).norm());
+  return kick;
+}
+
+}  // namespace
+
+double kinetic_energy_per_bead(const System& s) {
+  double sum = 0;
+  for (const Bead& b : s.beads)
+    sum += 0.5 * (b.mass * (b.vx * b.vx + b.vy * b.vy + b.vz * b.vz) +
+                  b.inertia * (b.spin_x * b.spin_x + b.spin * b.spin + b.spin_z * b.spin_z));
+  return s.beads.empty() ? 0 : sum / static_cast<double>(s.beads.size());
+}
+
+RunState placed(const Scene& scene, Progress& progress) {
+  // What cannot run is refused before ten million beads are placed.
+  const Plan plan = make_plan(scene);
+  require_memory(scene, plan, scene.n_beads.value_or(0));
+  Start start = make_start(scene, progress);
+  const double phase = start.phase.value_or(scene.phase.value_or(0));
+  const Vec3 plate =
+      scene.in_motion ? Vec3(scene.drive.displacement(phase) * Vec3::Unit(static_cast<int>(scene.drive.axis)))
+                      : Vec3(Vec3::Zero());
+  require_sound(start.beads, scene, 0.05, progress, plate);
+  RunState state;
+  // High enough never to be reached: the bed, the plate's stroke, twice the ballistic height of the plate's
+  // speed, ten diameters.
+  const double v = scene.drive.peak_velocity(), g = scene.g();
+  const double flight = g > 0 ? v * v / g : 0;
+  state.height =
+      scene.height.value_or(std::ceil(top_of(start.beads) + 2 * scene.drive.amplitude + 2 * flight + 10));
+  state.beads = std::move(start.beads);
+  state.tracer = std::move(start.tracer);
+  if (!scene.in_motion) return state;
+  state.driven = true;
+  state.step = first_step(plan, phase);
+  state.contacts = readable(scene, plan, std::move(start.contacts));
+  state.forces = std::move(start.forces);
+  state.rim_speeds = std::move(start.rim_speeds);
+  if (state.tracer.empty()) state.tracer = choose_tracers(state.beads, scene);
+  return state;
+}
+
+std::int64_t first_step(const Plan& plan, double phase) {
+  return std::llround(phase * static_cast<double>(plan.steps_per_period)) % plan.steps_per_period;
+}
+
+void begin_drive(const Scene& scene, const Plan& plan, System& system) {
+  system.drive = scene.drive;
+  system.envelope = scene.envelope;
+  system.step = first_step(plan, scene.phase.value_or(0));
+  if (system.step > 0) {
+    // The bed stands on the plate, wherever that is.
+    const Vec3 shift = system.plate_displacement();
+    for (Bead& b : system.beads) b.x += shift.x(), b.y += shift.y(), b.z += shift.z();
+    system.forces_known = false;
+  }
+  // At phase 0 the plate moves at A omega but does not accelerate: beads moving with it are in equilibrium.
+  // Beads at rest would be hit by a plate at full speed, which by itself breaks a crystal.
+  if (!scene.comoving) return;
+  const double v = system.plate_velocity();
+  for (Bead& b : system.beads) {
+    if (scene.drive.axis == Axis::x) b.vx += v;
+    if (scene.drive.axis == Axis::y) b.vy += v;
+    if (scene.drive.axis == Axis::z) b.vz += v;
+  }
+}
+
+Simulation::Simulation(Scene scene, RunState state, SolverKind kind, int threads)
+    : scene_(std::move(scene)),
+      plan_(make_plan(scene_, state.beads)),  // a file's beads may be lighter than the scene's
+      system_(make_system(scene_, plan_)),
+      tracer_(std::move(state.tracer)),
+      height_(state.height),
+      driven_(state.driven),
+      quiet_(state.quiet),
+      settled_(state.settled),
+      looked_at_(state.looked_at),
+      touching_(state.touching),
+      temperature_(state.temperature) {
+  GuardLimits limits = guard_limits(plan_);
+  // A height that the scene names without a lid binds; the one we chose merely keeps the box of the file
+  // finite.
+  limits.ceiling = scene_.lid || scene_.bottom == Edge::periodic ? 0 : scene_.height.value_or(0);
+  kernel_ = make_solver(plan_, limits, kind, threads);
+  kernel_->restore(std::move(state.contacts));
+  if (driven_)
+    system_.envelope = scene_.envelope;
+  else
+    system_.drive.amplitude = 0;  // the plate rests at its mean
+  system_.step = state.step;
+  system_.beads = std::move(state.beads);
+  for (const Bead& b : system_.beads) masses_.push_back(b.mass);
+  system_.forces_known = !state.forces.empty();
+  system_.forces = std::move(state.forces);
+  system_.rim_speeds = std::move(state.rim_speeds);
+  kernel_->recall(system_, state.kernel);
+  if (driven_ || system_.step > 0) return;
+  try {
+    check_motion(system_, limits);
+  } catch (const RunError& e) {  // before the first step it is the start that is wrong
+    throw ConfigError(scene_.where("start"), e.what());
+  }
+}
+
+Simulation::Simulation(const Scene& scene, Progress& progress, SolverKind kind, int threads)
+    : Simulation(scene, placed(scene, progress), kind, threads) {
+  settle(progress);
+}
+
+void Simulation::settle(Progress& progress) try {
+  if (driven_) return;
+  // Rest must last: the energy is looked at every ten contact times.
+  constexpr int kLooks = 2;
+  const auto block = static_cast<std::int64_t>(10 * scene_.steps_per_contact);
+  const bool falls = !system_.beads.empty() && scene_.g() > 0;
+  const auto most = falls ? static_cast<std::int64_t>(scene_.settle_limit / system_.dt) : 0;
+  while (system_.step / block * block < most && quiet_ < kLooks) {
+    kernel_->advance(system_, std::min(block - system_.step % block, unnoticed_steps(system_)));
+    if (system_.step % block == 0) {
+      settled_.energy_per_bead = kinetic_energy_per_bead(system_);
+      quiet_ = settled_.energy_per_bead < scene_.rest_energy ? quiet_ + 1 : 0;
+      settled_.time = system_.time();
+      settled_.reached = quiet_ >= kLooks;
+    }
+    progress.update(std::min(system_.step, most), most);
+  }
+  if (tracer_.empty()) tracer_ = choose_tracers(system_.beads, scene_);
+} catch (const RunError& e) {
+  throw RunError(std::string("While the bed settled, ") + e.what());
+}
+
+std::vector<std::string> Simulation::warnings() const {
+  std::vector<std::string> all = plan_.warnings;
+  if (!settled_.reached && !scene_.in_motion && scene_.g() > 0 && scene_.settle_limit > 0 &&
+      !system_.beads.empty())
+    all.push_back(
+        fmt::format("the bed still moved at {:.3g} m g sigma a bead when start.settle_limit = {:g} ended its "
+                    "settling.",
+                    settled_.energy_per_bead, scene_.settle_limit));
+  if (driven_ && scene_.in_motion && plan_.history && steps_done_ == 0 && kernel_->contacts().empty())
+    all.push_back(
+        "the start in motion brings no springs of contacts (time.springs of the run that wrote it): friction "
+        "begins anew at every contact.");
+  if (driven_) return all;
+  System at_start = system_;
+  begin_drive(scene_, plan_, at_start);
+  constexpr double kGentle = 0.01;
+  if (const double kick = largest_kick(at_start); kick > kGentle)
+    all.push_back(
+        fmt::format("the drive starts with a blow: a bead at rest on a wall meets it at {:.3g} sigma/t0; "
+                    "drive.start = \"comoving\" or \"ramp\" avoids it.",
+                    kick));
+  return all;
+}
+
+RunState Simulation::state() const {
+  RunState state;
+  state.driven = driven_;
+  state.step = system_.step;
+  state.quiet = quiet_;
+  state.settled = settled_;
+  state.height = height_;
+  state.beads = system_.beads;
+  if (system_.forces_known) state.forces = system_.forces;
+  state.rim_speeds = system_.rim_speeds;
+  state.contacts = kernel_->contacts();
+  state.kernel = kernel_->memory();
+  state.tracer = tracer_;
+  state.looked_at = looked_at_;
+  state.touching = touching_;
+  state.temperature = temperature_;
+  return state;
+}
+
+std::optional<double> Simulation::contact_fraction() const {
+  if (looked_at_ == 0) return std::nullopt;
+  return static_cast<double>(touching_) / static_cast<double>(looked_at_);
+}
+
+TrajectoryInfo Simulation::trajectory_info() const {
+  TrajectoryInfo info;
+  info.n_beads = system_.beads.size();
+  info.columns = {
+      .velocity = true, .spin = plan_.rotation, .identity = false, .phase = true, .plate_height = true};
+  info.columns.time_mean = samples_per_phase() > 0;
+  info.columns.contacts = scene_.springs;
+  info.samples_per_cycle = static_cast<int>(samples_per_phase()) * scene_.phases;
+  const auto boundary = [](Edge e) {
+    return e == Edge::periodic ? Boundary::periodic : e == Edge::wall ? Boundary::wall : Boundary::open;
+  };
+  info.box.dimension = scene_.dimension;
+  info.box.lower = Vec3(0, 0, 0);
+  info.box.upper = Vec3(scene_.width, scene_.dimension == 3 ? scene_.depth : 2 * scene_.radius, height_);
+  info.box.boundary = {boundary(scene_.sides),
+                       scene_.dimension == 3 ? boundary(scene_.plates) : Boundary::open,
+                       boundary(scene_.bottom)};
+  info.box.side_tilt = {scene_.left_tilt, scene_.right_tilt};
+  info.drive = scene_.drive;
+  info.phases_per_cycle = scene_.phases;
+  info.scale = scene_.scale;
+  info.source = "simulation";
+  for (const Bead& b : system_.beads) {
+    info.radius.push_back(b.radius);
+    info.mass.push_back(b.mass);
+  }
+  info.tracer = tracer_;
+  return info;
+}
+
+Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
+  Frame frame;
+  frame.step = system_.step;
+  frame.time = system_.time();
+  frame.cycle = cycle;
+  frame.phase = phase;
+  frame.plate_height = system_.plate_height();
+  for (const Bead& b : system_.beads) {
+    frame.position.emplace_back(b.x, b.y, b.z);
+    frame.velocity.emplace_back(b.vx, b.vy, b.vz);
+    if (plan_.rotation) frame.spin.emplace_back(b.spin_x, -b.spin, b.spin_z);
+  }
+  if (scene_.springs) {
+    frame.contacts = kernel_->contacts();
+    const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    const std::size_t n = system_.beads.size();
+    const bool known = system_.forces_known && system_.forces.size() == n;
+    for (std::size_t i = 0; i < n; ++i) {
+      frame.force.push_back(known ? Vec3(system_.forces[i].x, system_.forces[i].y, system_.forces[i].z)
+                                  : unknown);
+      frame.moment.push_back(known ? Vec3(system_.forces[i].q_x, system_.forces[i].q, system_.forces[i].q_z)
+                                   : unknown);
+      frame.rim_speed.push_back(system_.rim_speeds.size() == n ? system_.rim_speeds[i] : unknown);
+    }
+  }
+  if (temperature_.steps == steps_per_phase()) {
+    const auto steps = static_cast<double>(temperature_.steps);
+    frame.time_mean = {temperature_.all / steps, temperature_.coarse / steps};
+  }
+  return frame;
+}
+
+std::int64_t Simulation::samples_per_phase() const {
+  constexpr int kOfABedThatLands = 400;
+  const int samples = scene_.samples.value_or(plan_.event_driven ? 2 * scene_.phases : kOfABedThatLands);
+  if (samples == 0 || steps_per_phase() < 2) return 0;
+  const std::int64_t pairs = (samples + 2 * scene_.phases - 1) / (2 * scene_.phases);
+  return 2 * std::min(pairs, steps_per_phase() / 2);
+}
+
+std::int64_t Simulation::sample_at(std::int64_t j) const {
+  const std::int64_t samples = samples_per_phase();
+  return (j * steps_per_phase() + samples - 1) / samples;
+}
+
+void Simulation::take_sample(std::int64_t j) {
+  sampled_.velocity.clear();
+  for (const Bead& b : system_.beads) sampled_.velocity.emplace_back(b.vx, b.vy, b.vz);
+  const Vec3 t = temperature_components(sampled_, masses_);
+  temperature_.all += static_cast<double>(sample_at(j) - sample_at(j - 1)) * t;
+  if (j % 2 == 0) temperature_.coarse += static_cast<double>(sample_at(j) - sample_at(j - 2)) * t;
+  temperature_.steps += sample_at(j) - sample_at(j - 1);
+}
+
+void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most) {
+  settle(progress);
+  if (!driven_) begin_drive(scene_, plan_, system_);
+  driven_ = true;
+  const std::int64_t per_phase = steps_per_phase(), samples = samples_per_phase();
+  const std::int64_t last = plan_.steps;
+  std::int64_t handed_over = 0;
+  while (system_.step < last) {
+    const std::int64_t frame = system_.step / per_phase, into = system_.step % per_phase;
+    const std::int64_t cycle = frame / scene_.phases - plan_.cycles_before;
+    if (into == 0 && cycle >= 0) {
+      if (handed_over == most) return;
+      ++handed_over;
+      const std::int64_t touching = beads_in_contact(system_, progress);  // may throw: nothing is done yet
+      sink.append(snapshot(cycle, static_cast<int>(frame % scene_.phases)));
+      touching_ += touching;
+      looked_at_ += static_cast<std::int64_t>(system_.beads.size());
+    }
+    if (into == 0) temperature_ = {};
+    std::int64_t piece = std::min(per_phase - into, unnoticed_steps(system_));
+    // Samples of the time before a frame that will be handed over.
+    const bool sampling = samples > 0 && (frame + 1) / scene_.phases >= plan_.cycles_before;
+    const std::int64_t next = sampling ? into * samples / per_phase + 1 : 0;
+    if (sampling) piece = std::min(piece, sample_at(next) - into);
+    kernel_->advance(system_, piece);
+    if (sampling && into + piece == sample_at(next)) take_sample(next);
+    steps_done_ += piece;
+    progress.update(system_.step, last);
+  }
+}
+
+}  // namespace twincell::sim

@@ -1,0 +1,517 @@
+#include "sim/scene/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "sim/kernels/kernels.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+template <class Axis>
+std::string name_of(const Axis& law) {
+  return std::visit([](const auto& l) { return std::string(l.kName); }, law);
+}
+
+double mu_of(const ContactTable& t) {
+  return t.number("mu", 0, 1e12).value_or(0.6);
+}
+double k_t_of(const ContactTable& t) {
+  return t.number("k_t", 0, 1e12).value_or(1e4);
+}
+
+/// Whether the named tangential law takes its stiffness from k_t.
+bool reads_k_t(const std::string& tangential) {
+  const std::vector<std::string> readers = readers_of("k_t").laws;
+  return std::find(readers.begin(), readers.end(), tangential) != readers.end();
+}
+/// "k_t = 10000", or that the stiffness follows the overlap.
+std::string stiffness_text(const ContactChoice& contact) {
+  return reads_k_t(contact.tangential) ? fmt::format("k_t = {:g}", k_t_of(contact.bead))
+                                       : "stiffness from the overlap";
+}
+
+/// What the scene's words come to once physics has been asked what of them can act.
+struct Chosen {
+  std::string normal, tangential, rolling;
+  bool frictional = false;  ///< mu > 0 somewhere
+  bool springy = false;     ///< k_t > 0 somewhere
+};
+
+Chosen choose(const Scene& s, const std::vector<Wall>& walls) {
+  const ContactChoice& c = s.contact;
+  Chosen chosen{c.normal, c.tangential, c.rolling};
+  std::vector<const ContactTable*> tables = {&c.bead};
+  for (const Wall& w : walls) tables.push_back(&c.wall.at(w.name));
+  for (const ContactTable* t : tables) {
+    chosen.frictional = chosen.frictional || mu_of(*t) > 0;
+    chosen.springy = chosen.springy || (mu_of(*t) > 0 && !(reads_k_t(c.tangential) && k_t_of(*t) == 0));
+  }
+  // Friction of one kind of contact keeps the machinery for all; another's mu = 0 then gives exactly no
+  // force.
+  if (!chosen.frictional) chosen.tangential = "none";
+  if (has_history(chosen.tangential) && !chosen.springy) chosen.tangential = "dashpot";
+  if (chosen.tangential == "none") chosen.rolling = "none";
+  return chosen;
+}
+
+ContactLaws read_laws(const Chosen& chosen, const ContactTable& table) {
+  return {read_law<NormalAxis>(chosen.normal, table), read_law<TangentialAxis>(chosen.tangential, table),
+          read_law<RollingAxis>(chosen.rolling, table)};
+}
+
+/// Of two equal beads, or a bead and a wall.
+PairScale pair_of(double radius, double mass, double inertia_factor) {
+  const double one = 1 / mass + 1 / (inertia_factor * mass);  // 1/m + R^2/I
+  return {mass / 2, radius / 2, 2 * one};
+}
+PairScale wall_of(double radius, double mass, double inertia_factor) {
+  return {mass, radius, 1 / mass + 1 / (inertia_factor * mass)};
+}
+
+void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
+  using State = Effect::State;
+  const auto add = [&](const std::string& name, State state, const std::string& reason) {
+    plan.effects.push_back({name, state, reason});
+  };
+  const ContactChoice& asked = s.contact;
+  add("dimensions", State::on, s.dimension == 2 ? "2: plane (x, z), one axis of rotation" : "3");
+  add("normal force", State::on, name_of(plan.bead.normal));
+  if (const auto* clipped = std::get_if<ClippedSpringDashpot>(&plan.bead.normal)) {
+    const PairScale pair = pair_of(s.radius, s.mass, s.inertia_factor);
+    add("tension", State::off_by_scene,
+        fmt::format("contact.normal = \"{}\": a contact ends where its force is zero; two beads part with "
+                    "e = {:.4g}, with tension e = {:.4g}",
+                    clipped->kWord, clipped->collision(pair).restitution,
+                    clipped->oscillator(pair).with_pull().restitution));
+  }
+  const bool friction = chosen.tangential != "none";
+  const bool spring_asked = has_history(asked.tangential);
+  if (asked.tangential == "none")
+    add("friction", State::off_by_scene, "contact.tangential = \"none\"");
+  else if (!friction)
+    add("friction", State::off_by_proof, "mu = 0 everywhere: the Coulomb limit is zero, dashpot included");
+  else
+    add("friction", State::on,
+        fmt::format("{}, mu = {:g}", name_of(plan.bead.tangential), mu_of(asked.bead)));
+  const auto unasked = [](bool wanted, const char* key) {
+    return wanted ? "" : fmt::format("; effects.{} = false drops nothing", key);
+  };
+  if (friction)
+    add("rotation", State::on, "friction turns beads; it may not be dropped while mu > 0");
+  else
+    add("rotation", State::off_by_proof,
+        "without friction there is no torque: spins stay what they were" + unasked(s.rotation, "rotation"));
+  if (plan.history)
+    add("tangential history", State::on,
+        fmt::format("{}; one {} per contact; it may not be dropped: a bed held by dashpots alone creeps",
+                    stiffness_text(asked), s.dimension == 2 ? "number" : "vector in the tangent plane"));
+  else if (!spring_asked)
+    add("tangential history", State::off_by_scene,
+        "the tangential law has no spring" + unasked(s.history, "history"));
+  else
+    add("tangential history", State::off_by_proof,
+        (friction ? "k_t = 0: the force depends on the present alone"
+                  : "mu = 0: there is no tangential force") +
+            unasked(s.history, "history"));
+  if (asked.rolling == "none")
+    add("rolling resistance", State::off_by_scene, "contact.rolling = \"none\"");
+  else if (!friction)
+    add("rolling resistance", State::off_by_proof, "beads do not turn");
+  else
+    add("rolling resistance", State::on, name_of(plan.bead.rolling));
+
+  if (s.spread != SizeSpread::none)
+    add("unequal beads", State::on, fmt::format("radii spread by {:g} of {:g}", s.spread_width, s.radius));
+  else if (s.intruder)
+    add("unequal beads", State::on, fmt::format("an intruder of radius {:g}", s.intruder->radius));
+  else if (s.start == StartKind::table || s.start == StartKind::trajectory)
+    add("unequal beads", State::on, "if the file says so; equal beads share one set of constants");
+  else
+    add("unequal beads", State::off_by_scene,
+        "equal beads: masses and radii are folded into one set of constants");
+
+  if (s.g() > 0)
+    add("gravity", State::on,
+        s.dimension == 2 ? fmt::format("({:g}, {:g})", s.gravity.x(), s.gravity.z())
+                         : fmt::format("({:g}, {:g}, {:g})", s.gravity.x(), s.gravity.y(), s.gravity.z()));
+  else
+    add("gravity", State::off_by_scene, "cell.gravity = 0");
+  const auto has = [&](const char* name) {
+    return std::any_of(plan.walls.begin(), plan.walls.end(), [&](const Wall& w) { return w.name == name; });
+  };
+  const auto edge = [&](const char* name, const char* wall, Edge kind, bool moves) {
+    if (kind == Edge::periodic)
+      add(name, State::off_by_scene, "periodic");
+    else if (has(wall))
+      add(name, State::on, moves ? "hard, riding with the drive" : "hard, at rest");
+    else
+      add(name, State::off_by_scene, "absent");
+  };
+  edge("bottom", "bottom", s.bottom, s.bottom_moves);
+  edge("side walls", "left", s.sides, s.side_walls_move);
+  if (s.sides == Edge::wall && (s.left_tilt != 0 || s.right_tilt != 0))
+    add("tilt of the side walls", State::on,
+        fmt::format("{:g} and {:g} degrees outward", s.left_tilt, s.right_tilt));
+  if (s.dimension == 3) edge("front and back plates", "front", s.plates, s.plates_move);
+  if (s.plate_drag > 0)
+    add("front and back plates", State::approximated,
+        fmt::format(
+            "2D substitute: a drag of rate {:g} against the cell; the plates' Coulomb friction and the third "
+            "coordinate are missing, no bound on the error is known",
+            s.plate_drag));
+  if (s.lid)
+    add("lid", State::on,
+        fmt::format("hard at {:g}, {}", s.height.value_or(0),
+                    s.lid_moves ? "riding with the drive" : "at rest"));
+  else
+    add("lid", State::off_by_scene,
+        s.height ? "a run in which a bead reaches cell.height stops and says so"
+                 : "open top; the height beads reach is watched");
+  if (s.drive.amplitude > 0)
+    add("drive", State::on,
+        fmt::format("A sin(omega t) along {}, Gamma = {:.6g}, {}", "xyz"[static_cast<int>(s.drive.axis)],
+                    s.drive.gamma(s.g() > 0 ? s.g() : 1),
+                    !s.envelope.points.empty()
+                        ? fmt::format("amplitude led over {:g} cycles", s.envelope.duration())
+                    : s.in_motion ? "from the phase that the start goes on from"
+                    : s.phase.value_or(0) > 0
+                        ? fmt::format("{} start at phase {:g}", s.comoving ? "co-moving" : "abrupt", *s.phase)
+                    : s.comoving ? "co-moving start"
+                                 : "abrupt start: the plate hits a bed at rest"));
+  else
+    add("drive", State::off_by_scene, "amplitude 0");
+  if (s.g() == 0)
+    add("settling", State::off_by_proof, "without gravity there is no rest to come to");
+  else if (s.in_motion)
+    add("settling", State::off_by_scene, "start.in_motion = true: the bed goes on as its file left it");
+  else if (s.settle_limit > 0)
+    add("settling", State::on,
+        fmt::format("on the resting plate to {:g} m g sigma a bead, for {:g} t0 at most", s.rest_energy,
+                    s.settle_limit));
+  else
+    add("settling", State::off_by_scene, "start.settle_limit = 0");
+  // tests/hard/precision_test.cpp, `cost sim`.
+  if (s.single)
+    add("single precision", State::approximated,
+        "contacts between beads are computed to 24 bits, places, speeds and sums to 53: e of single "
+        "collisions "
+        "is changed by up to 1e-7, overlaps of a bed at rest by 3e-7 of each");
+  else
+    add("single precision", State::off_by_scene, "time.precision = \"double\"");
+  // What that does to a collision is measured where it is asked for (step_error.hpp).
+  add(kTimeIntegration, State::approximated,
+      fmt::format(
+          "{:g} steps per contact, {}{}", s.steps_per_contact, integrator_named(s.integrator).explain,
+          s.integrator_stated ? "" : " (the default; time.integrator = \"verlet\" steps as LAMMPS does)"));
+}
+
+/// Why the beads of a plan cannot move from event to event; empty if they can.
+std::string why_not_event_driven(const Scene& scene, const Plan& plan) {
+  if (!integrable_alone(plan.bead))
+    return "the contact law of beads has a normal force that remembers, or resists rolling";
+  for (const ContactLaws& laws : plan.wall_laws)
+    if (!integrable_alone(laws))
+      return "the contact law of a wall has a normal force that remembers, or resists rolling";
+  if (scene.plate_drag > 0) return "cell.plate_drag slows beads between contacts";
+  if (!scene.envelope.points.empty()) return "the drive's amplitude changes";
+  if (scene.single) return "time.precision = \"single\"";
+  return "";
+}
+
+/// Whether beads fly from contact to contact: where that is exact, and asked for or likely to be faster,
+/// which it is in a dilute bed of not too many beads.
+void choose_stepping(const Scene& s, std::size_t beads, Plan& plan) {
+  using State = Effect::State;
+  // At W = 5.6 flights took as long as steps, at W = 50 with 400 beads twice as long: some three meet nearly
+  // always.
+  constexpr double kDilute = 10;
+  constexpr std::size_t kMost = 200;
+  const std::string hindrance = why_not_event_driven(s, plan);
+  // Without gravity nothing brings beads together to stay, shaken or not.
+  const double w = s.g() > 0 ? s.drive.k_m(s.g()) : HUGE_VAL;
+  if (s.stepping == Stepping::event_driven && !hindrance.empty())
+    throw ConfigError(s.where("time.stepping"),
+                      fmt::format("is \"event-driven\", but {}; choose \"auto\" or \"steps\".", hindrance));
+  plan.event_driven =
+      s.stepping == Stepping::event_driven || (s.stepping == Stepping::automatic && hindrance.empty() &&
+                                               !plan.history && w >= kDilute && beads <= kMost);
+  const char* name = "free flight";
+  if (plan.event_driven)
+    plan.effects.push_back(
+        {name, State::on,
+         "beads fly from contact to contact, contacts of two bodies are integrated to 1e-7; "
+         "the time step acts only where three meet"});
+  else if (s.stepping == Stepping::steps)
+    plan.effects.push_back({name, State::off_by_scene, "time.stepping = \"steps\""});
+  else
+    plan.effects.push_back(
+        {name, State::off_by_proof,
+         !hindrance.empty() ? hindrance
+         : plan.history     ? "a contact with a spring that remembers takes longer by itself than in steps; "
+                              "time.stepping = \"event-driven\" has it exact"
+         : w < kDilute ? fmt::format("W = {:.3g} is below {:g}: in a dense bed steps are faster", w, kDilute)
+                       : fmt::format("{} beads are more than {}: steps are faster", beads, kMost)});
+}
+
+/// What acts may not be dropped.
+void refuse_to_drop(const Scene& s, const Plan& plan) {
+  const double mu = mu_of(s.contact.bead);
+  if (!s.rotation && plan.rotation)
+    throw ConfigError(
+        s.where("effects.rotation"),
+        fmt::format(
+            "is false, but friction turns beads (contact.tangential = \"{}\", mu = {:g}); set mu = 0 at "
+            "all contacts or contact.tangential = \"none\" to be rid of both.",
+            s.contact.tangential, mu));
+  if (s.springs && remembered_numbers(plan) == 0)
+    throw ConfigError(s.where("time.springs"),
+                      "is true, but no law of this scene's contacts remembers anything.");
+  if (!s.history && plan.history)
+    throw ConfigError(
+        s.where("effects.history"),
+        fmt::format("is false, but contact.tangential = \"{}\" with {} is a spring that remembers; "
+                    "choose \"dashpot\" for a law without history.",
+                    s.contact.tangential, stiffness_text(s.contact)));
+}
+
+/// Single precision has its bounds: polynomials that hold for overlaps of a tenth (laws/real.hpp), and
+/// numbers that neither vanish nor overflow.
+void refuse_single(const Scene& s, double smallest_radius, double smallest_mass) {
+  constexpr double kDeepest = 0.1, kLeast = 1e-6;
+  const Where where = s.where("time.precision");
+  if (s.overlap_bound > kDeepest)
+    throw ConfigError(where, fmt::format("\"single\" is good for overlaps of up to {:g} of a diameter, but "
+                                         "contact.overlap_bound = {:g}; lower it, or choose \"double\".",
+                                         kDeepest, s.overlap_bound));
+  if (smallest_radius < kLeast || smallest_mass < kLeast)
+    throw ConfigError(where,
+                      fmt::format("\"single\" loses the contacts of a bead of radius {:g} and mass {:g}, "
+                                  "the bound of either is {:g}; choose other units, or \"double\".",
+                                  smallest_radius, smallest_mass, kLeast));
+}
+
+/// Notes a limit, or keeps the shorter of two of one name.
+void keep_shorter(std::vector<TimeLimit>& limits, const TimeLimit& limit) {
+  for (TimeLimit& known : limits)
+    if (known.name == limit.name) {
+      known.time = std::min(known.time, limit.time);
+      return;
+    }
+  limits.push_back(limit);
+}
+
+void add_limits(const std::string& kind, const ContactLaws& laws, const PairScale& pair, double speed,
+                std::vector<TimeLimit>& limits) {
+  keep_shorter(limits,
+               {kind + ", normal contact",
+                std::visit([&](const auto& law) { return law.shortest_time(pair, speed); }, laws.normal)});
+  const double tangential =
+      std::visit([&](const auto& law) { return law.shortest_time(pair); }, laws.tangential);
+  if (std::isfinite(tangential)) keep_shorter(limits, {kind + ", tangential contact", tangential});
+  const double rolling = std::visit([&](const auto& law) { return law.shortest_time(pair); }, laws.rolling);
+  if (std::isfinite(rolling)) keep_shorter(limits, {kind + ", rolling", rolling});
+}
+
+struct BeadScale {
+  double radius, mass;
+};
+
+/// The beads that there may be, as far as the scene says.
+std::vector<BeadScale> announced(const Scene& s) {
+  const double smallest = s.radius * (1 - largest_deviation(s.spread, s.spread_width));
+  std::vector<BeadScale> all = {{smallest, s.mass_of(smallest)}};
+  if (s.intruder) all.push_back({s.intruder->radius, s.intruder->mass});
+  return all;
+}
+
+/// Those of them that make the fastest contacts: the lightest, and where stiffness grows with the root of the
+/// radius, as Hertz's does, the one of least m^2/R.
+std::vector<BeadScale> fastest(const std::vector<BeadScale>& all) {
+  const auto least = [&](auto of) {
+    return *std::min_element(all.begin(), all.end(),
+                             [&](const BeadScale& a, const BeadScale& b) { return of(a) < of(b); });
+  };
+  return {least([](const BeadScale& b) { return b.mass; }),
+          least([](const BeadScale& b) { return b.mass * b.mass / b.radius; })};
+}
+
+void warn(const Scene& s, Plan& plan) {
+  constexpr double kManySteps = 2e6;
+  for (const VoidKey& key : s.void_keys) plan.warnings.push_back(key.text());
+  const auto slides_freely = [](const ContactLaws& laws) {
+    const auto* dashpot = std::get_if<DashpotSlider>(&laws.tangential);
+    return dashpot != nullptr && dashpot->damping.eta(1) == 0;
+  };
+  if (slides_freely(plan.bead) && std::all_of(plan.wall_laws.begin(), plan.wall_laws.end(), slides_freely))
+    plan.warnings.push_back(
+        "the tangential law is a dashpot without gamma_t, c_t or c_t_over_c_n: no contact has friction, "
+        "whatever mu is.");
+  if (s.steps_per_contact < kFewSteps)
+    plan.warnings.push_back(fmt::format(
+        "time.steps_per_contact = {:g} is below {:g}: collisions are coarse and a bed may not rest.",
+        s.steps_per_contact, kFewSteps));
+  if (static_cast<double>(plan.steps_per_period) > kManySteps) {
+    const TimeLimit& why = plan.shortest();
+    plan.warnings.push_back(
+        fmt::format("a cycle takes {:.3g} steps, because of the {} ({:.3g} t0): this will take its time.",
+                    static_cast<double>(plan.steps_per_period), why.name, why.time));
+  }
+}
+
+}  // namespace
+
+std::string word_of(Effect::State state) {
+  switch (state) {
+    case Effect::State::on:
+      return "on";
+    case Effect::State::off_by_scene:
+      return "off (scene)";
+    case Effect::State::off_by_proof:
+      return "off (proven)";
+    case Effect::State::approximated:
+      break;
+  }
+  return "approximated";
+}
+
+const TimeLimit& Plan::shortest() const {
+  return *std::min_element(limits.begin(), limits.end(),
+                           [](const TimeLimit& a, const TimeLimit& b) { return a.time < b.time; });
+}
+
+std::size_t remembered_numbers(const Plan& plan) {
+  return static_cast<std::size_t>(kScalar.find(plan.key).remembered);
+}
+
+std::string Plan::law_names() const {
+  std::string name = fmt::format("{}D; normal: {}; tangential: {}", dimension, name_of(bead.normal),
+                                 name_of(bead.tangential));
+  if (key.rolling > 0) name += "; rolling: " + name_of(bead.rolling);
+  if (key.velocity == Velocity::full_step) name += "; predicted velocities";
+  if (locate) name += "; steps split at entry and exit";
+  return name;
+}
+
+Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
+  Plan plan;
+  plan.dimension = s.dimension;
+  plan.walls = s.walls();
+  const Chosen chosen = choose(s, plan.walls);
+  plan.bead = read_laws(chosen, s.contact.bead);
+  for (const Wall& w : plan.walls) plan.wall_laws.push_back(read_laws(chosen, s.contact.wall.at(w.name)));
+  plan.key = {s.dimension,
+              plan.bead.normal.index(),
+              plan.bead.tangential.index(),
+              plan.bead.rolling.index(),
+              integrator_named(s.integrator).velocity,
+              s.single};
+  plan.locate = integrator_named(s.integrator).locate;
+  plan.rotation = std::visit([](const auto& law) { return law.kActs; }, plan.bead.tangential);
+  plan.history = std::visit([](const auto& law) { return law.kHistory; }, plan.bead.tangential);
+
+  refuse_to_drop(s, plan);
+
+  // Only a file's beads can differ from what the scene says.
+  const bool from_file = s.start == StartKind::table || s.start == StartKind::trajectory;
+  std::vector<BeadScale> sizes;
+  if (from_file)
+    for (const Bead& b : beads) sizes.push_back({b.radius, b.mass});
+  plan.usual_radius = s.radius, plan.usual_mass = s.mass;
+  const auto smaller = [](const BeadScale& a, const BeadScale& b) { return a.radius < b.radius; };
+  if (sizes.empty()) {
+    sizes = announced(s);
+  } else {
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end(), smaller);
+    plan.usual_radius = middle->radius, plan.usual_mass = middle->mass;
+  }
+  plan.travel_bound = kTravelBound * 2 * std::min_element(sizes.begin(), sizes.end(), smaller)->radius;
+  plan.overlap_bound = s.overlap_bound * 2 * plan.usual_radius;
+  if (s.single)
+    refuse_single(s, std::min_element(sizes.begin(), sizes.end(), smaller)->radius,
+                  std::min_element(sizes.begin(), sizes.end(), [](const BeadScale& a, const BeadScale& b) {
+                    return a.mass < b.mass;
+                  })->mass);
+
+  const double speed = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
+  const auto force = [&](const auto& law) { return law.largest_force(plan.overlap_bound); };
+  plan.largest_force = std::visit(force, plan.bead.normal);
+  for (const ContactLaws& laws : plan.wall_laws)
+    plan.largest_force = std::max(plan.largest_force, std::visit(force, laws.normal));
+  for (const auto& [radius, mass] : fastest(sizes)) {
+    add_limits("bead-bead", plan.bead, pair_of(radius, mass, s.inertia_factor), speed, plan.limits);
+    for (std::size_t w = 0; w < plan.walls.size(); ++w)
+      add_limits("bead-" + plan.walls[w].name, plan.wall_laws[w], wall_of(radius, mass, s.inertia_factor),
+                 speed, plan.limits);
+  }
+  if (s.plate_drag > 0) plan.limits.push_back({"plate drag", 1 / s.plate_drag});
+  constexpr double kMostSteps = 1e10, kShortestStep = 1e-12;
+  const double steps = s.drive.period() / (plan.shortest().time / s.steps_per_contact);
+  if (!(steps <= kMostSteps))
+    throw ConfigError(
+        s.where("drive"),
+        fmt::format("a cycle of {:.3g} t0 takes {:.3g} steps of the shortest contact, the bound is {:g}.",
+                    s.drive.period(), steps, kMostSteps));
+  plan.steps_per_period = static_cast<std::int64_t>(std::ceil(steps));
+  // Phases divide the period into whole numbers of steps.
+  const std::int64_t rest = plan.steps_per_period % s.phases;
+  if (rest != 0) plan.steps_per_period += s.phases - rest;
+  plan.dt = s.drive.period() / static_cast<double>(plan.steps_per_period);
+  if (!(plan.dt >= kShortestStep))
+    throw ConfigError(s.where("drive"),
+                      fmt::format("a cycle of {:.3g} t0 makes steps of {:.3g} t0, the bound is {:g}.",
+                                  s.drive.period(), plan.dt, kShortestStep));
+  double strongest = 1;  // of the amplitude, in the course of a schedule
+  for (const auto& [cycle, factor] : s.envelope.points) strongest = std::max(strongest, factor);
+  if (const double travel = strongest * s.drive.peak_velocity() * plan.dt; !(travel <= plan.travel_bound))
+    throw ConfigError(s.where("drive"),
+                      fmt::format("the plate moves {:.3g} sigma in one step, the bound is {:g}; raise "
+                                  "time.steps_per_contact or contact.k_n.",
+                                  travel, plan.travel_bound));
+  // A schedule of amplitudes comes before the cycles that are discarded.
+  plan.cycles_before = static_cast<std::int64_t>(std::ceil(s.envelope.duration())) + s.discard;
+  plan.steps = (plan.cycles_before + s.cycles) * plan.steps_per_period;
+  list_effects(s, chosen, plan);
+  choose_stepping(s, beads.empty() ? s.n_beads.value_or(0) : beads.size(), plan);
+  warn(s, plan);
+  return plan;
+}
+
+System make_system(const Scene& s, const Plan& plan) {
+  System system;
+  system.dimension = s.dimension;
+  system.period = s.period();
+  system.gravity = s.gravity;
+  system.walls = plan.walls;
+  system.plate_drag = s.plate_drag;
+  system.drive = s.drive;
+  system.steps_per_period = plan.steps_per_period;
+  system.dt = plan.dt;
+  return system;
+}
+
+std::vector<double> contact_constants(const ContactLaws& laws, const PairScale& pair, double reach,
+                                      double inv_radius_i, double inv_radius_j) {
+  std::vector<double> set = {
+      reach,         reach * reach * (1 + 1e-14), 1 / reach, 1 / (reach * reach), inv_radius_i, inv_radius_j,
+      1 / pair.m_eff};
+  const auto append = [&](const auto& axis) {
+    std::visit(
+        [&](const auto& law) {
+          const auto own = law.constants(pair);
+          set.insert(set.end(), own.begin(), own.end());
+        },
+        axis);
+  };
+  append(laws.normal);
+  append(laws.tangential);
+  append(laws.rolling);
+  return set;
+}
+
+}  // namespace twincell::sim

@@ -1,0 +1,263 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "core/error.hpp"
+#include "core/table_text.hpp"
+#include "sim/start/start.hpp"
+#include "sim/start/start_parts.hpp"
+#include "trajectory/formats/h5md_file.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+void require_count(const Scene& scene, std::size_t found, const std::string& source) {
+  if (scene.n_beads && *scene.n_beads != found)
+    throw ConfigError(scene.where("beads.count"),
+                      fmt::format("{} beads were announced, {} holds {}.", *scene.n_beads, source, found));
+}
+
+/// A column of a file that must hold positive numbers, or is absent.
+void require_positive(const Scene& scene, const std::vector<double>& column, const char* name) {
+  for (std::size_t i = 0; i < column.size(); ++i)
+    if (!(column[i] > 0 && std::isfinite(column[i])))
+      throw InputError(
+          {scene.from.string(), 0, 0, name},
+          fmt::format("{} of bead {} is out of range; the value must be greater than 0.", column[i], i));
+}
+
+/// Goes on from a frame as it is.
+Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Frame& frame) {
+  const std::string name = fmt::format("frame {} of {}", scene.frame, scene.from.string());
+  const auto refuse = [&](const std::string& complaint) {
+    throw ConfigError(scene.where("start.in_motion"), name + complaint);
+  };
+  if (info.source != "simulation")
+    refuse(" is of source \"" + info.source + "\"; only a simulation's frames hold a bed's whole motion.");
+  if (!info.columns.velocity) refuse(" has no velocities.");
+  if (info.box.dimension != scene.dimension)
+    refuse(fmt::format(" has {} dimensions, the cell has {}.", info.box.dimension, scene.dimension));
+  if (!scene.phase && (frame.phase < 0 || info.phases_per_cycle <= 0))
+    refuse(" has no drive phase; say drive.phase.");
+  const Vec3 corner(info.box.lower.x(), scene.dimension == 3 ? info.box.lower.y() : 0, 0);
+  Start start;
+  std::vector<std::int32_t> slot(frame.position.size(), -1);  // of the frame's slots among the beads
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    if (!frame.present(i)) continue;
+    const double radius = info.radius.empty() ? scene.radius : info.radius[i];
+    Bead b = bead_at(scene, radius, info.mass.empty() ? scene.mass_of(radius) : info.mass[i],
+                     frame.position[i] - corner);
+    const Vec3& v = frame.velocity[i];
+    b.vx = v.x(), b.vy = v.y(), b.vz = v.z();
+    if (!frame.spin.empty())
+      b.spin_x = frame.spin[i].x(), b.spin = -frame.spin[i].y(), b.spin_z = frame.spin[i].z();
+    slot[i] = static_cast<std::int32_t>(start.beads.size());
+    start.beads.push_back(b);
+    if (!info.tracer.empty()) start.tracer.push_back(info.tracer[i]);
+  }
+  for (ContactMemory c : frame.contacts) {
+    c.i = slot[static_cast<std::size_t>(c.i)];
+    if (c.j >= 0) c.j = slot[static_cast<std::size_t>(c.j)];
+    start.contacts.push_back(std::move(c));
+  }
+  const auto all_known = [&](const std::vector<Vec3>& column) {
+    return column.size() == start.beads.size() &&
+           std::ranges::all_of(column, [](const Vec3& v) { return v.allFinite(); });
+  };
+  if (all_known(frame.force) && all_known(frame.moment))
+    for (std::size_t i = 0; i < frame.force.size(); ++i)
+      start.forces.push_back({.x = frame.force[i].x(),
+                              .z = frame.force[i].z(),
+                              .q = frame.moment[i].y(),
+                              .y = frame.force[i].y(),
+                              .q_x = frame.moment[i].x(),
+                              .q_z = frame.moment[i].z()});
+  if (all_known(frame.rim_speed)) start.rim_speeds = frame.rim_speed;
+  start.phase = scene.phase ? *scene.phase : static_cast<double>(frame.phase) / info.phases_per_cycle;
+  constexpr double kSamePlate = 1e-9;
+  if (const double plate = scene.drive.displacement(*start.phase);
+      !std::isnan(frame.plate_height) && std::abs(plate - frame.plate_height) > kSamePlate)
+    refuse(fmt::format(
+        " has its plate at {:g} sigma, this drive puts it at {:g}; another amplitude can begin at a frame of "
+        "phase 0.",
+        frame.plate_height, plate));
+  require_count(scene, start.beads.size(), name);
+  return start;
+}
+
+}  // namespace
+
+Start from_trajectory(const Scene& scene, Progress& progress) {
+  const H5mdReader file(scene.from);
+  const TrajectoryInfo& info = file.info();
+  if (scene.frame >= file.n_frames())
+    throw ConfigError(
+        scene.where("start.frame"),
+        fmt::format("frame {} was asked for, {} has {}.", scene.frame, scene.from.string(), file.n_frames()));
+  if (info.box.dimension == 3 && scene.dimension == 2)
+    throw ConfigError(scene.where("start.from"),
+                      fmt::format("{} is three-dimensional, the cell is not; say cell.dimension = 3.",
+                                  scene.from.string()));
+  const bool own_sizes = info.source == "simulation";
+  if (own_sizes) {
+    require_positive(scene, info.radius, "radius");
+    require_positive(scene, info.mass, "mass");
+  }
+  const std::vector<double> drawn = draw_radii(scene, info.n_beads);
+  Frame frame;
+  file.read(scene.frame, frame);
+  if (scene.in_motion) return start_in_motion(scene, info, frame);
+  // Along the axis of the drive positions count from the plate, which will be at its mean.
+  Vec3 origin(info.box.lower.x(), info.box.lower.y(), 0);
+  if (!std::isnan(frame.plate_height))
+    origin += frame.plate_height * Vec3::Unit(static_cast<int>(info.drive ? info.drive->axis : Axis::z));
+  Start start;
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    if (!frame.present(i)) continue;
+    Vec3 r = info.box.wrap(frame.position[i]) - origin;
+    if (scene.dimension == 2) r.y() = 0;
+    if (scene.dimension == 3 && info.box.dimension == 2) r.y() = scene.depth / 2;
+    const double radius = own_sizes && !info.radius.empty() ? info.radius[i] : drawn[i];
+    const double mass = own_sizes && !info.mass.empty() ? info.mass[i] : scene.mass_of(radius);
+    start.beads.push_back(bead_at(scene, radius, mass, r));
+    if (!info.tracer.empty()) start.tracer.push_back(info.tracer[i]);
+  }
+  require_count(scene, start.beads.size(), fmt::format("frame {} of {}", scene.frame, scene.from.string()));
+  // A camera's noise is a few hundredths of a diameter; beyond 0.2 it is not this cell.
+  constexpr double kRefused = 0.2, kTolerated = 1e-4, kLeft = 0.05;
+  require_sound(start.beads, scene, kRefused, progress);
+  const double left = relax_overlaps(start.beads, scene, kTolerated, 20000, progress);
+  if (left > kLeft)
+    throw ConfigError(
+        scene.where("start.from"),
+        fmt::format(
+            "{}: the beads cannot be pushed apart, an overlap of {:.3g} sigma is left, the bound is {:g}; is "
+            "the width right?",
+            scene.from.string(), left, kLeft));
+  return start;
+}
+
+namespace {
+
+struct Column {
+  std::string_view name;
+  double Bead::*member;
+  bool space_only = false;  ///< belongs to the third dimension
+  bool positive = false;
+};
+constexpr Column kColumns[] = {{"x", &Bead::x},
+                               {"y", &Bead::y, true},
+                               {"z", &Bead::z},
+                               {"vx", &Bead::vx},
+                               {"vy", &Bead::vy, true},
+                               {"vz", &Bead::vz},
+                               {"spin", &Bead::spin},
+                               {"spin_x", &Bead::spin_x, true},
+                               {"spin_z", &Bead::spin_z, true},
+                               {"radius", &Bead::radius, false, true},
+                               {"mass", &Bead::mass, false, true}};
+
+/// A field of a CSV line and where it begins, from 1.
+struct Field {
+  std::string_view text;
+  long column;
+};
+
+std::vector<Field> split(std::string_view line) {
+  std::vector<Field> fields;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    std::size_t first = begin, last = end;
+    while (first < last && line[first] == ' ') ++first;
+    while (last > first && line[last - 1] == ' ') --last;
+    fields.push_back({line.substr(first, last - first), static_cast<long>(first) + 1});
+    begin = end + 1;
+  }
+  return fields;
+}
+
+/// The header and the rows of a bead table.
+class BeadTable {
+ public:
+  BeadTable(const Scene& scene, const std::vector<Field>& header, long line) : scene_(scene) {
+    for (const Field& f : header) {
+      const Where where{scene.from.string(), line, f.column, std::string(f.text)};
+      const auto known = std::find_if(std::begin(kColumns), std::end(kColumns),
+                                      [&](const Column& c) { return c.name == f.text; });
+      if (known == std::end(kColumns))
+        throw InputError(
+            where,
+            "there is no such column; a bead has x, y, z, vx, vy, vz, spin, spin_x, spin_z, radius, mass.");
+      if (known->space_only && scene.dimension == 2)
+        throw InputError(where, "beads of a 2D cell have no such column.");
+      if (has(known->name)) throw InputError(where, "the column is there twice.");
+      columns_.push_back(known);
+    }
+    for (const char* needed : {"x", "z"})
+      if (!has(needed)) throw InputError({scene.from.string(), line, 0, needed}, "the column is missing.");
+  }
+
+  [[nodiscard]] Bead row(const std::vector<Field>& fields, long line) const {
+    if (fields.size() != columns_.size())
+      throw InputError({scene_.from.string(), line, 0, ""},
+                       fmt::format("{} columns are needed, here are {}.", columns_.size(), fields.size()));
+    Bead b = bead_at(scene_, scene_.radius, Vec3(0, scene_.dimension == 3 ? scene_.depth / 2 : 0, 0));
+    for (std::size_t k = 0; k < fields.size(); ++k)
+      b.*columns_[k]->member = number(fields[k], *columns_[k], line);
+    if (!has("mass")) b.mass = scene_.mass_of(b.radius);
+    b.inertia = scene_.inertia_factor * b.mass * b.radius * b.radius;
+    return b;
+  }
+
+ private:
+  [[nodiscard]] bool has(std::string_view name) const {
+    return std::any_of(columns_.begin(), columns_.end(), [&](const Column* c) { return c->name == name; });
+  }
+  [[nodiscard]] double number(const Field& f, const Column& column, long line) const {
+    const Where where{scene_.from.string(), line, f.column, std::string(column.name)};
+    double value = 0;
+    const auto [end, error] = std::from_chars(f.text.data(), f.text.data() + f.text.size(), value);
+    if (error != std::errc() || end != f.text.data() + f.text.size() || !std::isfinite(value))
+      throw InputError(where, fmt::format("a finite number is needed, not '{}'.", f.text));
+    if (column.positive && !(value > 0))
+      throw InputError(where, fmt::format("{} is out of range; the value must be greater than 0.", value));
+    return value;
+  }
+
+  const Scene& scene_;
+  std::vector<const Column*> columns_;
+};
+
+}  // namespace
+
+Start from_table(const Scene& scene, Progress& progress) {
+  Heed heed(progress);
+  const std::string text = read_table_text(scene.from);
+  std::optional<BeadTable> table;
+  Start start;
+  long line_number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view line = std::string_view(text).substr(begin, end - begin);
+    begin = end + 1;
+    ++line_number;
+    heed();
+    if (line.empty()) continue;
+    if (!table)
+      table.emplace(scene, split(line), line_number);
+    else
+      start.beads.push_back(table->row(split(line), line_number));
+  }
+  if (!table)
+    throw InputError({scene.from.string(), 0, 0, ""},
+                     "the table is empty; its first line names the columns.");
+  require_count(scene, start.beads.size(), scene.from.string());
+  return start;
+}
+
+}  // namespace twincell::sim

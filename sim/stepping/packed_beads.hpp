@@ -1,0 +1,80 @@
+#pragma once
+/// \file
+/// A System in the form that the passes work on.
+
+#include <cstring>
+#include <vector>
+
+#include "sim/stepping/solver.hpp"
+
+namespace twincell::sim {
+
+/// Numbers on cache-line boundaries.
+class Lines {
+ public:
+  void resize(std::size_t numbers) { lines_.resize((numbers + 7) / 8); }
+  [[nodiscard]] double* data() { return lines_.empty() ? nullptr : lines_[0].c; }
+  [[nodiscard]] const double* data() const { return lines_.empty() ? nullptr : lines_[0].c; }
+  [[nodiscard]] std::size_t bytes() const { return lines_.capacity() * sizeof(Line); }
+
+ private:
+  struct alignas(64) Line {
+    double c[8] = {};
+  };
+  std::vector<Line> lines_;
+};
+
+/// Records of all beads, in the kernel's own order, and `dummies` records behind them that touch nothing:
+/// their positions are not numbers, so every comparison with them is false.
+class PackedBeads {
+ public:
+  explicit PackedBeads(const Plan& plan) : plan_(&plan) {}
+
+  /// Takes positions and velocities; `order[k]` is the bead in place k. The forces and rim speeds too if the
+  /// system knows them.
+  void take(const System& s, const std::vector<std::int32_t>& order, std::size_t dummies);
+  /// Gives them back.
+  void give(System& s, const std::vector<std::int32_t>& order) const;
+  /// Whether give() would change nothing: then what is here is what was given, and nothing need be taken.
+  [[nodiscard]] bool agrees(const System& s, const std::vector<std::int32_t>& order) const;
+
+  [[nodiscard]] std::size_t size() const { return n_; }
+  /// Memory held.
+  [[nodiscard]] std::size_t bytes() const {
+    return records_.bytes() + forces_.bytes() + spins_.bytes() + inv_mass_.bytes() +
+           sizeof(double) * (radius_.capacity() + mass_.capacity() + inertia_.capacity() + turn_.capacity());
+  }
+  [[nodiscard]] bool equal() const { return equal_; }
+  [[nodiscard]] Vec3 position(std::size_t k) const;
+  [[nodiscard]] double radius(std::size_t k) const { return radius_[equal_ ? 0 : k]; }
+  [[nodiscard]] double mass(std::size_t k) const { return mass_[equal_ ? 0 : k]; }
+  [[nodiscard]] double inertia(std::size_t k) const { return inertia_[equal_ ? 0 : k]; }
+  [[nodiscard]] PairScale pair(std::size_t a, std::size_t b) const;
+  [[nodiscard]] PairScale wall(std::size_t a) const;
+
+  [[nodiscard]] double* records() { return records_.data(); }
+  [[nodiscard]] double* spins() { return spins_.data(); }
+  [[nodiscard]] double* forces() { return forces_.data(); }
+  /// Arguments of the integrate pass for all beads.
+  [[nodiscard]] IntegrateArgs integrate_args(const System& s);
+  /// Moves all beads as they fly, for a time that may be negative.
+  void drift(double time);
+  /// Adds the drag of front and back plates to the forces (2D).
+  void add_plate_drag(const System& s, double velocity_x, double velocity_z, std::size_t begin,
+                      std::size_t end);
+
+ private:
+  void give_one(std::size_t k, Bead& bead, Force& force) const;
+  [[nodiscard]] Vec3 rim_speed(std::size_t k) const;
+
+  const Plan* plan_;
+  std::size_t n_ = 0;
+  bool equal_ = true;
+  Lines records_, forces_, spins_, inv_mass_;
+  std::vector<double> radius_, mass_, inertia_, turn_;
+};
+
+/// The constant that rounds forces to a grain at which sums are exact (contact.hpp).
+double grain_of_sums(const Plan& plan);
+
+}  // namespace twincell::sim

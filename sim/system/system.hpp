@@ -1,0 +1,113 @@
+#pragma once
+/// \file
+/// What a kernel moves: beads, walls, plate, clock. Reduced units, plate mean at z = 0. A 2D system lies in
+/// the plane y = 0.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "trajectory/drive.hpp"
+
+namespace twincell::sim {
+
+/// One bead. The angular velocity is (spin_x, -spin, spin_z): `spin` is counter-clockwise in the (x right, z
+/// up) drawing, the only component that a 2D system has.
+struct Bead {
+  double x = 0, z = 0;
+  double vx = 0, vz = 0;
+  double spin = 0;
+  double radius = 0.5;
+  double mass = 1;
+  double inertia = 0.125;
+  double y = 0, vy = 0;  ///< third dimension
+  double spin_x = 0, spin_z = 0;
+};
+
+/// Contact force on a bead, and its turning moment divided by the bead's radius: in 2D q = sum F_t, so that
+/// inertia dspin/dt = -radius q; in 3D (q_x, q_y, q_z) = sum n x F_t and inertia d(omega)/dt = -radius q.
+struct Force {
+  double x = 0, z = 0, q = 0;
+  double y = 0, q_x = 0, q_z = 0;
+};
+
+/// A flat wall: the half space n . r < offset is solid. n points into the cell.
+struct Wall {
+  Vec3 n = Vec3::UnitZ();
+  double offset = 0;  ///< n . w for a point w of the wall when the plate is at its mean
+  bool moves = true;  ///< rides with the plate
+  std::string name;   ///< "bottom", "left", "right", "front", "back", "lid"
+};
+
+/// Factor f(t) on the drive's amplitude, straight between points (cycle, f), constant outside: a ramp, or a
+/// bed that is fluidised and calmed.
+struct Envelope {
+  std::vector<std::pair<double, double>> points;  ///< cycles rising; empty: f = 1
+  [[nodiscard]] double at(double cycles) const;
+  [[nodiscard]] double slope(double cycles) const;  ///< per cycle
+  /// Cycles until f stays the same.
+  [[nodiscard]] double duration() const { return points.empty() ? 0 : points.back().first; }
+};
+
+/// Beads, cell, plate and clock.
+struct System {
+  std::vector<Bead> beads;
+  std::vector<Force> forces;  ///< at the present positions; same length as beads, meaningful if forces_known
+  bool forces_known = false;  ///< a kernel computes them anew if not
+  /// Radius times angular velocity, as kernels hold it; empty, or as long as beads. A spin is this over the
+  /// radius, which loses its last bit: where the two agree this is what counts.
+  std::vector<Vec3> rim_speeds;
+  int dimension = 2;
+  std::array<double, 3> period = {0, 0, 0};  ///< x, y, z; 0: not periodic
+  Vec3 gravity = -Vec3::UnitZ();
+  std::vector<Wall> walls;
+  double plate_drag = 0;  ///< 2D substitute for front and back plates: force -plate_drag m (v - v_cell), 1/t0
+
+  Drive drive;
+  Envelope envelope;
+  std::int64_t steps_per_period = 1;
+  std::int64_t step = 0;  ///< whole steps since phase 0: time is step * dt, never a running sum
+  double dt = 0;
+
+  /// Fraction of the period at the present step, the same bits in every period.
+  [[nodiscard]] double phase() const { return phase_at(step); }
+  [[nodiscard]] double cycles() const { return cycles_at(step); }
+  [[nodiscard]] double time() const { return static_cast<double>(step) * dt; }
+  /// Displacement of the plate along drive.axis, f A sin(omega t).
+  [[nodiscard]] double plate_height() const { return plate_height_at(step); }
+  [[nodiscard]] double plate_velocity() const {
+    const double v = drive.velocity(phase());
+    if (envelope.points.empty()) return v;
+    return envelope.at(cycles()) * v +
+           envelope.slope(cycles()) / drive.period() * drive.displacement(phase());
+  }
+  /// Displacement at the step before, the bits that it had then.
+  [[nodiscard]] double plate_height_before() const { return plate_height_at(step - 1); }
+  [[nodiscard]] Vec3 plate_displacement() const {
+    return plate_height() * Vec3::Unit(static_cast<int>(drive.axis));
+  }
+
+ private:
+  [[nodiscard]] double phase_at(std::int64_t k) const {
+    const std::int64_t n = steps_per_period;
+    return static_cast<double>((k + n) % n) / static_cast<double>(n);  // k >= -1
+  }
+  [[nodiscard]] double cycles_at(std::int64_t k) const {
+    const std::int64_t n = steps_per_period;
+    const std::int64_t whole = (k + n) / n - 1;
+    return static_cast<double>(whole) + phase_at(k);
+  }
+  [[nodiscard]] double plate_height_at(std::int64_t k) const {
+    const double s = drive.displacement(phase_at(k));
+    return envelope.points.empty() ? s : envelope.at(cycles_at(k)) * s;
+  }
+};
+
+/// n . w of a wall now.
+inline double offset_now(const System& s, const Wall& wall) {
+  return wall.moves ? wall.offset + wall.n[static_cast<int>(s.drive.axis)] * s.plate_height() : wall.offset;
+}
+
+}  // namespace twincell::sim

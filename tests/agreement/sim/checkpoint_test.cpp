@@ -1,0 +1,119 @@
+// A run that is written down and taken up again, in another process of another width and thread count,
+// against the run that was never interrupted: the same bits.
+
+#include "sim/run/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "sim/run/make_solver.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace twincell::sim {
+namespace {
+
+template <class Row>
+bool same_bits(const std::vector<Row>& a, const std::vector<Row>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(static_cast<const void*>(a.data()), b.data(),
+                                                           a.size() * sizeof(Row)) == 0);
+}
+
+bool same_bits(const RunState& a, const RunState& b) {
+  bool same = a.driven == b.driven && a.step == b.step && a.quiet == b.quiet &&
+              a.settled.time == b.settled.time && a.settled.energy_per_bead == b.settled.energy_per_bead &&
+              a.settled.reached == b.settled.reached && a.height == b.height && same_bits(a.beads, b.beads) &&
+              same_bits(a.forces, b.forces) && same_bits(a.rim_speeds, b.rim_speeds) &&
+              same_bits(a.tracer, b.tracer) && a.temperature.all == b.temperature.all &&
+              a.temperature.coarse == b.temperature.coarse && a.temperature.steps == b.temperature.steps &&
+              a.contacts.size() == b.contacts.size();
+  for (std::size_t k = 0; same && k < a.contacts.size(); ++k)
+    same = a.contacts[k].i == b.contacts[k].i && a.contacts[k].j == b.contacts[k].j &&
+           same_bits(a.contacts[k].values, b.contacts[k].values);
+  return same;
+}
+
+/// Keeps states on the way: at every `every`-th update.
+class Keeping : public Progress {
+ public:
+  Keeping(const Simulation& run, int every) : run_(run), every_(every) {}
+  void update(std::int64_t /*done*/, std::int64_t /*total*/) override {
+    if (++updates_ % every_ == 0) states.push_back(run_.state());
+  }
+  std::vector<RunState> states;
+
+ private:
+  const Simulation& run_;
+  int every_, updates_ = 0;
+};
+
+class Nowhere : public TrajectorySink {
+ public:
+  void append(const Frame& frame) override { means.push_back(frame.time_mean.temperature); }
+  std::vector<Vec3> means;
+};
+
+const std::string kScene =
+    "[beads]\ncount = 40\nspread = \"uniform\"\nspread_width = 0.1\n[drive]\nomega = 6.0\ngamma = 3.0\n"
+    "schedule = [[0.0, 0.5], [0.7, 1.0]]\n[start]\nkind = \"random\"\nseed = 5\nsettle_limit = 3.0\n"
+    "[time]\nsteps_per_contact = 10\ndiscard = 0\ncycles = 2\nphases = 10\n";
+const std::string kPlane = "[cell]\nwidth = 8.0\n";
+const std::string kSpace = "[cell]\ndimension = 3\nwidth = 4.0\ndepth = 4.0\nplates = \"periodic\"\n";
+
+void expect_resumable(const std::string& laws, const std::string& integrator, const std::string& precision) {
+  const TemporaryFolder folder;
+  const std::string text = laws + integrator + ", " + precision;
+  const Scene scene =
+      read_scene_text(kScene + laws, "s", {"time.integrator=" + integrator, "time.precision=" + precision});
+  Simulation whole(scene, placed(scene));
+  Keeping settling(whole, 3), driving(whole, 7);
+  whole.settle(settling);
+  Nowhere sink;
+  whole.run(sink, driving);
+  ASSERT_GE(settling.states.size(), 2U) << text;
+  ASSERT_GE(driving.states.size(), 2U) << text;
+  const RunState end = whole.state();
+  std::vector<RunState> states{settling.states.back(), driving.states[driving.states.size() / 2]};
+  std::size_t remembered = 0;
+  for (const SolverKind kind : {SolverKind::scalar, SolverKind::best, SolverKind::all_pairs})
+    for (const RunState& state : states) {
+      remembered += state.contacts.size();
+      write_checkpoint(folder / "state.h5", {scene.resolved, "{}", "p", {{3, "abc"}}, state});
+      const Checkpoint read = read_checkpoint(folder / "state.h5");
+      ASSERT_TRUE(same_bits(read.state, state)) << text;
+      ASSERT_EQ(read.segments.size(), 1U);
+      EXPECT_EQ(read.segments[0].frames, 3);
+      EXPECT_EQ(read.segments[0].sha256, "abc");
+      Simulation rest(scene, read.state, kind, 2);
+      Nowhere others;
+      rest.run(others);
+      EXPECT_TRUE(same_bits(rest.state(), end)) << text << " from step " << state.step;
+      // The frames after it, with their means over time; the first of a run has none.
+      ASSERT_GE(sink.means.size(), others.means.size());
+      for (std::size_t k = 1; k <= others.means.size(); ++k) {
+        const Vec3 &mean = others.means[others.means.size() - k], &truth = sink.means[sink.means.size() - k];
+        EXPECT_TRUE(mean == truth || (k == sink.means.size() && mean.hasNaN() && truth.hasNaN())) << text;
+      }
+    }
+  EXPECT_TRUE(remembered > 0 || !whole.plan().history) << text;
+}
+
+TEST(Checkpoint, EveryLawGoesOnToTheBit) {
+  const std::vector<std::string> laws = {
+      "k_n = 1e4\ngamma_n = 10.0\ngamma_t = 10.0\nk_t = 2e3\n",
+      "k_n = 1e4\ngamma_n = 10.0\ngamma_t = 10.0\nk_t = 2e3\ntangential = \"spring-limited\"\nnormal = "
+      "\"linear-no-tension\"\n",
+      "k_n = 1e4\nrestitution = 0.9\ntangential = \"dashpot\"\nc_t_over_c_n = 1.0\nmu = 0.4\n",
+      "k_n = 1e4\nrestitution = 0.9\ntangential = \"none\"\n",
+      "normal = \"hertz\"\nyoungs_modulus = 1e5\nviscous_time = 1e-4\nk_t = 2e3\n",
+      "normal = \"velocity-dependent-restitution\"\nk_n = 1e4\nrestitution_fast = 0.8\nk_t = 2e3\nrolling = "
+      "\"spring\"\nk_r = 100.0\nmu_r = 0.1\n"};
+  for (const std::string& cell : {kPlane, kSpace})
+    for (const std::string& law : laws)
+      for (const char* integrator : {"verlet", "predicted", "split"})
+        for (const char* precision : {"double", "single"})
+          expect_resumable(cell + "[contact]\n" + law, integrator, precision);
+}
+
+}  // namespace
+}  // namespace twincell::sim

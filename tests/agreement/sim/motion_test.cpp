@@ -1,0 +1,140 @@
+// A run that another one goes on from a stored frame, springs of its contacts included; and drives that begin
+// anywhere in their cycle.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "sim/run/simulation.hpp"
+#include "tests/support/complaint.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "trajectory/formats/h5md_file.hpp"
+
+namespace twincell::sim {
+namespace {
+
+constexpr int kFrom = 41;  // cycle 2, phase 1: the bed lies, and takes off after it
+
+std::string cell(const std::string& integrator, double n) {
+  return "preset = \"fortini-huang-2015\"\n[beads]\nlayers = 5\n[cell]\nwidth = 8.0\n[start]\nkind = "
+         "\"random\"\n"
+         "[drive]\ngamma = 1.3\n[time]\n"
+         "discard = 0\ncycles = 3\nsprings = true\nintegrator = \"" +
+         integrator + "\"\nsteps_per_contact = " + std::to_string(n) + "\n";
+}
+
+MemoryTrajectory film(const Scene& scene) {
+  Simulation run(scene);
+  MemoryTrajectory out(run.trajectory_info());
+  run.run(out);
+  return out;
+}
+
+void save(const MemoryTrajectory& t, const std::filesystem::path& path, bool springs) {
+  TrajectoryInfo info = t.info();
+  info.columns.contacts = springs;
+  H5mdWriter writer(path, info);
+  for (Frame frame : t.frames()) {
+    if (!springs) frame.contacts.clear(), frame.force.clear(), frame.moment.clear(), frame.rim_speed.clear();
+    writer.append(frame);
+  }
+  writer.finish();
+}
+
+/// Largest difference of positions and spins between frames of the same moment, `frames` after the start.
+double apart(const MemoryTrajectory& whole, const MemoryTrajectory& rest, std::size_t frames) {
+  double largest = 0;
+  for (std::size_t f = 0; f <= frames; ++f) {
+    const Frame &a = whole.frames().at(kFrom + f), &b = rest.frames().at(f);
+    EXPECT_EQ(a.phase, b.phase);
+    EXPECT_NEAR(a.plate_height, b.plate_height, 1e-13);
+    for (std::size_t i = 0; i < a.position.size(); ++i)
+      largest = std::max({largest, (a.position[i] - b.position[i]).norm(), (a.spin[i] - b.spin[i]).norm()});
+  }
+  return largest;
+}
+
+TEST(InMotion, AFrameWithItsSpringsGoesOnAsTheRunDid) {
+  for (const auto& [integrator, n] : {std::pair<std::string, double>{"verlet", 30}, {"split", 20}}) {
+    const TemporaryFolder folder;
+    const std::string text = cell(integrator, n);
+    const MemoryTrajectory whole = film(read_scene_text(text, "whole"));
+    ASSERT_GT(whole.frames().at(kFrom).contacts.size(), 20U) << "the bed must be in contact";
+    save(whole, folder / "with.h5", true);
+    save(whole, folder / "without.h5", false);
+    ASSERT_TRUE(validate_h5md(folder / "with.h5").empty());
+    const auto rest = [&](const char* file) {
+      return read_scene_text(text, "rest",
+                             {"start.kind=trajectory", "start.from=" + (folder / file).string(),
+                              "start.frame=" + std::to_string(kFrom), "start.in_motion=true"});
+    };
+    Simulation run(rest("with.h5"));
+    EXPECT_TRUE(run.warnings().empty());
+    MemoryTrajectory with(run.trajectory_info());
+    run.run(with);
+    ASSERT_EQ(with.frames().size(), 59U);  // what is left of its cycle, and two more
+    EXPECT_EQ(with.info().tracer, whole.info().tracer);
+    EXPECT_EQ(apart(whole, with, 18), 0) << integrator;  // bit for bit
+    Simulation bare(rest("without.h5"));
+    ASSERT_EQ(bare.warnings().size(), 1U);
+    EXPECT_NE(bare.warnings().front().find("no springs"), std::string::npos);
+    MemoryTrajectory without(bare.trajectory_info());
+    bare.run(without);
+    EXPECT_GE(apart(whole, without, 10), 1e-5) << integrator;
+  }
+}
+
+TEST(InMotion, WhatOtherLawsRememberIsRefused) {
+  const TemporaryFolder folder;
+  save(film(read_scene_text(cell("verlet", 30), "whole")), folder / "verlet.h5", true);
+  const auto begin = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"start.kind=trajectory", "start.from=" + (folder / "verlet.h5").string(),
+                                 "start.frame=" + std::to_string(kFrom), "start.in_motion=true"};
+    all.insert(all.end(), more.begin(), more.end());
+    Simulation run(read_scene_text(cell("verlet", 30), "rest", all));
+  };
+  begin({});
+  expect_refusal<ConfigError>([&] { begin({"time.integrator=split"}); }, "start.in_motion",
+                              "its contacts remember 1 numbers", "name those that wrote the file");
+  expect_refusal<ConfigError>([&] { begin({"drive.gamma=1.5"}); }, "has its plate at 0.40",
+                              "this drive puts it at 0.46");
+  expect_refusal<ConfigError>([&] { begin({"drive.phase=0.5"}); }, "has its plate at 0.40");
+  begin({"drive.gamma=1.5", "start.frame=40"});  // phase 0
+  expect_refusal<ConfigError>([&] { begin({"start.frame=60"}); }, "frame 60 was asked for");
+  expect_refusal<ConfigError>([&] { begin({"start.settle_limit=3"}); }, "start.settle_limit",
+                              "keeps it moving");
+}
+
+TEST(DrivePhase, TheDriveBeginsThere) {
+  const std::string text =
+      "preset = \"fortini-huang-2015\"\n[beads]\nlayers = 3\n[cell]\nwidth = 6.0\n[drive]\ngamma = "
+      "0.8\n[time]\n"
+      "discard = 0\ncycles = 2\nsteps_per_contact = 20\n";
+  const MemoryTrajectory zero = film(read_scene_text(text, "zero")),
+                         said = film(read_scene_text(text, "said", {"drive.phase=0"})),
+                         quarter = film(read_scene_text(text, "quarter", {"drive.phase=0.25"}));
+  ASSERT_EQ(zero.frames().size(), 40U);
+  for (std::size_t f = 0; f < 40; ++f)
+    for (std::size_t i = 0; i < zero.info().n_beads; ++i)
+      ASSERT_EQ(zero.frames()[f].position[i], said.frames()[f].position[i]);
+  ASSERT_EQ(quarter.frames().size(), 35U);
+  const double amplitude = 0.8;
+  for (std::size_t f = 0; f < 35; ++f) {
+    const Frame& frame = quarter.frames()[f];
+    EXPECT_EQ(frame.phase, static_cast<int>((f + 5) % 20));
+    EXPECT_EQ(frame.cycle, static_cast<std::int64_t>((f + 5) / 20));
+    EXPECT_NEAR(frame.plate_height,
+                amplitude * std::sin(2 * std::numbers::pi * static_cast<double>(f + 5) / 20), 1e-12);
+  }
+  // At its highest the plate turns: the bed begins there at rest, as high above it as the settled bed was.
+  for (std::size_t i = 0; i < quarter.info().n_beads; ++i) {
+    EXPECT_NEAR(quarter.frames()[0].velocity[i].norm(), 0, 1e-5);
+    EXPECT_NEAR(quarter.frames()[0].position[i].z() - amplitude, zero.frames()[0].position[i].z(), 1e-9);
+  }
+  expect_refusal<ConfigError>([&] { (void)read_scene_text(text, "one", {"drive.phase=1.0"}); }, "drive.phase",
+                              "less than 1");
+}
+
+}  // namespace
+}  // namespace twincell::sim

@@ -1,0 +1,158 @@
+// Tables as spreadsheets and cameras write them, and as they should not be: each reader takes the first kind
+// as it is meant and refuses the second by file, line and column.
+
+#include <gtest/gtest.h>
+
+#include "calibration/fit/table.hpp"
+#include "imaging/benchmark/score.hpp"
+#include "imaging/phase/trigger_list.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/start/start.hpp"
+#include "tests/support/complaint.hpp"
+#include "tests/support/put_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace twincell {
+namespace {
+
+/// What one reader makes of a table of two columns: the second row's numbers.
+struct TableReader {
+  const char *name, *first, *second;
+  std::pair<double, double> (*read)(const std::filesystem::path&);
+};
+
+std::pair<double, double> of_calibration(const std::filesystem::path& file) {
+  const Table table = read_table(file);
+  return {table.column("a").at(1), table.column("b").at(1)};
+}
+std::pair<double, double> of_triggers(const std::filesystem::path& file) {
+  const PhaseTable table = read_triggers(file, 1.0, 4);
+  return {table.frames.at(1).cycle * 4.0, table.frames.at(1).phase};
+}
+std::pair<double, double> of_truth(const std::filesystem::path& file) {
+  const auto truth = read_truth(file);
+  return {truth.at(0).at(1).x, truth.at(0).at(1).y};
+}
+std::pair<double, double> of_beads(const std::filesystem::path& file) {
+  const sim::Scene scene = sim::read_scene_text(
+      "preset = \"fortini-huang-2015\"\ndrive.gamma = 1.5\nstart.kind = \"table\"\nstart.from = '" +
+          file.string() + "'\n",
+      "scene.toml");
+  const sim::Start start = sim::from_table(scene, Progress::none());
+  return {start.beads.at(1).x, start.beads.at(1).z};
+}
+
+const TableReader kReaders[] = {{"calibration", "a", "b", of_calibration},
+                                {"triggers", "frame", "cycles", of_triggers},
+                                {"truth", "x_px", "y_px", of_truth},
+                                {"beads", "x", "z", of_beads}};
+
+/// "A,B" and "R" in a text become the names of a reader's columns, and the third one that truth needs.
+std::string in_words_of(const TableReader& reader, std::string text) {
+  const bool truth = std::string(reader.name) == "truth";
+  const auto put = [&](const std::string& from, const std::string& to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+  };
+  put("<R>", truth ? ",r_px" : "");
+  put("<r>", truth ? ",5" : "");
+  put("<A>", reader.first);
+  put("<B>", reader.second);
+  return text;
+}
+
+TEST(Tables, MarksAndLineEndsOfOtherSystemsChangeNothing) {
+  const TemporaryFolder folder;
+  for (const TableReader& reader : kReaders)
+    for (const std::string text : {"<A>,<B><R>\n0,2<r>\n1,3<r>\n", "\xEF\xBB\xBF<A>,<B><R>\n0,2<r>\n1,3<r>\n",
+                                   "<A>,<B><R>\r\n0,2<r>\r\n1,3<r>\r\n", "<A>,<B><R>\r0,2<r>\r1,3<r>\r",
+                                   "\xEF\xBB\xBF<A>,<B><R>\r\n0,2<r>\r\n1,3<r>"}) {
+      put_file(folder / "t.csv", in_words_of(reader, text));
+      const auto [a, b] = reader.read(folder / "t.csv");
+      const bool triggers = std::string(reader.name) == "triggers";
+      EXPECT_EQ(a, triggers ? 4 : 1) << reader.name << ": " << text;
+      EXPECT_EQ(b, triggers ? 0 : 3) << reader.name << ": " << text;
+    }
+}
+
+TEST(Tables, WhatIsNoTableIsRefusedByEveryReader) {
+  const TemporaryFolder folder;
+  struct Case {
+    const char *text, *words;
+  };
+  const Case cases[] = {
+      {"<A>,<B>,<B><R>\n0,2,2<r>\n1,3,3<r>\n", "twice"},
+      {"<A>;<B><R>\n0;2<r>\n1;3<r>\n", ""},  // with R there is a comma, and names are missing
+      {"0,2<r>\n1,3<r>\n", ""},
+      {"<A>,<B><R>\n0,2<r>\n1,3,5<r>\n", ":3:"},
+      {"<A>,<B><R>\n0,2<r>\n1\n", ":3:"},
+      {"<A>,<B><R>\n0,2<r>\n1,three<r>\n", "three"},
+      {"<A>,<B><R>\n0,2<r>\n1,inf<r>\n", "inf"},
+      {"\xFF\xFE<\0A\0", "UTF-16"},
+      {"", ""},
+  };
+  for (const TableReader& reader : kReaders)
+    for (const Case& c : cases) {
+      put_file(folder / "t.csv", in_words_of(reader, c.text));
+      try {
+        (void)reader.read(folder / "t.csv");
+        ADD_FAILURE() << reader.name << " takes " << c.text;
+      } catch (const InputError& e) {
+        const std::string said = e.what();
+        EXPECT_NE(said.find("t.csv"), std::string::npos) << reader.name << ": " << said;
+        EXPECT_NE(said.find(c.words), std::string::npos) << reader.name << " of " << c.text << ": " << said;
+      }
+    }
+}
+
+TEST(Tables, ALineOfNumbersAndSemicolonsAreNamedAsWhatTheyAre) {
+  const TemporaryFolder folder;
+  put_file(folder / "t.csv", "1.5,2\n2,3\n");
+  expect_refusal<InputError>([&] { (void)read_table(folder / "t.csv"); },
+                             "t.csv:1:", "must name the columns");
+  put_file(folder / "t.csv", "time;height\n0,5;1\n");
+  expect_refusal<InputError>([&] { (void)read_table(folder / "t.csv"); }, "t.csv:1:", "semicolons");
+  put_file(folder / "t.csv", "time\theight\n0.5\t1\n");
+  expect_refusal<InputError>([&] { (void)read_table(folder / "t.csv"); }, "tabs");
+}
+
+// A decimal comma makes two fields of a number: the first of them is no time.
+TEST(Tables, TriggersAreBelievedOnlyAsFarAsTheyAreOne) {
+  const TemporaryFolder folder;
+  struct Case {
+    const char *text, *words;
+  };
+  const Case cases[] = {
+      {"frame,time_s\n0,0,0000\n1,0,0025\n", "t.csv:2: 3 fields"},
+      {"frame,time_s,cycles\n0,0,0\n1,0.1,1\n", "time_s: and cycles say the same quantity"},
+      {"frame,cycles\n0,1\n1,1\n2,1\n", "cycles: is 1 in all 3 frames"},
+      {"frame,cycles\n0,1\n1,2\n1,3\n", "t.csv:4: frame: 1 where 2 was expected"},
+      {"frame,cycles\n0,1\n1,\n", "'' is not a number"},
+  };
+  for (const Case& c : cases) {
+    put_file(folder / "t.csv", c.text);
+    expect_refusal<InputError>([&] { (void)read_triggers(folder / "t.csv", 1.0, 4); }, c.words);
+  }
+}
+
+TEST(Tables, TruthHasWholeFramesAndRadii) {
+  const TemporaryFolder folder;
+  struct Case {
+    const char *row, *words;
+  };
+  const Case cases[] = {{"0.5,1,2,3,5", "t.csv:2: frame: is 0.5"},
+                        {"-1,1,2,3,5", "frame: is -1"},
+                        {"1e300,1,2,3,5", "frame: is 1e300"},
+                        {"0,1.5,2,3,5", "id: is 1.5"},
+                        {"0,1e300,2,3,5", "id: is 1e300"},
+                        {"0,1,nan,3,5", "x_px: is 'nan'"},
+                        {"0,1,2,3,-5", "r_px: is -5"},
+                        {"0,1,2,3,0", "r_px: is 0"}};
+  for (const Case& c : cases) {
+    put_file(folder / "t.csv", "frame,id,x_px,y_px,r_px\n" + std::string(c.row) + "\n");
+    expect_refusal<InputError>([&] { (void)read_truth(folder / "t.csv"); }, c.words);
+  }
+}
+
+}  // namespace
+}  // namespace twincell

@@ -1,0 +1,278 @@
+// Every promise of frame_source.hpp, and every way in which a stack is known to be spoilt.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/error.hpp"
+#include "imaging/stack/open_frames.hpp"
+#include "tests/support/frames.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace twincell;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A picture in which every pixel has a value of its own, up to the depth's range.
+template <class Pixel>
+cv::Mat pattern(int width, int height, int offset = 0) {
+  cv::Mat_<Pixel> m(height, width);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      m(y, x) = static_cast<Pixel>((offset + 7 * x + 131 * y) * (sizeof(Pixel) == 2 ? 37 : 1));
+  return m;
+}
+
+}  // namespace
+
+TEST(NaturalOrder, IsThatOfAPerson) {
+  EXPECT_TRUE(natural_less("frame_2.png", "frame_10.png"));
+  EXPECT_FALSE(natural_less("frame_10.png", "frame_2.png"));
+  EXPECT_TRUE(natural_less("a9b10", "a9b11"));
+  EXPECT_TRUE(natural_less("a", "a1"));
+  EXPECT_TRUE(natural_less("a99999999999999999999998", "a99999999999999999999999"));
+  EXPECT_FALSE(natural_less("x1", "x1"));
+  EXPECT_NE(natural_less("f01", "f1"), natural_less("f1", "f01"));
+}
+
+TEST(FrameSource, AFolderIsReadInNaturalOrderAndOnlyItsPictures) {
+  const TemporaryFolder folder;
+  for (const int i : {10, 2, 1, 9}) write(folder / fmt::format("frame_{}.png", i), pattern<uchar>(8, 6, i));
+  put(folder / "truth.csv", "id\n");
+  const auto source = open_frames(folder.path());
+  EXPECT_EQ(source->announced(), 4U);
+  cv::Mat frame;
+  for (const int i : {1, 2, 9, 10}) {
+    ASSERT_TRUE(source->next(frame));
+    EXPECT_TRUE(equal(frame, pattern<uchar>(8, 6, i))) << i;
+    expect_words(source->current(), {fmt::format("frame_{}.png", i)});
+  }
+  EXPECT_FALSE(source->next(frame));
+}
+
+TEST(FrameSource, DepthIsKept) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.png", "a.tif", "a.bmp", "a.pgm"}) {
+    write(folder / name, pattern<uchar>(9, 7));
+    const auto frames = read_all(folder / name);
+    ASSERT_EQ(frames.size(), 1U) << name;
+    EXPECT_TRUE(equal(frames[0], pattern<uchar>(9, 7))) << name;
+  }
+  for (const char* name : {"b.png", "b.tiff", "b.pgm"}) {
+    write(folder / name, pattern<ushort>(9, 7));
+    const auto frames = read_all(folder / name);
+    ASSERT_EQ(frames.size(), 1U) << name;
+    EXPECT_TRUE(equal(frames[0], pattern<ushort>(9, 7))) << name;
+  }
+  cv::Mat1f real(5, 4, 0.25F);
+  write(folder / "c.tif", real);
+  EXPECT_TRUE(equal(read_all(folder / "c.tif").at(0), real));
+}
+
+TEST(FrameSource, ColourBecomesGrey) {
+  const TemporaryFolder folder;
+  // ITU-R BT.601: 0.299 R + 0.587 G + 0.114 B.
+  const cv::Mat bgr(6, 5, CV_8UC3, cv::Scalar(200, 100, 50));
+  for (const char* name : {"colour.png", "colour.tif"}) {
+    write(folder / name, bgr);
+    const cv::Mat grey = read_all(folder / name).at(0);
+    ASSERT_EQ(grey.type(), CV_8UC1);
+    EXPECT_NEAR(grey.at<uchar>(3, 3), 0.299 * 50 + 0.587 * 100 + 0.114 * 200, 1);
+  }
+  write(folder / "deep.png", cv::Mat(6, 5, CV_16UC4, cv::Scalar(20000, 10000, 5000, 65535)));
+  const cv::Mat grey = read_all(folder / "deep.png").at(0);
+  ASSERT_EQ(grey.type(), CV_16UC1);
+  EXPECT_NEAR(grey.at<ushort>(3, 3), 0.299 * 5000 + 0.587 * 10000 + 0.114 * 20000, 2);
+}
+
+TEST(FrameSource, AllPagesOfATiff) {
+  const TemporaryFolder folder;
+  std::vector<cv::Mat> pages;
+  for (int i = 0; i < 40; ++i) pages.push_back(pattern<ushort>(12, 10, i));  // more than are read at once
+  ASSERT_TRUE(cv::imwritemulti((folder / "stack.tif").string(), pages));
+  EXPECT_EQ(open_frames(folder / "stack.tif")->announced(), 40U);
+  const auto frames = read_all(folder / "stack.tif");
+  ASSERT_EQ(frames.size(), 40U);
+  for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_TRUE(equal(frames[i], pages[i])) << i;
+}
+
+TEST(FrameSource, APictureOfOnePixel) {
+  const TemporaryFolder folder;
+  for (const char* name : {"dot.png", "dot.tif"}) {
+    write(folder / name, cv::Mat1b(1, 1, uchar{77}));
+    const auto frames = read_all(folder / name);
+    ASSERT_EQ(frames.size(), 1U);
+    EXPECT_EQ(frames[0].at<uchar>(0, 0), 77);
+  }
+}
+
+TEST(SpoiltFrames, NothingToRead) {
+  const TemporaryFolder folder;
+  expect_words(refusal(folder / "nowhere"), {"nowhere", "does not exist"});
+  expect_words(refusal(folder.path()), {folder.path().string(), "holds no PNG"});
+  put(folder / "notes.txt", "hello");
+  expect_words(refusal(folder.path()), {"holds no PNG"});
+  expect_words(refusal(folder / "notes.txt"), {"notes.txt", "is not a stack of frames"});
+  put(folder / "empty.png", "");
+  expect_words(refusal(folder / "empty.png"), {"empty.png", "is empty"});
+  fs::create_directory(folder / "folder.png");
+  expect_words(refusal(folder / "folder.png"), {"folder.png", "holds no PNG"});
+}
+
+TEST(SpoiltFrames, MixedSizesAreNamedWithTheirFiles) {
+  const TemporaryFolder folder;
+  write(folder / "f1.png", pattern<uchar>(8, 6));
+  write(folder / "f2.png", pattern<uchar>(8, 6));
+  write(folder / "f3.png", pattern<uchar>(9, 6));
+  expect_words(refusal(folder.path()), {"f3.png", "9 x 6", "f1.png", "8 x 6"});
+}
+
+TEST(SpoiltFrames, TextThatCallsItselfAPicture) {
+  const TemporaryFolder folder;
+  for (const char* name :
+       {"t.png", "t.tif", "t.jpg", "t.bmp", "t.pgm", "t.cine", "t.seq", "t.mrf", "t.h5", "t.avi"}) {
+    put(folder / name, "This is not a picture at all, whatever its name says.\n");
+    const std::string sentence = refusal(folder / name);
+    expect_words(sentence, {name, "is not what its name says", fs::path(name).extension().string()});
+    EXPECT_EQ(std::count(sentence.begin(), sentence.end(), '\n'), 0) << sentence;
+  }
+}
+
+TEST(SpoiltFrames, TruncatedAtAnyLength) {
+  const TemporaryFolder folder;
+  for (const char* name : {"whole.png", "whole.jpg", "whole.tif", "whole.bmp", "whole.pgm"}) {
+    write(folder / name, pattern<uchar>(37, 29));
+    const std::string whole = contents(folder / name);
+    ASSERT_TRUE(refusal(folder / name).empty()) << refusal(folder / name);
+    const fs::path cut = folder / fmt::format("cut{}", fs::path(name).extension().string());
+    for (std::size_t n = 0; n < whole.size(); n += n < 64 || n + 64 > whole.size() ? 1 : 17) {
+      put(cut, whole.substr(0, n));
+      EXPECT_FALSE(refusal(cut).empty()) << name << " cut to " << n << " of " << whole.size() << " bytes";
+    }
+  }
+}
+
+TEST(SpoiltFrames, APngWithoutItsEndOrWithAFlippedBit) {
+  const TemporaryFolder folder;
+  write(folder / "p.png", pattern<ushort>(37, 29));
+  const std::string whole = contents(folder / "p.png");
+  put(folder / "p.png", whole.substr(0, whole.size() - 12));  // all but IEND
+  expect_words(refusal(folder / "p.png"), {"p.png", "truncated"});
+  std::string flipped = whole;
+  flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 4);
+  put(folder / "p.png", flipped);
+  expect_words(refusal(folder / "p.png"), {"p.png", "checksum"});
+}
+
+TEST(SpoiltFrames, ATruncatedTiffStackIsNotAShorterOne) {
+  const TemporaryFolder folder;
+  std::vector<cv::Mat> pages;
+  for (int i = 0; i < 5; ++i) pages.push_back(pattern<ushort>(23, 19, i));
+  ASSERT_TRUE(cv::imwritemulti((folder / "s.tif").string(), pages));
+  const std::string whole = contents(folder / "s.tif");
+  for (std::size_t n = 1; n < whole.size(); n += 31) {
+    put(folder / "s.tif", whole.substr(0, n));
+    EXPECT_FALSE(refusal(folder / "s.tif").empty()) << "cut to " << n << " of " << whole.size() << " bytes";
+  }
+}
+
+TEST(SpoiltFrames, ASpoiltFrameInTheMiddleIsNamed) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 3; ++i) write(folder / fmt::format("f{}.png", i), pattern<uchar>(16, 16, i));
+  put(folder / "f1.png", contents(folder / "f1.png").substr(0, 60));
+  expect_words(refusal(folder.path()), {"f1.png", "truncated"});
+}
+
+TEST(FrameSource, ContentDecidesNotTheName) {
+  const TemporaryFolder folder;
+  write(folder / "a.tif", pattern<ushort>(9, 7));
+  fs::rename(folder / "a.tif", folder / "a.png");
+  write(folder / "b.png", pattern<ushort>(9, 7, 1));
+  fs::rename(folder / "b.png", folder / "b.cine");
+  EXPECT_TRUE(equal(read_all(folder / "a.png").at(0), pattern<ushort>(9, 7)));
+  EXPECT_TRUE(equal(read_all(folder / "b.cine").at(0), pattern<ushort>(9, 7, 1)));
+  EXPECT_TRUE(equal(read_all(folder.path()).at(0), pattern<ushort>(9, 7)));  // in a folder, too
+}
+
+TEST(FrameSource, AFolderSaysWhatItPassesOver) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 3; ++i) write(folder / fmt::format("f{}.PNG", i), pattern<uchar>(8, 6, i));
+  put(folder / "truth.csv", "id\n");
+  put(folder / "notes.txt", "hello");
+  put(folder / "._f0.PNG", "what another system leaves behind");
+  fs::create_directory(folder / "sub.png");
+  const auto source = open_frames(folder.path());
+  EXPECT_EQ(source->announced(), 3U);
+  EXPECT_EQ(source->info().other_files, 2U);
+  EXPECT_EQ(read_all(folder.path()).size(), 3U);
+}
+
+TEST(FrameSource, AFolderOfStacksIsOneStack) {
+  const TemporaryFolder folder;
+  for (int part = 0; part < 3; ++part) {
+    std::vector<cv::Mat> pages;
+    for (int i = 0; i < 4 - part; ++i) pages.push_back(pattern<ushort>(12, 10, 10 * part + i));
+    ASSERT_TRUE(cv::imwritemulti((folder / fmt::format("run_{}.tif", part)).string(), pages));
+  }
+  EXPECT_EQ(open_frames(folder.path())->announced(), 9U);
+  const auto frames = read_all(folder.path());
+  ASSERT_EQ(frames.size(), 9U);
+  for (const auto& [at, offset] : {std::pair{0, 0}, {3, 3}, {4, 10}, {7, 20}, {8, 21}})
+    EXPECT_TRUE(equal(frames[static_cast<std::size_t>(at)], pattern<ushort>(12, 10, offset))) << at;
+}
+
+TEST(FrameSource, TheDepthAPgmStatesIsKept) {
+  const TemporaryFolder folder;
+  put(folder / "a.pgm", "P5\n# twelve bits\n2 1\n4095\n\x0f\xff\x01\x02");
+  const auto source = open_frames(folder / "a.pgm");
+  EXPECT_EQ(source->info().bits, 12);
+  cv::Mat frame;
+  ASSERT_TRUE(source->next(frame));
+  ASSERT_EQ(frame.type(), CV_16UC1);
+  EXPECT_EQ(frame.at<ushort>(0, 0), 4095);
+  EXPECT_EQ(frame.at<ushort>(0, 1), 258);
+}
+
+TEST(SpoiltFrames, WhatIsNoFile) {
+  const TemporaryFolder folder;
+  expect_words(refusal("/dev/zero"), {"/dev/zero", "not a regular file"});
+  fs::create_symlink(folder / "nowhere", folder / "dangling.png");
+  expect_words(refusal(folder / "dangling.png"), {"dangling.png", "does not exist"});
+  fs::remove(folder / "dangling.png");
+  put(folder / "run.cine", "CI");
+  expect_words(refusal(folder.path()), {"holds no PNG", "it holds run.cine: name that file"});
+}
+
+TEST(SpoiltFrames, AFileThatMayNotBeRead) {
+  const TemporaryFolder folder;
+  write(folder / "locked.png", pattern<uchar>(8, 6));
+  fs::permissions(folder / "locked.png", fs::perms::none);
+  if (std::ifstream(folder / "locked.png")) GTEST_SKIP() << "This user may read everything.";
+  expect_words(refusal(folder / "locked.png"), {"locked.png", "cannot be opened for reading"});
+}
+
+TEST(SpoiltFrames, AHeaderThatPromisesMoreThanAFileCanHold) {
+  const TemporaryFolder folder;
+  put(folder / "a.pgm", "P5 1048576 256 255\n");
+  expect_words(refusal(folder / "a.pgm"), {"a.pgm", "1048576 x 256", "cannot hold"});
+  put(folder / "b.pgm", "P5 4000000000 1 255\n");
+  expect_words(refusal(folder / "b.pgm"), {"4000000000 x 1", "sides"});
+  write(folder / "c.png", pattern<uchar>(8, 6));
+  std::string bytes = contents(folder / "c.png");
+  bytes[16] = bytes[20] = 1;  // 2^24 more pixels each way
+  put(folder / "c.png", bytes);
+  expect_words(refusal(folder / "c.png"), {"c.png", "pixels"});
+  write(folder / "d.jpg", pattern<uchar>(8, 6));
+  bytes = contents(folder / "d.jpg");
+  const std::size_t frame = bytes.find("\xff\xc0");
+  ASSERT_NE(frame, std::string::npos);
+  for (std::size_t i = 5; i < 9; ++i) bytes[frame + i] = '\xff';
+  put(folder / "d.jpg", bytes);
+  expect_words(refusal(folder / "d.jpg"), {"d.jpg", "65535 x 65535"});
+}

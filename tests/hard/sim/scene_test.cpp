@@ -1,0 +1,508 @@
+// Scenes that cannot be: refused with one sentence that says where and why.
+
+#include "sim/scene/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.hpp"
+
+namespace twincell::sim {
+namespace {
+
+const std::string kGood = "preset = \"fortini-huang-2015\"\n[beads]\ncount = 50\n[drive]\ngamma = 1.5\n";
+const std::string kGood3d = "preset = \"bhateja-2016-rough-3d\"\n[drive]\nk_m = 5.0\n";
+
+std::string complaint(const std::string& text, const std::vector<std::string>& set = {}) {
+  try {
+    read_scene_text(text, "scene.toml", set);
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+void expect_complaint(const std::string& text, const std::string& wanted) {
+  const std::string said = complaint(text);
+  EXPECT_NE(said.find(wanted), std::string::npos) << "wanted: " << wanted << "\nsaid:   " << said;
+}
+
+Scene good(const std::vector<std::string>& set) {
+  return read_scene_text(kGood, "scene.toml", set);
+}
+
+TEST(Scene, GoodOnesPass) {
+  EXPECT_EQ(complaint(kGood), "accepted");
+  EXPECT_EQ(complaint("preset = \"bhateja-2016-rough-2d\"\n[drive]\nk_m = 5.0\n"), "accepted");
+  const Scene s = good({"drive.gamma=1.8", "start.kind=random"});
+  EXPECT_DOUBLE_EQ(s.drive.gamma(), 1.8);
+  EXPECT_EQ(s.start, StartKind::random);
+}
+
+TEST(Scene, ComplaintsNameLineKeyValueAndBound) {
+  expect_complaint(kGood + "[contact]\nmuu = 0.1\n",
+                   "scene.toml:7:7: contact.muu: there is no such key; did you mean 'contact.mu'?");
+  expect_complaint(kGood + "[contact.lid]\nmuu = 0.1\n", "contact.lid.muu: there is no such key");
+  expect_complaint(kGood + "[cell]\nwidth = 0.9\n", "does not fit into a cell 0.9 wide");
+  expect_complaint(kGood + "[time]\nsteps_per_contact = 2\n",
+                   "time.steps_per_contact: 2 is out of range; the value must be at least 6");
+  expect_complaint(kGood + "[time]\ncycles = 1.5\n", "time.cycles: a whole number is needed");
+  expect_complaint(kGood + "[time]\nintegrator = \"euler\"\n",
+                   "'euler' is not one of split, verlet, predicted");
+  expect_complaint(kGood + "[start]\nkind = \"pile\"\n",
+                   "'pile' is not one of crystal_a, crystal_b, random, trajectory, table");
+  expect_complaint(kGood + "[start]\nkind = \"trajectory\"\n",
+                   "start.from: a start from a trajectory needs the name of its file");
+  expect_complaint(kGood + "[start]\nkind = \"table\"\n",
+                   "start.from: a start from a table needs the name of its file");
+  expect_complaint(kGood + "[start]\nfrom = \"a.h5\"\n",
+                   "start.from: a file is named, but start.kind is neither");
+  expect_complaint(kGood + "[start]\nframe = 3\n", "start.frame: a frame is named, but start.kind is not");
+  expect_complaint("preset = \"fortini\"\n", "'fortini' is not one of fortini-huang-2015");
+  expect_complaint("[drive]\nomega = 1.0\ngamma = 1.0\n", "beads.count: the number of beads is missing");
+  expect_complaint(
+      kGood + "amplitude = 9.0\n",
+      "scene.toml:4:1: drive: gamma = 1.5 contradicts the other numbers, from which it would be 9");
+  expect_complaint("[beads]\ncount = 1\n[drive]\ngama = 1.0\n",
+                   "scene.toml:4:8: drive.gama: there is no such key; did you mean 'drive.gamma'?");
+  expect_complaint("[beads]\ncount = 1\n[drive]\ngamma = 1.0\n",
+                   "scene.toml:3:1: drive: two of amplitude, omega,");
+}
+
+TEST(Scene, H21_NumbersThatCannotBe) {
+  for (const char* key :
+       {"cell.width", "cell.height", "cell.gravity", "cell.tilt", "cell.side_tilt", "cell.plate_drag",
+        "beads.radius", "beads.mass", "beads.layers", "drive.amplitude", "drive.omega", "drive.ramp_cycles",
+        "start.perturbation", "start.velocity_scale", "start.rest_energy", "start.settle_limit",
+        "time.steps_per_contact", "contact.overlap_bound"})
+    for (const char* value : {"nan", "inf", "-inf", "\"one\"", "-1e9", "true"}) {
+      const std::string said = complaint(kGood, {std::string(key) + "=" + value});
+      EXPECT_NE(said.find(key), std::string::npos) << key << " = " << value << ": " << said;
+    }
+  for (const char* key : {"cell.width", "beads.radius", "beads.mass", "drive.omega", "start.rest_energy"}) {
+    const std::string said = complaint(kGood, {std::string(key) + "=0"});
+    EXPECT_NE(said.find(std::string(key) + ": 0 is out of range; the value must be greater than 0"),
+              std::string::npos)
+        << said;
+  }
+  EXPECT_NE(complaint(kGood, {"beads.count=-1"}).find("beads.count: -1 is out of range"), std::string::npos);
+  EXPECT_NE(complaint(kGood, {"cell.gravity=[0, nan]"}).find("cell.gravity: a list of 2 numbers"),
+            std::string::npos);
+}
+
+TEST(Cell, DimensionsHaveTheirOwnKeys) {
+  EXPECT_EQ(complaint(kGood3d), "accepted");
+  expect_complaint(kGood + "[cell]\ndimension = 4\n", "cell.dimension: 4 is out of range");
+  expect_complaint(kGood + "[cell]\ndimension = 3\n", "cell.depth: a 3D cell needs its depth");
+  for (const char* line : {"depth = 2.0", "plates = \"walls\"", "plates_motion = \"rest\""})
+    expect_complaint(kGood + "[cell]\n" + line + "\n", "a 2D cell has no depth");
+  expect_complaint(kGood3d + "[cell]\nplate_drag = 0.1\n",
+                   "cell.plate_drag: stands in for the front and back plates");
+  expect_complaint(kGood3d + "[cell]\ngravity = [0.0, -1.0]\n",
+                   "cell.gravity: a list of 3 numbers is needed");
+  expect_complaint(kGood + "axis = \"y\"\n", "drive.axis: a 2D cell cannot be driven along y");
+  expect_complaint("preset = \"bhateja-2016-rough-3d\"\n[beads]\ninertia = \"disc\"\n[drive]\nk_m = 5.0\n",
+                   "beads.inertia: beads of a 3D cell are spheres");
+  expect_complaint(kGood3d + "[cell]\nplates = \"walls\"\ndepth = 0.9\n",
+                   "does not fit into a cell 0.9 deep");
+}
+
+TEST(Cell, WallsThatAreNotThereHaveNoProperties) {
+  expect_complaint(kGood + "[cell]\nsides = \"periodic\"\nside_walls = \"rest\"\n",
+                   "cell.side_walls: the cell has no side walls");
+  expect_complaint(kGood + "[cell]\nsides = \"absent\"\nside_tilt = 1.0\n",
+                   "cell.side_tilt: the cell has no side walls");
+  expect_complaint(kGood + "[cell]\nlid_motion = \"rest\"\n",
+                   "cell.lid_motion: the cell has no lid that acts");
+  expect_complaint(kGood3d + "[cell]\nplates_motion = \"rest\"\n", "the cell has no front and back walls");
+  expect_complaint(kGood + "[contact.lid]\nmu = 0.1\n",
+                   "scene.toml:6:1: contact.lid: the cell has no such wall");
+  expect_complaint(kGood + "[contact.plates]\nmu = 0.1\n", "contact.plates: the cell has no such wall");
+}
+
+TEST(Cell, LidAndPeriodAlongZNeedAHeight) {
+  expect_complaint(kGood + "[cell]\nlid = \"wall\"\n", "cell.height: a lid needs its height");
+  expect_complaint(kGood + "[cell]\nlid = \"wall\"\nheight = 0.8\n", "does not fit into a cell 0.8 high");
+  expect_complaint(kGood + "[cell]\nbottom = \"periodic\"\n",
+                   "cell.height: a cell periodic along z needs its period");
+  expect_complaint(kGood + "[cell]\nbottom = \"periodic\"\nlid = \"wall\"\nheight = 9.0\n",
+                   "cell.lid: contradicts cell.bottom");
+}
+
+TEST(Cell, H16_PeriodsLeaveNoSecondImageInReach) {
+  const std::string periodic = kGood + "[cell]\nsides = \"periodic\"\nwidth = ";
+  expect_complaint(periodic + "2.4\n",
+                   "scene.toml:8:9: cell.width: a bead would meet two images of another: a period of 2.4 is "
+                   "less than 2.5");
+  EXPECT_EQ(complaint(periodic + "2.6\n"), "accepted");
+  expect_complaint(kGood3d + "[cell]\ndepth = 2.4\n", "cell.depth: a bead would meet two images");
+  // 2 (R + R' + reach of the largest) of the two that can meet.
+  expect_complaint(periodic + "6.9\n[beads.intruder]\nradius = 2.0\nz = 9.0\n",
+                   "a period of 6.9 is less than 7,");
+  EXPECT_EQ(complaint(periodic + "7.1\n[beads.intruder]\nradius = 2.0\nz = 9.0\n"), "accepted");
+  expect_complaint(kGood + "spread = 1\n", "drive.spread");
+  EXPECT_NE(
+      complaint(periodic + "2.6\n", {"beads.spread=uniform", "beads.spread_width=0.2"}).find("less than 3,"),
+      std::string::npos);
+}
+
+TEST(Cell, GravityNeedsAWallThatCarries) {
+  expect_complaint(kGood + "[cell]\nbottom = \"absent\"\n",
+                   "cell.gravity: no wall carries the beads, which (0, 0, -1) accelerates");
+  expect_complaint(kGood + "[cell]\ngravity = [0.0, 1.0]\n",
+                   "no wall carries the beads, which (0, 0, 1) accelerates");
+  expect_complaint(kGood + "[cell]\nsides = \"periodic\"\ngravity = [1.0, 0.0]\n",
+                   "no wall carries the beads");
+  expect_complaint(kGood + "[cell]\nsides = \"periodic\"\nbottom = \"periodic\"\nheight = 20.0\n",
+                   "no wall carries the beads");
+  EXPECT_EQ(complaint(kGood + "[cell]\nlid = \"wall\"\nheight = 60.0\ngravity = [0.0, 1.0]\n"), "accepted");
+  EXPECT_EQ(complaint(kGood + "[cell]\nsides = \"periodic\"\ntilt = 20.0\n"), "accepted");  // an incline
+  expect_complaint(kGood + "[cell]\ntilt = 2.0\ngravity = [0.0, -1.0]\n",
+                   "cell.tilt: cell.gravity already says the direction");
+}
+
+TEST(Cell, H32_WithoutGravityNothingMayBeOpen) {
+  const std::string still =
+      "preset = \"fortini-huang-2015\"\n[beads]\ncount = 5\n[drive]\namplitude = 0.5\n[cell]\ngravity = "
+      "0.0\n";
+  expect_complaint(
+      still, "scene.toml:7:11: cell.gravity: without gravity beads leave the cell for ever: its top is open");
+  const std::string closed = still + "lid = \"wall\"\nheight = 30.0\n";
+  EXPECT_EQ(complaint(closed), "accepted");
+  expect_complaint(closed + "sides = \"absent\"\n", "its sides are open");
+  expect_complaint(closed + "bottom = \"absent\"\n", "its bottom is open");
+  expect_complaint(closed + "dimension = 3\ndepth = 5.0\nplates = \"absent\"\n",
+                   "its front and back are open");
+  expect_complaint("preset = \"bhateja-2016-zero-g\"\n[drive]\ngamma = 1.0\n",
+                   "gamma: has no meaning without gravity");
+}
+
+TEST(Cell, DriveMustMoveAWall) {
+  const std::string rests = kGood + "[cell]\nbottom_motion = \"rest\"\nside_walls = \"rest\"\n";
+  expect_complaint(rests, "scene.toml:4:1: drive: moves nothing: no wall rides with the plate");
+  EXPECT_NE(complaint(rests, {"drive.gamma=0"}), complaint(rests));
+  EXPECT_EQ(complaint(rests, {"drive.gamma=0"}), "accepted");
+}
+
+TEST(Cell, WallsStandWhereTheSceneSays) {
+  const Scene s = read_scene_text(
+      "preset = \"fortini-huang-2015\"\n[beads]\ncount = 5\n[drive]\ngamma = 1.0\n"
+      "[cell]\ndimension = 3\ndepth = 3.0\nwidth = 8.0\nlid = \"wall\"\nheight = 30.0\nside_tilt = [10.0, "
+      "-5.0]\n"
+      "plates_motion = \"rest\"\n",
+      "s");
+  const auto walls = s.walls();
+  ASSERT_EQ(walls.size(), 6U);
+  const char* names[] = {"bottom", "left", "right", "front", "back", "lid"};
+  // A point on each wall, and one a sigma further into the cell.
+  const double left = 10 * std::numbers::pi / 180, right = -5 * std::numbers::pi / 180;
+  const Vec3 on[] = {
+      {4, 1, 0}, {-4 * std::tan(left), 1, 4}, {8 + 4 * std::tan(right), 1, 4}, {4, 0, 4}, {4, 3, 4},
+      {4, 1, 30}};
+  const Vec3 inward[] = {{0, 0, 1},
+                         {std::cos(left), 0, std::sin(left)},
+                         {-std::cos(right), 0, std::sin(right)},
+                         {0, 1, 0},
+                         {0, -1, 0},
+                         {0, 0, -1}};
+  for (std::size_t w = 0; w < 6; ++w) {
+    EXPECT_EQ(walls[w].name, names[w]);
+    EXPECT_NEAR(walls[w].n.dot(on[w]), walls[w].offset, 1e-12) << names[w];
+    EXPECT_NEAR(walls[w].n.dot(on[w] + inward[w]) - walls[w].offset, 1, 1e-12) << names[w];
+    EXPECT_EQ(walls[w].moves, w != 3 && w != 4) << names[w];
+  }
+}
+
+TEST(Cell, TiltTurnsGravity) {
+  const Scene s = good({"cell.tilt=30", "cell.gravity=2"});
+  EXPECT_NEAR(s.gravity.x(), 1, 1e-12);
+  EXPECT_NEAR(s.gravity.z(), -std::sqrt(3), 1e-12);
+  EXPECT_DOUBLE_EQ(s.drive.amplitude, 1.5 * 2);  // A = Gamma g/omega^2
+}
+
+TEST(Beads, CountOrLayers) {
+  EXPECT_EQ(read_scene_text("preset = \"bhateja-2016-rough-2d\"\n[drive]\nk_m = 5.0\n", "s").n_beads, 40U);
+  EXPECT_EQ(read_scene_text(kGood3d, "s").n_beads, 100U);
+  EXPECT_EQ(read_scene_text(kGood3d, "s", {"beads.count=7"}).n_beads,
+            7U);  // a scene's choice displaces the preset's
+  EXPECT_EQ(read_scene_text(kGood3d, "s", {"beads.radius=0.25"}).n_beads, 400U);
+  expect_complaint("[beads]\ncount = 5\nlayers = 2.0\n[drive]\ngamma = 1.0\nomega = 1.0\n",
+                   "beads.layers: contradicts 'count'");
+  expect_complaint("[beads]\nlayers = 9e5\n[cell]\nwidth = 1e5\n",
+                   "beads.layers: 900000 layers are 9e+10 beads, the bound is 10000000");
+}
+
+TEST(Beads, SpreadNeedsAWidth) {
+  const std::string beads = "preset = \"fortini-huang-2015\"\n[drive]\ngamma = 1.5\n[beads]\ncount = 5\n";
+  EXPECT_EQ(complaint(beads + "spread = \"normal\"\nspread_width = 0.01\n"), "accepted");
+  expect_complaint(beads + "spread = \"normal\"\n", "beads.spread: needs beads.spread_width");
+  expect_complaint(beads + "spread_width = 0.1\n", "beads.spread_width: says how far radii are spread");
+  expect_complaint(beads + "spread = \"uniform\"\nspread_width = 0.5\n",
+                   "beads.spread_width: 0.5 is out of range; the value must be less than 0.5");
+}
+
+TEST(Beads, IntruderHasItsPlace) {
+  const std::string intruder = kGood + "[beads.intruder]\n";
+  const Scene s = read_scene_text(intruder + "radius = 2.0\nz = 6.0\n", "s");
+  ASSERT_TRUE(s.intruder);
+  EXPECT_DOUBLE_EQ(s.intruder->x, 10);
+  EXPECT_DOUBLE_EQ(s.intruder->mass, 16);  // the same material: discs of four radii
+  expect_complaint(intruder + "z = 6.0\n", "beads.intruder.radius: an intruder needs its radius");
+  expect_complaint(intruder + "radius = 2.0\n", "beads.intruder.z: an intruder needs the height");
+  expect_complaint(intruder + "radius = 0.0\nz = 6.0\n", "beads.intruder.radius: 0 is out of range");
+  expect_complaint(intruder + "radius = 11.0\nz = 12.0\n",
+                   "an intruder of diameter 22 does not fit into a cell 20 wide");
+  expect_complaint(
+      intruder + "radius = 2.0\nz = 1.0\n",
+      "scene.toml:6:1: beads.intruder: the intruder at (10, 0, 1) reaches 1 into the wall \"bottom\"");
+  expect_complaint(intruder + "radius = 2.0\nz = 6.0\nx = 19.0\n", "into the wall \"right\"");
+  expect_complaint(intruder + "radius = 2.0\nz = 6.0\ny = 0.0\n", "beads.intruder.y: a 2D cell has no y");
+  expect_complaint(intruder + "radius = 2.0\nz = 6.0\n[start]\nkind = \"table\"\nfrom = \"a.csv\"\n",
+                   "a file names all beads");
+}
+
+TEST(Contact, KindsOfLawAreTheSameForAll) {
+  for (const char* table : {"wall", "bottom", "sides"})
+    for (const char* line : {"normal = \"hertz\"", "tangential = \"none\"", "rolling = \"none\"",
+                             "normal = \"linear-no-tension\""})
+      expect_complaint(kGood + "[contact." + table + "]\n" + line + "\n",
+                       "all contacts follow the same kinds of law, named in [contact]");
+  expect_complaint(kGood + "[contact]\nnormal = \"rubber\"\n",
+                   "contact.normal: 'rubber' is not one of linear,");
+}
+
+// Beads that nothing turns do not roll: the resistance would be dropped without a word.
+TEST(Contact, RollingWithoutFrictionIsRefused) {
+  const std::string rolling = kGood + "[contact]\nrolling = \"spring\"\nk_r = 1.0\nmu_r = 0.1\n";
+  expect_complaint(rolling + "tangential = \"none\"\n", "scene.toml:7:11: contact.rolling: is \"spring\"");
+  expect_complaint(rolling + "tangential = \"none\"\n", "contact.tangential is \"none\"");
+  EXPECT_NO_THROW((void)read_scene_text(rolling, "scene.toml"));
+}
+
+TEST(Contact, LawsRefuseTheirParameters) {
+  expect_complaint(kGood + "[contact]\nmu = -0.1\n",
+                   "scene.toml:7:6: contact.mu: -0.1 is out of range; the value must be at least 0");
+  expect_complaint(kGood + "[contact]\nk_n = \"stiff\"\n",
+                   "scene.toml:7:7: contact.k_n: a number is needed, not a string.");
+  expect_complaint(kGood + "[contact]\nk_n = nan\n", "contact.k_n: a finite number is needed");
+  expect_complaint(
+      kGood + "[contact]\nrestitution = 1.1\n",
+      "contact.restitution: 1.1 is out of range; the value must be greater than 0 and at most 1.");
+  expect_complaint(kGood + "[contact]\nrestitution = 0.0\n", "contact.restitution: 0 is out of range");
+  expect_complaint(kGood + "[contact]\nc_n = 5.0\nrestitution = 0.9\n", "contradicts 'c_n'");
+  expect_complaint(kGood + "[contact.wall]\nmu = -0.1\n",
+                   "scene.toml:7:6: contact.wall.mu: -0.1 is out of range; the value must be at least 0");
+}
+
+/// "a" or "b", each in quotes.
+std::string any_of(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t k = 0; k < words.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == words.size() ? " or " : ", ") + ("\"" + words[k] + "\"");
+  return text;
+}
+
+// The list of laws that read a key, by two examples; below it is taken from the laws.
+TEST(Contact, LawsAreNamedByTheKeysThatTheyRead) {
+  EXPECT_EQ(any_of(readers_of("k_t").laws), "\"spring\", \"spring-limited\" or \"force-clipped\"");
+  EXPECT_EQ(any_of(readers_of("viscous_time").laws), "\"hertz\"");
+  EXPECT_EQ(readers_of("youngs_modulus").axis, "normal");
+}
+
+// Each law with each key of another: the number would be dropped without a word.
+TEST(Contact, KeysThatTheLawDoesNotReadAreRefused) {
+  const std::string bare = "[beads]\ncount = 9\n[drive]\ngamma = 1.5\nomega = 1.0\n";
+  for (const std::string table : {"contact", "contact.wall", "contact.bottom", "contact.sides"})
+    for (const auto& [law, key] : std::vector<std::array<std::string, 2>>{
+             {"normal = \"hertz\"", "restitution"},
+             {"normal = \"hertz\"", "c_n"},
+             {"normal = \"hertz\"", "gamma_n"},
+             {"normal = \"hertz\"", "k_n"},
+             {"normal = \"hertz\"", "restitution_fast"},
+             {"normal = \"velocity-dependent-restitution\"", "restitution"},
+             {"normal = \"velocity-dependent-restitution\"", "viscous_time"},
+             {"normal = \"linear\"", "youngs_modulus"},
+             {"normal = \"linear\"", "restitution_speed"},
+             {"normal = \"linear-no-tension\"", "poisson_ratio"},
+             {"tangential = \"none\"", "mu"},
+             {"tangential = \"none\"", "k_t"},
+             {"tangential = \"none\"", "gamma_t"},
+             {"tangential = \"dashpot\"", "k_t"},
+             {"rolling = \"none\"", "mu_r"},
+             {"rolling = \"none\"", "k_r"},
+             {"rolling = \"none\"", "c_r"}}) {
+      const std::string readers = any_of(readers_of(key).laws);
+      const std::string young = law.find("hertz") != std::string::npos ? "youngs_modulus = 1e7\n" : "";
+      const std::string head = bare + "[contact]\n" + law + "\n" + young;
+      ASSERT_EQ(complaint(head), "accepted");
+      expect_complaint(
+          head + (table == "contact" ? "" : "[" + table + "]\n") + key + " = 0.3\n",
+          table + "." + key + ": the law contact." + law + " does not read it; " + readers + " would.");
+    }
+  // With file, line and column.
+  expect_complaint("[beads]\ncount = 9\n[contact]\nnormal = \"hertz\"\nrestitution = 0.5\n",
+                   "scene.toml:5:15: contact.restitution: the law contact.normal = \"hertz\" does not read");
+}
+
+// What the plan leaves out by itself is no mistake of the user's.
+TEST(Contact, SmoothBeadsMayBeSaidInBothWays) {
+  EXPECT_EQ(complaint(kGood, {"contact.mu=0"}), "accepted");  // the preset's k_t and gamma_t are read
+  EXPECT_EQ(complaint(kGood, {"contact.mu=0", "contact.k_t=2e4"}), "accepted");
+  EXPECT_EQ(complaint(kGood, {"contact.tangential=none", "contact.mu=0"}), "accepted");
+  EXPECT_NE(complaint(kGood, {"contact.tangential=none", "contact.mu=0.5"}), "accepted");
+}
+
+TEST(Contact, APresetsKeysGiveWayAndAreNamed) {
+  const auto keys = [](const Scene& s) {
+    std::vector<std::string> all;
+    for (const VoidKey& key : s.void_keys) all.push_back(key.key);
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  EXPECT_TRUE(good({}).void_keys.empty());
+  const Scene hertz = good({"contact.normal=hertz", "contact.youngs_modulus=1e7"});
+  EXPECT_EQ(keys(hertz), (std::vector<std::string>{"contact.gamma_n", "contact.k_n"}));
+  ASSERT_FALSE(hertz.void_keys.empty());
+  EXPECT_EQ(hertz.void_keys[0].source, "preset fortini-huang-2015");
+  EXPECT_NE(hertz.void_keys[0].text().find("has no effect: the law contact.normal = \"hertz\""),
+            std::string::npos)
+      << hertz.void_keys[0].text();
+  EXPECT_EQ(hertz.resolved.find("gamma_n"), std::string::npos);
+  EXPECT_EQ(keys(read_scene_text(hertz.resolved, "again")), keys(hertz));  // as sweeps read it
+  EXPECT_EQ(read_scene_text(hertz.resolved, "again").resolved, hertz.resolved);
+  EXPECT_EQ(keys(good({"contact.tangential=none"})),
+            (std::vector<std::string>{"contact.gamma_t", "contact.k_t", "contact.mu"}));
+  EXPECT_EQ(keys(read_scene_text("preset = \"bhateja-2016-horizontal\"\n[cell]\nlid = \"absent\"\n"
+                                 "[drive]\nk_m = 9\n",
+                                 "s")),
+            std::vector<std::string>{"cell.lid_motion"});
+  // A multiple of a dashpot that is gone is no friction at all: that is not left to a note.
+  EXPECT_NE(complaint("preset = \"bhateja-2016-rough-2d\"\n[drive]\nk_m = 9\n[contact]\nnormal = "
+                      "\"hertz\"\nyoungs_modulus = 1e7\n")
+                .find("contact.c_t_over_c_n: there is no normal dashpot"),
+            std::string::npos);
+}
+
+TEST(Scene, KeysOfAnotherStartOrCellAreRefused) {
+  expect_complaint(kGood + "[start]\nvelocity_scale = 2.0\n",
+                   "start.velocity_scale: is a speed of random starts, but start.kind is not");
+  expect_complaint(kGood + "[cell]\ngravity = 0.0\ntilt = 3.0\n", "cell.tilt: turns gravity");
+  const std::string table = kGood + "[start]\nkind = \"table\"\nfrom = \"a.csv\"\n";
+  EXPECT_EQ(complaint(table), "accepted");
+  EXPECT_NE(complaint(table, {"beads.spread=uniform", "beads.spread_width=0.1"})
+                .find("beads.spread: radii are not drawn for the beads of a table"),
+            std::string::npos);
+  expect_complaint("\"beads.count\" = 5\n" + kGood, "beads.count: there is no such key");
+  expect_complaint(kGood + "gamma = 2.0\n", "scene.toml:6");  // twice
+}
+
+TEST(Scene, SeedsAreNeverRounded) {
+  EXPECT_EQ(good({"start.seed=9007199254740992"}).seed, std::uint64_t{1} << 53);
+  for (const char* seed : {"9007199254740993", "9223372036854775807", "-1"})
+    EXPECT_NE(
+        complaint(kGood, {std::string("start.seed=") + seed})
+            .find(std::string("start.seed: ") + seed + " is out of range; the value must be at least 0"),
+        std::string::npos)
+        << seed;
+  for (const char* seed : {"9223372036854775808", "18446744073709551616", "1e3", "2.5"})
+    EXPECT_NE(complaint(kGood + "[start]\nseed = " + std::string(seed) + "\n").find("scene.toml:7"),
+              std::string::npos)
+        << complaint(kGood + "[start]\nseed = " + std::string(seed) + "\n");
+}
+
+TEST(Scene, AStartsFileLiesBesideTheScene) {
+  const std::string text = kGood + "[start]\nkind = \"table\"\nfrom = \"b/a.csv\"\n";
+  EXPECT_EQ(read_scene_text(text, "s", {}, "/x/y").from, "/x/y/b/a.csv");
+  EXPECT_EQ(read_scene_text(text, "s").from, "b/a.csv");
+  EXPECT_EQ(read_scene_text(text, "s", {"start.from=/z.csv"}, "/x/y").from, "/z.csv");
+  EXPECT_NE(read_scene_text(text, "s", {}, "/x/y").resolved.find("b/a.csv"), std::string::npos);
+}
+
+// A user's file of an earlier version is refused with the word of today.
+TEST(Contact, FormerWordsAreRefusedWithThoseOfToday) {
+  const std::vector<std::pair<std::string, std::string>> now = {
+      {"contact.normal=linear-clipped",
+       "contact.normal: \"linear-clipped\" is now called \"linear-no-tension\""},
+      {"contact.normal=falling-restitution",
+       "\"falling-restitution\" is now called \"velocity-dependent-restitution\""},
+      {"contact.tangential=spring-only", "\"spring-only\" is now called \"spring-limited\""},
+      {"contact.tension=clipped", "contact.tension: is a former key; write contact.normal = "},
+      {"contact.slip=rescale", "contact.slip: is a former key; write contact.tangential = "},
+      {"time.stepping=flights", "time.stepping: \"flights\" is now called \"event-driven\""},
+      {"time.force=true", "time.force: is a former key; write allow_unstable_step = true"}};
+  for (const auto& [former, sentence] : now)
+    EXPECT_NE(complaint(kGood, {former}).find(sentence), std::string::npos) << complaint(kGood, {former});
+}
+
+TEST(Contact, InnermostTableWins) {
+  const Scene s =
+      read_scene_text(kGood +
+                          "[cell]\nlid = \"wall\"\nheight = 40.0\n[contact]\nmu = 0.1\n[contact.wall]\nmu = "
+                          "0.2\nrestitution = 0.9\n[contact.lid]\nmu = 0.3\n",
+                      "s");
+  EXPECT_EQ(s.contact.bead.number("mu"), 0.1);
+  EXPECT_EQ(s.contact.wall.at("bottom").number("mu"), 0.2);
+  EXPECT_EQ(s.contact.wall.at("left").number("mu"), 0.2);
+  EXPECT_EQ(s.contact.wall.at("lid").number("mu"), 0.3);
+  EXPECT_EQ(s.contact.wall.at("lid").number("k_n"), 1e6);
+  // The wall's restitution displaces the preset's gamma_n, which stays the beads'.
+  EXPECT_EQ(s.contact.wall.at("lid").which_of(normal_damping_keys()), "restitution");
+  EXPECT_EQ(s.contact.bead.which_of(normal_damping_keys()), "gamma_n");
+  EXPECT_EQ(good({"contact.restitution=0.8"}).contact.bead.which_of(normal_damping_keys()), "restitution");
+}
+
+TEST(DriveOfAScene, RampAndSchedule) {
+  EXPECT_TRUE(good({}).envelope.points.empty());
+  EXPECT_FALSE(good({"drive.start=abrupt"}).comoving);
+  const Scene ramp = good({"drive.start=ramp", "drive.ramp_cycles=4"});
+  EXPECT_DOUBLE_EQ(ramp.envelope.at(1), 0.25);
+  EXPECT_DOUBLE_EQ(ramp.envelope.duration(), 4);
+  const Scene calmed = good({"drive.schedule=[[0, 3], [5, 3], [10, 1]]"});
+  EXPECT_DOUBLE_EQ(calmed.envelope.at(7.5), 2);
+  EXPECT_DOUBLE_EQ(calmed.envelope.at(11), 1);
+  const auto refused = [](const std::string& schedule) {
+    return complaint(kGood, {"drive.schedule=" + schedule});
+  };
+  EXPECT_NE(refused("[[0, 1], [5, 2]]").find("drive.schedule: the last factor is 2; it must be 1"),
+            std::string::npos);
+  EXPECT_NE(refused("[[5, 2], [5, 1]]").find("cycles must rise, but 5 follows 5"), std::string::npos);
+  EXPECT_NE(refused("[[0, -1], [5, 1]]").find("drive.schedule: -1 is out of range"), std::string::npos);
+  EXPECT_NE(refused("[[-1, 2], [5, 1]]").find("drive.schedule: -1 is out of range"), std::string::npos);
+  EXPECT_NE(refused("[]").find("a list of pairs of numbers is needed"), std::string::npos);
+  EXPECT_NE(complaint(kGood, {"drive.start=ramp", "drive.schedule=[[0, 1]]"})
+                .find("drive.schedule: contradicts 'start'"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint(kGood, {"drive.ramp_cycles=5"}).find("drive.ramp_cycles: is given, but drive.start is not"),
+      std::string::npos);
+}
+
+TEST(Presets, AreThePapersCells) {
+  const Scene horizontal =
+      read_scene_text("preset = \"bhateja-2016-horizontal\"\n[drive]\nk_m = 100.0\n", "s");
+  EXPECT_EQ(horizontal.n_beads, 3000U);
+  EXPECT_EQ(horizontal.drive.axis, Axis::x);
+  for (const Wall& wall : horizontal.walls())
+    EXPECT_EQ(wall.moves, wall.name == "left" || wall.name == "right") << wall.name;
+  EXPECT_NEAR(static_cast<double>(*horizontal.n_beads) / (43 * 2), horizontal.depth, 0.2);  // two layers
+  const Scene still = read_scene_text("preset = \"bhateja-2016-zero-g\"\n", "s");
+  EXPECT_EQ(still.g(), 0);
+  EXPECT_EQ(still.n_beads, 100U);
+  for (const Wall& wall : still.walls()) EXPECT_TRUE(wall.moves) << wall.name;
+  // A crystal's mirror planes would hold its beads for ever.
+  for (const std::string& name : preset_names()) {
+    const bool still_cell = name == "bhateja-2016-zero-g";
+    const Scene s = read_scene_text("preset = \"" + name + "\"\n[beads]\ncount = 9\n", "s",
+                                    {still_cell ? "drive.omega=1" : "drive.peak_velocity=1"});
+    EXPECT_EQ(s.start, name == "fortini-huang-2015" ? StartKind::crystal_a : StartKind::random) << name;
+  }
+  EXPECT_DOUBLE_EQ(
+      read_scene_text("preset = \"bhateja-2016-smooth-3d\"\n[drive]\nk_m = 4.0\n", "s").drive.omega, 2);
+}
+
+}  // namespace
+}  // namespace twincell::sim

@@ -1,0 +1,115 @@
+// Trajectories whose numbers cannot be a bead cell's: refused by the reader, hence by `validate` and every
+// verb, with file and dataset named.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/error.hpp"
+#include "core/hdf5.hpp"
+#include "tests/support/program.hpp"
+#include "trajectory/formats/h5md_file.hpp"
+
+namespace twincell {
+namespace {
+
+TrajectoryInfo sound() {
+  TrajectoryInfo info;
+  info.n_beads = 2;
+  info.columns.phase = true;
+  info.box.upper = Vec3(10, 1, 20);
+  info.drive = Drive{Axis::z, 1.0, 2.0};
+  info.phases_per_cycle = 20;
+  info.source = "simulation";
+  info.radius = {0.5, 0.5};
+  info.mass = {1, 1};
+  info.provenance_json = "{}";
+  return info;
+}
+
+void write(const std::filesystem::path& path, const TrajectoryInfo& info, int phase = 0,
+           std::int64_t cycle = 0) {
+  H5mdWriter writer(path, info);
+  Frame frame;
+  frame.position = {Vec3(1, 0, 1), Vec3(3, 0, 1)};
+  frame.phase = phase;
+  frame.cycle = cycle;
+  writer.append(frame);
+  writer.finish();
+}
+
+/// What each verb says of it: validate, and those that read every number.
+void expect_refused(const std::string& file, const std::string& what) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"validate", file},
+                                             {"info", file},
+                                             {"analyze", file, "-q"},
+                                             {"render", file, "-o", file + ".frames", "-q"}}) {
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, 3) << words[0] << " " << what << ": " << ran.out << ran.err;
+    EXPECT_NE((ran.err + ran.out).find(what), std::string::npos) << words[0] << ": " << ran.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(file + ".frames"));
+}
+
+TEST(H5mdRanges, WhatNoCellCanBeIsRefusedByEveryVerb) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  write(file, sound());
+  EXPECT_EQ(run_program({"validate", file}).code, 0);
+
+  const std::vector<std::pair<std::string, std::function<void(TrajectoryInfo&)>>> faults = {
+      {"cell", [](TrajectoryInfo& t) { t.box.upper.x() = std::nan(""); }},
+      {"cell", [](TrajectoryInfo& t) { t.box.upper.z() = 1e9; }},
+      {"cell", [](TrajectoryInfo& t) { t.box.lower.x() = 11; }},
+      {"phases_per_cycle", [](TrajectoryInfo& t) { t.phases_per_cycle = 2147483647; }},
+      {"radius", [](TrajectoryInfo& t) { t.radius[1] = -1; }},
+      {"radius", [](TrajectoryInfo& t) { t.radius[0] = 1e6; }},
+      {"mass", [](TrajectoryInfo& t) { t.mass[0] = 0; }},
+      {"amplitude", [](TrajectoryInfo& t) { t.drive->amplitude = std::nan(""); }},
+      {"omega", [](TrajectoryInfo& t) { t.drive->omega = -1; }},
+      {"sigma_m", [](TrajectoryInfo& t) { t.scale.sigma_m = 0; }}};
+  for (const auto& [what, spoil] : faults) {
+    TrajectoryInfo info = sound();
+    spoil(info);
+    write(file, info);
+    expect_refused(file, what);
+  }
+  write(file, sound(), 0, std::int64_t{1} << 60);
+  expect_refused(file, "cycle");
+  write(file, sound(), 20);
+  expect_refused(file, "phase");
+}
+
+/// Changes a sound file by hand, as damage or a stranger would.
+template <class Change>
+void spoil(const std::string& file, const std::string& object, Change change) {
+  write(file, sound());
+  const h5::Handle id = h5::own(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+  const h5::Handle part = h5::own(H5Oopen(id.get(), object.c_str(), H5P_DEFAULT), "opening " + object);
+  change(part.get());
+}
+
+TEST(H5mdRanges, AnUnknownAxisIsNoIndex) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  spoil(file, "parameters/drive", [](hid_t drive) {
+    ASSERT_GE(H5Adelete(drive, "axis"), 0);
+    h5::write_attribute(drive, "axis", std::string("q"));
+  });
+  expect_refused(file, "axis");
+}
+
+TEST(H5mdRanges, ClaimsAreHeldAgainstWhatTheFileHolds) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  spoil(file, "particles/trajectory/position/step", [](hid_t steps) {
+    const hsize_t many = 1'000'000'000;
+    ASSERT_GE(H5Dset_extent(steps, &many), 0);
+  });
+  expect_refused(file, "claims");
+}
+
+}  // namespace
+}  // namespace twincell

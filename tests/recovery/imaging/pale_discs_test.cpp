@@ -1,0 +1,96 @@
+// Discs that take away a tenth to a third of the light: what is found without options, and at given size and
+// polarity, against the truth and the Cramér-Rao bound of the same picture.
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+#include <random>
+#include <vector>
+
+#include "imaging/benchmark/detection_score.hpp"
+#include "imaging/benchmark/packing.hpp"
+#include "imaging/settings/configure_locator.hpp"
+#include "imaging/stack/open_frames.hpp"
+#include "imaging/track/locate_stack.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace twincell {
+namespace {
+
+using rendered::Marks;
+using rendered::Picture;
+
+struct Pale {
+  double contrast, snr;
+  bool touching;
+};
+
+Picture picture_of(const Pale& c) {
+  std::mt19937_64 random(4);
+  Picture p;
+  p.width = p.height = 450;
+  const std::vector<double> radii(c.touching ? 700 : 350, 7.5);
+  if (c.touching)
+    p.discs = rendered::deposited(radii, {10, 0, p.width - 20.0, p.height - 10.0}, random);
+  else
+    p.discs = rendered::sparse(radii, {5, 5, p.width - 10.0, p.height - 10.0}, random);
+  for (rendered::Disc& d : p.discs) d.contrast = c.contrast;
+  return p;
+}
+
+Marks::Summary look(const Pale& c, LocatorOptions options) {
+  const Picture picture = picture_of(c);
+  const cv::Mat1d light = rendered::expected(picture);
+  const TemporaryFolder folder;
+  const std::string name = (folder.path() / "frame.png").string();
+  cv::imwrite(name, rendered::expose(light, picture, c.snr, 4));
+  const auto frames = open_frames(name);
+  Marks marks;
+  FramesAhead ahead(*frames);
+  const LocatorOptions settled = configure_locator(ahead, options).locator;
+  locate_stack(ahead, settled, 1, [&](std::int64_t, const cv::Mat&, const Located& located) {
+    std::vector<cv::Point2d> centres;
+    for (const Detection& b : located.beads) centres.emplace_back(b.x, b.y);
+    marks.add(picture, centres, rendered::cramer_rao_bound(light, picture, c.snr));
+  });
+  const Marks::Summary m = marks.summary();
+  std::printf(
+      "contrast %.2f, SNR %g, %s: %.2f px, %s, contrast %.2f; recall %.4f, precision %.4f, %.2f x bound\n",
+      c.contrast, c.snr, c.touching ? "touching" : "apart", settled.diameter_px,
+      settled.refine.method.c_str(), settled.preprocess.contrast, m.recall, m.precision, m.rms / m.bound);
+  return m;
+}
+
+class PaleDiscs : public testing::TestWithParam<Pale> {
+ protected:
+  void expect_at_the_bound(const Marks::Summary& m) {
+    EXPECT_EQ(m.found, m.beads);
+    EXPECT_EQ(m.invented, 0U);
+    EXPECT_GE(m.rms, 0.85 * m.bound);
+    EXPECT_LE(m.rms, 1.15 * m.bound);
+  }
+};
+
+TEST_P(PaleDiscs, AreFoundWithoutOptions) {
+  LocatorOptions options;
+  options.polarity_known = false;
+  expect_at_the_bound(look(GetParam(), options));
+}
+
+TEST_P(PaleDiscs, AreFoundAtAGivenSize) {
+  LocatorOptions options;
+  options.diameter_px = 15;
+  expect_at_the_bound(look(GetParam(), options));
+}
+
+INSTANTIATE_TEST_SUITE_P(Contrasts, PaleDiscs,
+                         testing::Values(Pale{0.3, 51, true}, Pale{0.2, 164, false}, Pale{0.1, 164, false}),
+                         [](const auto& tested) {
+                           return "percent" +
+                                  std::to_string(static_cast<int>(100 * tested.param.contrast + 0.5));
+                         });
+
+}  // namespace
+}  // namespace twincell

@@ -1,0 +1,92 @@
+// What the first frame does not show: settings come from a later one, or nothing is claimed.
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "imaging/benchmark/picture.hpp"
+#include "imaging/locate/locator.hpp"
+#include "imaging/settings/configure_locator.hpp"
+#include "imaging/stack/open_frames.hpp"
+#include "imaging/track/locate_stack.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace twincell {
+namespace {
+
+using rendered::Disc;
+using rendered::Picture;
+
+Picture frame_with(std::vector<Disc> discs) {
+  Picture p;
+  p.width = 240, p.height = 200;
+  p.discs = std::move(discs);
+  return p;
+}
+
+Disc disc(double x, double y, double radius) {
+  Disc d;
+  d.x = x, d.y = y, d.radius = radius;
+  return d;
+}
+
+/// Beads per frame of a stack, and its settings.
+struct Seen {
+  std::vector<std::vector<Detection>> beads;
+  LocatorConfiguration configured;
+  std::int64_t frames = 0;
+};
+Seen locate_all(const std::vector<Picture>& pictures) {
+  const TemporaryFolder folder;
+  for (std::size_t f = 0; f < pictures.size(); ++f)
+    cv::imwrite((folder.path() / ("frame_" + std::to_string(100 + f) + ".png")).string(),
+                rendered::expose(rendered::expected(pictures[f]), pictures[f], 51, f + 1));
+  Seen seen;
+  LocatorOptions options;
+  options.polarity_known = false;
+  const auto frames = open_frames(folder.path().string());
+  FramesAhead ahead(*frames);
+  seen.configured = configure_locator(ahead, options);
+  seen.frames = locate_stack(
+      ahead, seen.configured.locator, 2,
+      [&](std::int64_t, const cv::Mat&, const Located& located) { seen.beads.push_back(located.beads); });
+  return seen;
+}
+
+TEST(ShownLater, TheFirstFramesMayBeBare) {
+  const Picture bare = frame_with({});
+  const Picture beads = frame_with(
+      {disc(40.3, 50.2, 7.5), disc(80.6, 120.4, 7.5), disc(150.1, 60.8, 7.5), disc(200.7, 150.3, 7.5)});
+  const Seen seen = locate_all({bare, bare, bare, beads, beads, bare, beads});
+  ASSERT_EQ(seen.frames, 7);
+  EXPECT_EQ(seen.configured.frame, 4);  // 0, 1, 2, 4 are looked at
+  EXPECT_NEAR(seen.configured.locator.diameter_px, 15, 0.3);
+  EXPECT_FALSE(seen.configured.locator.preprocess.bright);
+  for (const std::size_t f : {0, 1, 2, 5}) EXPECT_TRUE(seen.beads[f].empty()) << f;
+  for (const std::size_t f : {3, 4, 6}) EXPECT_EQ(seen.beads[f].size(), 4U) << f;
+}
+
+TEST(ShownLater, WhereNoFrameShowsADiscNoneIsClaimed) {
+  const Picture bare = frame_with({});
+  EXPECT_THROW(locate_all({bare}), InputError);
+  EXPECT_THROW(locate_all({bare, bare, bare}), InputError);
+}
+
+// Wider than what is sought first; few, so that their rims do not cover a fifth of the frame.
+TEST(ShownLater, OneLargeDiscIsFoundUnasked) {
+  for (const double diameter : {100.0, 140.0}) {
+    Picture p = frame_with({disc(150.3, 160.6, 0.5 * diameter)});
+    p.width = 480, p.height = 400;
+    const Seen seen = locate_all({p});
+    ASSERT_EQ(seen.beads[0].size(), 1U) << diameter;
+    EXPECT_NEAR(seen.beads[0][0].x, 150.3, 0.02);
+    EXPECT_NEAR(seen.beads[0][0].y, 160.6, 0.02);
+    EXPECT_NEAR(2 * seen.beads[0][0].radius, diameter, 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace twincell

@@ -1,0 +1,142 @@
+// The parts of a difference, on numbers whose parts are set by hand.
+#include "analysis/runs/differences.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/rigid_bed.hpp"
+#include "trajectory/trajectory.hpp"
+
+namespace twincell {
+namespace {
+
+using Runs = std::vector<Run>;  // in a test's body `Run` is googletest's
+
+Result number(const std::string& name, double value, double error) {
+  Result r{.name = name, .values = {value}};
+  r.unit = "sigma";
+  r.interval =
+      Interval{.low = value - 1.96 * error, .high = value + 1.96 * error, .level = 0.95, .method = "set"};
+  return r;
+}
+
+Run run(Side side, double value, double error, const std::string& start = "random") {
+  Run r;
+  r.side = side;
+  r.gamma = 2;
+  r.n_l = 20;
+  r.start = side == Side::simulation ? start : "";
+  r.results = {number("s_b", value, error)};
+  return r;
+}
+
+Difference only(const std::vector<Run>& runs, const Checks& checks = {}) {
+  const auto all = find_differences(runs, match_runs(runs), checks);
+  EXPECT_EQ(all.size(), 1U);
+  return all.at(0);
+}
+
+}  // namespace
+
+TEST(Differences, CameraAndRemainderAddUp) {
+  const Runs runs = {run(Side::experiment, 1.0, 0.03), run(Side::simulation, 0.7, 0.02)};
+  Checks checks;
+  checks.filmed.push_back(
+      {.run = 1, .seen = {number("s_b", 0.71, 0.02)}, .filmed = {number("s_b", 0.96, 0.04)}});
+  const Difference d = only(runs, checks);
+  EXPECT_NEAR(d.difference(), 0.3, 1e-12);
+  EXPECT_NEAR(d.camera.value(), 0.25, 1e-12);
+  EXPECT_NEAR(d.remainder(), 0.05, 1e-12);
+  EXPECT_NEAR(d.camera.value() + d.remainder(), d.difference(), 1e-12);
+  EXPECT_NEAR(d.statistics.value(), 0.05,
+              1e-9);  // 3, 4, 5: the filmed error, larger than the simulation's own
+  EXPECT_NEAR(d.in_errors().value(), 1, 1e-6);
+  EXPECT_NE(d.attribution().find("camera and tracking make 83 %"), std::string::npos) << d.attribution();
+}
+
+TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
+  Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.8, 0.01),
+               run(Side::simulation, 1.2, 0.01), run(Side::simulation, 1.1, 0.01)};
+  const Difference d = only(runs);
+  EXPECT_NEAR(d.seeds.value(), 0.2082, 1e-4);  // of 0.8, 1.2, 1.1
+  EXPECT_FALSE(d.camera);
+  EXPECT_NE(d.attribution().find("most is seeds"), std::string::npos) << d.attribution();
+}
+
+// Two runs 0.02 apart: s = 0.01414, and two of the errors built from it are the 95 % of Student's t with one
+// degree of freedom, 12.706 s sqrt(3/2).
+TEST(Differences, AFewSeedsAreNoCertainty) {
+  const Runs runs = {run(Side::experiment, 1.0, 1e-6), run(Side::simulation, 0.81, 1e-6),
+                     run(Side::simulation, 0.83, 1e-6)};
+  const Difference d = only(runs);
+  EXPECT_EQ(d.seed_runs, 2U);
+  EXPECT_NEAR(1.96 * d.seed_error().value(), 12.706 * std::sqrt(1.5) * 0.02 / std::sqrt(2), 1e-4);
+  EXPECT_NE(d.attribution().find("within its error"), std::string::npos) << d.attribution();
+  EXPECT_NE(d.attribution().find("2 runs only"), std::string::npos) << d.attribution();
+}
+
+TEST(Differences, WhatIsTheSameIsSaidToBe) {
+  EXPECT_NE(
+      only({run(Side::experiment, 1.0, 0.01), run(Side::simulation, 1.0, 0.01)}).attribution().find("same"),
+      std::string::npos);
+}
+
+TEST(Differences, AStartWithOtherDefectsMayBeTheReason) {
+  Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.5, 0.01, "crystal_a"),
+               run(Side::simulation, 0.9, 0.01, "random")};
+  const Difference d = only(runs);
+  EXPECT_NEAR(d.defects.value(), 0.4, 1e-12);
+  EXPECT_FALSE(d.seeds);
+  EXPECT_NE(d.attribution().find("starts with other defects"), std::string::npos) << d.attribution();
+}
+
+TEST(Differences, ARealOneIsCalledSoAndAnUnknownErrorToo) {
+  const Difference real = only({run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.5, 0.01)});
+  EXPECT_NE(real.attribution().find("real difference"), std::string::npos) << real.attribution();
+  Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.5, 0.01)};
+  for (auto& r : runs) r.results[0].interval.reset();
+  EXPECT_NE(only(runs).attribution().find("no error is known"), std::string::npos);
+}
+
+TEST(Differences, ANumberThatNeverChangedHasNoKnownError) {
+  const Difference d = only({run(Side::experiment, 0.22, 1e-17), run(Side::simulation, 0.23, 1e-17)});
+  EXPECT_FALSE(d.statistics);
+  EXPECT_FALSE(d.experiment.error);
+  EXPECT_NE(d.attribution().find("no error is known"), std::string::npos);
+}
+
+// Rows of 9, 10 and 9 beads sheared by 0.1 j per sigma: s_c = 0.1 sqrt(mean j^2) sqrt((n^2 - 1)/12); s_b is
+// the same on every row.
+TEST(Differences, LinesOfTracersInAShearedBed) {
+  const test::RigidBed bed{.gamma = 1.5, .columns = 10, .rows = 9, .cycles = 4, .shear_per_cycle = 0.1};
+  const TrajectoryInfo info = test::rigid_bed_info(bed);
+  MemoryTrajectory trajectory(info);
+  test::film_rigid_bed(bed, info, trajectory);
+  const auto lines = tracer_lines(trajectory, 7, {});
+  ASSERT_EQ(lines.size(), 2U);
+  const double nine = 0.1 * std::sqrt(14.0 / 4) * std::sqrt(80.0 / 12),
+               ten = 0.1 * std::sqrt(14.0 / 4) * std::sqrt(99.0 / 12);
+  for (const auto& line : lines) {
+    EXPECT_EQ(line.run, 7U);
+    ASSERT_EQ(line.values.size(), 3U);
+    EXPECT_NEAR(line.values[1] - line.values[0], line.quantity == "s_c" ? ten - nine : 0, 1e-6)
+        << line.quantity;
+    EXPECT_NEAR(line.values[1] - line.values[2], line.quantity == "s_c" ? ten - nine : 0, 1e-6)
+        << line.quantity;
+    if (line.quantity == "s_c") {
+      EXPECT_NEAR(line.values[1], ten, 1e-6);
+    }
+  }
+}
+
+TEST(Differences, WhatTheChoiceOfTracersDoesToBothSidesAlikeIsNoDifference) {
+  const Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.9, 0.01)};
+  Checks alike, apart;
+  alike.tracers = {{0, "s_b", {0.5, 1.0, 1.5}}, {1, "s_b", {0.4, 0.9, 1.4}}};
+  apart.tracers = {{0, "s_b", {0.5, 1.0, 1.5}}, {1, "s_b", {0.9, 0.9, 0.9}}};
+  EXPECT_NEAR(only(runs, alike).tracers.value(), 0, 1e-12);
+  EXPECT_NEAR(only(runs, apart).tracers.value(), 0.5, 1e-12);
+}
+
+}  // namespace twincell

@@ -1,0 +1,165 @@
+// Several runs as one measurement.
+#include "analysis/runs/pooling.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "analysis/observable/results.hpp"
+#include "core/error.hpp"
+#include "tests/support/validation.hpp"
+
+namespace twincell {
+namespace {
+
+Result number(const std::string& name, double value, std::optional<Interval> interval = {}) {
+  Result r{.name = name, .values = {value}, .unit = "1", .n = 100, .n_of = "cycles", .interval = interval};
+  r.convention = "as told";
+  if (!interval) r.no_interval = "none";
+  return r;
+}
+
+std::vector<std::vector<Result>> runs_of(const std::string& name, const std::vector<double>& values) {
+  std::vector<std::vector<Result>> runs;
+  for (const double v : values) runs.push_back({number(name, v)});
+  return runs;
+}
+
+/// Percent of pooled intervals that hold the truth.
+double coverage(const std::function<double()>& draw, double truth, int runs, int trials) {
+  int covered = 0;
+  for (int t = 0; t < trials; ++t) {
+    std::vector<double> values;
+    for (int i = 0; i < runs; ++i) values.push_back(draw());
+    const Interval interval = pool(runs_of("T_g", values)).front().interval.value();
+    covered += interval.low <= truth && truth <= interval.high ? 1 : 0;
+  }
+  return 100.0 * covered / trials;
+}
+
+MemoryTrajectory bed(double gamma, double shift) {
+  TrajectoryInfo info;
+  info.n_beads = 3;
+  info.box.upper = Vec3(10, 1, 10);
+  info.drive = Drive{};
+  info.drive->amplitude = gamma;
+  info.drive->omega = 1;
+  MemoryTrajectory t(info);
+  Frame f;
+  f.position = {Vec3(1, 0, 1), Vec3(2, 0, 1), Vec3(3, 0, 1 + shift)};
+  t.append(f);
+  return t;
+}
+
+}  // namespace
+
+TEST(Pooling, IntervalsHoldTheTruthAsOftenAsTheySay) {
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> normal(3, 1);
+  std::exponential_distribution<double> skewed(1);
+  for (const int runs : {3, 5, 6, 12})
+    test::validate({"V5.12", "coverage, %, over " + std::to_string(runs) + " runs of normal values", 95, 2.5,
+                    "binomial"},
+                   coverage([&] { return normal(generator); }, 3, runs, 1000));
+  test::validate({"V5.12", "coverage, %, over 8 runs of exponential values", 95, 2.5, "binomial"},
+                 coverage([&] { return skewed(generator); }, 1, 8, 1000));
+}
+
+TEST(Pooling, TwoRunsAreStudentsT) {
+  const Result r = pool(runs_of("T_g", {1, 3})).front();
+  EXPECT_DOUBLE_EQ(r.value(), 2);
+  EXPECT_NEAR(r.interval->high, 2 + 12.7062, 1e-3);  // sd of the mean 1, t of one degree of freedom
+  EXPECT_EQ(r.n, 2U);
+  EXPECT_EQ(r.of_runs, (std::vector<double>{1, 3}));
+}
+
+TEST(Pooling, MeanSquaresArePooledAsSquares) {
+  EXPECT_DOUBLE_EQ(pool(runs_of("s_c", {1, 7})).front().value(), 5);
+  EXPECT_GE(pool(runs_of("s_c", {1, 7})).front().interval->low, 0);
+}
+
+TEST(Pooling, AgreementByChanceIsNotBetterThanTheRunsAre) {
+  const Interval own{1.8, 2.2, 0.95, "bootstrap over tracers"};
+  const Result r = pool({{number("T_g", 2, own)}, {number("T_g", 2, own)}}).front();
+  EXPECT_NEAR(r.interval->high - r.interval->low, 0.4 / std::sqrt(2), 1e-12);
+  EXPECT_NE(r.interval->method.find("bootstrap over tracers"), std::string::npos);
+  EXPECT_EQ(pool(runs_of("half_pixel", {0.02, 0.02})).front().no_interval, "the same in every run");
+}
+
+TEST(Pooling, TheSameRunTwiceIsRefused) {
+  const double drawn = 0.123456789012345678;
+  EXPECT_THROW(pool(runs_of("T_g", {drawn, 0.2, drawn})), ConfigError);
+  EXPECT_EQ(repeated_runs(runs_of("T_g", {drawn, 0.2, drawn})), (std::vector<std::size_t>{0, 1, 0}));
+  EXPECT_NO_THROW(pool(runs_of("T_g", {drawn, std::nextafter(drawn, 1)})));
+  // Counts, shares of few counts and what the camera's scale alone says may be the same in different runs.
+  EXPECT_NO_THROW(pool(runs_of("slips", {3, 3})));
+  EXPECT_NO_THROW(pool(runs_of("hexagonal_fraction", {2.0 / 3, 2.0 / 3})));
+  EXPECT_NO_THROW(pool(runs_of("half_pixel", {drawn, drawn})));
+}
+
+TEST(Pooling, NoSlipInAnyRunHasTheLimitOfAllTrials) {
+  const Result r = pool(runs_of("p_s", {0, 0, 0})).front();
+  EXPECT_EQ(r.value(), 0);
+  EXPECT_NEAR(r.interval->high, 1 - std::pow(0.05, 1.0 / 300), 1e-15);
+  EXPECT_DOUBLE_EQ(pool(runs_of("slips", {3, 0, 4})).front().value(), 7);
+  EXPECT_GE(pool(runs_of("p_s", {0, 0, 0.01})).front().interval->low, 0);
+}
+
+TEST(Pooling, AnglesOfALatticeComeBackAfter60Degrees) {
+  const double pooled = pool(runs_of("orientation", {44, -14, 45})).front().value();
+  EXPECT_NEAR(std::remainder(pooled - 45, 60), 0, 0.4);
+}
+
+TEST(Pooling, WordsAreThoseOfMostRuns) {
+  const auto word = [](const std::string& text) {
+    return std::vector<Result>{Result{.name = "phase", .text = text, .n = 1, .n_of = "cycles"}};
+  };
+  const Result most = pool({word("bouncing"), word("convecting"), word("convecting")}).front();
+  EXPECT_EQ(most.text, "convecting");
+  EXPECT_NE(most.convention.find("convecting in 2, bouncing in 1 of 3 runs"), std::string::npos);
+  EXPECT_FALSE(pool({word("bouncing"), word("convecting")}).front().present());
+}
+
+TEST(Pooling, RunsWithoutAValueAreCountedOut) {
+  const Result r =
+      pool({{number("T_g", 1)}, {absent_result("T_g", "no bead", "eq. 2")}, {number("T_g", 3)}}).front();
+  EXPECT_DOUBLE_EQ(r.value(), 2);
+  EXPECT_EQ(r.n, 2U);
+  EXPECT_TRUE(std::isnan(r.of_runs[1]));
+  EXPECT_NE(r.convention.find("2 of 3 runs"), std::string::npos);
+}
+
+TEST(Pooling, ArraysEndWithTheShortest) {
+  Result a{.name = "s_j", .values = {1, 7, 5}, .shape = {3}},
+      b{.name = "s_j", .values = {7, 1}, .shape = {2}};
+  const Result r = pool({{a}, {b}}).front();
+  EXPECT_EQ(r.shape, (std::vector<std::size_t>{2}));
+  EXPECT_DOUBLE_EQ(r.values[0], 5);
+  a.name = b.name = "q6_beads";
+  EXPECT_FALSE(pool({{a}, {b}}).front().present());
+}
+
+TEST(Pooling, OtherConditionsAreRefused) {
+  const MemoryTrajectory a = bed(1.5, 0), b = bed(1.5, 0.1), other = bed(2, 0.1);
+  EXPECT_NO_THROW(require_one_condition({&a, &b}));
+  try {
+    require_one_condition({&a, &other});
+    FAIL() << "no complaint";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("Gamma is 1.5 there, 2 here"), std::string::npos) << e.what();
+  }
+  EXPECT_THROW(require_one_condition({&a, &b, &a}), ConfigError);  // the same run twice
+}
+
+TEST(Results, ComeBackFromJson) {
+  std::vector<Result> results = {number("T_g", 1.25, Interval{1, 1.5, 0.95, "by hand"}),
+                                 absent_result("p_s", "no bead", "sec. V"),
+                                 Result{.name = "phase", .text = "bouncing", .n = 3, .n_of = "cycles"},
+                                 Result{.name = "s_j", .values = {1, NAN, 3, 4}, .shape = {2, 2}}};
+  const std::string text = results_json(results);
+  EXPECT_EQ(results_json(results_from_json(text)), text);
+}
+
+}  // namespace twincell

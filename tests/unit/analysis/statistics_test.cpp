@@ -1,0 +1,263 @@
+#include "analysis/statistics/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <random>
+
+#include "tests/support/validation.hpp"
+
+using namespace twincell;
+
+namespace {
+
+/// A stationary AR(1) series about 0: x <- a x + kick. Correlation time (1 + a)/(2 (1 - a)).
+std::vector<double> correlated(std::size_t n, double a, std::mt19937_64& generator) {
+  std::normal_distribution<double> kick;
+  std::vector<double> series(n);
+  double x = kick(generator) / std::sqrt(1 - a * a);
+  for (double& value : series) value = x = a * x + kick(generator);
+  return series;
+}
+
+/// Share of the intervals that hold `truth`, in per cent. Nearly all of the `trials` must give one.
+double coverage(int trials, double truth, const std::function<std::optional<Interval>()>& measure) {
+  int covered = 0, given = 0;
+  for (int t = 0; t < trials; ++t) {
+    const auto interval = measure();
+    if (!interval) continue;
+    ++given;
+    covered += interval->low <= truth && truth <= interval->high ? 1 : 0;
+  }
+  EXPECT_GT(given, 0.9 * trials);
+  return 100.0 * covered / given;
+}
+
+std::optional<Interval> block_interval(const std::vector<double>& series) {
+  BlockAverage average;
+  for (const double x : series) average.add(5 + x);
+  return average.interval("values");
+}
+
+}  // namespace
+
+TEST(Statistics, StudentTAgainstTables) {
+  EXPECT_NEAR(student_t_95(1), 12.706, 1e-3);
+  EXPECT_NEAR(student_t_95(9), 2.262, 1e-3);
+  EXPECT_NEAR(student_t_95(40), 2.0211, 1e-4);
+  EXPECT_NEAR(student_t_95(120), 1.9799, 1e-4);
+  EXPECT_TRUE(std::isinf(student_t_95(0)));
+}
+
+TEST(Statistics, CorrelationTimeOfAutoregressiveSeries) {
+  std::mt19937_64 generator(17);
+  for (const double a : {0.0, 0.5, 0.9}) {
+    const double exact = (1 + a) / (2 * (1 - a));
+    double sum = 0;
+    const int series = 60;
+    for (int s = 0; s < series; ++s) sum += correlation_time(correlated(4000, a, generator));
+    test::validate({"V5.12", "integrated correlation time, AR(1) with a = " + std::to_string(a).substr(0, 3),
+                    exact, 0.05 * exact, "(1 + a)/(2 (1 - a))"},
+                   sum / series);
+  }
+  EXPECT_EQ(correlation_time(std::vector<double>(50, 3.7)), 0.5);
+  EXPECT_TRUE(std::isnan(correlation_time({1.0})));
+}
+
+TEST(Statistics, ALongSeriesKeepsItsCorrelationTimeInConstantMemory) {
+  std::mt19937_64 generator(3);
+  BlockAverage average;
+  for (const double x : correlated(300000, 0.9, generator)) average.add(x);
+  test::validate(
+      {"V5.12", "correlation time of 300000 values kept as 4096 means", 9.5, 0.6, "(1 + a)/(2 (1 - a))"},
+      average.correlation_time());
+  test::validate({"V5.12", "variance of the same values", 1 / 0.19, 0.15, "1/(1 - a^2)"}, average.variance());
+}
+
+TEST(Statistics, BlockIntervalsCoverTheMean) {
+  std::mt19937_64 generator(5);
+  const auto cover = [&](std::size_t n, double a) {
+    return coverage(2000, 5, [&] { return block_interval(correlated(n, a, generator)); });
+  };
+  test::validate({"V5.12", "coverage, %, of the 95 % block interval: 3000 values, correlation time 9.5", 95,
+                  2, "binomial"},
+                 cover(3000, 0.9));
+  test::validate({"V5.12", "coverage, %: 200 values, correlation time 1.5", 95, 2, "binomial"},
+                 cover(200, 0.5));
+  test::validate({"V5.12", "coverage, %: 30 independent values", 95, 2, "binomial"}, cover(30, 0));
+  test::validate({"V5.12", "coverage, %: 200 independent values", 95, 2, "binomial"}, cover(200, 0));
+}
+
+TEST(Statistics, BlockIntervalsCoverTheMeanOfASeriesThatEchoes) {
+  // Values that take after the last one and after those 15 before: their correlation falls to 0.05 by the
+  // ninth and is 0.2 again at the fifteenth, much as a vibrated gas' temperature from cycle to cycle.
+  std::mt19937_64 generator(8);
+  std::normal_distribution<double> fresh;
+  const auto echoing = [&](std::size_t n) {
+    constexpr std::size_t kBefore = 400;
+    std::vector<double> x(kBefore + n);
+    for (std::size_t i = 17; i < x.size(); ++i) {
+      double echo = 0;
+      for (std::size_t lag = 13; lag <= 17; ++lag) echo += x[i - lag] / 5;
+      x[i] = 0.64 * x[i - 1] + 0.14 * echo + fresh(generator);
+    }
+    return std::vector<double>(x.begin() + kBefore, x.end());
+  };
+  const auto cover = [&](std::size_t n) {
+    return coverage(2000, 5, [&] { return block_interval(echoing(n)); });
+  };
+  test::validate({"V5.12", "coverage, %: 600 values, an echo at 15 whose correlation is 0.2", 93, 3,
+                  "95 % less what the window of tau does not see"},
+                 cover(600));
+  test::validate({"V5.12", "coverage, %: 3000 of the same", 95, 2, "binomial"}, cover(3000));
+}
+
+TEST(Statistics, ASeriesTooShortForItsCorrelationHasNoInterval) {
+  std::mt19937_64 generator(6);
+  BlockAverage average;
+  for (const double x : correlated(200, 0.98, generator)) average.add(x);  // correlation time 49.5
+  EXPECT_FALSE(average.interval("cycles").has_value());
+  EXPECT_NE(average.why_no_interval("cycles").find("correlation time"), std::string::npos);
+  BlockAverage ramp;
+  for (int i = 0; i < 200; ++i) ramp.add(i);
+  EXPECT_FALSE(ramp.interval("cycles").has_value());
+}
+
+TEST(Statistics, BlockMeanIsTheMean) {
+  BlockAverage average;
+  EXPECT_TRUE(std::isnan(average.mean()));
+  for (int i = 1; i <= 10001; ++i) average.add(i);
+  EXPECT_NEAR(average.mean(), 5001, 1e-9);
+  EXPECT_EQ(average.n(), 10001U);
+  BlockAverage three;
+  for (int i = 0; i < 3; ++i) three.add(i);
+  EXPECT_FALSE(three.interval("values").has_value());
+  EXPECT_FALSE(three.why_no_interval("values").empty());
+  BlockAverage constant;
+  for (int i = 0; i < 9; ++i) constant.add(0.25);
+  EXPECT_FALSE(constant.interval("values").has_value());
+  EXPECT_TRUE(constant.has_no_scatter());
+  EXPECT_EQ(constant.why_no_interval("values"), "the same in all 9 values");
+}
+
+TEST(Statistics, NoSeriesHasAnIntervalOfZeroWidth) {
+  // 0.1 summed is not 0.1 to the last digit; a bed that bounces with period two cancels in blocks of two.
+  for (const std::size_t n : {4, 9, 16, 64, 5000, 20000}) {
+    BlockAverage constant, period_two, about_zero;
+    for (std::size_t i = 0; i < n; ++i) {
+      constant.add(0.1);
+      period_two.add(i % 2 == 0 ? 0.3 : 0.1);
+      about_zero.add(i % 2 == 0 ? 1 : -1);
+    }
+    EXPECT_FALSE(constant.interval("cycles").has_value()) << n;
+    EXPECT_NE(constant.why_no_interval("cycles").find("the same in all"), std::string::npos) << n;
+    for (const BlockAverage& series : {period_two, about_zero}) {
+      const auto interval = series.interval("cycles");
+      if (interval) {
+        EXPECT_GT(interval->high - interval->low, 1e-9) << n;
+      }
+      EXPECT_EQ(interval.has_value(), series.why_no_interval("cycles").empty()) << n;
+    }
+  }
+  BlockAverage sixteen;
+  for (int i = 0; i < 16; ++i) sixteen.add(i % 2 == 0 ? 1 : -1);
+  EXPECT_FALSE(sixteen.interval("cycles").has_value());
+  EXPECT_NE(sixteen.why_no_interval("cycles").find("period"), std::string::npos);
+}
+
+TEST(Statistics, AnAbsentIntervalOfAMeanHasAReason) {
+  EXPECT_EQ(why_no_mean_interval({1, 2, 4}, "runs"), "");
+  EXPECT_EQ(why_no_mean_interval({1}, "runs"), "too few runs for an error: 1 of at least 2");
+  EXPECT_EQ(why_no_mean_interval({0.1, 0.1, 0.1}, "runs"), "the same in all 3 runs");
+  EXPECT_EQ(why_no_mean_interval({1, std::nan("")}, "runs"), "not every one of 2 runs has a value");
+}
+
+TEST(Statistics, BootstrapCoversMeanAndSpreadOfAFewItems) {
+  std::mt19937_64 generator(9);
+  std::normal_distribution<double> value;
+  std::vector<double> sample(20);
+  const auto mean = [&](const std::vector<std::size_t>& pick) {
+    double sum = 0;
+    for (const std::size_t i : pick) sum += sample[i];
+    return sum / static_cast<double>(pick.size());
+  };
+  const auto draw = [&] {
+    for (double& v : sample) v = value(generator);
+  };
+  test::validate({"V5.12", "coverage, %, of the bootstrap: mean of 20 items", 95, 2, "binomial"},
+                 coverage(1000, 0, [&] {
+                   draw();
+                   return bootstrap_interval(sample.size(), mean, "values", 1, 400);
+                 }));
+  const auto skewed = [&]() -> std::optional<Interval> {
+    for (double& v : sample) v = std::pow(value(generator), 2);
+    return mean_interval(sample, "values", 1, 400);
+  };
+  test::validate(
+      {"V5.12", "coverage, %, of the studentised bootstrap: variance of 20 items", 95, 2, "binomial"},
+      coverage(1000, 1, skewed));
+  EXPECT_FALSE(mean_interval({1}, "values").has_value());
+  const auto of_two = mean_interval({1, 2}, "values");
+  ASSERT_TRUE(of_two.has_value());
+  EXPECT_NEAR(of_two->high, 1.5 + 12.706 * 0.5, 1e-3);  // Student's t
+  // The studentised bootstrap of these three would reach to 2: two of them are alike.
+  const auto of_three = mean_interval({0.1435, 0.1436, 0.15}, "values");
+  ASSERT_TRUE(of_three.has_value());
+  EXPECT_NEAR(of_three->high - of_three->low, 2 * 4.303 * 0.0021502, 1e-5);
+  draw();
+  const auto once = bootstrap_interval(sample.size(), mean, "values"),
+             again = bootstrap_interval(20, mean, "values");
+  EXPECT_EQ(again->low, once->low);
+  EXPECT_FALSE(bootstrap_interval(1, mean, "values").has_value());
+}
+
+TEST(Statistics, ItemsThatAreAllTheSameHaveNoInterval) {
+  const std::vector<double> same(8, 0.1);
+  const auto mean = [&](const std::vector<std::size_t>& pick) {
+    double sum = 0;
+    for (const std::size_t i : pick) sum += same[i];
+    return sum / static_cast<double>(pick.size());
+  };
+  EXPECT_FALSE(bootstrap_interval(same.size(), mean, "values").has_value());
+  EXPECT_FALSE(mean_interval(same, "values").has_value());
+  EXPECT_FALSE(mean_interval({0.1, 0.1, 0.1}, "values").has_value());
+}
+
+TEST(Statistics, AValueBelowAllResamplesLiesInItsInterval) {
+  // |mean| of values that cancel: nearly every resample is above it.
+  const std::vector<double> items = {-4, -3, -2, -1, 1, 2, 3, 4};
+  const auto off = [&](const std::vector<std::size_t>& pick) {
+    double sum = 0;
+    for (const std::size_t i : pick) sum += items[i];
+    return std::abs(sum);
+  };
+  const auto interval = bootstrap_interval(items.size(), off, "values");
+  ASSERT_TRUE(interval.has_value());
+  EXPECT_LE(interval->low, 0);
+  EXPECT_GT(interval->high, 0);
+}
+
+TEST(Statistics, ExactBinomialAgainstTablesAndCounts) {
+  // Clopper and Pearson's limits, and the rule of three.
+  test::validate({"V5.12", "Clopper-Pearson, 3 of 20, lower", 0.0320709, 1e-6, "table"},
+                 binomial_interval(3, 20, "trials").low);
+  test::validate({"V5.12", "Clopper-Pearson, 3 of 20, upper", 0.3789268, 1e-6, "table"},
+                 binomial_interval(3, 20, "trials").high);
+  test::validate({"V5.12", "upper limit for 0 of 100000, times 100000", 2.9957, 1e-3, "-ln 0.05"},
+                 1e5 * binomial_interval(0, 1e5, "trials").high);
+  test::validate({"V5.12", "Wilson, 3 of 20, lower", 0.0523689, 1e-6, "closed form"},
+                 wilson_interval(3, 20, "trials").low);
+  test::validate({"V5.12", "Wilson, 3 of 20, upper", 0.3604187, 1e-6, "closed form"},
+                 wilson_interval(3, 20, "trials").high);
+  EXPECT_EQ(binomial_interval(0, 10, "trials").low, 0);
+  EXPECT_NE(binomial_interval(0, 10, "trials").method.find("upper limit"), std::string::npos);
+  EXPECT_NEAR(binomial_interval(10, 10, "trials").low, std::pow(0.05, 0.1), 1e-12);
+  std::mt19937_64 generator(10);
+  std::binomial_distribution<int> slips(20000, 0.01);
+  test::validate({"V5.12", "coverage, %, of the binomial interval: 20000 trials at 0.01", 95, 2, "binomial"},
+                 coverage(2000, 0.01, [&]() -> std::optional<Interval> {
+                   return binomial_interval(slips(generator), 20000, "trials");
+                 }));
+}

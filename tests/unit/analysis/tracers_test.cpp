@@ -1,0 +1,111 @@
+#include "analysis/motion/tracers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "analysis/runs/phase_diagram.hpp"
+#include "tests/support/rigid_bed.hpp"
+
+using namespace twincell;
+
+TEST(Tracers, OfACrystalAreTheMiddleRow) {
+  const MemoryTrajectory bed = test::rigid_bed({.gamma = 1.5, .columns = 20, .rows = 11});
+  Frame first = bed.frames().front();
+  const TracerChoice choice = choose_tracers(bed.info(), first);
+  ASSERT_EQ(choice.slots.size(), 19U);  // the sixth of 11 rows has one bead less
+  for (const std::size_t i : choice.slots)
+    EXPECT_NEAR(first.position[i].z(), 0.5 + 5 * std::sqrt(3.0) / 2, 1e-12);
+  first.position.back().z() = 90;  // one high flyer does not move the middle
+  EXPECT_EQ(choose_tracers(bed.info(), first).slots, choice.slots);
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> noise(0, 0.03);
+  for (Vec3& r : first.position) r += Vec3(noise(generator), 0, noise(generator));
+  EXPECT_EQ(choose_tracers(bed.info(), first).slots, choice.slots);  // as seen by a camera
+}
+
+TEST(Tracers, OfARandomBedAreOnePerColumnNearMidHeight) {
+  TrajectoryInfo info;
+  info.box.upper = Vec3(20, 1, 40);
+  Frame frame;
+  std::mt19937_64 generator(2);
+  std::uniform_real_distribution<double> x(0, 20), z(0, 20);
+  for (int i = 0; i < 400; ++i) frame.position.emplace_back(x(generator), 0, z(generator));
+  const TracerChoice choice = choose_tracers(info, frame);
+  ASSERT_EQ(choice.slots.size(), 20U);
+  double bottom = 1e9, sum = 0;
+  for (const Vec3& r : frame.position) bottom = std::min(bottom, r.z());
+  for (std::size_t c = 0; c < choice.slots.size(); ++c) {
+    EXPECT_EQ(std::floor(frame.position[choice.slots[c]].x()), static_cast<double>(c));
+    sum += frame.position[choice.slots[c]].z();
+  }
+  EXPECT_NEAR(sum / 20, (bottom + 19.8) / 2, 0.5);
+}
+
+TEST(Tracers, MarkedOnesAreTaken) {
+  MemoryTrajectory bed = test::rigid_bed({.gamma = 1.5});
+  bed.info().tracer.assign(bed.info().n_beads, 0);
+  bed.info().tracer[3] = bed.info().tracer[17] = 1;
+  EXPECT_EQ(choose_tracers(bed.info(), bed.frames().front()).slots, (std::vector<std::size_t>{3, 17}));
+}
+
+TEST(Tracers, GivenByIdOrByBand) {
+  const MemoryTrajectory bed = test::rigid_bed({.gamma = 1.5, .columns = 20, .rows = 11});
+  const Frame& first = bed.frames().front();
+  EXPECT_EQ(choose_tracers(bed.info(), first, {{17, 3}, {}}).slots, (std::vector<std::size_t>{3, 17}));
+  const TracerChoice band = choose_tracers(bed.info(), first, {{}, {{0, 1.5}}});
+  EXPECT_EQ(band.slots.size(), 39U);  // the two lowest rows
+  EXPECT_NE(band.how.find("39 beads"), std::string::npos);
+  const auto refusal = [&](const TracerWish& wish) -> std::string {
+    try {
+      choose_tracers(bed.info(), first, wish);
+    } catch (const ConfigError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal({{3, 9999}, {}}).find("9999"), std::string::npos);
+  EXPECT_NE(refusal({{3, 3}, {}}).find("twice"), std::string::npos);
+  EXPECT_NE(refusal({{}, {{50, 60}}}).find("reaches from 0.5"), std::string::npos);
+  EXPECT_NE(refusal({{}, {{2, 1}}}).find("not a band"), std::string::npos);
+  EXPECT_FALSE(refusal({{3}, {{1, 2}}}).empty());
+}
+
+TEST(PlateHeight, MeasuredBeforeDriveBeforeNothing) {
+  TrajectoryInfo info;
+  Frame frame;
+  EXPECT_FALSE(plate_height(info, frame).has_value());
+  info.drive = Drive{Axis::z, 2, 1};
+  info.phases_per_cycle = 4;
+  frame.phase = 1;
+  EXPECT_NEAR(*plate_height(info, frame), 2, 1e-15);  // A sin(pi/2)
+  frame.plate_height = 0.7;
+  EXPECT_EQ(*plate_height(info, frame), 0.7);
+}
+
+TEST(MatchRuns, ByGammaWithinTheToleranceAndByLayers) {
+  const auto run = [](Side side, double gamma, double n_l, BedPhase phase) {
+    twincell::Run r;
+    r.side = side;
+    r.gamma = gamma;
+    r.n_l = n_l;
+    r.phase = phase;
+    return r;
+  };
+  const std::vector<twincell::Run> runs = {run(Side::experiment, 1.51, 20, BedPhase::bouncing),
+                                           run(Side::simulation, 1.50, 20, BedPhase::bouncing),
+                                           run(Side::simulation, 1.50, 20, BedPhase::convecting),
+                                           run(Side::simulation, 1.50, 40, BedPhase::bouncing),
+                                           run(Side::experiment, 1.20, 20, BedPhase::co_moving),
+                                           run(Side::simulation, 1.54, 20, BedPhase::bouncing)};
+  const auto matches = match_runs(runs, 0.02);
+  ASSERT_EQ(matches.size(), 4U);
+  EXPECT_EQ(matches[0].experiments, std::vector<std::size_t>{4});
+  EXPECT_EQ(verdict(runs, matches[0]), "only experiment");
+  EXPECT_EQ(matches[1].simulations, (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(matches[1].experiments, std::vector<std::size_t>{0});
+  EXPECT_EQ(verdict(runs, matches[1]), "undetermined");            // two seeds disagree
+  EXPECT_EQ(matches[2].simulations, std::vector<std::size_t>{3});  // another number of layers
+  EXPECT_EQ(matches[3].simulations, std::vector<std::size_t>{5});  // 2.7 % away
+}

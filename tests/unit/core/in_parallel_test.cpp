@@ -1,0 +1,67 @@
+#include "core/in_parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace twincell {
+namespace {
+
+TEST(InParallel, EveryJobIsDoneOnce) {
+  for (const std::size_t n : {0U, 1U, 7U, 1000U})
+    for (const int threads : {-1, 1, 2, 5}) {
+      std::vector<std::atomic<int>> done(n);
+      in_parallel(n, threads, [&](std::size_t i) { ++done[i]; });
+      for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(done[i], 1) << i << " of " << n << ", " << threads;
+    }
+}
+
+TEST(InParallel, JobsRunSideBySideOnAsManyThreadsAsAsked) {
+  // Each waits for the others: with fewer threads at work they would wait for ever.
+  constexpr int kThreads = 3;
+  std::atomic<int> waiting{0};
+  std::mutex mutex;
+  std::set<std::thread::id> seen;
+  in_parallel(kThreads, kThreads, [&](std::size_t) {
+    ++waiting;
+    const auto begin = std::chrono::steady_clock::now();
+    while (waiting < kThreads && std::chrono::steady_clock::now() - begin < std::chrono::seconds(20))
+      std::this_thread::yield();
+    const std::scoped_lock lock(mutex);
+    seen.insert(std::this_thread::get_id());
+  });
+  EXPECT_EQ(seen.size(), std::size_t{kThreads});
+  EXPECT_TRUE(seen.contains(std::this_thread::get_id()));
+
+  const auto caller = std::this_thread::get_id();
+  in_parallel(5, 1, [&](std::size_t) { EXPECT_EQ(std::this_thread::get_id(), caller); });
+}
+
+TEST(InParallel, TheFirstFailureIsThrownAndNothingBeginsAfterIt) {
+  for (const int threads : {1, 2, 4}) {
+    std::atomic<int> begun{0};
+    try {
+      in_parallel(100000, threads, [&](std::size_t i) {
+        ++begun;
+        // The later one fails first, while the earlier one is under way.
+        if (i == 10) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        if (i == 10 || i == 11) throw std::runtime_error(std::to_string(i));
+      });
+      FAIL() << "nothing was thrown";
+    } catch (const std::runtime_error& e) {
+      EXPECT_STREQ(e.what(), "10") << threads;
+    }
+    EXPECT_GE(begun, 11);
+    EXPECT_LT(begun, 100000);
+  }
+}
+
+}  // namespace
+}  // namespace twincell

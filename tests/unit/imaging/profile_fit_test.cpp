@@ -1,0 +1,67 @@
+// What a profile that discs share says of them: where its rim is, and whether it is that of plain discs.
+
+#include "imaging/refine/profile_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace twincell {
+namespace {
+
+/// Plain discs upon each other, as (radius, level), their edges blurred.
+DiscProfile profile_of(const std::vector<std::pair<double, double>>& discs, double blur) {
+  DiscProfile profile;
+  profile.radius_px = discs[0].first;
+  for (double r = 0; r <= profile.radius_px + 6 * blur; r += 1 / DiscProfile::kPerPixel) {
+    double level = 0;
+    for (const auto& [radius, own] : discs)
+      level += 0.5 * own * std::erfc((r - radius) / (blur * std::numbers::sqrt2));
+    profile.levels.push_back(static_cast<float>(level));
+  }
+  profile.levels.back() = 0;
+  return profile;
+}
+
+// The steepest fall of an error function is where its argument is 0.
+TEST(DiscProfile, ThePlainDiscsRimIsWhereItsEdgeIs) {
+  for (const double radius : {5.0, 7.3, 16.0})
+    for (const double blur : {0.8, 1.5, 3.0})
+      EXPECT_NEAR(profile_of({{radius, 0.9}}, blur).rim(), radius, 0.1) << radius << ' ' << blur;
+}
+
+TEST(DiscProfile, PlainDiscsOfAnyBlurArePlain) {
+  for (const double radius : {5.0, 7.3, 16.0})
+    for (const double blur : {0.5, 0.8, 1.5, 3.0}) {
+      EXPECT_LT(profile_of({{radius, 0.9}}, blur).unlike_plain(), 1e-3) << radius << ' ' << blur;
+      EXPECT_GE(profile_of({{radius, 0.9}}, blur).unlike_plain(), 0) << radius << ' ' << blur;
+    }
+}
+
+// A spot of light takes a twenty-fifth of the disc's area: (1 - b)^2 of its darkness is left there, and the
+// level that does best leaves q (1 - q) b^2/(1 - 2 q b + q b^2) of the squares, q = 1/25, b = 1/2: 0.0099.
+TEST(DiscProfile, ASmallSpotOfLightMakesNoOtherDisc) {
+  const double unlike = profile_of({{16, 0.9}, {3.2, -0.45}}, 0.5).unlike_plain();
+  EXPECT_LT(unlike, 0.012);
+  EXPECT_GT(unlike, 0.006);
+}
+
+// The same formula with q = (1 - w)^2, of a rim of width w R: sharp edges, so the blurred ones are near it.
+TEST(DiscProfile, AHollowDiscIsUnlikeAPlainOneByItsArea) {
+  const double q = 0.64, b = 0.8, sharp = q * (1 - q) * b * b / (1 - 2 * q * b + q * b * b);
+  EXPECT_NEAR(profile_of({{30, 0.9}, {24, -0.72}}, 0.5).unlike_plain(), sharp, 0.05 * sharp);
+  EXPECT_NEAR(profile_of({{30, 0.9}, {24, -0.72}}, 0.5).rim(), 30, 0.1);
+}
+
+// Half as dark as its core, a ring is the rim all the same; a tenth is none.
+TEST(DiscProfile, AFaintRingIsTheRim) {
+  EXPECT_NEAR(profile_of({{16, 0.4}, {13, -0.4}, {8, 0.9}}, 0.6).rim(), 16, 0.2);
+  EXPECT_NEAR(profile_of({{16, -0.4}, {13, 0.4}, {8, 0.9}}, 0.6).rim(), 16, 0.2);
+  EXPECT_NEAR(profile_of({{16, 0.09}, {13, -0.09}, {8, 0.9}}, 0.6).rim(), 8, 0.2);
+}
+
+}  // namespace
+}  // namespace twincell

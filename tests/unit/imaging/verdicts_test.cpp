@@ -1,0 +1,148 @@
+// Every verdict has a picture, or a candidate, that earns it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "imaging/benchmark/picture.hpp"
+#include "imaging/refine/judge.hpp"
+#include "imaging/refine/picture_fit.hpp"
+
+namespace twincell {
+namespace {
+
+Detection good(double x, double y) {
+  Detection b;
+  b.x = x;
+  b.y = y;
+  b.radius = 7.5;
+  b.darkness = b.interior = b.score = 0.9;
+  return b;
+}
+
+Verdict judged(const Detection& b) {
+  const Judged j = judge({b}, 7.5, 200, 100, {});
+  EXPECT_EQ(j.beads.size() + j.dropped.size(), 1U);
+  return (j.beads.empty() ? j.dropped : j.beads).at(0).verdict;
+}
+
+TEST(Judge, OneBeadOneVerdict) {
+  EXPECT_EQ(judged(good(50, 50)), Verdict::bead);
+  Detection b = good(50, 50);
+  b.radius = 7.5 * 1.19;
+  EXPECT_EQ(judged(b), Verdict::bead);
+  b.radius = 7.5 * 1.21;
+  EXPECT_EQ(judged(b), Verdict::wrong_radius);
+  b = good(50, 50);
+  b.interior = 0.34;
+  EXPECT_EQ(judged(b), Verdict::bright_inside);
+  b = good(50, 50);
+  b.score = 0.49;
+  EXPECT_EQ(judged(b), Verdict::unexplained);
+  b = good(NAN, 50);
+  EXPECT_EQ(judged(b), Verdict::unexplained);
+  for (const auto& [x, y] : {std::pair{-0.6, 50.0}, {199.6, 50.0}, {50.0, -0.6}, {50.0, 99.6}})
+    EXPECT_EQ(judged(good(x, y)), Verdict::outside) << x << ' ' << y;
+  for (const auto& [x, y] : {std::pair{-0.4, 50.0}, {199.4, 50.0}, {50.0, -0.4}, {50.0, 99.4}})
+    EXPECT_EQ(judged(good(x, y)), Verdict::bead) << x << ' ' << y;
+}
+
+TEST(Judge, OfTwoThatOverlapTheBetterStays) {
+  Detection a = good(50, 50), b = good(63, 50), c = good(77.9, 50);  // b overlaps a by 2 px; c touches b
+  b.score = 0.7;
+  const Judged j = judge({a, b, c}, 7.5, 200, 100, {});
+  ASSERT_EQ(j.beads.size(), 2U);
+  EXPECT_EQ(j.beads[0].x, 50);
+  EXPECT_EQ(j.beads[1].x, 77.9);
+  ASSERT_EQ(j.dropped.size(), 1U);
+  EXPECT_EQ(j.dropped[0].verdict, Verdict::overlaps);
+  b.x = 63.2;  // by less than a quarter of a radius
+  EXPECT_EQ(judge({a, b, c}, 7.5, 200, 100, {}).beads.size(), 3U);
+}
+
+// What is dropped itself drops nobody: of three in a row the middle one goes alone.
+TEST(Judge, ADroppedOneDropsNobody) {
+  Detection a = good(50, 50), b = good(60, 50), c = good(70, 50);
+  b.score = 0.8;
+  c.score = 0.7;
+  const Judged j = judge({c, b, a}, 7.5, 200, 100, {});
+  ASSERT_EQ(j.beads.size(), 2U);
+  ASSERT_EQ(j.dropped.size(), 1U);
+  EXPECT_EQ(j.dropped[0].x, 60);
+}
+
+rendered::Picture row_of_beads() {
+  rendered::Picture p;
+  p.width = 200;
+  p.height = 120;
+  for (int k = 0; k < 8; ++k) p.discs.push_back({.x = 20.3 + 21.7 * k, .y = 30.4});
+  return p;
+}
+
+/// The verdict of refine() on one more proposal.
+Verdict refined(const cv::Mat1b& frame, const rendered::Picture& picture, const Proposal& doubtful) {
+  std::vector<Proposal> proposals;
+  for (int k = 0; k < 8; ++k) {
+    const rendered::Disc& d = picture.discs[static_cast<std::size_t>(k)];
+    proposals.push_back({d.x, d.y, 1});
+  }
+  proposals.push_back(doubtful);
+  const Refined r = refine(prepare(frame, {}, 7.5), proposals, 7.5, {});
+  EXPECT_EQ(r.beads.size() + r.dropped.size(), 9U);
+  for (const Detection& b : r.dropped)
+    if (std::hypot(b.x - doubtful.x, b.y - doubtful.y) < 3) return b.verdict;
+  EXPECT_EQ(r.beads.size(), 9U);
+  return Verdict::bead;
+}
+cv::Mat1b exposed(const rendered::Picture& p) {
+  return rendered::expose(rendered::expected(p), p, 51, 1);
+}
+
+TEST(Refine, WhatIsNoBeadIsDroppedWithItsReason) {
+  rendered::Picture p = row_of_beads();
+  EXPECT_EQ(refined(exposed(p), p, {100, 80, 1}), Verdict::bright_inside) << "nothing there";
+
+  rendered::Picture pale = row_of_beads();
+  pale.discs.push_back({.x = 100.2, .y = 80.1, .contrast = 0.38});
+  EXPECT_EQ(refined(exposed(pale), pale, {100, 80, 1}), Verdict::pale);
+  pale.discs.back().contrast = 0.6;
+  EXPECT_EQ(refined(exposed(pale), pale, {100, 80, 1}), Verdict::bead);
+
+  rendered::Picture corner = row_of_beads();
+  corner.discs.push_back({.x = -6.2, .y = 125.2});
+  EXPECT_EQ(refined(exposed(corner), corner, {-6.2, 125.2, 1}), Verdict::unseen);
+
+  EXPECT_EQ(refined(exposed(p), p, {-8, 60, 1}), Verdict::outside) << "further out than a rim is seen";
+
+  cv::Mat1b wall = exposed(p);
+  wall.rowRange(90, 120).setTo(20);
+  EXPECT_EQ(refined(wall, p, {100, 105, 1}), Verdict::in_wall);
+}
+
+// A bead that nobody proposed is looked for after the first sweep and the second, if there is another to fit
+// it by.
+TEST(Refine, ABeadFoundLateNeedsASweepOfItsOwn) {
+  const rendered::Picture p = row_of_beads();
+  std::vector<Proposal> all_but_one;
+  for (std::size_t k = 1; k < p.discs.size(); ++k) all_but_one.push_back({p.discs[k].x, p.discs[k].y, 1});
+  const Prepared image = prepare(exposed(p), {}, 7.5);
+  for (const int sweeps : {1, 2, 3, 30}) {
+    RefineOptions options;
+    options.sweeps = sweeps;
+    const Refined r = refine(image, all_but_one, 7.5, options);
+    EXPECT_EQ(r.beads.size(), sweeps > 1 ? 8U : 7U) << sweeps;
+  }
+}
+
+TEST(Verdict, EachHasAWord) {
+  std::set<std::string> words;
+  for (int k = 0; k <= static_cast<int>(Verdict::outside); ++k)
+    words.emplace(word_of(static_cast<Verdict>(k)));
+  EXPECT_EQ(words.size(), 9U);
+}
+
+}  // namespace
+}  // namespace twincell

@@ -1,0 +1,144 @@
+// When a target is met, missed, or left open by an interval.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reproduce/estimate.hpp"
+#include "reproduce/is_arrested.hpp"
+#include "reproduce/p1_sweep.hpp"
+#include "reproduce/reproduction.hpp"
+
+namespace twincell::reproduce {
+namespace {
+
+sweep::Onset onset(std::optional<double> value, std::optional<double> low, std::optional<double> high) {
+  sweep::Onset o;
+  o.value = value;
+  o.low = low;
+  o.high = high;
+  o.n = 10;
+  return o;
+}
+
+TEST(Targets, ABedThatRearrangedOnceCameToRest) {
+  // Of 20 layers at Gamma = 2.2: tracers part during the first cycles, and stay.
+  std::vector<double> once(200, 1.44);
+  for (std::size_t j = 0; j < 10; ++j) once[j] = 0.14 * static_cast<double>(j);
+  EXPECT_TRUE(is_arrested(once));
+  once[150] = 1.53;
+  EXPECT_TRUE(is_arrested(once));
+  once[150] = 1.55;
+  EXPECT_FALSE(is_arrested(once));
+  once[150] = std::nan("");
+  EXPECT_TRUE(is_arrested(once));
+  // One that convects: tracers part as diffusing ones do.
+  std::vector<double> on;
+  for (int j = 0; j < 200; ++j) on.push_back(std::sqrt(0.1 * j));
+  EXPECT_FALSE(is_arrested(on));
+  EXPECT_FALSE(is_arrested({1, 1, 1}));
+  EXPECT_FALSE(is_arrested({}));
+  EXPECT_FALSE(is_arrested(std::vector<double>(10, std::nan(""))));
+}
+
+TEST(Targets, AValueInsideIsMetAnIntervalOutsideIsMissed) {
+  EXPECT_EQ(within(onset(1.2, 1.15, 1.25), 1.1, 1.35), Verdict::met);
+  EXPECT_EQ(within(onset(1.5, 1.4, 1.6), 1.1, 1.35), Verdict::missed);
+  EXPECT_EQ(within(onset(1.0, 0.9, 1.05), 1.1, 1.35), Verdict::missed);
+  EXPECT_EQ(within(onset(1.4, 1.3, 1.5), 1.1, 1.35), Verdict::open);
+  EXPECT_EQ(within(onset({}, 1.4, {}), 1.1, 1.35), Verdict::missed);
+  EXPECT_EQ(within(onset({}, 1.2, {}), 1.1, 1.35), Verdict::open);
+  EXPECT_EQ(within(onset({}, {}, {}), 1.1, 1.35), Verdict::open);
+  EXPECT_EQ(within(sweep::Onset{}, 1.1, 1.35), Verdict::absent);
+}
+
+/// Of a bed that flips at mu: `n` runs at each of two places on either side.
+sweep::Onset step_at(double mu, int n) {
+  std::vector<sweep::Trial> trials;
+  for (int k = 0; k < n; ++k)
+    for (const double away : {0.1, 0.3}) {
+      trials.push_back({mu - away, false});
+      trials.push_back({mu + away, true});
+    }
+  return estimate_onset(trials, 1, 5, 0.2);
+}
+
+TEST(Targets, OneOnsetIsAboveAnotherWhenTheOppositeIsExcluded) {
+  EXPECT_EQ(above(step_at(3, 4), step_at(2, 4)), Verdict::met);
+  EXPECT_EQ(above(step_at(2, 4), step_at(3, 4)), Verdict::missed);
+  EXPECT_EQ(above(step_at(2.05, 4), step_at(2, 4)), Verdict::open);
+  EXPECT_EQ(above(step_at(2.3, 1), step_at(2, 1)), Verdict::open);
+  EXPECT_EQ(above(step_at(3, 4), sweep::Onset{}), Verdict::absent);
+  // An onset beyond the range is above one inside it.
+  const std::vector<sweep::Trial> never(10, sweep::Trial{4.9, false});
+  EXPECT_EQ(above(estimate_onset(never, 1, 5, 0.2), step_at(2, 4)), Verdict::met);
+}
+
+TEST(Targets, EvidenceIsZeroForWhatFitsBestAndGrowsWithRuns) {
+  EXPECT_NEAR(evidence_above(step_at(2, 4), step_at(3, 4)), 0, 1e-12);
+  EXPECT_GT(evidence_above(step_at(3, 4), step_at(2, 4)), evidence_above(step_at(3, 2), step_at(2, 2)));
+}
+
+TEST(Targets, AnEstimateIsMetMissedOrLeftOpen) {
+  const Estimate known{7, 6.5, 7.5};
+  EXPECT_EQ(within(known, 6, 8), Verdict::met);
+  EXPECT_EQ(within(known, 8, 9), Verdict::missed);
+  EXPECT_EQ(within(known, 7.2, 9), Verdict::open);
+  EXPECT_EQ(within(Estimate{7, {}, {}}, 8, 9), Verdict::open);
+  EXPECT_EQ(within(exact(7), 8, 9), Verdict::missed);
+  EXPECT_EQ(above(known, Estimate{5, 4, 6}), Verdict::met);
+  EXPECT_EQ(above(Estimate{5, 4, 6}, known), Verdict::missed);
+  EXPECT_EQ(above(known, Estimate{6, 5, 7}), Verdict::open);
+  EXPECT_EQ(agree(known, Estimate{8, 7.2, 9}), Verdict::met);
+  EXPECT_EQ(agree(known, Estimate{8, 7.6, 9}), Verdict::missed);
+  EXPECT_EQ(agree(known, Estimate{8, 7.6, {}}), Verdict::open);
+  EXPECT_EQ(all_of({Verdict::met, Verdict::met}), Verdict::met);
+  EXPECT_EQ(all_of({Verdict::met, Verdict::open}), Verdict::open);
+  EXPECT_EQ(all_of({Verdict::open, Verdict::missed}), Verdict::missed);
+  EXPECT_EQ(all_of({}), Verdict::absent);
+}
+
+/// A crystal whose slips follow the paper's barriers: none up to K_m = 6, 130 up to 9, 7 beyond.
+std::vector<SweepRun> paper_like_crystal() {
+  std::vector<SweepRun> runs;
+  for (const double gamma :
+       {1.1, 1.4, 1.8, 2.2, 2.4, 2.5, 2.6, 2.7, 2.8, 2.9, 3.1, 3.3, 3.6, 4.0, 4.5, 5.0}) {
+    const double k_m = gamma * gamma, trials = 1e9;
+    const double p_s = k_m < 6 ? 0 : k_m < 9 ? std::exp(-130 / k_m + 130. / 9 - 7. / 9) : std::exp(-7 / k_m);
+    runs.push_back({gamma, exact(1e-4 * k_m), gamma > 1.16 ? 1.0 : 0.0, k_m < 9 ? 0.1 : 2.0,
+                    std::round(p_s * trials), trials});
+  }
+  return runs;
+}
+
+TEST(Targets, TheLadderFindsTheRegionsAndBarriersThatWerePutIn) {
+  auto runs = paper_like_crystal();
+  std::reverse(runs.begin(), runs.end());  // in whatever order they come
+  const StrengthSweep ladder = make_strength_sweep("crystal_a", runs);
+  ASSERT_TRUE(ladder.first_slips && ladder.convection);
+  EXPECT_NEAR(*ladder.first_slips->low, 2.4 * 2.4, 1e-12);
+  EXPECT_NEAR(*ladder.first_slips->high, 2.5 * 2.5, 1e-12);
+  EXPECT_GT(ladder.convection->value, 2.9 * 2.9);
+  EXPECT_LT(ladder.convection->value, 3.1 * 3.1);
+  std::vector<DataPoint> a2, b;
+  for (const SweepPoint& r : ladder.points)
+    if (r.slips > 0) (r.k_m() < ladder.convection->value ? a2 : b).push_back({r.k_m(), r.p_s(), 0, 0});
+  const auto steep = fitted("arrhenius", a2), flat = fitted("arrhenius", b);
+  ASSERT_TRUE(steep && flat);
+  EXPECT_NEAR(parameter(*steep, "E_b").value, 130, 1e-3);
+  EXPECT_NEAR(parameter(*flat, "E_b").value, 7, 1e-3);
+  EXPECT_FALSE(fitted("arrhenius", {a2.front()}));
+}
+
+TEST(Targets, ALadderWithSlipsFromTheFirstBouncingRungHasNoRegionA1) {
+  auto runs = paper_like_crystal();
+  for (SweepRun& run : runs)
+    if (run.gamma > 1.16) run.slips = std::max(run.slips, 1.0);
+  EXPECT_FALSE(make_strength_sweep("crystal_a", runs).first_slips);
+  EXPECT_FALSE(make_strength_sweep("crystal_a", {}).first_slips);
+  EXPECT_FALSE(make_strength_sweep("crystal_a", {}).convection);
+}
+
+}  // namespace
+}  // namespace twincell::reproduce

@@ -1,0 +1,75 @@
+#include "trajectory/drive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace twincell {
+namespace {
+
+// MODEL: omega = 1 makes A = Gamma and K_m = Gamma^2; W of the second paper is K_m.
+TEST(Drive, PaperOneNumbers) {
+  const Drive d = solve_drive({.omega = 1.0, .gamma = 1.8}, 1, {});
+  EXPECT_DOUBLE_EQ(d.amplitude, 1.8);
+  EXPECT_DOUBLE_EQ(d.k_m(), 3.24);
+  EXPECT_DOUBLE_EQ(d.period(), 2 * std::numbers::pi);
+}
+
+TEST(Drive, EveryIndependentPairGivesTheSameDrive) {
+  const double a = 0.7, w = 3.1;
+  const DriveSpec all{a, w, w / (2 * std::numbers::pi), a * w * w, a * a * w * w, a * w};
+  const std::vector<DriveSpec> pairs = {
+      {.amplitude = all.amplitude, .omega = all.omega},
+      {.amplitude = all.amplitude, .frequency = all.frequency},
+      {.amplitude = all.amplitude, .gamma = all.gamma},
+      {.amplitude = all.amplitude, .k_m = all.k_m},
+      {.omega = all.omega, .k_m = all.k_m},
+      {.gamma = all.gamma, .k_m = all.k_m},
+      {.gamma = all.gamma, .peak_velocity = all.peak_velocity},
+      {.frequency = all.frequency, .peak_velocity = all.peak_velocity},
+  };
+  for (const DriveSpec& spec : pairs) {
+    const Drive d = solve_drive(spec, 1, {});
+    EXPECT_NEAR(d.amplitude, a, 1e-14);
+    EXPECT_NEAR(d.omega, w, 1e-14);
+  }
+  EXPECT_NO_THROW(solve_drive(all, 1, {}));
+}
+
+TEST(Drive, ContradictionAndShortageAreNamed) {
+  const Where where{"scene.toml", 7, 1, "drive"};
+  try {
+    solve_drive({.amplitude = 2.0, .omega = 1.0, .gamma = 1.8}, 1, where);
+    FAIL() << "a contradictory drive was accepted";
+  } catch (const ConfigError& e) {
+    EXPECT_EQ(e.exit_code(), ExitCode::usage);
+    EXPECT_NE(std::string(e.what()).find("scene.toml:7:1: drive: gamma = 1.8"), std::string::npos)
+        << e.what();
+  }
+  EXPECT_THROW(solve_drive({.gamma = 1.8}, 1, where), ConfigError);
+  EXPECT_THROW(solve_drive({.k_m = 4.0, .peak_velocity = 2.0}, 1, where),
+               ConfigError);  // the same statement twice
+  EXPECT_THROW(solve_drive({.omega = 1.0, .gamma = -1.0}, 1, where), ConfigError);
+  EXPECT_THROW(solve_drive({.omega = 0.0, .gamma = 1.0}, 1, where), ConfigError);
+  EXPECT_THROW(solve_drive({.omega = 1.0, .gamma = 1.0}, 0, where), ConfigError);  // no gravity, no Gamma
+  EXPECT_THROW(solve_drive({.omega = std::nan(""), .gamma = 1.0}, 1, where), ConfigError);
+}
+
+TEST(Drive, PlateAtRest) {
+  const Drive d = solve_drive({.omega = 2.0, .gamma = 0.0}, 1, {});
+  EXPECT_EQ(d.amplitude, 0);
+  EXPECT_EQ(d.omega, 2);
+  EXPECT_EQ(d.displacement(0.37), 0);
+}
+
+TEST(Drive, VelocityIsTheDerivativeOfDisplacement) {
+  const Drive d{Axis::z, 1.3, 0.8};
+  for (const double f : {0.0, 0.21, 0.5, 0.83}) {
+    const double h = 1e-6;
+    const double slope = (d.displacement(f + h) - d.displacement(f - h)) / (2 * h * d.period());
+    EXPECT_NEAR(d.velocity(f), slope, 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace twincell

@@ -1,0 +1,248 @@
+#include "trajectory/formats/h5md_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "core/error.hpp"
+#include "core/hdf5.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace twincell {
+namespace {
+
+namespace fs = std::filesystem;
+
+TrajectoryInfo experiment_info() {
+  TrajectoryInfo info;
+  info.n_beads = 3;
+  info.columns = {.velocity = true,
+                  .spin = false,
+                  .identity = true,
+                  .phase = true,
+                  .plate_height = true,
+                  .time_mean = true};
+  info.box.upper = Vec3(20, 1.15, 110);
+  info.box.side_tilt = {0.6, -0.25};
+  info.drive = Drive{Axis::z, 1.8, 1.0};
+  info.phases_per_cycle = 20;
+  info.samples_per_cycle = 400;
+  info.scale = {0.002, 9.81, std::nullopt};
+  info.source = "experiment";
+  info.radius = {0.5, 0.5, 0.49};
+  info.tracer = {0, 1, 0};
+  info.provenance_json = R"({"program":"twincell"})";
+  return info;
+}
+
+/// Bead 2 is missing in odd frames.
+Frame frame_number(int f) {
+  Frame frame;
+  frame.step = 10 * f;
+  frame.time = 0.1 * f;
+  frame.phase = f % 20;
+  frame.cycle = f / 20;
+  frame.plate_height = std::sin(0.1 * f);
+  if (f > 0) frame.time_mean = {Vec3(0.1, 0, f / 3.0), Vec3(0.2, 0, f / 7.0)};
+  const double nan = std::nan("");
+  const bool there = f % 2 == 0;
+  frame.position = {Vec3(0.5, 0, 0.5 + f), Vec3(1.5, 0, 0.5),
+                    there ? Vec3(2.5, 0, 1.0 / 3.0) : Vec3(nan, nan, nan)};
+  frame.velocity = {Vec3(0, 0, 1), Vec3(0, 0, 0), there ? Vec3(1, 0, 0) : Vec3(nan, nan, nan)};
+  frame.id = {0, 1, there ? 2 : -1};
+  return frame;
+}
+
+void write(const fs::path& path, int frames) {
+  H5mdWriter writer(path, experiment_info());
+  for (int f = 0; f < frames; ++f) writer.append(frame_number(f));
+  writer.finish();
+}
+
+TEST(H5mdFile, WhatIsWrittenIsReadBitForBit) {
+  const TemporaryFolder folder;
+  write(folder / "run.h5", 45);
+  const H5mdReader reader(folder / "run.h5");
+  const TrajectoryInfo& info = reader.info();
+  EXPECT_EQ(reader.n_frames(), 45U);
+  EXPECT_EQ(info.n_beads, 3U);
+  EXPECT_TRUE(info.columns.velocity && info.columns.identity && info.columns.phase &&
+              info.columns.plate_height);
+  EXPECT_FALSE(info.columns.spin);
+  EXPECT_EQ(info.box.upper, Vec3(20, 1.15, 110));
+  EXPECT_EQ(info.box.boundary[0], Boundary::wall);
+  EXPECT_EQ(info.box.boundary[1], Boundary::open);
+  EXPECT_EQ(info.box.side_tilt, (std::array<double, 2>{0.6, -0.25}));
+  ASSERT_TRUE(info.drive);
+  EXPECT_EQ(info.drive->amplitude, 1.8);
+  EXPECT_EQ(info.phases_per_cycle, 20);
+  EXPECT_EQ(info.samples_per_cycle, 400);
+  EXPECT_TRUE(info.columns.time_mean);
+  EXPECT_EQ(info.scale.sigma_m, 0.002);
+  EXPECT_FALSE(info.scale.pixels_per_sigma);
+  EXPECT_EQ(info.radius, (std::vector<double>{0.5, 0.5, 0.49}));
+  EXPECT_EQ(info.tracer, (std::vector<std::uint8_t>{0, 1, 0}));
+  EXPECT_TRUE(info.mass.empty());
+  EXPECT_EQ(info.source, "experiment");
+  Frame frame;
+  for (int f : {44, 0, 17}) {
+    reader.read(static_cast<std::size_t>(f), frame);
+    const Frame truth = frame_number(f);
+    EXPECT_EQ(frame.step, truth.step);
+    EXPECT_EQ(frame.time, truth.time);
+    EXPECT_EQ(frame.phase, truth.phase);
+    EXPECT_EQ(frame.cycle, truth.cycle);
+    EXPECT_EQ(frame.plate_height, truth.plate_height);
+    EXPECT_EQ(frame.time_mean.temperature.hasNaN(), truth.time_mean.temperature.hasNaN());
+    if (!truth.time_mean.temperature.hasNaN()) {
+      EXPECT_EQ(frame.time_mean.temperature, truth.time_mean.temperature);
+      EXPECT_EQ(frame.time_mean.temperature_coarse, truth.time_mean.temperature_coarse);
+    }
+    EXPECT_EQ(frame.id, truth.id);
+    EXPECT_TRUE(frame.spin.empty());
+    for (std::size_t i = 0; i < 3; ++i)
+      if (truth.present(i))
+        EXPECT_EQ(frame.position[i], truth.position[i]);
+      else
+        EXPECT_FALSE(frame.position[i].allFinite());
+    EXPECT_EQ(frame.n_present(), f % 2 == 0 ? 3U : 2U);
+  }
+  EXPECT_TRUE(validate_h5md(folder / "run.h5").empty());
+}
+
+TEST(H5mdFile, NothingAppearsUnderTheFinalNameBeforeTheEnd) {
+  const TemporaryFolder folder;
+  {
+    H5mdWriter writer(folder / "run.h5", experiment_info());
+    writer.append(frame_number(0));
+    EXPECT_FALSE(fs::exists(folder / "run.h5"));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(H5mdFile, EmptyTrajectoriesAreLegal) {
+  const TemporaryFolder folder;
+  TrajectoryInfo none;
+  H5mdWriter writer(folder / "none.h5", none);
+  Frame frame;
+  writer.append(frame);
+  writer.finish();
+  const H5mdReader reader(folder / "none.h5");
+  EXPECT_EQ(reader.info().n_beads, 0U);
+  EXPECT_EQ(reader.n_frames(), 1U);
+  reader.read(0, frame);
+  EXPECT_TRUE(std::isnan(frame.plate_height));
+  EXPECT_TRUE(validate_h5md(folder / "none.h5").empty());
+}
+
+TEST(H5mdFile, AppendRefusesWhatItWasNotPromised) {
+  const TemporaryFolder folder;
+  H5mdWriter writer(folder / "run.h5", experiment_info());
+  writer.append(frame_number(1));
+  EXPECT_THROW(writer.append(frame_number(1)), RunError);  // step does not increase
+  Frame short_frame = frame_number(2);
+  short_frame.velocity.pop_back();
+  EXPECT_THROW(writer.append(short_frame), RunError);
+}
+
+std::string complaint_of(const fs::path& path) {
+  try {
+    const H5mdReader reader(path);
+    Frame frame;
+    for (std::size_t f = 0; f < reader.n_frames(); ++f) reader.read(f, frame);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.exit_code(), ExitCode::input) << e.what();
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(H5mdFile, DamagedFilesAreOneSentence) {
+  const TemporaryFolder folder;
+  EXPECT_NE(complaint_of(folder / "absent.h5").find("absent.h5: the file does not exist."),
+            std::string::npos);
+  std::ofstream(folder / "text.h5") << "not hdf5";
+  EXPECT_NE(complaint_of(folder / "text.h5").find("not an HDF5 file"), std::string::npos);
+  std::ofstream(folder / "empty.h5").close();
+  EXPECT_NE(complaint_of(folder / "empty.h5").find("not an HDF5 file"), std::string::npos);
+  write(folder / "run.h5", 45);
+  const auto size = fs::file_size(folder / "run.h5");
+  for (const double part : {0.1, 0.5, 0.9, 0.999}) {
+    fs::copy_file(folder / "run.h5", folder / "cut.h5", fs::copy_options::overwrite_existing);
+    fs::resize_file(folder / "cut.h5", static_cast<std::uintmax_t>(part * static_cast<double>(size)));
+    EXPECT_NE(complaint_of(folder / "cut.h5").find("truncated"), std::string::npos) << part;
+  }
+}
+
+TEST(H5mdFile, ADamagedChunkNamesTheFrame) {
+  const TemporaryFolder folder;
+  write(folder / "run.h5", 45);
+  // Find the compressed position chunk of some frame through HDF5 itself and scribble over it.
+  haddr_t where = 0;
+  {
+    const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+    const h5::Handle set(H5Dopen2(file.get(), "particles/trajectory/position/value", H5P_DEFAULT));
+    const hsize_t chunk[3] = {30, 0, 0};
+    hsize_t bytes = 0;
+    unsigned mask = 0;
+    ASSERT_GE(H5Dget_chunk_info_by_coord(set.get(), chunk, &mask, &where, &bytes), 0);
+  }
+  std::fstream raw(folder / "run.h5", std::ios::in | std::ios::out | std::ios::binary);
+  raw.seekp(static_cast<std::streamoff>(where));
+  raw << "scribble";
+  raw.close();
+  EXPECT_NE(complaint_of(folder / "run.h5").find("frame 30"), std::string::npos)
+      << complaint_of(folder / "run.h5");
+  EXPECT_FALSE(validate_h5md(folder / "run.h5").empty());
+}
+
+// Files of others: what they leave out is taken from what they hold.
+TEST(H5mdFile, ThePlaneAndThePhasesShowInTheFrames) {
+  const TemporaryFolder folder;
+  for (const bool planar : {true, false}) {
+    const std::string file = folder / (planar ? "plane.h5" : "space.h5");
+    {
+      H5mdWriter writer(file, experiment_info());
+      for (int f = 0; f < 45; ++f) {
+        Frame frame = frame_number(f);
+        if (!planar) frame.position[1].y() = 0.5;
+        writer.append(frame);
+      }
+      writer.finish();
+      const h5::Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+      H5Ldelete(opened.get(), "twincell/cell", H5P_DEFAULT);
+      H5Ldelete(opened.get(), "parameters/phases_per_cycle", H5P_DEFAULT);
+    }
+    const H5mdReader reader(file);
+    EXPECT_EQ(reader.info().box.dimension, planar ? 2 : 3);
+    EXPECT_EQ(reader.info().phases_per_cycle, 20);
+  }
+}
+
+TEST(H5mdFile, ValidateFindsBrokenLinksAndWrongAttributes) {
+  const TemporaryFolder folder;
+  write(folder / "run.h5", 5);
+  {
+    const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    H5Ldelete(file.get(), "particles/trajectory/velocity/step", H5P_DEFAULT);
+    const h5::Handle box(H5Oopen(file.get(), "particles/trajectory/box", H5P_DEFAULT));
+    H5Adelete(box.get(), "dimension");
+    h5::write_attribute(box.get(), "dimension", 2);
+  }
+  const auto faults = validate_h5md(folder / "run.h5");
+  ASSERT_EQ(faults.size(), 2U);
+  EXPECT_EQ(faults[0], "particles/trajectory/velocity/step: the dataset is missing.");
+  EXPECT_EQ(faults[1], "particles/trajectory/box@dimension: must be 3.");
+}
+
+TEST(H5mdFile, UnwritablePlaces) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(H5mdWriter(folder / "no/such/folder.h5", experiment_info()), ConfigError);
+  fs::create_directory(folder / "taken.h5");
+  EXPECT_THROW(H5mdWriter(folder / "taken.h5", experiment_info()), ConfigError);
+}
+
+}  // namespace
+}  // namespace twincell

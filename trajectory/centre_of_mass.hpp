@@ -1,0 +1,42 @@
+#pragma once
+/// \file
+/// Position and velocity of the centre of mass of a frame.
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "trajectory/trajectory.hpp"
+
+namespace twincell {
+
+/// sum m_i z_i/sum m_i over the beads present, sigma, in the frame of the cell (plate mean at 0); NaN if
+/// there is none.
+inline double centre_of_mass_height(const Frame& frame, const std::vector<double>& mass) {
+  double moment = 0, total = 0;
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    if (!frame.present(i) || !std::isfinite(frame.position[i].z())) continue;
+    const double m = mass.empty() ? 1 : mass[i];
+    moment += m * frame.position[i].z();
+    total += m;
+  }
+  return total > 0 ? moment / total : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// sum m v/sum m over the beads whose velocity is known, sigma/t0. \param mass per slot; empty: all 1.
+/// \returns nothing where no velocity is known
+inline std::optional<Vec3> centre_of_mass_velocity(const Frame& frame, const std::vector<double>& mass) {
+  Vec3 momentum = Vec3::Zero();
+  double total = 0;
+  for (std::size_t i = 0; i < frame.velocity.size(); ++i) {
+    if (!frame.present(i) || !frame.velocity[i].allFinite()) continue;
+    const double m = mass.empty() ? 1.0 : mass[i];
+    momentum += m * frame.velocity[i];
+    total += m;
+  }
+  if (total == 0) return std::nullopt;
+  return momentum / total;
+}
+
+}  // namespace twincell

@@ -1,0 +1,100 @@
+#include "trajectory/drive.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace twincell {
+
+double Drive::period() const {
+  return 2 * std::numbers::pi / omega;
+}
+
+double Drive::displacement(double fraction) const {
+  return amplitude * std::sin(2 * std::numbers::pi * fraction);
+}
+
+double Drive::velocity(double fraction) const {
+  return amplitude * omega * std::cos(2 * std::numbers::pi * fraction);
+}
+
+namespace {
+
+/// Every quantity is A^p omega^q times a constant: c = A^p omega^q.
+struct Term {
+  const char* name;
+  double value;
+  int p, q;
+};
+
+std::vector<Term> terms_of(const DriveSpec& s, double gravity, const Where& where) {
+  std::vector<Term> terms;
+  auto add = [&](const char* name, const std::optional<double>& v, double factor, int p, int q) {
+    if (!v) return;
+    const Where here{where.file, where.line, where.column, where.key.empty() ? name : where.key + "." + name};
+    require_range(here, *v, 0.0, std::nullopt, p == 0);
+    if (factor == 0)
+      throw ConfigError(here, "has no meaning without gravity; give the amplitude or the peak velocity.");
+    terms.push_back({name, *v * factor, p, q});
+  };
+  add("amplitude", s.amplitude, 1, 1, 0);
+  add("omega", s.omega, 1, 0, 1);
+  add("frequency", s.frequency, 2 * std::numbers::pi, 0, 1);
+  add("gamma", s.gamma, gravity, 1, 2);
+  add("k_m", s.k_m, gravity, 2, 2);
+  add("peak_velocity", s.peak_velocity, 1, 1, 1);
+  return terms;
+}
+
+}  // namespace
+
+DriveSpec read_drive_spec(const ConfigSection& drive) {
+  return {drive.number("amplitude"), drive.number("omega"), drive.number("frequency"),
+          drive.number("gamma"),     drive.number("k_m"),   drive.number("peak_velocity")};
+}
+
+Drive solve_drive(const DriveSpec& spec, double gravity, const Where& where, Axis axis) {
+  const auto terms = terms_of(spec, gravity, where);
+  // Of two independent statements the exponents form an invertible 2 x 2 matrix in (ln A, ln omega).
+  for (std::size_t a = 0; a < terms.size(); ++a) {
+    for (std::size_t b = a + 1; b < terms.size(); ++b) {
+      const Term &s = terms[a], &t = terms[b];
+      const int det = s.p * t.q - t.p * s.q;
+      if (det == 0) continue;
+      Drive drive{axis, 0, 1};
+      auto power = [](double x, double e) { return e == 0 ? 1.0 : std::pow(x, e); };
+      const double d = det;
+      drive.amplitude = power(s.value, t.q / d) * power(t.value, -s.q / d);
+      drive.omega = power(t.value, s.p / d) * power(s.value, -t.p / d);
+      // A at rest (A = 0) leaves omega open unless it was stated itself.
+      if (s.value == 0 || t.value == 0) {
+        const Term* stated = s.p == 0 ? &s : t.p == 0 ? &t : nullptr;
+        if (stated == nullptr)
+          throw ConfigError(where, "a plate at rest needs omega or frequency to say how long a cycle is.");
+        drive.amplitude = 0;
+        drive.omega = stated->value;
+      }
+      // A stated number is kept to the bit; only what was not stated comes out of the powers.
+      for (const Term& u : terms) {
+        if (u.p == 1 && u.q == 0) drive.amplitude = u.value;
+        if (u.p == 0 && u.q == 1) drive.omega = u.value;
+      }
+      for (const Term& u : terms) {
+        const double implied = power(drive.amplitude, u.p) * power(drive.omega, u.q);
+        if (std::abs(implied - u.value) > 1e-12 * std::max(std::abs(implied), std::abs(u.value)))
+          throw ConfigError(where, fmt::format("{} = {} contradicts the other numbers, from which it would "
+                                               "be {} (they must agree to 1e-12).",
+                                               u.name, u.value, implied));
+      }
+      return drive;
+    }
+  }
+  throw ConfigError(
+      where, terms.size() < 2
+                 ? "two of amplitude, omega, frequency, gamma, k_m, peak_velocity are needed."
+                 : "the numbers given fix only one of amplitude and omega; give an independent second one.");
+}
+
+}  // namespace twincell

@@ -1,0 +1,676 @@
+#include "trajectory/formats/h5md_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "core/hdf5.hpp"
+#include "twincell_version.hpp"
+
+namespace twincell {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr hsize_t kFramesPerFlush = 64;
+constexpr std::int64_t kEmptySlot = -1;
+constexpr const char* kTemperature = "temperature_time_mean";
+constexpr const char* kTemperatureCoarse = "temperature_time_mean_coarse";
+
+const char* word_of(Boundary b) {
+  switch (b) {
+    case Boundary::wall:
+      return "wall";
+    case Boundary::periodic:
+      return "periodic";
+    case Boundary::open:
+      break;
+  }
+  return "open";
+}
+
+/// A time-dependent H5MD element other than position: shares step and time with it by hard links.
+h5::Handle create_element(hid_t parent, const std::string& name, hid_t position) {
+  h5::Handle group = h5::create_group(parent, name);
+  for (const char* shared : {"step", "time"})
+    h5::check(H5Lcreate_hard(position, shared, group.get(), shared, H5P_DEFAULT, H5P_DEFAULT),
+              "linking " + name);
+  return group;
+}
+
+}  // namespace
+
+// --- writing
+// -------------------------------------------------------------------------------------------------------
+
+struct H5mdWriter::Impl {
+  AtomicPath path;
+  TrajectoryInfo info;
+  h5::Handle file;
+  h5::Series step, time, position, position_sigma, edges, velocity, spin, id, plate_height, phase, cycle,
+      temperature, temperature_coarse;
+  h5::Series contact_count, contact_pairs, contact_values, force, moment, rim_speed;
+  std::int64_t last_step = 0;
+
+  Impl(const fs::path& final_path, TrajectoryInfo i)
+      : path(final_path, Product::trajectory()), info(std::move(i)) {}
+
+  void create();
+  void create_particles();
+  void create_parameters();
+  void append_contacts(const std::vector<ContactMemory>& contacts);
+  void close();
+};
+
+void H5mdWriter::Impl::create() {
+  h5::quiet();
+  const h5::Handle access = h5::own(H5Pcreate(H5P_FILE_ACCESS), "making a property list");
+  // Readable by every HDF5 from 1.8 on.
+  h5::check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V110), "choosing the file format");
+  file = h5::own(H5Fcreate(path.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()),
+                 path.final().string() + ": creating the file");
+  const h5::Handle h5md = h5::create_group(file.get(), "h5md");
+  h5::write_attribute(h5md.get(), "version", std::vector<int>{1, 1});
+  const h5::Handle author = h5::create_group(h5md.get(), "author");
+  h5::write_attribute(author.get(), "name", std::string("not recorded"));
+  const h5::Handle creator = h5::create_group(h5md.get(), "creator");
+  h5::write_attribute(creator.get(), "name", std::string("twincell"));
+  h5::write_attribute(creator.get(), "version", std::string(TWINCELL_VERSION));
+  create_particles();
+  create_parameters();
+}
+
+void H5mdWriter::Impl::create_particles() {
+  const hsize_t n = info.n_beads;
+  const h5::Handle particles = h5::create_group(file.get(), "particles");
+  const h5::Handle group = h5::create_group(particles.get(), "trajectory");
+  const h5::Handle box = h5::create_group(group.get(), "box");
+  h5::write_attribute(box.get(), "dimension", 3);
+  std::vector<std::string> boundary;
+  for (Boundary b : info.box.boundary) boundary.emplace_back(b == Boundary::periodic ? "periodic" : "none");
+  h5::write_attribute(box.get(), "boundary", boundary);
+
+  const h5::Handle pos = h5::create_group(group.get(), "position");
+  step = h5::Series(pos.get(), "step", H5T_STD_I64LE, {}, 1024);
+  time = h5::Series(pos.get(), "time", H5T_IEEE_F64LE, {}, 1024);
+  position = h5::Series(pos.get(), "value", H5T_IEEE_F64LE, {n, 3}, 1);
+
+  auto element = [&](hid_t parent, const char* name, hid_t type, std::vector<hsize_t> record,
+                     const void* fill = nullptr) {
+    const h5::Handle g = create_element(parent, name, pos.get());
+    const hsize_t per_chunk = record.empty() ? 1024 : 1;
+    return h5::Series(g.get(), "value", type, std::move(record), per_chunk, fill);
+  };
+  edges = element(box.get(), "edges", H5T_IEEE_F64LE, {3, 3});
+  if (info.columns.position_sigma)
+    position_sigma = element(group.get(), "position_sigma", H5T_IEEE_F64LE, {n, 3});
+  if (info.columns.velocity) velocity = element(group.get(), "velocity", H5T_IEEE_F64LE, {n, 3});
+  if (info.columns.spin) spin = element(group.get(), "angular_velocity", H5T_IEEE_F64LE, {n, 3});
+  if (info.columns.contacts) {
+    force = element(group.get(), "force", H5T_IEEE_F64LE, {n, 3});
+    moment = element(group.get(), "moment", H5T_IEEE_F64LE, {n, 3});
+    rim_speed = element(group.get(), "rim_speed", H5T_IEEE_F64LE, {n, 3});
+  }
+  if (info.columns.identity) id = element(group.get(), "id", H5T_STD_I64LE, {n}, &kEmptySlot);
+  if (!info.radius.empty())
+    h5::write_dataset(group.get(), "radius", info.radius.data(), {info.radius.size()});
+  if (!info.mass.empty()) h5::write_dataset(group.get(), "mass", info.mass.data(), {info.mass.size()});
+  if (!info.tracer.empty())
+    h5::write_dataset(group.get(), "tracer", info.tracer.data(), {info.tracer.size()});
+
+  if (!info.columns.plate_height && !info.columns.phase && !info.columns.time_mean) return;
+  const h5::Handle observables = h5::create_group(file.get(), "observables");
+  if (info.columns.plate_height)
+    plate_height = element(observables.get(), "plate_height", H5T_IEEE_F64LE, {});
+  if (info.columns.phase) {
+    phase = element(observables.get(), "drive_phase", H5T_STD_I32LE, {});
+    cycle = element(observables.get(), "cycle", H5T_STD_I64LE, {});
+  }
+  if (info.columns.time_mean) {
+    temperature = element(observables.get(), kTemperature, H5T_IEEE_F64LE, {3});
+    temperature_coarse = element(observables.get(), kTemperatureCoarse, H5T_IEEE_F64LE, {3});
+  }
+}
+
+void H5mdWriter::Impl::create_parameters() {
+  const h5::Handle parameters = h5::create_group(file.get(), "parameters");
+  h5::write_text(
+      parameters.get(), "units",
+      "reduced: length sigma (bead diameter), mass m (bead mass), acceleration g; time t0 = sqrt(sigma/g)");
+  if (info.drive) {
+    const h5::Handle drive = h5::create_group(parameters.get(), "drive");
+    h5::write_attribute(drive.get(), "axis", std::string(1, "xyz"[static_cast<int>(info.drive->axis)]));
+    h5::write_attribute(drive.get(), "phase_convention",
+                        std::string("A sin(omega t), cycle begins at mean height moving up"));
+    h5::write_scalar(drive.get(), "amplitude", info.drive->amplitude);
+    h5::write_scalar(drive.get(), "omega", info.drive->omega);
+  }
+  if (info.phases_per_cycle > 0)
+    h5::write_dataset(parameters.get(), "phases_per_cycle", &info.phases_per_cycle, {});
+  if (info.samples_per_cycle > 0)
+    h5::write_dataset(parameters.get(), "samples_per_cycle", &info.samples_per_cycle, {});
+  const h5::Handle scale = h5::create_group(parameters.get(), "scale");
+  const std::pair<const char*, std::optional<double>> scales[] = {
+      {"sigma_m", info.scale.sigma_m},
+      {"gravity_m_s2", info.scale.gravity_m_s2},
+      {"pixels_per_sigma", info.scale.pixels_per_sigma}};
+  for (const auto& [name, value] : scales)
+    if (value) h5::write_scalar(scale.get(), name, *value);
+  if (!info.provenance_json.empty()) h5::write_text(parameters.get(), "provenance", info.provenance_json);
+
+  const h5::Handle ours = h5::create_group(file.get(), "twincell");
+  h5::write_attribute(ours.get(), "schema_version", kSchemaVersion);
+  h5::write_attribute(ours.get(), "source", info.source);
+  if (!info.tracking_json.empty()) h5::write_text(ours.get(), "tracking", info.tracking_json);
+  if (info.columns.contacts) {
+    const h5::Handle contacts = h5::create_group(ours.get(), "contacts");
+    contact_count = h5::Series(contacts.get(), "count", H5T_STD_I64LE, {}, 1024);
+    contact_pairs = h5::Series(contacts.get(), "pairs", H5T_STD_I32LE, {2}, 1024);
+  }
+  const h5::Handle cell = h5::create_group(ours.get(), "cell");
+  h5::write_attribute(cell.get(), "dimension", info.box.dimension);
+  std::vector<std::string> words;
+  for (Boundary b : info.box.boundary) words.emplace_back(word_of(b));
+  h5::write_attribute(cell.get(), "boundary", words);
+  h5::write_dataset(cell.get(), "lower", info.box.lower.data(), {3});
+  h5::write_dataset(cell.get(), "upper", info.box.upper.data(), {3});
+  const auto& tilt = info.box.side_tilt;
+  if (tilt[0] != 0 || tilt[1] != 0) h5::write_dataset(cell.get(), "side_tilt", tilt.data(), {2});
+}
+
+/// Frames have contacts of different number: all lie one after the other, with the number of each frame
+/// beside.
+void H5mdWriter::Impl::append_contacts(const std::vector<ContactMemory>& contacts) {
+  const auto n = static_cast<std::int64_t>(contacts.size());
+  contact_count.append(h5::native<std::int64_t>(), &n);
+  if (contacts.empty()) return;
+  const std::size_t each = contacts.front().values.size();
+  if (!contact_values) {  // how much a contact remembers is known from the first
+    const h5::Handle group =
+        h5::own(H5Oopen(file.get(), "twincell/contacts", H5P_DEFAULT), "opening contacts");
+    contact_values = h5::Series(group.get(), "values", H5T_IEEE_F64LE, {each}, 1024);
+  }
+  std::vector<std::int32_t> pairs;
+  std::vector<double> values;
+  for (const ContactMemory& c : contacts) {
+    pairs.insert(pairs.end(), {c.i, c.j});
+    values.insert(values.end(), c.values.begin(), c.values.end());
+  }
+  if (values.size() != each * contacts.size())
+    throw RunError(path.final().string() + ": contacts of one frame remember different numbers of values.");
+  contact_pairs.append(h5::native<std::int32_t>(), pairs.data(), contacts.size());
+  contact_values.append(h5::native<double>(), values.data(), contacts.size());
+}
+
+void H5mdWriter::Impl::close() {
+  for (h5::Series* s : {&step, &time, &position, &position_sigma, &edges, &velocity, &spin, &id,
+                        &plate_height, &phase, &cycle, &temperature, &temperature_coarse, &contact_count,
+                        &contact_pairs, &force, &moment, &rim_speed, &contact_values})
+    *s = h5::Series();
+  h5::check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path.final().string() + ": writing to disk");
+  file.reset();
+}
+
+H5mdWriter::H5mdWriter(const fs::path& path, TrajectoryInfo info)
+    : impl_(std::make_unique<Impl>(path, std::move(info))) {
+  impl_->create();
+}
+
+H5mdWriter::~H5mdWriter() = default;
+
+void H5mdWriter::append(const Frame& frame) {
+  Impl& w = *impl_;
+  const std::size_t n = w.info.n_beads;
+  auto need = [&](bool wanted, std::size_t length, const char* column) {
+    if (length != (wanted ? n : 0))
+      throw RunError(fmt::format("{}: frame {} has {} entries of {}, {} were announced.",
+                                 w.path.final().string(), w.step.size(), length, column, wanted ? n : 0));
+  };
+  need(true, frame.position.size(), "position");
+  need(w.info.columns.position_sigma, frame.position_sigma.size(), "position_sigma");
+  need(w.info.columns.velocity, frame.velocity.size(), "velocity");
+  need(w.info.columns.spin, frame.spin.size(), "spin");
+  need(w.info.columns.identity, frame.id.size(), "id");
+  need(w.info.columns.contacts, frame.force.size(), "force");
+  need(w.info.columns.contacts, frame.moment.size(), "moment");
+  need(w.info.columns.contacts, frame.rim_speed.size(), "rim_speed");
+  if (w.step.size() > 0 && frame.step <= w.last_step)
+    throw RunError(fmt::format("{}: frame {} has step {}, not above the previous one's {}.",
+                               w.path.final().string(), w.step.size(), frame.step, w.last_step));
+  w.last_step = frame.step;
+
+  const Vec3 size = w.info.box.size();
+  const double edges[9] = {size.x(), 0, 0, 0, size.y(), 0, 0, 0, size.z()};
+  w.step.append(h5::native<std::int64_t>(), &frame.step);
+  w.time.append(h5::native<double>(), &frame.time);
+  w.edges.append(h5::native<double>(), edges);
+  w.position.append(h5::native<double>(), frame.position.data());
+  if (w.position_sigma) w.position_sigma.append(h5::native<double>(), frame.position_sigma.data());
+  if (w.velocity) w.velocity.append(h5::native<double>(), frame.velocity.data());
+  if (w.spin) w.spin.append(h5::native<double>(), frame.spin.data());
+  if (w.id) w.id.append(h5::native<std::int64_t>(), frame.id.data());
+  if (w.plate_height) w.plate_height.append(h5::native<double>(), &frame.plate_height);
+  if (w.phase) {
+    w.phase.append(h5::native<int>(), &frame.phase);
+    w.cycle.append(h5::native<std::int64_t>(), &frame.cycle);
+  }
+  if (w.temperature) {
+    w.temperature.append(h5::native<double>(), frame.time_mean.temperature.data());
+    w.temperature_coarse.append(h5::native<double>(), frame.time_mean.temperature_coarse.data());
+  }
+  if (w.contact_count) {
+    w.append_contacts(frame.contacts);
+    w.force.append(h5::native<double>(), frame.force.data());
+    w.moment.append(h5::native<double>(), frame.moment.data());
+    w.rim_speed.append(h5::native<double>(), frame.rim_speed.data());
+  }
+  if (w.step.size() % kFramesPerFlush == 0)
+    h5::check(H5Fflush(w.file.get(), H5F_SCOPE_GLOBAL), w.path.final().string() + ": writing to disk");
+}
+
+void H5mdWriter::finish() {
+  impl_->close();
+  impl_->path.commit();
+}
+
+void H5mdWriter::finish_as(const fs::path& other_name) {
+  impl_->close();
+  impl_->path.commit_as(other_name);
+}
+
+// --- reading
+// -------------------------------------------------------------------------------------------------------
+
+struct H5mdReader::Impl {
+  fs::path path;
+  TrajectoryInfo info;
+  h5::Handle file;
+  h5::Series step, time, position, position_sigma, velocity, spin, id, plate_height, phase, cycle,
+      temperature, temperature_coarse;
+
+  [[noreturn]] void refuse(const std::string& key, const std::string& complaint) const {
+    throw InputError({path.string(), 0, 0, key}, complaint);
+  }
+  h5::Series contact_pairs, contact_values, force, moment, rim_speed;
+  std::vector<std::int64_t> contact_count, contact_begin;  ///< of each frame, if there are contacts
+
+  std::string particle_group() const;
+  void open();
+  void open_columns(const std::string& group);
+  void open_contacts();
+  std::vector<ContactMemory> contacts_of(std::size_t frame) const;
+  void read_box(const std::string& group);
+  bool is_planar() const;
+  void read_parameters();
+  void require_ranges() const;
+};
+
+namespace {
+
+h5::Handle open_object(hid_t parent, const std::string& path) {
+  return h5::own(H5Oopen(parent, path.c_str(), H5P_DEFAULT), "opening " + path);
+}
+
+Boundary boundary_of(const std::string& word) {
+  if (word == "periodic") return Boundary::periodic;
+  return word == "wall" ? Boundary::wall : Boundary::open;
+}
+
+}  // namespace
+
+std::string H5mdReader::Impl::particle_group() const {
+  if (!h5::exists(file.get(), "particles"))
+    refuse("particles", "the group is missing, so the file holds no beads.");
+  const h5::Handle particles = h5::own(H5Gopen2(file.get(), "particles", H5P_DEFAULT), "opening particles");
+  if (h5::exists(particles.get(), "trajectory")) return "particles/trajectory";
+  char name[256];
+  if (H5Lget_name_by_idx(particles.get(), ".", H5_INDEX_NAME, H5_ITER_INC, 0, name, sizeof name,
+                         H5P_DEFAULT) <= 0)
+    refuse("particles", "the group is empty, so the file holds no beads.");
+  return std::string("particles/") + name;
+}
+
+void H5mdReader::Impl::open() {
+  h5::quiet();
+  std::error_code ec;
+  if (!fs::exists(path, ec)) refuse("", "the file does not exist.");
+  if (fs::is_directory(path, ec)) refuse("", "this is a folder, a trajectory file is needed.");
+  file = h5::Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  if (!file)
+    refuse("", H5Fis_hdf5(path.c_str()) > 0 ? "the HDF5 file is truncated or damaged."
+                                            : "this is not an HDF5 file, or it is truncated.");
+  if (!h5::exists(file.get(), "h5md")) refuse("h5md", "the group is missing, so this is HDF5 but not H5MD.");
+  const h5::Handle h5md = open_object(file.get(), "h5md");
+  const auto version = h5::read_int_attribute(h5md.get(), "version");
+  if (version.size() != 2 || version[0] != 1)
+    refuse("h5md@version", "the attribute must be two integers beginning with 1.");
+  const std::string group = particle_group();
+  open_columns(group);
+  read_box(group);
+  read_parameters();
+  require_ranges();
+}
+
+/// What a bead cell can be. Whatever lies outside would overflow, index out of range or never end further on.
+void H5mdReader::Impl::require_ranges() const {
+  constexpr double kFarthest = 1e7, kLargestRadius = 1e5;  // sigma
+  constexpr int kMostPhases = 1'000'000;
+  if (info.box.dimension != 2 && info.box.dimension != 3)
+    refuse("twincell/cell@dimension", fmt::format("is {}; it must be 2 or 3.", info.box.dimension));
+  for (int a = 0; a < 3; ++a) {
+    const double low = info.box.lower[a], high = info.box.upper[a];
+    if (!(std::abs(low) <= kFarthest) || !(std::abs(high) <= kFarthest) || low > high)
+      refuse("cell", fmt::format("its {} side goes from {:g} to {:g}; it must rise, within {:g}.", "xyz"[a],
+                                 low, high, kFarthest));
+  }
+  const auto each = [&](const std::vector<double>& values, const char* name, double most) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!(values[i] > 0 && values[i] <= most))
+        refuse(name, fmt::format("{:g} of bead {} is out of range; it must be above 0 and at most {:g}.",
+                                 values[i], i, most));
+  };
+  each(info.radius, "radius", kLargestRadius);
+  each(info.mass, "mass", 1e300);
+  if (info.phases_per_cycle < 0 || info.phases_per_cycle > kMostPhases)
+    refuse("parameters/phases_per_cycle",
+           fmt::format("is {}; it must be between 0 and {}.", info.phases_per_cycle, kMostPhases));
+  if (info.drive) {
+    if (!(info.drive->amplitude >= 0 && info.drive->amplitude <= kFarthest))
+      refuse("parameters/drive/amplitude",
+             fmt::format("is {:g}; it must be between 0 and {:g}.", info.drive->amplitude, kFarthest));
+    if (!(info.drive->omega >= 0 && info.drive->omega <= 1e9))
+      refuse("parameters/drive/omega",
+             fmt::format("is {:g}; it must be between 0 and 1e9.", info.drive->omega));
+  }
+  for (const auto& [name, value] : {std::pair{"sigma_m", info.scale.sigma_m},
+                                    {"gravity_m_s2", info.scale.gravity_m_s2},
+                                    {"pixels_per_sigma", info.scale.pixels_per_sigma}})
+    if (value && !(*value > 0 && std::isfinite(*value)))
+      refuse(std::string("parameters/scale/") + name, fmt::format("is {:g}; it must be above 0.", *value));
+}
+
+void H5mdReader::Impl::open_columns(const std::string& group) {
+  const h5::Handle g = open_object(file.get(), group);
+  step = h5::Series(g.get(), "position/step");
+  time = h5::Series(g.get(), "position/time");
+  position = h5::Series(g.get(), "position/value");
+  if (!position || position.record().size() != 2)
+    refuse(group + "/position/value", "a dataset frames x beads x dimension is needed.");
+  if (position.record()[1] != 3)
+    refuse(group + "/position/value",
+           fmt::format("positions have {} components, 3 are needed.", position.record()[1]));
+  if (!step || step.size() != position.size())
+    refuse(group + "/position/step",
+           fmt::format("{} steps for {} frames; explicit steps, one per frame, are needed.", step.size(),
+                       position.size()));
+  info.n_beads = position.record()[0];
+  const hsize_t frames = position.size();
+  auto column = [&](const char* name, const std::vector<hsize_t>& record) {
+    h5::Series s(g.get(), std::string(name) + "/value");
+    if (s && (s.size() != frames || s.record() != record))
+      refuse(group + "/" + name, "its shape does not match that of position.");
+    return s;
+  };
+  position_sigma = column("position_sigma", {info.n_beads, 3});
+  velocity = column("velocity", {info.n_beads, 3});
+  spin = column("angular_velocity", {info.n_beads, 3});
+  id = column("id", {info.n_beads});
+  force = column("force", {info.n_beads, 3});
+  moment = column("moment", {info.n_beads, 3});
+  rim_speed = column("rim_speed", {info.n_beads, 3});
+  auto observable = [&](const char* name, const std::vector<hsize_t>& record = {}) {
+    const std::string where = std::string("observables/") + name + "/value";
+    if (!h5::exists(file.get(), where)) return h5::Series();
+    h5::Series s(file.get(), where);
+    if (s && (s.size() != frames || s.record() != record))
+      refuse(where, record.empty() ? "one value per frame is needed." : "three values per frame are needed.");
+    return s;
+  };
+  plate_height = observable("plate_height");
+  phase = observable("drive_phase");
+  cycle = observable("cycle");
+  temperature = observable(kTemperature, {3});
+  temperature_coarse = observable(kTemperatureCoarse, {3});
+  info.columns = {static_cast<bool>(velocity),
+                  static_cast<bool>(spin),
+                  static_cast<bool>(id),
+                  phase && cycle,
+                  static_cast<bool>(plate_height),
+                  static_cast<bool>(position_sigma),
+                  temperature && temperature_coarse};
+
+  open_contacts();
+
+  auto per_bead = [&]<class T>(const char* name, std::vector<T>& out) {
+    out = h5::read_dataset<T>(g.get(), name);
+    if (!out.empty() && out.size() != info.n_beads)
+      refuse(group + "/" + name, fmt::format("{} entries for {} beads.", out.size(), info.n_beads));
+  };
+  per_bead("radius", info.radius);
+  per_bead("mass", info.mass);
+  per_bead("tracer", info.tracer);
+}
+
+void H5mdReader::Impl::open_contacts() {
+  const std::string where = "twincell/contacts";
+  if (!h5::exists(file.get(), where)) return;
+  contact_count = h5::read_dataset<std::int64_t>(file.get(), where + "/count");
+  if (contact_count.size() != position.size()) refuse(where + "/count", "one number per frame is needed.");
+  contact_pairs = h5::Series(file.get(), where + "/pairs");
+  contact_values = h5::Series(file.get(), where + "/values");
+  if (!contact_pairs || contact_pairs.record() != std::vector<hsize_t>{2})
+    refuse(where + "/pairs", "two numbers per contact are needed.");
+  std::int64_t sum = 0;
+  const auto all = static_cast<std::int64_t>(contact_pairs.size());
+  for (const std::int64_t n : contact_count) {
+    if (n < 0 || n > all - sum)
+      refuse(where + "/count", fmt::format("{} contacts are counted beyond the {} there are.", n, all));
+    contact_begin.push_back(sum);
+    sum += n;
+  }
+  if (all > 0 && (!contact_values || contact_values.record().size() != 1 ||
+                  contact_values.size() != contact_pairs.size()))
+    refuse(where + "/values", "as many values for each contact are needed as for the others.");
+  if (!force || !moment || !rim_speed)
+    refuse(where, "contacts stand beside the particles' force, moment and rim_speed, which are missing.");
+  info.columns.contacts = true;
+}
+
+std::vector<ContactMemory> H5mdReader::Impl::contacts_of(std::size_t frame) const {
+  if (!info.columns.contacts || contact_count[frame] == 0) return {};
+  const auto n = static_cast<std::size_t>(contact_count[frame]),
+             each = static_cast<std::size_t>(contact_values.record()[0]);
+  std::vector<std::int32_t> pairs(2 * n);
+  std::vector<double> values(each * n);
+  const auto begin = static_cast<hsize_t>(contact_begin[frame]);
+  contact_pairs.read(begin, h5::native<std::int32_t>(), pairs.data(), n);
+  if (each > 0) contact_values.read(begin, h5::native<double>(), values.data(), n);
+  std::vector<ContactMemory> contacts;
+  constexpr std::int32_t kMostWalls = 100;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::int32_t i = pairs[2 * k], j = pairs[2 * k + 1];
+    const auto beads = static_cast<std::int64_t>(info.n_beads);
+    if (i < 0 || i >= beads || j >= beads || j < -kMostWalls || (j >= 0 && j <= i))
+      refuse("twincell/contacts/pairs", fmt::format("({}, {}) is no contact of {} beads.", i, j, beads));
+    contacts.push_back({i, j, {values.data() + k * each, values.data() + (k + 1) * each}});
+    for (const double v : contacts.back().values)
+      if (!std::isfinite(v))
+        refuse("twincell/contacts/values", fmt::format("that of ({}, {}) is not finite.", i, j));
+  }
+  return contacts;
+}
+
+void H5mdReader::Impl::read_box(const std::string& group) {
+  if (h5::exists(file.get(), "twincell/cell")) {
+    const h5::Handle cell = open_object(file.get(), "twincell/cell");
+    const auto dimension = h5::read_int_attribute(cell.get(), "dimension");
+    const auto words = h5::read_text_attribute(cell.get(), "boundary");
+    const auto lower = h5::read_dataset<double>(cell.get(), "lower"),
+               upper = h5::read_dataset<double>(cell.get(), "upper");
+    if (dimension.size() != 1 || words.size() != 3 || lower.size() != 3 || upper.size() != 3)
+      refuse("twincell/cell", "dimension, boundary[3], lower[3] and upper[3] are needed.");
+    info.box.dimension = dimension[0];
+    info.box.lower = Vec3(lower.data());
+    info.box.upper = Vec3(upper.data());
+    for (std::size_t a = 0; a < 3; ++a) info.box.boundary[a] = boundary_of(words[a]);
+    if (!h5::exists(cell.get(), "side_tilt")) return;
+    const auto tilt = h5::read_dataset<double>(cell.get(), "side_tilt");
+    if (tilt.size() != 2 || !std::ranges::all_of(tilt, [](double t) { return std::abs(t) < 90; }))
+      refuse("twincell/cell", "side_tilt is two angles below 90 degrees.");
+    info.box.side_tilt = {tilt[0], tilt[1]};
+    return;
+  }
+  // Someone else's file: the box is all there is, its corner at the origin.
+  info.box.dimension = is_planar() ? 2 : 3;
+  info.box.boundary = {Boundary::open, Boundary::open, Boundary::open};
+  if (!h5::exists(file.get(), group + "/box")) return;
+  const h5::Handle box = open_object(file.get(), group + "/box");
+  const auto words = h5::read_text_attribute(box.get(), "boundary");
+  for (std::size_t a = 0; a < std::min<std::size_t>(words.size(), 3); ++a)
+    info.box.boundary[a] = boundary_of(words[a]);
+  std::vector<double> edges = h5::read_dataset<double>(box.get(), "edges");
+  if (edges.empty() && h5::exists(box.get(), "edges/value"))
+    edges = h5::read_dataset<double>(box.get(), "edges/value");
+  if (edges.size() == 3) info.box.upper = Vec3(edges.data());
+  if (edges.size() >= 9) info.box.upper = Vec3(edges[0], edges[4], edges[8]);
+}
+
+/// Do all beads of the first frame lie at one y?
+bool H5mdReader::Impl::is_planar() const {
+  if (position.size() == 0 || info.n_beads == 0) return false;
+  std::vector<Vec3> first(info.n_beads);
+  position.read(0, h5::native<double>(), first.data());
+  return std::all_of(first.begin(), first.end(),
+                     [&](const Vec3& r) { return r.y() == first.front().y() || !std::isfinite(r.y()); });
+}
+
+void H5mdReader::Impl::read_parameters() {
+  if (h5::exists(file.get(), "twincell")) {
+    const h5::Handle ours = open_object(file.get(), "twincell");
+    const auto schema = h5::read_int_attribute(ours.get(), "schema_version");
+    if (schema.size() == 1 && schema[0] > kSchemaVersion)
+      refuse("twincell@schema_version",
+             fmt::format("{} is newer than this program's {}.", schema[0], kSchemaVersion));
+    const auto source = h5::read_text_attribute(ours.get(), "source");
+    if (!source.empty()) info.source = source.front();
+    h5::read_text(ours.get(), "tracking", info.tracking_json);
+  }
+  if (h5::exists(file.get(), "parameters/drive")) {
+    const h5::Handle group = open_object(file.get(), "parameters/drive");
+    Drive drive;
+    const auto axis = h5::read_text_attribute(group.get(), "axis");
+    if (!axis.empty() && !axis.front().empty()) {
+      const auto k = axis.front().size() == 1 ? std::string("xyz").find(axis.front()) : std::string::npos;
+      if (k == std::string::npos) refuse("parameters/drive@axis", "must be x, y or z.");
+      drive.axis = static_cast<Axis>(k);
+    }
+    if (h5::read_scalar(group.get(), "amplitude", drive.amplitude) &&
+        h5::read_scalar(group.get(), "omega", drive.omega))
+      info.drive = drive;
+  }
+  double value = 0;
+  if (h5::exists(file.get(), "parameters/phases_per_cycle") &&
+      h5::read_scalar(file.get(), "parameters/phases_per_cycle", value))
+    info.phases_per_cycle =
+        value >= 0 && value <= 2e9 && value == std::floor(value) ? static_cast<int>(value) : -1;
+  else if (info.columns.phase) {
+    // What a file does not state, its phases show.
+    for (std::size_t f = 0; f < position.size(); ++f) {
+      int k = -1;
+      phase.read(f, h5::native<int>(), &k);
+      info.phases_per_cycle = std::max(info.phases_per_cycle, std::min(k, 2'000'000'000) + 1);
+    }
+  }
+  if (h5::exists(file.get(), "parameters/samples_per_cycle") &&
+      h5::read_scalar(file.get(), "parameters/samples_per_cycle", value))
+    info.samples_per_cycle = value >= 0 && value <= 2e9 ? static_cast<int>(value) : 0;
+  auto scale = [&](const char* name, std::optional<double>& out) {
+    if (h5::exists(file.get(), std::string("parameters/scale/") + name) &&
+        h5::read_scalar(file.get(), std::string("parameters/scale/") + name, value))
+      out = value;
+  };
+  scale("sigma_m", info.scale.sigma_m);
+  scale("gravity_m_s2", info.scale.gravity_m_s2);
+  scale("pixels_per_sigma", info.scale.pixels_per_sigma);
+  if (h5::exists(file.get(), "parameters/provenance"))
+    h5::read_text(file.get(), "parameters/provenance", info.provenance_json);
+}
+
+H5mdReader::H5mdReader(const fs::path& path) : impl_(std::make_unique<Impl>()) {
+  impl_->path = path;
+  try {
+    impl_->open();
+  } catch (const RunError& e) {  // HDF5 stumbled over the file: that is the file's fault, not the run's
+    impl_->refuse("", e.what());
+  }
+}
+
+H5mdReader::~H5mdReader() = default;
+
+const TrajectoryInfo& H5mdReader::info() const {
+  return impl_->info;
+}
+std::size_t H5mdReader::n_frames() const {
+  return impl_->position.size();
+}
+std::string H5mdReader::name() const {
+  return impl_->path.string();
+}
+
+void H5mdReader::read(std::size_t index, Frame& frame) const {
+  const Impl& r = *impl_;
+  const std::size_t n = r.info.n_beads;
+  if (index >= n_frames())
+    r.refuse("", fmt::format("frame {} was asked for, the file has {}.", index, n_frames()));
+  try {
+    r.step.read(index, h5::native<std::int64_t>(), &frame.step);
+    if (r.time)
+      r.time.read(index, h5::native<double>(), &frame.time);
+    else
+      frame.time = static_cast<double>(frame.step);
+    auto column = [&](const h5::Series& s, hid_t type, auto& out) {
+      out.resize(s ? n : 0);
+      if (s) s.read(index, type, out.data());
+    };
+    column(r.position, h5::native<double>(), frame.position);
+    column(r.position_sigma, h5::native<double>(), frame.position_sigma);
+    column(r.velocity, h5::native<double>(), frame.velocity);
+    column(r.spin, h5::native<double>(), frame.spin);
+    column(r.id, h5::native<std::int64_t>(), frame.id);
+    const h5::Series none;  // somebody else's forces are not what a run goes on from
+    const bool restart = r.info.columns.contacts;
+    column(restart ? r.force : none, h5::native<double>(), frame.force);
+    column(restart ? r.moment : none, h5::native<double>(), frame.moment);
+    column(restart ? r.rim_speed : none, h5::native<double>(), frame.rim_speed);
+    frame.plate_height = Frame::kNoHeight;
+    if (r.plate_height) r.plate_height.read(index, h5::native<double>(), &frame.plate_height);
+    frame.contacts = r.contacts_of(index);
+    frame.time_mean = {};
+    if (r.info.columns.time_mean) {
+      r.temperature.read(index, h5::native<double>(), frame.time_mean.temperature.data());
+      r.temperature_coarse.read(index, h5::native<double>(), frame.time_mean.temperature_coarse.data());
+    }
+    frame.phase = -1;
+    frame.cycle = -1;
+    if (r.info.columns.phase) {
+      r.phase.read(index, h5::native<int>(), &frame.phase);
+      r.cycle.read(index, h5::native<std::int64_t>(), &frame.cycle);
+      constexpr std::int64_t kMostCycles = 1'000'000'000'000;
+      if (frame.phase < -1 || frame.phase >= std::max(r.info.phases_per_cycle, 1))
+        r.refuse(fmt::format("frame {}", index),
+                 fmt::format("its phase is {}; it must be below {} phases per cycle.", frame.phase,
+                             r.info.phases_per_cycle));
+      if (frame.cycle < -kMostCycles || frame.cycle > kMostCycles)
+        r.refuse(fmt::format("frame {}", index),
+                 fmt::format("its cycle is {}; it must be within {}.", frame.cycle, kMostCycles));
+    }
+  } catch (const RunError& e) {
+    r.refuse(fmt::format("frame {}", index), e.what());
+  }
+}
+
+}  // namespace twincell

@@ -1,0 +1,212 @@
+#include "trajectory/unit_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace twincell {
+namespace {
+
+enum class Sign { any, not_negative, positive };
+
+/// A key as it is written, and the plain reduced one that it stands for.
+struct Spelling {
+  const char *section, *plain, *written;
+  Unit unit;
+  Sign sign;
+  double per_plain = 1;  ///< 2 for a diameter, which is two radii
+};
+
+constexpr const char* kIntruder = "beads.intruder";
+
+constexpr std::array kSpellings = {
+    // The scale comes first: the others are converted with it.
+    Spelling{"scale", "sigma_m", "sigma_mm", Unit::per_mille, Sign::positive},
+    Spelling{"drive", "amplitude", "amplitude_sigma", Unit::one, Sign::not_negative},
+    Spelling{"drive", "amplitude", "amplitude_mm", Unit::length_mm, Sign::not_negative},
+    Spelling{"drive", "frequency", "frequency_per_t0", Unit::one, Sign::positive},
+    Spelling{"drive", "frequency", "frequency_hz", Unit::rate_per_s, Sign::positive},
+    Spelling{"drive", "omega", "omega_per_t0", Unit::one, Sign::positive},
+    Spelling{"drive", "omega", "omega_rad_s", Unit::rate_per_s, Sign::positive},
+    Spelling{"drive", "peak_velocity", "peak_velocity_v0", Unit::one, Sign::not_negative},
+    Spelling{"drive", "peak_velocity", "peak_velocity_mm_s", Unit::velocity_mm_s, Sign::not_negative},
+    Spelling{"drive", "gamma", "peak_acceleration_g", Unit::one, Sign::not_negative},
+    Spelling{"drive", "gamma", "peak_acceleration_m_s2", Unit::acceleration_m_s2, Sign::not_negative},
+    Spelling{"cell", "width", "width_sigma", Unit::one, Sign::positive},
+    Spelling{"cell", "width", "width_mm", Unit::length_mm, Sign::positive},
+    Spelling{"cell", "height", "height_sigma", Unit::one, Sign::positive},
+    Spelling{"cell", "height", "height_mm", Unit::length_mm, Sign::positive},
+    Spelling{"cell", "depth", "depth_sigma", Unit::one, Sign::positive},
+    Spelling{"cell", "depth", "depth_mm", Unit::length_mm, Sign::positive},
+    Spelling{"beads", "radius", "radius_sigma", Unit::one, Sign::positive},
+    Spelling{"beads", "radius", "radius_mm", Unit::length_mm, Sign::positive},
+    Spelling{"beads", "radius", "diameter_sigma", Unit::one, Sign::positive, 2},
+    Spelling{"beads", "radius", "diameter_mm", Unit::length_mm, Sign::positive, 2},
+    Spelling{kIntruder, "radius", "radius_sigma", Unit::one, Sign::positive},
+    Spelling{kIntruder, "radius", "radius_mm", Unit::length_mm, Sign::positive},
+    Spelling{kIntruder, "radius", "diameter_sigma", Unit::one, Sign::positive, 2},
+    Spelling{kIntruder, "radius", "diameter_mm", Unit::length_mm, Sign::positive, 2},
+    Spelling{kIntruder, "x", "x_sigma", Unit::one, Sign::any},
+    Spelling{kIntruder, "x", "x_mm", Unit::length_mm, Sign::any},
+    Spelling{kIntruder, "y", "y_sigma", Unit::one, Sign::any},
+    Spelling{kIntruder, "y", "y_mm", Unit::length_mm, Sign::any},
+    Spelling{kIntruder, "z", "z_sigma", Unit::one, Sign::any},
+    Spelling{kIntruder, "z", "z_mm", Unit::length_mm, Sign::any},
+};
+
+/// Words that have a dimension, with their reduced and their laboratory's spelling.
+struct Dimensional {
+  const char *section, *plain, *reduced, *physical;
+};
+constexpr std::array kDimensional = {
+    Dimensional{"drive", "amplitude", "amplitude_sigma", "amplitude_mm"},
+    Dimensional{"drive", "frequency", "frequency_per_t0", "frequency_hz"},
+    Dimensional{"drive", "omega", "omega_per_t0", "omega_rad_s"},
+    Dimensional{"drive", "peak_velocity", "peak_velocity_v0", "peak_velocity_mm_s"},
+    Dimensional{"cell", "width", "width_sigma", "width_mm"},
+    Dimensional{"cell", "height", "height_sigma", "height_mm"},
+    Dimensional{"cell", "depth", "depth_sigma", "depth_mm"},
+    Dimensional{"beads", "radius", "radius_sigma", "radius_mm"},
+    Dimensional{kIntruder, "radius", "radius_sigma", "radius_mm"},
+    Dimensional{kIntruder, "x", "x_sigma", "x_mm"},
+    Dimensional{kIntruder, "y", "y_sigma", "y_mm"},
+    Dimensional{kIntruder, "z", "z_sigma", "z_mm"},
+};
+
+std::string path_of(const char* section, const char* key) {
+  return std::string(section) + "." + key;
+}
+
+/// The table at a dotted path, if it is there: asking must make no other one known.
+std::optional<ConfigSection> table_at(const Config& config, std::string_view path) {
+  ConfigSection at = config.root();
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const std::string word(path.substr(begin, end - begin));
+    if (!at.has(word)) return std::nullopt;
+    at = at.section(word);
+    begin = end + 1;
+  }
+  return at;
+}
+
+void require_sign(const Where& where, double value, Sign sign) {
+  if (sign != Sign::any) require_range(where, value, 0, std::nullopt, sign == Sign::positive);
+}
+
+void refuse_bare_numbers(const Config& config) {
+  const auto scale = table_at(config, "scale");
+  if (!scale) return;
+  for (const char* sigma : {"sigma_mm", "sigma_m"}) {
+    if (!scale->has(sigma)) continue;
+    for (const Dimensional& d : kDimensional)
+      if (const auto table = table_at(config, d.section); table && table->has(d.plain))
+        refuse_bare(table->where(d.plain), table->number(d.plain).value_or(0), std::string("scale.") + sigma,
+                    path_of(d.section, d.reduced), path_of(d.section, d.physical));
+  }
+}
+
+}  // namespace
+
+double reduced_quantity(double value, Unit unit, const Scale& scale, const Where& where) {
+  constexpr double kMillimetres = 1000, kMicroseconds = 1e6;
+  const auto needs = [&](const char* what) {
+    throw ConfigError(
+        where, fmt::format("is {:g} in laboratory units, which need {} to be converted.", value, what));
+  };
+  const bool length = unit == Unit::length_mm, gravity = unit == Unit::acceleration_m_s2,
+             both = unit == Unit::rate_per_s || unit == Unit::velocity_mm_s || unit == Unit::time_us;
+  if ((length || both) && !scale.sigma_m) needs("scale.sigma_mm (or scale.sigma_m)");
+  if ((gravity || both) && !scale.gravity_m_s2) needs("scale.gravity_m_s2");
+  switch (unit) {
+    case Unit::one:
+      return value;
+    case Unit::per_mille:
+      return value / kMillimetres;
+    case Unit::length_mm:
+      return value / kMillimetres / *scale.sigma_m;
+    case Unit::time_us:
+      return value / kMicroseconds / *scale.t0_s();
+    case Unit::rate_per_s:
+      return value * *scale.t0_s();
+    case Unit::velocity_mm_s:
+      return value / kMillimetres / *scale.v0_m_s();
+    case Unit::acceleration_m_s2:
+      break;
+  }
+  return value / *scale.gravity_m_s2;
+}
+
+void refuse_bare(const Where& where, double value, const std::string& scale, const std::string& reduced,
+                 const std::string& physical) {
+  throw ConfigError(where, fmt::format("is {:g} without a unit where {} says the laboratory's scale; say "
+                                       "{} for reduced units or {} for the laboratory's.",
+                                       value, scale, reduced, physical));
+}
+
+void reduce_units(Config& config) {
+  refuse_bare_numbers(config);
+  Scale scale;
+  for (const Spelling& s : kSpellings) {
+    const auto table = table_at(config, s.section);
+    if (!table) continue;
+    const auto of_scale = table_at(config, "scale");
+    if (std::string_view(s.section) != "scale" && of_scale) {
+      scale.sigma_m = of_scale->number_in("sigma_m", 0, std::nullopt, true);
+      scale.gravity_m_s2 = of_scale->number_in("gravity_m_s2", 0, std::nullopt, true);
+    }
+    if (!table->has(s.written)) continue;
+    const Where where = table->where(s.written);
+    const double value = *table->number_in(s.written, std::nullopt);
+    require_sign(where, value, s.sign);
+    const double here = reduced_quantity(value, s.unit, scale, where) / s.per_plain;
+    require_sign(where, here, s.sign);
+    // Which of two spellings was meant is the user's to say, also where they agree today.
+    if (table->has(s.plain))
+      throw ConfigError(where, fmt::format("is {:g}, and {} says the same quantity; say one of the two.",
+                                           value, table->where(s.plain).text()));
+    config.restate(path_of(s.section, s.written), path_of(s.section, s.plain), here);
+  }
+}
+
+void displace_spellings(Config& config, const std::string& assignment) {
+  static const std::vector<std::vector<std::string>> groups = {
+      {"drive.omega", "drive.frequency"}, {"drive.gamma", "drive.k_m", "drive.peak_velocity"}};
+  const std::string path = assignment.substr(0, assignment.find('='));
+  std::string plain = path;
+  for (const Spelling& s : kSpellings)
+    if (path == path_of(s.section, s.written)) plain = path_of(s.section, s.plain);
+  std::vector<std::string> said = {plain};
+  for (const auto& group : groups)
+    if (std::find(group.begin(), group.end(), plain) != group.end()) said = group;
+  for (const Spelling& s : kSpellings) {
+    if (std::find(said.begin(), said.end(), path_of(s.section, s.plain)) == said.end()) continue;
+    config.erase(path_of(s.section, s.written));
+    config.erase(path_of(s.section, s.plain));
+  }
+  if (path != plain && said.size() > 1)
+    for (const auto& other : said) config.erase(other);
+}
+
+std::string resolved_text(Config& config) {
+  const auto scale = table_at(config, "scale");
+  if (!scale || !scale->has("sigma_m")) return config.text();
+  std::vector<const Dimensional*> renamed;
+  for (const Dimensional& d : kDimensional)
+    if (const auto table = table_at(config, d.section); table && table->has(d.plain)) {
+      config.restate(path_of(d.section, d.plain), path_of(d.section, d.reduced), *table->number(d.plain));
+      renamed.push_back(&d);
+    }
+  std::string text = config.text();
+  for (const Dimensional* d : renamed)
+    config.restate(path_of(d->section, d->reduced), path_of(d->section, d->plain),
+                   *table_at(config, d->section)->number(d->reduced));
+  return text;
+}
+
+}  // namespace twincell

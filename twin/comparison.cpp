@@ -1,0 +1,212 @@
+#include "twin/comparison.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.hpp"
+#include "imaging/camera/noise_matched_camera.hpp"
+#include "imaging/stack/open_frames.hpp"
+#include "imaging/stack/representative_frames.hpp"
+#include "trajectory/formats/h5md_file.hpp"
+#include "twin/sweep_results.hpp"
+#include "twin/virtual_experiment.hpp"
+
+namespace twincell {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a page can hold: bead positions of all moments together, and bytes of pictures.
+constexpr std::size_t kMostPositions = 400000, kMostPictureBytes = 12000000, kMostMoments = 20,
+                      kFewestMoments = 4;
+
+std::size_t moments_of_each(const std::vector<std::unique_ptr<H5mdReader>>& readers) {
+  std::size_t slots = 0;
+  for (const auto& reader : readers) slots += reader->info().n_beads;
+  return std::clamp(kMostPositions / std::max<std::size_t>(1, slots), kFewestMoments, kMostMoments);
+}
+
+/// Every other picture goes until the rest fits.
+void thin(std::vector<std::string>& pictures, std::size_t bytes) {
+  const auto total = [&] {
+    std::size_t sum = 0;
+    for (const std::string& p : pictures) sum += p.size();
+    return sum;
+  };
+  for (std::size_t stride = 2; total() > bytes && stride < 2 * pictures.size(); stride *= 2)
+    for (std::size_t i = 0; i < pictures.size(); ++i)
+      if ((pictures.size() - 1 - i) % stride != 0) pictures[i].clear();
+}
+
+/// The stack behind a tracked trajectory, if its provenance names one.
+fs::path stack_of(const TrajectoryInfo& info) {
+  const auto provenance = nlohmann::json::parse(info.provenance_json, nullptr, false);
+  if (!provenance.is_object() || provenance.value("inputs", nlohmann::json::array()).empty()) return {};
+  return provenance["inputs"][0].value("path", "");
+}
+
+/// The stack of experiment number `i`.
+fs::path stack_behind(const ComparingOptions& options, const TrajectorySource& trajectory, std::size_t i) {
+  return options.stacks.empty() ? stack_of(trajectory.info()) : options.stacks[i];
+}
+
+/// The camera's frames of an experiment's moments.
+void show_frames(const TrajectoryInfo& info, const fs::path& stack, Run& run,
+                 std::vector<std::string>& notes) {
+  const auto tracking = nlohmann::json::parse(info.tracking_json, nullptr, false);
+  if (!tracking.is_object() || !tracking.contains("camera"))
+    return;  // not made by `track`, or by an older one
+  const auto& camera = tracking["camera"];
+  run.show.camera = {.pixels_per_sigma = camera["pixels_per_sigma"],
+                     .origin_x = camera["origin_px"][0],
+                     .origin_y = camera["origin_px"][1],
+                     .width = camera["width_px"],
+                     .height = camera["height_px"]};
+  if (stack.empty()) return;
+  std::vector<std::int64_t> numbers;
+  for (const Snapshot& moment : run.show.moments) numbers.push_back(moment.frame.step);
+  try {
+    const auto frames = open_frames(stack);
+    constexpr int kLongest_px = 800;
+    run.show.pictures = picture_frames(*frames, numbers, kLongest_px, camera.value("rotation_deg", 0.0),
+                                       camera.value("distortion", 0.0));
+  } catch (const InputError& e) {
+    notes.push_back(fmt::format("{}: the report shows no camera frames of it: {}", run.name, e.what()));
+  }
+}
+
+/// Runs whose files are called alike are told apart by their folders: "gamma-0.9/experiment.h5".
+void tell_apart(std::vector<Run>& runs, const std::vector<std::unique_ptr<H5mdReader>>& readers) {
+  std::map<std::string, int> count;
+  for (const Run& run : runs) ++count[run.name];
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (count[runs[i].name] > 1) {
+      const fs::path file = fs::absolute(readers[i]->name());
+      runs[i].name = (file.parent_path().filename() / file.filename()).string();
+    }
+}
+
+/// A folder of our own, gone at the end.
+struct Scratch {
+  explicit Scratch(const fs::path& parent) {
+    std::string name = (parent / "twincell-film-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      throw ConfigError({.file = parent.string()}, "no folder for the film can be made there.");
+    path = name;
+    care_for_temporary(path);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+    forget_temporary(path);
+  }
+  fs::path path;
+};
+
+/// A camera, and where it comes from.
+struct LikeCamera {
+  CameraOptions options;
+  std::string origin;  ///< in words, after a comma; empty: the user's
+};
+
+/// The camera that took an experiment, as far as its frames tell: scale, kind of light and noise.
+LikeCamera camera_of(const TrajectoryInfo& experiment, const fs::path& stack) {
+  CameraOptions camera;
+  if (experiment.scale.pixels_per_sigma) camera.pixels_per_sigma = *experiment.scale.pixels_per_sigma;
+  if (stack.empty()) return {camera, ", the camera's default noise"};
+  const auto tracking = nlohmann::json::parse(experiment.tracking_json, nullptr, false);
+  const bool bright =
+      tracking.is_object() && tracking.contains("camera") && tracking["camera"].value("bright", false);
+  try {
+    camera = with_noise_of(*open_frames(stack), camera.pixels_per_sigma, bright, camera);
+  } catch (const InputError&) {  // show_frames() has told the user that the frames are gone
+    return {camera, ", the camera's default noise"};
+  }
+  return {
+      camera,
+      fmt::format(", noise as in the experiment's frames: {:.3g} grey levels and {:.3g} electrons a level",
+                  camera.read_noise, camera.electrons_per_level)};
+}
+
+/// The first simulation of a match, filmed over as many cycles as the experiment has.
+Checks::Filmed film(const Run& experiment, Run& simulation, std::size_t index,
+                    const TrajectorySource& trajectory, const TrajectoryInfo& of_experiment,
+                    const fs::path& stack, const ComparingOptions& options, Progress& progress) {
+  const LikeCamera like = options.camera ? LikeCamera{*options.camera, ""} : camera_of(of_experiment, stack);
+  const CameraOptions& camera = like.options;
+  std::size_t frames = experiment.n_frames;
+  if (experiment.phases_per_cycle > 0 && simulation.phases_per_cycle > 0)
+    frames = frames * static_cast<std::size_t>(simulation.phases_per_cycle) /
+             static_cast<std::size_t>(experiment.phases_per_cycle);
+  const Beginning seen(trajectory, std::max<std::size_t>(1, frames));
+  // Asked only here: a TMPDIR that does not exist is no matter for what needs none.
+  const Scratch scratch(options.scratch.empty() ? folder_for_temporaries() : options.scratch);
+  const fs::path tracked = scratch.path / "filmed.h5";
+  film_and_track(seen, camera, tracked, options.threads, simulation.show, progress);
+  return {.run = index,
+          .seen = analyze(seen, options.analysis),
+          .filmed = analyze(H5mdReader(tracked), options.analysis),
+          .camera = fmt::format("{:.4g} px per bead, {} of {} frames{}", camera.pixels_per_sigma,
+                                seen.n_frames(), trajectory.n_frames(), like.origin)};
+}
+
+}  // namespace
+
+Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress,
+                        std::vector<std::string>& notes) {
+  if (!options.stacks.empty() && options.stacks.size() != options.experiments.size())
+    throw ConfigError(
+        {.file = {}, .key = "--frames"},
+        fmt::format("{} stacks were named for {} experiments; give one for each, in their order.",
+                    options.stacks.size(), options.experiments.size()));
+  Comparison c;
+  std::vector<std::unique_ptr<H5mdReader>> readers;
+  for (const auto* files : {&options.experiments, &options.simulations})
+    for (const fs::path& file : *files) readers.push_back(std::make_unique<H5mdReader>(file));
+
+  const std::size_t most = moments_of_each(readers), n_experiments = options.experiments.size();
+  for (std::size_t i = 0; i < readers.size(); ++i) {
+    const H5mdReader& trajectory = *readers[i];
+    const Side side = i < n_experiments ? Side::experiment : Side::simulation;
+    const auto bar = progress(trajectory.name());
+    Run run = analyze_run(trajectory, side, options.analysis, *bar);
+    for (const std::size_t f : representative_frames(trajectory, most))
+      run.show.moments.push_back(snapshot(trajectory, f, run.cutoff));
+    if (side == Side::experiment)
+      show_frames(trajectory.info(), stack_behind(options, trajectory, i), run, notes);
+    for (auto& lines : tracer_lines(trajectory, i, options.analysis))
+      c.checks.tracers.push_back(std::move(lines));
+    c.runs.push_back(std::move(run));
+  }
+  tell_apart(c.runs, readers);
+  c.matches = match_runs(c.runs, options.tolerance);
+  for (const Match& match : c.matches) {
+    if (!options.film || match.experiments.empty() || match.simulations.empty()) continue;
+    const std::size_t e = match.experiments.front(), s = match.simulations.front();
+    const auto bar = progress("filming " + c.runs[s].name);
+    try {
+      c.checks.filmed.push_back(film(c.runs[e], c.runs[s], s, *readers[s], readers[e]->info(),
+                                     stack_behind(options, *readers[e], e), options, *bar));
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Error& error) {
+      notes.push_back(fmt::format("{} could not be filmed: {}", c.runs[s].name, error.what()));
+    }
+  }
+  std::size_t with_pictures = 0;
+  for (const Run& run : c.runs) with_pictures += run.show.pictures.empty() ? 0 : 1;
+  for (Run& run : c.runs)
+    thin(run.show.pictures, kMostPictureBytes / std::max<std::size_t>(1, with_pictures));
+  c.boundaries = find_boundaries(c.runs);
+  for (const fs::path& file : options.sweeps) add_sweep(file, c);
+  c.differences = find_differences(c.runs, c.matches, c.checks);
+  return c;
+}
+
+}  // namespace twincell

@@ -1,0 +1,213 @@
+#include "twin/twin.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/drive/plate_drive.hpp"
+#include "core/atomic_file.hpp"
+#include "core/config.hpp"
+#include "core/median.hpp"
+#include "core/output_rules.hpp"
+#include "core/toml_leaves.hpp"
+#include "imaging/stack/open_frames.hpp"
+#include "imaging/track/track.hpp"
+#include "imaging/track/write_trajectory.hpp"
+#include "sim/run/make_solver.hpp"
+#include "sim/run/simulation.hpp"
+#include "trajectory/calibration_file.hpp"
+#include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/unit_keys.hpp"
+
+namespace twincell {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A scene refuses larger shifts (start.perturbation).
+constexpr double kLargestShift = 0.01;
+/// By which a scene of ours is known when the twin is made anew.
+const char* const kSceneHead = "# The scene of a filmed cell, by twincell match.\n";
+
+void require_known(const CellDescription& cell, const fs::path& file) {
+  const auto need = [&](bool known, const char* key, const char* why) {
+    if (!known)
+      throw ConfigError({.file = file.string(), .key = key},
+                        fmt::format("is missing; a twin needs it {}.", why));
+  };
+  need(cell.origin.has_value(), "camera.origin_px", "to place the beads over the plate");
+  need(cell.width.has_value(), "cell.width", "to place the side walls");
+}
+
+const char* word_of_sides(const CellDescription& cell, const fs::path& file) {
+  if (cell.sides == Boundary::periodic) return "periodic";
+  if (cell.sides == Boundary::wall) return "walls";
+  throw ConfigError({.file = file.string(), .key = "cell.sides"},
+                    "\"open\" sides cannot be simulated: beads would leave; say \"walls\" or \"periodic\".");
+}
+
+/// The first frame at phase 0, from which the twin begins, and what it holds.
+struct FirstPacking {
+  std::size_t frame = 0, beads = 0;
+  double position_error = 0;
+  std::int64_t cycles = 0;  ///< whole ones from there
+};
+FirstPacking find_first_packing(const TrajectorySource& trajectory) {
+  FirstPacking b;
+  Frame frame;
+  for (b.frame = 0; b.frame < trajectory.n_frames(); ++b.frame) {
+    trajectory.read(b.frame, frame);
+    if (frame.phase == 0) break;
+  }
+  if (b.frame == trajectory.n_frames())
+    throw InputError({.file = trajectory.name()}, "no frame is at phase 0, where a simulation begins.");
+  b.beads = frame.n_present();
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < frame.position_sigma.size(); ++i)
+    if (frame.present(i))
+      for (const double e : {frame.position_sigma[i].x(), frame.position_sigma[i].z()})
+        if (std::isfinite(e)) errors.push_back(e);
+  if (!errors.empty()) b.position_error = upper_median(std::move(errors));
+  Frame last;
+  trajectory.read(trajectory.n_frames() - 1, last);
+  b.cycles = std::max<std::int64_t>(1, last.cycle - frame.cycle + 1);
+  return b;
+}
+
+void simulate(const sim::Scene& scene, const fs::path& output, const TwinProvenance& provenance, int threads,
+              Progress& progress) {
+  sim::RunState start = sim::placed(scene, progress);
+  const std::string said = provenance.of_simulation(scene, start.beads);
+  // A small bed on many threads waits for them at every step, without end where others use the processor too.
+  const int worth = std::min(threads, sim::threads_for(start.beads.size(), 0));
+  sim::Simulation run(scene, std::move(start), sim::SolverKind::best, worth);
+  run.settle(progress);
+  TrajectoryInfo info = run.trajectory_info();
+  info.provenance_json = said;
+  H5mdWriter writer(output, std::move(info));
+  run.run(writer, progress);
+  writer.finish();
+}
+
+}  // namespace
+
+std::string twin_scene(const std::string& base, const std::string& base_name, const CellDescription& cell,
+                       const fs::path& experiment, std::size_t frame, std::int64_t cycles) {
+  const std::string tilt =
+      cell.side_tilt && cell.sides == Boundary::wall
+          ? fmt::format("side_tilt = [{:.17g}, {:.17g}]\n", (*cell.side_tilt)[0], (*cell.side_tilt)[1])
+          : "";
+  const std::string stated = fmt::format(
+      "[cell]\nwidth = {:.17g}\nsides = \"{}\"\n{}[drive]\namplitude = {:.17g}\nomega = {:.17g}\n"
+      "[start]\nkind = \"trajectory\"\nfrom = '''{}'''\nframe = {}\n[time]\ndiscard = 0\ncycles = {}\nphases "
+      "= {}\n",
+      *cell.width, word_of_sides(cell, "the cell"), tilt, cell.drive()->amplitude, cell.drive()->omega,
+      experiment.string(), frame, cycles, cell.phase_lock.frames_per_cycle);
+  std::string scale;
+  if (cell.scale.sigma_m) scale += fmt::format("sigma_m = {:.17g}\n", *cell.scale.sigma_m);
+  if (cell.scale.gravity_m_s2) scale += fmt::format("gravity_m_s2 = {:.17g}\n", *cell.scale.gravity_m_s2);
+  Config scene = base_name.empty()
+                     ? Config::from_text("preset = \"fortini-huang-2015\"\n", "preset of the twin")
+                     : Config::from_text(base, base_name);
+  reduce_units(scene);
+  // What the scene says in laboratory units was converted with its own scale.
+  for (const auto& [key, of_cell] :
+       {std::pair{"sigma_m", cell.scale.sigma_m}, std::pair{"gravity_m_s2", cell.scale.gravity_m_s2}}) {
+    constexpr double kAgree = 1e-9;
+    if (!of_cell || !scene.root().has("scale")) continue;
+    const ConfigSection own = scene.root().section("scale");
+    if (const auto here = own.number(key); here && std::abs(*here / *of_cell - 1) > kAgree)
+      throw ConfigError(
+          own.where(key),
+          fmt::format("is {:g} and the cell's {} is {:g}; one of them is wrong.", *here, key, *of_cell));
+  }
+  // One file speaks for cell and contacts.
+  if (!cell.included.file.empty() && !scene.root().has("calibration"))
+    scene.assign("calibration.from=" + toml_quoted(fs::absolute(cell.included.file).string()));
+  include_calibration(scene, base_name, Includer::scene);
+  Config measured =
+      Config::from_text(stated + (scale.empty() ? "" : "[scale]\n" + scale), "the cell description");
+  scene.yield_to(measured, "drive", {"amplitude", "omega", "frequency", "gamma", "k_m", "peak_velocity"});
+  scene.yield_to(measured, "start", {"kind", "from", "frame", "velocity_scale"});
+  scene.overlay(std::move(measured));
+  return resolved_text(scene);
+}
+
+Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinProvenance& provenance,
+               const ProgressOf& progress) {
+  CellDescription cell = read_cell(options.cell_file);
+  require_known(cell, options.cell_file);
+  (void)word_of_sides(cell, options.cell_file);
+  std::string drive;
+  if (lacks_drive(cell)) {
+    const auto bar = progress("the plate's edge");
+    drive = complete_drive(cell, options.cell_file, options.stack, options.threads, *bar);
+  }
+  const std::string base = options.scene.empty() ? std::string() : read_text_file(options.scene);
+  Twin twin{.experiment = folder / "experiment.h5", .scene = folder / "scene.toml"};
+  twin.drive = drive;
+  const auto scene_text = [&](std::size_t frame, std::int64_t cycles) {
+    return twin_scene(base, options.scene.string(), cell, twin.experiment.filename(), frame, cycles);
+  };
+  // A scene that cannot be is refused before the stack is read.
+  (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
+
+  const auto require_agreement = [&](const DriveCheck& check) {
+    if (!check.disagreement.empty())
+      throw ConfigError({.file = options.cell_file.string(), .key = "drive"},
+                        check.disagreement + "; correct one of them, or say --trust-stated-drive.");
+  };
+  DriveCheck check{.not_comparable = "the stated drive is trusted"};
+  const bool checked = drive.empty() && !options.trust_stated_drive;
+  if (checked) {
+    const auto bar = progress("the plate's edge");
+    check = check_by_plate(cell, options.stack, options.threads, *bar);
+    require_agreement(check);
+  }
+  const auto frames = open_frames(options.stack);
+  claim_shared_folder(folder, twin_folder());
+
+  LocatorOptions locator = options.locator;
+  locator.preprocess.bright |= cell.bright;
+  if (locator.diameter_px <= 0) locator.diameter_px = cell.pixels_per_sigma.value_or(0);
+  {
+    const auto bar = progress("tracking");
+    const TrackedStack stack =
+        track_stack(*frames, locator, options.link, cell, options.threads, *bar, {}, folder);
+    TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
+    if (checked && check.by.empty()) {  // the plate is not in the picture
+      BedSteps bed(plan.info);
+      write_trajectory(stack, plan, cell, bed);
+      check = check_by_bed(bed, plan.info, check.frame_rate_hz);
+      require_agreement(check);
+    }
+    if (drive.empty()) record(check, plan.info);
+    plan.info.provenance_json = provenance.of_experiment(cell);
+    H5mdWriter writer(twin.experiment, plan.info);
+    write_trajectory(stack, plan, cell, writer);
+    writer.finish();
+    twin.pixels_per_sigma = plan.pixel_frame.pixels_per_sigma;
+  }
+  const FirstPacking begin = find_first_packing(H5mdReader(twin.experiment));
+  twin.beads = begin.beads;
+  twin.cycles = begin.cycles;
+  twin.position_error = begin.position_error;
+  const std::string text = std::string(kSceneHead) + scene_text(begin.frame, begin.cycles);
+  write_text_file(twin.scene, text, Product::text("a scene", kSceneHead));
+  for (int k = 1; k <= options.twins; ++k) {
+    std::vector<std::string> assignments = options.assignments;
+    if (k > 1) {
+      assignments.push_back(fmt::format("start.seed={}", k));
+      assignments.push_back(
+          fmt::format("start.perturbation={:.9g}", std::min(kLargestShift, begin.position_error)));
+    }
+    twin.simulations.push_back(folder / fmt::format("simulation-{}.h5", k));
+    const auto bar = progress(fmt::format("simulating twin {}", k));
+    simulate(sim::read_scene_text(text, twin.scene.string(), assignments, folder), twin.simulations.back(),
+             provenance, options.threads, *bar);
+  }
+  return twin;
+}
+
+}  // namespace twincell

@@ -1,0 +1,73 @@
+#include "twin/virtual_experiment.hpp"
+
+#include <map>
+
+#include "core/atomic_file.hpp"
+#include "imaging/camera/synthetic_camera.hpp"
+#include "imaging/cell/cell.hpp"
+#include "imaging/stack/open_frames.hpp"
+#include "imaging/stack/representative_frames.hpp"
+#include "imaging/track/track.hpp"
+#include "imaging/track/write_trajectory.hpp"
+#include "trajectory/formats/h5md_file.hpp"
+
+namespace twincell {
+namespace {
+
+/// Pictures of those moments that were filmed.
+void add_pictures(const TrajectorySource& filmed, const std::filesystem::path& frames,
+                  const CellDescription& cell, const TrackedStack& stack, Show& show) {
+  std::map<std::int64_t, std::int64_t> number_of_step;
+  Frame frame;
+  for (std::size_t f = 0; f < filmed.n_frames(); ++f) {
+    filmed.read(f, frame);
+    number_of_step[frame.step] = static_cast<std::int64_t>(f);
+  }
+  std::vector<std::int64_t> numbers;
+  std::vector<std::size_t> moments;
+  for (std::size_t m = 0; m < show.moments.size(); ++m)
+    if (const auto found = number_of_step.find(show.moments[m].frame.step); found != number_of_step.end()) {
+      numbers.push_back(found->second);
+      moments.push_back(m);
+    }
+  const auto source = open_frames(frames);
+  const auto pictures = picture_frames(*source, numbers);
+  show.pictures.assign(show.moments.size(), {});
+  for (std::size_t i = 0; i < moments.size(); ++i) show.pictures[moments[i]] = pictures[i];
+  const double s = *cell.pixels_per_sigma;
+  show.camera = {
+      .pixels_per_sigma = s,
+      .origin_x = cell.origin->x_px - filmed.info().box.lower.x() * s,  // the film's cell begins at 0
+      .origin_y = cell.origin->y_px,
+      .width = stack.width_px,
+      .height = stack.height_px};
+}
+
+}  // namespace
+
+void film_and_track(const TrajectorySource& simulation, const CameraOptions& camera,
+                    const std::filesystem::path& tracked, int threads, Show& show, Progress& progress) {
+  std::filesystem::path place = tracked;
+  place += ".frames";
+  const AtomicPath film(place, Product::whole_folder("a film"));  // never committed: gone at the end
+  const std::filesystem::path frames = film.part() / "frames";
+  CameraOptions whole = camera;
+  whole.drop = whole.doubled = 0;  // the phases of the film are counted, not found
+  render(simulation, whole, RenderJob{.folder = frames, .threads = threads}, progress);
+
+  const CellDescription cell = read_cell(frames / "CELL.toml");
+  LocatorOptions locator;
+  locator.diameter_px = *cell.pixels_per_sigma;
+  locator.preprocess.bright = cell.bright;
+  const auto source = open_frames(frames);
+  const TrackedStack stack = track_stack(*source, locator, {}, cell, threads, progress, {}, film.part());
+  TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
+  // Where the simulation marks no tracers, none are darker in the film: both are then chosen by one rule.
+  if (simulation.info().tracer.empty()) plan.info.tracer.clear();
+  H5mdWriter writer(tracked, plan.info);
+  write_trajectory(stack, plan, cell, writer);
+  writer.finish();
+  add_pictures(simulation, frames, cell, stack, show);
+}
+
+}  // namespace twincell

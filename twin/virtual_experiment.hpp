@@ -1,0 +1,39 @@
+#pragma once
+/// \file
+/// The way of an experiment, gone by a simulation: camera, locator, tracker.
+
+#include <algorithm>
+#include <filesystem>
+
+#include "analysis/runs/phase_diagram.hpp"
+#include "core/progress.hpp"
+#include "imaging/camera/options.hpp"
+#include "trajectory/trajectory.hpp"
+
+namespace twincell {
+
+/// The first `n` frames of a trajectory, as a trajectory.
+class Beginning : public TrajectorySource {
+ public:
+  Beginning(const TrajectorySource& whole, std::size_t n)
+      : whole_(whole), n_(std::min(n, whole.n_frames())) {}
+  [[nodiscard]] const TrajectoryInfo& info() const override { return whole_.info(); }
+  [[nodiscard]] std::size_t n_frames() const override { return n_; }
+  void read(std::size_t index, Frame& frame) const override { whole_.read(index, frame); }
+  [[nodiscard]] std::string name() const override { return whole_.name(); }
+
+ private:
+  const TrajectorySource& whole_;
+  std::size_t n_;
+};
+
+/// Films a simulation and tracks the film as `track` would, with a cell description that says what the camera
+/// knows. No frame is dropped or doubled, whatever the camera says. The tracked trajectory is written to
+/// `tracked` (H5MD). Frames wait in a folder beside it, which is gone at the end. \param show moments that
+/// are to be looked at get their pictures and the camera (frame.step names the frames) \throws ConfigError,
+/// RunError as render(), InputError as track_stack()
+void film_and_track(const TrajectorySource& simulation, const CameraOptions& camera,
+                    const std::filesystem::path& tracked, int threads, Show& show,
+                    Progress& progress = Progress::none());
+
+}  // namespace twincell
