@@ -277,9 +277,6 @@ std::vector<int> read_int_attribute(hid_t object, const std::string& name) {
   return values;
 }
 
-namespace {
-
-/// A dataset that claims more than the file can hold is damaged, and asks for memory that nobody has.
 void require_stored(hid_t dataset, const std::string& name) {
   // Deflate packs 1032 to 1 at most; small datasets may be all fill value.
   constexpr double kMostPacked = 1100, kSmall = 1 << 20;
@@ -287,13 +284,31 @@ void require_stored(hid_t dataset, const std::string& name) {
   for (const hsize_t n : extents(dataset)) claimed *= static_cast<double>(n);
   const Handle type = own(H5Dget_type(dataset), "reading a type");
   claimed *= static_cast<double>(H5Tget_size(type.get()));
-  const auto stored = static_cast<double>(H5Dget_storage_size(dataset));
+  const auto stored = static_cast<double>(stored_bytes(dataset));
   if (claimed > kSmall + kMostPacked * stored)
     throw RunError(fmt::format("{}: the dataset claims {:.3g} bytes, and the file holds {:.3g} of them.",
                                name, claimed, stored));
+  // Packed twice, a kilobyte unpacks to a gigabyte before its size is compared with anything.
+  const Handle layout = own(H5Dget_create_plist(dataset), "reading the layout");
+  int packings = 0;
+  for (int i = 0; i < H5Pget_nfilters(layout.get()); ++i) {
+    unsigned flags = 0;
+    std::size_t values = 0;
+    if (H5Pget_filter2(layout.get(), static_cast<unsigned>(i), &flags, &values, nullptr, 0, nullptr,
+                       nullptr) == H5Z_FILTER_DEFLATE)
+      ++packings;
+  }
+  if (packings > 1)
+    throw RunError(fmt::format("{}: the dataset is compressed {} times over.", name, packings));
 }
 
-}  // namespace
+std::uint64_t stored_bytes(hid_t dataset) {
+  // What HDF5 says is what the file says of itself.
+  const Handle file = own(H5Iget_file_id(dataset), "finding the file");
+  hsize_t file_size = 0;
+  check(H5Fget_filesize(file.get(), &file_size), "reading the size of the file");
+  return std::min<std::uint64_t>(H5Dget_storage_size(dataset), file_size);
+}
 
 template <class T>
 std::vector<T> read_dataset(hid_t parent, const std::string& name) {

@@ -4,6 +4,7 @@
 
 #include <hdf5.h>
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -69,6 +70,13 @@ template <class T>
 std::vector<T> read_dataset(hid_t parent, const std::string& name);
 /// Extents of a dataset; empty for a scalar.
 std::vector<hsize_t> extents(hid_t dataset);
+
+/// Bytes that the file holds of a dataset, compressed or not; never more than the file is long.
+std::uint64_t stored_bytes(hid_t dataset);
+/// Refuses a dataset that claims more than the file can hold of it: more than a megabyte and 1100 times the
+/// bytes stored, which is above what deflate packs; or that is deflated more than once. Reading it would take
+/// memory and time that the file does not explain. \throws RunError
+void require_stored(hid_t dataset, const std::string& name);
 
 /// A dataset that grows along its first dimension, one record per frame.
 class Series {

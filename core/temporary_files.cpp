@@ -34,9 +34,13 @@ struct Slot {
   std::array<char, 4096> path{};
 };
 std::array<Slot, 64> slots;
+/// Held while a slot is searched for: a search for one path reads those of others, and another
+/// thread may free such a slot meanwhile. A signal handler takes no lock: it reads filled slots alone.
+std::mutex slots_mutex;
 
 void remember(const fs::path& path) {
   const std::string text = path.string();
+  const std::lock_guard guard(slots_mutex);
   for (Slot& slot : slots) {
     if (text.size() >= slot.path.size() || slot.taken.exchange(true)) continue;
     std::memcpy(slot.path.data(), text.c_str(), text.size() + 1);
@@ -46,6 +50,7 @@ void remember(const fs::path& path) {
 }
 
 void forget(const fs::path& path) {
+  const std::lock_guard guard(slots_mutex);
   for (Slot& slot : slots)
     if (slot.filled.load() && path.string() == slot.path.data()) {
       slot.filled.store(false);

@@ -11,6 +11,8 @@
 
 namespace twincell::frames {
 
+extern const Reader tiff_reader, picture_reader;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,6 +22,15 @@ bool is_listed(const std::string& extensions, const fs::path& file) {
   std::transform(e.begin(), e.end(), e.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return !e.empty() && (extensions + " ").find(e + " ") != std::string::npos;
+}
+
+/// A picture or a TIFF stack by its content, whichever of the two its name says. Whatever else is named like
+/// a picture is damaged, and is not handed to the video decoder, which takes any bytes.
+std::unique_ptr<FrameSource> open_picture(const fs::path& file) {
+  const Reader& reader = reader_of(head_of(file));
+  if (&reader != &tiff_reader && &reader != &picture_reader)
+    refuse(file, "is not what its name says: its content is that of no picture.");
+  return reader.open(file, "");
 }
 
 class Folder final : public FrameSource {
@@ -34,8 +45,7 @@ class Folder final : public FrameSource {
     // Stacks of many pages, cut into files: then every file is asked how many it holds.
     if (source_->announced() > 1) {
       announced_ = source_->announced();
-      for (std::size_t i = 1; i < files_.size(); ++i)
-        announced_ += reader_of(head_of(files_[i])).open(files_[i], "")->announced();
+      for (std::size_t i = 1; i < files_.size(); ++i) announced_ += open_picture(files_[i])->announced();
     }
   }
 
@@ -51,7 +61,7 @@ class Folder final : public FrameSource {
 
  private:
   void open(std::size_t i) {
-    source_ = reader_of(head_of(files_[i])).open(files_[i], "");
+    source_ = open_picture(files_[i]);
     at_ = i;
   }
 
@@ -65,7 +75,7 @@ class Folder final : public FrameSource {
 }  // namespace
 
 std::unique_ptr<FrameSource> open_folder(const fs::path& folder) {
-  const std::string pictures = ".png .tif .tiff .jpg .jpeg .bmp .pgm";
+  const std::string pictures = fmt::format("{} {}", picture_reader.extensions, tiff_reader.extensions);
   std::string all;
   for (const Reader* reader : readers()) all += fmt::format("{} ", reader->extensions);
   std::vector<fs::path> files;

@@ -56,9 +56,9 @@ std::vector<Found> stacks_in(hid_t file) {
 class Hdf5Stack final : public FrameSource {
  public:
   Hdf5Stack(const fs::path& file, const std::string& inside) : file_(file) {
-    const ByteFile bytes(file);
+    const ByteFile readable(file);
     try {
-      open(inside, bytes.size());
+      open(inside);
     } catch (const RunError& e) {
       // HDF5's own reason; the file is at fault, not the run.
       refuse(file, fmt::format("cannot be read as HDF5: {}", e.what()));
@@ -87,7 +87,7 @@ class Hdf5Stack final : public FrameSource {
   [[nodiscard]] StackInfo info() const override { return info_; }
 
  private:
-  void open(const std::string& inside, std::uint64_t file_size) {
+  void open(const std::string& inside) {
     const h5::Handle file = open_file(file_);
     path_ = inside.empty() ? the_only_one(file.get()) : inside;
     if (!h5::exists(file.get(), path_)) refuse(file_, fmt::format("holds no dataset {}.", path_));
@@ -103,9 +103,10 @@ class Hdf5Stack final : public FrameSource {
     choose_type(object.get());
     // What the dataset itself takes on the disk: other datasets of the file explain nothing of it. As for
     // pictures, 8 bytes a pixel: so much at least is made of it.
-    const std::uint64_t stored = std::min<std::uint64_t>(H5Dget_storage_size(object.get()), file_size);
+    const std::uint64_t stored = h5::stored_bytes(object.get());
     require_plausible_size(file_, shape_[2], shape_[1], 8, stored);
     require_plausible_chunks(object.get(), stored);
+    h5::require_stored(object.get(), path_);  // all frames of it
     dataset_ =
         h5::own(H5Dopen2(file.get(), path_.c_str(), cache_for(object.get()).get()), "opening " + path_);
     info_.width = static_cast<int>(shape_[2]);
@@ -141,7 +142,7 @@ class Hdf5Stack final : public FrameSource {
   }
   /// A compressed chunk is unpacked as a whole, before a pixel of it is read.
   void require_plausible_chunks(hid_t dataset, std::uint64_t stored) const {
-    constexpr double always = 64U << 20, compressed = 2000;
+    constexpr double always = 64U << 20, compressed = 1100;  // deflate: 1032
     const h5::Handle layout = h5::own(H5Dget_create_plist(dataset), "reading the layout");
     if (H5Pget_layout(layout.get()) != H5D_CHUNKED) return;
     std::array<hsize_t, 3> chunk{};

@@ -189,6 +189,17 @@ TEST(SpoiltFrames, ASpoiltFrameInTheMiddleIsNamed) {
   expect_words(refusal(folder.path()), {"f1.png", "truncated"});
 }
 
+// Any bytes may be a film to ffmpeg; in a folder of pictures they are a spoilt picture, and ffmpeg does not
+// see them.
+TEST(SpoiltFrames, BytesNamedLikeAPictureInAFolder) {
+  const TemporaryFolder folder;
+  write(folder / "f1.png", pattern<uchar>(16, 16));
+  std::string bytes = contents(folder / "f1.png");
+  bytes[0] = '\0';
+  put(folder / "f2.png", bytes);
+  expect_words(refusal(folder.path()), {"f2.png", "is not what its name says", "no picture"});
+}
+
 TEST(FrameSource, ContentDecidesNotTheName) {
   const TemporaryFolder folder;
   write(folder / "a.tif", pattern<ushort>(9, 7));

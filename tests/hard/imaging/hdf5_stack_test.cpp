@@ -184,3 +184,61 @@ TEST(Hdf5Stack, WhatACompressedDatasetClaims) {
   }
   expect_words(refusal(path), {"a.h5", "chunks of /a", "16384 x 256 x 256", "cannot hold"});
 }
+
+// All frames of a stack, not one alone, must be explained by what is stored: a film of zeros costs its reader
+// hours.
+TEST(Hdf5Stack, MoreFramesThanAreStored) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.h5";
+  const auto claim = [&](hsize_t frames, const std::vector<hsize_t>& chunk) {
+    const h5::Handle file = new_file(path);
+    const h5::Handle create = h5::own(H5Pcreate(H5P_DATASET_CREATE), "plist");
+    if (!chunk.empty()) {
+      h5::check(H5Pset_chunk(create.get(), 3, chunk.data()), "chunk");
+      h5::check(H5Pset_deflate(create.get(), 1), "deflate");
+    }
+    const std::vector<hsize_t> shape = {frames, 100, 100}, first = {1, 100, 100}, start = {0, 0, 0};
+    const h5::Handle space = h5::own(H5Screate_simple(3, shape.data(), nullptr), "space");
+    const h5::Handle dataset = h5::own(
+        H5Dcreate2(file.get(), "/a", H5T_STD_U8LE, space.get(), H5P_DEFAULT, create.get(), H5P_DEFAULT), "a");
+    if (chunk.empty()) return;  // the first frame written would store all
+    const h5::Handle memory = h5::own(H5Screate_simple(3, first.data(), nullptr), "space");
+    h5::check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, first.data(), nullptr),
+              "a");
+    std::vector<std::uint8_t> pixels(10'000);
+    std::iota(pixels.begin(), pixels.end(), std::uint8_t{0});
+    h5::check(
+        H5Dwrite(dataset.get(), H5T_NATIVE_UINT8, memory.get(), space.get(), H5P_DEFAULT, pixels.data()),
+        "a");
+  };
+  claim(100'000'000, {1, 100, 100});
+  expect_words(refusal(path), {"a.h5", "/a", "claims 1e+12 bytes"});
+  claim(100'000'000, {});
+  expect_words(refusal(path), {"a.h5", "/a", "claims 1e+12 bytes", "holds 0"});
+  // A recording of a second that was ended after its first frame is read: what is missing is black.
+  claim(100, {1, 100, 100});
+  EXPECT_EQ(refusal(path), "");
+  EXPECT_EQ(read_all(path).size(), 100U);
+}
+
+// Zeros deflated twice shrink to a millionth, and are unpacked before their size is compared with a chunk's.
+TEST(Hdf5Stack, DeflatedTwice) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.h5";
+  const auto write_deflated = [&](int times) {
+    const h5::Handle file = new_file(path);
+    const h5::Handle create = h5::own(H5Pcreate(H5P_DATASET_CREATE), "plist");
+    const std::vector<hsize_t> shape = {2, 5, 6};
+    h5::check(H5Pset_chunk(create.get(), 3, shape.data()), "chunk");
+    for (int i = 0; i < times; ++i) h5::check(H5Pset_deflate(create.get(), 9), "deflate");
+    const h5::Handle space = h5::own(H5Screate_simple(3, shape.data(), nullptr), "space");
+    const h5::Handle dataset = h5::own(
+        H5Dcreate2(file.get(), "/a", H5T_STD_U8LE, space.get(), H5P_DEFAULT, create.get(), H5P_DEFAULT), "a");
+    const std::vector<std::uint8_t> zeros(60);
+    h5::check(H5Dwrite(dataset.get(), H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data()), "a");
+  };
+  write_deflated(1);
+  EXPECT_EQ(refusal(path), "");
+  write_deflated(2);
+  expect_words(refusal(path), {"a.h5", "/a", "compressed 2 times over"});
+}

@@ -11,6 +11,9 @@
 #include <thread>
 #include <vector>
 
+#include "core/temporary_files.hpp"
+#include "tests/support/temporary_folder.hpp"
+
 namespace twincell {
 namespace {
 
@@ -60,6 +63,29 @@ TEST(InParallel, TheFirstFailureIsThrownAndNothingBeginsAfterIt) {
     }
     EXPECT_GE(begun, 11);
     EXPECT_LT(begun, 100000);
+  }
+}
+
+// Under the thread sanitizer, as all tests here.
+TEST(InParallel, ManyThreadsMakeAndForgetTemporaries) {
+  const TemporaryFolder folder;
+  std::vector<std::filesystem::path> kept(40);
+  in_parallel(400, 4, [&](std::size_t i) {
+    // Names of unequal length, so that one written over another would show.
+    const auto path = make_temporary(folder.path() / std::string(1 + i % 7, 'x'), false);
+    if (i % 10 == 0)
+      kept[i / 10] = path;
+    else
+      forget_temporary(path);
+  });
+  remove_temporaries();
+  std::size_t left = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    left += entry.is_regular_file() ? 1 : 0;
+  EXPECT_EQ(left, 360U);
+  for (const auto& path : kept) {
+    EXPECT_FALSE(std::filesystem::exists(path)) << path;
+    forget_temporary(path);
   }
 }
 
