@@ -36,6 +36,18 @@ double scale_of(const CellDescription& cell, const CellGeometry& geometry, const
                     "camera.pixels_per_sigma, or cell.width where both walls are in the picture.");
 }
 
+/// Where the plate is not in the picture, the lowest row of beads, or the picture's own border, passes for an
+/// edge. \throws InputError if the edge lies more than half a bead from where the cell says its plate is
+void require_place_of_plate(const CellDescription& cell, const CellGeometry& geometry, const DriveFit& lock) {
+  if (!cell.origin || !cell.pixels_per_sigma) return;
+  constexpr double kFarthest = 0.5;
+  const double row = geometry.plate_row - lock.z0;
+  if (std::abs(row - cell.origin->y_px) > kFarthest * *cell.pixels_per_sigma)
+    throw InputError({}, fmt::format("the lowest edge in the picture lies at row {:.1f}, and the plate, by "
+                                     "camera.origin_px, at {:.1f}",
+                                     row, cell.origin->y_px));
+}
+
 }  // namespace
 
 bool lacks_drive(const CellDescription& cell) {
@@ -50,10 +62,12 @@ std::string complete_drive(CellDescription& cell, const std::filesystem::path& c
   const auto seen = [&] {
     try {
       const CellGeometry geometry = fit_cell_geometry(edges);
-      return std::pair(geometry,
-                       fit_drive(geometry.heights_px(), {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
-                                                         .mend = true,
-                                                         .model_error = kHeightModelError_px}));
+      const DriveFit lock =
+          fit_drive(geometry.heights_px(), {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
+                                            .mend = true,
+                                            .model_error = kHeightModelError_px});
+      require_place_of_plate(cell, geometry, lock);
+      return std::pair(geometry, lock);
     } catch (const InputError& e) {
       throw InputError({.file = stack.string()},
                        fmt::format("the drive is not stated, and cannot be seen on the plate: {}", e.what()));
@@ -118,7 +132,7 @@ class FirstFrames : public FrameSource {
 };
 
 constexpr double kErrors = 5, kShare = 0.03, kPixels = 0.3;
-/// A bed's lower side departs from its plate by up to 3 % of A (recovery.BedDrive): landings, beads pushed
+/// A bed's lower side departs from its plate by up to 4 % of A (recovery.BedDrive): landings, beads pushed
 /// up.
 constexpr double kShareOfBed = 0.1;
 
@@ -171,10 +185,12 @@ DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::pa
                                             diameter_for_edges(stack, cell.bright, scale), threads, progress);
   check.frame_rate_hz = frame_rate_of(cell.frame_rate_hz, edges, stack);
   try {
-    const DriveFit seen = fit_drive(fit_cell_geometry(edges).heights_px(),
-                                    {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
-                                     .mend = true,
-                                     .model_error = kHeightModelError_px});
+    const CellGeometry geometry = fit_cell_geometry(edges);
+    const DriveFit seen =
+        fit_drive(geometry.heights_px(), {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
+                                          .mend = true,
+                                          .model_error = kHeightModelError_px});
+    require_place_of_plate(cell, geometry, seen);
     check.by = "plate";
     check.amplitude = seen.amplitude / scale;
     check.amplitude_error = seen.amplitude_error / scale;

@@ -8,6 +8,7 @@
 
 #include "core/atomic_file.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/rigid_bed.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "twin/twin.hpp"
 
@@ -64,13 +65,13 @@ fs::path film_above_plate(const TemporaryFolder& folder, double gamma, int seed)
   return stack;
 }
 
-/// CELL.toml of a stack with another amplitude.
-fs::path with_amplitude(const fs::path& stack, double amplitude) {
+/// CELL.toml of a stack with another line for the amplitude.
+fs::path with_amplitude(const fs::path& stack, const std::string& line_of_amplitude) {
   std::ifstream in(stack / "CELL.toml");
   fs::path path = stack / "misstated.toml";
   std::ofstream out(path);
   for (std::string line; std::getline(in, line);)
-    out << (line.rfind("amplitude", 0) == 0 ? "amplitude = " + std::to_string(amplitude) : line) << "\n";
+    out << (line.rfind("amplitude", 0) == 0 ? line_of_amplitude : line) << "\n";
   return path;
 }
 
@@ -205,8 +206,7 @@ TEST(Match, AStatedDriveIsHeldAgainstTheBedWhereThePlateIsNotInThePicture) {
   for (const double gamma : {0.9, 1.6}) {
     const TemporaryFolder folder;
     const fs::path stack = film_above_plate(folder, gamma, 1);
-    const double stated = gamma / 1.6;
-    const fs::path cell = with_amplitude(stack, stated);
+    const fs::path cell = with_amplitude(stack, "amplitude = " + std::to_string(gamma / 1.6));
     const Ran refused = run_program({"match", stack, cell, "-o", folder / "twin", "--twins", "1", "--no-film",
                                      "--set", "time.steps_per_contact=20", "-q"});
     EXPECT_EQ(refused.code, 2) << refused.err;
@@ -214,16 +214,40 @@ TEST(Match, AStatedDriveIsHeldAgainstTheBedWhereThePlateIsNotInThePicture) {
     ASSERT_NE(seen, std::string::npos) << refused.err;
     EXPECT_NEAR(std::stod(refused.err.substr(seen + 4)), gamma, 0.1 * gamma) << refused.err;
     EXPECT_NE(refused.err.find("the bed"), std::string::npos) << refused.err;
-    EXPECT_NE(refused.err.find(std::to_string(stated).substr(0, 5)), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find(gamma < 1 ? "states 0.5625" : "states 1;"), std::string::npos) << refused.err;
     EXPECT_NE(refused.err.find("--trust-stated-drive"), std::string::npos) << refused.err;
     EXPECT_FALSE(fs::exists(folder / "twin/experiment.h5"));
-    // A trajectory that track did not check is checked by compare.
+    // track notes it and keeps it; compare refuses what it kept.
     const fs::path kept = folder / "kept.h5";
     const Ran noted = run_program({"track", stack, "--cell", cell, "-o", kept});
     EXPECT_EQ(noted.code, 0);
     EXPECT_NE(noted.err.find("does not fit the film"), std::string::npos) << noted.err;
     const Ran compared = run_program({"compare", "--experiment", kept, "-o", folder / "report", "-q"});
     EXPECT_EQ(compared.code, 2) << compared.err;
+    // What passes for an edge without the plate does not measure a drive either.
+    const Ran unknown = run_program({"match", stack, with_amplitude(stack, ""), "-o", folder / "twin", "-q"});
+    EXPECT_EQ(unknown.code, 3) << unknown.err;
+    EXPECT_NE(unknown.err.find("cannot be seen on the plate"), std::string::npos) << unknown.err;
+  }
+}
+
+TEST(Match, CompareChecksADriveThatNoTrackingHasChecked) {
+  const TemporaryFolder folder;
+  MemoryTrajectory bed =
+      test::rigid_bed({.gamma = 0.9, .rows = 5, .phases = 20, .cycles = 6, .source = "experiment"});
+  for (const double stated : {0.9, 0.9 / 1.6}) {
+    bed.info().drive->amplitude = stated;
+    const fs::path file = folder / ("states-" + std::to_string(stated) + ".h5");
+    H5mdWriter writer(file, bed.info());
+    for (const Frame& frame : bed.frames()) writer.append(frame);
+    writer.finish();
+    const Ran ran = run_program(
+        {"compare", "--experiment", file, "-o", folder / ("report-" + file.stem().string()), "-q"});
+    EXPECT_EQ(ran.code, stated == 0.9 ? 0 : 2) << ran.err;
+    if (stated != 0.9) {
+      EXPECT_NE(ran.err.find("A = 0.9 "), std::string::npos) << ran.err;
+      EXPECT_NE(ran.err.find("0.5625"), std::string::npos) << ran.err;
+    }
   }
 }
 
