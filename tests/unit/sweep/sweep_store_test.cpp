@@ -62,7 +62,8 @@ TEST(SweepStore, OnlyASweepsFolderIsWrittenInto) {
 // The first paper's beds take 650 bytes a bead, so that the four points take 1.3, 1.3, 2.6 and 2.6 MB.
 TEST(SweepMemory, PointsThatRunAtOnceMustFitTogether) {
   const TemporaryFolder folder;
-  const std::string scene = "[scene]\npreset = \"fortini-huang-2015\"\ncell.width = 400.0\n";
+  const std::string scene =
+      "[scene]\npreset = \"fortini-huang-2015\"\ncell.width = 400.0\ntime.integrator = \"verlet\"\n";
   const Plan grid = read_plan_text(
       scene + "drive.gamma = 1.5\n[axes]\nbeads.count = [2000, 4000]\ndrive.start = [\"abrupt\", \"ramp\"]\n",
       "plan.toml");
