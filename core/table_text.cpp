@@ -22,7 +22,9 @@ bool is_number(const std::string& text) {
 
 std::string read_table_text(const std::filesystem::path& file) {
   std::string text = read_text_file(file);
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+  // The two bytes alone may begin a name in another encoding; UTF-16 of a table holds zero bytes as well.
+  const bool marked = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+  if (marked && text.find('\0') != std::string::npos)
     throw InputError({.file = file.string(), .key = {}}, "is UTF-16 text; save it as UTF-8.");
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   std::size_t kept = 0;

@@ -78,7 +78,7 @@ TEST(Tables, MarksAndLineEndsOfOtherSystemsChangeNothing) {
 TEST(Tables, WhatIsNoTableIsRefusedByEveryReader) {
   const TemporaryFolder folder;
   struct Case {
-    const char *text, *words;
+    std::string text, words;
   };
   const Case cases[] = {
       {"<A>,<B>,<B><R>\n0,2,2<r>\n1,3,3<r>\n", "twice"},
@@ -88,7 +88,7 @@ TEST(Tables, WhatIsNoTableIsRefusedByEveryReader) {
       {"<A>,<B><R>\n0,2<r>\n1\n", ":3:"},
       {"<A>,<B><R>\n0,2<r>\n1,three<r>\n", "three"},
       {"<A>,<B><R>\n0,2<r>\n1,inf<r>\n", "inf"},
-      {"\xFF\xFE<\0A\0", "UTF-16"},
+      {std::string("\xFF\xFE<\0A\0", 6), "UTF-16"},
       {"", ""},
   };
   for (const TableReader& reader : kReaders)
