@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "calibration/camera/cell_geometry.hpp"
 #include "calibration/drive/drive_fit.hpp"
@@ -36,16 +37,24 @@ double scale_of(const CellDescription& cell, const CellGeometry& geometry, const
                     "camera.pixels_per_sigma, or cell.width where both walls are in the picture.");
 }
 
-/// Where the plate is not in the picture, the lowest row of beads, or the picture's own border, passes for an
-/// edge. \throws InputError if the edge lies more than half a bead from where the cell says its plate is
-void require_place_of_plate(const CellDescription& cell, const CellGeometry& geometry, const DriveFit& lock) {
-  if (!cell.origin || !cell.pixels_per_sigma) return;
-  constexpr double kFarthest = 0.5;
-  const double row = geometry.plate_row - lock.z0;
-  if (std::abs(row - cell.origin->y_px) > kFarthest * *cell.pixels_per_sigma)
-    throw InputError({}, fmt::format("the lowest edge in the picture lies at row {:.1f}, and the plate, by "
-                                     "camera.origin_px, at {:.1f}",
-                                     row, cell.origin->y_px));
+/// The plate's edge and its motion. Where the plate is not in the picture, the lowest row of beads, or the
+/// picture's own border, passes for an edge. \throws InputError if no edge is seen to move as a plate does,
+/// or if it lies more than half a bead from where the cell says its plate is
+std::pair<CellGeometry, DriveFit> plate_in_picture(const CellDescription& cell, const StackEdges& edges) {
+  const CellGeometry geometry = fit_cell_geometry(edges);
+  const DriveFit drive =
+      fit_drive(geometry.heights_px(), {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
+                                        .mend = true,
+                                        .model_error = kHeightModelError_px});
+  if (cell.origin && cell.pixels_per_sigma) {
+    constexpr double kFarthest = 0.5;
+    const double row = geometry.plate_row - drive.z0;
+    if (std::abs(row - cell.origin->y_px) > kFarthest * *cell.pixels_per_sigma)
+      throw InputError({}, fmt::format("the lowest edge in the picture lies at row {:.1f}, and the plate, by "
+                                       "camera.origin_px, at {:.1f}",
+                                       row, cell.origin->y_px));
+  }
+  return {geometry, drive};
 }
 
 }  // namespace
@@ -61,13 +70,7 @@ std::string complete_drive(CellDescription& cell, const std::filesystem::path& c
   const StackEdges edges = read_stack_edges(*open_frames(stack), cell.bright, diameter, threads, progress);
   const auto seen = [&] {
     try {
-      const CellGeometry geometry = fit_cell_geometry(edges);
-      const DriveFit lock =
-          fit_drive(geometry.heights_px(), {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
-                                            .mend = true,
-                                            .model_error = kHeightModelError_px});
-      require_place_of_plate(cell, geometry, lock);
-      return std::pair(geometry, lock);
+      return plate_in_picture(cell, edges);
     } catch (const InputError& e) {
       throw InputError({.file = stack.string()},
                        fmt::format("the drive is not stated, and cannot be seen on the plate: {}", e.what()));
@@ -185,12 +188,7 @@ DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::pa
                                             diameter_for_edges(stack, cell.bright, scale), threads, progress);
   check.frame_rate_hz = frame_rate_of(cell.frame_rate_hz, edges, stack);
   try {
-    const CellGeometry geometry = fit_cell_geometry(edges);
-    const DriveFit seen =
-        fit_drive(geometry.heights_px(), {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
-                                          .mend = true,
-                                          .model_error = kHeightModelError_px});
-    require_place_of_plate(cell, geometry, seen);
+    const DriveFit seen = plate_in_picture(cell, edges).second;
     check.by = "plate";
     check.amplitude = seen.amplitude / scale;
     check.amplitude_error = seen.amplitude_error / scale;

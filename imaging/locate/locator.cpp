@@ -1,7 +1,5 @@
 #include "imaging/locate/locator.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <utility>
 
 #include "core/cancellation.hpp"
+#include "core/choice.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/locate/picture_orientation.hpp"
@@ -96,13 +95,9 @@ void LocatorOptions::check() const {
   range("blur", refine.blur_px, 0, 10);
   range("radius-spread", refine.radius_spread, 1e-6, 1);
   range("radius-tolerance", judge.radius_tolerance, 0, 1);
-  std::string names;
-  for (const std::string& name : finder_names()) {
-    if (name == finder) return;
-    names += (names.empty() ? "" : ", ") + name;
-  }
-  throw ConfigError(Where{.file = {}, .key = "locator"},
-                    fmt::format("there is no locator '{}'; there are: {}.", finder, names));
+  const std::vector<std::string> finders = finder_names();
+  if (std::find(finders.begin(), finders.end(), finder) == finders.end())
+    refuse_word("locator", "locator", finder, finders);
 }
 
 namespace {

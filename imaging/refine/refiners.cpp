@@ -1,7 +1,6 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "core/error.hpp"
+#include "core/choice.hpp"
 #include "imaging/refine/edge_fit.hpp"
 #include "imaging/refine/picture_fit.hpp"
 #include "imaging/refine/profile_fit.hpp"
@@ -17,9 +16,7 @@ constexpr std::array kRefiners = {kExactRefiner, kFastRefiner, kEdgeRefiner, kPr
 }  // namespace
 
 std::vector<std::string> refiner_names() {
-  std::vector<std::string> names;
-  for (const Refiner& r : kRefiners) names.emplace_back(r.word);
-  return names;
+  return words_of(kRefiners);
 }
 
 std::string refiners_help() {
@@ -30,11 +27,7 @@ std::string refiners_help() {
 }
 
 const Refiner& refiner_named(const std::string& word) {
-  for (const Refiner& r : kRefiners)
-    if (r.word == word) return r;
-  throw ConfigError(
-      Where{.file = {}, .key = "refine"},
-      fmt::format("there is no refiner '{}'; there are: {}.", word, fmt::join(refiner_names(), ", ")));
+  return row_named(kRefiners, word, "refine", "refiner");
 }
 
 }  // namespace twincell

@@ -144,7 +144,8 @@ std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOp
         rims < kSeen * static_cast<double>(beads.size()))
       continue;
     if (!best || explained > best->explained)
-      best = FoundSettings{options.diameter_px, bright, explained, options.other_diameters_px, std::string(kEdgeRefiner.word)};
+      best = FoundSettings{options.diameter_px, bright, explained, options.other_diameters_px,
+                           std::string(kEdgeRefiner.word)};
   }
   return best;
 }

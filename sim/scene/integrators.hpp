@@ -41,8 +41,7 @@ const Integrator& integrator_named(const std::string& word);
 /// time.stepping: how time is advanced.
 enum class Stepping { automatic, steps, event_driven };
 inline constexpr std::array kSteppings = {
-    Choice<Stepping>{Stepping::automatic, "auto", "event-driven where that is exact and faster, else steps"},
-    Choice<Stepping>{Stepping::steps, "steps", "time steps"},
-    Choice<Stepping>{Stepping::event_driven, "event-driven", "from contact to contact"}};
+    Choice<Stepping>{Stepping::automatic, "auto"},  // event-driven where that is exact and faster
+    Choice<Stepping>{Stepping::steps, "steps"}, Choice<Stepping>{Stepping::event_driven, "event-driven"}};
 
 }  // namespace twincell::sim

@@ -349,7 +349,7 @@ void read_time(const Section& s, Scene& scene) {
           .value_or(integrator_named(scene.integrator).steps_per_contact);
   refuse_former_word(s, "stepping", "flights", "event-driven");
   if (const auto stepping = s.word("stepping", words_of(kSteppings)))
-    scene.stepping = value_of_word(kSteppings, *stepping);
+    scene.stepping = row_named(kSteppings, *stepping, "time.stepping", "stepping").value;
   scene.single = s.word("precision", {"double", "single"}).value_or("double") == "single";
   scene.discard = s.integer_in("discard", 0, 1'000'000).value_or(scene.discard);
   scene.cycles = s.integer_in("cycles", 1, 100'000'000).value_or(scene.cycles);
