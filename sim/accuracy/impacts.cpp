@@ -163,8 +163,9 @@ std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& i
       const Bead& j = system.beads[b++];
       r -= Vec3(j.x, 0, j.z), u -= Vec3(j.vx, 0, j.vz);
       rim += bodies.radius * j.spin;
-      if (r.norm() < 2 * bodies.radius) throw RunError("two beads of an impact have not parted.");
     }
+    if (bodies.wall ? r.z() < bodies.radius : r.norm() < 2 * bodies.radius)
+      throw RunError("the bodies of an impact have not parted.");
     if (!bodies.wall) {
       // The normal is that of the parting, not of the steps after it.
       const double along = r.dot(u), beyond = r.squaredNorm() - 4 * bodies.radius * bodies.radius;

@@ -286,12 +286,9 @@ template <class Laws, Velocity kVelocity, class V, int D>
       seen_t = at_end(was, half, v_t, before);
       for (int k = 0; k < K; ++k) middle[1 + k] = select(now, Doubles<V>(v_t.c[k]), forgotten);
     }
-    const Tangent<V, K> f_t = lasting<kVelocity>(
-        v_t, seen_t, dt, passage, xi, [&](const auto& v, V limit, V step, auto& x, [[maybe_unused]] V at) {
-          if constexpr (ReadsOverlap<Tangential>)
-            return Tangential::force(c + Layout<Laws>::kTangential, v, limit, step, x, at);
-          else
-            return Tangential::force(c + Layout<Laws>::kTangential, v, limit, step, x);
+    const Tangent<V, K> f_t =
+        lasting<kVelocity>(v_t, seen_t, dt, passage, xi, [&](const auto& v, V limit, V step, auto& x, V at) {
+          return tangential_force<Tangential>(c + Layout<Laws>::kTangential, v, limit, step, x, at);
         });
     if constexpr (Tangential::kHistory)
       for (int k = 0; k < K; ++k) kept[k] = select(now, xi.c[k], forgotten);

@@ -49,13 +49,14 @@ concept ReadsOverlap = requires {
   requires Law::kReadsOverlap;
 };
 
-/// Tangential force of (constants, v_t, F_n, dt, xi), and of the overlap where the law reads it.
-template <class Law>
-Tangent<float, 3> force_of_law(const float* c, float x, Tangent<float, 3> t, Tangent<double, 3> kept) {
+/// A tangential law's force of (constants, v_t, F_n, dt, xi), and of the overlap where the law reads it.
+template <class Law, class V, class T, class X>
+[[gnu::always_inline]] inline T tangential_force(const V* c, const T& v_t, V f_n, V dt, X& xi,
+                                                 [[maybe_unused]] V overlap) {
   if constexpr (ReadsOverlap<Law>)
-    return Law::force(c, t, x, x, kept, x);
+    return Law::force(c, v_t, f_n, dt, xi, overlap);
   else
-    return Law::force(c, t, x, x, kept);
+    return Law::force(c, v_t, f_n, dt, xi);
 }
 
 /// Tangential force. kActs: beads turn; kHistory: xi lives as long as the contact.
@@ -64,7 +65,7 @@ concept TangentialLaw = ContactLaw<Law> && requires(const Law law, const PairSca
                                                     float x, Tangent<float, 3> t, Tangent<double, 3> kept) {
   { Law::kActs } -> std::convertible_to<bool>;
   { Law::kHistory } -> std::convertible_to<bool>;
-  { force_of_law<Law>(c, x, t, kept) } -> std::same_as<Tangent<float, 3>>;
+  { tangential_force<Law>(c, t, x, x, kept, x) } -> std::same_as<Tangent<float, 3>>;
   { law.shortest_time(pair) } -> std::same_as<double>;  // t0
 };
 

@@ -8,9 +8,16 @@
 
 namespace twincell::sim {
 
-/// One formula for all overlaps and velocities, without memory.
+/// A normal force that attracts while surfaces touch: a contact may last for ever, and F_n may rise through
+/// 0.
 template <class N>
-concept SmoothNormal = N::kMemory == 0 && requires {
+concept Attracts = requires {
+  requires N::kAttracts;
+};
+
+/// One formula for all overlaps and velocities, without memory, which repels at first touch.
+template <class N>
+concept SmoothNormal = N::kMemory == 0 && !Attracts<N> && requires {
   N::kSmooth;
 };
 
@@ -20,8 +27,10 @@ concept PresentTangential = !T::kActs || (!T::kHistory && requires(const double*
   { T::slack(c, x, x) } -> std::same_as<double>;
 });
 
-/// A normal force without memory next to a tangential spring of constant stiffness that has one.
+/// A normal force without memory that repels at first touch, next to a tangential spring of constant
+/// stiffness that has one.
 template <class N, class T>
-inline constexpr bool kRemembers = N::kMemory == 0 && T::kActs&& T::kHistory && !ReadsOverlap<T>;
+inline constexpr bool kRemembers =
+    N::kMemory == 0 && !Attracts<N> && T::kActs && T::kHistory && !ReadsOverlap<T>;
 
 }  // namespace twincell::sim

@@ -212,11 +212,12 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
 
 /// Why the beads of a plan cannot move from event to event; empty if they can.
 std::string why_not_event_driven(const Scene& scene, const Plan& plan) {
-  if (!integrable_alone(plan.bead))
-    return "the contact law of beads has a normal force that remembers, or resists rolling";
+  const std::string alone =
+      "lets no contact be integrated by itself: the normal force remembers, attracts or is not smooth, the "
+      "tangential force reads the overlap, or beads resist rolling";
+  if (!integrable_alone(plan.bead)) return "the contact law of beads " + alone;
   for (const ContactLaws& laws : plan.wall_laws)
-    if (!integrable_alone(laws))
-      return "the contact law of a wall has a normal force that remembers, or resists rolling";
+    if (!integrable_alone(laws)) return "the contact law of a wall " + alone;
   if (scene.plate_drag > 0) return "cell.plate_drag slows beads between contacts";
   if (!scene.envelope.points.empty()) return "the drive's amplitude changes";
   if (scene.single) return "time.precision = \"single\"";

@@ -15,6 +15,7 @@ struct CohesiveSpringDashpot : LinearSpringDashpot {
                                     kName = "linear spring-dashpot, constant pull-off force";
   static constexpr const char* kKeys[] = {"k_n", "gamma_n", "c_n", "restitution", "pull_off_force"};
   static constexpr int kConstants = 3;
+  static constexpr bool kAttracts = true;  ///< so that no contact is integrated by itself (isolated.hpp)
 
   double pull_off_force = 0;  ///< F_c, m g
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/error.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 
@@ -76,6 +77,19 @@ TEST(Cohesive, ACapturedBeadRestsAtTheOverlapOfItsPullOffForce) {
   b.advance_time(0.5);
   validate({"V1.12", "overlap of a captured bead at rest", kPullOff / kStiffness, 1e-9, "F_c/k_n"},
            0.5 - b.system.beads[0].z);
+}
+
+// A contact that attracts may last for ever, and friction begins while the surfaces pull: no isolated
+// integration is exact there, and beads move by steps.
+TEST(Cohesive, BeadsMoveByStepsOnly) {
+  const std::string scene = "[beads]\ncount = 20\n[drive]\nomega = 1.0\nk_m = 100.0\n" + contact();
+  EXPECT_FALSE(make_plan(read_scene_text(scene, "s")).event_driven);
+  try {
+    (void)make_plan(read_scene_text(scene, "s", {"time.stepping=event-driven"}));
+    ADD_FAILURE() << "event-driven cohesive beads were accepted";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("attracts"), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace
