@@ -1,4 +1,4 @@
-// The list kernel in double and in single precision, with the widest vectors and with AVX2, beside the
+// The list kernel with the widest vectors and with AVX2, beside the
 // all-pairs oracle on the same driven bed, in one run. Items are particle-steps.
 
 #include <benchmark/benchmark.h>
@@ -12,12 +12,12 @@ namespace twincell::sim {
 namespace {
 
 /// A crystal of the first paper's beads riding on the plate at Gamma = 1.5.
-void force_pass(benchmark::State& state, SolverKind kind, const std::string& precision = "double") {
+void force_pass(benchmark::State& state, SolverKind kind) {
   if (!available(kind)) return state.SkipWithError("this processor cannot");
   const auto n = state.range(0);
   const Scene scene = read_scene_text(
       "preset = \"fortini-huang-2015\"\n[beads]\ncount = " + std::to_string(n) + "\n[drive]\ngamma = 1.5\n",
-      "bench", {"time.integrator=verlet", "time.precision=" + precision});
+      "bench", {"time.integrator=verlet"});
   const Plan plan = make_plan(scene);
   System s = make_system(scene, plan);
   s.beads = make_start(scene).beads;
@@ -30,9 +30,7 @@ void force_pass(benchmark::State& state, SolverKind kind, const std::string& pre
 }
 
 BENCHMARK_CAPTURE(force_pass, list, SolverKind::best)->Arg(40)->Arg(200)->Arg(800);
-BENCHMARK_CAPTURE(force_pass, single, SolverKind::best, "single")->Arg(40)->Arg(200)->Arg(800);
 BENCHMARK_CAPTURE(force_pass, avx2, SolverKind::avx2)->Arg(800);
-BENCHMARK_CAPTURE(force_pass, avx2_single, SolverKind::avx2, "single")->Arg(800);
 BENCHMARK_CAPTURE(force_pass, all_pairs, SolverKind::all_pairs)->Arg(40)->Arg(200)->Arg(800);
 
 }  // namespace

@@ -64,7 +64,6 @@ std::vector<StepSetting> settings(bool quick) {
 
 struct Measured {
   std::vector<WorkPrecision> all;
-  std::vector<WorkPrecision> precisions;  ///< settings in double precision, each followed by itself in single
   std::vector<sim::GasTemperature> gas;
   WorkPrecision reference, equal, equal_mean;
   sim::EqualImpacts equal_impacts;
@@ -84,13 +83,6 @@ Measured measure(const CostOptions& options, const Common& common) {
     ProgressBar bar(common, "errors and times");
     m.all = sim::work_precision(settings(options.quick), options.quick ? 1 : 3, bar);
   }
-  {
-    std::vector<StepSetting> both;
-    for (const StepSetting& s : {kReference, StepSetting{.integrator = "split", .n = 14.37}})
-      for (const bool single : {false, true}) both.push_back({s.integrator, s.n, s.k_n, single});
-    ProgressBar bar(common, "double and single precision");
-    m.precisions = sim::work_precision(both, options.quick ? 1 : 5, bar);
-  }
   m.reference = *std::find_if(m.all.begin(), m.all.end(),
                               [](const WorkPrecision& w) { return w.setting == kReference; });
   m.equal = sim::equal_accuracy(m.all, m.reference);
@@ -109,10 +101,7 @@ Measured measure(const CostOptions& options, const Common& common) {
 }
 
 nlohmann::json as_json(const StepSetting& s) {
-  return {{"integrator", s.integrator},
-          {"n", s.n},
-          {"k_n", s.k_n},
-          {"precision", s.single ? "single" : "double"}};
+  return {{"integrator", s.integrator}, {"n", s.n}, {"k_n", s.k_n}};
 }
 nlohmann::json as_json(const sim::PhaseSpread& s) {
   return {{"mean", s.mean}, {"rms", s.rms}, {"max", s.largest}};
@@ -144,7 +133,6 @@ nlohmann::json as_json(const Measured& m) {
   nlohmann::json d;
   for (const WorkPrecision& w : m.all) d["settings"].push_back(as_json(w));
   for (const WorkPrecision& w : m.all) d["sliding"].push_back(as_json(w.setting, w.impacts));
-  for (const WorkPrecision& w : m.precisions) d["precisions"].push_back(as_json(w));
   for (const WorkPrecision& w : sim::front(m.all, kPaperStiffness)) d["front"].push_back(as_json(w));
   for (const sim::GasTemperature& g : m.gas) {
     nlohmann::json one = as_json(g.setting);
@@ -238,18 +226,6 @@ std::string as_text(const Measured& m) {
   s += fmt::format("\nFront, k_n = {:g}: no other setting is both cheaper and better\n", kPaperStiffness) +
        table(sim::front(m.all, kPaperStiffness));
   s += sliding_table(m, own);
-  s += "\nContacts in single precision: what it changes, and the time it takes over that of double\n";
-  for (std::size_t k = 0; k + 1 < m.precisions.size(); k += 2) {
-    const WorkPrecision &exact = m.precisions[k], &single = m.precisions[k + 1];
-    const auto change = [](const sim::PhaseSpread& a, const sim::PhaseSpread& b) {
-      return std::max(std::abs(a.mean - b.mean), std::abs(a.largest - b.largest));
-    };
-    s += fmt::format(
-        "  {:<20} e {:.1e}, oblique {:.1e}; floor {:.1e}, overlap {:.1e} from the closed form; time {:.2f}\n",
-        named(exact.setting), change(single.collision.restitution_pair, exact.collision.restitution_pair),
-        change(single.collision.sticking_pair, exact.collision.sticking_pair), single.bed.floor_force,
-        single.bed.overlap, single.cost.seconds_per_time / exact.cost.seconds_per_time);
-  }
   s += "\nT_z of a driven gas, 40 beads, W = 20\n";
   for (const sim::GasTemperature& g : m.gas) {
     const sim::GasTemperature& first = m.gas.front();

@@ -118,7 +118,6 @@ std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& i
   const auto total = static_cast<int>(impacts.size()) * phases;
   scene.integrator = setting.integrator;
   scene.steps_per_contact = setting.n;
-  scene.single = setting.single;
   scene.width = kApart * (total + 1);
   scene.stepping = Stepping::steps;
   const Plan plan = make_plan(scene);

@@ -45,7 +45,7 @@ std::vector<Outcome> exact_outcomes(const std::vector<Impact>& impacts, const Sc
                                     SlipReading reading);
 
 /// The outcome by steps, for each of `phases` entry phases: where within a step the contact begins. Of
-/// `setting` the integrator, n and the precision count. \return [impact][phase]
+/// the integrator and n of `setting` count. \return [impact][phase]
 std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& impacts, Scene scene,
                                                     const StepSetting& setting, int phases);
 

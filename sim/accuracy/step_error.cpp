@@ -86,8 +86,7 @@ std::optional<ImpactErrors> friction_error(const Scene& space, const Plan& plan,
   // too.
   const double n = make_plan(space).shortest().time / plan.dt;
   try {
-    return impact_errors(impacts, space, {.integrator = space.integrator, .n = n, .single = space.single},
-                         kOblique);
+    return impact_errors(impacts, space, {.integrator = space.integrator, .n = n}, kOblique);
   } catch (const RunError&) {
     return std::nullopt;  // they do not part
   }
@@ -100,7 +99,6 @@ std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int ph
   const Scene space = in_empty_space(scene, plan);
   Scene fine = space;
   fine.integrator = "split";
-  fine.single = false;
   const double v = meeting_speed(scene, plan);
   const auto exact =
       restitutions(fine, plan.dt / std::max(kFiner, std::ceil(kFine / scene.steps_per_contact)), v, 1);

@@ -26,7 +26,6 @@ Scene make_scene(const StepSetting& setting, const std::string& text) {
   Scene scene = read_scene_text(text, "work precision");
   scene.integrator = setting.integrator;
   scene.steps_per_contact = setting.n;
-  scene.single = setting.single;
   return scene;
 }
 
@@ -402,7 +401,7 @@ const WorkPrecision* cheapest_that(const std::vector<WorkPrecision>& all, double
     const bool sound =
         w.setting.k_n == k_n && std::all_of(all.begin(), all.end(), [&](const WorkPrecision& o) {
           return o.setting.k_n != k_n || o.setting.integrator != w.setting.integrator ||
-                 o.setting.single != w.setting.single || o.setting.n < w.setting.n || passes(o);
+                 o.setting.n < w.setting.n || passes(o);
         });
     if (sound && (best == nullptr || w.cost.seconds_per_time < best->cost.seconds_per_time)) best = &w;
   }

@@ -98,7 +98,7 @@ template <class V, int D>
   if constexpr (D == 3) {
     const V before = norm(xi);
     flatten<V, D>(n, xi);
-    const V factor = before / max(norm(xi), V(kTiny<V>));
+    const V factor = before / max(norm(xi), V(kTiny));
     const auto turned = before > V(0.0);
     for (int k = 0; k < 3; ++k) xi.c[k] = select(turned, factor * xi.c[k], xi.c[k]);
   }
@@ -189,7 +189,7 @@ template <Velocity kVelocity, class V, class T, class X, class Force>
 /// the grain of a spring's length
 template <class Laws, Velocity kVelocity, class V, int D>
 [[gnu::always_inline]] inline ContactLoad<V, D> act(const ContactKinematics<V, D>& a, const V* c, V dt,
-                                                    [[maybe_unused]] bool locate, Doubles<V>* memory) {
+                                                    [[maybe_unused]] bool locate, V* memory) {
   using Normal = typename Laws::Normal;
   using Tangential = typename Laws::Tangential;
   using Rolling = typename Laws::Rolling;
@@ -197,7 +197,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
   constexpr bool kLimited = Tangential::kActs || Rolling::kActs;
   constexpr int K = kTurns<D>;
   const V zero(0.0), half(0.5);
-  const Doubles<V> forgotten(0.0);
+  const V forgotten(0.0);
   const V* c_n = c + Layout<Laws>::kNormal;
   V own[Normal::kMemory + 1];  // what the normal law remembers
   for (int k = 0; k < Normal::kMemory; ++k) own[k] = V(memory[k]);
@@ -209,7 +209,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
   auto acting = now, was = now;
   V overlap = a.overlap, seen = v_n;
   Passage<V> passage{now, now, V(1.0), V(0.0)};
-  Doubles<V>* middle = memory + Laws::template kMemory<D>;
+  V* middle = memory + Laws::template kMemory<D>;
   if constexpr (kFull) {
     // A pair whose v_n was exactly 0 reads as new, and gets the same force.
     const V before = V(middle[0]);
@@ -222,7 +222,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
     if (passage.any) {
       acting = either(now, was);
       overlap = select(passage.leaving, max(fma(v_n, dt, a.overlap), zero), a.overlap);
-      passage.fraction = select(passes, min(overlap / max(abs(v_n) * dt, V(kTiny<V>)), V(1.0)), V(1.0));
+      passage.fraction = select(passes, min(overlap / max(abs(v_n) * dt, V(kTiny)), V(1.0)), V(1.0));
     }
   }
 
@@ -259,7 +259,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
         if constexpr (ReadsOverlap<Tangential>)
           passage.overlap_begun = select(vanishes, max(fma(v_n, dt, a.overlap), zero), passage.overlap_begun);
         passage.pressed =
-            select(vanishes, passage.begun / max(passage.begun - passage.ended, V(kTiny<V>)), V(1.0));
+            select(vanishes, passage.begun / max(passage.begun - passage.ended, V(kTiny)), V(1.0));
         passage.any = true;
       }
     }
@@ -269,13 +269,13 @@ template <class Laws, Velocity kVelocity, class V, int D>
   for (int k = 0; k < D; ++k) out.f[k] = f_n * a.n[k];
   for (int k = 0; k < K; ++k) out.q[k] = out.q_i[k] = out.q_j[k] = zero;
   if constexpr (Tangential::kActs) {
-    Tangent<Doubles<V>, K> xi{};
-    Doubles<V>* kept = memory + Normal::kMemory;
+    Tangent<V, K> xi{};
+    V* kept = memory + Normal::kMemory;
     if constexpr (Tangential::kHistory) {
       for (int k = 0; k < K; ++k) xi.c[k] = kept[k];
-      Doubles<V> n[D];
-      for (int k = 0; k < D; ++k) n[k] = Doubles<V>(a.n[k]);
-      into_tangent_plane<Doubles<V>, D>(n, xi);
+      V n[D];
+      for (int k = 0; k < D; ++k) n[k] = a.n[k];
+      into_tangent_plane<V, D>(n, xi);
     }
     const Tangent<V, K> v_t = tangential_velocity(a, v_n);
     Tangent<V, K> seen_t = v_t;
@@ -284,7 +284,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
       for (int k = 0; k < K; ++k) before.c[k] = V(middle[1 + k]);
       flatten<V, D>(a.n, before);
       seen_t = at_end(was, half, v_t, before);
-      for (int k = 0; k < K; ++k) middle[1 + k] = select(now, Doubles<V>(v_t.c[k]), forgotten);
+      for (int k = 0; k < K; ++k) middle[1 + k] = select(now, v_t.c[k], forgotten);
     }
     const Tangent<V, K> f_t =
         lasting<kVelocity>(v_t, seen_t, dt, passage, xi, [&](const auto& v, V limit, V step, auto& x, V at) {
@@ -305,9 +305,9 @@ template <class Laws, Velocity kVelocity, class V, int D>
     }
   }
   if constexpr (Rolling::kActs) {
-    Tangent<Doubles<V>, K> theta;
+    Tangent<V, K> theta;
     Tangent<V, K> w, seen_w;
-    Doubles<V>* kept = memory + Normal::kMemory + (Tangential::kHistory ? K : 0);
+    V* kept = memory + Normal::kMemory + (Tangential::kHistory ? K : 0);
     for (int k = 0; k < K; ++k) {
       theta.c[k] = kept[k];
       seen_w.c[k] = w.c[k] = a.w[k];
@@ -316,7 +316,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
       Tangent<V, K> before;
       for (int k = 0; k < K; ++k) before.c[k] = V(middle[1 + K + k]);
       seen_w = at_end(was, half, w, before);
-      for (int k = 0; k < K; ++k) middle[1 + K + k] = select(now, Doubles<V>(w.c[k]), forgotten);
+      for (int k = 0; k < K; ++k) middle[1 + K + k] = select(now, w.c[k], forgotten);
     }
     const Tangent<V, K> m = lasting<kVelocity>(
         w, seen_w, dt, passage, theta, [&](const auto& v, V limit, V step, auto& x, V /*overlap*/) {
@@ -329,8 +329,8 @@ template <class Laws, Velocity kVelocity, class V, int D>
       out.q_j[k] = select(acting, m.c[k] * c[constant::kInvRadiusJ], zero);
     }
   }
-  if constexpr (kFull) middle[0] = select(now, Doubles<V>(v_n), forgotten);
-  for (int k = 0; k < Normal::kMemory; ++k) memory[k] = select(now, Doubles<V>(own[k]), forgotten);
+  if constexpr (kFull) middle[0] = select(now, v_n, forgotten);
+  for (int k = 0; k < Normal::kMemory; ++k) memory[k] = select(now, own[k], forgotten);
   for (int k = 0; k < D; ++k) out.f[k] = select(acting, out.f[k], zero);
   for (int k = 0; k < K; ++k) out.q[k] = select(acting, out.q[k], zero);
   return out;

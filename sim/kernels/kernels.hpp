@@ -161,7 +161,6 @@ struct KernelKey {
   int dimension;
   std::size_t normal, tangential, rolling;
   Velocity velocity;
-  bool single = false;  ///< contacts of pairs are computed in single precision
 };
 
 /// One instruction set.

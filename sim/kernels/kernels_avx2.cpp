@@ -8,12 +8,8 @@ static_assert(HWY_TARGET == HWY_AVX2, "compile this file for AVX2");
 
 namespace twincell::sim {
 
-const Target kAvx2 = {"AVX2", HWY_NAMESPACE::HighwayLanes::kWidth,
-                      [] { return (hwy::SupportedTargets() & HWY_AVX2) != 0; },
-                      [](const KernelKey& key) {
-                        return key.single ? KernelTable<HWY_NAMESPACE::SingleLanes>::find(key)
-                                          : KernelTable<HWY_NAMESPACE::HighwayLanes>::find(key);
-                      },
-                      &CollocationTable<HWY_NAMESPACE::HighwayLanes>::find};
+const Target kAvx2 = {
+    "AVX2", HWY_NAMESPACE::HighwayLanes::kWidth, [] { return (hwy::SupportedTargets() & HWY_AVX2) != 0; },
+    &KernelTable<HWY_NAMESPACE::HighwayLanes>::find, &CollocationTable<HWY_NAMESPACE::HighwayLanes>::find};
 
 }  // namespace twincell::sim

@@ -6,11 +6,7 @@
 
 namespace twincell::sim {
 
-const Target kScalar = {"scalar", 1, [] { return true; },
-                        [](const KernelKey& key) {
-                          return key.single ? KernelTable<ScalarLanes<float>>::find(key)
-                                            : KernelTable<ScalarLanes<double>>::find(key);
-                        },
-                        &CollocationTable<ScalarLanes<double>>::find};
+const Target kScalar = {"scalar", 1, [] { return true; }, &KernelTable<ScalarLanes>::find,
+                        &CollocationTable<ScalarLanes>::find};
 
 }  // namespace twincell::sim

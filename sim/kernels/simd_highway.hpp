@@ -1,8 +1,7 @@
 #pragma once
 /// \file
 /// As many contacts at a time as the instruction set of this translation unit allows, by Highway: 4 with
-/// AVX2, 8 with AVX-512, in single precision twice as many. Everything here is in a namespace of that
-/// instruction set.
+/// AVX2, 8 with AVX-512. Everything here is in a namespace of that instruction set.
 
 #include <hwy/highway.h>
 
@@ -22,9 +21,8 @@ using One = hn::FixedTag<double, 1>;
 /// A vector of numbers with the operations of laws/real.hpp. Two vectors side by side, to fill the gaps in
 /// one contact's long chain of dependent operations, were tried and dropped: the arithmetic units are busy as
 /// it is, and the registers run out (a fifth slower).
-template <class R>
-struct PackOf {
-  using Tag = hn::ScalableTag<R>;
+struct Pack {
+  using Tag = All;
   using Raw = hn::Vec<Tag>;
   static constexpr std::size_t kLanes = hn::MaxLanes(Tag());
   Raw raw;
@@ -41,122 +39,40 @@ struct PackOf {
     }
   };
 
-  HWY_INLINE PackOf() : raw(hn::Zero(Tag())) {}
-  HWY_INLINE PackOf(Raw r) : raw(r) {}  // NOLINT(google-explicit-constructor)
-  HWY_INLINE explicit PackOf(double a) : raw(hn::Set(Tag(), static_cast<R>(a))) {}
-  HWY_INLINE explicit PackOf(const struct Packs& wide);
+  HWY_INLINE Pack() : raw(hn::Zero(Tag())) {}
+  HWY_INLINE Pack(Raw r) : raw(r) {}  // NOLINT(google-explicit-constructor)
+  HWY_INLINE explicit Pack(double a) : raw(hn::Set(Tag(), a)) {}
 
-  HWY_INLINE friend PackOf operator+(PackOf a, PackOf b) { return hn::Add(a.raw, b.raw); }
-  HWY_INLINE friend PackOf operator-(PackOf a, PackOf b) { return hn::Sub(a.raw, b.raw); }
-  HWY_INLINE friend PackOf operator*(PackOf a, PackOf b) { return hn::Mul(a.raw, b.raw); }
-  HWY_INLINE friend PackOf operator/(PackOf a, PackOf b) { return hn::Div(a.raw, b.raw); }
-  HWY_INLINE friend PackOf operator-(PackOf a) { return hn::Neg(a.raw); }
-  HWY_INLINE friend Mask operator>(PackOf a, PackOf b) { return {hn::Gt(a.raw, b.raw)}; }
-  HWY_INLINE friend Mask operator<(PackOf a, PackOf b) { return {hn::Lt(a.raw, b.raw)}; }
-  HWY_INLINE friend Mask operator<=(PackOf a, PackOf b) { return {hn::Le(a.raw, b.raw)}; }
-  HWY_INLINE friend Mask operator==(PackOf a, PackOf b) { return {hn::Eq(a.raw, b.raw)}; }
-  HWY_INLINE friend PackOf fma(PackOf a, PackOf b, PackOf c) { return hn::MulAdd(a.raw, b.raw, c.raw); }
-  HWY_INLINE friend PackOf nfma(PackOf a, PackOf b, PackOf c) { return hn::NegMulAdd(a.raw, b.raw, c.raw); }
-  HWY_INLINE friend PackOf min(PackOf a, PackOf b) { return hn::Min(a.raw, b.raw); }
-  HWY_INLINE friend PackOf max(PackOf a, PackOf b) { return hn::Max(a.raw, b.raw); }
-  HWY_INLINE friend PackOf abs(PackOf a) { return hn::Abs(a.raw); }
-  HWY_INLINE friend PackOf sqrt(PackOf a) { return hn::Sqrt(a.raw); }
-  HWY_INLINE friend PackOf select(Mask where, PackOf a, PackOf b) {
+  HWY_INLINE friend Pack operator+(Pack a, Pack b) { return hn::Add(a.raw, b.raw); }
+  HWY_INLINE friend Pack operator-(Pack a, Pack b) { return hn::Sub(a.raw, b.raw); }
+  HWY_INLINE friend Pack operator*(Pack a, Pack b) { return hn::Mul(a.raw, b.raw); }
+  HWY_INLINE friend Pack operator/(Pack a, Pack b) { return hn::Div(a.raw, b.raw); }
+  HWY_INLINE friend Pack operator-(Pack a) { return hn::Neg(a.raw); }
+  HWY_INLINE friend Mask operator>(Pack a, Pack b) { return {hn::Gt(a.raw, b.raw)}; }
+  HWY_INLINE friend Mask operator<(Pack a, Pack b) { return {hn::Lt(a.raw, b.raw)}; }
+  HWY_INLINE friend Mask operator<=(Pack a, Pack b) { return {hn::Le(a.raw, b.raw)}; }
+  HWY_INLINE friend Mask operator==(Pack a, Pack b) { return {hn::Eq(a.raw, b.raw)}; }
+  HWY_INLINE friend Pack fma(Pack a, Pack b, Pack c) { return hn::MulAdd(a.raw, b.raw, c.raw); }
+  HWY_INLINE friend Pack nfma(Pack a, Pack b, Pack c) { return hn::NegMulAdd(a.raw, b.raw, c.raw); }
+  HWY_INLINE friend Pack min(Pack a, Pack b) { return hn::Min(a.raw, b.raw); }
+  HWY_INLINE friend Pack max(Pack a, Pack b) { return hn::Max(a.raw, b.raw); }
+  HWY_INLINE friend Pack abs(Pack a) { return hn::Abs(a.raw); }
+  HWY_INLINE friend Pack sqrt(Pack a) { return hn::Sqrt(a.raw); }
+  HWY_INLINE friend Pack select(Mask where, Pack a, Pack b) {
     return hn::IfThenElse(where.raw, a.raw, b.raw);
   }
   template <class F>
-  friend PackOf each(Mask where, PackOf x, PackOf y, F f) {
-    HWY_ALIGN R in[kLanes], out[kLanes];
+  friend Pack each(Mask where, Pack x, Pack y, F f) {
+    HWY_ALIGN double in[kLanes], out[kLanes];
     hn::Store(x.raw, Tag(), in);
     hn::Store(y.raw, Tag(), out);
     for (unsigned bits = mask_bits(where), k = 0; bits != 0; bits >>= 1, ++k)
-      if ((bits & 1) != 0) out[k] = static_cast<R>(f(in[k]));
+      if ((bits & 1) != 0) out[k] = f(in[k]);
     return hn::Load(Tag(), out);
   }
 };
-using Pack = PackOf<double>;
-using SinglePack = PackOf<float>;  ///< twice as many numbers
-
-/// As many doubles as a SinglePack has numbers.
-struct Packs {
-  Pack low, high;
-  struct Mask {
-    Pack::Mask low, high;
-    HWY_INLINE friend bool any(Mask m) { return any(either(m.low, m.high)); }
-    HWY_INLINE friend Mask either(Mask a, Mask b) { return {either(a.low, b.low), either(a.high, b.high)}; }
-  };
-
-  HWY_INLINE Packs() = default;
-  HWY_INLINE Packs(Pack l, Pack h) : low(l), high(h) {}
-  HWY_INLINE explicit Packs(double a) : low(a), high(a) {}
-  HWY_INLINE explicit Packs(SinglePack narrow)
-      : low(hn::PromoteTo(Pack::Tag(), hn::LowerHalf(narrow.raw))),
-        high(hn::PromoteTo(Pack::Tag(), hn::UpperHalf(Half(), narrow.raw))) {}
-  using Half = hn::Half<SinglePack::Tag>;
-
-  HWY_INLINE friend Packs operator+(Packs a, Packs b) { return {a.low + b.low, a.high + b.high}; }
-  HWY_INLINE friend Packs operator-(Packs a, Packs b) { return {a.low - b.low, a.high - b.high}; }
-  HWY_INLINE friend Packs operator*(Packs a, Packs b) { return {a.low * b.low, a.high * b.high}; }
-  HWY_INLINE friend Packs operator/(Packs a, Packs b) { return {a.low / b.low, a.high / b.high}; }
-  HWY_INLINE friend Packs operator-(Packs a) { return {-a.low, -a.high}; }
-  HWY_INLINE friend Mask operator>(Packs a, Packs b) { return {a.low > b.low, a.high > b.high}; }
-  HWY_INLINE friend Mask operator<(Packs a, Packs b) { return {a.low < b.low, a.high < b.high}; }
-  HWY_INLINE friend Packs fma(Packs a, Packs b, Packs c) {
-    return {fma(a.low, b.low, c.low), fma(a.high, b.high, c.high)};
-  }
-  HWY_INLINE friend Packs nfma(Packs a, Packs b, Packs c) {
-    return {nfma(a.low, b.low, c.low), nfma(a.high, b.high, c.high)};
-  }
-  HWY_INLINE friend Packs min(Packs a, Packs b) { return {min(a.low, b.low), min(a.high, b.high)}; }
-  HWY_INLINE friend Packs max(Packs a, Packs b) { return {max(a.low, b.low), max(a.high, b.high)}; }
-  HWY_INLINE friend Packs abs(Packs a) { return {abs(a.low), abs(a.high)}; }
-  HWY_INLINE friend Packs sqrt(Packs a) { return {sqrt(a.low), sqrt(a.high)}; }
-  HWY_INLINE friend Packs select(Mask where, Packs a, Packs b) {
-    return {select(where.low, a.low, b.low), select(where.high, a.high, b.high)};
-  }
-  HWY_INLINE friend Packs select(SinglePack::Mask where, Packs a, Packs b) {
-    return select(widened(where), a, b);
-  }
-  HWY_INLINE static Mask widened(SinglePack::Mask m) {
-#if HWY_TARGET == HWY_AVX3
-    return {{hn::Mask<Pack::Tag>{static_cast<__mmask8>(m.raw.raw)}},
-            {hn::Mask<Pack::Tag>{static_cast<__mmask8>(m.raw.raw >> 8)}}};
-#else
-    // Through integers: all bits set is -1 in any width.
-    const hn::RebindToSigned<Pack::Tag> wide;
-    const hn::RebindToSigned<SinglePack::Tag> narrow;
-    const auto bits = hn::BitCast(narrow, hn::VecFromMask(SinglePack::Tag(), m.raw));
-    const auto half = [&](auto b) HWY_ATTR {
-      return Pack::Mask{hn::MaskFromVec(hn::BitCast(Pack::Tag(), hn::PromoteTo(wide, b)))};
-    };
-    return {half(hn::LowerHalf(bits)), half(hn::UpperHalf(hn::Half<decltype(narrow)>(), bits))};
-#endif
-  }
-};
-template <class R>
-HWY_INLINE PackOf<R>::PackOf(const Packs& wide)
-    : raw(hn::Combine(Tag(), hn::DemoteTo(Packs::Half(), wide.high.raw),
-                      hn::DemoteTo(Packs::Half(), wide.low.raw))) {}
-
-}  // namespace twincell::sim::HWY_NAMESPACE
-
-namespace twincell::sim {
-template <>
-struct DoublesOf<HWY_NAMESPACE::SinglePack> {
-  using Type = HWY_NAMESPACE::Packs;
-};
-template <>
-inline constexpr double kTiny<HWY_NAMESPACE::SinglePack> = kTiny<float>;
-}  // namespace twincell::sim
-
-namespace twincell::sim::HWY_NAMESPACE {
-
 struct HighwayLanes {
   using V = Pack;
-  using Number = double;
-  using Wide = Pack;
-  using InDouble = HighwayLanes;
-  static constexpr int kJoined = 1;
   static constexpr int kLanes = static_cast<int>(hn::MaxLanes(All()));
   static constexpr int kWidth = kLanes;
   static_assert(kLanes == 4 || kLanes == 8);
@@ -315,12 +231,6 @@ struct HighwayLanes {
 
   HWY_INLINE static V load(const double* p) { return hn::LoadU(All(), p); }
   HWY_INLINE static void store(V v, double* p) { hn::StoreU(v.raw, All(), p); }
-  HWY_INLINE static void put(V v, double* p) { store(v, p); }
-  HWY_INLINE static V get(const double* p) { return load(p); }
-  HWY_INLINE static V load_joined(const double* p) { return load(p); }
-  HWY_INLINE static void store_joined(V v, double* p) { store(v, p); }
-  HWY_INLINE static V load_from(double* const* p, int at) { return load(p[0] + at); }
-  HWY_INLINE static void store_to(V v, double* const* p, int at) { store(v, p[0] + at); }
   static double largest(V v) { return hn::GetLane(hn::MaxOfLanes(All(), v.raw)); }
   static unsigned bits(Pack::Mask m) { return mask_bits(m); }
 
@@ -489,25 +399,6 @@ struct HighwayLanes {
         });
     }
   }
-};
-
-/// Contacts in single precision, those of two packets together.
-struct SingleLanes : HighwayLanes {
-  using V = SinglePack;
-  using Number = float;
-  static constexpr int kJoined = 2;
-  using Half = hn::Half<V::Tag>;
-
-  HWY_INLINE static void put(Pack v, float* p) { hn::StoreU(hn::DemoteTo(Half(), v.raw), Half(), p); }
-  HWY_INLINE static Pack get(const float* p) { return hn::PromoteTo(Pack::Tag(), hn::LoadU(Half(), p)); }
-  HWY_INLINE static V load_joined(const float* p) { return hn::LoadU(V::Tag(), p); }
-  HWY_INLINE static void store_joined(V v, float* p) { hn::StoreU(v.raw, V::Tag(), p); }
-  HWY_INLINE static Packs load_from(double* const* p, int at) { return {load(p[0] + at), load(p[1] + at)}; }
-  HWY_INLINE static void store_to(Packs v, double* const* p, int at) {
-    store(v.low, p[0] + at);
-    store(v.high, p[1] + at);
-  }
-  static double largest(V v) { return hn::GetLane(hn::MaxOfLanes(V::Tag(), v.raw)); }
 };
 
 }  // namespace twincell::sim::HWY_NAMESPACE

@@ -1,9 +1,8 @@
 #pragma once
 /// \file
 /// The text of the passes, for any kind of lanes. Lanes (simd_scalar.hpp, simd_highway.hpp) bring a type
-/// Wide of so many doubles with the operations of laws/real.hpp, the type V in which contacts are computed
-/// (the same, or as many floats as fit), a Row of four numbers, and the moves between beads' records and
-/// Wide.
+/// V of so many numbers with the operations of laws/real.hpp, a Row of four numbers, and the moves between
+/// beads' records and V.
 
 #include <array>
 #include <cmath>
@@ -24,159 +23,99 @@ namespace twincell::sim {
 /// some hundred instructions. So a few packets at a time go through three short stages: collect what is known
 /// of the two beads, compute the contact, deal out the force. (All in one loop is a third slower, two packets
 /// side by side in one loop still slower, for want of registers.)
-///
-/// In single precision it is the second stage that is so, on as many packets joined as make a vector. Beads
-/// and sums stay as they are: places in single precision would be 6e-8 apart, and overlaps at rest are 1e-6.
-/// For the same reason the overlap is no difference of lengths there, but (reach^2 - r^2)/(reach + r), the
-/// numerator taken in double.
 template <class Lanes, class Laws, int D, Velocity kVelocity>
 double pair_kernel(const PairArgs& args) {
   const PairArgs p = args;  // a copy that no store can alias
-  using Wide = typename Lanes::Wide;
   using V = typename Lanes::V;
-  using Number = typename Lanes::Number;
-  constexpr bool kSingle = !std::is_same_v<Number, double>;
-  constexpr int K = kTurns<D>, kCount = Layout<Laws>::kCount, W = Lanes::kWidth, kJoined = Lanes::kJoined;
+  constexpr int K = kTurns<D>, kCount = Layout<Laws>::kCount, W = Lanes::kWidth;
   constexpr int kMemory = kRemembered<Laws, kVelocity, D>;
   constexpr bool kTurn = Laws::Tangential::kActs, kRoll = Laws::Rolling::kActs;
   // Numbers of a contact between stages: approach, then action in its place.
-  constexpr int kRollAt = 2 * D, kSpinAt = kRollAt + (kRoll ? K : 0), kEdgeAt = kSpinAt + (kTurn ? K : 0),
-                kKept = std::max(kSingle ? kEdgeAt + 1 : kSpinAt, D + (kRoll ? 2 : 1) * K);
+  constexpr int kRollAt = 2 * D, kKept = std::max(kRollAt + (kRoll ? K : 0), D + (kRoll ? 2 : 1) * K);
   constexpr int kStage = W == 1 ? 1 : 16;  // packets
-  constexpr int kStride = W * kJoined;     // from one number of a packet to the next
-  alignas(64) Number stage[kStage * W * kKept];
-  const auto numbers_of = [&](int n) TWINCELL_LANES {
-    return stage + n / kJoined * kStride * kKept + n % kJoined * W;
-  };
+  alignas(64) double stage[kStage * W * kKept];
   std::int64_t live[kStage];
-  alignas(64) Number in_single[kSingle ? kCount * kStride : 1] = {};  // constants
-  const auto narrow = [&](const double* constants, Number* to) TWINCELL_LANES {
-    for (int m = 0; m < kCount; ++m) Lanes::put(Lanes::load(constants + W * m), to + kStride * m);
-  };
-  if constexpr (kSingle)
-    if (p.constants_step == 0 && p.packets > 0)
-      for (int h = 0; h < kJoined; ++h) narrow(p.constants, in_single + W * h);
-  alignas(64) double forgotten[W * (kMemory + 1)];  // what a packet remembers that is none
-  const V dt(p.dt);
-  const Wide magic(p.magic);
+  const V dt(p.dt), magic(p.magic);
   V largest(0.0);
   for (std::int64_t begin = 0; begin < p.packets; begin += kStage) {
     const std::int64_t end = begin + kStage < p.packets ? begin + kStage : p.packets;
     int n = 0;
     for (std::int64_t k = begin; k < end; ++k) {
       const std::int32_t *i = p.i + W * k, *j = p.j + W * k;
-      Wide d[D], v[D];
+      V d[D], v[D];
       Lanes::template difference<D>(p.records, i, j, d, v);
       if (p.shift != nullptr)
         for (int c = 0; c < D; ++c) d[c] = d[c] + Lanes::load(p.shift + W * (D * k + c));
       const double* constants = p.constants + p.constants_step * k;
-      Wide r2 = d[0] * d[0];
+      V r2 = d[0] * d[0];
       for (int c = 1; c < D; ++c) r2 = fma(d[c], d[c], r2);
       double* kept = p.memory + W * kMemory * k;
       // A pair that parted within this step has yet to settle what it remembers.
       auto of_interest = r2 < Lanes::load(constants + W * constant::kEdge);
       if constexpr (kVelocity == Velocity::full_step)
-        of_interest = either(of_interest, abs(Lanes::load(kept + W * Laws::template kMemory<D>)) > Wide(0.0));
+        of_interest = either(of_interest, abs(Lanes::load(kept + W * Laws::template kMemory<D>)) > V(0.0));
       if (!any(of_interest)) {
-        for (int m = 0; m < kMemory; ++m) Lanes::store(Wide(0.0), kept + W * m);
+        for (int m = 0; m < kMemory; ++m) Lanes::store(V(0.0), kept + W * m);
         continue;
       }
-      Number* to = numbers_of(n);
+      double* to = stage + W * kKept * n;
       for (int c = 0; c < D; ++c) {
-        Lanes::put(d[c], to + kStride * c);
-        Lanes::put(v[c], to + kStride * (D + c));
+        Lanes::store(d[c], to + W * c);
+        Lanes::store(v[c], to + W * (D + c));
       }
       if constexpr (kRoll) {
-        Wide s_i[K], s_j[K];
+        V s_i[K], s_j[K];
         Lanes::template spins<D>(p.spins, i, s_i);
         Lanes::template spins<D>(p.spins, j, s_j);
         for (int m = 0; m < K; ++m)  // odd under i <-> j
-          Lanes::put(s_i[m] * Lanes::load(constants + W * constant::kInvRadiusI) -
-                         s_j[m] * Lanes::load(constants + W * constant::kInvRadiusJ),
-                     to + kStride * (kRollAt + m));
-      }
-      if constexpr (kSingle) {
-        const Wide reach = Lanes::load(constants + W * constant::kReach);
-        Lanes::put(fma(reach, reach, -r2), to + kStride * kEdgeAt);
-        if constexpr (kTurn) {
-          Wide s[K];
-          Lanes::template spin_sums<D>(p.spins, i, j, s);
-          for (int m = 0; m < K; ++m) Lanes::put(s[m], to + kStride * (kSpinAt + m));
-        }
+          Lanes::store(s_i[m] * Lanes::load(constants + W * constant::kInvRadiusI) -
+                           s_j[m] * Lanes::load(constants + W * constant::kInvRadiusJ),
+                       to + W * (kRollAt + m));
       }
       live[n++] = k;
     }
-    for (int at = n; at % kJoined != 0; ++at)  // beads that just do not touch
-      for (int m = 0; m < kKept; ++m) Lanes::put(Wide(0.0), numbers_of(at) + kStride * m);
-    for (int at = 0; at < n; at += kJoined) {
-      Number* numbers = numbers_of(at);
-      const double* constants_of[kJoined];
-      double* kept[kJoined];
-      for (int h = 0; h < kJoined; ++h) {
-        const bool some = h == 0 || at + h < n;
-        const std::int64_t k = live[some ? at + h : at];
-        constants_of[h] = p.constants + p.constants_step * k;
-        kept[h] = some ? p.memory + W * kMemory * k : forgotten;
-      }
-      if constexpr (kJoined > 1)
-        if (at + 1 == n)
-          for (int m = 0; m < kMemory; ++m) Lanes::store(Wide(0.0), forgotten + W * m);
+    for (int at = 0; at < n; ++at) {
+      double* numbers = stage + W * kKept * at;
+      const std::int64_t k = live[at];
+      const double* constants = p.constants + p.constants_step * k;
+      double* kept = p.memory + W * kMemory * k;
       V c[kCount], d[D];
-      if constexpr (kSingle) {
-        if (p.constants_step != 0)
-          for (int h = 0; h < kJoined; ++h) narrow(constants_of[h], in_single + W * h);
-        for (int m = 0; m < kCount; ++m) c[m] = Lanes::load_joined(in_single + kStride * m);
-      } else {
-        for (int m = 0; m < kCount; ++m) c[m] = Lanes::load(constants_of[0] + W * m);
-      }
+      for (int m = 0; m < kCount; ++m) c[m] = Lanes::load(constants + W * m);
       ContactKinematics<V, D> a;
       for (int m = 0; m < D; ++m) {
-        d[m] = Lanes::load_joined(numbers + kStride * m);
-        a.v[m] = Lanes::load_joined(numbers + kStride * (D + m));
+        d[m] = Lanes::load(numbers + W * m);
+        a.v[m] = Lanes::load(numbers + W * (D + m));
       }
-      V inv_r;
-      if constexpr (kSingle) {
-        const V edge = Lanes::load_joined(numbers + kStride * kEdgeAt);
-        const NearReach<V> near = near_reach(edge * c[constant::kInvReachSquared]);
-        inv_r = near.inverse * c[constant::kInvReach];
-        a.overlap = edge * c[constant::kInvReach] * near.overlap_over_u;
-      } else {
-        V r2 = d[0] * d[0];
-        for (int m = 1; m < D; ++m) r2 = fma(d[m], d[m], r2);
-        inv_r = inverse_sqrt_near_one(r2 * c[constant::kInvReachSquared]) * c[constant::kInvReach];
-        a.overlap = nfma(r2, inv_r, c[constant::kReach]);
-      }
+      V r2 = d[0] * d[0];
+      for (int m = 1; m < D; ++m) r2 = fma(d[m], d[m], r2);
+      const V inv_r = inverse_sqrt_near_one(r2 * c[constant::kInvReachSquared]) * c[constant::kInvReach];
+      a.overlap = nfma(r2, inv_r, c[constant::kReach]);
       largest = max(a.overlap, largest);  // of what is not a number and a number, the second
       for (int m = 0; m < D; ++m) a.n[m] = d[m] * inv_r;
-      if constexpr (kTurn && kSingle)
-        for (int m = 0; m < K; ++m) a.s[m] = Lanes::load_joined(numbers + kStride * (kSpinAt + m));
-      if constexpr (kTurn && !kSingle)
-        Lanes::template spin_sums<D>(p.spins, p.i + W * live[at], p.j + W * live[at], a.s);
-      for (int m = 0; m < K; ++m) {
-        if constexpr (kRoll) a.w[m] = Lanes::load_joined(numbers + kStride * (kRollAt + m));
-      }
-      Doubles<V> memory[kMemory + 1];
-      for (int m = 0; m < kMemory; ++m) memory[m] = Lanes::load_from(kept, W * m);
+      if constexpr (kTurn) Lanes::template spin_sums<D>(p.spins, p.i + W * k, p.j + W * k, a.s);
+      if constexpr (kRoll)
+        for (int m = 0; m < K; ++m) a.w[m] = Lanes::load(numbers + W * (kRollAt + m));
+      V memory[kMemory + 1];
+      for (int m = 0; m < kMemory; ++m) memory[m] = Lanes::load(kept + W * m);
       const ContactLoad<V, D> act_on = act<Laws, kVelocity, V, D>(a, c, dt, p.locate, memory);
-      for (int m = 0; m < kMemory; ++m) Lanes::store_to(memory[m], kept, W * m);
-      for (int m = 0; m < D; ++m) Lanes::store_joined(act_on.f[m], numbers + kStride * m);
+      for (int m = 0; m < kMemory; ++m) Lanes::store(memory[m], kept + W * m);
+      for (int m = 0; m < D; ++m) Lanes::store(act_on.f[m], numbers + W * m);
       for (int m = 0; m < K; ++m) {
-        if constexpr (kTurn && !kRoll) Lanes::store_joined(act_on.q[m], numbers + kStride * (D + m));
+        if constexpr (kTurn && !kRoll) Lanes::store(act_on.q[m], numbers + W * (D + m));
         if constexpr (kRoll) {
-          Lanes::store_joined(act_on.q[m] + act_on.q_i[m], numbers + kStride * (D + m));
-          Lanes::store_joined(act_on.q[m] + act_on.q_j[m], numbers + kStride * (D + K + m));
+          Lanes::store(act_on.q[m] + act_on.q_i[m], numbers + W * (D + m));
+          Lanes::store(act_on.q[m] + act_on.q_j[m], numbers + W * (D + K + m));
         }
       }
     }
     for (int at = 0; at < n; ++at) {
       const std::int64_t k = live[at];
-      const Number* numbers = numbers_of(at);
-      const auto share = [&](int m)
-                             TWINCELL_LANES { return rounded(Lanes::get(numbers + kStride * m), magic); };
-      Wide f[D], q_i[K], q_j[K];
+      const double* numbers = stage + W * kKept * at;
+      const auto share = [&](int m) TWINCELL_LANES { return rounded(Lanes::load(numbers + W * m), magic); };
+      V f[D], q_i[K], q_j[K];
       for (int m = 0; m < D; ++m) f[m] = share(m);
       for (int m = 0; m < K; ++m) {
-        q_i[m] = q_j[m] = Wide(0.0);
+        q_i[m] = q_j[m] = V(0.0);
         if constexpr (kTurn) q_i[m] = q_j[m] = share(D + m);
         if constexpr (kRoll) q_j[m] = share(D + K + m);
       }
@@ -186,7 +125,7 @@ double pair_kernel(const PairArgs& args) {
   return Lanes::largest(largest);
 }
 
-/// Contacts of listed beads with one wall, in double precision: they are few.
+/// Contacts of listed beads with one wall.
 template <class Lanes, class Laws, int D, Velocity kVelocity>
 double wall_kernel(const WallArgs& args) {
   const WallArgs p = args;
@@ -406,7 +345,6 @@ struct KernelTable {
   static constexpr std::size_t kNormals = std::variant_size_v<NormalAxis>;
   static constexpr std::size_t kTangentials = std::variant_size_v<TangentialAxis>;
   static constexpr std::size_t kRollings = std::variant_size_v<RollingAxis>;
-  using InDouble = typename Lanes::InDouble;
 
   template <int D, Velocity kVelocity, std::size_t kIndex>
   static constexpr Kernels entry() {
@@ -415,9 +353,12 @@ struct KernelTable {
     using R = std::variant_alternative_t<kIndex % kRollings, RollingAxis>;
     // Beads that do not turn cannot resist rolling.
     using Laws = std::conditional_t<T::kActs, LawSet<N, T, R>, LawSet<N, T, NoRolling>>;
-    return {&pair_kernel<Lanes, Laws, D, kVelocity>, &wall_kernel<InDouble, Laws, D, kVelocity>,
-            &integrate_kernel<InDouble, D>,          &free_flight_kernel<InDouble, D>,
-            &velocity_range_kernel<InDouble, D>,     &near_pair_kernel<InDouble, D>,
+    return {&pair_kernel<Lanes, Laws, D, kVelocity>,
+            &wall_kernel<Lanes, Laws, D, kVelocity>,
+            &integrate_kernel<Lanes, D>,
+            &free_flight_kernel<Lanes, D>,
+            &velocity_range_kernel<Lanes, D>,
+            &near_pair_kernel<Lanes, D>,
             kRemembered<Laws, kVelocity, D>};
   }
   template <int D, Velocity kVelocity, std::size_t... kIndex>

@@ -1,19 +1,14 @@
 #pragma once
 /// \file
-/// One contact at a time, in plain C++, computed in double or in single precision: for machines without the
-/// vector units, and as the text against which they are tested.
+/// One contact at a time, in plain C++: for machines without the vector units, and as the text against which
+/// they are tested.
 
 #include "sim/kernels/kernels.hpp"
 
 namespace twincell::sim {
 
-template <class R>
 struct ScalarLanes {
-  using V = R;  ///< of a contact
-  using Number = R;
-  using Wide = double;
-  using InDouble = ScalarLanes<double>;
-  static constexpr int kJoined = 1;  ///< packets that make a V
+  using V = double;
   static constexpr int kWidth = 1;
   static constexpr int kBlock = 0;  ///< beads that integrate_blocks() would take at a time
 
@@ -58,12 +53,6 @@ struct ScalarLanes {
 
   static double load(const double* p) { return *p; }
   static void store(double v, double* p) { *p = v; }
-  static void put(double v, R* p) { *p = static_cast<R>(v); }
-  static double get(const R* p) { return *p; }
-  static V load_joined(const R* p) { return *p; }
-  static void store_joined(V v, R* p) { *p = v; }
-  static double load_from(double* const* p, int at) { return p[0][at]; }
-  static void store_to(double v, double* const* p, int at) { p[0][at] = v; }
   static double largest(V v) { return v; }
   static unsigned bits(bool m) { return m ? 1 : 0; }
 

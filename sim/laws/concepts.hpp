@@ -9,8 +9,7 @@
 /// v_n = v_ij . n < 0 while approaching; in the plane t = (-n_z, n_x) and v_t = v_ij . t - (R_i w_i + R_j
 /// w_j). Forces are those on i. Reduced units throughout. Formulas are templates on the type of number
 /// (real.hpp) and, for friction and rolling, on the tangent plane (tangent.hpp), so that one text serves one
-/// contact and sixteen, 2D and 3D, double and single precision. What lasts, xi and theta, is of double
-/// precision in either.
+/// contact and eight, 2D and 3D.
 
 #include <concepts>
 #include <string>
@@ -62,7 +61,7 @@ template <class Law, class V, class T, class X>
 /// Tangential force. kActs: beads turn; kHistory: xi lives as long as the contact.
 template <class Law>
 concept TangentialLaw = ContactLaw<Law> && requires(const Law law, const PairScale& pair, const float* c,
-                                                    float x, Tangent<float, 3> t, Tangent<double, 3> kept) {
+                                                    float x, Tangent<float, 3> t, Tangent<float, 3> kept) {
   { Law::kActs } -> std::convertible_to<bool>;
   { Law::kHistory } -> std::convertible_to<bool>;
   { tangential_force<Law>(c, t, x, x, kept, x) } -> std::same_as<Tangent<float, 3>>;
@@ -72,7 +71,7 @@ concept TangentialLaw = ContactLaw<Law> && requires(const Law law, const PairSca
 /// Torque against rolling on i (the opposite on j); its angle lives as long as the contact.
 template <class Law>
 concept RollingLaw = ContactLaw<Law> && requires(const Law law, const PairScale& pair, const float* c,
-                                                 float x, Tangent<float, 3> t, Tangent<double, 3> kept) {
+                                                 float x, Tangent<float, 3> t, Tangent<float, 3> kept) {
   { Law::kActs } -> std::convertible_to<bool>;
   { Law::torque(c, t, x, x, kept) } -> std::same_as<Tangent<float, 3>>;  // (constants, w, F_n, dt, theta)
   { law.shortest_time(pair) } -> std::same_as<double>;                   // t0

@@ -2,7 +2,7 @@
 /// \file
 /// The operations in which laws are written, for one contact at a time (double, float). Vector kernels bring
 /// their own for a pack of contacts, under the same names, so a law is written once. Every operation is
-/// correctly rounded, and products that are added to are fused by name: one contact alone and sixteen in a
+/// correctly rounded, and products that are added to are fused by name: one contact alone and eight in a
 /// vector give the same bits.
 
 #include <cmath>
@@ -10,23 +10,8 @@
 
 namespace twincell::sim {
 
-/// As many numbers of double precision as V has numbers: what is added up over many steps is kept in them.
-template <class V>
-struct DoublesOf {
-  using Type = V;
-};
-template <>
-struct DoublesOf<float> {
-  using Type = double;
-};
-template <class V>
-using Doubles = typename DoublesOf<V>::Type;
-
 /// What is added to, or compared with, a divisor that may be 0.
-template <class V>
 inline constexpr double kTiny = 1e-300;
-template <>
-inline constexpr double kTiny<float> = 1e-30;
 
 template <std::floating_point R>
 R fma(R a, R b, R c) {
@@ -86,27 +71,6 @@ inline V inverse_sqrt_near_one(V x) {
   y = fma(fma(V(0.35516373634072791), e2, fma(V(0.3123060746874187), e, V(0.37404445348065794))), e2, y);
   const V h = nfma(x * y, y, V(1.0));
   return fma(y * h, fma(V(0.375), h, V(0.5)), y);
-}
-
-/// Of u = 1 - (r/reach)^2, which a contact in single precision knows to all its digits, 1 - r/reach over u
-/// and reach/r.
-template <class V>
-struct NearReach {
-  V overlap_over_u;  ///< 1/(1 + sqrt(1 - u))
-  V inverse;         ///< 1/sqrt(1 - u)
-};
-/// To 5e-8 and 1e-9 for u in 0 .. 0.2, overlaps of up to a tenth of reach, by the nearest polynomials of
-/// fourth and sixth degree (Remez). Their last terms are even and positive: both stay positive for u < 0,
-/// however far, where beads are apart.
-template <class V>
-inline NearReach<V> near_reach(V u) {
-  const V u2 = u * u, u4 = u2 * u2;
-  const V p = fma(fma(V(0.036615661676969232), u, V(0.062670203124323382)), u2,
-                  fma(V(0.12499636535980313), u, V(0.5000000004827926)));
-  const V q = fma(fma(V(0.31186913121203735), u, V(0.3750184232795868)), u2,
-                  fma(V(0.49999985245847264), u, V(0.9999999995318971)));
-  const V end = fma(V(0.44939277280618084), u2, fma(V(0.17819595794530035), u, V(0.28283999237112606)));
-  return {fma(V(0.040633423168684757), u4, p), fma(end, u4, q)};
 }
 
 }  // namespace twincell::sim

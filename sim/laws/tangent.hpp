@@ -26,27 +26,6 @@ inline Tangent<V, K> fma(V a, const Tangent<V, K>& t, const Tangent<V, K>& u) {
   for (int k = 0; k < K; ++k) r.c[k] = fma(a, t.c[k], u.c[k]);
   return r;
 }
-/// The same where `u`, or `t`, is kept in double precision (real.hpp).
-template <class V, int K>
-requires(!std::same_as<V, Doubles<V>>) inline Tangent<Doubles<V>, K> fma(V a, const Tangent<V, K>& t,
-                                                                         const Tangent<Doubles<V>, K>& u) {
-  Tangent<Doubles<V>, K> r;
-  for (int k = 0; k < K; ++k) r.c[k] = fma(Doubles<V>(a), Doubles<V>(t.c[k]), u.c[k]);
-  return r;
-}
-template <class V, int K>
-requires(!std::same_as<V, Doubles<V>>) inline Tangent<V, K> fma(V a, const Tangent<Doubles<V>, K>& t,
-                                                                const Tangent<V, K>& u) {
-  Tangent<V, K> r;
-  for (int k = 0; k < K; ++k) r.c[k] = fma(a, V(t.c[k]), u.c[k]);
-  return r;
-}
-template <class V, int K>
-requires(!std::same_as<V, Doubles<V>>) inline Tangent<V, K> operator*(V a, const Tangent<Doubles<V>, K>& t) {
-  Tangent<V, K> r;
-  for (int k = 0; k < K; ++k) r.c[k] = a * V(t.c[k]);
-  return r;
-}
 template <class V, int K>
 inline Tangent<V, K> operator+(const Tangent<V, K>& t, const Tangent<V, K>& u) {
   Tangent<V, K> r;
@@ -63,13 +42,6 @@ template <class M, class V, int K>
 inline Tangent<V, K> select(M where, const Tangent<V, K>& t, const Tangent<V, K>& u) {
   Tangent<V, K> r;
   for (int k = 0; k < K; ++k) r.c[k] = select(where, t.c[k], u.c[k]);
-  return r;
-}
-template <class M, class V, int K>
-requires(!std::same_as<V, Doubles<V>>) inline Tangent<Doubles<V>, K> select(M where, const Tangent<V, K>& t,
-                                                                            const Tangent<Doubles<V>, K>& u) {
-  Tangent<Doubles<V>, K> r;
-  for (int k = 0; k < K; ++k) r.c[k] = select(where, Doubles<V>(t.c[k]), u.c[k]);
   return r;
 }
 template <class V, int K>
@@ -100,7 +72,7 @@ inline Limited<V, K> limited(const Tangent<V, K>& t, V limit) {
     const V length = norm(t);
     const auto cut = length > limit;
     // Where it is cut, length > limit >= 0; elsewhere the quotient is not used, but must be finite.
-    const V factor = select(cut, limit / max(length, V(kTiny<V>)), V(1.0));
+    const V factor = select(cut, limit / max(length, V(kTiny)), V(1.0));
     return {factor * t, cut};
   }
 }

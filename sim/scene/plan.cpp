@@ -195,14 +195,6 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
                     s.settle_limit));
   else
     add("settling", State::off_by_scene, "start.settle_limit = 0");
-  // tests/hard/precision_test.cpp, `cost sim`.
-  if (s.single)
-    add("single precision", State::approximated,
-        "contacts between beads are computed to 24 bits, places, speeds and sums to 53: e of single "
-        "collisions "
-        "is changed by up to 1e-7, overlaps of a bed at rest by 3e-7 of each");
-  else
-    add("single precision", State::off_by_scene, "time.precision = \"double\"");
   // What that does to a collision is measured where it is asked for (step_error.hpp).
   add(kTimeIntegration, State::approximated,
       fmt::format(
@@ -220,7 +212,6 @@ std::string why_not_event_driven(const Scene& scene, const Plan& plan) {
     if (!integrable_alone(laws)) return "the contact law of a wall " + alone;
   if (scene.plate_drag > 0) return "cell.plate_drag slows beads between contacts";
   if (!scene.envelope.points.empty()) return "the drive's amplitude changes";
-  if (scene.single) return "time.precision = \"single\"";
   return "";
 }
 
@@ -278,22 +269,6 @@ void refuse_to_drop(const Scene& s, const Plan& plan) {
         fmt::format("is false, but contact.tangential = \"{}\" with {} is a spring that remembers; "
                     "choose \"dashpot\" for a law without history.",
                     s.contact.tangential, stiffness_text(s.contact)));
-}
-
-/// Single precision has its bounds: polynomials that hold for overlaps of a tenth (laws/real.hpp), and
-/// numbers that neither vanish nor overflow.
-void refuse_single(const Scene& s, double smallest_radius, double smallest_mass) {
-  constexpr double kDeepest = 0.1, kLeast = 1e-6;
-  const Where where = s.where("time.precision");
-  if (s.overlap_bound > kDeepest)
-    throw ConfigError(where, fmt::format("\"single\" is good for overlaps of up to {:g} of a diameter, but "
-                                         "contact.overlap_bound = {:g}; lower it, or choose \"double\".",
-                                         kDeepest, s.overlap_bound));
-  if (smallest_radius < kLeast || smallest_mass < kLeast)
-    throw ConfigError(where,
-                      fmt::format("\"single\" loses the contacts of a bead of radius {:g} and mass {:g}, "
-                                  "the bound of either is {:g}; choose other units, or \"double\".",
-                                  smallest_radius, smallest_mass, kLeast));
 }
 
 /// Notes a limit, or keeps the shorter of two of one name.
@@ -405,12 +380,8 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   const Chosen chosen = choose(s, plan.walls);
   plan.bead = read_laws(chosen, s.contact.bead);
   for (const Wall& w : plan.walls) plan.wall_laws.push_back(read_laws(chosen, s.contact.wall.at(w.name)));
-  plan.key = {s.dimension,
-              plan.bead.normal.index(),
-              plan.bead.tangential.index(),
-              plan.bead.rolling.index(),
-              integrator_named(s.integrator).velocity,
-              s.single};
+  plan.key = {s.dimension, plan.bead.normal.index(), plan.bead.tangential.index(), plan.bead.rolling.index(),
+              integrator_named(s.integrator).velocity};
   plan.locate = integrator_named(s.integrator).locate;
   plan.rotation = std::visit([](const auto& law) { return law.kActs; }, plan.bead.tangential);
   plan.history = std::visit([](const auto& law) { return law.kHistory; }, plan.bead.tangential);
@@ -433,12 +404,6 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   }
   plan.travel_bound = kTravelBound * 2 * std::min_element(sizes.begin(), sizes.end(), smaller)->radius;
   plan.overlap_bound = s.overlap_bound * 2 * plan.usual_radius;
-  if (s.single)
-    refuse_single(s, std::min_element(sizes.begin(), sizes.end(), smaller)->radius,
-                  std::min_element(sizes.begin(), sizes.end(), [](const BeadScale& a, const BeadScale& b) {
-                    return a.mass < b.mass;
-                  })->mass);
-
   const double speed = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
   const auto force = [&](const auto& law) { return law.largest_force(plan.overlap_bound); };
   plan.largest_force = std::visit(force, plan.bead.normal);

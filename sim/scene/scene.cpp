@@ -338,6 +338,16 @@ void refuse_void_spread(const Section& beads, const Scene& scene, Voids& voids) 
                  "radii are not drawn for the beads of a table; its column \"radius\" says them.");
 }
 
+/// Versions before 0.2 had a choice of precision. Files that state "double" go on as before.
+void refuse_single_precision(const Section& s) {
+  if (const auto word = s.text("precision"); word && *word != "double")
+    throw ConfigError(
+        s.where("precision"),
+        fmt::format("\"{}\" is no precision of this version, which computes in \"double\" alone "
+                    "(single precision saved no time); remove the key.",
+                    *word));
+}
+
 void read_time(const Section& s, Scene& scene) {
   refuse_former_key(s, "force", "allow_unstable_step = true");
   scene.allow_unstable_step = s.boolean("allow_unstable_step").value_or(scene.allow_unstable_step);
@@ -350,7 +360,7 @@ void read_time(const Section& s, Scene& scene) {
   refuse_former_word(s, "stepping", "flights", "event-driven");
   if (const auto stepping = s.word("stepping", words_of(kSteppings)))
     scene.stepping = row_named(kSteppings, *stepping, "time.stepping", "stepping").value;
-  scene.single = s.word("precision", {"double", "single"}).value_or("double") == "single";
+  refuse_single_precision(s);
   scene.discard = s.integer_in("discard", 0, 1'000'000).value_or(scene.discard);
   scene.cycles = s.integer_in("cycles", 1, 100'000'000).value_or(scene.cycles);
   scene.phases = static_cast<int>(s.integer_in("phases", 1, 10'000).value_or(scene.phases));

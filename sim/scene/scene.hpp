@@ -128,7 +128,6 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   bool allow_unstable_step = false;  ///< fewer than kFewestSteps steps per contact are run all the same
   std::string integrator{kDefaultIntegrator.word};  ///< of kAllIntegrators
   bool integrator_stated = false;                   ///< by file, preset or command line
-  bool single = false;                              ///< precision of contacts between beads
   Stepping stepping = Stepping::automatic;
   std::int64_t discard = 10, cycles = 200;
   int phases = 20;

@@ -13,7 +13,6 @@ struct StepSetting {
   std::string integrator = "verlet";  ///< time.integrator
   double n = 50.37;                   ///< steps per contact; a whole number hides errors of entry and exit
   double k_n = 1e6;                   ///< m g/sigma
-  bool single = false;                ///< time.precision
 
   bool operator==(const StepSetting&) const = default;
 };

@@ -95,10 +95,7 @@ class ListSolver : public Solver {
   [[nodiscard]] std::vector<ContactMemory> contacts() const override;
   void restore(std::vector<ContactMemory> contacts) override { restored_ = std::move(contacts); }
   [[nodiscard]] std::string description() const override {
-    const bool single = plan_.key.single;
-    const Size together = single && width_ > 1 ? 2 * width_ : width_;
-    return fmt::format("{}, {} contact{} at a time{}", target_.name, together, together == 1 ? "" : "s",
-                       single ? ", in single precision" : "");
+    return fmt::format("{}, {} contact{} at a time", target_.name, width_, width_ == 1 ? "" : "s");
   }
   [[nodiscard]] Counters counters() const override { return counters_; }
   [[nodiscard]] Footprint footprint() const override;

@@ -55,10 +55,10 @@ class CellGrid {
       of_class = std::max(of_class, 2 * r + margin);
     }
     // Wider than the reach by more than rounding can move a bead across cells.
-    constexpr double kSlack = 1 + 1e-6, kTiny = 1e-12;
+    constexpr double kSlack = 1 + 1e-6, kSmallest = 1e-12;
     for (std::size_t k = 0; k < kClasses; ++k)
       for (std::size_t a = 0; a < 3; ++a) {
-        const double edge = std::max(reach[k] * kSlack, kTiny);
+        const double edge = std::max(reach[k] * kSlack, kSmallest);
         levels_[k].count[a] =
             period[a] > 0 ? static_cast<std::int64_t>(std::clamp(std::floor(period[a] / edge), 1.0, kFar))
                           : 0;

@@ -58,8 +58,6 @@ TEST_F(Explain, EachEffectStandsInItsList) {
   EXPECT_EQ(all["tangential history"], "on");
   EXPECT_EQ(all["rolling resistance"], "off (scene)");
   EXPECT_EQ(all["time integration"], "approximated");
-  EXPECT_EQ(all["single precision"], "off (scene)");
-  EXPECT_EQ(states(explained({"--set", "time.precision=single"}))["single precision"], "approximated");
   EXPECT_EQ(all.count("tension"), 0U);
   all = states(explained({"--set", "contact.mu=0.0", "--set", "contact.normal=linear-no-tension", "--set",
                           "cell.plate_drag=0.1"}));

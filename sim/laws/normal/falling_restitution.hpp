@@ -47,7 +47,7 @@ struct FallingRestitution {
       const V u = sqrt(max(-v_n, V(0.0)) * c[3]);
       const V e = max(c[2], fma(c[2] - V(1.0), u * sqrt(u), V(1.0)));
       memory[0] =
-          each(first, e, memory[0], [](double x) { return std::max(damping_of_restitution(x), kTiny<V>); });
+          each(first, e, memory[0], [](double x) { return std::max(damping_of_restitution(x), kTiny); });
     }
     return nfma(memory[0] * c[1], v_n, c[0] * overlap);
   }

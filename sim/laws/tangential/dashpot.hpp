@@ -44,7 +44,7 @@ struct DashpotSlider {
   }
   template <class V, class T>
   static T sliding(const V* c, const T& v_t, V f_n) {
-    return (-(c[1] * abs(f_n)) / max(norm(v_t), V(kTiny<V>))) * v_t;
+    return (-(c[1] * abs(f_n)) / max(norm(v_t), V(kTiny))) * v_t;
   }
   /// How far the dashpot of surfaces that slide at |v_t| is from the limit; negative where it is cut.
   template <class V>

@@ -46,7 +46,7 @@ struct MindlinSlider {
     xi = fma(dt, v_t, xi);
     const V k = c[0] * sqrt(max(overlap, V(0.0)));  // negative, as the formula wants it
     const auto [force, slips] = limited(k * xi, c[1] * abs(f_n));
-    const V back = V(1.0) / min(k, V(-kTiny<V>));
+    const V back = V(1.0) / min(k, V(-kTiny));
     xi = select(slips, back * force, xi);
     return force;
   }

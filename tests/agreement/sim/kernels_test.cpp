@@ -1,4 +1,4 @@
-// Every combination of laws, dimension, integrator, precision, sizes and edges: all kernels give the same
+// Every combination of laws, dimension, integrator, sizes and edges: all kernels give the same
 // bits, and so do all habits that must not show - when lists are built, who shares the work, how beads are
 // numbered, where a run is cut.
 
@@ -34,11 +34,10 @@ struct Case {
   std::string integrator;
   bool unequal;  ///< radii spread, and an intruder
   bool periodic;
-  bool single;
 };
 void PrintTo(const Case& c, std::ostream* out) {
   *out << c.dimension << "D " << c.integrator << (c.unequal ? " unequal" : " equal")
-       << (c.periodic ? " periodic" : " walls") << (c.single ? " single" : "");
+       << (c.periodic ? " periodic" : " walls");
 }
 
 /// A small bed, dense and fast enough that contacts begin, slide, stick, roll and end from the first steps
@@ -52,7 +51,7 @@ Scene scene_of(const Case& c, const Laws& laws) {
   if (c.unequal)
     text += "spread = \"uniform\"\nspread_width = 0.2\n[beads.intruder]\nradius = 0.83\nz = 2.5\n";
   text += "[drive]\nomega = 7.0\ngamma = 4.0\n[time]\nsteps_per_contact = 12\nintegrator = \"" +
-          c.integrator + "\"\nprecision = \"" + (c.single ? "single" : "double") + "\"\n";
+          c.integrator + "\"\n";
   text += "[contact]\nnormal = \"" + laws.normal + "\"\ntangential = \"" + laws.tangential +
           "\"\nrolling = \"" + laws.rolling + "\"\n";
   // A value for every key that a law may read, and of keys of which one says it all, the one named here.
@@ -207,15 +206,14 @@ INSTANTIATE_TEST_SUITE_P(All, Kernels, testing::ValuesIn([] {
                              for (const char* integrator : {"verlet", "predicted", "split"})
                                for (const bool unequal : {false, true})
                                  for (const bool periodic : {false, true})
-                                   for (const bool single : {false, true})
-                                     all.push_back({dimension, integrator, unequal, periodic, single});
+                                   all.push_back({dimension, integrator, unequal, periodic});
                            return all;
                          }()),
                          [](const auto& of) {
                            const Case& c = of.param;
                            return std::string(c.dimension == 2 ? "Plane" : "Space") + "_" + c.integrator +
                                   "_" + (c.unequal ? "unequal" : "equal") + "_" +
-                                  (c.periodic ? "periodic" : "walls") + (c.single ? "_single" : "");
+                                  (c.periodic ? "periodic" : "walls");
                          });
 
 }  // namespace
