@@ -6,59 +6,31 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/gas/granular_temperature.hpp"
-#include "analysis/gas/profiles.hpp"
-#include "analysis/gas/volume_fraction.hpp"
-#include "analysis/motion/bed_flight.hpp"
 #include "analysis/motion/centre_of_mass.hpp"
-#include "analysis/motion/convection.hpp"
-#include "analysis/motion/phase_thresholds.hpp"
-#include "analysis/motion/slip.hpp"
 #include "analysis/motion/tracers.hpp"
 #include "analysis/observable/observable.hpp"
-#include "analysis/order/defects.hpp"
-#include "analysis/order/grains.hpp"
-#include "analysis/order/order.hpp"
-#include "analysis/order/orientation.hpp"
 #include "core/cancellation.hpp"
 
+// The list: an observable is NAME.cpp in a room of analysis/, which defines NAME_observable.
+#define TWINCELL_OBSERVABLES(EACH)                                                                          \
+  EACH(phase_thresholds)                                                                                    \
+  EACH(slip)                                                                                                \
+  EACH(granular_temperature) EACH(bond_order) EACH(orientation) EACH(grains) EACH(defects) EACH(convection) \
+      EACH(profiles) EACH(volume_fraction) EACH(centre_of_mass) EACH(bed_flight)
+
 namespace twincell {
+
+#define TWINCELL_DECLARE(name) extern const ObservableEntry name##_observable;
+TWINCELL_OBSERVABLES(TWINCELL_DECLARE)
+#undef TWINCELL_DECLARE
+
 namespace {
 
-/// The list: which results, made by whom.
-struct Entry {
-  std::vector<std::string> names;
-  std::unique_ptr<Observable> (*make)(const AnalysisContext&);
-};
-const std::vector<Entry>& entries() {
-  static const std::vector<Entry> list = {
-      {{"s_k", "s_b", "s_b_variance", "s_b_about_rest", "s_b_as_printed", "half_pixel", "s_b_noise",
-        "s_j_noise", "s_j", "s_c", "cycle_of_convection", "s_j_growth", "s_j_growth_late", "drift", "phase",
-        "tracers", "tracer_heights"},
-       make_phase_thresholds},
-      {{"p_s", "slips", "p_s_j", "slip_directions", "slip_oblique", "slip_vertical", "slip_horizontal"},
-       make_slip},
-      {{"T_g", "T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar", "T_z_tau",
-        "T_g_aliasing", "T_z_aliasing", "T_g_sampling"},
-       make_granular_temperature},
-      {{"q6", "psi6", "psi4", "hexagonal_fraction", "square_fraction", "q6_beads", "psi6_beads",
-        "psi4_beads"},
-       make_bond_order},
-      {{"ordered_fraction", "orientation", "orientation_a", "orientation_b", "orientation_beads"},
-       make_orientation},
-      {{"grains", "largest_grain", "grain_boundary_fraction", "grain_boundary_angle", "grain_beads"},
-       make_grains},
-      {{"disclinations_5", "disclinations_7", "disclinations_other", "dislocations", "free_disclinations",
-        "holes", "defect_fraction", "defect_fraction_j", "coordination_beads"},
-       make_defects},
-      {{"displacement_field", "field_x", "field_z", "circulation_left", "circulation_right", "rolls",
-        "convection_sense"},
-       make_convection},
-      {{"profile_z", "phi_z", "T_z_z", "T_x_z", "T_z_frames_z", "T_z_volume"}, make_profiles},
-      {{"phi_top", "phi_cm"}, make_volume_fraction},
-      {{"h_cm", "h_cm_k", "h_cm_j", "delta_h_cm", "delta_h_bar"}, make_centre_of_mass},
-      {{"flight_time", "flight_share"}, make_bed_flight},
-  };
+/// All observables, in the order of their results.
+const std::vector<const ObservableEntry*>& entries() {
+#define TWINCELL_ADDRESS(name) &name##_observable,
+  static const std::vector<const ObservableEntry*> list = {TWINCELL_OBSERVABLES(TWINCELL_ADDRESS)};
+#undef TWINCELL_ADDRESS
   return list;
 }
 
@@ -68,7 +40,7 @@ void check(const AnalysisOptions& options) {
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw ConfigError(
           {.file = {}, .key = "only"},
-          fmt::format("there is no result called \"{}\"; there are {}", name, fmt::join(names, ", ")));
+          fmt::format("there is no result called \"{}\"; the results are {}", name, fmt::join(names, ", ")));
   if (options.discard_cycles < 0)
     throw ConfigError({.file = {}, .key = "discard"},
                       fmt::format("{} cycles cannot be left out; at least 0", options.discard_cycles));
@@ -82,7 +54,8 @@ void check(const AnalysisOptions& options) {
   if (options.rest_height) require_range({.file = {}, .key = "rest_height"}, *options.rest_height, 0, 1e4);
 }
 
-/// Chooses tracers on the first frame at phase 0 (the first of all if the frames have no phase).
+/// Builds the context. Tracers and the rest height come from the first frame at phase 0 (from the very first
+/// frame if no frame has phase 0 or the frames have no phase).
 AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisOptions& options) {
   const TrajectoryInfo& info = trajectory.info();
   AnalysisContext context{info, options, neighbour_cutoff(info, options),         {},
@@ -201,8 +174,16 @@ const VoronoiCells& FrameView::cells() const {
 
 std::vector<std::string> result_names() {
   std::vector<std::string> names;
-  for (const Entry& entry : entries()) names.insert(names.end(), entry.names.begin(), entry.names.end());
+  for (const ObservableEntry* entry : entries())
+    for (const NamedResult& result : entry->results) names.emplace_back(result.name);
   return names;
+}
+
+NamedResult named_result(std::string_view name) {
+  for (const ObservableEntry* entry : entries())
+    for (const NamedResult& result : entry->results)
+      if (result.name == name) return result;
+  return {name};
 }
 
 const Result* seek_result(const std::vector<Result>& results, const std::string& name) {
@@ -221,22 +202,23 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
                             Progress& progress) {
   check(options);
   if (trajectory.n_frames() == 0)
-    throw InputError({.file = trajectory.name(), .key = {}}, "the trajectory holds no frame");
+    throw InputError({.file = trajectory.name(), .key = {}}, "the trajectory contains no frame");
   const AnalysisContext context = make_context(trajectory, options);
   if ((options.discard_cycles > 0 || options.cycles > 0) && !context.info.columns.phase)
     throw ConfigError({.file = trajectory.name(), .key = options.cycles > 0 ? "cycles" : "discard"},
                       "cycles cannot be chosen from a trajectory whose frames have no cycle number");
 
+  // Observables: only those with a requested result.
   std::vector<std::unique_ptr<Observable>> observables;
-  for (const Entry& entry : entries())
-    if (std::any_of(entry.names.begin(), entry.names.end(),
-                    [&](const std::string& name) { return options.wants(name); }))
-      observables.push_back(entry.make(context));
+  for (const ObservableEntry* entry : entries())
+    if (std::any_of(entry->results.begin(), entry->results.end(),
+                    [&](const NamedResult& result) { return options.wants(std::string(result.name)); }))
+      observables.push_back(entry->make(context));
 
   Frame frame;
   std::int64_t first_cycle = -1;
   std::size_t used = 0;
-  // The number of frames is asked for each time: a run that is analysed while it goes on may end early.
+  // The number of frames is queried each time: a run that is analysed while it is simulated may end early.
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
     throw_if_cancelled();
     trajectory.read(f, frame);
@@ -256,13 +238,14 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
     throw ConfigError({.file = trajectory.name(), .key = "discard"},
                       fmt::format("leaving out {} cycles leaves no frame", options.discard_cycles));
 
+  // Results: only those requested, because an observable may have more.
   std::vector<Result> results;
   for (const auto& observable : observables) {
     throw_if_cancelled();
     for (Result& r : observable->results()) {
       if (!options.wants(r.name)) continue;
       if (!r.shape.empty() && !r.interval && r.no_interval.empty())
-        r.no_interval = "an array: one value for each element";
+        r.no_interval = "no interval is computed for the elements of an array";
       results.push_back(std::move(r));
     }
   }

@@ -50,8 +50,8 @@ CameraOptions camera_with(const std::string& what) {
 void expose(benchmark::State& state, const char* what) {
   const MemoryTrajectory film = riding(3);
   const SyntheticCamera camera(camera_with(what), film.info());
-  const Moment moment{&film.frames()[0], &film.frames()[1], &film.frames()[2]};
-  for (auto _ : state) benchmark::DoNotOptimize(camera.expose(moment));
+  const Exposure exposure{&film.frames()[0], &film.frames()[1], &film.frames()[2]};
+  for (auto _ : state) benchmark::DoNotOptimize(camera.expose(exposure));
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK_CAPTURE(expose, still, "still")->Unit(benchmark::kMillisecond);

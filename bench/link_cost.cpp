@@ -60,13 +60,13 @@ int main(int argc, char** argv) {
   if (argc > 5) options.memory = std::stoi(argv[5]);
   const int repetitions = argc > 6 ? std::stoi(argv[6]) : 1;
 
-  auto moment_of = [&](std::size_t f) {
-    FrameMoment moment;
+  auto time_of = [&](std::size_t f) {
+    FrameTime time;
     if (phases > 0) {
-      moment.phase = static_cast<std::int32_t>(f % static_cast<std::size_t>(phases));
-      moment.cycle = static_cast<std::int64_t>(f / static_cast<std::size_t>(phases));
+      time.phase = static_cast<std::int32_t>(f % static_cast<std::size_t>(phases));
+      time.cycle = static_cast<std::int64_t>(f / static_cast<std::size_t>(phases));
     }
-    return moment;
+    return time;
   };
   double best = 1e300;
   LinkReport report;
@@ -76,14 +76,14 @@ int main(int argc, char** argv) {
     Linker linker(options, phases);
     const double begun = cpu_seconds();
     linker.begin(initial_velocities(options, phases, frames.size(), [&](std::size_t f) {
-      return FrameOfBeads{frames[f], {}, moment_of(f)};
+      return FrameOfBeads{frames[f], {}, time_of(f)};
     }));
     double seconds = cpu_seconds() - begun;
     for (std::size_t f = 0; f < frames.size(); ++f) {
       const bool more = f + 1 < frames.size();
-      const FrameAhead ahead = more ? FrameAhead{frames[f + 1], moment_of(f + 1), {}} : FrameAhead{};
+      const FrameAhead ahead = more ? FrameAhead{frames[f + 1], time_of(f + 1), {}} : FrameAhead{};
       const double start = cpu_seconds();
-      const std::vector<std::int64_t> ids = linker.next(frames[f], moment_of(f), {}, more ? &ahead : nullptr);
+      const std::vector<std::int64_t> ids = linker.next(frames[f], time_of(f), {}, more ? &ahead : nullptr);
       seconds += cpu_seconds() - start;
       if (r > 0) continue;
       for (std::size_t k = 0; k < ids.size(); ++k) {

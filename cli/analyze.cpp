@@ -37,7 +37,8 @@ Product figure_folder() {
   return Product::whole_folder("the figures of an analysis");
 }
 
-/// A number, or the mean height of the centre of mass above the plate in a trajectory of a bed at rest.
+/// Returns the number in `said`, or the mean height of the centre of mass above the plate in the trajectory
+/// that `said` names, which must show a bed at rest.
 double rest_height_of(const std::string& said) {
   double number = 0;
   if (CLI::detail::lexical_cast(said, number)) return number;
@@ -57,11 +58,10 @@ double rest_height_of(const std::string& said) {
   }
   constexpr double kStill = 1.0 / 30;
   if (trajectory.n_frames() == 0 || high - low > kStill)
-    throw InputError(
-        {.file = said, .key = "--rest-height"},
-        fmt::format("is no bed at rest: its centre of mass moves by {:.3g} sigma against the plate in "
-                    "{} frames; at most {:.3g}",
-                    high - low, trajectory.n_frames(), kStill));
+    throw InputError({.file = said, .key = "--rest-height"},
+                     fmt::format("is not a bed at rest: its centre of mass moves by {:.3g} sigma relative to "
+                                 "the plate in {} frames; the limit is {:.3g}",
+                                 high - low, trajectory.n_frames(), kStill));
   return sum / static_cast<double>(trajectory.n_frames());
 }
 
@@ -72,7 +72,7 @@ void run(const Common& common, const AnalyzeOptions& options) {
     readers.push_back(std::make_unique<H5mdReader>(file));
     trajectories.push_back(readers.back().get());
     if (readers.back()->n_frames() == 0)
-      throw InputError({.file = file, .key = {}}, "the trajectory holds no frame");
+      throw InputError({.file = file, .key = {}}, "the trajectory contains no frame");
   }
   require_one_condition(trajectories);
   if (readers.size() > 1 && !options.figures.empty())
@@ -108,52 +108,62 @@ void run(const Common& common, const AnalyzeOptions& options) {
 void add_analyze(CLI::App& program, Common& common) {
   CLI::App& verb = add_verb(
       program, common, "analyze",
-      "observables of a trajectory: phase, s_b, s_c, order, defects, slip, convection, profiles, temperature",
+      "Compute the observables of a trajectory: phase, s_b, s_c, order, defects, slip, convection, profiles "
+      "and granular temperature, with confidence intervals. Prints them; -o also writes them to a file.",
       "twincell analyze sim.h5 --discard 10 -o results.h5");
   auto options = std::make_shared<AnalyzeOptions>();
   verb.add_option("trajectory", options->trajectories,
-                  "trajectory (H5MD); several that differ by chance alone (seeds, repeats) are pooled, with "
-                  "intervals over them")
+                  "Trajectory (H5MD); several that differ only by chance (seeds, repeats) are pooled, with "
+                  "confidence intervals over the runs")
       ->required();
   writes(common, verb,
-         verb.add_option("-o,--output", options->output, "write the results to this HDF5 file too"),
+         verb.add_option("-o,--output", options->output, "Also write the results to this HDF5 file"),
          Product::results());
   writes(common, verb,
-         verb.add_option(
-             "--figures", options->figures,
-             "draw the lattice, the convection field, the profiles and the defects into this folder"),
+         verb.add_option("--figures", options->figures,
+                         "Draw the lattice, the convection field, the profiles and the defects into this "
+                         "folder; for one trajectory only"),
          figure_folder());
-  verb.add_option("--discard", options->analysis.discard_cycles, "cycles left out at the beginning")
+  verb.add_option("--discard", options->analysis.discard_cycles, "Number of cycles skipped at the start")
       ->capture_default_str();
-  verb.add_option("--cycles", options->analysis.cycles, "cycles used after those, N_f (0: all)")
+  verb.add_option("--cycles", options->analysis.cycles,
+                  "Number of cycles analysed after the skipped ones, N_f; 0: all")
       ->capture_default_str();
-  verb.add_option("--tracers", options->analysis.tracers, "ids of the tracers, comma separated")
+  verb.add_option("--tracers", options->analysis.tracers,
+                  "Identities of the tracers, comma separated; default: the marked tracers, otherwise the "
+                  "line at mid-height")
       ->delimiter(',');
-  verb.add_option("--tracer-band", options->analysis.tracer_band,
-                  "as tracers all beads that begin LOW,HIGH sigma above the plate")
+  verb.add_option(
+          "--tracer-band", options->analysis.tracer_band,
+          "Use as tracers all beads whose initial height above the plate is between LOW and HIGH, sigma")
       ->delimiter(',')
       ->type_name("LOW,HIGH");
-  verb.add_option("--s-b", options->s_b, "reading of eq. B4")
+  verb.add_option("--s-b", options->s_b,
+                  "Form of eq. B4 (Fortini & Huang 2015) for s_b: variance (standard deviation over the "
+                  "phases), about_rest (rms about the height at rest) or as_printed (rms of the height)")
       ->check(CLI::IsMember({"variance", "about_rest", "as_printed"}))
       ->capture_default_str();
-  verb.add_option("--only", options->analysis.only, "results wanted, comma separated")
+  verb.add_option("--only", options->analysis.only,
+                  "Names of the results to compute, comma separated; default: all")
       ->delimiter(',')
       ->type_name(kWord);
-  verb.add_option("--neighbours", options->neighbours, "whose bonds make q6, psi6, psi4, orientation, grains")
+  verb.add_option("--neighbours", options->neighbours,
+                  "Definition of neighbours for q6, psi6, psi4, orientation and grains")
       ->check(CLI::IsMember({"cutoff", "delaunay", "voronoi"}))
       ->capture_default_str();
   verb.add_option("--cell-radius", options->analysis.cell_radius,
-                  "size of Voronoi cells, sigma: farther from every bead there is a hole")
+                  "Largest distance from a bead that belongs to its Voronoi cell, sigma; points farther from "
+                  "every bead count as a hole")
       ->capture_default_str();
   verb.add_option("--field-cell", options->analysis.field_cell,
-                  "side of the cells in which displacements per cycle are averaged, sigma")
+                  "Side of the cells over which displacements per cycle are averaged, sigma")
       ->capture_default_str();
   verb.add_option("--rest-height", options->rest_height,
-                  "from which delta_h_cm is taken: h_cm of the bed at rest, sigma, or a trajectory of it at "
-                  "rest; absent: the first frame, if it rests there")
+                  "Reference of delta_h_cm: h_cm of the bed at rest, sigma, or a trajectory of the bed at "
+                  "rest; default: the first frame, if the bed is at rest there")
       ->type_name("SIGMA|FILE");
   verb.add_option("--cutoff", options->analysis.neighbour_cutoff,
-                  "neighbour distance, sigma (1.2; experiments 1.3)");
+                  "Largest distance between neighbours, sigma; default: 1.2, for experiments 1.3");
   verb.callback([&common, options] {
     if (!options->rest_height.empty()) options->analysis.rest_height = rest_height_of(options->rest_height);
     options->analysis.s_b = s_b_named(options->s_b);

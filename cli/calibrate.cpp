@@ -1,5 +1,5 @@
-// twincell calibrate KIND: scale, drive, walls, beads and contacts measured, with errors, into a file that
-// scenes include.
+// twincell calibrate KIND: measures scale, drive, walls, beads and contacts with standard errors, and writes
+// them to a file that scenes include.
 
 #include "cli/calibrate.hpp"
 
@@ -21,11 +21,11 @@
 namespace twincell::cli {
 namespace {
 
-// In the order in which they build on each other.
+// Order of the list in --help: each kind can use the results of the earlier ones.
 constexpr AddKind kKinds[] = {add_calibrate_camera, add_calibrate_walls, add_calibrate_plate,
                               add_calibrate_beads, add_calibrate_contacts};
 
-/// Calibrations of several kinds go into one folder.
+/// Calibrations of several kinds write their figures into one folder.
 Product calibration_figures() {
   return Product::shared_folder("the figures of a calibration");
 }
@@ -79,25 +79,25 @@ std::string data_hash(const std::string& stack) {
 }
 
 void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags) {
-  writes(
-      common, verb,
-      verb.add_option(
-          "-o,--output", flags.output,
-          "Calibration file (TOML) that a scene or CELL.toml includes; quantities of other runs stay in it"),
-      calibration_product());
-  writes(common, verb, verb.add_option("--figures", flags.figures, "Folder for pictures and their data"),
+  writes(common, verb,
+         verb.add_option("-o,--output", flags.output,
+                         "Calibration file to write (TOML), which a scene or CELL.toml can include; "
+                         "quantities of other runs are kept in it"),
+         calibration_product());
+  writes(common, verb, verb.add_option("--figures", flags.figures, "Folder for the figures and their data"),
          calibration_figures());
 }
 
 void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags) {
   verb.add_option("stack", flags.stack,
-                  "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
+                  "Stack: folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
       ->required();
-  verb.add_option("--cell", flags.cell_file, "CELL.toml: what is known already");
+  verb.add_option("--cell", flags.cell_file,
+                  "CELL.toml with the quantities of the cell that are already known");
   verb.add_option("--diameter", flags.diameter_px,
-                  "Bead diameter, px; absent: the cell's scale, or estimated")
+                  "Bead diameter, px; default: the scale in CELL.toml, otherwise estimated")
       ->check(CLI::Range(3.0, 400.0));
-  verb.add_flag("--bright", flags.bright, "Beads, walls and plate are brighter than what lies behind them");
+  verb.add_flag("--bright", flags.bright, "Beads, walls and plate are brighter than the background");
   add_output_flags(verb, common, flags);
 }
 
@@ -177,7 +177,8 @@ void finish_calibration(const CalibrateFlags& flags, const Common& common, Calib
 
 void add_calibrate(CLI::App& program, Common& common) {
   CLI::App& verb = add_verb(program, common, "calibrate",
-                            "Scale, drive, walls, beads and contacts measured, with standard errors",
+                            "Measure scale, walls, drive, beads or contacts, with standard errors. Prints "
+                            "the values; -o also writes them to a calibration file.",
                             "twincell calibrate plate frames/ --cell CELL.toml -o cell.calibration.toml");
   verb.require_subcommand(1);
   for (const AddKind add : kKinds) add(verb, common);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What the kinds of `calibrate` share: options, the table of what was measured, the calibration file. A new
-/// kind is cli/calibrate_NAME.cpp, a line here and a line in calibrate.cpp's table.
+/// What the kinds of `calibrate` share: options, the table of measured quantities, the calibration file. To
+/// add a kind, write cli/calibrate_NAME.cpp, add a line here and add a line to the table in calibrate.cpp.
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -20,54 +20,57 @@ class App;
 
 namespace twincell::cli {
 
-/// Options of all kinds that look at a stack.
+/// Options of all kinds that read a stack.
 struct CalibrateFlags {
   std::string stack, cell_file, output, figures;
   double diameter_px = 0;
   bool bright = false;
 };
 void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
-/// -o and --figures.
+/// Adds -o and --figures.
 void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
 
-/// The cell of --cell, or one of which nothing is known.
+/// The cell description of --cell, or an empty one without --cell.
 CellDescription cell_of(const CalibrateFlags& flags);
 
-/// What the edges of the stack say, and the bead diameter that was taken for them.
+/// The geometry of the cell, fitted to the edges in the stack. \param edges output: the edges, and the bead
+/// diameter with which they were read
 CellGeometry geometry_of(const CalibrateFlags& flags, const CellDescription& cell, const Common& common,
                          StackEdges& edges);
 
-/// How a scale was measured that takes the cell's width as known.
+/// Method of a scale that was derived from the known width of the cell.
 inline constexpr const char* kScaleByWalls = "distance of the side walls over cell.width";
 
-/// A number with its error; absent error: none.
+/// A number with its standard error. If the error is absent, the number counts as exact.
 struct KnownNumber {
   double value = 0;
   std::optional<double> error;
   std::string from;  ///< "cell.width of CELL.toml and the walls"
 };
-/// Pixels per sigma: of the cell, else of the walls' distance over cell.width. Nothing if neither is known.
+/// Pixels per sigma: from the cell description, otherwise the distance of the walls over cell.width. Absent
+/// if neither is known.
 std::optional<KnownNumber> scale_of(const CellDescription& cell, const CellGeometry& geometry);
-/// The same number as the cell's calibration file has it; nothing if it was not taken from there.
+/// The measurement of that name in the calibration file of the cell. Absent if the cell does not take the
+/// quantity from there.
 std::optional<Measurement> calibrated(const CellDescription& cell, const std::string& name);
 
-/// A result on its way out.
+/// The result of a calibration, ready for output.
 struct CalibrationResult {
   std::vector<Measurement> measured;
   std::optional<MeasuredCovariance> camera;
-  nlohmann::json document;  ///< what only this kind has to say
-  std::string text;         ///< the same for people, after the table
+  nlohmann::json document;  ///< the results that only this kind has
+  std::string text;         ///< the same as text, printed after the table
   std::vector<Figure> figures;
   std::vector<std::string> notes;
 };
-/// Prints table and text, or the document with "measured" put in; writes the calibration file (what it
-/// already holds of other quantities stays) and the figures.
+/// Prints table and text, or with --json the document with "measured" added. Writes the calibration file and
+/// the figures. Other quantities that the calibration file already contains are kept.
 void finish_calibration(const CalibrateFlags& flags, const Common& common, CalibrationResult result);
 
-/// "sha256:..." of a file or the files of a stack.
+/// "sha256:..." of a file, or of the files of a stack.
 std::string data_hash(const std::string& stack);
 
-/// A number for JSON; null where it is not finite.
+/// A number for JSON; null if it is not finite.
 nlohmann::json finite(double value);
 
 using AddKind = void (*)(CLI::App& calibrate, Common& common);
@@ -76,7 +79,7 @@ void add_calibrate_walls(CLI::App& calibrate, Common& common);
 void add_calibrate_beads(CLI::App& calibrate, Common& common);
 void add_calibrate_camera(CLI::App& calibrate, Common& common);
 void add_calibrate_contacts(CLI::App& calibrate, Common& common);
-/// A kind of `calibrate contacts`.
+/// Adds `calibrate contacts infer`.
 void add_calibrate_infer(CLI::App& contacts, Common& common);
 
 }  // namespace twincell::cli

@@ -1,4 +1,4 @@
-// twincell calibrate beads STACK|TRAJ: how large, how unlike, how many.
+// twincell calibrate beads STACK|TRAJ: diameter, spread of sizes and number of beads.
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ void run(const BeadOptions& o, const Common& common) {
   const CellDescription cell = cell_of(o.flags);
   CalibrationResult out;
   SizeStatistics c;
-  double unit_px = 1;  // px of the census' unit
+  double unit_px = 1;  // px in the unit of length of `c`
   std::optional<double> width = cell.width;
   double width_error = 0;
   if (is_trajectory(o.flags.stack)) {
@@ -44,7 +44,7 @@ void run(const BeadOptions& o, const Common& common) {
     std::optional<Lens> lens;
     if (cell.rotation_deg != 0 || cell.distortion != 0) {
       if (!open_frames(o.flags.stack)->next(first))
-        throw InputError({.file = o.flags.stack, .key = {}}, "holds no frame.");
+        throw InputError({.file = o.flags.stack, .key = {}}, "contains no frame.");
       lens = Lens(first.size(), cell.rotation_deg, cell.distortion);
     }
     ProgressBar bar(common, "beads");
@@ -68,7 +68,7 @@ void run(const BeadOptions& o, const Common& common) {
                                      width_error / *width)},
         "beads of a frame over cell.width (Fortini & Huang 2015)");
   } else {
-    out.notes.emplace_back("cell.width is not known: no number of layers");
+    out.notes.emplace_back("cell.width is not known, so the number of layers is not computed");
   }
   nlohmann::json& d = out.document;
   d["source"] = o.flags.stack;
@@ -77,12 +77,12 @@ void run(const BeadOptions& o, const Common& common) {
   d["count"] = {{"value", c.count.value}, {"standard_error", finite(c.count.error)}};
   if (c.spacing)
     d["spacing"] = {{"value", c.spacing->value * unit_px}, {"standard_error", c.spacing->error * unit_px}};
-  out.text = fmt::format("{} beads in a frame\n", c.count.value);
+  out.text = fmt::format("{} beads per frame\n", c.count.value);
   if (c.spacing)
     out.text += fmt::format("touching beads are {:.4f} +- {:.4f} px apart, {:.4f} mean diameters\n",
                             c.spacing->value * unit_px, c.spacing->error * unit_px,
                             c.spacing->value / c.diameter.value);
-  if (c.spread.value < 2 * c.spread.error) out.text += "sizes: no spread beyond that of locating them\n";
+  if (c.spread.value < 2 * c.spread.error) out.text += "sizes: no spread beyond the error of locating them\n";
   out.figures = {size_statistics_figure(c, unit_px)};
   finish_calibration(o.flags, common, std::move(out));
 }
@@ -92,10 +92,12 @@ void run(const BeadOptions& o, const Common& common) {
 void add_calibrate_beads(CLI::App& calibrate, Common& common) {
   auto o = std::make_shared<BeadOptions>();
   CLI::App& verb =
-      add_verb(calibrate, common, "beads", "Diameters, masses by volume, effective number of layers",
+      add_verb(calibrate, common, "beads",
+               "Measure the bead diameter, the spread of the sizes, the mean mass by volume, and the "
+               "effective number of layers. Prints them; -o also writes them to a calibration file.",
                "twincell calibrate beads frames/ --cell CELL.toml -o cell.calibration.toml");
   add_stack_flags(verb, common, o->flags);
-  verb.add_option("--frames", o->frames, "Frames looked at, spread over the stack")
+  verb.add_option("--frames", o->frames, "Number of frames that are evaluated, spread over the stack")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   verb.callback([o, &common] { run(*o, common); });

@@ -1,4 +1,4 @@
-// twincell calibrate camera STACK: the map between pixels and the cell.
+// twincell calibrate camera STACK: the map between pixels and positions in the cell.
 
 #include <fmt/format.h>
 
@@ -29,8 +29,8 @@ struct CameraCalibration {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Row of the plate's mean height in the ideal picture: of its harmonic motion, or of the frames' mean if it
-/// rests.
+/// Row of the plate's mean height in the undistorted picture: from a fit of its harmonic motion, or the mean
+/// over the frames if the plate is at rest.
 Estimate mean_row(const CellGeometry& g) {
   try {
     const DriveFit lock = fit_drive(g.heights_px(), {.model_error = kHeightModelError_px});
@@ -43,13 +43,14 @@ Estimate mean_row(const CellGeometry& g) {
 void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text) {
   cv::Mat picture;
   if (!open_frames(o.target)->next(picture))
-    throw InputError({.file = o.target, .key = {}}, "holds no picture.");
+    throw InputError({.file = o.target, .key = {}}, "contains no picture.");
   if (o.grid.size() != 2)
-    throw ConfigError({.file = {}, .key = "--target-grid"}, "is missing: points along x and y, say 9 6.");
+    throw ConfigError({.file = {}, .key = "--target-grid"},
+                      "is missing; give the numbers of points along x and y, for example 9 6.");
   const TargetPattern pattern{.kind = o.kind, .columns = o.grid[0], .rows = o.grid[1]};
   const auto points = find_target(picture, pattern);
   if (points.empty())
-    throw InputError({.file = o.target, .key = {}}, fmt::format("shows no whole {} of {} x {} points.",
+    throw InputError({.file = o.target, .key = {}}, fmt::format("shows no complete {} of {} x {} points.",
                                                                 o.kind, pattern.columns, pattern.rows));
   const TargetFit t = fit_target(points, pattern, picture.size());
   nlohmann::json& out = d["target"];
@@ -67,7 +68,7 @@ void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text
     text += fmt::format("  pixels per sigma     {:.6g} +- {:.2g}\n", s, e);
   }
   if (o.focal_px) {
-    // Depth grows as tan(tilt) across the plane; in the picture as tan(tilt)/f.
+    // The depth grows as tan(tilt) across the plane, which appears in the picture as tan(tilt)/f.
     for (const char* axis : {"x", "y"}) {
       const std::string name = std::string("gradient_") + axis;
       const double tilt = std::atan(*o.focal_px * t.fit.value(name)) * 180 / M_PI,
@@ -87,7 +88,7 @@ void run(const CameraCalibration& o, const Common& common) {
   const CellGeometry g = geometry_of(o.flags, cell, common, edges);
   const std::string data = data_hash(o.flags.stack);
 
-  // The beads' own scale, in the picture as it would be without turn and bend.
+  // Scale from the beads, located in the picture after correction of rotation and distortion.
   LocatorOptions locator;
   locator.preprocess.bright = o.flags.bright || cell.bright;
   locator.diameter_px = o.flags.diameter_px > 0 ? o.flags.diameter_px : cell.pixels_per_sigma.value_or(0);
@@ -101,6 +102,7 @@ void run(const CameraCalibration& o, const Common& common) {
   } catch (const InputError& e) {
     out.notes.push_back(fmt::format("no scale from the beads: {}", e.what()));
   }
+  // Scale: from the walls if their distance is known, otherwise from the diameter of the beads.
   const bool walls = g.has_left && g.has_right;
   std::optional<Estimate> by_walls;
   if (walls && cell.width) {
@@ -127,6 +129,7 @@ void run(const CameraCalibration& o, const Common& common) {
                             .method = how,
                             .data = data});
   };
+  // Quantities: scale, origin, rotation and distortion.
   add("camera.pixels_per_sigma", {scale->value}, {scale->error}, method);
   const Estimate row = mean_row(g);
   const auto err = [&](const char* name) { return g.fit.standard_error(name); };
@@ -134,7 +137,7 @@ void run(const CameraCalibration& o, const Common& common) {
     add("camera.origin_px", {g.fit.value("x_left"), row.value}, {err("x_left"), row.error},
         "foot of the left wall and mean height of the plate, picture without turn and distortion");
   else
-    out.notes.emplace_back("the origin needs the left wall and the plate");
+    out.notes.emplace_back("the origin is not measured, because it needs the left wall and the plate");
   if (g.has_plate)
     add("camera.rotation_deg", {g.rotation_deg}, {err("rotation")}, "slope of the plate's edge");
   if (g.distortion_found)
@@ -142,7 +145,8 @@ void run(const CameraCalibration& o, const Common& common) {
         g.distortion != 0 ? "bend of walls and plate"
                           : "bend of walls and plate: less than three standard errors, taken as 0");
   if (g.has_left && g.has_plate && g.fit.covariance.size() > 0) {
-    // Rows of the map from the fit's parameters to what is stored.
+    // Covariance of the stored quantities. The rows of `map` lead from the parameters of the fit to these
+    // quantities.
     const auto place = [&](const char* name) {
       return std::find(g.fit.names.begin(), g.fit.names.end(), name) - g.fit.names.begin();
     };
@@ -166,6 +170,7 @@ void run(const CameraCalibration& o, const Common& common) {
     d["covariance"] = {{"names", stored.names}, {"matrix", stored.matrix}};
     out.camera = std::move(stored);
   }
+  // Comparison of the scales, printed only.
   const auto scale_line = [&](const char* what, const Estimate& e) {
     d["scales"][what] = {{"value", e.value}, {"standard_error", finite(e.error)}};
     out.text += fmt::format("  {:<10} {:.5f} +- {:.5f}\n", what, e.value, e.error);
@@ -177,7 +182,7 @@ void run(const CameraCalibration& o, const Common& common) {
     if (census->spacing) scale_line("spacing", *census->spacing);
   }
   if (census) {
-    // Walls and beads together tell a tilted camera from leaning walls; alone neither does.
+    // Perspective: only walls and beads together distinguish a tilted camera from tilted walls.
     constexpr double kSure = 4, kWorthSaying = 2e-3;
     const double change_x = census->gradient_x.value * g.size.width,
                  error_x = census->gradient_x.error * g.size.width,
@@ -192,13 +197,11 @@ void run(const CameraCalibration& o, const Common& common) {
       return std::abs(change) > kSure * error && std::abs(change) > kWorthSaying;
     };
     if (seen(change_x, error_x) || seen(change_y, error_y))
-      out.notes.push_back(
-          fmt::format("the camera looks askew, or beads are sorted by size: they grow by {:.1f} % from left "
-                      "to right and by "
-                      "{:.1f} % from top to bottom. Perspective is not modelled: scale and tilts of the "
-                      "walls are means over the "
-                      "picture; a --target tells them apart",
-                      100 * change_x, 100 * change_y));
+      out.notes.push_back(fmt::format(
+          "the camera is tilted, or the beads are sorted by size: they grow by {:.1f} % from left to right "
+          "and by {:.1f} % from top to bottom. Perspective is not modelled: scale and tilts of the walls are "
+          "means over the picture; a --target distinguishes the two cases",
+          100 * change_x, 100 * change_y));
   }
   if (by_walls && census) {
     const double apart =
@@ -208,7 +211,7 @@ void run(const CameraCalibration& o, const Common& common) {
   }
   if (g.distortion_found)
     out.text += fmt::format("distortion k1 = {:.2g} +- {:.1g}{}\n", *g.distortion_found, *g.distortion_error,
-                            g.distortion == 0 ? ": none that the edges show" : "");
+                            g.distortion == 0 ? ": not significant" : "");
   double squares = 0;
   for (const EdgeResidual& r : g.residuals) squares += r.distance_px * r.distance_px;
   const double rms = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, g.residuals.size())));
@@ -225,20 +228,24 @@ void run(const CameraCalibration& o, const Common& common) {
 
 void add_calibrate_camera(CLI::App& calibrate, Common& common) {
   auto o = std::make_shared<CameraCalibration>();
-  CLI::App& verb = add_verb(calibrate, common, "camera", "Scale, origin, turn and distortion of the picture",
+  CLI::App& verb = add_verb(calibrate, common, "camera",
+                            "Measure scale, origin, rotation and distortion of the picture from the edges of "
+                            "the cell and the beads. Prints them; -o also writes them to a calibration file.",
                             "twincell calibrate camera frames/ --cell CELL.toml -o cell.calibration.toml");
   add_stack_flags(verb, common, o->flags);
-  verb.add_option("--frames", o->frames, "Frames in which beads are located, spread over the stack")
+  verb.add_option("--frames", o->frames, "Number of frames in which beads are located, spread over the stack")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   verb.add_option("--target", o->target,
-                  "Picture of a chessboard or of a grid of dots, for the camera's tilt");
-  verb.add_option("--target-kind", o->kind, "chessboard or dots")
+                  "Picture of a chessboard or of a grid of dots, to measure the tilt of the camera");
+  verb.add_option("--target-kind", o->kind, "Pattern of --target: chessboard (default) or dots")
       ->check(CLI::IsMember({"chessboard", "dots"}));
-  verb.add_option("--target-grid", o->grid, "Inner corners, or dots, along x and y")->expected(2);
-  verb.add_option("--target-spacing", o->spacing, "Distance of its points, sigma")
+  verb.add_option("--target-grid", o->grid, "Number of inner corners, or dots, of --target along x and y")
+      ->expected(2);
+  verb.add_option("--target-spacing", o->spacing, "Distance between neighbouring points of --target, sigma")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--focal-px", o->focal_px, "Focal length, px: turns the change of scale into an angle")
+  verb.add_option("--focal-px", o->focal_px,
+                  "Focal length, px; converts the change of scale across --target to the tilt of the camera")
       ->check(CLI::PositiveNumber);
   verb.callback([o, &common] { run(*o, common); });
 }

@@ -1,5 +1,5 @@
-// twincell calibrate contacts bounce|collisions|numbers: restitution and friction from what was measured;
-// infer is in calibrate_infer.cpp.
+// twincell calibrate contacts bounce|collisions|numbers: restitution and friction from measured motion. The
+// kind infer is in calibrate_infer.cpp.
 
 #include <fmt/format.h>
 
@@ -55,7 +55,7 @@ std::vector<BounceSample> samples_of(const BounceFlags& o, std::optional<Drive>&
       if (i > 0 && t[i] <= t[i - 1])
         throw InputError(
             {.file = o.source, .key = "time"},
-            fmt::format("row {} holds {:g} after {:g}; times must rise.", i + 1, t[i], t[i - 1]));
+            fmt::format("row {} contains {:g} after {:g}; times must increase.", i + 1, t[i], t[i - 1]));
     }
   }
   return samples;
@@ -66,13 +66,13 @@ void run_bounce(const BounceFlags& o, const Common& common) {
   const std::vector<BounceSample> samples = samples_of(o, drive);
   if (o.amplitude || o.omega) {
     if (!o.amplitude || !o.omega)
-      throw ConfigError({.file = {}, .key = "--amplitude"}, "and --omega say together how the plate moves.");
+      throw ConfigError({.file = {}, .key = "--amplitude"}, "and --omega must be given together.");
     drive = Drive{.axis = Axis::z, .amplitude = *o.amplitude, .omega = *o.omega};
   }
   if (o.phase && !(drive && drive->amplitude > 0))
     throw ConfigError(
         {.file = {}, .key = "--phase"},
-        fmt::format("is {:g}, but no plate vibrates: --amplitude and --omega say how.", *o.phase));
+        fmt::format("is {:g}, but the plate does not vibrate; give --amplitude and --omega too.", *o.phase));
   BounceOptions options{.gravity = o.gravity, .drag = !o.no_drag, .plate = {}};
   if (drive && drive->amplitude > 0) {
     const double phase = o.phase.value_or(0);
@@ -140,8 +140,8 @@ void run_collisions(const CollisionFlags& o, const Common& common) {
     fit = fit_walton(found.impacts, o.shape == "disc" ? 0.5 : 0.4);
   } catch (const InputError& e) {
     throw InputError({.file = o.trajectory, .key = {}},
-                     fmt::format("{} ({} pairs met between frames, {} of them with a third body)", e.what(),
-                                 found.pairs, found.crowded));
+                     fmt::format("{} ({} pairs collided between frames, {} of them with a third body)",
+                                 e.what(), found.pairs, found.crowded));
   }
   CalibrationResult out;
   out.notes = fit.notes;
@@ -181,13 +181,12 @@ void run_collisions(const CollisionFlags& o, const Common& common) {
   d["sliding"] = fit.sliding;
   d["spins"] = found.spins;
   d["stride"] = found.stride;
-  if (!found.spins)
-    out.notes.emplace_back("the trajectory has no spins, without which friction does not show");
-  out.text = fmt::format("{} pairs met between two frames, {} with a third body left out, {} outliers\n",
+  if (!found.spins) out.notes.emplace_back("the trajectory has no spins, so friction cannot be measured");
+  out.text = fmt::format("{} pairs collided between two frames, {} with a third body left out, {} outliers\n",
                          found.pairs, found.crowded, fit.outliers);
   if (found.stride > 1)
-    out.text += fmt::format("every {}th frame looked at: collisions last longer than the frames are apart\n",
-                            found.stride);
+    out.text += fmt::format(
+        "every {}th frame is used: collisions last longer than the interval between frames\n", found.stride);
   out.text += fmt::format("e_n scatters by {:.2g} from impact to impact", fit.scatter);
   if (std::isfinite(fit.slope))
     out.text += fmt::format("; de_n/d ln(speed) = {:.2g} +- {:.1g}", fit.slope, fit.slope_error);
@@ -210,9 +209,9 @@ void run_numbers(const NumberFlags& o, const Common& common) {
   const int stated =
       (o.k_n ? 1 : 0) + (o.gamma_n ? 1 : 0) + (o.restitution ? 1 : 0) + (o.contact_time ? 1 : 0);
   if (forward == back || stated != 2)
-    throw ConfigError(
-        {.file = {}, .key = "--restitution"},
-        "and --contact-time give k_n and gamma_n; --k-n and --gamma-n give them back. Say one pair.");
+    throw ConfigError({.file = {}, .key = "--restitution"},
+                      "and --contact-time give k_n and gamma_n, --k-n and --gamma-n give the reverse; give "
+                      "exactly one of the two pairs.");
   double e = 0, t_c = 0;
   SpringDashpot s;
   if (back) {
@@ -238,36 +237,53 @@ void run_numbers(const NumberFlags& o, const Common& common) {
 }  // namespace
 
 void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
-  CLI::App& verb = add_verb(calibrate, common, "contacts", "Restitution and friction from collisions",
+  CLI::App& verb = add_verb(calibrate, common, "contacts",
+                            "Measure restitution and friction from collisions. Prints the values; -o also "
+                            "writes them to a calibration file.",
                             "twincell calibrate contacts bounce bounce.csv -o cell.calibration.toml");
   verb.require_subcommand(1);
   {
     auto o = std::make_shared<BounceFlags>();
-    CLI::App& kind = add_verb(verb, common, "bounce", "e_n of bead and plate from a bouncing bead",
+    CLI::App& kind = add_verb(verb, common, "bounce",
+                              "Measure the restitution e_n between bead and plate from a bouncing bead. "
+                              "Prints every impact; -o also writes e_n to a calibration file.",
                               "twincell calibrate contacts bounce bounce.csv --gravity 1");
     kind.add_option("source", o->source, "CSV with columns time and height, or a trajectory (H5MD)")
         ->required();
-    kind.add_option("--bead", o->bead, "Which bead of the trajectory")->capture_default_str();
-    kind.add_option("--gravity", o->gravity, "Held at this; absent: fitted")->check(CLI::PositiveNumber);
-    kind.add_flag("--no-drag", o->no_drag, "Fit no drag of the air");
-    kind.add_option("--amplitude", o->amplitude, "A of the vibrating plate, in the heights' unit")
-        ->check(CLI::NonNegativeNumber);
-    kind.add_option("--omega", o->omega, "omega of the vibrating plate, in the times' unit")
+    kind.add_option("--bead", o->bead, "Index of the bead in the trajectory, from 0")->capture_default_str();
+    kind.add_option("--gravity", o->gravity,
+                    "Fixed acceleration of gravity, in the units of heights and times; default: fitted")
         ->check(CLI::PositiveNumber);
-    kind.add_option("--phase", o->phase, "Its phase at time 0, rad");
+    kind.add_flag("--no-drag", o->no_drag, "Do not fit the drag of the air");
+    kind.add_option("--amplitude", o->amplitude,
+                    "Amplitude A of the vibrating plate, in the unit of the heights; default: the drive of "
+                    "the trajectory, for CSV a plate at rest")
+        ->check(CLI::NonNegativeNumber);
+    kind.add_option(
+            "--omega", o->omega,
+            "Angular frequency omega of the vibrating plate, in rad per unit of time; with --amplitude")
+        ->check(CLI::PositiveNumber);
+    kind.add_option("--phase", o->phase, "Phase of the plate at time 0, rad; default: 0");
     add_output_flags(kind, common, o->out);
     kind.callback([o, &common] { run_bounce(*o, common); });
   }
   {
     auto o = std::make_shared<CollisionFlags>();
-    CLI::App& kind = add_verb(verb, common, "collisions", "e_n, mu and beta_0 from collisions of two beads",
+    CLI::App& kind = add_verb(verb, common, "collisions",
+                              "Measure e_n, mu and beta_0 from collisions of two beads. Prints the values; "
+                              "-o also writes them to a calibration file.",
                               "twincell calibrate contacts collisions film.h5 -o cell.calibration.toml");
-    kind.add_option("trajectory", o->trajectory, "Trajectory (H5MD) with frames close together")->required();
-    kind.add_option("--gravity", o->options.gravity, "Along -z, reduced units")->capture_default_str();
-    kind.add_option("--least-speed", o->options.least_speed, "Slower impacts are left out, sigma/t0")
+    kind.add_option("trajectory", o->trajectory,
+                    "Trajectory (H5MD) with closely spaced frames: several per mean free flight")
+        ->required();
+    kind.add_option("--gravity", o->options.gravity, "Acceleration of gravity along -z, reduced units")
+        ->capture_default_str();
+    kind.add_option("--least-speed", o->options.least_speed,
+                    "Smallest speed of approach, sigma/t0; slower impacts are left out")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    kind.add_option("--shape", o->shape, "disc or sphere: moment of inertia")
+    kind.add_option("--shape", o->shape,
+                    "Shape of the beads, which sets their moment of inertia: disc (default) or sphere")
         ->check(CLI::IsMember({"disc", "sphere"}));
     add_output_flags(kind, common, o->out);
     kind.callback([o, &common] { run_collisions(*o, common); });
@@ -275,13 +291,16 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
   add_calibrate_infer(verb, common);
   {
     auto o = std::make_shared<NumberFlags>();
-    CLI::App& kind = add_verb(verb, common, "numbers", "k_n and gamma_n from e_n and t_c, and back",
+    CLI::App& kind = add_verb(verb, common, "numbers",
+                              "Convert e_n and t_c to k_n and gamma_n, or the reverse. Prints the values.",
                               "twincell calibrate contacts numbers --restitution 0.9 --contact-time 2.2e-3");
-    kind.add_option("--restitution", o->restitution, "e_n, above 0, at most 1");
-    kind.add_option("--contact-time", o->contact_time, "t_c, t0");
-    kind.add_option("--k-n", o->k_n, "m g/sigma")->check(CLI::PositiveNumber);
-    kind.add_option("--gamma-n", o->gamma_n, "Rate, 1/t0")->check(CLI::NonNegativeNumber);
-    kind.add_option("--m-eff", o->m_eff, "1/2: two beads; 1: bead and wall")
+    kind.add_option("--restitution", o->restitution,
+                    "Coefficient of restitution e_n, above 0, at most 1; with --contact-time");
+    kind.add_option("--contact-time", o->contact_time, "Contact time t_c, t0; with --restitution");
+    kind.add_option("--k-n", o->k_n, "Stiffness k_n, m g/sigma; with --gamma-n")->check(CLI::PositiveNumber);
+    kind.add_option("--gamma-n", o->gamma_n, "Damping rate gamma_n, 1/t0; with --k-n")
+        ->check(CLI::NonNegativeNumber);
+    kind.add_option("--m-eff", o->m_eff, "Effective mass, m; 0.5: two beads; 1: bead and wall")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     kind.callback([o, &common] { run_numbers(*o, common); });

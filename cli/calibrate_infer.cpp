@@ -1,4 +1,5 @@
-// twincell calibrate contacts infer: parameters of a simulator from observables that it shares with a film.
+// twincell calibrate contacts infer: contact parameters for which the simulator reproduces the observables of
+// a film.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -40,7 +41,7 @@ struct InferFlags {
   std::int64_t discard = 0;
 };
 
-/// A whole text as a finite number. \throws std::invalid_argument
+/// Converts the complete text to a finite number. \throws std::invalid_argument
 double number_of(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -64,25 +65,25 @@ Sought sought_of(const std::string& said) {
   return s;
 }
 
-/// The drive at which a bed begins to bounce or to convect, as measured.
+/// The measured drive strength Gamma at which a bed begins to bounce or to convect.
 struct MeasuredOnset {
   BedPhase phase = BedPhase::bouncing;
   double gamma = 0, error = 0;
   [[nodiscard]] std::string name() const { return "onset of " + phase_name(phase); }
-  /// The number whose crossing of its threshold is the onset.
+  /// The observable whose crossing of its threshold defines the onset.
   [[nodiscard]] std::string observable() const { return phase == BedPhase::bouncing ? "s_b" : "s_c"; }
   [[nodiscard]] double threshold() const {
     return phase == BedPhase::bouncing ? kBouncingThreshold : kConvectionThreshold;
   }
-  /// Strengths at which runs look for it: three errors, and at least 15 %, to both sides.
+  /// Range of Gamma in which runs search for the onset: three errors, and at least 15 %, to both sides.
   [[nodiscard]] Sought tried() const {
     const double reach = std::max(3 * error, 0.15 * gamma);
     return {"drive.gamma", std::max(gamma - reach, 0.1 * gamma), gamma + reach};
   }
 };
 
-/// Below and above its threshold a number differs by factors, and far below it is nothing but noise: what the
-/// surface describes is ln(1/10 + s/threshold).
+/// The quantity that the surface describes, ln(1/10 + s/threshold). Below and above its threshold, s differs
+/// by factors; far below it, s is only noise.
 double level(double s, double threshold) {
   return std::log(0.1 + s / threshold);
 }
@@ -105,14 +106,14 @@ MeasuredOnset onset_of(const std::string& said) {
     throw bad("is not bouncing=GAMMA+-ERROR or convecting=GAMMA+-ERROR");
   }
   if (!(o.gamma > 0) || !(o.error >= 0) || !std::isfinite(o.gamma) || !std::isfinite(o.error))
-    throw bad("needs a strength above 0 and an error that is not negative");
+    throw bad("needs a Gamma above 0 and an error of at least 0");
   return o;
 }
 
 /// One result of analyze: a number, or a curve.
 struct Observed {
   std::string name;
-  std::vector<double> values;  ///< NaN, once, where there is none
+  std::vector<double> values;  ///< one NaN if the result is absent
   double error = 0;
   bool curve = false;
   std::string absent = {};
@@ -127,7 +128,7 @@ std::vector<Observed> observe(const TrajectorySource& trajectory, const std::vec
   try {
     results = analyze(trajectory, options);
   } catch (const ConfigError& e) {
-    // The message is of analyze's own option.
+    // The message of analyze() names its own option, so it is reported under --observables.
     throw ConfigError({.file = {}, .key = "--observables"}, e.what());
   }
   std::vector<Observed> all;
@@ -135,7 +136,7 @@ std::vector<Observed> observe(const TrajectorySource& trajectory, const std::vec
     const Result& r = find_result(results, name);
     if (!r.text.empty())
       throw ConfigError({.file = {}, .key = "--observables"},
-                        fmt::format("'{}' is a word, neither a number nor a curve.", name));
+                        fmt::format("'{}' is neither a number nor a curve.", name));
     Observed o{.name = name, .values = {kNaN}, .curve = !r.shape.empty(), .absent = r.absent};
     if (r.present()) o.values = r.values;
     if (r.present() && r.interval) o.error = standard_error(*r.interval);
@@ -144,25 +145,28 @@ std::vector<Observed> observe(const TrajectorySource& trajectory, const std::vec
   return all;
 }
 
-/// What was measured of the film. \throws InputError for what is not there
+/// The observables of the film. \throws InputError if one is absent or has no value in some elements
 std::vector<Observed> of_film(const InferFlags& o) {
   const H5mdReader film(o.measured);
   std::vector<Observed> measured = observe(film, o.observables, o.discard);
   for (const Observed& m : measured) {
     if (!m.absent.empty())
-      throw InputError({.file = o.measured, .key = m.name},
-                       fmt::format("has no value there ({}); --observables names others.", m.absent));
+      throw InputError(
+          {.file = o.measured, .key = m.name},
+          fmt::format("has no value in this film ({}); select other observables with --observables.",
+                      m.absent));
     const auto holes =
         std::count_if(m.values.begin(), m.values.end(), [](double v) { return !std::isfinite(v); });
     if (holes > 0)
-      throw InputError({.file = o.measured, .key = m.name},
-                       fmt::format("has no value in {} of {} elements; --observables names others.", holes,
-                                   m.values.size()));
+      throw InputError(
+          {.file = o.measured, .key = m.name},
+          fmt::format("has no value in {} of {} elements; select other observables with --observables.",
+                      holes, m.values.size()));
   }
   return measured;
 }
 
-/// All runs of the simulator: with the film's drive, and with drives about each onset.
+/// All runs of the simulator: at the drive of the film, and at drives around each onset.
 class Runs {
  public:
   Runs(const InferFlags& o, const Common& common, std::vector<Sought> sought,
@@ -175,7 +179,7 @@ class Runs {
     of_onset.assign(onsets_.size(), std::vector<double>(places_.size(), kNaN));
   }
 
-  /// \throws as read_scene, before any work
+  /// \throws as read_scene, before the first run starts
   void simulate() {
     const std::size_t kinds = onsets_.size() + 1, first = o_.measured.empty() ? 1 : 0,
                       jobs = places_.size() * (kinds - first);
@@ -194,7 +198,7 @@ class Runs {
   [[nodiscard]] std::vector<double> theta(std::size_t i) const {
     return {places_[i].begin(), places_[i].begin() + static_cast<std::ptrdiff_t>(sought_.size())};
   }
-  /// Gamma at which run i looked for an onset.
+  /// Gamma of run i in the search for an onset.
   [[nodiscard]] double drive(std::size_t i, std::size_t onset) const {
     return places_[i][sought_.size() + onset];
   }
@@ -203,7 +207,7 @@ class Runs {
   std::vector<std::vector<double>> of_onset;   ///< [onsets][runs], level()
 
  private:
-  /// Kind 0: the film's drive; k: that of onset k - 1.
+  /// The scene of run i. Kind 0 uses the drive of the film; kind k > 0 uses the drive for onset k - 1.
   [[nodiscard]] sim::Scene scene(std::size_t i, std::size_t kind) const {
     std::vector<std::string> all = o_.assignments;
     for (std::size_t k = 0; k < sought_.size(); ++k)
@@ -227,12 +231,13 @@ class Runs {
     of_onset[kind - 1][i] = level(s.values.front(), onset.threshold());
   }
 
-  /// \throws ConfigError for a curve that cannot be compared, at the first run and not after all
+  /// \throws ConfigError for a curve whose length differs from that of the film. Checked in each run, so that
+  /// the first run already fails, not the evaluation after all runs.
   static void refuse_other_length(const Observed& run, const Observed& film) {
     if (!film.curve || !run.absent.empty() || run.values.size() == film.values.size()) return;
     throw ConfigError({.file = {}, .key = "--observables"},
-                      fmt::format("{} has {} elements in the film and {} in the scene; the scene's "
-                                  "time.phases and cell must be the film's.",
+                      fmt::format("{} has {} elements in the film and {} in the scene; time.phases and the "
+                                  "cell of the scene must be those of the film.",
                                   film.name, film.values.size(), run.values.size()));
   }
 
@@ -241,23 +246,24 @@ class Runs {
   std::vector<Sought> sought_;
   const std::vector<Observed>& measured_;
   const std::vector<MeasuredOnset>& onsets_;
-  std::vector<std::vector<double>> places_;  ///< parameters, then a strength for each onset
+  std::vector<std::vector<double>> places_;  ///< parameters, then Gamma for each onset
 };
 
-/// A measured curve and its runs, as numbers.
+/// A measured curve and the curves of the runs, reduced to numbers.
 struct ComparedCurve {
   Observed measured;
   CurveComponents components;
-  std::size_t first = 0;  ///< of its numbers among the observables
+  std::size_t first = 0;  ///< index of its first number among the observables
 };
 
-/// What infer_parameters() is asked.
+/// The input of infer_parameters(), and the curves that are part of it.
 struct Question {
   std::vector<MeasuredObservable> measured;
   std::vector<SimulatedPoint> runs;
   std::vector<ComparedCurve> curves;
 
-  /// Another number of the measurement, and of each run.
+  /// Adds one observable: its measured value and its value in each run. \param at condition of each run;
+  /// empty if the observable has none
   void add(MeasuredObservable number, const std::vector<double>& of_runs, const std::vector<double>& at) {
     measured.push_back(std::move(number));
     for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -267,7 +273,7 @@ struct Question {
   }
 };
 
-/// A curve becomes as many numbers as there are forms in which the runs' curves differ.
+/// Adds a curve as one number for each form (principal component) in which the curves of the runs differ.
 void add_curve(Question& question, const Runs& runs, std::size_t k, const Observed& measured) {
   std::vector<std::vector<double>> curves;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -310,9 +316,10 @@ Question question_of(const Runs& runs, const std::vector<Observed>& measured,
   return question;
 }
 
-/// Measured, of the best parameters, and what a run scatters; an onset as a strength of drive.
+/// Reports each observable: measured value, value at the best parameters, and scatter of one run. An onset is
+/// converted to a drive strength.
 void tell_observables(const Question& question, const Inference& inference, CalibrationResult& out) {
-  out.text += "observable            measured      of the best   scatter of a run\n";
+  out.text += "observable            measured      best fit      scatter of one run\n";
   for (std::size_t i = 0; i < question.measured.size(); ++i) {
     const MeasuredObservable& m = question.measured[i];
     double value = m.value, error = m.error, predicted = inference.predicted[i],
@@ -348,9 +355,10 @@ void tell_curves(const Question& question, const Inference& inference, Calibrati
                                       {"misfit", misfit},
                                       {"misfit_of_runs", c.components.left_out}});
     if (misfit > kFar * c.components.left_out)
-      out.notes.push_back(fmt::format(
-          "{} has a form that no run has: {:.2g} of it is left, of the runs' own curves {:.2g} (rms)",
-          c.measured.name, misfit, c.components.left_out));
+      out.notes.push_back(
+          fmt::format("{} has a shape that no run has: its residual is {:.2g}, that of the curves of the "
+                      "runs {:.2g} (rms)",
+                      c.measured.name, misfit, c.components.left_out));
     out.figures.push_back(curve_figure(c.measured.name, c.measured.values, predicted));
   }
 }
@@ -361,7 +369,7 @@ void tell_profiles(const InferFlags& o, const Question& question, const Inferenc
   std::vector<std::string> by = o.measured.empty() ? std::vector<std::string>{} : o.observables;
   for (const MeasuredObservable& m : question.measured)
     if (m.at) by.push_back(m.name);
-  out.text = "profile likelihood, 95 %\n";
+  out.text = "profile likelihood, 95 % intervals\n";
   for (const Profile& p : inference.profiles) {
     out.document["profiles"].push_back({{"parameter", p.sought.name},
                                         {"best", p.best},
@@ -404,15 +412,15 @@ void run_infer(const InferFlags& o, const Common& common) {
   }
   if (sought.size() > 3)
     throw ConfigError({.file = {}, .key = "--vary"},
-                      fmt::format("names {} parameters; at most 3 can be told apart.", sought.size()));
+                      fmt::format("names {} parameters; at most 3 can be inferred.", sought.size()));
   std::vector<MeasuredOnset> onsets;
   for (const std::string& said : o.onsets) onsets.push_back(onset_of(said));
   if (o.measured.empty() && onsets.empty())
-    throw ConfigError({.file = {}, .key = "--onset"}, "or a trajectory of the experiment is needed.");
+    throw ConfigError({.file = {}, .key = "--onset"}, "or a trajectory of the experiment is required.");
   if (std::find(o.observables.begin(), o.observables.end(), "onset") != o.observables.end())
-    throw ConfigError(
-        {.file = {}, .key = "--observables"},
-        "'onset' is not seen in one film; --onset bouncing=GAMMA+-ERROR says what was measured.");
+    throw ConfigError({.file = {}, .key = "--observables"},
+                      "'onset' cannot be computed from one film; give the measured onset with --onset "
+                      "bouncing=GAMMA+-ERROR.");
   const std::vector<Observed> measured = o.measured.empty() ? std::vector<Observed>{} : of_film(o);
   Runs runs(o, common, sought, measured, onsets);
   runs.simulate();
@@ -436,25 +444,33 @@ void run_infer(const InferFlags& o, const Common& common) {
 
 void add_calibrate_infer(CLI::App& contacts, Common& common) {
   auto o = std::make_shared<InferFlags>();
-  CLI::App& kind = add_verb(
-      contacts, common, "infer", "Contact parameters with which the simulator gives what was measured",
-      "twincell calibrate contacts infer exp.h5 --scene scene.toml --vary "
-      "contact.restitution=0.7:0.95 --observables s_k,flight_time,T_g --onset convecting=2.3+-0.1");
-  kind.add_option("measured", o->measured, "Trajectory of the experiment (H5MD); not needed for --onset");
-  kind.add_option("--scene", o->scene, "The same cell as a scene")->required();
-  kind.add_option("--vary", o->vary, "section.key=low:high; up to three")->required()->take_all();
-  kind.add_option("--observables", o->observables, "Numbers and curves that analyze gives, comma separated")
+  CLI::App& kind =
+      add_verb(contacts, common, "infer",
+               "Infer the contact parameters for which the simulator reproduces the measured observables. "
+               "Prints each with its 95 % interval; -o also writes them to a calibration file.",
+               "twincell calibrate contacts infer exp.h5 --scene scene.toml --vary "
+               "contact.restitution=0.7:0.95 --observables s_k,flight_time,T_g --onset convecting=2.3+-0.1");
+  kind.add_option("measured", o->measured, "Trajectory of the experiment (H5MD); optional with --onset");
+  kind.add_option("--scene", o->scene, "Scene file of the same cell (TOML)")->required();
+  kind.add_option("--vary", o->vary, "Parameter to infer and its range, as section.key=low:high; up to three")
+      ->required()
+      ->take_all();
+  kind.add_option("--observables", o->observables,
+                  "Numbers and curves that analyze computes, comma separated")
       ->delimiter(',')
       ->capture_default_str();
   kind.add_option("--onset", o->onsets,
-                  "bouncing=GAMMA+-ERROR or convecting=GAMMA+-ERROR, as measured; may be repeated")
+                  "Measured onset, as bouncing=GAMMA+-ERROR or convecting=GAMMA+-ERROR; may be repeated")
       ->take_all();
-  kind.add_option("--runs", o->runs, "Simulations; as many again for each onset")
+  kind.add_option("--runs", o->runs, "Number of simulations; the same number again for each --onset")
       ->check(CLI::Range(5, 100000))
       ->capture_default_str();
-  kind.add_option("--discard", o->discard, "Cycles left out at the beginning, of both")
+  kind.add_option("--discard", o->discard,
+                  "Number of cycles skipped at the start, in the film and in the simulations")
       ->capture_default_str();
-  kind.add_option("--set", o->assignments, "section.key=value of the scene; may be repeated")->take_all();
+  kind.add_option("--set", o->assignments,
+                  "Set a key of the scene, as section.key=value; overrides the file; may be repeated")
+      ->take_all();
   add_output_flags(kind, common, o->out);
   kind.callback([o, &common] { run_infer(*o, common); });
 }

@@ -1,4 +1,4 @@
-// twincell calibrate plate STACK: the drive from the plate's edge.
+// twincell calibrate plate STACK: the drive from the edge of the plate.
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ struct PlateOptions {
   std::optional<double> frame_rate_hz;
 };
 
-/// Clocks of cameras differ by less.
+/// Largest relative difference between frame rates that count as equal. Clocks of cameras differ by less.
 constexpr double kSameRate = 0.01;
 constexpr const char* kPhaseHeading = "frame,cycles\n";
 
@@ -34,7 +34,7 @@ void write_phases(const std::string& path, const DriveFit& lock) {
   {
     std::ofstream out(file.part());
     out << kPhaseHeading;
-    // read_triggers counts cycles from 0 on.
+    // read_triggers requires cycles that are counted from 0.
     const double first = std::floor(lock.frames.front().cycles);
     for (std::size_t f = 0; f < lock.frames.size(); ++f)
       out << fmt::format("{},{:.6f}\n", f, lock.frames[f].cycles - first);
@@ -93,21 +93,21 @@ void run(const PlateOptions& o, const Common& common) {
     add("drive.amplitude", a,
         a * std::hypot(lock.amplitude_error / lock.amplitude, scale->error.value_or(0) / scale->value),
         harmonic + ", scale: " + scale->from);
-    if (!scale->error) out.notes.emplace_back("the error of drive.amplitude takes the cell's scale as exact");
+    if (!scale->error)
+      out.notes.emplace_back("the error of drive.amplitude assumes that the cell's scale is exact");
   } else {
     out.notes.emplace_back(
-        "no scale is known, so A is in px only: give camera.pixels_per_sigma or cell.width in CELL.toml, or "
-        "run "
-        "calibrate camera first");
+        "no scale is known, so A is given only in px: state camera.pixels_per_sigma or cell.width in "
+        "CELL.toml, or run calibrate camera first");
   }
-  // A frame's length in t0 makes frames per cycle an omega.
+  // The frame interval in t0 converts the frames per cycle to omega.
   const std::optional<double> stated = o.frame_rate_hz ? o.frame_rate_hz : cell.frame_rate_hz;
   const std::optional<double> rate = frame_rate_of(stated, edges, o.flags.stack);
   if (stated)
     if (const auto seen = frame_rate_of({}, edges, o.flags.stack);
         seen && std::abs(*seen / *stated - 1) > kSameRate)
-      out.notes.push_back(fmt::format("the stack says {:.7g} frames per second; the stated {:.7g} are taken",
-                                      *seen, *stated));
+      out.notes.push_back(fmt::format(
+          "the stack states {:.7g} frames per second, but the given rate of {:.7g} is used", *seen, *stated));
   const auto t0 = cell.scale.t0_s();
   if (rate && t0)
     add("drive.omega", lock.omega * *rate * *t0, lock.omega_error * *rate * *t0,
@@ -115,6 +115,7 @@ void run(const PlateOptions& o, const Common& common) {
   if (lock.second_harmonic)
     add("drive.second_harmonic", *lock.second_harmonic, *lock.second_harmonic_error, harmonic);
 
+  // Results that only this kind has: the motion of the plate and the phase of each frame.
   nlohmann::json& d = out.document;
   d["stack"] = o.flags.stack;
   d["plate"] = {
@@ -161,7 +162,9 @@ void run(const PlateOptions& o, const Common& common) {
     out.text += fmt::format("second harmonic: {:.2g} +- {:.1g} of A, p = {:.2g} for a pure sine\n",
                             *lock.second_harmonic, *lock.second_harmonic_error, *lock.p_sinusoidal);
   if (lock.dropped + lock.doubled > 0)
-    out.notes.emplace_back("frames are missing or doubled: hand the list of --phases to track --phase-lock");
+    out.notes.emplace_back(
+        "frames are missing or doubled: write a list with --phases, and use it with track --phase-lock");
+  // Comparison with the accelerometer: frequency, and A omega^2 if the scale is known.
   if (vibration) {
     const VibrationFit v = fit_vibration(*vibration);
     d["accelerometer"] = {
@@ -205,20 +208,25 @@ void run(const PlateOptions& o, const Common& common) {
 
 void add_calibrate_plate(CLI::App& calibrate, Common& common) {
   auto o = std::make_shared<PlateOptions>();
-  CLI::App& verb = add_verb(calibrate, common, "plate", "Drive and phases from the plate's edge",
+  CLI::App& verb = add_verb(calibrate, common, "plate",
+                            "Measure the drive and the phase of each frame from the edge of the plate. "
+                            "Prints them; -o also writes them to a calibration file.",
                             "twincell calibrate plate frames/ --cell CELL.toml -o cell.calibration.toml");
   add_stack_flags(verb, common, o->flags);
   verb.add_option("--frames-per-cycle", o->frames_per_cycle,
-                  "Where the search for the period begins; absent: the cell's, or sought")
+                  "Frames per drive cycle at which the search for the period starts; default: the value in "
+                  "CELL.toml, otherwise searched for")
       ->check(CLI::Range(2, 100000));
   verb.add_option("--frame-rate-hz,--fps", o->frame_rate_hz,
-                  "Frames per second; absent: as CELL.toml says, or the stack")
+                  "Frame rate, 1/s; default: the value in CELL.toml, otherwise that of the stack")
       ->check(CLI::PositiveNumber);
   writes(common, verb,
-         verb.add_option("--phases", o->phases, "List of each frame's phase (CSV) for track --phase-lock"),
+         verb.add_option("--phases", o->phases,
+                         "List of the phase of each frame to write (CSV), for track --phase-lock"),
          Product::table(kPhaseHeading));
-  verb.add_option("--accelerometer", o->accelerometer,
-                  "CSV with columns time_s and acceleration_m_s2 to compare with");
+  verb.add_option(
+      "--accelerometer", o->accelerometer,
+      "Measurement of an accelerometer to compare with: CSV with the columns time_s and acceleration_m_s2");
   verb.callback([o, &common] { run(*o, common); });
 }
 

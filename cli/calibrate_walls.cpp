@@ -1,4 +1,4 @@
-// twincell calibrate walls STACK|TRAJ: where the side walls stand and how they lean.
+// twincell calibrate walls STACK|TRAJ: positions and tilts of the side walls.
 
 #include <fmt/format.h>
 
@@ -41,8 +41,8 @@ void of_trajectory(const CalibrateFlags& flags, const Common& common) {
   out.document["walls"] = {{"left", {{"x", w.x_left}, {"standard_error", w.x_left_error}}},
                            {"right", {{"x", w.x_left + w.width}, {"standard_error", w.x_right_error}}}};
   out.text = fmt::format(
-      "left wall at x = {:.4f} +- {:.4f} sigma, right wall at {:.4f} +- {:.4f}, from the beads that "
-      "lean on them\n",
+      "left wall at x = {:.4f} +- {:.4f} sigma, right wall at {:.4f} +- {:.4f}, from the beads that touch "
+      "them\n",
       w.x_left, w.x_left_error, w.x_left + w.width, w.x_right_error);
   finish_calibration(flags, common, std::move(out));
 }
@@ -53,7 +53,7 @@ void of_stack(const CalibrateFlags& flags, const Common& common) {
   const CellGeometry g = geometry_of(flags, cell, common, edges);
   if (!g.has_left || !g.has_right)
     throw InputError({.file = flags.stack, .key = {}},
-                     fmt::format("shows no {} wall: each needs 3 px of dark border and light beside it.",
+                     fmt::format("shows no {} wall: each needs a dark border of 3 px with light next to it.",
                                  g.has_left    ? "right"
                                  : g.has_right ? "left"
                                                : "side"));
@@ -62,13 +62,13 @@ void of_stack(const CalibrateFlags& flags, const Common& common) {
   const double width = g.width_px(), error = g.width_error_px();
   const auto err = [&](const char* name) { return g.fit.standard_error(name); };
   const std::string method = "lines through the walls' edges, fitted with the plate's";
-  // A width in sigma needs a scale that does not come from the width itself.
+  // A width in sigma needs a scale that is not derived from the width itself.
   const auto scale_measured = calibrated(cell, "camera.pixels_per_sigma");
   if (scale_measured && scale_measured->method == kScaleByWalls) {
-    out.notes.push_back(fmt::format(
-        "the scale in {} was made of cell.width, so the width is not measured again: leave cell.width out of "
-        "CELL.toml, and calibrate camera takes the scale from the beads",
-        cell.included.file.string()));
+    out.notes.push_back(
+        fmt::format("the scale in {} was derived from cell.width, so the width is not measured again: remove "
+                    "cell.width from CELL.toml, and calibrate camera takes the scale from the beads",
+                    cell.included.file.string()));
   } else if (cell.pixels_per_sigma) {
     const KnownNumber scale = *scale_of(cell, g);
     const double w = width / scale.value;
@@ -78,15 +78,17 @@ void of_stack(const CalibrateFlags& flags, const Common& common) {
          .standard_error = {w * std::hypot(error / width, scale.error.value_or(0) / scale.value)},
          .method = method,
          .data = data});
-    if (!scale.error) out.notes.emplace_back("the error of cell.width takes the cell's scale as exact");
+    if (!scale.error)
+      out.notes.emplace_back("the error of cell.width assumes that the cell's scale is exact");
   } else {
     out.notes.emplace_back(
-        "no scale is known, so the width is in px only: calibrate beads gives the diameter in px, or say "
-        "camera.pixels_per_sigma in CELL.toml");
+        "no scale is known, so the width is given only in px: measure the bead diameter in px with calibrate "
+        "beads, or state camera.pixels_per_sigma in CELL.toml");
   }
   if (!g.has_plate)
     out.notes.emplace_back(
-        "no plate is seen: tilts are against the picture's columns, not against the plate's normal");
+        "no plate is visible: tilts are measured against the columns of the picture, not against the normal "
+        "of the plate");
   out.measured.push_back(tilts(g.fit.value("tilt_left"), err("tilt_left"), g.fit.value("tilt_right"),
                                err("tilt_right"), method, data));
   out.document["stack"] = flags.stack;
@@ -96,9 +98,8 @@ void of_stack(const CalibrateFlags& flags, const Common& common) {
       {"width_px", {{"value", width}, {"standard_error", finite(error)}}},
       {"foot_row_px", g.plate_row}};
   out.text = fmt::format(
-      "left wall at {:.3f} +- {:.3f} px, right wall at {:.3f} +- {:.3f} px (at row {:.2f}, ideal picture): "
-      "{:.3f} +- "
-      "{:.3f} px apart\n",
+      "left wall at {:.3f} +- {:.3f} px, right wall at {:.3f} +- {:.3f} px (at row {:.2f}, undistorted "
+      "picture): {:.3f} +- {:.3f} px apart\n",
       g.fit.value("x_left"), err("x_left"), g.fit.value("x_right"), err("x_right"), g.plate_row, width,
       error);
   const double lean = g.fit.value("tilt_left") + g.fit.value("tilt_right"),
@@ -116,7 +117,9 @@ void of_stack(const CalibrateFlags& flags, const Common& common) {
 
 void add_calibrate_walls(CLI::App& calibrate, Common& common) {
   auto flags = std::make_shared<CalibrateFlags>();
-  CLI::App& verb = add_verb(calibrate, common, "walls", "Width and tilt of the side walls",
+  CLI::App& verb = add_verb(calibrate, common, "walls",
+                            "Measure the width of the cell and the tilts of the side walls. Prints them; -o "
+                            "also writes them to a calibration file.",
                             "twincell calibrate walls frames/ --cell CELL.toml -o cell.calibration.toml");
   add_stack_flags(verb, common, *flags);
   verb.callback([flags, &common] {

@@ -1,4 +1,4 @@
-// twincell compare: both sides in one report.
+// twincell compare: experiments and simulations in one report.
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -19,8 +19,9 @@ struct CompareOptions {
   bool trust_stated_drive = false;
 };
 
-/// By what the film shows another drive than the experiment states, as one clause: as `track` saw it, else as
-/// the beads show it.
+/// How the drive in the film differs from the drive that the experiment states, as one clause; empty if it
+/// does not. Uses the check that `track` stored. Without a stored check it compares with the motion of the
+/// bed.
 std::string drive_disagreement(const H5mdReader& experiment) {
   const TrajectoryInfo& info = experiment.info();
   const auto tracking = nlohmann::json::parse(info.tracking_json, nullptr, false);
@@ -40,23 +41,24 @@ std::string drive_disagreement(const H5mdReader& experiment) {
   return check_by_bed(bed, info, std::nullopt).disagreement;
 }
 
-/// Refuses experiments whose film does not show the drive that their cell states.
+/// \throws ConfigError if the film of an experiment shows another drive than its cell states
 void require_drive_of_film(const std::vector<std::filesystem::path>& experiments) {
   for (const std::filesystem::path& file : experiments)
     if (const std::string clause = drive_disagreement(H5mdReader(file)); !clause.empty())
       throw ConfigError({.file = file.string(), .key = "drive"},
-                        clause + "; correct the cell and track again, or say --trust-stated-drive.");
+                        clause + "; correct the cell and track again, or give --trust-stated-drive.");
 }
 
 void run(const Common& common, CompareOptions& o) {
   resolve(o.flags, common);
   const ComparingOptions& options = o.flags.options;
   if (options.experiments.empty() && options.simulations.empty())
-    throw ConfigError({.file = {}, .key = "compare"},
-                      options.sweeps.empty()
-                          ? "there is nothing to compare: give --experiment and --simulation trajectories"
-                          : "a sweep's results hold no bed to look at: give --simulation or --experiment "
-                            "trajectories too, as sweep run --keep-trajectories leaves them in points/");
+    throw ConfigError(
+        {.file = {}, .key = "compare"},
+        options.sweeps.empty()
+            ? "there is nothing to compare: give --experiment and --simulation trajectories"
+            : "the results of a sweep contain no trajectories: also give --simulation or --experiment, for "
+              "example the trajectories that sweep run --keep-trajectories stores in points/");
   if (!o.trust_stated_drive) require_drive_of_film(options.experiments);
   compare_and_report(common, options, o.output, nlohmann::json::object(), "");
 }
@@ -66,23 +68,23 @@ void run(const Common& common, CompareOptions& o) {
 void add_compare(CLI::App& program, Common& common) {
   CLI::App& verb = add_verb(
       program, common, "compare",
-      "experiment and simulation side by side: phase diagram, differences and where they come from, one "
-      "report",
+      "Compare experiments with simulations: phase diagram, phase boundaries, differences and their sources. "
+      "Prints the comparison and writes a report.",
       "twincell compare --experiment exp_15.h5 exp_20.h5 --simulation sim_15.h5 sim_20.h5 -o report");
   auto o = std::make_shared<CompareOptions>();
-  verb.add_option("--experiment", o->flags.options.experiments, "trajectories of the experiment (H5MD)");
-  verb.add_option("--simulation", o->flags.options.simulations, "trajectories of the simulation (H5MD)");
+  verb.add_option("--experiment", o->flags.options.experiments, "Trajectories of the experiments (H5MD)");
+  verb.add_option("--simulation", o->flags.options.simulations, "Trajectories of the simulations (H5MD)");
   verb.add_option("--frames", o->flags.options.stacks,
-                  "stacks of the experiments, in their order, to be shown; absent: where they were tracked");
+                  "Stacks of the experiments, in the same order, to show in the report; default: the stacks "
+                  "that were tracked, if they are still available");
   verb.add_option("--sweep", o->flags.options.sweeps,
-                  "collected results of sweeps (JSON): their points and onsets");
-  writes(common, verb, verb.add_option("-o,--output", o->output, "folder of the report")->required(),
+                  "Collected results of sweeps (JSON), whose points and onsets are added to the comparison");
+  writes(common, verb, verb.add_option("-o,--output", o->output, "Folder for the report")->required(),
          report_folder());
   add_comparing_flags(verb, o->flags);
-  verb.add_flag(
-      "--trust-stated-drive", o->trust_stated_drive,
-      "believe the drive that the experiments' cells state though the plate, or the bed, in the film moves "
-      "otherwise");
+  verb.add_flag("--trust-stated-drive", o->trust_stated_drive,
+                "Use the drive that the experiments' cells state, even if the plate or the bed in the film "
+                "moves differently");
   verb.callback([&common, o] { run(common, *o); });
 }
 

@@ -9,21 +9,25 @@
 namespace twincell::cli {
 
 void add_comparing_flags(CLI::App& verb, ComparingFlags& flags) {
-  verb.add_option("--discard", flags.options.analysis.discard_cycles, "cycles left out at the beginning")
+  verb.add_option("--discard", flags.options.analysis.discard_cycles,
+                  "Number of cycles skipped at the start of each trajectory")
       ->capture_default_str();
-  verb.add_option("--s-b", flags.s_b, "reading of eq. B4")
+  verb.add_option("--s-b", flags.s_b,
+                  "Form of eq. B4 (Fortini & Huang 2015) for s_b: variance (standard deviation over the "
+                  "phases), about_rest (rms about the height at rest) or as_printed (rms of the height)")
       ->check(CLI::IsMember({"variance", "about_rest", "as_printed"}))
       ->capture_default_str();
   verb.add_option("--cutoff", flags.options.analysis.neighbour_cutoff,
-                  "neighbour distance, sigma (1.2; experiments 1.3)");
+                  "Largest distance between neighbours, sigma; default: 1.2, for experiments 1.3");
   verb.add_option("--tolerance", flags.options.tolerance,
-                  "relative difference of Gamma within which runs belong together")
+                  "Largest relative difference of Gamma between runs that are matched, 0 to 0.5")
       ->capture_default_str();
   verb.add_option("--camera", flags.camera_file,
-                  "CAMERA.toml of the camera that films the simulation (docs/camera.md)");
-  verb.add_flag(
-      "--no-film", flags.no_film,
-      "do not pass simulations through camera and tracker: what these do to the numbers stays unknown");
+                  "CAMERA.toml of the synthetic camera that renders the simulation (docs/camera.md); "
+                  "default: scale and noise of the experiment");
+  verb.add_flag("--no-film", flags.no_film,
+                "Do not render and track the simulations; the effect of camera and tracking on the results "
+                "then remains unknown");
 }
 
 void resolve(ComparingFlags& flags, const Common& common) {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What `compare` and `match` have in common: options of the comparison, the report, the words at the end.
+/// What `compare` and `match` share: options of the comparison, writing of the report, printing of the
+/// result.
 
 #include <filesystem>
 #include <memory>
@@ -24,13 +25,14 @@ struct ComparingFlags {
 /// --discard, --s-b, --cutoff, --tolerance, --camera, --no-film.
 void add_comparing_flags(CLI::App& verb, ComparingFlags& flags);
 
-/// What the flags say, resolved. \throws ConfigError, InputError
+/// Checks the flags and sets `flags.options` from them. \throws ConfigError, InputError
 void resolve(ComparingFlags& flags, const Common& common);
 
-/// Makes progress bars for the library.
+/// Returns a function with which the library makes a progress bar for each stage.
 ProgressOf progress_bars(const Common& common);
 
-/// Compares, writes the report into `folder`, prints what was found after `said`.
+/// Compares the runs, writes the report into `folder` and prints the result. \param said, said_text results
+/// of the verb itself, printed before those of the comparison, as JSON and as text
 void compare_and_report(const Common& common, const ComparingOptions& options,
                         const std::filesystem::path& folder, nlohmann::json said,
                         const std::string& said_text);

@@ -1,5 +1,5 @@
-// twincell cost sim: error and time of the time steps together; cost gas, cost locate and cost calibration
-// have their own files
+// twincell cost sim: accuracy and time of the integrators and time steps. cost gas, cost locate and cost
+// calibration have their own files.
 
 #include <fmt/format.h>
 
@@ -39,14 +39,15 @@ struct CostOptions {
   bool quick = false;
 };
 
-/// n is never whole: then contacts of one length would all end at the same place within a step.
+/// Steps per contact, n. No value is an integer: otherwise contacts of equal duration would all end at the
+/// same point within a step.
 constexpr std::array kLadder = {6.37, 8.37, 10.37, 14.37, 20.37, 30.37, 50.37, 70.37, 100.37, 200.37, 400.37};
 constexpr std::array kQuickLadder = {6.37, 10.37, 20.37, 50.37};
 constexpr std::array<const char*, 3> kIntegrators = {"verlet", "predicted", "split"};
 constexpr double kPaperStiffness = 1e6;
 constexpr double kSpinShare =
-    0.01;  ///< error of the spin over its change, at which Verlet and split are compared
-const StepSetting kReference{};  ///< what the papers' simulations take for granted: Verlet, some 50 steps
+    0.01;  ///< rms error of the spin over its change, at which Verlet and split are compared
+const StepSetting kReference{};  ///< the setting of the papers' simulations: Verlet, some 50 steps
 
 std::vector<StepSetting> settings(bool quick) {
   std::vector<StepSetting> all;
@@ -183,12 +184,12 @@ std::string named(const StepSetting& s) {
   return fmt::format("{}, n = {:g}", s.integrator, s.n);
 }
 
-/// Impacts of a bed, by setting.
+/// Table of the errors in the impacts of a driven bed, one row per setting.
 std::string sliding_table(const Measured& m, const std::vector<WorkPrecision>& rows) {
   std::string s = fmt::format(
-      "\nImpacts of a driven bed, sliding and sticking (200 first touches at Gamma = 2 and 3): errors of e, "
-      "and "
-      "of v_t' and\nR w' over the speed of the surfaces; friction changes R w by {:.3f} of that, rms\n"
+      "\nImpacts of a driven bed, sliding and sticking (200 impacts at Gamma = 2 and 3): errors of e, and "
+      "errors of v_t' and\n"
+      "R w' over the speed of the surfaces; friction changes R w by {:.3f} of that speed, rms\n"
       "  {:<9} {:>7}  {:>8} {:>8}  {:>8} {:>8}  {:>8} {:>8}\n",
       m.reference.impacts.spin_change, "integrator", "n", "e rms", "max", "v_t rms", "max", "R w rms", "max");
   for (const WorkPrecision& w : rows) {
@@ -199,18 +200,17 @@ std::string sliding_table(const Measured& m, const std::vector<WorkPrecision>& r
   }
   const sim::EqualImpacts& equal = m.equal_impacts;
   return s + fmt::format(
-                 "  The spin right to {:g} %, rms: verlet, n = {:.4g}; no less accurate in e, v_t' and R w': "
-                 "split, "
-                 "n = {:.3g}, {:.0f} times fewer steps\n",
+                 "  For an rms error of the spin of {:g} %: verlet, n = {:.4g}; at least as accurate in e, "
+                 "v_t' and R w': split, n = {:.3g}, {:.0f} times fewer steps\n",
                  100 * kSpinShare, equal.slow.n, equal.fast.n, equal.slow.n / equal.fast.n);
 }
 
 std::string as_text(const Measured& m) {
   std::string s =
-      "Errors: of e, mean and largest over entry phases (pair or plate, the larger); largest of v_t'/v_t, "
-      "oblique, no\n"
-      "slip; of the floor's force and of overlaps at rest. Time of a bead: ns a step, us a contact time, us "
-      "a t0.\n";
+      "Errors: of e, mean and largest over entry phases (the larger of pair and plate); oblique: largest of "
+      "v_t'/v_t without\n"
+      "slip; floor and overlap: floor force and overlaps at rest. Time per bead: ns per step, us per contact "
+      "time, us per t0.\n";
   std::vector<WorkPrecision> own, others;
   for (const WorkPrecision& w : m.all) {
     const auto like = [&](const StepSetting& o) {
@@ -222,15 +222,17 @@ std::string as_text(const Measured& m) {
       others.push_back(w);
   }
   s += table(own);
-  if (!others.empty()) s += "\nOther stiffnesses\n" + table(others);
-  s += fmt::format("\nFront, k_n = {:g}: no other setting is both cheaper and better\n", kPaperStiffness) +
+  if (!others.empty()) s += "\nOther values of k_n\n" + table(others);
+  s += fmt::format("\nFront, k_n = {:g}: no other setting is both faster and more accurate\n",
+                   kPaperStiffness) +
        table(sim::front(m.all, kPaperStiffness));
   s += sliding_table(m, own);
   s += "\nT_z of a driven gas, 40 beads, W = 20\n";
   for (const sim::GasTemperature& g : m.gas) {
     const sim::GasTemperature& first = m.gas.front();
-    s += fmt::format("  {:<20} {:.4f} +- {:.4f} m V_p^2 from {} periods in {:.3g} s; 1 % takes {:.3g} s",
-                     named(g.setting), g.value, g.standard_error, g.periods, g.seconds, g.seconds_to(0.01));
+    s += fmt::format(
+        "  {:<20} {:.4f} +- {:.4f} m V_p^2 from {} periods in {:.3g} s; an error of 1 % takes {:.3g} s",
+        named(g.setting), g.value, g.standard_error, g.periods, g.seconds, g.seconds_to(0.01));
     if (&g != &first)
       s += fmt::format("; {:+.1f} standard errors from the first",
                        (g.value - first.value) / std::hypot(g.standard_error, first.standard_error));
@@ -241,9 +243,9 @@ std::string as_text(const Measured& m) {
     apart = std::max(apart, std::abs(g.value / m.gas.front().value - 1));
   const sim::GasTemperature& first = m.gas.front();
   s += fmt::format(
-      "  Steps as unlike as these change T_z by {:.1f} %, where a run leaves {:.1f} % to chance. A tenth of "
-      "that takes a\n"
-      "  hundred times the time; no choice of the step returns more than a factor {:.1f}.\n",
+      "  These steps change T_z by at most {:.1f} %, while the statistical error of a run is {:.1f} %. A "
+      "tenth of that error\n"
+      "  takes a hundred times as long; the choice of the step saves at most a factor of {:.1f}.\n",
       100 * apart, 100 * first.standard_error / first.value,
       first.seconds / std::min_element(m.gas.begin(), m.gas.end(), [](const auto& x, const auto& y) {
                         return x.seconds < y.seconds;
@@ -252,31 +254,32 @@ std::string as_text(const Measured& m) {
     return fmt::format("{} ({:.1e}): {:.2f} times fewer steps, {:.2f} times less time\n", named(w.setting),
                        w.collision.restitution(), m.reference.setting.n / w.setting.n, m.time_ratio(w));
   };
-  s += fmt::format("\nNo less accurate than {} (largest error of e {:.1e}), cheapest:\n",
+  s += fmt::format("\nCheapest setting that is at least as accurate as {} (largest error of e {:.1e}):\n",
                    named(m.reference.setting), m.reference.collision.restitution());
   s += "  in every collision:        " + equal(m.equal);
   s += "  and in the mean over many: " + equal(m.equal_mean);
   s += m.cheapest
-           ? fmt::format("Largest error of e at most {:g}: {} ({:.1e}), {:.1f} us a bead and t0\n",
+           ? fmt::format("Largest error of e at most {:g}: {} ({:.1e}), {:.1f} us per bead and t0\n",
                          m.accuracy, named(m.cheapest->setting), m.cheapest->collision.restitution(),
                          1e6 * m.cheapest->cost.seconds_per_time)
            : fmt::format("No setting measured has a largest error of e of at most {:g}.\n", m.accuracy);
   return s;
 }
 
-/// Three panels over one axis of time: errors of head-on collisions, of oblique ones without slip, and of the
-/// spin of a bed's impacts; a curve per integrator; the papers' k_n
-/// bold.
+/// Figure of three panels against time: error of head-on collisions, error of oblique collisions without
+/// slip, and error of the spin in the impacts of a bed. One curve per integrator; the curves at the papers'
+/// k_n are bold.
 Figure figure(const Measured& m) {
   struct Style {
     const char* integrator;
     const char* colour;
     int point;
   };
-  // Each colour has a shape of its own as well.
+  // Each colour also has its own point shape.
   constexpr std::array<Style, 3> kStyles = {
       {{"verlet", colours::kBlue, 7}, {"predicted", colours::kOrange, 5}, {"split", colours::kVermilion, 9}}};
-  Figure f{.name = "work_precision", .title = "What accuracy costs in time", .width = 1380, .height = 460};
+  Figure f{
+      .name = "work_precision", .title = "Accuracy against computing time", .width = 1380, .height = 460};
   std::vector<double> stiffnesses;
   for (const WorkPrecision& w : m.all)
     if (std::find(stiffnesses.begin(), stiffnesses.end(), w.setting.k_n) == stiffnesses.end())
@@ -303,11 +306,19 @@ Figure figure(const Measured& m) {
       ++index;
     }
   f.plot = fmt::format(
-      "set multiplot layout 1,3\nset logscale xy\nset format y '10^{{%T}}'\nset key bottom left\n"
-      "set xlabel 'processor time, µs a bead and t_0'\n"
-      "set title 'head-on: largest |e − e_{{exact}}|'\nplot {}\n"
-      "set title 'oblique, no slip: largest error of v_t^′/v_t'\nunset key\nplot {}\n"
-      "set title 'impacts of a bed: rms error of Rω^′/v'\nplot {}\nunset multiplot\n",
+      "set multiplot layout 1,3\n"
+      "set logscale xy\n"
+      "set format y '10^{{%T}}'\n"
+      "set key bottom left\n"
+      "set xlabel 'processor time, µs per bead and t_0'\n"
+      "set title 'head-on: largest |e − e_{{exact}}|'\n"
+      "plot {}\n"
+      "set title 'oblique, no slip: largest error of v_t^′/v_t'\n"
+      "unset key\n"
+      "plot {}\n"
+      "set title 'impacts of a bed: rms error of Rω^′/v'\n"
+      "plot {}\n"
+      "unset multiplot\n",
       clauses[0], clauses[1], clauses[2]);
   return f;
 }
@@ -323,7 +334,7 @@ void run(const CostOptions& options, const Common& common) {
   if (options.accuracy)
     require_range({.file = {}, .key = "--accuracy"}, *options.accuracy, locate ? 1e-6 : 1e-12,
                   locate ? 100 : 1);
-  std::optional<AtomicPath> folder;  // an unwritable place is found before the work, not after
+  std::optional<AtomicPath> folder;  // opened first: an unwritable folder is reported before the work
   if (!options.output.empty()) {
     folder.emplace(options.output, cost_folder());
   }
@@ -347,21 +358,24 @@ void run(const CostOptions& options, const Common& common) {
 
 void add_cost(CLI::App& program, Common& common) {
   auto options = std::make_shared<CostOptions>();
-  CLI::App& verb = add_verb(program, common, "cost", "What accuracy costs in time",
+  CLI::App& verb = add_verb(program, common, "cost",
+                            "Measure accuracy against computing time of the simulator, the locator or the "
+                            "calibration. Prints a table; -o also writes it to a folder, with a figure.",
                             "twincell cost sim --accuracy 1e-3 -o cost");
-  verb.add_option(
-          "what", options->what,
-          "sim: integrators, steps per contact, stiffness; gas: steps and flights for the temperature of a "
-          "gas; locate: finders, fit, noise, pixels per bead; calibration: frames used")
+  verb.add_option("what", options->what,
+                  "What to measure. sim: integrators, steps per contact, stiffness; gas: time steps and "
+                  "event-driven motion for the temperature of a gas; locate: finders, fit, noise, pixels per "
+                  "bead; calibration: number of frames")
       ->required()
       ->check(CLI::IsMember({"sim", "gas", "locate", "calibration"}));
-  writes(common, verb, verb.add_option("-o,--output", options->output, "Folder for figure and table"),
+  writes(common, verb, verb.add_option("-o,--output", options->output, "Folder for the figure and the table"),
          cost_folder());
-  verb.add_option(
-      "--accuracy", options->accuracy,
-      "The cheapest setting is named whose largest error of e (sim; 1e-3), relative error of T_z (gas; "
-      "0.01) or rms error in px (locate; 0.01) is no larger");
-  verb.add_flag("--quick", options->quick, "Fewer settings, each timed once: some seconds");
+  verb.add_option("--accuracy", options->accuracy,
+                  "Requested accuracy, for which the cheapest setting (sim, locate) or the time (gas) is "
+                  "printed. sim: largest error of e, 1e-12 to 1, default 1e-3; gas: relative error of T_z, "
+                  "1e-12 to 1, default 0.01; locate: rms error, px, 1e-6 to 100, default 0.01");
+  verb.add_flag("--quick", options->quick,
+                "Measure fewer settings and time each only once; takes some seconds");
   verb.callback([options, &common] { run(*options, common); });
 }
 

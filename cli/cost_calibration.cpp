@@ -36,9 +36,8 @@ nlohmann::json as_json(const CalibrationCost& cost) {
 
 std::string as_text(const CalibrationCost& cost) {
   std::string s = fmt::format(
-      "Standard error as stated, in brackets the value minus the truth. Frames of {} x {} px, 12 x 6 beads, "
-      "14.3 px "
-      "each.\n\n",
+      "Stated standard error; in brackets the actual error (value minus truth). Frames of {} x {} px with 12 "
+      "x 6 beads of 14.3 px.\n\n",
       cost.width_px, cost.height_px);
   s += fmt::format("{:<26}", "frames");
   for (const CalibrationTime& t : cost.times) s += fmt::format("  {:>20}", t.frames);
@@ -70,7 +69,10 @@ std::string as_text(const CalibrationCost& cost) {
 }
 
 Figure figure(const CalibrationCost& cost) {
-  Figure f{.name = "calibrating", .title = "What accuracy of calibration costs", .width = 760, .height = 460};
+  Figure f{.name = "calibrating",
+           .title = "Accuracy of calibration against number of frames",
+           .width = 760,
+           .height = 460};
   std::string clauses;
   int index = 0;
   for (const std::string& name : names_of(cost)) {
@@ -91,9 +93,12 @@ Figure figure(const CalibrationCost& cost) {
     ++index;
   }
   f.plot = fmt::format(
-      "set logscale xy\nset format y '10^{{%T}}'\nset key outside right\nset xlabel 'frames'\nset ylabel "
-      "'standard "
-      "error'\nplot {}\n",
+      "set logscale xy\n"
+      "set format y '10^{{%T}}'\n"
+      "set key outside right\n"
+      "set xlabel 'frames'\n"
+      "set ylabel 'standard error'\n"
+      "plot {}\n",
       clauses);
   return f;
 }

@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// twincell cost calibration: errors of calibrated numbers against frames used and time.
+/// twincell cost calibration: errors of the calibrated quantities against number of frames and time.
 
 #include "cli/cost_locate.hpp"
 
 namespace twincell::cli {
 
-/// \param quick fewer frames
+/// \param quick uses fewer frames
 CostReport cost_of_calibrating(bool quick, const Common& common);
 
 }  // namespace twincell::cli

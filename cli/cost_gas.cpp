@@ -26,7 +26,7 @@ std::string name_of(const GasTemperature& g) {
   return g.gas.event_driven ? "event-driven; " + steps : steps;
 }
 
-/// The first is what the paper's own simulations did.
+/// The methods that are compared. The first is that of the paper's own simulations.
 std::vector<Method> methods(bool quick) {
   const StepSetting verlet{}, fine{.integrator = "split", .n = 25.37},
       coarse{.integrator = "split", .n = 10.37};
@@ -54,13 +54,16 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
 
   CostReport report;
   report.text = fmt::format(
-      "T_z of the second paper's gases at W = {:g}: processor time of a period, T_z, and the time after "
-      "which\n"
-      "chance leaves it {:g} of its value, since that falls with the root of a run's length.\n",
+      "T_z of the gases of the second paper at W = {:g}: processor time per period, T_z, and the time after "
+      "which its\n"
+      "statistical error is {:g} of its value (this error falls with the square root of the length of a "
+      "run).\n",
       kStrong, accuracy);
   Figure& figure = report.figure;
-  figure = {
-      .name = "gas_cost", .title = "What accuracy costs in time: T_z of a gas", .width = 960, .height = 460};
+  figure = {.name = "gas_cost",
+            .title = "Accuracy against computing time: T_z of a gas",
+            .width = 960,
+            .height = 460};
   std::string panels;
   int index = 0;
   for (const std::vector<GasTemperature>& of_system : all) {
@@ -71,7 +74,7 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
     for (const GasTemperature& g : of_system) {
       const double per_period = 1e3 * g.seconds / g.periods, to = g.seconds_to(accuracy);
       const double apart = (g.value - first.value) / std::hypot(g.standard_error, first.standard_error);
-      report.text += fmt::format("  {:<26} {:8.3f} ms  {:.4f} +- {:.4f} m V_p^2 of {} periods  {:8.3g} s",
+      report.text += fmt::format("  {:<26} {:8.3f} ms  {:.4f} +- {:.4f} m V_p^2 from {} periods  {:8.3g} s",
                                  name_of(g), per_period, g.value, g.standard_error, g.periods, to);
       report.text += &g == &first ? "\n" : fmt::format("  {:+.1f} errors from the first\n", apart);
       if (g.seconds / g.periods < cheapest->seconds / cheapest->periods) cheapest = &g;
@@ -93,7 +96,7 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
         figure.data +=
             fmt::format("{:.4g} {:.4g}\n", times * g.seconds, g.standard_error / g.value / std::sqrt(times));
       figure.data += "\n\n";
-      // A line of what longer and shorter runs come to, a point for the one that was made.
+      // A line shows the error of longer and shorter runs; a point marks the run that was made.
       panels += fmt::format(
           "'{0}.dat' index {1} with lines dt {2} lw 2 lc {3} title '{4}', '' index {1} every ::1::1 "
           "with points pt 7 lc {3} notitle, ",
@@ -102,13 +105,17 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
     }
     panels += fmt::format("{} with lines lc rgb 'grey' notitle\n", accuracy);
     const double gain = first.seconds / first.periods / (cheapest->seconds / cheapest->periods);
-    report.text += fmt::format("  a period takes {} {:.1f} times less time than {}\n", name_of(*cheapest),
+    report.text += fmt::format("  {} needs {:.1f} times less time per period than {}\n", name_of(*cheapest),
                                gain, name_of(first));
     report.document["gain"][first.gas.system] = gain;
   }
   figure.plot = fmt::format(
-      "set multiplot layout 1,{}\nset logscale xy\nset key bottom left\nset xlabel 'processor time, s'\n"
-      "set ylabel 'standard error of T_z / T_z'\n{}unset multiplot\n",
+      "set multiplot layout 1,{}\n"
+      "set logscale xy\n"
+      "set key bottom left\n"
+      "set xlabel 'processor time, s'\n"
+      "set ylabel 'standard error of T_z / T_z'\n"
+      "{}unset multiplot\n",
       all.size(), panels);
   report.document["accuracy"] = accuracy;
   return report;

@@ -6,7 +6,7 @@
 
 namespace twincell::cli {
 
-/// \param accuracy relative error of T_z asked for
+/// \param accuracy requested relative error of T_z
 CostReport cost_of_gas(double accuracy, bool quick, const Common& common);
 
 }  // namespace twincell::cli

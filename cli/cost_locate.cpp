@@ -21,7 +21,8 @@ constexpr std::array kQuickDiameters = {8.0, 15.0};
 constexpr std::array kNoise = {164.0, 51.0, 18.5, 8.5};
 constexpr std::array kQuickNoise = {51.0, 18.5};
 const LocateSetting kUsual{};
-constexpr int kTracers = 20, kPhases = 20;  // a line of them, Fortini & Huang 2015; least phases a cycle
+constexpr int kTracers = 20,
+              kPhases = 20;  // tracers in a line, and least phases per cycle (Fortini & Huang 2015)
 
 struct Measured {
   std::vector<LocatePrecision> all;
@@ -135,8 +136,8 @@ nlohmann::json as_json(const Measured& m) {
 
 std::string table(const std::vector<LocatePrecision>& rows) {
   std::string s =
-      fmt::format("  {:<22} {:>4} {:>5}  {:>7} {:>9}  {:>8} {:>8} {:>6}  {:>17}  {:>8}  {:>8}\n", "way", "px",
-                  "SNR", "recall", "precision", "rms", "bound", "ratio", "bias", "locking", "ms");
+      fmt::format("  {:<22} {:>4} {:>5}  {:>7} {:>9}  {:>8} {:>8} {:>6}  {:>17}  {:>8}  {:>8}\n", "method",
+                  "px", "SNR", "recall", "precision", "rms", "bound", "ratio", "bias", "locking", "ms");
   for (const LocatePrecision& p : rows)
     s += fmt::format(
         "  {:<22} {:>4g} {:>5g}  {:>7.4f} {:>9.4f}  {:>8.5f} {:>8.5f} {:>6.2f}  {:>+8.5f} {:>+8.5f}  "
@@ -148,32 +149,35 @@ std::string table(const std::vector<LocatePrecision>& rows) {
 
 std::string as_text(const Measured& m) {
   std::string s = fmt::format(
-      "What accuracy costs in time. {} touching beads in a frame {} x {} beads; {} such frames.\n"
-      "rms: error per coordinate, px; bound: Cramér-Rao, px; bias in x and y, px; locking to pixels, px; "
-      "processor ms a frame,\none thread. \"fit\" sweeps until nothing moves.\n\n",
+      "Accuracy against computing time. {} touching beads in a frame of {} x {} beads; {} such frames.\n"
+      "rms: error per coordinate, px; bound: Cramér-Rao, px; bias in x and y, px; locking to pixels, px; ms: "
+      "processor time per\n"
+      "frame on one thread. \"fit\" sweeps until no bead moves.\n\n",
       m.scene.beads, m.scene.width, m.scene.height, m.scene.frames);
   s += table(m.those(is_usual_picture));
-  s += "\nOther noise\n" + table(m.those([](const LocateSetting& o) {
+  s += "\nOther noise levels\n" + table(m.those([](const LocateSetting& o) {
          return o.diameter_px == kUsual.diameter_px && o.snr != kUsual.snr;
        }));
-  s += "\nOther pixels per bead\n" +
+  s += "\nOther numbers of pixels per bead\n" +
        table(m.those([](const LocateSetting& o) { return o.diameter_px != kUsual.diameter_px; }));
   s += fmt::format(
-           "\nFront, {:g} px, SNR {:g}: of those that find every bead, no other is both cheaper and better\n",
+           "\nFront, {:g} px, SNR {:g}: of the methods that find every bead, no other is both faster and "
+           "more accurate\n",
            kUsual.diameter_px, kUsual.snr) +
        table(front(m.all, kUsual.diameter_px, kUsual.snr));
-  s += fmt::format("\nCheapest with an rms of at most {:g} px, {:g} px per bead\n", m.accuracy,
+  s += fmt::format("\nFastest method with an rms error of at most {:g} px, {:g} px per bead\n", m.accuracy,
                    kUsual.diameter_px);
   for (const double snr : m.noise()) {
     const auto best = cheapest(m.all, kUsual.diameter_px, snr, m.accuracy);
-    s += best ? fmt::format("  SNR {:>5g}: {} ({:.4f} px), {:.1f} ms a frame\n", snr, way(best->setting),
+    s += best ? fmt::format("  SNR {:>5g}: {} ({:.4f} px), {:.1f} ms per frame\n", snr, way(best->setting),
                             best->rms, 1e3 * best->seconds)
-              : fmt::format("  SNR {:>5g}: none of those measured\n", snr);
+              : fmt::format("  SNR {:>5g}: no measured method\n", snr);
   }
   s += fmt::format(
-      "\nWhat is left of s_b for a bed at rest, in percent of sigma/30, one cycle of {} phases\n"
+      "\nApparent s_b of a bed at rest due to the errors of positions, in percent of sigma/30, one cycle of "
+      "{} phases\n"
       "  {:>4} {:>5}  {:<12} {:>12} {:>12}\n",
-      kPhases, "px", "SNR", "way", "one tracer", fmt::format("{} tracers", kTracers));
+      kPhases, "px", "SNR", "method", "one tracer", fmt::format("{} tracers", kTracers));
   for (const LocatePrecision& p : m.all) {
     const LocateSetting& o = p.setting;
     if (!is_usual_way(o) || (o.sweeps != 0 && o.sweeps != kUsual.sweeps)) continue;
@@ -184,7 +188,8 @@ std::string as_text(const Measured& m) {
   return s;
 }
 
-/// Three panels: ways of locating, noise, pixels per bead; a level line of a curve's colour is its bound.
+/// Three panels: locating methods, noise, pixels per bead. A horizontal line in the colour of a curve is the
+/// Cramér-Rao bound of the curve.
 class Panels {
  public:
   explicit Panels(std::string name) : name_(std::move(name)) {}
@@ -192,7 +197,7 @@ class Panels {
   void curve(const std::vector<LocatePrecision>& points, const std::string& title, const char* colour,
              int shape, bool relative, bool line = true) {
     if (points.empty()) return;
-    data_ += fmt::format("# {}: ms a frame, rms, bound, sweeps\n", title);
+    data_ += fmt::format("# {}: ms per frame, rms, bound, sweeps\n", title);
     for (const LocatePrecision& p : points) {
       const double unit = relative ? p.setting.diameter_px : 1;
       data_ += fmt::format("{:.4g} {:.4e} {:.4e} {}\n", 1e3 * p.seconds, p.rms / unit, p.bound / unit,
@@ -217,10 +222,10 @@ class Panels {
 };
 
 Figure figure(const Measured& m) {
-  // Each colour has a shape of its own as well.
+  // Each colour also has its own point shape.
   constexpr auto kColours = colours::kCurves;
   constexpr std::array<int, 7> kShapes = {7, 9, 5, 11, 13, 6, 4};
-  Figure f{.name = "locating", .title = "What accuracy costs in time", .width = 1260, .height = 440};
+  Figure f{.name = "locating", .title = "Accuracy against computing time", .width = 1260, .height = 440};
   Panels panels(f.name);
   panels.next();
   panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && is_usual_way(s); }),
@@ -258,15 +263,23 @@ Figure figure(const Measured& m) {
   }
   f.data = panels.data();
   f.plot = fmt::format(
-      "set multiplot layout 1,3\nset logscale xy\nset format y '10^{{%T}}'\nset key top right\nset yrange "
-      "[1e-3:5]\n"
-      "set xlabel 'processor time, ms a frame of {} beads'\nset ylabel 'rms error per coordinate, px'\n"
-      "set title '15 px, SNR 51; dashed: Cramér–Rao bound'\nplot {}\n"
-      "set title 'noise, 15 px'\nplot {}\n"
-      "set title 'pixels per bead, SNR 51'\nset yrange [*:*]\nset key outside right\nset ylabel 'rms error "
-      "per coordinate, σ'\nplot {}, 1./30 with "
-      "lines lc rgb "
-      "grey title 'σ/30'\nunset multiplot\n",
+      "set multiplot layout 1,3\n"
+      "set logscale xy\n"
+      "set format y '10^{{%T}}'\n"
+      "set key top right\n"
+      "set yrange [1e-3:5]\n"
+      "set xlabel 'processor time, ms per frame of {} beads'\n"
+      "set ylabel 'rms error per coordinate, px'\n"
+      "set title '15 px, SNR 51; dashed: Cramér–Rao bound'\n"
+      "plot {}\n"
+      "set title 'noise, 15 px'\n"
+      "plot {}\n"
+      "set title 'pixels per bead, SNR 51'\n"
+      "set yrange [*:*]\n"
+      "set key outside right\n"
+      "set ylabel 'rms error per coordinate, σ'\n"
+      "plot {}, 1./30 with lines lc rgb grey title 'σ/30'\n"
+      "unset multiplot\n",
       m.scene.beads, panels.clauses(0), panels.clauses(1), panels.clauses(2));
   return f;
 }

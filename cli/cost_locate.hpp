@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// twincell cost locate: error and time of the ways of locating.
+/// twincell cost locate: accuracy and time of the locating methods.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace twincell::cli {
 
-/// What a cost was found to be, in three ways.
+/// The result of a cost measurement, as JSON, as text and as a figure.
 struct CostReport {
   nlohmann::json document;
   std::string text;
   Figure figure;
 };
 
-/// \param accuracy_px error per coordinate asked for
+/// \param accuracy_px requested rms error per coordinate
 CostReport cost_of_locating(double accuracy_px, bool quick, const Common& common);
 
 }  // namespace twincell::cli

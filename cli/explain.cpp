@@ -1,4 +1,4 @@
-// twincell explain SCENE.toml
+// twincell explain SCENE.toml: the plan of a scene and its cost.
 
 #include <fmt/format.h>
 
@@ -38,42 +38,43 @@ std::string duration(double seconds) {
   return fmt::format("{:.3g} d", seconds / 86'400);
 }
 
-/// Whether another seed makes another run.
+/// Whether the run depends on the seed.
 std::string chance_of(const sim::Scene& scene) {
   return sim::has_chance(scene)
-             ? "the start is drawn at random: another start.seed makes another run"
-             : "none: nothing in the start is drawn at random, and every start.seed makes the same run";
+             ? "the start is drawn at random: another start.seed gives another run"
+             : "none: nothing in the start is drawn at random, and every start.seed gives the same run";
 }
 
 std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::Cost& cost) {
   using State = sim::Effect::State;
-  std::string s = list_of(plan, State::on, "On, because the scene says so") +
-                  list_of(plan, State::off_by_scene, "Off, because the scene says so") +
-                  list_of(plan, State::off_by_proof, "Off, because it provably cannot act") +
-                  list_of(plan, State::approximated, "Approximated, with the error that is known");
+  std::string s = list_of(plan, State::on, "On, set by the scene") +
+                  list_of(plan, State::off_by_scene, "Off, set by the scene") +
+                  list_of(plan, State::off_by_proof, "Off, because the effect provably cannot act") +
+                  list_of(plan, State::approximated, "Approximated, with a known error");
   if (!plan.warnings.empty()) s += "Warnings\n";
   for (const std::string& warning : plan.warnings) s += "  " + warning + "\n";
-  s += fmt::format("Chance\n  {}\n", chance_of(scene));
+  s += fmt::format("Randomness\n  {}\n", chance_of(scene));
   s += fmt::format("Kernel\n  {}; {}\n", plan.law_names(), cost.kernel);
-  s += fmt::format("  {:.0f} bytes a bead", cost.bytes_per_bead);
+  s += fmt::format("  {:.0f} bytes per bead", cost.bytes_per_bead);
   if (cost.bytes_per_pair > 0)
-    s += fmt::format(", {:.0f} a listed pair, of which there are {:.3g} a bead", cost.bytes_per_pair,
+    s += fmt::format(", {:.0f} bytes per listed pair, {:.3g} listed pairs per bead", cost.bytes_per_pair,
                      cost.pairs_per_bead);
   const sim::ResourceDemand demand = sim::resource_demand(scene, plan, cost.beads);
-  s += fmt::format("\nMachine\n  about {} of memory, of {} available; frames of `simulate`: at least {}",
-                   sim::bytes_text(demand.memory), sim::bytes_text(memory_available()),
-                   sim::bytes_text(demand.disk));
-  s += fmt::format("\nSteps\n  {} a period, dt = {:.6e} t0, set by {}: {:.4e} t0 over {:g}\n",
+  s += fmt::format(
+      "\nMachine\n"
+      "  memory: about {} of {} available; frames written by `simulate`: at least {}",
+      sim::bytes_text(demand.memory), sim::bytes_text(memory_available()), sim::bytes_text(demand.disk));
+  s += fmt::format("\nSteps\n  {} per period, dt = {:.6e} t0, set by {}: {:.4e} t0 divided by {:g}\n",
                    plan.steps_per_period, plan.dt, plan.shortest().name, plan.shortest().time,
                    scene.steps_per_contact);
   const double steps = static_cast<double>(plan.steps), beads = static_cast<double>(cost.beads);
-  s += fmt::format("  {} beads x {} periods = {:.3g} particle-steps, settling not counted\n", cost.beads,
+  s += fmt::format("  {} beads x {} periods = {:.3g} particle-steps, without settling\n", cost.beads,
                    plan.steps / plan.steps_per_period, steps * beads);
-  if (!cost.stopped.empty())
-    return s + "Time\n  unknown: a short piece of the run was stopped: " + cost.stopped + "\n";
+  if (!cost.stopped.empty()) return s + "Time\n  unknown: the short test run stopped: " + cost.stopped + "\n";
   s += fmt::format(
-      "Time\n  {}, at {:.3g} million particle-steps/s; measured on this machine over {} steps of "
-      "this scene after {:.3g} t0 of settling; a bed that flies costs less than one that lies\n",
+      "Time\n"
+      "  {}, at {:.3g} million particle-steps/s; measured on this machine over {} steps of this scene after "
+      "{:.3g} t0 of settling; an airborne bed is cheaper to simulate than a resting one\n",
       duration(steps * cost.seconds_per_step), 1e-6 * beads / cost.seconds_per_step, cost.measured_steps,
       cost.settled_for);
   return s;
@@ -112,10 +113,14 @@ void run(const ExplainOptions& o, const Common& common) {
 
 void add_explain(CLI::App& program, Common& common) {
   auto o = std::make_shared<ExplainOptions>();
-  CLI::App& verb = add_verb(program, common, "explain", "What a scene calls for, and what it costs",
+  CLI::App& verb = add_verb(program, common, "explain",
+                            "Show the plan of a scene: effects that are on, off or approximated, with "
+                            "reasons; time step, memory and expected time. Runs the scene for a fraction of "
+                            "a second to measure its speed, and writes no file.",
                             "twincell explain scene.toml --set contact.mu=0.0");
-  verb.add_option("scene", o->scene, "Scene (TOML, docs/scene.md)")->required();
-  verb.add_option("--set", o->assignments, "section.key=value, over the scene's own; may be repeated")
+  verb.add_option("scene", o->scene, "Scene file (TOML, docs/scene.md)")->required();
+  verb.add_option("--set", o->assignments,
+                  "Set a key of the scene, as section.key=value; overrides the file; may be repeated")
       ->take_all();
   verb.callback([o, &common] { run(*o, common); });
 }

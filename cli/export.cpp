@@ -1,4 +1,4 @@
-// twincell export SCENE.toml --to lammps: the scene as another program's input.
+// twincell export SCENE.toml --to lammps: writes the scene as the input of another program.
 
 #include <fmt/format.h>
 
@@ -35,8 +35,8 @@ void run(const ExportOptions& o, const Common& common) {
     assignments.emplace_back("time.integrator=verlet");
     scene = sim::read_scene(o.scene, assignments);
     otherwise = fmt::format(
-        "time.integrator is not stated: the deck takes \"verlet\", LAMMPS's own, at {:g} steps per contact, "
-        "where simulate takes \"{}\" at {:g}; with --set time.integrator=verlet both do the same.",
+        "time.integrator is not set: the deck uses \"verlet\", LAMMPS's own integrator, at {:g} steps per "
+        "contact, and simulate uses \"{}\" at {:g}; with --set time.integrator=verlet both use the same.",
         scene.steps_per_contact, sim::kDefaultIntegrator.word, own);
   }
   AtomicPath folder(o.output, deck_folder());
@@ -59,17 +59,23 @@ void run(const ExportOptions& o, const Common& common) {
 
 void add_export(CLI::App& program, Common& common) {
   auto o = std::make_shared<ExportOptions>();
-  CLI::App& verb = add_verb(program, common, "export", "A scene as the input of another program",
+  CLI::App& verb = add_verb(program, common, "export",
+                            "Export a scene as the input of another program. Writes a folder with the input "
+                            "deck, and prints the commands that run it and import its result.",
                             "twincell export scene.toml --to lammps -o deck/");
-  verb.add_option("scene", o->scene, "Scene (TOML, docs/scene.md)")->required();
-  verb.add_option("--to", o->format, "Program")->required()->check(CLI::IsMember({"lammps"}));
-  writes(common, verb, verb.add_option("-o,--output", o->output, "Folder to write")->required(),
+  verb.add_option("scene", o->scene, "Scene file (TOML, docs/scene.md)")->required();
+  verb.add_option("--to", o->format, "Program for which the deck is written")
+      ->required()
+      ->check(CLI::IsMember({"lammps"}));
+  writes(common, verb, verb.add_option("-o,--output", o->output, "Folder for the deck")->required(),
          deck_folder());
-  verb.add_option("--set", o->assignments, "section.key=value, over the scene's own; may be repeated")
+  verb.add_option("--set", o->assignments,
+                  "Set a key of the scene, as section.key=value; overrides the file; may be repeated")
       ->take_all();
-  CLI::Option* from =
-      verb.add_option("--from", o->from, "Trajectory (H5MD) of the scene: begin at one of its frames");
-  verb.add_option("--frame", o->frame, "Which frame of it")->needs(from);
+  CLI::Option* from = verb.add_option("--from", o->from,
+                                      "Trajectory (H5MD) of this scene; the deck starts from its frame "
+                                      "--frame; default: the start of the scene");
+  verb.add_option("--frame", o->frame, "Index of the frame of --from, from 0; default: 0")->needs(from);
   verb.callback([o, &common] { run(*o, common); });
 }
 

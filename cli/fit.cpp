@@ -1,3 +1,4 @@
+// twincell fit TABLE --law LAW: fits a law to a table.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -50,11 +51,11 @@ std::vector<DataPoint> points_of(const Table& table, FitOptions& o) {
   for (std::size_t i = 0; i < x.size(); ++i) points[i] = {x[i], y[i], 0, 0};
   if (!o.sigma.empty() && !o.trials.empty())
     throw ConfigError({.file = {}, .key = "--trials"},
-                      "and --sigma both say the error of y; say one of the two");
+                      "and --sigma both give the error of y; give only one of the two");
   for (const std::string* named : {&o.x, &o.y})
     if (std::none_of(points.begin(), points.end(),
                      [&](const DataPoint& p) { return std::isfinite(named == &o.x ? p.x : p.y); }))
-      throw InputError({.file = table.file, .key = *named}, "holds no number");
+      throw InputError({.file = table.file, .key = *named}, "contains no number");
   if (!o.sigma.empty())
     for (std::size_t i = 0; i < x.size(); ++i) points[i].sigma = table.column(o.sigma)[i];
   if (!o.trials.empty())
@@ -62,41 +63,41 @@ std::vector<DataPoint> points_of(const Table& table, FitOptions& o) {
   return points;
 }
 
-/// Columns that can only hold what is not negative.
+/// Checks the columns that cannot be negative: standard deviations and numbers of trials.
 void check_errors(const std::vector<DataPoint>& points, const FitOptions& o) {
   const auto refuse = [&](const std::string& column, std::size_t row, double value, const char* bound) {
     throw InputError({.file = o.table, .key = column},
-                     fmt::format("row {} holds {:g}; {}", row + 1, value, bound));
+                     fmt::format("row {} contains {:g}; {}", row + 1, value, bound));
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points[i].sigma < 0) refuse(o.sigma, i, points[i].sigma, "a standard deviation is not negative");
+    if (points[i].sigma < 0) refuse(o.sigma, i, points[i].sigma, "a standard deviation must not be negative");
     if (points[i].trials < 0 ||
         (std::isfinite(points[i].trials) && points[i].trials != std::floor(points[i].trials)))
-      refuse(o.trials, i, points[i].trials, "trials are counted, 0 or more");
+      refuse(o.trials, i, points[i].trials, "a number of trials must be a whole number, 0 or more");
   }
 }
 
-/// Frequencies lie between 0 and 1; anything else is the wrong column.
+/// Checks that all frequencies are from 0 to 1. Any other value indicates the wrong column.
 void check_frequencies(const std::vector<DataPoint>& points, const FitOptions& o) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (points[i].y < 0 || points[i].y > 1)
-      throw InputError(
-          {.file = o.table, .key = o.y},
-          fmt::format("row {} holds {:g}; with --trials it is a frequency, from 0 to 1", i + 1, points[i].y));
+      throw InputError({.file = o.table, .key = o.y},
+                       fmt::format("row {} contains {:g}; with --trials it must be a frequency from 0 to 1",
+                                   i + 1, points[i].y));
 }
 
-/// Errors were named, and yet all points count alike: why.
+/// The reason why the points are not weighted although errors were given.
 std::string why_not_weighted(const CurveFit& fit, const std::vector<DataPoint>& points) {
   std::size_t without = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool binomial = points[i].trials > 0 && points[i].y * (1 - points[i].y) > 0;
     without += fit.use[i] == PointUse::used && !(points[i].sigma > 0) && !binomial ? 1 : 0;
   }
-  return fmt::format("not weighted: the errors named are not above 0 at {} of {} points", without,
+  return fmt::format("not weighted: the given errors are not above 0 at {} of {} points", without,
                      fit.n_used);
 }
 
-/// InputError's sentence with the file in front.
+/// Calls fit_curve() and adds the file name to the message of an InputError.
 CurveFit fit_of(const Law& law, const std::vector<DataPoint>& points, const FitOptions& o) {
   FitWindow window;
   if (o.window) window = {(*o.window)[0], (*o.window)[1]};
@@ -114,7 +115,7 @@ std::string text_of(const CurveFit& fit) {
   if (fit.n_outside > 0) text += fmt::format(", {} outside the window", fit.n_outside);
   if (fit.n_zero > 0) text += fmt::format(", {} zero and left out", fit.n_zero);
   if (fit.n_invalid > 0) text += fmt::format(", {} invalid and left out", fit.n_invalid);
-  text += fit.weighted ? "; weighted by their errors\n\n" : "; all alike, error from the scatter\n\n";
+  text += fit.weighted ? "; weighted by their errors\n\n" : "; not weighted, errors from the scatter\n\n";
   text += fmt::format("{:<10}  {:<14}  {:<12}  95 % interval\n", "parameter", "value", "error");
   for (std::size_t p = 0; p < report.values.size(); ++p) {
     text += fmt::format("{:<10}  {:<14.8g}  ", report.names[p], report.values[p]);
@@ -127,7 +128,7 @@ std::string text_of(const CurveFit& fit) {
     text += fmt::format("correlation with the curve: {:.6f}\n", fit.correlation);
   text += fmt::format("rms residual: {:.4g}\n", report.rms());
   if (std::isfinite(fit.runs.p))
-    text += fmt::format("residual signs: {} runs of {} above and {} below, p = {:.3g}\n", fit.runs.runs,
+    text += fmt::format("residual signs: {} runs, {} points above and {} below, p = {:.3g}\n", fit.runs.runs,
                         fit.runs.positive, fit.runs.negative, fit.runs.p);
   if (!fit.law->nested.empty())
     text += fmt::format("against {}: p = {:.3g}\n", fit.law->nested, fit.p_nested);
@@ -196,7 +197,7 @@ void run(const Common& common, FitOptions o) {
     throw ConfigError(
         {.file = {}, .key = "window"},
         fmt::format("[{:g}, {:g}] is not a window: low must be below high", (*o.window)[0], (*o.window)[1]));
-  std::optional<AtomicPath> folder;  // an unwritable place is found before the work, not after
+  std::optional<AtomicPath> folder;  // opened first: an unwritable folder is reported before the work
   if (!o.output.empty()) folder.emplace(o.output, fit_folder());
   const Table table = read_table(o.table);
   const std::vector<DataPoint> points = points_of(table, o);
@@ -223,22 +224,28 @@ void run(const Common& common, FitOptions o) {
 }  // namespace
 
 void add_fit(CLI::App& program, Common& common) {
-  CLI::App& verb = add_verb(program, common, "fit", "a law fitted to a table, with errors and residuals",
+  CLI::App& verb = add_verb(program, common, "fit",
+                            "Fit a law to a table. Prints the parameters with errors and the diagnostics of "
+                            "the residuals; -o also writes the figure, its data and fit.json.",
                             "twincell fit p_s.csv --law arrhenius --x K_m --y p_s --trials trials -o fit/");
   auto o = std::make_shared<FitOptions>();
   std::string names;
   for (const Law* law : laws()) names += (names.empty() ? "" : ", ") + law->name;
-  verb.add_option("table", o->table, "CSV with a line of names")->required();
+  verb.add_option("table", o->table, "Table to fit (CSV with a header line)")->required();
   verb.add_option("--law", o->law, names)->required()->type_name(kWord);
-  verb.add_option("--x", o->x, "column of the abscissa; the first if not said")->type_name(kWord);
-  verb.add_option("--y", o->y, "column of the ordinate; the second if not said")->type_name(kWord);
-  verb.add_option("--sigma", o->sigma, "column of y's standard deviation")->type_name(kWord);
-  verb.add_option("--trials", o->trials, "column of the trials of which y is a frequency")->type_name(kWord);
-  verb.add_option("--window", o->window, "only points with LOW <= x <= HIGH")
+  verb.add_option("--x", o->x, "Column of the abscissa; default: the first")->type_name(kWord);
+  verb.add_option("--y", o->y, "Column of the ordinate; default: the second")->type_name(kWord);
+  verb.add_option("--sigma", o->sigma,
+                  "Column of the standard deviation of y; default: none, all points count equally")
+      ->type_name(kWord);
+  verb.add_option("--trials", o->trials,
+                  "Column of the number of trials, if y is a frequency; not together with --sigma")
+      ->type_name(kWord);
+  verb.add_option("--window", o->window, "Use only points with LOW <= x <= HIGH; default: all")
       ->delimiter(',')
       ->type_name("LOW,HIGH");
   writes(common, verb,
-         verb.add_option("-o,--output", o->output, "folder for the picture, its data and fit.json"),
+         verb.add_option("-o,--output", o->output, "Folder for the figure, its data and fit.json"),
          fit_folder());
   verb.callback([&common, o] { run(common, *o); });
 }

@@ -1,4 +1,4 @@
-// twincell info FILE: what a trajectory or a stack of frames holds.
+// twincell info FILE: prints the content of a trajectory or a stack of frames.
 
 #include <fmt/format.h>
 
@@ -121,10 +121,13 @@ std::string as_text(const nlohmann::json& d) {
 
 void add_info(CLI::App& program, Common& common) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App& verb = add_verb(program, common, "info", "What a trajectory or a stack of frames holds",
+  CLI::App& verb = add_verb(program, common, "info",
+                            "Print the content of a trajectory or a stack of frames: size, times, drive, "
+                            "scale, grey values and origin.",
                             "twincell info sim.h5; twincell info run.cine");
   verb.add_option("file", options->file,
-                  "Trajectory (H5MD); folder of pictures, TIFF, camera file, HDF5 stack or video")
+                  "Trajectory (H5MD), or a stack: folder of pictures, TIFF, camera file, HDF5 stack or video "
+                  "(docs/frames.md)")
       ->required();
   verb.callback([options, &common] {
     if (is_trajectory(options->file)) {

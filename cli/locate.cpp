@@ -1,4 +1,4 @@
-// twincell locate STACK: beads in every frame, in trackpy's columns.
+// twincell locate STACK: locates the beads in every frame and writes a table with trackpy's columns.
 
 #include <fmt/format.h>
 
@@ -35,7 +35,7 @@ struct LocateOptions {
   std::string flat;
 };
 
-// trackpy's columns in trackpy's order, then our own.
+// Headings of the tables. kHeading has trackpy's columns in trackpy's order, then the additional columns.
 constexpr const char* kCandidateHeading = "frame,x,y,radius,darkness,interior,score,ring_share,verdict\n";
 constexpr const char* kHeading =
     "y,x,mass,size,ecc,signal,raw_mass,ep,frame,radius,sigma_x,sigma_y,sigma_radius,score,tracer,edge\n";
@@ -59,7 +59,7 @@ std::string candidate_row(const Detection& b, std::int64_t frame) {
                      b.darkness, b.interior, b.score, b.ring_share, word_of(b.verdict));
 }
 
-/// A table that appears whole or not at all; without a name, none.
+/// A table that appears complete or not at all. If the name is empty, nothing is written.
 class TableFile {
  public:
   TableFile(const std::string& name, const char* heading) : name_(name) {
@@ -91,8 +91,8 @@ nlohmann::json in_words(const std::map<Verdict, std::size_t>& counts) {
   return words;
 }
 
-/// What a reader should know before trusting the table: frames without beads, and candidates that were left
-/// out if they are many. Empty if there is nothing to doubt.
+/// Warnings about the table: frames without beads, and candidates that were left out if they are many. Empty
+/// if there is no reason for doubt.
 std::string doubts(const std::map<Verdict, std::size_t>& left_out, std::size_t beads, std::size_t bare,
                    std::size_t frames) {
   constexpr double kMany = 0.02;  // of the beads
@@ -101,7 +101,7 @@ std::string doubts(const std::map<Verdict, std::size_t>& left_out, std::size_t b
   std::size_t all = 0, wrong_radius = 0;
   std::string reasons;
   for (const auto& [why, count] : left_out) {
-    if (why == Verdict::outside || why == Verdict::in_wall) continue;  // no beads in sight
+    if (why == Verdict::outside || why == Verdict::in_wall) continue;  // not visible beads
     if (why == Verdict::wrong_radius) wrong_radius = count;
     all += count;
     reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, word_of(why));
@@ -109,24 +109,26 @@ std::string doubts(const std::map<Verdict, std::size_t>& left_out, std::size_t b
   const double many = kMany * static_cast<double>(beads);
   if (static_cast<double>(all) > many)
     text += fmt::format(
-        "beside {} beads, candidates were left out: {} (--candidates lists them, --overlay shows the "
+        "in addition to {} beads, candidates were left out: {} (--candidates lists them, --overlay shows the "
         "beads)\n",
         beads, reasons);
   if (static_cast<double>(wrong_radius) > many && wrong_radius > 1)
-    text += "beads of several sizes are found with --diameter D1 D2 ...\n";
+    text += "to locate beads of several sizes, use --diameter D1 D2 ...\n";
   if (all > beads)
     text +=
-        "more was left out than found: look at --overlay; --diameter with --dark or --bright may do better\n";
+        "more candidates were left out than beads were found: check --overlay; --diameter with --dark or "
+        "--bright may give a better result\n";
   return text;
 }
 
 void run(LocateOptions& o, const Common& common) {
-  // A folder's name may end with a slash.
+  // The name of a folder can end with a slash, and then has an empty file name.
   if (o.output.empty()) {
     std::filesystem::path stack(o.stack);
     if (stack.filename().empty()) stack = stack.parent_path();
     o.output = stack.stem().string() + ".beads.csv";
   }
+  // Inputs are read and outputs opened first, so that errors in them are reported before the work.
   std::optional<std::vector<std::vector<TruthBead>>> truth;
   if (!o.truth.empty()) truth = read_truth(o.truth);
   ScoredRows rows;
@@ -136,9 +138,9 @@ void run(LocateOptions& o, const Common& common) {
   const auto frames = open_flattened(o.stack, o.flat, common);
   const auto announced = static_cast<std::int64_t>(frames->announced());
   if (!o.overlay.empty() && announced > 0 && o.overlay_frame >= announced)
-    throw ConfigError(Where{.file = {}, .key = "--overlay-frame"},
-                      fmt::format("{} was asked for, the stack has {} frames, counted from 0.",
-                                  o.overlay_frame, announced));
+    throw ConfigError(
+        Where{.file = {}, .key = "--overlay-frame"},
+        fmt::format("is {}, but the stack has {} frames, counted from 0.", o.overlay_frame, announced));
   TableFile table(o.output, kHeading);
   TableFile candidates(o.candidates, kCandidateHeading);
   nlohmann::json document = {{"stack", o.stack}, {"output", o.output}, {"frames", nlohmann::json::array()}};
@@ -156,6 +158,7 @@ void run(LocateOptions& o, const Common& common) {
   constexpr std::int64_t kShown = 20;  // frames with a line of their own
   std::map<Verdict, std::size_t> left_out;
   std::size_t beads = 0, bare = 0;  // frames without a bead
+  // Settings that the user did not give are determined from the first frames.
   FramesAhead ahead(*frames);
   const auto [locator, settings_frame] = configure_locator(ahead, o.locator);
   const std::int64_t n = locate_stack(
@@ -200,12 +203,12 @@ void run(LocateOptions& o, const Common& common) {
       },
       bar);
   if (!o.overlay.empty() && !drawn)
-    throw ConfigError(
-        Where{.file = {}, .key = "--overlay-frame"},
-        fmt::format("{} was asked for, the stack has {} frames, counted from 0.", o.overlay_frame, n));
+    throw ConfigError(Where{.file = {}, .key = "--overlay-frame"},
+                      fmt::format("is {}, but the stack has {} frames, counted from 0.", o.overlay_frame, n));
   check_flat(o.flat, locator.preprocess.bright);
   table.commit();
   candidates.commit();
+  // Report the settings that were determined from the frames, with the options that set them.
   document["diameter_px"] = locator.diameter_px;
   if (!locator.other_diameters_px.empty()) document["other_diameters_px"] = locator.other_diameters_px;
   document["refine"] = locator.refine.method;
@@ -219,10 +222,13 @@ void run(LocateOptions& o, const Common& common) {
     text += fmt::format("bead diameter found from {}: {} px (--diameter)\n", shown, sizes);
   }
   if (refine != locator.refine.method && model_of(locator.refine) == DiscModel::circle)
-    text += fmt::format("discs differ inside, as {} shows: fitted by their rims (--refine edges)\n", shown);
+    text += fmt::format(
+        "the insides of the discs differ in {}: the discs are fitted by their rims (--refine edges)\n",
+        shown);
   if (refine != locator.refine.method && model_of(locator.refine) == DiscModel::shared_profile)
     text += fmt::format(
-        "discs are alike but not plain, as {} shows: fitted by their common profile (--refine profile)\n",
+        "the discs are alike but not plain in {}: they are fitted by their common profile (--refine "
+        "profile)\n",
         shown);
   if (locator.preprocess.contrast < 1 && model_of(locator.refine) != DiscModel::circle) {
     document["contrast"] = locator.preprocess.contrast;
@@ -234,7 +240,7 @@ void run(LocateOptions& o, const Common& common) {
     text += fmt::format("frames are read as with --{}, which explains {} better (--dark, --bright)\n",
                         locator.preprocess.bright ? "bright" : "dark", shown);
   else if (find_polarity)
-    text += fmt::format("beads are {} than what lies behind them, as {} shows (--dark, --bright)\n",
+    text += fmt::format("beads are {} than the background in {} (--dark, --bright)\n",
                         locator.preprocess.bright ? "brighter" : "darker", shown);
   document["left_out"] = in_words(left_out);
   text += doubts(left_out, beads, bare, static_cast<std::size_t>(n));
@@ -247,7 +253,7 @@ void run(LocateOptions& o, const Common& common) {
         "{:+.4f} px\n",
         s.recall(), s.precision(), s.rms, s.bias_x, s.bias_y);
     if (s.sure < s.found)
-      text += fmt::format("of the {} beads whose truth is surest: rms {:.4f} px\n", s.sure, s.rms_sure);
+      text += fmt::format("of the {} beads with the most certain truth: rms {:.4f} px\n", s.sure, s.rms_sure);
   }
   print_result(common, document, text);
 }
@@ -256,42 +262,55 @@ void run(LocateOptions& o, const Common& common) {
 
 void add_locate(CLI::App& program, Common& common) {
   auto o = std::make_shared<LocateOptions>();
-  CLI::App& verb = add_verb(program, common, "locate", "Beads in every frame of a stack",
+  CLI::App& verb = add_verb(program, common, "locate",
+                            "Locate the beads in every frame of a stack. Writes a table of positions, radii "
+                            "and uncertainties (CSV, trackpy's columns).",
                             "twincell locate frames/ -o beads.csv --overlay first.png");
   verb.add_option("stack", o->stack,
-                  "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
+                  "Stack: folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
       ->required();
   writes(common, verb,
          verb.add_option("-o,--output", o->output,
-                         "Bead table (CSV, trackpy's columns); absent: STACK.beads.csv"),
+                         "Table of beads to write (CSV, trackpy's columns); default: STACK.beads.csv"),
          Product::table(kHeading));
   writes(common, verb,
-         verb.add_option("--candidates", o->candidates,
-                         "Every candidate of every frame, with why it was dropped (CSV)"),
+         verb.add_option(
+             "--candidates", o->candidates,
+             "Table of every candidate in every frame to write (CSV), with the reason why it was dropped"),
          Product::table(kCandidateHeading));
   writes(common, verb,
          verb.add_option("--debug-dir", o->debug_folder,
-                         "Folder for pictures of what each stage made of --overlay-frame"),
+                         "Folder for pictures of the result of each stage in the frame --overlay-frame"),
          debug_folder());
-  writes(common, verb, verb.add_option("--overlay", o->overlay, "PNG of a frame with its beads marked"),
+  writes(common, verb,
+         verb.add_option("--overlay", o->overlay,
+                         "Picture of the frame --overlay-frame to write (PNG), with its beads marked"),
          Product::picture());
-  verb.add_option("--overlay-frame", o->overlay_frame, "Which frame, from 0")->check(CLI::NonNegativeNumber);
-  verb.add_option("--diameter", o->diameters,
-                  "Bead diameter, px, or several; absent: found from the first frame")
+  verb.add_option("--overlay-frame", o->overlay_frame,
+                  "Index of the frame for --overlay and --debug-dir, from 0; default: 0")
+      ->check(CLI::NonNegativeNumber);
+  verb.add_option(
+          "--diameter", o->diameters,
+          "Bead diameter, px, or up to 8 different diameters; default: determined from the first frame")
       ->check(CLI::Range(3.0, 400.0))
       ->expected(1, 8);
-  verb.add_option("--locator", o->locator.finder, "Finder")->check(CLI::IsMember(finder_names()));
+  verb.add_option("--locator", o->locator.finder, "Method that finds candidates for beads; default: vote")
+      ->check(CLI::IsMember(finder_names()));
   verb.add_option("--min-score", o->locator.find.min_score,
-                  "Share of a circle's edge that must be seen, 0 .. 1");
+                  "Smallest share of the edge of a circle that must be visible, 0 to 1; default: 0.04");
   verb.add_option("--refine", o->locator.refine.method, refiners_help())
       ->check(CLI::IsMember(refiner_names()));
-  CLI::Option* bright = verb.add_flag("--bright", o->locator.preprocess.bright,
-                                      "Beads are brighter than what lies behind them");
-  verb.add_flag("--dark", o->dark, "Beads are darker; with neither, found from the first frame")
+  CLI::Option* bright =
+      verb.add_flag("--bright", o->locator.preprocess.bright, "Beads are brighter than the background");
+  verb.add_flag("--dark", o->dark,
+                "Beads are darker than the background; default: determined from the first frame")
       ->excludes(bright);
   add_flat_option(verb, o->flat);
-  verb.add_option("--truth", o->truth, "Score against truth.csv or a folder of truth_NN.csv");
-  verb.add_option("--scored-rows", o->scored_rows, "First and last row that is scored, px")->expected(2);
+  verb.add_option("--truth", o->truth,
+                  "Score the result against the ground truth: truth.csv, or a folder of truth_NN.csv");
+  verb.add_option("--scored-rows", o->scored_rows,
+                  "First and last row of pixels that is scored, px; default: all rows")
+      ->expected(2);
   verb.callback([o, &common] { run(*o, common); });
 }
 

@@ -1,4 +1,4 @@
-// The program: a table of verbs.
+// Entry point of the program: the table of verbs, and the error messages and exit codes of exceptions.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 using namespace twincell;
 using namespace twincell::cli;
 
-// In the order in which a newcomer needs them.
+// Order of the list in --help: the verbs that a new user needs come first.
 constexpr AddVerb kVerbs[] = {
     add_locate,  add_track, add_explain,   add_simulate,  add_render, add_analyze,
     add_measure, add_sweep, add_reproduce, add_calibrate, add_match,  add_compare,
@@ -30,7 +30,8 @@ constexpr AddVerb kVerbs[] = {
 };
 
 int complain(const std::string& sentence, ExitCode code) {
-  // A file's name may hold newlines, and what makes a terminal do things.
+  // File names can contain newlines and terminal control sequences. The message is therefore escaped to one
+  // line.
   std::fprintf(stderr, "twincell: %s\n", one_line(sentence).c_str());
   return static_cast<int>(code);
 }
@@ -63,7 +64,8 @@ std::string nearest_verb(const CLI::App& program, const std::string& word) {
   return best;
 }
 
-/// The verb and the files of a command line, for complaints of what does not know them: "locate a.png".
+/// The verb and the existing files of a command line, for example "locate a.png". Used by error messages that
+/// do not know which file they are about.
 std::string subject(int argc, char** argv) {
   std::string said;
   for (int i = 1; i < argc; ++i) {
@@ -76,17 +78,18 @@ std::string subject(int argc, char** argv) {
 }
 
 int complain_of_memory(int argc, char** argv) {
-  return complain(subject(argc, argv) + ": this needs more memory than the machine can give.",
+  return complain(subject(argc, argv) + ": the command needs more memory than is available.",
                   ExitCode::failed);
 }
 
-/// A fault of our own. What the exception says is for those who mend it: TWINCELL_DEBUG=1 shows it.
+/// Reports an internal error. The text of the exception helps only developers, so it is printed only if
+/// TWINCELL_DEBUG is set.
 int complain_of_fault(int argc, char** argv, const std::string& kind, const char* what) {
   const char* debug = std::getenv("TWINCELL_DEBUG");
   const bool shown = debug != nullptr && *debug != '\0';
   return complain(subject(argc, argv) + ": " + kind +
-                      " stopped at something that it does not foresee; this is a fault of twincell, please "
-                      "report it with the files" +
+                      " failed with an unexpected internal error; this is a bug in twincell, please report "
+                      "it with the input files" +
                       (shown ? std::string(" (") + what + ")." : "."),
                   ExitCode::failed);
 }
@@ -94,12 +97,17 @@ int complain_of_fault(int argc, char** argv, const std::string& kind, const char
 int run(int argc, char** argv) {
   Common common;
   common.command_line = joined(argc, argv);
-  CLI::App program("Vibrated beads: camera frames and simulations through one analysis.", "twincell");
+  CLI::App program(
+      "Twincell analyses camera frames of shaken beads and simulations of the same cell in the same way, and "
+      "compares the two.",
+      "twincell");
   program.set_version_flag("--version", [] { return version_line(); });
   program.require_subcommand(0, 1);
   program.footer(
-      "Exit codes: 0 done, 1 failed while running, 2 usage or configuration, 3 unreadable input,\n"
-      "4 a quality gate failed, 5 partial and resumable, 130/143 stopped by a signal.");
+      "Exit codes: 0 done, 1 failed while running, 2 error in usage or configuration, 3 input unreadable or "
+      "malformed,\n"
+      "4 finished but a quality gate failed, 5 partial result that can be resumed, 130/143 stopped by a "
+      "signal.");
   for (const AddVerb add : kVerbs) add(program, common);
 
   if (argc == 3 && std::string(argv[1]) == "--version" && std::string(argv[2]) == "--json") {

@@ -1,4 +1,4 @@
-// twincell match STACK CELL.toml: the twin of a filmed cell, and what it says.
+// twincell match STACK CELL.toml: builds the twin of a filmed cell and compares the two.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -38,8 +38,9 @@ void run(const Common& common, MatchOptions& o) {
                                            return scene_provenance(common, scene, beads, {});
                                          }};
   if (const CellDescription cell = read_cell(o.twin.cell_file); !cell.included.overridden.empty())
-    note(common, fmt::format("{} states what {} measured: {}", o.twin.cell_file.string(),
-                             cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
+    note(common,
+         fmt::format("values in {} take precedence over those measured in {}: {}", o.twin.cell_file.string(),
+                     cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
   const Twin twin = make_twin(o.twin, folder, provenance, progress_bars(common));
 
   o.flags.options.experiments = {twin.experiment};
@@ -68,39 +69,42 @@ void run(const Common& common, MatchOptions& o) {
 
 void add_match(CLI::App& program, Common& common) {
   CLI::App& verb =
-      add_verb(program, common, "match", "The twin of a filmed cell: track, simulate, compare, report",
+      add_verb(program, common, "match",
+               "Build the twin of a filmed cell: track the stack, simulate from the first packing, and "
+               "compare both sides. Writes the trajectories, the scene and a report into a folder.",
                "twincell match frames/ CELL.toml -o twin/");
   auto o = std::make_shared<MatchOptions>();
   verb.add_option("stack", o->twin.stack,
-                  "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
+                  "Stack: folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
       ->required();
   verb.add_option("cell", o->twin.cell_file,
-                  "CELL.toml: origin and size of the cell; scale, frames per cycle and drive, which are "
-                  "measured where it "
-                  "does not say them")
+                  "CELL.toml with the origin and the size of the cell; scale, frames per cycle and drive are "
+                  "measured if it does not state them")
       ->required();
-  writes(
-      common, verb,
-      verb.add_option("-o,--output", o->output, "Folder: experiment.h5, scene.toml, simulation-N.h5, report/")
-          ->required(),
-      twin_folder());
-  verb.add_option(
-      "--scene", o->twin.scene,
-      "What the cell does not say: contacts, steps (TOML); absent: the preset fortini-huang-2015");
-  verb.add_option("--set", o->twin.assignments, "section.key=value of the twin's scene; may be repeated")
+  writes(common, verb,
+         verb.add_option("-o,--output", o->output,
+                         "Folder for experiment.h5, scene.toml, simulation-N.h5 and report/")
+             ->required(),
+         twin_folder());
+  verb.add_option("--scene", o->twin.scene,
+                  "Scene file (TOML) with the settings that the cell does not state, such as contacts and "
+                  "steps; default: the preset fortini-huang-2015");
+  verb.add_option("--set", o->twin.assignments,
+                  "Set a key of the twin's scene, as section.key=value; overrides all files; may be repeated")
       ->take_all();
-  verb.add_option(
-          "--twins", o->twin.twins,
-          "Simulations; all but the first begin with the beads shifted by as much as they are uncertain")
+  verb.add_option("--twins", o->twin.twins,
+                  "Number of simulations; in all but the first, each bead starts shifted at random within "
+                  "the uncertainty of its position")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   verb.add_option("--diameter", o->twin.locator.diameter_px,
-                  "Bead diameter, px; absent: the scale, or estimated")
+                  "Bead diameter, px; default: the scale in CELL.toml, otherwise estimated")
       ->check(CLI::Range(3.0, 400.0));
   verb.add_flag(
       "--trust-stated-drive", o->twin.trust_stated_drive,
-      "Believe the drive that the cell states, also where the plate, or the bed on it, moves otherwise");
-  verb.add_option("--memory", o->twin.link.memory, "Frames for which a bead may be missing");
+      "Use the drive that the cell states, even if the plate or the bed in the film moves differently");
+  verb.add_option("--memory", o->twin.link.memory,
+                  "Number of frames for which a bead may be missing, 0 to 1000; default: 3");
   add_comparing_flags(verb, o->flags);
   verb.callback([&common, o] { run(common, *o); });
 }

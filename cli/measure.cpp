@@ -1,4 +1,4 @@
-// twincell measure SCENE.toml
+// twincell measure SCENE.toml: simulates a scene and analyses it during the run.
 
 #include "sweep/measure.hpp"
 
@@ -22,9 +22,9 @@ namespace {
 
 using nlohmann::json;
 
-/// Peak velocities at which a bed may stay solid or boil, for hundreds of cycles, as it began (V. H38).
+/// Range of W in which a bed can stay solid or boiling, as it started, for hundreds of cycles (V. H38).
 constexpr double kLowestBistable = 1, kHighestBistable = 2.1;
-/// A bed that is first shaken at twice the amplitude begins boiling.
+/// A bed that is first shaken at twice the amplitude starts boiling.
 constexpr const char* kFluidised = "drive.schedule=[[0, 2], [20, 2], [30, 1]]";
 
 struct MeasureOptions {
@@ -49,8 +49,8 @@ Run run_once(const MeasureOptions& options, const std::vector<std::string>& assi
   const double w = scene.g() > 0 ? scene.drive.k_m(scene.g()) : std::nan("");
   if (!options.both_starts && scene.g() > 0 && w > kLowestBistable && w < kHighestBistable)
     note(common,
-         fmt::format("at W = {:.4g}, just above 1, a bed may stay as it began for hundreds of cycles; "
-                     "--both-starts runs it from rest and from a boiling bed.",
+         fmt::format("at W = {:.4g}, just above 1, a bed can stay in the state in which it started for "
+                     "hundreds of cycles; --both-starts runs it from rest and from a boiling bed.",
                      w));
   sim::Simulation run(std::move(scene), std::move(state), sim::SolverKind::best, common.threads);
   ProgressBar progress(common, "measuring");
@@ -76,22 +76,23 @@ std::string as_text(const Run& run) {
   if (about.contains("w")) s += fmt::format("W = {:.6g}\n", about["w"].get<double>());
   if (about.contains("until")) s += about["until"]["text"].get<std::string>() + "\n";
   if (about.contains("rest_height"))
-    s += fmt::format("at rest on the plate the centre of mass lies at {:.6g} sigma\n",
+    s += fmt::format("at rest on the plate the height of the centre of mass is {:.6g} sigma\n",
                      about["rest_height"].get<double>());
   if (about.contains("contact_fraction"))
-    s += fmt::format("beads touch something {:.3g} of the time{}\n", about["contact_fraction"].get<double>(),
+    s += fmt::format("beads are in contact for {:.3g} of the time{}\n",
+                     about["contact_fraction"].get<double>(),
                      about["contact_fraction"].get<double>() > 0.1
-                         ? ", more than the 0.1 up to which they are as good as hard"
+                         ? ", more than the 0.1 up to which they behave like hard beads"
                          : "");
   return s + results_text(run.measured.results);
 }
 
-/// Whether both starts gave one T_z: their intervals overlap.
+/// Compares T_z of both starts: the starts agree if their intervals overlap.
 std::string compared(const Run& rest, const Run& boiling) {
   const auto t_z = [](const Run& r) { return seek_result(r.measured.results, "T_z"); };
   const Result *a = t_z(rest), *b = t_z(boiling);
   if (a == nullptr || b == nullptr || !a->interval || !b->interval)
-    return "the starts cannot be compared: T_z has no interval from both";
+    return "the starts cannot be compared: T_z does not have an interval for both";
   const bool apart = a->interval->low > b->interval->high || b->interval->low > a->interval->high;
   return fmt::format("T_z from rest {:.5g}, from a boiling bed {:.5g}: {}", a->value(), b->value(),
                      apart ? "the result depends on the start" : "both starts end in one state");
@@ -99,7 +100,7 @@ std::string compared(const Run& rest, const Run& boiling) {
 
 void run(const MeasureOptions& options, const Common& common) {
   const std::vector<std::string> assignments = with_seed(options.assignments, common);
-  const Run first = run_once(options, assignments, "as the scene says", common);
+  const Run first = run_once(options, assignments, "as in the scene", common);
   if (!options.output.empty()) write_results(options.output, first.measured.results, first.provenance);
   json document = first.about;
   document["results"] = json::parse(results_json(first.measured.results));
@@ -108,8 +109,8 @@ void run(const MeasureOptions& options, const Common& common) {
   if (options.both_starts) {
     std::vector<std::string> boiling = assignments;
     boiling.emplace_back(kFluidised);
-    const Run second =
-        run_once(options, boiling, "boiling: twice the amplitude for 20 cycles, calmed in 10", common);
+    const Run second = run_once(options, boiling,
+                                "boiling: twice the amplitude for 20 cycles, then reduced within 10", common);
     document["other_start"] = second.about;
     document["other_start"]["results"] = json::parse(results_json(second.measured.results));
     document["starts"] = compared(first, second);
@@ -122,24 +123,26 @@ void run(const MeasureOptions& options, const Common& common) {
 
 void add_measure(CLI::App& program, Common& common) {
   auto options = std::make_shared<MeasureOptions>();
-  CLI::App& verb =
-      add_verb(program, common, "measure",
-               "run a scene and analyse it on the way: until a mean is known as well as [until] asks, "
-               "no frame kept",
-               "twincell measure gas.toml --only T_z,delta_h_cm --set until.quantity=T_z "
-               "--set until.relative_error=0.01 --set time.cycles=20000");
-  verb.add_option("scene", options->scene, "Scene (TOML, docs/scene.md)")->required();
+  CLI::App& verb = add_verb(program, common, "measure",
+                            "Simulate a scene and analyse it during the run, until a mean reaches the "
+                            "precision that [until] requests. Prints the results; no frames are stored.",
+                            "twincell measure gas.toml --only T_z,delta_h_cm --set until.quantity=T_z "
+                            "--set until.relative_error=0.01 --set time.cycles=20000");
+  verb.add_option("scene", options->scene, "Scene file (TOML, docs/scene.md)")->required();
   writes(common, verb,
-         verb.add_option("-o,--output", options->output, "write the results to this HDF5 file too"),
+         verb.add_option("-o,--output", options->output, "Also write the results to this HDF5 file"),
          Product::results());
-  verb.add_option("--set", options->assignments, "section.key=value, over the scene's own; may be repeated")
+  verb.add_option("--set", options->assignments,
+                  "Set a key of the scene, as section.key=value; overrides the file; may be repeated")
       ->take_all();
-  verb.add_option("--only", options->analysis.only, "results wanted, comma separated; fewer are quicker")
+  verb.add_option("--only", options->analysis.only,
+                  "Names of the results to compute, comma separated; fewer take less time; default: all")
       ->delimiter(',');
   verb.add_option("--rest-height", options->analysis.rest_height,
-                  "h_cm of the bed at rest, sigma; measured on the settled bed if not said");
-  verb.add_flag("--both-starts", options->both_starts,
-                "run it once more from a boiling bed, and say whether that makes a difference");
+                  "h_cm of the bed at rest, sigma; default: measured on the settled bed");
+  verb.add_flag(
+      "--both-starts", options->both_starts,
+      "Run the scene a second time from a boiling bed, and report whether the result depends on the start");
   verb.callback([options, &common] { run(*options, common); });
 }
 

@@ -5,8 +5,8 @@
 
 #ifdef TWINCELL_MPI
 
-#define OMPI_SKIP_MPICXX  // the C interface alone: the C++ one is gone from the standard and from the link
-                          // line
+#define OMPI_SKIP_MPICXX  // only the C interface: the C++ one was removed from the standard and is not
+                          // linked
 #include <mpi.h>
 
 #include <atomic>
@@ -44,7 +44,7 @@ void send(const std::string& text, int rank, int tag) {
   MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, rank, tag, MPI_COMM_WORLD);
 }
 
-/// Looks for a message without spinning: ranks that wait leave their core to those that compute.
+/// Checks for a message. If there is none, the rank sleeps, which leaves its core to the ranks that compute.
 bool waits(MPI_Status& status) {
   int there = 0;
   MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &status);
@@ -52,7 +52,7 @@ bool waits(MPI_Status& status) {
   return there != 0;
 }
 
-/// Notices a signal.
+/// Progress that only checks for a signal.
 class Signals : public Progress {
  public:
   explicit Signals(sweep::Watch& watch) : watch_(watch) {}
@@ -89,7 +89,7 @@ void serve(const sweep::Plan& plan, const sweep::Store& store, bool keep_traject
   }
 }
 
-/// Ranks that share this machine's memory.
+/// Number of ranks on this machine, which share its memory.
 int ranks_here() {
   MPI_Comm here = MPI_COMM_NULL;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
@@ -118,7 +118,7 @@ void lead(sweep::Schedule& schedule, const sweep::Plan& plan, const sweep::Store
   };
   try {
     while (!schedule.all()) {
-      for (std::size_t rank = at.size(); rank-- > 0;) {  // rank 0 last: it has the messages to look after
+      for (std::size_t rank = at.size(); rank-- > 0;) {  // rank 0 last, because it also handles the messages
         if (at[rank] || !(at[rank] = schedule.take())) continue;
         const sweep::Point& point = at[rank]->point;
         if (rank > 0)
@@ -148,7 +148,7 @@ MpiJob::MpiJob() {
   int level = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &level);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
-  watch_signals();  // MPI may have put handlers of its own in their place
+  watch_signals();  // MPI_Init may have replaced the signal handlers
 }
 
 MpiJob::~MpiJob() {
@@ -158,7 +158,7 @@ MpiJob::~MpiJob() {
 void run_on_ranks(sweep::Schedule* schedule, const sweep::Plan& plan, const sweep::Store& store,
                   bool keep_trajectories, SweepWatch& watch) {
   try {
-    const int together = ranks_here();  // every rank has to ask
+    const int together = ranks_here();  // a collective call: every rank must make it
     if (schedule != nullptr) require_memory_together(*schedule, together, "mpirun -n");
     if (schedule != nullptr)
       lead(*schedule, plan, store, keep_trajectories, watch);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A sweep on the ranks of an MPI job: a plain task farm.
+/// Runs a sweep on the ranks of an MPI job, as a task farm.
 
 #include "cli/output.hpp"
 #include "cli/sweep_watch.hpp"
@@ -8,7 +8,7 @@
 
 namespace twincell::cli {
 
-/// The ranks of this job, from the first use of MPI to the end of the object.
+/// Initialises MPI when constructed and finalises it when destroyed.
 /// \throws ConfigError if the program was built without MPI
 class MpiJob {
  public:
@@ -22,9 +22,10 @@ class MpiJob {
   int rank_ = 0;
 };
 
-/// Rank 0 knows the schedule, hands out points, writes their results, and computes points itself beside; the
-/// other ranks ask it for work. What goes wrong on any rank ends the whole job, in one sentence and with its
-/// exit code; what is done stays done. \param schedule of rank 0; the others pass null
+/// Rank 0 has the schedule, distributes the points, stores their results, and also computes points itself.
+/// The other ranks compute the points that they receive. An error on any rank ends the whole job with one
+/// sentence and the exit code of the error; finished points are kept. \param schedule of rank 0; null on the
+/// other ranks
 void run_on_ranks(sweep::Schedule* schedule, const sweep::Plan& plan, const sweep::Store& store,
                   bool keep_trajectories, SweepWatch& watch);
 

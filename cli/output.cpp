@@ -25,7 +25,7 @@ namespace twincell::cli {
 
 namespace {
 
-/// How long the work may take to end by itself once it has been asked to.
+/// Time that the program has to stop by itself after a signal.
 constexpr itimerval kPatience{.it_interval = {}, .it_value = {.tv_sec = 0, .tv_usec = 700'000}};
 
 extern "C" void remember_signal(int signal) {
@@ -33,11 +33,12 @@ extern "C" void remember_signal(int signal) {
     setitimer(ITIMER_REAL, &kPatience, nullptr);
     return;
   }
-  remove_temporaries();  // asked twice: at once
+  remove_temporaries();  // second signal: stop at once
   std::_Exit(128 + signal);
 }
 
-/// The work has not ended: it is in a library that cannot be asked, or in one long operation.
+/// Runs if the program has not stopped in time: it is inside a library that cannot be interrupted, or in one
+/// long operation.
 extern "C" void end_without_waiting(int /*alarm*/) {
   if (finishing_first()) {  // a run is being saved
     setitimer(ITIMER_REAL, &kPatience, nullptr);
@@ -50,7 +51,7 @@ extern "C" void end_without_waiting(int /*alarm*/) {
   std::_Exit(128 + cancellation_requested());
 }
 
-/// A fault ends the program as it would have, but nothing unfinished stays.
+/// Removes unfinished outputs after a fault (such as SIGSEGV), then lets the signal end the program as usual.
 extern "C" void clean_up_and_die(int signal) {
   remove_temporaries();
   std::signal(signal, SIG_DFL);
@@ -65,7 +66,7 @@ std::int64_t now_ns() {
 
 constexpr int kBarWidth = 30;
 
-/// Notes the verb's inputs, then holds its outputs against the rules.
+/// Registers the inputs of the verb, then checks its outputs against the output rules and locks them.
 void guard_outputs(const CLI::App& verb, Common& common) {
   replace_by_force(common.force);
   const auto is_output = [&](const CLI::Option* option) {
@@ -93,7 +94,7 @@ void guard_outputs(const CLI::App& verb, Common& common) {
     if (final == kStandardOutput) {
       if (common.json)
         throw ConfigError({.file = {}, .key = "--json"},
-                          "standard output cannot take both the result and the output '-'; name a file.");
+                          "standard output cannot receive both the result and the output '-'; name a file.");
       common.result_on_stderr = true;
       continue;
     }
@@ -123,7 +124,7 @@ void refuse_said_twice(const std::vector<std::string>& assignments) {
     for (std::size_t m = 0; m < k; ++m)
       if (key_of(assignments[m]) == key_of(assignments[k]) && assignments[m] != assignments[k])
         throw ConfigError({"--set", 0, 0, key_of(assignments[k])},
-                          fmt::format("is said twice, \"{}\" and \"{}\"; say one of the two.", assignments[m],
+                          fmt::format("is set twice, \"{}\" and \"{}\"; set it only once.", assignments[m],
                                       assignments[k]));
 }
 
@@ -138,7 +139,7 @@ std::vector<std::string> with_seed(std::vector<std::string> assignments, const C
     if (common.seed && assignment.starts_with("start.seed=") &&
         assignment != fmt::format("start.seed={}", *common.seed))
       throw ConfigError({"--set", 0, 0, "start.seed"},
-                        fmt::format("contradicts --seed {}; say one of the two.", *common.seed));
+                        fmt::format("contradicts --seed {}; give only one of the two.", *common.seed));
   if (common.seed) assignments.push_back(fmt::format("start.seed={}", *common.seed));
   return assignments;
 }
@@ -147,15 +148,18 @@ CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, c
                    const std::string& example) {
   CLI::App& verb = *program.add_subcommand(name, summary);
   verb.footer("Example:\n  " + example);
-  verb.add_flag("--json", common.json, "Print one JSON document instead of text");
-  verb.add_flag("-q,--quiet", common.quiet, "No progress, no notes");
-  verb.add_option("--threads", common.threads, "Threads; 0: one per core")
+  verb.add_flag("--json", common.json, "Print the result as one JSON document instead of text");
+  verb.add_flag("-q,--quiet", common.quiet, "Print no progress and no notes");
+  verb.add_option("--threads", common.threads,
+                  "Number of threads; 0 (default): automatic, at most one per core")
       ->check(CLI::Range(0, 4096))
       ->envname("TWINCELL_THREADS");
-  verb.add_option("--seed", common.seed, "Seed, where chance plays a part");
+  verb.add_option("--seed", common.seed,
+                  "Seed of the random numbers, a whole number of at least 0 (for a scene or a sweep at most "
+                  "2^53); default: the seed in the input file, otherwise 1");
   verb.add_flag(
       "--force", common.force,
-      "Replace an output file that is not of the kind to be written; never an input, never a folder");
+      "Replace an existing output file even if it is of another kind; inputs and folders are never replaced");
   verb.parse_complete_callback([&verb, &common] { guard_outputs(verb, common); });
   return verb;
 }
@@ -192,7 +196,7 @@ ProgressBar::~ProgressBar() {
 void ProgressBar::update(std::int64_t done, std::int64_t total) {
   if (const int signal = cancellation_requested()) throw Interrupted(static_cast<ExitCode>(128 + signal));
   if (quiet_ || total <= 0) return;
-  if (first_ < 0) first_ = done;  // a run that is taken up begins in the middle
+  if (first_ < 0) first_ = done;  // a resumed run does not start at 0
   const int percent = static_cast<int>(100 * done / total);
   const int step = terminal_ ? 1 : 10;
   if (last_percent_ >= 0 && percent / step == last_percent_ / step) return;
@@ -222,7 +226,7 @@ void watch_signals() {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(fault, clean_up_and_die);
 #endif
-  // A closed pipe, or a file beyond its limit, becomes a failed write, which is reported.
+  // With these signals ignored, writing to a closed pipe or beyond the file size limit fails and is reported.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }

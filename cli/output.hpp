@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What all verbs share: common options, results on stdout, progress and warnings on stderr, signals.
+/// Functions and options that all verbs share: common options, results on stdout, progress and notes on
+/// stderr, signal handling.
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -19,58 +20,59 @@ class Option;
 
 namespace twincell::cli {
 
-/// An option that names an output.
+/// An option whose value names an output file or folder.
 struct Output {
   const CLI::Option* option;
   const CLI::App* verb;
   Product product;
 };
 
-/// Options every verb has.
+/// Options that every verb has.
 struct Common {
-  bool json = false;                  ///< stdout is one JSON document
-  bool quiet = false;                 ///< no progress, no notes
-  int threads = 0;                    ///< 0: one per core
-  std::optional<std::uint64_t> seed;  ///< where chance plays a part
+  bool json = false;                  ///< print the result as one JSON document
+  bool quiet = false;                 ///< print no progress and no notes
+  int threads = 0;                    ///< number of threads; 0: automatic, at most one per core
+  std::optional<std::uint64_t> seed;  ///< of the random numbers; absent: the default of the verb
   std::string command_line;
-  bool force = false;             ///< an output file of another kind may be replaced
-  bool result_on_stderr = false;  ///< standard output is taken by an output '-'
-  std::vector<Output> outputs;    ///< the options that name outputs, of all verbs
+  bool force = false;             ///< replace an existing output file of another kind
+  bool result_on_stderr = false;  ///< an output is '-', which occupies standard output
+  std::vector<Output> outputs;    ///< output options of all verbs
 
-  /// Threads to use: the option, or the number of cores.
+  /// Number of threads: the option, or the number of cores if the option is 0.
   [[nodiscard]] int n_threads() const;
-  /// Provenance with command line, threads and seed filled in.
+  /// Provenance with the command line, the number of threads and the seed.
   [[nodiscard]] Provenance provenance() const;
 };
 
-/// \throws ConfigError for a key that --set says twice in different words
+/// \throws ConfigError if --set gives one key two different values
 void refuse_said_twice(const std::vector<std::string>& assignments);
 
-/// The --set of a scene, and --seed as one of them. \throws ConfigError for a seed that no scene can have,
-/// and for a key that is said twice in different words
+/// The --set assignments of a scene, with --seed appended as start.seed.
+/// \throws ConfigError for a seed that is larger than a scene allows, and for a key that is given two
+/// different values
 std::vector<std::string> with_seed(std::vector<std::string> assignments, const Common& common);
 
-/// Makes a subcommand with the common options and an example in its help.
+/// Adds a subcommand with the common options. Its help ends with the example.
 CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, const std::string& summary,
                    const std::string& example);
 
-/// type_name() of an option whose value is a word of this program or of a table, and no file even where a
-/// file has that name: `reproduce p1-fig3` goes on in the folder p1-fig3.
+/// type_name() of an option whose value is a word of this program or a column of a table. Such a value is
+/// never an input file, even if a file of that name exists: `reproduce p1-fig3` resumes in the folder
+/// p1-fig3.
 inline constexpr const char* kWord = "WORD";
 
-/// Declares that an option names an output. Before the verb begins its value is held against the rules of
-/// outputs (output_rules.hpp), with all other arguments that name something on the disk as inputs, and
-/// locked.
+/// Declares that an option names an output. Before the verb runs, the output is checked against the output
+/// rules (output_rules.hpp), with all other arguments that name existing files as inputs, and is locked.
 CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product product);
 
-/// Prints the result of a verb: `document` as JSON if --json was given, else `text`. On stderr where an
-/// output of the verb is standard output.
+/// Prints the result of a verb: `document` as JSON with --json, otherwise `text`. The result goes to stderr
+/// if an output of the verb is standard output.
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text);
-/// A note or warning on stderr ("note: …"), unless --quiet.
+/// Prints a note or warning on stderr ("note: …"), unless --quiet is set.
 void note(const Common& common, const std::string& text);
 
-/// Draws a bar on stderr if it is a terminal, a line per 10 % if not, nothing with --quiet. Throws
-/// Interrupted after SIGINT or SIGTERM.
+/// Shows progress on stderr: a bar on a terminal, otherwise one line per 10 %, and nothing with --quiet.
+/// Throws Interrupted after SIGINT or SIGTERM.
 class ProgressBar : public Progress {
  public:
   ProgressBar(const Common& common, std::string label);
@@ -82,13 +84,13 @@ class ProgressBar : public Progress {
   bool quiet_;
   bool terminal_;
   int last_percent_ = -1;
-  std::int64_t first_ = -1;  ///< done at the first update
+  std::int64_t first_ = -1;  ///< value of `done` at the first update
   std::int64_t start_ns_;
 };
 
-/// Installs the signal handlers that ProgressBar and throw_if_cancelled (cancellation.hpp) heed. Work that
-/// has not ended 0.7 s after it was asked to is ended, and its unfinished outputs are removed, unless it is
-/// saving a run.
+/// Installs the signal handlers. ProgressBar and throw_if_cancelled (cancellation.hpp) react to the signals.
+/// A program that has not stopped 0.7 s after a signal is terminated and its unfinished outputs are removed,
+/// unless it is saving a run.
 void watch_signals();
 
 }  // namespace twincell::cli

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// What a simulation says of itself, for results and provenance: its plan, in the plan's own words, and its
-/// origin.
+/// The plan and the origin of a simulation, for results and provenance.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -14,10 +13,11 @@ namespace twincell::cli {
 
 struct Common;
 
-/// Solver, steps, and every effect with its state and reason.
+/// The plan as JSON: kernel, time step, and every effect with its state and reason.
 nlohmann::json as_json(const sim::Plan& plan);
 
-/// Provenance of a simulated file. \param beads as placed: a file's may set another step than the scene's
+/// Provenance of a simulated file. \param beads the placed beads; beads that are read from a file can require
+/// another step than the scene alone
 std::string scene_provenance(const Common& common, const sim::Scene& scene,
                              const std::vector<sim::Bead>& beads, std::vector<std::filesystem::path> inputs);
 

@@ -1,4 +1,4 @@
-// twincell render TRAJ.h5: frames as the experiment's camera would see them.
+// twincell render TRAJ.h5: frames of a trajectory as the camera of the experiment would record them.
 
 #include <fmt/format.h>
 
@@ -19,11 +19,13 @@ namespace {
 struct RenderOptions {
   std::string trajectory, camera_file;
   RenderJob job;
-  CameraOptions flags;                                            ///< what the command line says
-  std::vector<std::pair<const CLI::Option*, std::size_t>> given;  ///< options and their places in the list
+  CameraOptions flags;  ///< values given on the command line
+  std::vector<std::pair<const CLI::Option*, std::size_t>>
+      given;  ///< options and their indices in camera_option_list()
 };
 
-// The file's camera, with what the command line says laid over it.
+// The camera of the file, with the options of the command line taking precedence. If an option sets a
+// quantity that can be given in several units, its unit replaces that of the file.
 CameraOptions camera_of(RenderOptions& o, const Common& common) {
   CameraOptions camera = o.camera_file.empty() ? CameraOptions{} : read_camera(o.camera_file);
   const auto said = camera_option_list(o.flags), kept = camera_option_list(camera);
@@ -34,8 +36,9 @@ CameraOptions camera_of(RenderOptions& o, const Common& common) {
                kept[i].value);
     if (kept[i].stated_in == nullptr) continue;
     if (const auto [other, fresh] = spelt.emplace(kept[i].stated_in, kept[i].key); !fresh)
-      throw ConfigError(Where{.file = {}, .key = kept[i].key},
-                        fmt::format("and {} say the same quantity; say one of the two.", other->second));
+      throw ConfigError(
+          Where{.file = {}, .key = kept[i].key},
+          fmt::format("and {} set the same quantity; give only one of the two.", other->second));
     *kept[i].stated_in = kept[i].unit;
   }
   if (common.seed) camera.seed = *common.seed;
@@ -45,7 +48,7 @@ CameraOptions camera_of(RenderOptions& o, const Common& common) {
 void run(RenderOptions& o, const Common& common) {
   if (o.job.folder.empty() && o.job.movie.empty())
     throw ConfigError(Where{.file = {}, .key = "--output"},
-                      "is missing, and so is --movie: one of them says where the frames go.");
+                      "and --movie are both missing; give at least one of them.");
   const CameraOptions camera = camera_of(o, common);
   o.job.threads = common.n_threads();
   const H5mdReader trajectory(o.trajectory);
@@ -74,17 +77,20 @@ void run(RenderOptions& o, const Common& common) {
 
 void add_render(CLI::App& program, Common& common) {
   auto o = std::make_shared<RenderOptions>();
-  CLI::App& verb = add_verb(program, common, "render", "Synthetic camera: frames with known truth, or a film",
+  CLI::App& verb = add_verb(program, common, "render",
+                            "Render a trajectory with the synthetic camera. Writes frames with their ground "
+                            "truth into a folder, or a film, or both.",
                             "twincell render sim.h5 -o frames/ --exposure-t0 0.05 --movie film.mp4");
-  verb.add_option("trajectory", o->trajectory, "Trajectory (H5MD)")->required();
+  verb.add_option("trajectory", o->trajectory, "Trajectory file (H5MD)")->required();
   writes(common, verb,
          verb.add_option("-o,--output", o->job.folder,
-                         "Folder for frames, truth.csv, frames.csv, CELL.toml, CAMERA.toml"),
+                         "Folder for the frames, truth.csv, frames.csv, CELL.toml and CAMERA.toml"),
          rendered_stack());
-  writes(common, verb, verb.add_option("--movie", o->job.movie, "Film (.mp4 or .avi), 8 bit"),
+  writes(common, verb, verb.add_option("--movie", o->job.movie, "Film to write (.mp4 or .avi), 8 bit"),
          Product::film());
-  verb.add_option("--fps", o->job.frames_per_second, "Frames per second of the film");
-  verb.add_option("--camera", o->camera_file, "CAMERA.toml: any of the options below; the command line wins");
+  verb.add_option("--fps", o->job.frames_per_second, "Frames per second of the film; default: 25");
+  verb.add_option("--camera", o->camera_file,
+                  "CAMERA.toml with any of the options below; options on the command line take precedence");
   const auto list = camera_option_list(o->flags);
   for (std::size_t i = 0; i < list.size(); ++i)
     std::visit(

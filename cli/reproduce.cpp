@@ -1,4 +1,4 @@
-// twincell reproduce NAME --budget 10
+// twincell reproduce NAME --budget 10: a figure or table of the papers, compared with its targets.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -48,7 +48,8 @@ const Reproducible& named(const std::string& name) {
                     fmt::format("'{}' is not one of {}.", name, fmt::join(names, ", ")));
 }
 
-/// Where runs lie that figures share: beside the figure's own folder.
+/// Folder of the runs that several figures share: next to the folder of the figure, unless --runs names
+/// another one.
 fs::path runs_of(const Reproducible& what, const ReproduceOptions& options, const fs::path& folder) {
   if (!options.runs.empty()) return options.runs;
   return what.shared_runs.empty() ? folder
@@ -58,7 +59,7 @@ fs::path runs_of(const Reproducible& what, const ReproduceOptions& options, cons
 std::string as_text(const Reproduction& r, const fs::path& folder) {
   std::string s = r.title + "\n\n";
   for (const Target& t : r.targets) {
-    s += fmt::format("  {:<7} {}: {}\n          wanted {}", word_of(t.fate), t.name,
+    s += fmt::format("  {:<7} {}: {}\n          target {}", word_of(t.fate), t.name,
                      t.measured.empty() ? "not measured" : t.measured, t.wanted);
     s += (t.reason.empty() ? "" : " (" + t.reason + ")") + "\n";
   }
@@ -68,8 +69,10 @@ std::string as_text(const Reproduction& r, const fs::path& folder) {
     for (const std::string& one : sentences) s += "  - " + one + "\n";
   };
   list("Conditions", r.conditions);
-  list("Cheaper than the paper", r.cheaper);
-  if (!r.complete) s += "\nThe time is up; the same command, or a larger budget, goes on from here.\n";
+  list("Simplifications compared with the paper", r.cheaper);
+  if (!r.complete)
+    s += "\nThe time limit is reached; the same command, with the same or a larger budget, continues from "
+         "here.\n";
   return s + folder.string() + "\n";
 }
 
@@ -92,11 +95,13 @@ void run(const ReproduceOptions& options, const Common& common) {
   if ((options.window || !options.data.empty()) && !what.takes_data)
     throw ConfigError(
         {"", 0, 0, options.window ? "window" : "data"},
-        fmt::format("says nothing to {}; p1-fig3, p2-fig2, p2-table1 and p2-table2 compare with your own.",
-                    options.name));
+        fmt::format(
+            "has no effect on {}; only p1-fig3, p2-fig2, p2-table1 and p2-table2 compare with your own data.",
+            options.name));
   if (options.window && !(options.window->first < options.window->second))
-    throw ConfigError({"", 0, 0, "window"}, fmt::format("goes from {:g} to {:g}; it must rise.",
-                                                        options.window->first, options.window->second));
+    throw ConfigError({"", 0, 0, "window"},
+                      fmt::format("is {:g} to {:g}; the lower limit must be below the upper limit.",
+                                  options.window->first, options.window->second));
   claim_shared_folder(folder, Product::runs());
   SweepWatch watch(common, options.full ? 1e300 : 60 * options.budget);
   const Reproduction r = what.run({.minutes = options.budget,
@@ -119,7 +124,7 @@ void run(const ReproduceOptions& options, const Common& common) {
   if (!r.figures.empty()) {
     AtomicPath files(folder, Product::runs());
     for (const Figure& figure : r.figures)
-      draw(figure, files.part());  // last: what was measured outlives a missing gnuplot
+      draw(figure, files.part());  // last, so that the results are stored even if gnuplot is missing
     files.commit();
   }
   print_result(common, document, as_text(r, folder));
@@ -130,28 +135,33 @@ void run(const ReproduceOptions& options, const Common& common) {
 void add_reproduce(CLI::App& program, Common& common) {
   auto options = std::make_shared<ReproduceOptions>();
   CLI::App& verb =
-      add_verb(program, common, "reproduce", "A figure or table of the papers, beside its targets",
+      add_verb(program, common, "reproduce",
+               "Reproduce a figure or table of the papers: run its simulations and compare the results with "
+               "their targets. Writes runs, figure, NAME.json and NAME.txt into a folder.",
                "twincell reproduce p1-fig3 --budget 10");
-  std::string list = "One of:";
+  std::string list = "Figure or table to reproduce, one of:";
   for (const Reproducible& r : reproduce::list()) list += fmt::format("\n{}: {}", r.name, r.what);
   verb.add_option("name", options->name, list)->required()->type_name(kWord);
-  writes(common, verb,
-         verb.add_option("-o,--output", options->output,
-                         "Folder for runs, figures and results; NAME if not said"),
-         Product::runs());
+  writes(
+      common, verb,
+      verb.add_option("-o,--output", options->output, "Folder for runs, figures and results; default: NAME"),
+      Product::runs());
   const auto budget =
-      verb.add_option("--budget", options->budget, "Minutes that it may take; fewer minutes, fewer runs")
+      verb.add_option("--budget", options->budget, "Time limit, min; a smaller budget computes fewer runs")
           ->check(CLI::Range(0.01, 1e6))
           ->capture_default_str();
   verb.add_option("--runs", options->runs,
-                  "Folder of runs that figures share, instead of the one beside the figure's folder");
-  verb.add_option("--window", options->window, "p2-fig2, -table1, -table2: your own window of W, LOW,HIGH")
+                  "Folder of the runs that several figures share; default: next to the folder of the figure");
+  verb.add_option(
+          "--window", options->window,
+          "For p2-fig2, p2-table1 and p2-table2: your own window of W in which the exponents are fitted")
       ->delimiter(',')
       ->type_name("LOW,HIGH");
   verb.add_option("--data", options->data,
-                  "your own points, CSV; p1-fig3: N_l, bouncing, convection (Gamma); p2-fig2, -table1, "
-                  "-table2: W and T_bar_z (or delta_h_bar)");
-  verb.add_flag("--full", options->full, "All that the paper shows, however long it takes")->excludes(budget);
+                  "Your own points (CSV), with the columns N_l, bouncing, convection (onsets in Gamma) for "
+                  "p1-fig3, or W and T_bar_z (p2-table2: delta_h_bar) for p2-fig2, p2-table1 and p2-table2");
+  verb.add_flag("--full", options->full, "Run everything that the paper shows, without a time limit")
+      ->excludes(budget);
   verb.callback([options, &common] { run(*options, common); });
 }
 

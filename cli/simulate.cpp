@@ -1,4 +1,4 @@
-// twincell simulate SCENE.toml -o sim.h5
+// twincell simulate SCENE.toml -o sim.h5: runs a scene and writes its trajectory.
 
 #include <fmt/format.h>
 
@@ -24,24 +24,24 @@ namespace twincell::cli {
 
 namespace {
 
-/// Share of their time in contact up to which beads are as good as hard.
+/// Largest fraction of time in contact up to which beads behave like hard beads.
 constexpr double kHardBeads = 0.1;
 
 struct SimulateOptions {
   std::string scene, output;
   bool relax = false;
   std::vector<std::string> assignments;
-  std::optional<double> checkpoint_every;  ///< s; 0: at signals only
+  std::optional<double> checkpoint_every;  ///< s; 0: only at signals
   bool resume = false;
 };
 
-/// Draws the bar; saves the run when it is time, and before a signal ends the program.
+/// Shows the progress bar. Saves a checkpoint at regular intervals, and before a signal ends the program.
 class SavingProgress : public Progress {
  public:
   SavingProgress(const Common& common, const std::string& label, const sim::Simulation& run,
                  sim::CheckpointFolder* folder, double seconds)
       : bar_(common, label), run_(run), folder_(folder), every_(seconds) {
-    if (folder != nullptr) finish_.emplace();  // the run can be saved between steps alone
+    if (folder != nullptr) finish_.emplace();  // a run can be saved only between steps
   }
 
   void update(std::int64_t done, std::int64_t total) override {
@@ -68,7 +68,8 @@ class SavingProgress : public Progress {
   Clock::time_point saved_ = Clock::now();
 };
 
-/// What the bed grew from: near a transition the same drive keeps different beds for hundreds of cycles.
+/// The start of the bed, for the result. Near a transition, beds with the same drive but different starts can
+/// differ for hundreds of cycles.
 nlohmann::json start_of(const sim::Scene& s) {
   static constexpr const char* kKinds[] = {"crystal_a", "crystal_b", "random", "trajectory", "table"};
   nlohmann::json start = {{"kind", kKinds[static_cast<int>(s.start)]},
@@ -116,30 +117,31 @@ std::string as_text(const nlohmann::json& d) {
   std::string s = fmt::format("{} beads, {}\n", d["beads"].get<long>(), d["kernel"].get<std::string>());
   if (d["gamma"].is_number())
     s += fmt::format("Gamma = {:.6g}, K_m = {:.6g}\n", d["gamma"].get<double>(), d["k_m"].get<double>());
-  s += fmt::format("{} steps a period, dt = {:.6e} t0\n", d["steps_per_period"].get<long>(),
+  s += fmt::format("{} steps per period, dt = {:.6e} t0\n", d["steps_per_period"].get<long>(),
                    d["dt"].get<double>());
   const auto& start = d["start"];
   s += fmt::format("start: {}, seed {}, drive {}\n", start["kind"].get<std::string>(),
                    start["seed"].get<long>(), start["drive"].get<std::string>());
   const auto& settled = d["settled"];
   if (start["in_motion"].get<bool>())
-    s += "nothing settled: the start is in motion\n";
+    s += "no settling: the start is in motion\n";
   else
-    s += fmt::format("settled in {:.4g} t0 to {:.3g} m g sigma a bead{}\n", settled["time"].get<double>(),
+    s += fmt::format("settled in {:.4g} t0 to {:.3g} m g sigma per bead{}\n", settled["time"].get<double>(),
                      settled["energy_per_bead"].get<double>(),
                      settled["reached"].get<bool>() ? "" : " (stopped by start.settle_limit)");
   for (const auto& e : d["effects"])
     s += fmt::format("  {:<20} {:<13} {}\n", e["name"].get<std::string>(), e["state"].get<std::string>(),
                      e["reason"].get<std::string>());
   if (d.contains("contact_fraction"))
-    s += fmt::format("beads touch something {:.3g} of the time{}\n", d["contact_fraction"].get<double>(),
-                     d["contact_fraction"].get<double>() > kHardBeads
-                         ? "; theories of hard beads, which meet for no time, do not hold above 0.1"
-                         : "");
-  s +=
-      fmt::format("{} cycles after {} discarded, {:.3g} s, {:.3g} million particle-steps/s, {} lists built\n",
-                  d["cycles"].get<long>(), d["discarded"].get<long>(), d["seconds"].get<double>(),
-                  1e-6 * d["particle_steps_per_second"].get<double>(), d["list_builds"].get<long>());
+    s += fmt::format(
+        "beads are in contact for {:.3g} of the time{}\n", d["contact_fraction"].get<double>(),
+        d["contact_fraction"].get<double>() > kHardBeads
+            ? "; theories of hard beads, which assume instantaneous collisions, are not valid above 0.1"
+            : "");
+  s += fmt::format(
+      "{} cycles after {} discarded, {:.3g} s, {:.3g} million particle-steps/s, {} neighbour lists built\n",
+      d["cycles"].get<long>(), d["discarded"].get<long>(), d["seconds"].get<double>(),
+      1e-6 * d["particle_steps_per_second"].get<double>(), d["list_builds"].get<long>());
   if (d["continued_from_step"].is_number())
     s += fmt::format("continued from step {} of a checkpoint\n", d["continued_from_step"].get<long>());
   return s + d["output"].get<std::string>() + "\n";
@@ -150,8 +152,8 @@ std::string failed_name(const std::string& output) {
   return path.replace_extension(".failed" + path.extension().string()).string();
 }
 
-/// Whether a run that is to be resumed had come to its end.
-/// \throws ConfigError if the output is there, but of another scene
+/// Whether a run that is to be resumed has already finished. \throws ConfigError if the output exists but
+/// belongs to another scene
 bool is_finished(const sim::Scene& scene, const SimulateOptions& options) {
   if (!options.resume || sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output)) ||
       !std::filesystem::exists(options.output))
@@ -159,26 +161,30 @@ bool is_finished(const sim::Scene& scene, const SimulateOptions& options) {
   const auto provenance =
       nlohmann::json::parse(H5mdReader(options.output).info().provenance_json, nullptr, false);
   if (!provenance.is_object() || provenance.value("config", "") != scene.resolved)
-    throw ConfigError({options.output, 0, 0, "--resume"},
-                      "the output is of another scene, and there is no checkpoint beside it to resume from.");
+    throw ConfigError(
+        {options.output, 0, 0, "--resume"},
+        "the output belongs to another scene, and there is no checkpoint next to it to resume from.");
   return true;
 }
 
-/// The folder to save into, if the command line asks for one.
+/// The folder of checkpoints, if the command line requests one. \throws ConfigError if the folder contains an
+/// unfinished run and --resume is not given
 std::optional<sim::CheckpointFolder> folder_for(const sim::Scene& scene, const SimulateOptions& options,
                                                 const std::function<std::string()>& provenance,
                                                 const Common& common) {
   const auto place = sim::CheckpointFolder::of(options.output);
   if (!options.resume && sim::CheckpointFolder::holds_a_run(place))
-    throw ConfigError({place.string(), 0, 0, ""},
-                      "holds an unfinished run; --resume continues it, removing the folder begins anew.");
+    throw ConfigError(
+        {place.string(), 0, 0, ""},
+        "contains an unfinished run; continue it with --resume, or remove the folder to start again.");
   if (!options.resume && !options.checkpoint_every) return std::nullopt;
   if (options.resume && !sim::CheckpointFolder::holds_a_run(place))
-    note(common, "there is no checkpoint in " + place.string() + ", the run begins at its start.");
+    note(common, "there is no checkpoint in " + place.string() + "; the run starts from the beginning.");
   return std::optional<sim::CheckpointFolder>(std::in_place, place, scene, provenance);
 }
 
-/// Runs into the file, or by way of a folder of checkpoints.
+/// Runs the simulation. Its frames go directly to the file, or through a folder of checkpoints. If the run
+/// fails, the frames so far are kept in a file named failed_name(output).
 void run_into(H5mdWriter& writer, sim::Simulation& run, Progress& progress, sim::CheckpointFolder* folder,
               const std::string& output) {
   TrajectorySink& sink = folder != nullptr ? static_cast<TrajectorySink&>(*folder) : writer;
@@ -190,10 +196,10 @@ void run_into(H5mdWriter& writer, sim::Simulation& run, Progress& progress, sim:
       folder->gather(writer, [&] { writer.finish_as(kept); });
     else
       writer.finish_as(kept);
-    throw RunError(std::string(e.what()) + " The frames up to there are in " + kept + ".");
+    throw RunError(std::string(e.what()) + " The frames up to that point are in " + kept + ".");
   }
   if (folder == nullptr) return writer.finish();
-  folder->save(run.state());  // gathering long runs takes a while: from here on nothing is computed again
+  folder->save(run.state());  // gathering a long run takes time; if it is interrupted, no step is repeated
   folder->gather(writer, [&] { writer.finish(); });
 }
 
@@ -202,18 +208,19 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   if (options.relax) assignments.emplace_back("start.relax=true");
   sim::Scene scene = sim::read_scene(options.scene, assignments);
   if (scene.until)
-    note(common,
-         fmt::format("[until] is for `measure` and `sweep`, which analyse while they run; all {} cycles are "
-                     "run here.",
-                     scene.cycles));
+    note(common, fmt::format("[until] applies only to `measure` and `sweep`, which analyse during the run; "
+                             "`simulate` runs all {} cycles.",
+                             scene.cycles));
 
   if (is_finished(scene, options)) {
-    note(common, options.output + " is finished, nothing is left to resume.");
+    note(common, options.output + " is finished; there is nothing to resume.");
     return;
   }
+  // Place the beads, or load the checkpoint.
   ProgressBar placing(common, "placing beads");
   if (scene.n_beads) sim::require_disk(scene, sim::make_plan(scene), *scene.n_beads, options.output);
-  // Placed once, before a folder is made: a start that cannot be leaves none behind.
+  // The beads are placed once, before the folder of checkpoints is created, so that an impossible start
+  // leaves no folder behind.
   std::optional<sim::RunState> start;
   if (!sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output)))
     start = sim::placed(scene, placing);
@@ -227,11 +234,12 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   const std::string provenance = folder != nullptr ? folder->checkpoint().provenance : make_provenance();
   sim::RunState state = goes_on ? folder->checkpoint().state : std::move(*start);
   const std::vector<std::string> told =
-      sim::make_plan(scene, state.beads).warnings;  // settling may take long
+      sim::make_plan(scene, state.beads).warnings;  // printed now, because settling can take long
   for (const std::string& warning : told) note(common, warning);
   const std::int64_t begun_at = goes_on && state.driven ? state.step : 0;
   sim::Simulation run(std::move(scene), std::move(state), sim::SolverKind::best, common.threads);
 
+  // Settle, with checkpoints. A run that cannot settle would fail again, so its checkpoints are removed.
   constexpr double kTenMinutes = 600;
   const double every = options.checkpoint_every.value_or(kTenMinutes);
   {
@@ -246,6 +254,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   const std::vector<std::string> warnings = run.warnings();
   for (const std::string& warning : warnings)
     if (std::find(told.begin(), told.end(), warning) == told.end()) note(common, warning);
+  // Drive the bed and write its frames.
   TrajectoryInfo info = run.trajectory_info();
   info.provenance_json = provenance;
   if (folder != nullptr) folder->announce(info);
@@ -264,21 +273,26 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
 void add_simulate(CLI::App& program, Common& common) {
   auto options = std::make_shared<SimulateOptions>();
   CLI::App& verb =
-      add_verb(program, common, "simulate", "Run a scene",
+      add_verb(program, common, "simulate",
+               "Run a scene and write its trajectory. Prints the drive, the time step, the effects that are "
+               "on or off, and the speed of the run.",
                "twincell simulate scene.toml -o sim.h5 --set drive.gamma=1.8 --set time.cycles=50");
-  verb.add_option("scene", options->scene, "Scene (TOML, docs/scene.md)")->required();
+  verb.add_option("scene", options->scene, "Scene file (TOML, docs/scene.md)")->required();
   writes(common, verb,
-         verb.add_option("-o,--output", options->output, "Trajectory to write (H5MD)")->required(),
+         verb.add_option("-o,--output", options->output, "Trajectory file to write (H5MD)")->required(),
          Product::trajectory());
-  verb.add_option("--set", options->assignments, "section.key=value, over the scene's own; may be repeated")
+  verb.add_option("--set", options->assignments,
+                  "Set a key of the scene, as section.key=value; overrides the file; may be repeated")
       ->take_all();
-  verb.add_flag("--relax", options->relax, "Push beads of the start apart, however deep they overlap");
+  verb.add_flag("--relax", options->relax,
+                "Push overlapping beads of the start apart, however deep the overlap");
   verb.add_option("--checkpoint-every", options->checkpoint_every,
-                  "Seconds between checkpoints in OUTPUT.checkpoint/; 0: at SIGINT and SIGTERM alone")
+                  "Time between checkpoints in OUTPUT.checkpoint/, s; 0: only at SIGINT and SIGTERM; "
+                  "default: no checkpoints, with --resume every 600 s")
       ->check(CLI::NonNegativeNumber);
-  verb.add_flag(
-      "--resume", options->resume,
-      "Continue from OUTPUT.checkpoint/, if it holds a run; saves every 600 s unless told otherwise");
+  verb.add_flag("--resume", options->resume,
+                "Continue the run in OUTPUT.checkpoint/, or start it if there is none; saves a checkpoint "
+                "every 600 s unless --checkpoint-every is given");
   verb.callback([options, &common] { run_simulate(*options, common); });
 }
 

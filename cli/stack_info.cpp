@@ -20,7 +20,7 @@ namespace {
 struct Values {
   double smallest = INFINITY, largest = -INFINITY, sum = 0;
   std::size_t at_largest = 0, n = 0;
-  std::uint32_t any_bits = 0;  ///< bits that are set in any whole value
+  std::uint32_t any_bits = 0;  ///< bits that are set in at least one integer value
 
   template <class Pixel>
   void take(const cv::Mat& frame) {
@@ -40,14 +40,17 @@ struct Values {
   }
 };
 
-// What the numbers of the first frame suggest.
+// Adds notes on suspicious grey values of the first frame: constant, saturated, shifted, or above the stated
+// depth.
 void judge_values(const Values& v, const StackInfo& info, bool whole_numbers, nlohmann::json& d) {
   if (v.smallest == v.largest) {
-    d["notes"].push_back(fmt::format("every pixel of the first frame is {:g}: it shows nothing.", v.largest));
+    d["notes"].push_back(
+        fmt::format("every pixel of the first frame has the value {:g}: the frame is blank.", v.largest));
     return;
   }
   const double share = static_cast<double>(v.at_largest) / static_cast<double>(v.n);
-  // A camera saturates at the full scale of its own depth, whatever the file can hold.
+  // A camera saturates at the full scale of its own bit depth, which can be smaller than the depth of the
+  // file.
   const auto whole = static_cast<std::uint64_t>(std::max(0.0, v.largest));
   const bool full_scale = whole_numbers && whole >= 255 && std::has_single_bit(whole + 1);
   if (full_scale && share > 0.01)
@@ -56,7 +59,8 @@ void judge_values(const Values& v, const StackInfo& info, bool whole_numbers, nl
                     100 * share, v.largest, std::bit_width(whole)));
   if (const int empty = std::countr_zero(v.any_bits); whole_numbers && v.largest > 4095 && empty >= 2)
     d["notes"].push_back(
-        fmt::format("every value of the first frame is a multiple of {}: {}-bit values, shifted up?",
+        fmt::format("every value of the first frame is a multiple of {}: these may be {}-bit values that "
+                    "were shifted up.",
                     1 << empty, 16 - empty));
   if (!whole_numbers || !info.bits) return;
   const int needed = std::bit_width(static_cast<unsigned>(v.largest));
@@ -84,18 +88,16 @@ std::unique_ptr<FrameSource> open_flattened(const std::filesystem::path& stack, 
 }
 
 void add_flat_option(CLI::App& verb, std::string& flat) {
-  verb.add_option(
-      "--flat", flat,
-      "Divide frames by a flat field: frames of the cell without beads, or 'stack' for the light between the "
-      "back-lit beads of the stack itself");
+  verb.add_option("--flat", flat,
+                  "Divide every frame by a flat field: a stack of the cell without beads, or 'stack' for the "
+                  "light between the back-lit beads of the stack itself; default: no flat field");
 }
 
 void check_flat(const std::string& flat, bool bright) {
   if (flat == "stack" && bright)
-    throw ConfigError(
-        Where{.file = {}, .key = "--flat"},
-        "'stack' takes the light between dark beads, and these are brighter than what lies behind them; "
-        "give frames of the cell without beads.");
+    throw ConfigError(Where{.file = {}, .key = "--flat"},
+                      "'stack' uses the light between dark beads, but these beads are brighter than the "
+                      "background; give frames of the cell without beads.");
 }
 
 bool is_trajectory(const std::filesystem::path& file) {
@@ -139,7 +141,8 @@ nlohmann::json describe_stack(const std::filesystem::path& stack) {
   if (info.other_files > 0) d["other_files"] = info.other_files;
   judge_values(v, info, whole_numbers, d);
   if (const auto first = frames->time_s()) {
-    // The stamps of all frames need all frames; the second says what they are good for.
+    // Reading all time stamps would require reading all frames. The second stamp is enough to judge the
+    // stamps.
     d["time"] = {{"origin", info.time_origin}, {"first_s", *first}};
     if (frames->next(frame)) d["time"]["second_s"] = *frames->time_s();
   }
@@ -152,15 +155,15 @@ std::string stack_as_text(const nlohmann::json& d) {
                               d["file"].get<std::string>(), d["format"].get<std::string>(),
                               d["frames"].get<std::size_t>(), d["width"].get<int>(), d["height"].get<int>());
   s += fmt::format("  depth       {}", d["pixel_type"].get<std::string>());
-  if (d.contains("bits")) s += fmt::format(", {} bits by the file's word", d["bits"].get<int>());
+  if (d.contains("bits")) s += fmt::format(", {} bits as stated by the file", d["bits"].get<int>());
   if (first.contains("bits")) s += fmt::format(", {} needed by the first frame", first["bits"].get<int>());
   s += fmt::format("\n  first frame {:g} to {:g}, mean {:.2f}\n", first["min"].get<double>(),
                    first["max"].get<double>(), first["mean"].get<double>());
   if (d.contains("frame_rate_hz"))
-    s += fmt::format("  rate        {:g} frames/s as stated\n", d["frame_rate_hz"].get<double>());
+    s += fmt::format("  rate        {:g} frames/s as stated by the file\n", d["frame_rate_hz"].get<double>());
   if (d.contains("stamped_rate_hz"))
-    s +=
-        fmt::format("  rate        {:.6g} frames/s by the time stamps\n", d["stamped_rate_hz"].get<double>());
+    s += fmt::format("  rate        {:.6g} frames/s from the time stamps\n",
+                     d["stamped_rate_hz"].get<double>());
   if (d.contains("exposure_s")) s += fmt::format("  exposure    {:g} s\n", d["exposure_s"].get<double>());
   if (d.contains("first_number"))
     s += fmt::format("  numbers     from {}; 0 is the trigger\n", d["first_number"].get<std::int64_t>());
@@ -177,7 +180,7 @@ std::string stack_as_text(const nlohmann::json& d) {
     s += "  time stamps none\n";
   }
   if (d.contains("other_files"))
-    s += fmt::format("  other files {}, no pictures, passed over\n", d["other_files"].get<std::size_t>());
+    s += fmt::format("  other files {}, not pictures, ignored\n", d["other_files"].get<std::size_t>());
   for (const auto& sentence : d["notes"]) s += "  note        " + sentence.get<std::string>() + "\n";
   return s;
 }

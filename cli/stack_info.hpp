@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a stack of frames holds, for `info` and for those who open one.
+/// Opening a stack of frames, and its description for `info`.
 
 #include <filesystem>
 #include <memory>
@@ -17,23 +17,25 @@ namespace twincell::cli {
 
 struct Common;
 
-/// open_frames(), with the stack's notes on stderr.
+/// Calls open_frames() and prints the notes of the stack on stderr.
 std::unique_ptr<FrameSource> open_stack(const std::filesystem::path& stack, const Common& common);
 
-/// Likewise, each frame divided by a flat field (flat_field.hpp). \param flat  "": none; "stack": from the
-/// stack itself; else a stack of the cell without beads
+/// As open_stack(), with each frame divided by a flat field (flat_field.hpp). \param flat "": no flat field;
+/// "stack": computed from the stack itself; otherwise a stack of the cell without beads
 std::unique_ptr<FrameSource> open_flattened(const std::filesystem::path& stack, const std::string& flat,
                                             const Common& common);
-/// The option --flat, of the verbs that locate.
+/// Adds the option --flat to a verb that locates beads.
 void add_flat_option(CLI::App& verb, std::string& flat);
-/// \throws ConfigError for a flat field from the light between beads that are brighter than what lies behind
-/// them
+/// \throws ConfigError for --flat stack if the beads are brighter than the background: this flat field is the
+/// light between dark beads
 void check_flat(const std::string& flat, bool bright);
 
-/// An HDF5 file with a group h5md; what is named .h5 and is no HDF5 counts as one too, to be refused as such.
+/// Whether a file is an HDF5 file with a group h5md. A file named .h5 that is not HDF5 also counts, so that
+/// the reader of trajectories refuses it with its own message.
 bool is_trajectory(const std::filesystem::path& file);
 
-/// Format, size, frames, depth, times, and the values of the first frame. \throws InputError as open_frames()
+/// Format, size, number of frames, bit depth, times, and grey values of the first frame. \throws InputError
+/// as open_frames()
 nlohmann::json describe_stack(const std::filesystem::path& stack);
 std::string stack_as_text(const nlohmann::json& description);
 

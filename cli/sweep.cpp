@@ -1,4 +1,4 @@
-// twincell sweep plan|run|status|collect|template PLAN.toml
+// twincell sweep plan|run|status|collect|template PLAN.toml: many scenes, their results and their progress.
 
 #include <fmt/format.h>
 
@@ -48,11 +48,12 @@ sweep::Plan plan_of(const SweepOptions& options, const Common& common) {
   return plan;
 }
 
-/// The folder of a sweep that has been begun. \throws InputError if there is none
+/// Opens the folder of an existing sweep. \throws InputError if there is none
 sweep::Store store_of(const SweepOptions& options) {
   const fs::path folder = folder_of(options);
   if (!fs::is_directory(folder / "points"))
-    throw InputError({folder.string(), 0, 0, ""}, "there is no sweep in this place; 'sweep run' makes one.");
+    throw InputError({folder.string(), 0, 0, ""},
+                     "there is no sweep in this folder; 'sweep run' creates one.");
   return sweep::Store(folder, sweep::Store::Access::read);
 }
 
@@ -62,7 +63,8 @@ sweep::Shard shard_of(const std::string& text) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%d/%d%c", &shard.index, &shard.of, &rest) != 2 || shard.of < 1 ||
       shard.index < 1 || shard.index > shard.of)
-    throw ConfigError({"", 0, 0, "--shard"}, fmt::format("'{}' is not a part i/n with 1 <= i <= n.", text));
+    throw ConfigError({"", 0, 0, "--shard"},
+                      fmt::format("'{}' is not of the form i/n with 1 <= i <= n.", text));
   return shard;
 }
 
@@ -75,7 +77,7 @@ nlohmann::json as_json(const Counts& counts, const fs::path& folder, bool all) {
           {"complete", all}};
 }
 
-/// Points of unfinished curves that some process works at.
+/// Number of points without a result that a process is computing now.
 std::size_t running(const sweep::Schedule& schedule, const sweep::Store& store) {
   std::size_t n = 0;
   for (const sweep::Curve& curve : schedule.curves())
@@ -84,7 +86,7 @@ std::size_t running(const sweep::Schedule& schedule, const sweep::Store& store) 
   return n;
 }
 
-/// Says once which runs of the plan are left out.
+/// Prints one note on the runs of the plan that are left out because they would repeat another run.
 void note_repeats(const sweep::Schedule& schedule, const Common& common) {
   if (const std::string text = schedule.repeats_text(); !text.empty()) note(common, text);
 }
@@ -103,7 +105,7 @@ void run_plan(const SweepOptions& options, const Common& common) {
   document["repeats_left_out"] = schedule.repeats();
   print_result(
       common, document,
-      fmt::format("{} point{}{}, {} done, {:.3g} particle-steps to go\n{}\n", counts.known,
+      fmt::format("{} point{}{}, {} done, {:.3g} particle-steps left\n{}\n", counts.known,
                   counts.known == 1 ? "" : "s",
                   plan.search ? fmt::format(" in the first round of {} search{}", schedule.curves().size(),
                                             schedule.curves().size() == 1 ? "" : "es")
@@ -142,7 +144,7 @@ void run_status(const SweepOptions& options, const Common& common) {
   const sweep::Schedule schedule(plan, store);
   const Counts counts = schedule.counts();
   const std::size_t now = running(schedule, store);
-  // By what the done points took, each on one core.
+  // The remaining time is estimated from the time of the finished points, each of which ran on one core.
   double seconds = 0, work = 0;
   for (const sweep::Curve& curve : schedule.curves())
     for (std::size_t i = 0; i < curve.points.size(); ++i)
@@ -157,7 +159,7 @@ void run_status(const SweepOptions& options, const Common& common) {
   std::string text = collected_text(schedule);
   text += fmt::format("{} running", now);
   if (work > 0 && counts.work_left > 0)
-    text += fmt::format(", about {} of one core left for the known points",
+    text += fmt::format(", about {} left on one core for the known points",
                         time_text(counts.work_left * seconds / work));
   print_result(common, document, text + "\n");
 }
@@ -176,13 +178,13 @@ void run_collect(const SweepOptions& options, const Common& common) {
     write_text_file(output, json, collected_product());
     return print_result(common, {}, collected_text(schedule));
   }
-  // All of them or none.
+  // All outputs are checked before the first one is written: either all are written or none.
   require_output(table, Product::table(csv));
   if (!pooled.empty()) require_output(pooled_table, Product::table(pooled));
   write_text_file(output, json, collected_product());
   write_text_file(table, csv, Product::table(csv));
   if (!pooled.empty()) write_text_file(pooled_table, pooled, Product::table(pooled));
-  if (!schedule.all()) note(common, "not all points are done; the file says how many are open.");
+  if (!schedule.all()) note(common, "not all points are done; the file states how many are open.");
   print_result(common, nlohmann::json::parse(json), collected_text(schedule) + output.string() + "\n");
 }
 
@@ -192,8 +194,8 @@ void run_template(const SweepOptions& options) {
   if (options.engine == "slurm")
     fmt::print(
         "#!/bin/bash\n"
-        "# sbatch this file, in a folder that all nodes see. Submit it again after a loss: nothing is done "
-        "twice.\n"
+        "# Submit this file with sbatch in a folder that all nodes can see. After a failure, submit it "
+        "again: finished points are not repeated.\n"
         "#SBATCH --job-name=twincell\n"
         "#SBATCH --array=1-{0}\n"
         "#SBATCH --cpus-per-task=1\n"
@@ -203,7 +205,7 @@ void run_template(const SweepOptions& options) {
   else
     fmt::print(
         "#!/bin/bash\n"
-        "# With --sshloginfile NODES parallel uses other machines too, if they see this folder.\n"
+        "# With --sshloginfile NODES, parallel also uses other machines, if they can see this folder.\n"
         "parallel -q --halt soon,fail=1 {1} --shard {{}}/{0} ::: $(seq {0})\n",
         options.jobs, run);
 }
@@ -211,57 +213,73 @@ void run_template(const SweepOptions& options) {
 }  // namespace
 
 void add_sweep(CLI::App& program, Common& common) {
-  CLI::App& verb =
-      *program.add_subcommand("sweep", "Many scenes: a grid, or a search for where a verdict flips");
+  CLI::App& verb = *program.add_subcommand(
+      "sweep",
+      "Run many scenes: a grid of parameters, or a search for the value at which a verdict changes. Each "
+      "point is stored in the folder of the sweep, so a stopped sweep can be continued.");
   verb.require_subcommand(1);
   verb.footer(
-      "Example:\n  twincell sweep run plan.toml && twincell sweep collect plan.toml -o results.json\n"
+      "Example:\n"
+      "  twincell sweep run plan.toml && twincell sweep collect plan.toml -o results.json\n"
       "Plans: docs/sweeps.md");
   auto options = std::make_shared<SweepOptions>();
   const auto add = [&](const char* name, const char* summary, const char* example) -> CLI::App& {
     CLI::App& sub = add_verb(verb, common, name, summary, example);
-    sub.add_option("plan", options->plan, "Plan (TOML, docs/sweeps.md)")->required();
-    // The folder is held against the rules where the sweep is begun (sweep/store.cpp).
+    sub.add_option("plan", options->plan, "Plan file (TOML, docs/sweeps.md)")->required();
+    // The folder is checked against the output rules when the sweep starts (sweep/store.cpp).
     common.outputs.push_back(
         {sub.add_option(std::string(name) == "collect" ? "--folder" : "-o,--output,--folder", options->folder,
-                        "Folder of the sweep; PLAN.sweep if not said")
+                        "Folder of the sweep; default: PLAN.sweep")
              ->check([](const std::string& said) {
                return said.empty() ? std::string("The folder of the sweep has no name.") : std::string();
              }),
          nullptr, Product::runs()});
     return sub;
   };
-  CLI::App& plan = add("plan", "Write down the points that the plan needs", "twincell sweep plan plan.toml");
+  CLI::App& plan = add(
+      "plan",
+      "Write the points that the plan needs into the folder of the sweep, and print their number and cost",
+      "twincell sweep plan plan.toml");
   plan.callback([options, &common] { run_plan(*options, common); });
 
-  CLI::App& run = add("run", "Compute them, a point on each core; again, to go on after any stop",
+  CLI::App& run = add("run",
+                      "Compute the points, one on each core, and store their results. After a stop, the same "
+                      "command continues.",
                       "twincell sweep run plan.toml\n  mpirun -n 16 twincell sweep run plan.toml --mpi");
-  run.add_option("--shard", options->shard, "Part i/n of the points, or of the searches");
-  run.add_flag("--mpi", options->mpi, "The ranks of this MPI job compute, a point on each");
+  run.add_option("--shard", options->shard,
+                 "Compute only shard i of n, as i/n: every n-th point of a grid, or every n-th search; "
+                 "default: 1/1, all");
+  run.add_flag("--mpi", options->mpi, "Compute on the ranks of this MPI job, one point on each rank");
   run.add_flag("--keep-trajectories", options->keep_trajectories,
-               "Keep trajectory.h5 of every point computed now");
+               "Store trajectory.h5 of every point that this command computes");
   run.callback([options, &common] { run_run(*options, common); });
 
-  CLI::App& status = add("status", "How far it is", "twincell sweep status plan.toml");
+  CLI::App& status = add(
+      "status", "Print how many points are done, running and failed, the onsets so far, and the time left",
+      "twincell sweep status plan.toml");
   status.callback([options, &common] { run_status(*options, common); });
 
-  CLI::App& collect = add("collect", "All results in one file, JSON and CSV",
+  CLI::App& collect = add("collect", "Write all results to one file, as JSON and as CSV tables",
                           "twincell sweep collect plan.toml -o results.json");
   writes(common, collect,
-         collect.add_option("-o,--output", options->output,
-                            "FILE.json; FILE.csv and, of several seeds, FILE.pooled.csv are written beside "
-                            "it; -: the JSON alone"),
+         collect.add_option(
+             "-o,--output", options->output,
+             "Output file FILE.json; FILE.csv and, for several seeds, FILE.pooled.csv are written next to "
+             "it; '-': only the JSON, to standard output; default: results.json in the folder of the sweep"),
          collected_product());
   collect.callback([options, &common] { run_collect(*options, common); });
 
-  CLI::App& script = *verb.add_subcommand("template", "A script for Slurm or GNU parallel");
+  CLI::App& script =
+      *verb.add_subcommand("template", "Print a script that runs the sweep with Slurm or GNU parallel");
   script.footer("Example:\n  twincell sweep template slurm plan.toml --jobs 32 > sweep.sbatch");
-  script.add_option("engine", options->engine, "slurm or parallel")
+  script.add_option("engine", options->engine, "Program that runs the script: slurm or parallel")
       ->required()
       ->check(CLI::IsMember({"slurm", "parallel"}));
-  script.add_option("plan", options->plan, "Plan (TOML)")->required();
-  script.add_option("-o,--output,--folder", options->folder, "Folder of the sweep; PLAN.sweep if not said");
-  script.add_option("--jobs", options->jobs, "Shards")->check(CLI::Range(1, 100000))->capture_default_str();
+  script.add_option("plan", options->plan, "Plan file (TOML)")->required();
+  script.add_option("-o,--output,--folder", options->folder, "Folder of the sweep; default: PLAN.sweep");
+  script.add_option("--jobs", options->jobs, "Number of shards into which the sweep is divided")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
   script.callback([options] { run_template(*options); });
 }
 

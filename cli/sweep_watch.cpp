@@ -35,11 +35,11 @@ void SweepWatch::look(const sweep::Counts& counts, double seconds_left) {
     signals_.update(0, 0);
   } catch (const Interrupted& e) {
     throw Interrupted(e.exit_code(),
-                      "Stopped by a signal; points that are done stay done, the same command goes on.");
+                      "Stopped by a signal; finished points are kept, and the same command continues.");
   }
   if (quiet_) return;
   std::string line = fmt::format("{} of {} points done, {} running", counts.done, counts.known, counts.here);
-  if (counts.failed > 0) line += fmt::format(", {} went wrong", counts.failed);
+  if (counts.failed > 0) line += fmt::format(", {} failed", counts.failed);
   if (std::isfinite(seconds_left)) line += fmt::format(", about {} left", time_text(seconds_left));
   if (line == last_) return;
   last_ = line;

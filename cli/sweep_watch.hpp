@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How far a sweep is, on stderr.
+/// Progress of a sweep, printed on stderr.
 
 #include <chrono>
 #include <string>
@@ -10,14 +10,15 @@
 
 namespace twincell::cli {
 
-/// A time as people say it: "40 s", "12 min", "3.5 h".
+/// A time in a suitable unit: "40 s", "12 min", "3.5 h".
 std::string time_text(double seconds);
 
-/// "12 of 40 points done, 2 running, about 3 min left": a line that is written over on a terminal, a new one
-/// for every tenth of the points elsewhere. Ends the sweep at a signal.
+/// Prints "12 of 40 points done, 2 running, about 3 min left": on a terminal one line that is overwritten,
+/// elsewhere a new line for every tenth of the points. Throws Interrupted after a signal, which ends the
+/// sweep.
 class SweepWatch : public sweep::Watch {
  public:
-  /// \param seconds that the sweep may take from now on
+  /// \param seconds time limit of the sweep, from now on
   explicit SweepWatch(const Common& common, double seconds = 1e300);
   ~SweepWatch() override;
   void look(const sweep::Counts& counts, double seconds_left) override;

@@ -1,4 +1,5 @@
-// twincell track STACK: locate, phase-lock, link: a trajectory.
+// twincell track STACK: locates the beads, determines the drive phases, links the beads, and writes a
+// trajectory.
 
 #include "imaging/track/track.hpp"
 
@@ -42,16 +43,18 @@ struct TrackOptions {
   LinkOptions link;
 };
 
-// --phase-lock N, found, or a list of triggers.
-PhaseWay phase_way(const TrackOptions& o, CellDescription& cell) {
-  PhaseWay way{.find = false, .triggers = {}, .drive_hz = o.drive_hz};
+// Source of the phases according to --phase-lock: N, found, none, or a list of triggers. N and none are
+// stored in `cell`.
+PhaseSource phase_source(const TrackOptions& o, CellDescription& cell) {
+  PhaseSource source{.find = false, .triggers = {}, .drive_hz = o.drive_hz};
   const bool list = o.phase_lock.ends_with(".csv");
   const Where drive_hz{.file = {}, .key = "--drive-hz"};
   if (o.drive_hz && !list)
-    throw ConfigError(drive_hz, fmt::format("is {:g}, but only a list of triggers (--phase-lock FILE.csv) is "
-                                            "read with it; the cell's drive is drive.frequency_hz.",
-                                            *o.drive_hz));
-  if (o.phase_lock.empty()) return way;
+    throw ConfigError(drive_hz,
+                      fmt::format("is {:g}, but it is used only with a list of triggers (--phase-lock "
+                                  "FILE.csv); the drive of the cell is set by drive.frequency_hz.",
+                                  *o.drive_hz));
+  if (o.phase_lock.empty()) return source;
   int n = 0;
   const char* end = o.phase_lock.data() + o.phase_lock.size();
   if (const auto [last, error] = std::from_chars(o.phase_lock.data(), end, n);
@@ -60,11 +63,11 @@ PhaseWay phase_way(const TrackOptions& o, CellDescription& cell) {
     if (cell.phase_lock.first_phase >= n) cell.phase_lock.first_phase = 0;
     cell.phase_lock.check(Where{.file = {}, .key = "phase-lock"});
   } else if (o.phase_lock == "found") {
-    way.find = true;
+    source.find = true;
   } else if (o.phase_lock == "none") {
     cell.phase_lock = {};
   } else if (list) {
-    way.triggers = o.phase_lock;
+    source.triggers = o.phase_lock;
     const auto drive = cell.drive();
     const auto t0 = cell.scale.t0_s();
     if (drive && t0) {
@@ -72,22 +75,23 @@ PhaseWay phase_way(const TrackOptions& o, CellDescription& cell) {
       const double stated = drive->omega / (2 * M_PI * *t0);
       if (o.drive_hz && std::abs(*o.drive_hz / stated - 1) > kSame)
         throw ConfigError(drive_hz,
-                          fmt::format("is {:g}, and the drive of {} is {:.6g} Hz; say the right one.",
+                          fmt::format("is {:g}, but the drive in {} is {:.6g} Hz; correct one of the two.",
                                       *o.drive_hz, o.cell_file, stated));
-      if (!way.drive_hz) way.drive_hz = stated;
+      if (!source.drive_hz) source.drive_hz = stated;
     }
   } else {
-    throw ConfigError(Where{.file = {}, .key = "phase-lock"},
-                      "'" + o.phase_lock +
-                          "' is neither a number of frames per cycle, nor 'found', 'none', nor a list of "
-                          "triggers (*.csv).");
+    throw ConfigError(
+        Where{.file = {}, .key = "phase-lock"},
+        "'" + o.phase_lock +
+            "' is neither a number of frames per cycle, 'found', 'none', nor a list of triggers (*.csv).");
   }
-  return way;
+  return source;
 }
 
-// Flags override the file.
+// The cell description of the file, with the options of the command line taking precedence.
 CellDescription resolve_cell(const TrackOptions& o) {
-  // Options that are keys of the file are no less refused without a unit where it says a scale.
+  // Options that set keys of the file are passed on as assignments. If the file states a scale, a value
+  // without a unit is therefore refused here too.
   std::vector<std::string> assignments = o.assignments;
   const auto assign = [&](const char* key, std::optional<double> value) {
     if (value) assignments.push_back(fmt::format("{}={}", key, *value));
@@ -102,13 +106,14 @@ CellDescription resolve_cell(const TrackOptions& o) {
   if (o.origin.size() == 2) cell.origin = PixelPoint{o.origin[0], o.origin[1]};
   if (o.frames_per_cycle) cell.phase_lock.frames_per_cycle = *o.frames_per_cycle;
   if (o.first_phase) cell.phase_lock.first_phase = *o.first_phase;
-  // Two words are a whole drive; a third, of the file, would contradict them.
+  // Two quantities determine the drive. A third quantity, from the file, would contradict them and is
+  // dropped.
   if (o.gamma || o.amplitude) {
     for (const std::string& assignment : o.assignments)
       if (assignment.starts_with("drive."))
         throw ConfigError(
             {"--set", 0, 0, assignment},
-            "and --drive-gamma or --drive-amplitude both speak of the drive; say it in one way.");
+            "and --drive-gamma or --drive-amplitude both set the drive; use only one of the two.");
     cell.drive_spec = {.amplitude = o.amplitude ? cell.drive_spec.amplitude : std::nullopt,
                        .omega = {},
                        .frequency = {},
@@ -150,38 +155,39 @@ Score score_against(const TrackOptions& o, const TrackedStack& stack) {
   return scorer.score();
 }
 
-// One line on the phases, one on the links.
+// The printed summary of the phases, the links and the tracers.
 std::string describe(const TrackedStack& stack) {
   const PhaseTable& p = stack.phases;
   std::string text;
-  if (p.way == "none") {
+  if (p.method == "none") {
     text = "phase lock: none\n";
   } else {
-    text = fmt::format("phase lock: {}, {} frames per cycle", p.way, p.frames_per_cycle);
+    text = fmt::format("phase lock: {}, {} frames per cycle", p.method, p.frames_per_cycle);
     if (p.period_frames) text += fmt::format(", period {:.4f} frames", *p.period_frames);
     if (p.jitter)
-      text += fmt::format(", jitter {}{:.3f} frames", p.way == "found" ? "at most " : "", *p.jitter);
+      text += fmt::format(", jitter {}{:.3f} frames", p.method == "found" ? "at most " : "", *p.jitter);
     if (!p.frames.empty()) text += fmt::format(", {} frames dropped, {} taken twice", p.dropped, p.doubled);
-    // A camera that misses so much has been seen by nobody; one that nobody triggers slips for ever.
+    // No triggered camera is known to miss so many frames. A camera that runs free of the drive slips
+    // continually.
     constexpr double kMostSlips = 0.1;
-    if (p.way == "found" &&
+    if (p.method == "found" &&
         static_cast<double>(p.dropped + p.doubled) > kMostSlips * static_cast<double>(p.frames.size()))
-      text += " (so many that the camera seems to run free of the drive: then these phases mean nothing)";
+      text += " (so many that the camera seems to run free of the drive; the phases are then meaningless)";
     if (p.agreement)
       text += fmt::format("; phase 0 placed by the drive, correlation {:.3f}", *p.agreement);
-    else if (p.way == "found")
+    else if (p.method == "found")
       text += "; phase 0 is where the bed passes its mean height upwards";
     text += '\n';
   }
   const LinkReport& l = stack.links;
   text += fmt::format(
       "links: {} made, {} bridge a gap, {} ambiguous; {} births, {} losses; largest sub-network {}; {} "
-      "frames "
-      "matched anew, all beads at once\n",
+      "frames matched again, all beads at once\n",
       l.links, l.bridged, l.ambiguous, l.births, l.losses, l.largest_network, l.rematched);
   if (l.unsolved > 0)
     text += fmt::format(
-        "frames too crowded to be solved exactly: {} beads took their nearest free detection\n", l.unsolved);
+        "frames too crowded for an exact solution: {} beads were linked to their nearest free detection\n",
+        l.unsolved);
   std::int64_t tracers = 0, uncertain = 0;
   for (const TrackSummary& t : stack.tracks) {
     tracers += t.is_tracer() ? 1 : 0;
@@ -202,12 +208,13 @@ std::string describe(const TrackedStack& stack) {
 }
 
 void run(TrackOptions& o, const Common& common) {
+  // Settings: cell, phases, bead diameters.
   CellDescription cell = resolve_cell(o);
   if (!cell.included.overridden.empty())
-    note(common, fmt::format("{} states what {} measured: {}", o.cell_file, cell.included.file.string(),
-                             fmt::join(cell.included.overridden, ", ")));
-  const PhaseWay way = phase_way(o, cell);
-  (void)cell.drive();  // a drive that contradicts itself is refused before the work, not after
+    note(common, fmt::format("values in {} take precedence over those measured in {}: {}", o.cell_file,
+                             cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
+  const PhaseSource source = phase_source(o, cell);
+  (void)cell.drive();  // refuse a contradictory drive before the work starts
   o.locator.preprocess.bright |= cell.bright;
   if (o.diameters.empty()) {
     o.locator.diameter_px = cell.pixels_per_sigma.value_or(0);
@@ -215,14 +222,16 @@ void run(TrackOptions& o, const Common& common) {
     o.locator.diameter_px = o.diameters.front();
     o.locator.other_diameters_px.assign(o.diameters.begin() + 1, o.diameters.end());
   }
+  // Locate and link all frames.
   const auto frames = open_flattened(o.stack, o.flat, common);
   const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
   const std::filesystem::path folder = parent.empty() ? "." : parent;
   ProgressBar bar(common, "track");
   const TrackedStack stack =
-      track_stack(*frames, o.locator, o.link, cell, common.n_threads(), bar, way, folder);
+      track_stack(*frames, o.locator, o.link, cell, common.n_threads(), bar, source, folder);
   check_flat(o.flat, stack.locator.preprocess.bright);
   TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, o.shortest);
+  // Check the stated drive against the motion of the plate, or of the bed if the plate is not visible.
   DriveCheck check{.not_comparable = "the stated drive is trusted"};
   if (!o.trust_stated_drive && plan.info.drive) {
     ProgressBar edge(common, "the plate's edge");
@@ -237,6 +246,7 @@ void run(TrackOptions& o, const Common& common) {
            "the stated drive does not fit the film: " + check.disagreement + " (--trust-stated-drive).");
   }
   if (plan.info.drive) record(check, plan.info);
+  // Write the trajectory, then the table.
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
   provenance.inputs.push_back(file_of_stack(o.stack));
@@ -251,7 +261,9 @@ void run(TrackOptions& o, const Common& common) {
                              stack.locator.diameter_px));
   if (!plan.info.columns.plate_height)
     note(common,
-         "drive or frames per cycle unknown: time is the frame number, and the plate's height is absent.");
+         "the drive or the frames per cycle are unknown: time is the frame number, and the height of the "
+         "plate is absent.");
+  // Result.
   std::int64_t beads = 0;
   for (const TrackSummary& t : stack.tracks) beads += t.seen;
   nlohmann::json document = {{"stack", o.stack},
@@ -269,9 +281,8 @@ void run(TrackOptions& o, const Common& common) {
   if (constexpr double kMany = 0.02;
       static_cast<double>(stack.wrong_radius) > kMany * static_cast<double>(beads))
     text += fmt::format(
-        "{} candidates were left out as discs of another size: beads of several sizes are found with "
-        "--diameter D1 D2 "
-        "...\n",
+        "{} candidates were left out as discs of another size; to locate beads of several sizes, use "
+        "--diameter D1 D2 ...\n",
         stack.wrong_radius);
   text += describe(stack);
   if (!o.truth.empty()) {
@@ -292,53 +303,79 @@ void run(TrackOptions& o, const Common& common) {
 
 void add_track(CLI::App& program, Common& common) {
   auto o = std::make_shared<TrackOptions>();
-  CLI::App& verb = add_verb(program, common, "track", "Locate and link: from a stack to a trajectory",
+  CLI::App& verb = add_verb(program, common, "track",
+                            "Locate the beads in every frame of a stack, determine the drive phases, and "
+                            "link the beads into tracks. Writes a trajectory.",
                             "twincell track frames/ -o exp.h5 --cell CELL.toml");
   verb.add_option("stack", o->stack,
-                  "Folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
+                  "Stack: folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
       ->required();
-  writes(common, verb, verb.add_option("-o,--output", o->output, "Trajectory (H5MD)")->required(),
+  writes(common, verb,
+         verb.add_option("-o,--output", o->output, "Trajectory file to write (H5MD)")->required(),
          Product::trajectory());
-  verb.add_option("--cell", o->cell_file, "CELL.toml: scale, origin, size, drive of the cell");
-  verb.add_option("--pixels-per-sigma", o->pixels_per_sigma, "Camera pixels per bead diameter")
+  verb.add_option("--cell", o->cell_file, "CELL.toml with scale, origin, size and drive of the cell");
+  verb.add_option("--pixels-per-sigma", o->pixels_per_sigma,
+                  "Camera pixels per bead diameter; default: the scale in CELL.toml, otherwise the located "
+                  "bead diameter")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--origin-px", o->origin, "Lower-left inside corner, plate at its mean, px")->expected(2);
+  verb.add_option("--origin-px", o->origin,
+                  "Lower left inside corner of the cell, with the plate at its mean height: x y, px")
+      ->expected(2);
   verb.add_option("--set", o->assignments,
-                  "section.key=value, over CELL.toml's own (cell.width_mm=40); may be repeated")
+                  "Set a key of CELL.toml, as section.key=value (cell.width_mm=40); overrides the file; may "
+                  "be repeated")
       ->take_all();
   verb.add_option("--cell-width", o->width,
-                  "Between the side walls, sigma; with a [scale] say --set cell.width_sigma= or width_mm=")
+                  "Distance of the side walls, sigma; if CELL.toml has a [scale], use --set "
+                  "cell.width_sigma= or cell.width_mm= instead")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--cell-height", o->height, "sigma; likewise")->check(CLI::PositiveNumber);
-  verb.add_option("--frames-per-cycle", o->frames_per_cycle, "Frames per drive cycle; 0: not phase-locked")
+  verb.add_option("--cell-height", o->height,
+                  "Height of the cell, sigma; if CELL.toml has a [scale], use --set with a unit instead")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--frames-per-cycle", o->frames_per_cycle,
+                  "Frames per drive cycle; 0: not phase-locked; default: the value in CELL.toml")
       ->check(CLI::NonNegativeNumber);
+  verb.add_option("--phase-lock", o->phase_lock,
+                  "Source of the drive phases: frames per drive cycle, 'found' (from the motion of the bed), "
+                  "'none', or a list of triggers (*.csv)");
   verb.add_option(
-      "--phase-lock", o->phase_lock,
-      "Frames per drive cycle, 'found' (from the bed's motion), 'none', or a list of triggers (*.csv)");
-  verb.add_option("--drive-hz", o->drive_hz,
-                  "Frequency of the drive, for a list of triggers in seconds; absent: the cell's")
+          "--drive-hz", o->drive_hz,
+          "Frequency of the drive, Hz, for a list of triggers in seconds; default: the drive in CELL.toml")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--first-phase", o->first_phase, "Phase of the first frame")->check(CLI::NonNegativeNumber);
-  verb.add_option("--drive-gamma", o->gamma, "A omega^2/g (with --drive-amplitude)");
+  verb.add_option("--first-phase", o->first_phase,
+                  "Phase of the first frame, 0 to frames per cycle - 1; default: the value in CELL.toml")
+      ->check(CLI::NonNegativeNumber);
+  verb.add_option("--drive-gamma", o->gamma, "Drive strength Gamma = A omega^2/g; with --drive-amplitude");
   verb.add_option("--drive-amplitude", o->amplitude,
-                  "A, sigma; with a [scale] say --set drive.amplitude_sigma= or amplitude_mm=");
+                  "Amplitude A of the drive, sigma; if CELL.toml has a [scale], use --set "
+                  "drive.amplitude_sigma= or drive.amplitude_mm= instead");
   verb.add_option("--diameter", o->diameters,
-                  "Bead diameter, px, or several; absent: the scale, or found from the first frame")
+                  "Bead diameter, px, or up to 8 different diameters; default: the scale in CELL.toml, "
+                  "otherwise determined from the first frame")
       ->check(CLI::Range(3.0, 400.0))
       ->expected(1, 8);
-  verb.add_option("--locator", o->locator.finder, "Finder")->check(CLI::IsMember(finder_names()));
-  verb.add_flag("--bright", o->locator.preprocess.bright, "Beads are brighter than what lies behind them");
+  verb.add_option("--locator", o->locator.finder, "Method that finds candidates for beads; default: vote")
+      ->check(CLI::IsMember(finder_names()));
+  verb.add_flag("--bright", o->locator.preprocess.bright, "Beads are brighter than the background");
   add_flat_option(verb, o->flat);
-  verb.add_option("--range", o->link.range_diameters, "Longest step from the predicted place, diameters");
-  verb.add_option("--memory", o->link.memory, "Frames for which a bead may be missing");
+  verb.add_option("--range", o->link.range_diameters,
+                  "Largest distance of a bead from its predicted position, bead diameters, above 0, at most "
+                  "10; default: 2");
+  verb.add_option("--memory", o->link.memory,
+                  "Number of frames for which a bead may be missing, 0 to 1000; default: 3");
   verb.add_flag("--trust-stated-drive", o->trust_stated_drive,
-                "Do not hold the stated drive against the plate, or the bed, in the frames");
-  verb.add_option("--shortest", o->shortest, "Tracks seen in fewer frames are left out")
+                "Do not check the stated drive against the motion of the plate or the bed in the frames");
+  verb.add_option("--shortest", o->shortest,
+                  "Smallest number of frames in which a track must be seen to be written; default: 1")
       ->check(CLI::PositiveNumber);
-  writes(common, verb, verb.add_option("--csv", o->csv, "Table of tracks (trackpy's columns and more)"),
+  writes(common, verb,
+         verb.add_option("--csv", o->csv, "Table of tracks to write (CSV, trackpy's columns and more)"),
          Product::table(kHeading));
-  verb.add_option("--truth", o->truth, "Score against truth.csv or a folder of truth_NN.csv");
-  verb.add_option("--scored-rows", o->scored_rows, "First and last row that is scored, px")->expected(2);
+  verb.add_option("--truth", o->truth,
+                  "Score the result against the ground truth: truth.csv, or a folder of truth_NN.csv");
+  verb.add_option("--scored-rows", o->scored_rows,
+                  "First and last row of pixels that is scored, px; default: all rows")
+      ->expected(2);
   verb.callback([o, &common] { run(*o, common); });
 }
 

@@ -1,4 +1,4 @@
-// twincell validate FILE: is it whole and conforming?
+// twincell validate FILE: checks that a trajectory file is complete and conforms to H5MD.
 
 #include <fmt/format.h>
 
@@ -20,10 +20,11 @@ struct ValidateOptions {
 
 void add_validate(CLI::App& program, Common& common) {
   auto options = std::make_shared<ValidateOptions>();
-  CLI::App& verb =
-      add_verb(program, common, "validate", "Whether a trajectory file is whole and conforms to H5MD 1.1",
-               "twincell validate sim.h5");
-  verb.add_option("file", options->file, "Trajectory (H5MD)")->required();
+  CLI::App& verb = add_verb(program, common, "validate",
+                            "Check that a trajectory file is complete and conforms to H5MD 1.1. Prints every "
+                            "fault, and ends with exit code 3 if there is one.",
+                            "twincell validate sim.h5");
+  verb.add_option("file", options->file, "Trajectory file (H5MD)")->required();
   verb.callback([options, &common] {
     const auto faults = validate_h5md(options->file);
     std::string text =

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// One verb, one file: NAME.cpp holds its options struct, `add_NAME` (set-up) and what it runs. A new verb is
-/// that file, a line here and a line in main.cpp's table.
+/// Declarations of the verbs. Each verb has its own file NAME.cpp with its options struct, its set-up
+/// function `add_NAME` and the function that it runs. To add a verb, write that file, add a line here and add
+/// a line to the table in main.cpp.
 
 namespace CLI {
 class App;
@@ -11,7 +12,8 @@ namespace twincell::cli {
 
 struct Common;
 
-/// Adds the verb to `program`; its callback runs when the verb is chosen, and throws twincell::Error to fail.
+/// Adds a verb to `program`. The callback of the verb runs if the user selects the verb. It throws
+/// twincell::Error on failure.
 using AddVerb = void (*)(CLI::App& program, Common& common);
 
 void add_analyze(CLI::App& program, Common& common);

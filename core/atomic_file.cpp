@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Waits until a file, or the names in a folder, are on the disk; false if the disk refused. What cannot be
-/// waited for (some network file systems) counts as done.
+/// Syncs a file, or the entries of a folder, to disk; false on an I/O error or a full disk. A file system
+/// without sync (some network file systems) counts as synced.
 bool sync_to_disk(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return true;
@@ -34,8 +34,8 @@ bool sync_to_disk(const fs::path& path) {
   return !refused;
 }
 
-/// Whether a new file of this name may take its place in a folder: nothing is there, or a listed, unchanged
-/// file, and no link or file stands where a folder is needed.
+/// Whether a new file may be placed at `name` in a folder: there is no such file or it is listed and
+/// unchanged, and no parent folder in `name` is a link or a file.
 bool replaceable(const fs::path& folder, const Manifest& manifest, const std::string& name) {
   std::error_code ec;
   fs::path at = folder;
@@ -48,7 +48,7 @@ bool replaceable(const fs::path& folder, const Manifest& manifest, const std::st
   return !fs::exists(fs::symlink_status(folder / name, ec)) || manifest.unchanged(folder, name);
 }
 
-/// Whether a folder holds nothing but what its manifest lists, unchanged.
+/// Whether a folder contains only files that its manifest lists and that are unchanged.
 bool only_listed(const fs::path& folder, const Manifest& manifest) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_directory() && !entry.is_symlink()) continue;
@@ -67,7 +67,8 @@ void remove_listed(const fs::path& folder, const Manifest& manifest) {
   std::vector<fs::path> folders = {folder};
   for (const auto& entry : fs::recursive_directory_iterator(folder, ec))
     if (entry.is_directory(ec) && !entry.is_symlink(ec)) folders.push_back(entry.path());
-  for (std::size_t i = folders.size(); i-- > 0;) fs::remove(folders[i], ec);  // fails where something is left
+  for (std::size_t i = folders.size(); i-- > 0;)
+    fs::remove(folders[i], ec);  // fails for a folder that is not empty
 }
 
 }  // namespace
@@ -130,19 +131,20 @@ void AtomicPath::give_way(const fs::path& target, const std::string& obstacle) {
                     "{}.",
                     given_.string(), obstacle, other.string()));
   }
-  throw RunError(given_.string() + ": " + obstacle + " is in the way, and no other name is free beside it.");
+  throw RunError(given_.string() + ": " + obstacle +
+                 " is in the way, and no other name is free in its folder.");
 }
 
 void AtomicPath::place_file(const fs::path& target) {
   if (!sync_to_disk(part_))
-    throw RunError(part_.string() + ": the disk did not take it (" + std::strerror(errno) + ").");
+    throw RunError(part_.string() + ": it could not be written to disk (" + std::strerror(errno) + ").");
   std::error_code ec;
   if (fs::exists(fs::symlink_status(target, ec)) &&
       (!fs::is_regular_file(target, ec) || !may_replace(target, product_)))
     give_way(target, "a file of that name");
   fs::rename(part_, target, ec);
   if (ec)
-    throw RunError(given_.string() + ": the finished output cannot be given its name (" + ec.message() +
+    throw RunError(given_.string() + ": the finished output cannot be renamed to this path (" + ec.message() +
                    ").");
 }
 
@@ -159,14 +161,14 @@ void AtomicPath::print() {
 
 void AtomicPath::place_folder(const fs::path& target) {
   const auto fail = [&](const std::error_code& ec) {
-    throw RunError(given_.string() + ": the finished output cannot be given its name (" + ec.message() +
+    throw RunError(given_.string() + ": the finished output cannot be renamed to this path (" + ec.message() +
                    ").");
   };
   Manifest fresh = Manifest::of(part_, product_.name);
   std::error_code ec;
   const auto old = Manifest::read(target);
   if (!old) {
-    // Absent or empty; anything else has come meanwhile.
+    // The target is absent or empty; anything else has appeared during the run.
     fresh.write(part_);
     fs::rename(part_, target, ec);
     if (ec == std::errc::directory_not_empty || ec == std::errc::file_exists ||
@@ -176,7 +178,7 @@ void AtomicPath::place_folder(const fs::path& target) {
     return;
   }
   if (!product_.shared && only_listed(target, *old)) {
-    // All of it is ours: the folders change places in one step.
+    // All files in it are ours: exchange the two folders in one step.
     fresh.write(part_);
     if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) {
       remove_listed(part_, *old);
@@ -185,7 +187,7 @@ void AtomicPath::place_folder(const fs::path& target) {
   }
   for (const auto& [name, hashes] : fresh.files)
     if (!replaceable(target, *old, name)) give_way(target, "'" + name + "' in it");
-  // File by file. At every instant the manifest lists each file of ours, old or new.
+  // Otherwise replace file by file. At every instant the manifest lists each file of ours, old or new.
   Manifest both = *old;
   for (const auto& [name, hashes] : fresh.files) both.files[name].insert(hashes.begin(), hashes.end());
   both.write(target);
@@ -226,7 +228,7 @@ std::string read_text_file(const fs::path& path, std::uintmax_t most) {
       if (number >= 0) ::close(number);
     }
   };
-  // Not blocking: to open a pipe that nobody writes into would never end.
+  // Non-blocking: opening a pipe without a writer would never return.
   const File file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)};
   if (file.number < 0)
     refuse(errno == ENOENT || errno == ENOTDIR
@@ -235,10 +237,10 @@ std::string read_text_file(const fs::path& path, std::uintmax_t most) {
   struct stat about {};
   if (::fstat(file.number, &about) != 0)
     refuse(std::string("the file cannot be read (") + std::strerror(errno) + ").");
-  if (S_ISDIR(about.st_mode)) refuse("this is a folder, a file is needed.");
+  if (S_ISDIR(about.st_mode)) refuse("this is a folder; a file is needed.");
   if (!S_ISREG(about.st_mode)) refuse("this is a device, a pipe or a socket; a regular file is needed.");
   const auto too_large = [&] {
-    refuse("the file is larger than the " + std::to_string(most) + " bytes that such a file may have.");
+    refuse("the file is larger than the " + std::to_string(most) + " bytes allowed.");
   };
   if (static_cast<std::uintmax_t>(about.st_size) > most) too_large();
   std::string text;
@@ -249,7 +251,7 @@ std::string read_text_file(const fs::path& path, std::uintmax_t most) {
     if (got < 0) refuse(std::string("the file cannot be read (") + std::strerror(errno) + ").");
     if (got == 0) return text;
     text.append(piece, 0, static_cast<std::size_t>(got));
-    if (text.size() > most) too_large();  // it grew meanwhile
+    if (text.size() > most) too_large();  // the file grew while it was read
   }
 }
 

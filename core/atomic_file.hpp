@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Outputs that exist whole or not at all: write beside the final name, rename at the end. A file is on the
-/// disk before it gets its name, so that this holds for a machine that loses its power too. What an output
-/// may replace: output_rules.hpp.
+/// Atomic output: write to a temporary name in the output's folder and rename at the end, so that an output
+/// is complete or absent. A file is synced to disk before the rename, so that this also applies after a power
+/// failure. output_rules.hpp states what an output may replace.
 
 #include <cstdint>
 #include <filesystem>
@@ -14,13 +14,13 @@
 
 namespace twincell {
 
-/// Reserves a temporary file or folder beside an output. `commit` gives it its name, or copies it to standard
-/// output where that is the output (output_rules.hpp); a destructor without a commit deletes it. A folder
-/// that exists is replaced as far as its manifest lists it: other files stay.
+/// A temporary file or folder in the folder of an output. `commit` renames it to its final name, or copies it
+/// to standard output if that is the output (output_rules.hpp). Without a commit, the destructor deletes it.
+/// In an existing output folder, only the files that its manifest lists are replaced; other files stay.
 class AtomicPath {
  public:
-  /// \throws ConfigError as require_output; if another process writes the same output; if nothing can be
-  /// written beside it
+  /// \throws ConfigError as require_output; if another process writes the same output; if no temporary file
+  /// can be created in the output's folder
   AtomicPath(const std::filesystem::path& final_path, Product product);
   AtomicPath(AtomicPath&& other) noexcept;
   AtomicPath& operator=(AtomicPath&&) = delete;
@@ -28,15 +28,16 @@ class AtomicPath {
   AtomicPath& operator=(const AtomicPath&) = delete;
   ~AtomicPath();
 
-  /// Where to write: an empty file, with the output's extension, or an empty folder.
+  /// Path to write to: an empty file with the output's extension, or an empty folder.
   [[nodiscard]] const std::filesystem::path& part() const { return part_; }
-  /// What it will be called, as it was given.
+  /// Final path of the output, as the caller gave it.
   [[nodiscard]] const std::filesystem::path& final() const { return given_; }
-  /// Renames part to final. \throws RunError naming the path; where something that may not be replaced has
-  /// appeared meanwhile, the finished output keeps a name beside it that the sentence says
+  /// Renames `part()` to `final()`.
+  /// \throws RunError naming the path. If something that must not be replaced has appeared there during the
+  /// run, the finished output stays in the same folder as NAME.twincell-K, which the message states.
   void commit();
-  /// Renames part to another name in the same folder (a run that failed keeps its frames under a name that
-  /// says so). The rules for what may be replaced hold for that name too.
+  /// Renames `part()` to another name in the same folder, for example to keep the frames of a failed run
+  /// under a name that marks them as such. The same replacement rules apply to that name.
   void commit_as(const std::filesystem::path& other_name);
 
  private:
@@ -45,7 +46,7 @@ class AtomicPath {
   void place_folder(const std::filesystem::path& target);
   [[noreturn]] void give_way(const std::filesystem::path& target, const std::string& obstacle);
 
-  std::filesystem::path given_;  ///< as the user said it
+  std::filesystem::path given_;  ///< as the user wrote it
   std::filesystem::path final_;  ///< absolute, links resolved
   Product product_;
   std::optional<OutputLock> lock_;
@@ -53,17 +54,17 @@ class AtomicPath {
   bool open_ = true;
 };
 
-/// Writes `text` as a whole file. A file that exists is replaced as AtomicPath says. \throws ConfigError,
-/// RunError
+/// Writes `text` to a file atomically. An existing file is replaced under the rules of AtomicPath.
+/// \throws ConfigError, RunError as AtomicPath
 void write_text_file(const std::filesystem::path& path, const std::string& text,
                      const Product& product = Product::part());
 
-/// Largest text file that is read, bytes: a table of ten million beads has less.
+/// Largest text file that is read, bytes. A table of ten million beads is smaller.
 inline constexpr std::uintmax_t kLargestText = std::uintmax_t{4} << 30;
 
-/// Reads a whole regular file. Devices, pipes and sockets are refused, since they may never end.
-/// \param most bytes that the file may have
-/// \throws InputError if it is missing, no regular file, larger than `most`, or unreadable
+/// Reads a whole regular file. Devices, pipes and sockets are rejected, since reading them may never end.
+/// \param most maximum size of the file, bytes
+/// \throws InputError if it is missing, not a regular file, larger than `most`, or unreadable
 std::string read_text_file(const std::filesystem::path& path, std::uintmax_t most = kLargestText);
 
 }  // namespace twincell

@@ -1,41 +1,42 @@
 #pragma once
 /// \file
-/// The request, by a signal, that the process stop, and how work of any depth learns of it.
+/// Cancellation: a signal requests that the process stop, and running work checks for the request.
 ///
-/// A function that has a Progress (progress.hpp) asks that. What lies deeper, or runs before there is one,
-/// calls throw_if_cancelled between pieces of work that take up to a tenth of a second.
+/// A function that has a Progress (progress.hpp) calls Progress::update. Code below it in the call stack, or
+/// code that runs before a Progress exists, calls throw_if_cancelled between units of work of up to 0.1 s.
 
 #include <atomic>
 
 namespace twincell {
 
 namespace stop_detail {
-extern std::atomic<int> asked_by;   ///< number of the signal; 0: none came
-extern std::atomic<int> finishing;  ///< FinishFirst objects that live
+extern std::atomic<int> asked_by;   ///< number of the signal; 0: no signal received
+extern std::atomic<int> finishing;  ///< number of live FinishFirst objects
 [[noreturn]] void stop();
 }  // namespace stop_detail
 
-/// Notes that a signal asks the process to stop. Async-signal-safe. \returns whether it is the first to ask
+/// Records that a signal requests the process to stop. Async-signal-safe.
+/// \returns whether it is the first one
 bool request_cancellation(int signal) noexcept;
 
-/// The signal that has asked; 0 if none has.
+/// Number of the first signal that requested cancellation; 0 if there was none.
 inline int cancellation_requested() noexcept {
   return stop_detail::asked_by.load(std::memory_order_relaxed);
 }
 
-/// Whether somebody finishes something first (FinishFirst).
+/// Whether a FinishFirst object defers cancellation.
 inline bool finishing_first() noexcept {
   return stop_detail::finishing.load(std::memory_order_relaxed) > 0;
 }
 
-/// \throws Interrupted if the process has been asked to stop and nobody finishes something first
+/// \throws Interrupted if cancellation was requested and no FinishFirst object defers it
 inline void throw_if_cancelled() {
   if (cancellation_requested() != 0 && !finishing_first()) [[unlikely]]
     stop_detail::stop();
 }
 
-/// While one lives throw_if_cancelled does nothing: its holder looks at cancellation_requested itself, when
-/// what it works on is in a state that can be saved.
+/// Defers cancellation: throw_if_cancelled does nothing during the lifetime of such an object. Its owner
+/// checks cancellation_requested itself, at points where the state of its work can be saved.
 class FinishFirst {
  public:
   FinishFirst() noexcept { ++stop_detail::finishing; }

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A choice made at run time by a word: a table whose rows have a member `word`, the first being the default.
+/// Choices made at run time by a word: lookup in a table whose rows have a member `word`. The first row is
+/// the default.
 
 #include <algorithm>
 #include <iterator>
@@ -10,14 +11,14 @@
 
 namespace twincell {
 
-/// A row that holds a value and no more.
+/// A table row that consists of a value and its word only.
 template <class Value>
 struct Choice {
   Value value;
   std::string_view word;
 };
 
-/// The words of a table, in its order.
+/// The words of a table, in table order.
 template <class Table>
 std::vector<std::string> words_of(const Table& table) {
   std::vector<std::string> words;
@@ -25,11 +26,11 @@ std::vector<std::string> words_of(const Table& table) {
   return words;
 }
 
-/// Throws ConfigError at `key`: "there is no NOUN 'WORD'; there are: ...".
+/// \throws ConfigError always, at `key`: "there is no NOUN 'WORD'; there are: ...".
 [[noreturn]] void refuse_word(const std::string& key, const std::string& noun, const std::string& word,
                               const std::vector<std::string>& words);
 
-/// The row that a word names. \throws ConfigError as refuse_word
+/// The row whose word is `word`. \throws ConfigError as refuse_word if there is no such row
 template <class Table>
 const auto& row_named(const Table& table, const std::string& word, const std::string& key,
                       const std::string& noun) {

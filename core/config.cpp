@@ -17,10 +17,10 @@
 namespace twincell {
 
 struct ConfigSection::Shared {
-  std::string name;  ///< file, for complaints about what is absent
+  std::string name;  ///< name of the file, for messages about absent keys
   toml::table table;
-  std::set<std::string> asked;         ///< full keys somebody asked for
-  std::map<std::string, Where> stood;  ///< of keys restated under another name: what was written, and where
+  std::set<std::string> asked;         ///< full keys that were queried
+  std::map<std::string, Where> stood;  ///< restated keys: as written, with position
 
   Where where_of(const toml::node& node, const std::string& key) const {
     const toml::source_region& at = node.source();
@@ -31,7 +31,7 @@ struct ConfigSection::Shared {
 
 namespace {
 
-/// What a TOML type is called in a complaint.
+/// Name of a TOML type for error messages.
 std::string kind_of(const toml::node& node) {
   std::ostringstream text;
   text << node.type();
@@ -104,7 +104,7 @@ std::optional<double> ConfigSection::number_in(const std::string& key, std::opti
 std::optional<std::int64_t> ConfigSection::integer_in(const std::string& key, std::int64_t lower,
                                                       std::int64_t upper) const {
   auto value = integer(key);
-  // As whole numbers: beyond 2^53 a double is their neighbour.
+  // Compared as integers: above 2^53 a double cannot represent every integer.
   if (value && (*value < lower || *value > upper))
     throw ConfigError(where(key),
                       fmt::format("{} is out of range; the value must be at least {} and at most {}.", *value,
@@ -123,7 +123,7 @@ std::optional<std::string> ConfigSection::text(const std::string& key) const {
 }
 
 namespace {
-/// The finite numbers of a list; nothing if it is no list or holds anything else.
+/// The numbers of a list; nullopt if the node is not a list or if an element is not a finite number.
 std::optional<std::vector<double>> finite_numbers(const toml::node& node) {
   const toml::array* list = node.as_array();
   if (list == nullptr) return std::nullopt;
@@ -176,21 +176,21 @@ ConfigSection ConfigSection::section(const std::string& key) const {
 
 namespace {
 
-/// Refuses text whose tables would lie deeper in each other than kDeepest: the parser, and every visitor of
-/// its tables, go down by calling themselves, and a key of ten thousand dots would exhaust the stack. Depth
-/// is counted from the text: dots of the table's header, of the key, and the same of each list and inline
-/// table that is open. (A number's point counts as a dot, which does no harm.) Up to the first mistake in the
-/// text this reads strings and comments as the parser does; behind it the parser does not come.
+/// Rejects text whose tables and lists would be nested more than kDeepest levels deep. The parser and every
+/// visitor of its tables are recursive, so that a key of ten thousand dots would overflow the stack. The
+/// depth is counted from the text: the dots of the table's header and of the key, plus those of each open
+/// list and inline table. (A decimal point counts as a dot, which does no harm.) Up to the first error in the
+/// text, this scan reads strings and comments as the parser does; the parser does not read beyond that error.
 void refuse_deep(const std::string& text, const std::string& name) {
   constexpr std::size_t kDeepest = 100;
   std::size_t header = 0, line = 1;
-  std::vector<std::size_t> dots = {0};  // of the key that is being read: outermost, then of each bracket
-  std::size_t outer = 0;                // depth of all but the last
+  std::vector<std::size_t> dots = {0};  // of the current key: outermost, then one per open bracket
+  std::size_t outer = 0;                // sum of all but the last
   bool in_header = false, line_is_empty = true;
   const auto look = [&] {
     if (header + outer + dots.size() - 1 + dots.back() <= kDeepest) return;
     throw ConfigError({name, static_cast<long>(line), 0, ""},
-                      fmt::format("tables and lists lie more than {} deep in each other.", kDeepest));
+                      fmt::format("tables and lists are nested more than {} levels deep.", kDeepest));
   };
   const auto at = [&](std::size_t k) { return k < text.size() ? text[k] : '\0'; };
   for (std::size_t k = 0; k < text.size(); ++k) {
@@ -209,7 +209,7 @@ void refuse_deep(const std::string& text, const std::string& name) {
           line += at(k) == '\n' ? 1 : 0;
         } else if (text[k] == c && (!several || (at(k + 1) == c && at(k + 2) == c))) {
           if (several)
-            for (k += 2; at(k + 1) == c;) ++k;  // quotes that belong to the text's end
+            for (k += 2; at(k + 1) == c;) ++k;  // quotes just before the delimiter belong to the text
           break;
         }
       }
@@ -266,8 +266,8 @@ Config Config::from_file(const std::filesystem::path& path) {
 
 namespace {
 
-/// Puts what `lower` has and `upper` has not into `upper`, whose tables thus keep their own place in the
-/// file. Moves, because a copied node forgets where it stood.
+/// Moves the keys that `upper` lacks from `lower` to `upper`, whose tables keep their own source positions.
+/// Nodes are moved because a copied node loses its source position.
 void fill_in(toml::table& upper, toml::table&& lower) {
   for (auto&& [key, node] : lower) {
     toml::node* above = upper.get(key);
@@ -306,7 +306,8 @@ void Config::yield_to(const Config& upper, const std::string& section,
 
 namespace {
 
-/// The table that holds the last word of `path`; \param make whether missing ones are made, else nullptr.
+/// The table that contains the last word of `path`; nullptr if there is none.
+/// \param make create missing tables
 toml::table* table_above(toml::table& root, const std::string& path, bool make) {
   toml::table* table = &root;
   std::size_t begin = 0;
@@ -331,7 +332,7 @@ void Config::adopt(Config& lower, const std::string& from, const std::string& to
   toml::table* source = table_above(lower.shared_->table, from, false);
   toml::table* target = table_above(shared_->table, to, true);
   if (source == nullptr || target == nullptr) return;
-  // Moved, because a copied node forgets where it stood.
+  // Moved, because a copied node loses its source position.
   if (toml::node* node = source->get(last_word(from)))
     node->visit([&](auto& value) { target->insert_or_assign(last_word(to), std::move(value)); });
 }
@@ -377,7 +378,7 @@ void walk(const toml::table& table, const std::string& path, const std::set<std:
           const std::function<void(const std::string&, const toml::node&)>& complain) {
   for (auto&& [key, node] : table) {
     const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
-    // A point in quotes is part of a name: "cell.width" is not the width of the cell.
+    // A dot in a quoted key is part of its name: "cell.width" in quotes is not the width of the cell.
     const bool quoted = key.str().empty() || key.str().find('.') != std::string_view::npos;
     if (quoted || !asked.contains(full)) complain(full, node);
     if (const toml::table* below = node.as_table()) walk(*below, full, asked, complain);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// TOML configuration with positions: every complaint names file, line, column and key, and no key is
-/// ignored.
+/// TOML configuration with source positions: every error message names file, line, column and key, and an
+/// unknown key is an error.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,18 +15,19 @@
 
 namespace twincell {
 
-/// Largest configuration, bytes.
+/// Maximum size of a configuration, bytes.
 inline constexpr std::uintmax_t kLargestConfig = std::uintmax_t{16} << 20;
 
-/// One table of a configuration. Getters return nothing for an absent key and throw ConfigError for one of
-/// the wrong type. Asking for a key marks it as known.
+/// One table of a configuration. Getters return nullopt for an absent key and throw ConfigError for a value
+/// of the wrong type. Each query marks its key as known, even if the key is absent.
 class ConfigSection {
  public:
   [[nodiscard]] std::optional<double> number(const std::string& key) const;
   [[nodiscard]] std::optional<std::int64_t> integer(const std::string& key) const;
   [[nodiscard]] std::optional<bool> boolean(const std::string& key) const;
   [[nodiscard]] std::optional<std::string> text(const std::string& key) const;
-  /// A number or whole number within bounds. \throws ConfigError as require_range
+  /// A number or an integer within bounds; `open_lower` excludes the lower bound.
+  /// \throws ConfigError as require_range
   [[nodiscard]] std::optional<double> number_in(const std::string& key, std::optional<double> lower,
                                                 std::optional<double> upper = std::nullopt,
                                                 bool open_lower = false) const;
@@ -34,18 +35,18 @@ class ConfigSection {
                                                        std::int64_t upper) const;
   /// A list of exactly `count` finite numbers.
   [[nodiscard]] std::optional<std::vector<double>> numbers(const std::string& key, std::size_t count) const;
-  /// A list, not empty, of pairs [a, b] of finite numbers.
+  /// A non-empty list of pairs [a, b] of finite numbers.
   [[nodiscard]] std::optional<std::vector<std::pair<double, double>>> pairs(const std::string& key) const;
-  /// Whether the key is there and holds a list: for keys that take one number or several.
+  /// Whether the key is present and its value is a list, for keys that accept one number or several.
   [[nodiscard]] bool is_list(const std::string& key) const;
-  /// One of `words`; \throws ConfigError naming them otherwise.
+  /// A text that is one of `words`. \throws ConfigError listing them otherwise
   [[nodiscard]] std::optional<std::string> word(const std::string& key,
                                                 const std::vector<std::string>& words) const;
-  /// A table below this one; an absent table is an empty section.
+  /// The subtable `key`; an absent table is an empty section.
   [[nodiscard]] ConfigSection section(const std::string& key) const;
-  /// Whether the key is there.
+  /// Whether the key is present.
   [[nodiscard]] bool has(const std::string& key) const;
-  /// Where a key stands, or where its table stands if it is absent; of the empty key: the table itself.
+  /// Source position of a key, or of its table if the key is absent. The empty key is the table itself.
   [[nodiscard]] Where where(const std::string& key) const;
 
  private:
@@ -64,29 +65,34 @@ class ConfigSection {
 /// A whole configuration.
 class Config {
  public:
-  /// \throws InputError if the file cannot be read, is no regular file or is larger than kLargestConfig;
-  /// ConfigError "file:line:column: …" if it is not TOML, or its tables lie more than 100 deep in each other
+  /// \throws InputError if the file cannot be read, is not a regular file or is larger than kLargestConfig;
+  /// ConfigError "file:line:column: …" if it is not TOML, or if tables and lists are nested more than 100
+  /// levels deep
   static Config from_file(const std::filesystem::path& path);
   static Config from_text(const std::string& text, const std::string& name);
 
-  /// Lays `upper` over this one: its keys win, tables are merged.
+  /// Merges `upper` into this configuration. Tables are merged; a key of `upper` replaces the same key here.
   void overlay(Config&& upper);
-  /// Removes the other members of a group of mutually exclusive keys of `section` when `upper` names one of
-  /// them, so that a user's choice displaces a preset's.
+  /// If `upper` sets any of the mutually exclusive keys `alternatives` of `section`, removes all of them from
+  /// this configuration, so that a user's choice replaces the preset's.
   void yield_to(const Config& upper, const std::string& section,
                 const std::vector<std::string>& alternatives);
-  /// Moves what `lower` has at the path `from` to the path `to` of this one, tables between made as needed;
-  /// it keeps its own file and line for complaints. \pre `from` is there, `to` is not
+  /// Moves the value at path `from` of `lower` to path `to` of this configuration; intermediate tables are
+  /// created as needed. Error messages about the value still name its original file and line.
+  /// \pre `from` exists, `to` does not
   void adopt(Config& lower, const std::string& from, const std::string& to);
-  /// Puts `value` at the path `to` and removes the key at `from`; complaints about `to` go on to name `from`
-  /// and where it stood. \pre `from` is there, `to` is not
+  /// Sets path `to` to `value` and removes the key at `from`. Error messages about `to` still name `from` and
+  /// its source position.
+  /// \pre `from` exists, `to` does not
   void restate(const std::string& from, const std::string& to, double value);
-  /// Removes the key or table at `path`, if it is there.
+  /// Removes the key or table at `path`, if present.
   void erase(const std::string& path);
-  /// "section.key=value" from the command line; a value that is not TOML is taken as text.
+  /// Applies "section.key=value" from the command line. A value that is not valid TOML is read as text.
   void assign(const std::string& assignment);
+  /// The top-level table.
   [[nodiscard]] ConfigSection root() const;
-  /// \throws ConfigError for the first key that nobody asked for, with the nearest known one
+  /// \throws ConfigError for the first key that was never queried; the message suggests the most similar
+  /// known key
   void refuse_unknown_keys() const;
   /// The resolved configuration as TOML.
   [[nodiscard]] std::string text() const;

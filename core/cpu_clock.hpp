@@ -1,13 +1,12 @@
 #pragma once
 /// \file
-/// Time that the calling thread has spent computing.
+/// Processor time of the calling thread.
 
 #include <ctime>
 
 namespace twincell {
 
-/// Seconds of processor time of the calling thread, from an arbitrary beginning: what other programs take of
-/// the processor does not count.
+/// Processor time of the calling thread since an arbitrary origin, s. Excludes the time of other programs.
 inline double cpu_seconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

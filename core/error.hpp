@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Errors a user can meet. Each is one sentence that names the file, line, key, value and bound, and carries
-/// the exit code of the program. Faults of our own are asserts, not these.
+/// Errors that the user sees. Each message is one sentence that names the file, line, key, value and bound,
+/// and each error carries the exit code of the program. Programming errors are asserts instead.
 
 #include <optional>
 #include <stdexcept>
@@ -12,27 +12,27 @@ namespace twincell {
 /// Exit codes of the program; one table for all verbs.
 enum class ExitCode : int {
   done = 0,
-  failed = 1,         ///< went wrong while running
-  usage = 2,          ///< command line or configuration
-  input = 3,          ///< a file that cannot be read or is malformed
+  failed = 1,         ///< error during the run
+  usage = 2,          ///< invalid command line or configuration
+  input = 3,          ///< an input file is unreadable or malformed
   gate = 4,           ///< finished, but a quality gate failed
   partial = 5,        ///< stopped early, can be resumed
   interrupted = 130,  ///< SIGINT
   terminated = 143,   ///< SIGTERM
 };
 
-/// Where a complaint points to. Empty or zero parts are left out of the text.
+/// Position that an error message refers to. Empty or zero members are omitted from the text.
 struct Where {
   std::string file;
   long line = 0;
   long column = 0;
   std::string key;
 
-  /// "scene.toml:12:3: drive.gamma", or as much of it as is known.
+  /// "scene.toml:12:3: drive.gamma", or the members that are known.
   [[nodiscard]] std::string text() const;
 };
 
-/// Base of all errors meant for a user's eyes.
+/// Base class of all errors that are shown to the user.
 class Error : public std::runtime_error {
  public:
   Error(ExitCode code, const std::string& sentence) : std::runtime_error(sentence), code_(code) {}
@@ -42,25 +42,25 @@ class Error : public std::runtime_error {
   ExitCode code_;
 };
 
-/// A configuration or command line that asks for something impossible: exit code 2.
+/// An invalid configuration or command line: exit code 2.
 class ConfigError : public Error {
  public:
   ConfigError(const Where& where, const std::string& complaint);
 };
 
-/// A file that is missing, truncated, malformed or not what it claims: exit code 3.
+/// A file that is missing, truncated, malformed or not of the stated format: exit code 3.
 class InputError : public Error {
  public:
   InputError(const Where& where, const std::string& complaint);
 };
 
-/// A run that went wrong after it began (overlap bound, non-finite number, full disk): exit code 1.
+/// A run that failed after it started (overlap bound, non-finite number, full disk): exit code 1.
 class RunError : public Error {
  public:
   explicit RunError(const std::string& sentence) : Error(ExitCode::failed, sentence) {}
 };
 
-/// The user or the system asked the program to stop: exit code 130 or 143.
+/// The user or the system stopped the program by a signal: exit code 130 or 143.
 class Interrupted : public Error {
  public:
   explicit Interrupted(
@@ -68,8 +68,8 @@ class Interrupted : public Error {
       : Error(code, sentence) {}
 };
 
-/// Throws ConfigError unless lower <= value <= upper (either bound may be absent; `open_lower` excludes the
-/// lower one). A value that is not finite never passes.
+/// Checks lower <= value <= upper. Either bound may be absent; `open_lower` excludes the lower one.
+/// \throws ConfigError if the value is out of range or not finite
 void require_range(const Where& where, double value, std::optional<double> lower, std::optional<double> upper,
                    bool open_lower = false);
 

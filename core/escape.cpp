@@ -6,7 +6,7 @@ namespace twincell {
 
 namespace {
 
-/// Each character through `put`; bytes that are none come as U+FFFD.
+/// Passes each UTF-8 character to `put`; bytes that are not valid UTF-8 are passed as U+FFFD.
 template <class Put>
 std::string rewritten(std::string_view text, Put put) {
   std::string out;

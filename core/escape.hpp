@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Strings of a user's (names of files, columns, runs, keys) inside other languages: one function for each.
-/// For gnuplot: analysis/report/gnuplot_text.hpp; for JSON: json_text.hpp; for strings of TOML:
-/// toml_leaves.hpp.
+/// Escapes user strings (names of files, columns, runs, keys) for embedding in other languages, one function
+/// per language. Also: analysis/report/gnuplot_text.hpp for gnuplot, json_text.hpp for JSON, toml_leaves.hpp
+/// for TOML strings.
 
 #include <cstddef>
 #include <string>
@@ -10,22 +10,23 @@
 
 namespace twincell {
 
-/// Length in bytes of the UTF-8 character (RFC 3629) at the beginning of `s`; 0 if there is none. \pre not
-/// empty
+/// Length in bytes of the UTF-8 character (RFC 3629) at the start of `s`; 0 if `s` does not start with a
+/// valid one.
+/// \pre `s` is not empty
 std::size_t utf8_length(std::string_view s);
 
-/// `text` on one line, for comments, headings and messages: control characters (newlines too) become spaces,
-/// bytes that are no UTF-8 become U+FFFD.
+/// `text` on one line, for comments, headings and messages. Control characters, including newlines, become
+/// spaces. Bytes that are not valid UTF-8 become U+FFFD.
 std::string one_line(std::string_view text);
 
-/// One word of a POSIX shell's command line that stands for `text` and nothing else.
+/// `text` as one word of a POSIX shell command line, quoted where necessary.
 std::string shell_word(std::string_view text);
 
-/// Text between HTML tags, or in an attribute in either kind of quotes. Bytes that are no UTF-8 become
-/// U+FFFD.
+/// `text` escaped for use between HTML tags, or in an attribute value in single or double quotes. Bytes that
+/// are not valid UTF-8 become U+FFFD.
 std::string html_text(std::string_view text);
 
-/// One field of a CSV table (RFC 4180).
+/// `text` as one field of a CSV table (RFC 4180), quoted where necessary.
 std::string csv_field(std::string_view text);
 
 }  // namespace twincell

@@ -13,16 +13,17 @@ namespace twincell::h5 {
 
 namespace {
 
-/// HDF5's own innermost reason, which says more than "failed".
+/// Reason of the innermost function in HDF5's error stack, the most specific one.
 std::string reason() {
   std::string text;
   auto visit = [](unsigned, const H5E_error2_t* entry, void* out) -> herr_t {
     if (entry->desc != nullptr && *entry->desc != '\0') *static_cast<std::string*>(out) = entry->desc;
     return 0;
   };
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, visit, &text);  // ends at the innermost
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, visit, &text);  // the last visit is the innermost
   H5Eclear2(H5E_DEFAULT);
-  // What the system said of a failed write stands between clocks, descriptors and addresses.
+  // For a failed write, HDF5 quotes the system's message among times, descriptors and addresses. Keep only
+  // the message.
   constexpr std::string_view kBefore = "error message = '";
   if (const std::size_t at = text.find(kBefore); at != std::string::npos) {
     const std::size_t begin = at + kBefore.size();
@@ -100,7 +101,7 @@ void check(herr_t status, const std::string& what) {
 }
 
 void quiet() {
-  // A file that the disk would not take stays half open in the library, which stumbles over it at the exit.
+  // After a failed write, the file stays half open in the library, whose cleanup at exit then fails.
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
@@ -210,7 +211,7 @@ hsize_t count_of(const std::vector<hsize_t>& shape) {
   return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
 }
 
-/// Strings of a dataset or attribute; `read` fetches into the given memory.
+/// Strings of a dataset or an attribute; `read` reads them into the given memory.
 template <class Read>
 std::vector<std::string> read_strings(hid_t type_id, hid_t space_id, Read read) {
   const hssize_t n = H5Sget_simple_extent_npoints(space_id);
@@ -278,7 +279,7 @@ std::vector<int> read_int_attribute(hid_t object, const std::string& name) {
 }
 
 void require_stored(hid_t dataset, const std::string& name) {
-  // Deflate packs 1032 to 1 at most; small datasets may be all fill value.
+  // Deflate compresses at most 1032 to 1. Small datasets may consist of fill values only.
   constexpr double kMostPacked = 1100, kSmall = 1 << 20;
   double claimed = 1;
   for (const hsize_t n : extents(dataset)) claimed *= static_cast<double>(n);
@@ -288,7 +289,7 @@ void require_stored(hid_t dataset, const std::string& name) {
   if (claimed > kSmall + kMostPacked * stored)
     throw RunError(fmt::format("{}: the dataset claims {:.3g} bytes, and the file holds {:.3g} of them.",
                                name, claimed, stored));
-  // Packed twice, a kilobyte unpacks to a gigabyte before its size is compared with anything.
+  // Deflated twice, a kilobyte expands to a gigabyte before its size can be checked.
   const Handle layout = own(H5Dget_create_plist(dataset), "reading the layout");
   int packings = 0;
   for (int i = 0; i < H5Pget_nfilters(layout.get()); ++i) {
@@ -298,12 +299,11 @@ void require_stored(hid_t dataset, const std::string& name) {
                        nullptr) == H5Z_FILTER_DEFLATE)
       ++packings;
   }
-  if (packings > 1)
-    throw RunError(fmt::format("{}: the dataset is compressed {} times over.", name, packings));
+  if (packings > 1) throw RunError(fmt::format("{}: the dataset is compressed {} times.", name, packings));
 }
 
 std::uint64_t stored_bytes(hid_t dataset) {
-  // What HDF5 says is what the file says of itself.
+  // HDF5 returns the size that the file states, which may be wrong; the file size is an upper bound.
   const Handle file = own(H5Iget_file_id(dataset), "finding the file");
   hsize_t file_size = 0;
   check(H5Fget_filesize(file.get(), &file_size), "reading the size of the file");
@@ -339,7 +339,8 @@ Series::Series(hid_t group, const std::string& name, hid_t file_type, std::vecto
   std::vector<hsize_t> now{0}, most{H5S_UNLIMITED}, chunk{records_per_chunk};
   for (hsize_t n : record_) {
     now.push_back(n);
-    most.push_back(n == 0 ? H5S_UNLIMITED : n);  // a trajectory of no beads is legal, a zero maximum is not
+    // A trajectory without beads is valid, but a maximum of zero is not.
+    most.push_back(n == 0 ? H5S_UNLIMITED : n);
     chunk.push_back(std::max<hsize_t>(n, 1));
   }
   const Handle space =
@@ -370,7 +371,7 @@ Series::Series(hid_t group, const std::string& name) : dataset_(open_dataset(gro
 
 namespace {
 
-/// Selects `many` records from `index` on and calls `move(memory space, file space)`.
+/// Selects `many` records starting at `index` and calls `move(memory space, file space)`.
 template <class Move>
 void with_records(hid_t dataset, const std::vector<hsize_t>& record, hsize_t index, hsize_t many, Move move) {
   std::vector<hsize_t> start{index}, count{many};

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The HDF5 C API behind handles that close themselves and calls that check themselves.
+/// Wrappers of the HDF5 C API: handles that close automatically and calls that check their status.
 
 #include <hdf5.h>
 
@@ -11,7 +11,7 @@
 
 namespace twincell::h5 {
 
-/// An HDF5 identifier of any kind; closes itself.
+/// Owner of an HDF5 identifier of any kind. The destructor closes it.
 class Handle {
  public:
   Handle() = default;
@@ -32,12 +32,13 @@ class Handle {
   hid_t id_ = -1;
 };
 
-/// Wraps a fresh identifier. \throws RunError "`what` failed: HDF5's own reason" if it is negative
+/// Takes ownership of a new identifier.
+/// \throws RunError "`what` failed: reason given by HDF5" if it is negative
 Handle own(hid_t id, const std::string& what);
-/// \throws RunError likewise if `status` is negative
+/// \throws RunError with the same text if `status` is negative
 void check(herr_t status, const std::string& what);
-/// Turns off HDF5's own printing; the reason goes into our sentences. And its own tidying at the exit, if
-/// called before anything else of HDF5. Called by each function that opens a file.
+/// Disables HDF5's own error output; our messages quote its reason instead. Also disables HDF5's cleanup at
+/// exit, if called before any other HDF5 function. Every function that opens a file calls this.
 void quiet();
 
 /// Native memory type of T: double, int, std::int64_t, std::uint8_t, std::int8_t.
@@ -48,22 +49,25 @@ Handle create_group(hid_t parent, const std::string& name);
 /// True if `path` (one or several levels) exists below `parent`.
 bool exists(hid_t parent, const std::string& path);
 
-/// Attributes. Strings are fixed-length, ASCII, scalar, as H5MD wants them.
+/// Write an attribute: a value as a scalar, a vector as an array of rank 1. Strings are ASCII of fixed
+/// length, as H5MD requires.
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
 void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& texts);
 void write_attribute(hid_t object, const std::string& name, int value);
 void write_attribute(hid_t object, const std::string& name, const std::vector<int>& values);
 
-/// Whole datasets, written once. Scalars are rank 0.
+/// Write a whole dataset at once. Scalars have rank 0.
 template <class T>
 void write_dataset(hid_t parent, const std::string& name, const T* values, const std::vector<hsize_t>& shape);
 void write_scalar(hid_t parent, const std::string& name, double value);
 void write_text(hid_t parent, const std::string& name, const std::string& text);
 
-/// Reads. An absent or differently shaped object is an empty result; a damaged one throws RunError.
+/// Read a dataset or an attribute. The result for an object that is absent or of another shape is false or
+/// empty.
+/// \throws RunError if the object is damaged
 bool read_scalar(hid_t parent, const std::string& name, double& value);
 bool read_text(hid_t parent, const std::string& name, std::string& text);
-/// Fixed- or variable-length string attribute, scalar or list.
+/// String attribute of fixed or variable length, scalar or list.
 std::vector<std::string> read_text_attribute(hid_t object, const std::string& name);
 std::vector<int> read_int_attribute(hid_t object, const std::string& name);
 template <class T>
@@ -71,29 +75,30 @@ std::vector<T> read_dataset(hid_t parent, const std::string& name);
 /// Extents of a dataset; empty for a scalar.
 std::vector<hsize_t> extents(hid_t dataset);
 
-/// Bytes that the file holds of a dataset, compressed or not; never more than the file is long.
+/// Bytes that a dataset occupies in the file, compressed or not; at most the size of the file.
 std::uint64_t stored_bytes(hid_t dataset);
-/// Refuses a dataset that claims more than the file can hold of it: more than a megabyte and 1100 times the
-/// bytes stored, which is above what deflate packs; or that is deflated more than once. Reading it would take
-/// memory and time that the file does not explain. \throws RunError
+/// Rejects a dataset whose stated size exceeds 2^20 bytes plus 1100 times the bytes stored, more than deflate
+/// can compress, or that is deflated more than once. Reading it would take memory and time out of proportion
+/// to the file.
+/// \throws RunError
 void require_stored(hid_t dataset, const std::string& name);
 
 /// A dataset that grows along its first dimension, one record per frame.
 class Series {
  public:
   Series() = default;
-  /// \param record shape of one record (may be empty: a scalar series)
+  /// \param record shape of one record; empty for a scalar series
   /// \param records_per_chunk 1 for bead columns, 1024 for scalar series
   Series(hid_t group, const std::string& name, hid_t file_type, std::vector<hsize_t> record,
          hsize_t records_per_chunk, const void* fill = nullptr);
-  /// Opens an existing dataset for reading.
+  /// Opens an existing dataset for reading. The series converts to false if there is none or it is a scalar.
   Series(hid_t group, const std::string& name);
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(dataset_); }
   [[nodiscard]] hsize_t size() const { return size_; }
   [[nodiscard]] const std::vector<hsize_t>& record() const { return record_; }
   void append(hid_t memory_type, const void* values);
   void read(hsize_t index, hid_t memory_type, void* values) const;
-  /// `count` records one after the other.
+  /// Append or read `count` consecutive records.
   void append(hid_t memory_type, const void* values, hsize_t count);
   void read(hsize_t index, hid_t memory_type, void* values, hsize_t count) const;
 

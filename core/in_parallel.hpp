@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Jobs that do not depend on each other, on several threads.
+/// Runs independent jobs on several threads.
 
 #include <algorithm>
 #include <atomic>
@@ -14,13 +14,13 @@
 
 namespace twincell {
 
-/// Calls work(i) once for each i = 0 .. n - 1, begun in this order, on so many threads, of which the caller's
-/// is one; returns when all have ended.
+/// Calls work(i) once for each i = 0 .. n - 1, in this order, on `threads` threads including the caller's.
+/// Returns when all jobs have ended.
 ///
-/// After a job has thrown, none begins any more, and once those under way have ended the exception of the
-/// smallest i is thrown again: the same one for any number of threads. A signal that asks the process to stop
-/// (cancellation.hpp) counts as such an exception of the next job.
-/// \param threads fewer than 1 counts as 1
+/// After a job throws, no further job starts. When the running jobs have ended, the exception of the smallest
+/// i is rethrown, which is the same for any number of threads. A cancellation request (cancellation.hpp) acts
+/// as an exception of the next job.
+/// \param threads values below 1 count as 1
 template <class Work>
 void in_parallel(std::size_t n, int threads, const Work& work) {
   std::atomic<std::size_t> next{0};

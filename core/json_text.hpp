@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// JSON as text. The one way to it: a file name that is no UTF-8 must not end the program.
+/// JSON as text. Use this for all JSON output: `dump` with its default settings throws on a file name that is
+/// not valid UTF-8.
 
 #include <nlohmann/json.hpp>
 #include <string>

@@ -11,7 +11,7 @@ namespace twincell {
 
 namespace {
 
-/// "MemAvailable:  1234 kB" and "SwapFree: ..." added up, bytes.
+/// Sum of "MemAvailable: 1234 kB" and "SwapFree: ...", bytes; infinite without MemAvailable.
 double of_system() {
   std::ifstream info("/proc/meminfo");
   double bytes = 0;
@@ -25,12 +25,12 @@ double of_system() {
   return found ? bytes : HUGE_VAL;
 }
 
-/// The tightest limit of the groups that the process is in, bytes.
+/// Lowest limit of the process's group and all groups above it, bytes.
 double of_groups() {
   std::ifstream groups("/proc/self/cgroup");
   double least = HUGE_VAL;
   for (std::string line; std::getline(groups, line);) {
-    if (!line.starts_with("0::/")) continue;  // version 2
+    if (!line.starts_with("0::/")) continue;  // cgroup version 2
     for (std::string path = line.substr(3);; path.erase(path.rfind('/'))) {
       double most = 0;
       if (std::ifstream limit("/sys/fs/cgroup" + path + "/memory.max"); limit >> most)

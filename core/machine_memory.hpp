@@ -1,11 +1,12 @@
 #pragma once
 /// \file
-/// How much memory the process can still get.
+/// Memory that the process can still allocate.
 
 namespace twincell {
 
-/// Bytes: what the system says is available, swap included, or less where the process's group (cgroup v2) or
-/// its own limit (`ulimit -v`) allows less. Infinite where the system does not say.
+/// Available memory, bytes: what the system reports as available including swap, or the limit of the
+/// process's group (cgroup v2) or of the process itself (`ulimit -v`) if that is lower. Infinite if the
+/// system reports none of these numbers.
 double memory_available();
 
 }  // namespace twincell

@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// Memory that is used again.
+/// Allocator settings that keep freed memory for reuse.
 
 #include <malloc.h>
 
 namespace twincell {
 
-/// Has the allocator keep what is freed instead of handing it back. Frames come and go by megabytes: asked
-/// for anew each time, pages that the kernel must clear took a quarter of the time of locating. To be called
-/// once, at the start of a program.
+/// Makes malloc keep freed memory instead of returning it to the kernel. Frames of several megabytes are
+/// allocated and freed continually. When each came from new pages, clearing the pages in the kernel took a
+/// quarter of the time of locating. Call once, at program start.
 inline void tune_malloc() {
   constexpr int kNever = 1 << 30;
   mallopt(M_MMAP_THRESHOLD, kNever);

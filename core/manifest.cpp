@@ -24,9 +24,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uintmax_t kLargest = std::uintmax_t{256} << 20;  // bytes of a manifest
+constexpr std::uintmax_t kLargest = std::uintmax_t{256} << 20;  // maximum size of a manifest, bytes
 
-/// "a/b.csv", nothing absolute, no "..", nothing twice said.
+/// Whether a name is a normalised relative path without "..", such as "a/b.csv", and not the manifest's.
 bool stays_inside(const std::string& name) {
   const fs::path path(name);
   if (name.empty() || path.is_absolute() || path.lexically_normal() != path) return false;
@@ -40,7 +40,7 @@ bool regular(const fs::path& path) {
   return fs::symlink_status(path, ec).type() == fs::file_type::regular;
 }
 
-/// What the system says of a file that changes with every change of its bytes.
+/// Size and times of a file, which change whenever its content changes.
 struct Stamp {
   off_t size = 0;
   timespec written{}, changed{};
@@ -53,10 +53,10 @@ struct Stamp {
   }
 };
 
-/// SHA-256 of a file. One that has not changed since this process read it is not read again: the folders of
-/// large stacks are held against their manifests before, during and after a run. The time of change (ctime)
-/// cannot be set by anybody; since clocks of file systems tick, a sum is kept only of files that were last
-/// changed some ticks before they were read.
+/// SHA-256 of a file, cached per process for as long as the file is unchanged: the folders of large stacks
+/// are compared with their manifests before, during and after a run. Programs cannot set the change time
+/// (ctime). File system clocks are coarse, so that a sum is cached only if the file was last changed more
+/// than kTicks before it was read.
 std::string sum_of(const fs::path& file) {
   struct Known {
     Stamp stamp;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The middle of some numbers.
+/// Medians of lists of numbers.
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace twincell {
 
-/// The number at place n/2 of the sorted ones; of an even number the upper of the two in the middle.
+/// Upper median: the element of index n/2 of the sorted values, for even n the larger of the middle two.
 /// \param values not empty
 template <class T>
 T upper_median(std::vector<T> values) {
@@ -19,11 +19,12 @@ T upper_median(std::vector<T> values) {
   return *middle;
 }
 
-/// Likewise of the first n of few numbers: each is compared with all, in vectors and without branches, which
-/// for thirty is several times as fast as to sort them. \param n  1 .. kMost; none of them NaN
+/// Upper median of the first n of a few values. Each value is compared with all others, vectorised and
+/// without branches; for thirty values this is several times faster than sorting.
+/// \param n 1 .. kMost; no value may be NaN
 template <class T, std::size_t kMost>
 T upper_median_of_few(std::array<T, kMost> values, std::size_t n) {
-  constexpr std::size_t kVector = 8;  // whole vectors, filled up with what is larger
+  constexpr std::size_t kVector = 8;  // the array is padded with infinity to whole vectors
   static_assert(kMost % kVector == 0);
   const std::size_t filled = (n + kVector - 1) / kVector * kVector;
   for (std::size_t k = n; k < filled; ++k) values[k] = std::numeric_limits<T>::infinity();

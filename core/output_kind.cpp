@@ -19,7 +19,7 @@ std::string head_of(const std::filesystem::path& file, std::size_t bytes) {
   return head;
 }
 
-/// HDF5 that opens and of which `says` is true.
+/// Whether the file opens as HDF5 and satisfies `says`.
 template <class Says>
 bool hdf5_says(const std::filesystem::path& file, Says says) {
   h5::quiet();

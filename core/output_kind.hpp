@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// The kinds of files and folders that this program writes, and how an existing file is recognised as one of
-/// them. A file is replaced without being asked only if it is a product of the same kind.
+/// them. Without --force, a file is replaced only if it is a product of the same kind.
 
 #include <filesystem>
 #include <string>
@@ -11,26 +11,26 @@ namespace twincell {
 
 /// A kind of output.
 struct Product {
-  /// How a file shows that it is of this kind.
+  /// How a file of this kind is recognised.
   enum class Sign {
-    none,             ///< it does not: an existing file is never taken for a product
+    none,             ///< it is not: an existing file never counts as a product
     h5md_creator,     ///< HDF5, /h5md/creator@name = "twincell"
-    results_group,    ///< HDF5, /results beside /provenance
-    checkpoint,       ///< HDF5, the attribute of a checkpoint's version
+    results_group,    ///< HDF5 with /results and /provenance
+    checkpoint,       ///< HDF5 with the root attribute "sha256"
     first_line,       ///< the first line is `mark`
     beginning,        ///< the text begins with `mark`
     ending,           ///< the bytes end with `mark`
     json_member,      ///< a JSON object with the member `mark`
     picture_software  ///< PNG whose text chunk "Software" is "twincell"
   };
-  std::string name;  ///< with its article, for sentences: "a trajectory"
+  std::string name;  ///< with its article, for messages: "a trajectory"
   Sign sign = Sign::none;
   std::string mark;
   bool folder = false;
-  /// Of a folder: several runs write into it, and the files of earlier runs stay.
+  /// For a folder: several runs write into it, and the files of earlier runs stay.
   bool shared = false;
 
-  /// Whether it is text in one file, which standard output can take.
+  /// Whether the product is a single text file, which can go to standard output.
   [[nodiscard]] bool is_text() const {
     return !folder && (sign == Sign::first_line || sign == Sign::beginning || sign == Sign::json_member);
   }
@@ -38,7 +38,7 @@ struct Product {
   static Product trajectory() { return {.name = "a trajectory", .sign = Sign::h5md_creator, .mark = {}}; }
   static Product results() { return {.name = "a results file", .sign = Sign::results_group, .mark = {}}; }
   static Product checkpoint() { return {.name = "a checkpoint", .sign = Sign::checkpoint, .mark = {}}; }
-  /// A CSV table with this line of names.
+  /// A CSV table with this header line.
   static Product table(const std::string& heading);
   static Product text(std::string name, std::string beginning) {
     return {.name = std::move(name), .sign = Sign::beginning, .mark = std::move(beginning)};
@@ -47,12 +47,12 @@ struct Product {
     return {.name = std::move(name), .sign = Sign::json_member, .mark = std::move(member)};
   }
   static Product picture() { return {.name = "a picture", .sign = Sign::picture_software, .mark = {}}; }
-  /// A film that ends with kFilmMark, in a box that players skip.
+  /// A film whose last bytes are kFilmMark, in a box that players skip.
   static Product film() { return {.name = "a film", .sign = Sign::ending, .mark = kFilmMark}; }
   static constexpr const char* kFilmMark = "film by twincell";
-  /// A file in a folder that the program owns, such as one that is being written.
+  /// A file in a folder that the program owns, such as a folder that is being written.
   static Product part() { return {.name = "a part", .sign = Sign::none, .mark = {}}; }
-  /// The folder of a sweep or a reproduction: many runs, by any number of processes.
+  /// The folder of a sweep or a reproduction: many runs, written by any number of processes.
   static Product runs() { return shared_folder("a folder of runs"); }
   static Product whole_folder(std::string name) {
     return {.name = std::move(name), .sign = Sign::none, .mark = {}, .folder = true};
@@ -62,7 +62,7 @@ struct Product {
   }
 };
 
-/// Whether an existing regular file is of this kind. Unreadable files are not.
+/// Whether an existing regular file is of this kind. False for an unreadable file.
 bool is_product(const std::filesystem::path& file, const Product& product);
 
 }  // namespace twincell

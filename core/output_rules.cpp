@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What the process reads, and whether it may replace by force.
+/// The registered inputs, and whether --force is set.
 struct Rules {
   std::mutex mutex;
   std::vector<fs::path> inputs;  ///< canonical
@@ -36,7 +36,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
          of_a.st_ino == of_b.st_ino;
 }
 
-/// Whether `path` is `folder` or lies below it, by inode at every step.
+/// Whether `path` is `folder` or is below it; the inodes are compared at each level.
 bool lies_in(const fs::path& path, const fs::path& folder) {
   for (fs::path at = path;; at = at.parent_path()) {
     if (same_file(at, folder)) return true;
@@ -49,7 +49,7 @@ std::vector<fs::path> inputs() {
   return rules().inputs;
 }
 
-/// The names of mount points, as the kernel lists them.
+/// Whether a folder is a mount point, judged by its parent folder and by the kernel's list of mount points.
 bool is_mount_point(const fs::path& folder) {
   struct stat here = {}, above = {};
   if (::stat(folder.c_str(), &here) == 0 && ::stat((folder / "..").c_str(), &above) == 0 &&
@@ -76,8 +76,8 @@ bool is_temporary(const fs::path& name) {
   return name.filename().string().starts_with(kTemporaryPrefix);
 }
 
-/// The first thing by name in a folder; empty if there is none. In a folder that several processes share
-/// their unfinished outputs do not count: one of them may be writing the manifest.
+/// Name of the first entry of a folder in order of names; empty if there is none. In a folder that several
+/// processes share, unfinished outputs do not count, since one of them may be a manifest.
 std::string first_entry(const fs::path& folder, bool shared, const Where& where) {
   std::string first;
   std::error_code ec;
@@ -125,7 +125,7 @@ void require_folder(const fs::path& final, const Product& product, const Where& 
   if (is_mount_point(final)) throw ConfigError(where, "the output is a mount point; name a folder below it.");
   for (const fs::path& input : inputs())
     if (lies_in(input, final))
-      throw ConfigError(where, fmt::format("the output folder holds the input '{}'.", input.string()));
+      throw ConfigError(where, fmt::format("the output folder contains the input '{}'.", input.string()));
   if (::access(final.c_str(), R_OK | W_OK | X_OK) != 0)
     throw ConfigError(where, "the output's folder cannot be written to.");
   const std::string first = first_entry(final, product.shared, where);

@@ -1,11 +1,10 @@
 #pragma once
 /// \file
-/// What an output may replace: one rule for all verbs (docs/running.md, "Where output goes").
+/// What an output may replace; the rules are the same for all verbs (docs/running.md, "Where output goes").
 ///
-/// A file that exists is replaced if it is a product of the same kind, or with --force. A folder is written
-/// into if it is absent, empty, or has a manifest of the same product; of what lies in it only files that the
-/// manifest lists and that are unchanged are replaced. An input is never replaced, nor is anything but a
-/// regular file.
+/// An existing file is replaced if it is a product of the same kind, or with --force. A folder is written to
+/// if it is absent, empty, or has a manifest of the same product. In it, only files that the manifest lists
+/// and that are unchanged are replaced. Inputs and anything that is not a regular file are never replaced.
 
 #include <filesystem>
 #include <string>
@@ -14,28 +13,31 @@
 
 namespace twincell {
 
-/// Names of everything temporary begin with this: unfinished outputs, locks.
+/// Prefix of the names of all temporary files: unfinished outputs and locks.
 inline constexpr const char* kTemporaryPrefix = ".twincell-";
 
-/// Notes that the program reads a file or folder: no output replaces it or anything in it. Names of what does
-/// not exist are ignored. Safe to call from several threads.
+/// Registers a file or folder as an input. No output replaces it, and no output folder may contain it. A file
+/// in an input folder is replaced only if it is a product of the output's kind, also with --force. Paths that
+/// do not exist are ignored. Thread-safe.
 void protect_input(const std::filesystem::path& path);
 
-/// With --force one existing regular file may be of any kind, unless it is an input.
+/// Allows an output to replace an existing regular file of any kind (--force), unless it is an input.
 void replace_by_force(bool allowed);
 
-/// The output that is standard output, for products that are text in one file. A file of that name is `./-`.
+/// Output name that stands for standard output, for products that are a single text file. `./-` is a file of
+/// that name.
 inline constexpr const char* kStandardOutput = "-";
 
-/// Where an output goes: absolute, links and ".." resolved, or kStandardOutput.
-/// \throws ConfigError naming the output and what is in its way, before anything has been written
+/// Path that an output is written to: absolute, with links and ".." resolved, or kStandardOutput.
+/// \throws ConfigError naming the output and the obstacle, before anything is written
 std::filesystem::path require_output(const std::filesystem::path& path, const Product& product);
 
-/// Whether a file that exists may be replaced by a product.
+/// Whether `product` may replace an existing file: one of the same kind, or any with --force.
 bool may_replace(const std::filesystem::path& file, const Product& product);
 
-/// Makes a folder that several runs share, with its manifest, or accepts it if it is there.
-/// \return as require_output \throws ConfigError as it does, or if the folder cannot be made
+/// Creates a folder that several runs share, with its manifest, or accepts an existing one.
+/// \return as require_output
+/// \throws ConfigError as require_output, or if the folder cannot be created
 std::filesystem::path claim_shared_folder(const std::filesystem::path& path, const Product& product);
 
 }  // namespace twincell

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How long work reports where it is and learns that it should stop.
+/// Progress reports of long computations, and their check for cancellation.
 
 #include <cstdint>
 
@@ -8,11 +8,11 @@ namespace twincell {
 
 class Progress;
 
-/// Asks a Progress once in so many small pieces of work, for loops whose pieces take microseconds.
+/// Calls Progress::update once every kPieces units of work, for loops whose units take microseconds.
 class Heed {
  public:
   explicit Heed(Progress& progress) : progress_(progress) {}
-  /// After each piece of work. \throws as Progress::update
+  /// Call after each unit of work. \throws as Progress::update
   void operator()();
 
  private:
@@ -21,13 +21,13 @@ class Heed {
   unsigned done_ = 0;
 };
 
-/// Handed to every long function. The default does nothing; the program's own draws a bar and watches for
-/// signals.
+/// Passed to every long-running function. The base class does nothing; the program's implementation draws a
+/// bar and checks for signals.
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// Called by the worker between units of work. May throw Interrupted: the worker then unwinds, and every
-  /// unfinished output disappears with it (atomic_file.hpp).
+  /// Called by the worker between units of work. May throw Interrupted: the stack of the worker then unwinds,
+  /// which deletes every unfinished output (atomic_file.hpp).
   virtual void update(std::int64_t /*done*/, std::int64_t /*total*/) {}
 
   /// A shared do-nothing instance.
@@ -35,7 +35,7 @@ class Progress {
 };
 
 inline void Heed::operator()() {
-  if (++done_ % kPieces == 0) progress_.update(0, 0);  // nothing to draw
+  if (++done_ % kPieces == 0) progress_.update(0, 0);  // total 0: there is no bar to draw
 }
 
 }  // namespace twincell

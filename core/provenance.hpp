@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Where a result comes from: stored in every output.
+/// Provenance of a result, stored in every output.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,12 +15,12 @@ std::string version_line();
 /// Version, commit, compiler, library versions and processor as a JSON object.
 std::string version_json();
 
-/// What a verb knows of its own run. The rest (version, commit, time in UTC, processor) is added by
-/// `to_json`. No host or user name is recorded.
+/// What a verb records about its run. `to_json` adds version, commit, compiler, library versions, time in UTC
+/// and processor. No host or user name is recorded.
 struct Provenance {
   std::string command_line;
-  std::string config;  ///< resolved scene or cell text; empty if none
-  std::string plan;    ///< what a simulation computes and why, JSON; empty if none
+  std::string config;  ///< resolved text of the scene or cell; empty if there is none
+  std::string plan;    ///< plan of a simulation: what it computes and why, JSON; empty if there is none
   std::optional<std::uint64_t> seed;
   int threads = 1;
   std::vector<std::filesystem::path> inputs;  ///< size and SHA-256 of each are recorded

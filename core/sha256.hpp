@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// SHA-256 (FIPS 180-4), piece by piece.
+/// SHA-256 (FIPS 180-4), computed incrementally.
 
 #include <cstddef>
 #include <filesystem>
@@ -9,6 +9,7 @@
 
 namespace twincell {
 
+/// Digest of data that are added in pieces.
 class Sha256 {
  public:
   Sha256();
@@ -16,7 +17,7 @@ class Sha256 {
   Sha256(const Sha256&) = delete;
   Sha256& operator=(const Sha256&) = delete;
   void add(const void* data, std::size_t size);
-  /// 64 hex digits of all that was added. Call once.
+  /// Digest of all data added so far, as 64 hex digits. Call once.
   [[nodiscard]] std::string hex();
 
  private:
@@ -24,8 +25,9 @@ class Sha256 {
   std::unique_ptr<Context> context_;
 };
 
-/// SHA-256 of a file's content as 64 hex digits; of a folder: of the names and digests of its files in order.
-/// \throws InputError if it cannot be read
+/// SHA-256 as 64 hex digits: for a file, of its content; for a folder, of the names and digests of its files,
+/// sorted by name and without subfolders.
+/// \throws InputError if a file cannot be read
 std::string sha256_of(const std::filesystem::path& path);
 
 }  // namespace twincell

@@ -22,7 +22,8 @@ bool is_number(const std::string& text) {
 
 std::string read_table_text(const std::filesystem::path& file) {
   std::string text = read_text_file(file);
-  // The two bytes alone may begin a name in another encoding; UTF-16 of a table holds zero bytes as well.
+  // The two bytes of the mark alone may also start a name in another encoding. A UTF-16 table also contains
+  // zero bytes.
   const bool marked = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
   if (marked && text.find('\0') != std::string::npos)
     throw InputError({.file = file.string(), .key = {}}, "is UTF-16 text; save it as UTF-8.");
@@ -39,7 +40,7 @@ std::string read_table_text(const std::filesystem::path& file) {
 void check_column_names(const std::vector<std::string>& names, const Where& where) {
   if (names.size() == 1 && names.front().find_first_of(";\t") != std::string::npos)
     throw InputError(where,
-                     fmt::format("the fields are separated by {}; commas are needed, and points in numbers.",
+                     fmt::format("the fields are separated by {}; use commas, and decimal points in numbers.",
                                  names.front().find(';') != std::string::npos ? "semicolons" : "tabs"));
   if (std::all_of(names.begin(), names.end(), is_number))
     throw InputError(where, "the first line holds numbers; it must name the columns.");
@@ -47,7 +48,7 @@ void check_column_names(const std::vector<std::string>& names, const Where& wher
   for (const std::string& name : names)
     if (!name.empty() && !seen.insert(name).second)
       throw InputError({.file = where.file, .line = where.line, .column = where.column, .key = name},
-                       "the column is there twice.");
+                       "the column occurs twice.");
 }
 
 }  // namespace twincell

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Tables as other programs write them: the text, and what a line of column names must be.
+/// Text tables written by other programs: reads the text and checks the line of column names.
 
 #include <filesystem>
 #include <string>
@@ -10,12 +10,13 @@
 
 namespace twincell {
 
-/// The text of a table without a byte order mark, every line ended by \n, whether the file says \n, \r\n or
-/// \r. \throws InputError as read_text_file, and for UTF-16
+/// Text of a table without its byte order mark. The line ends \r\n and \r are converted to \n.
+/// \throws InputError as read_text_file, and for UTF-16
 std::string read_table_text(const std::filesystem::path& file);
 
-/// \throws InputError at `where` if a name is there twice, if all names are numbers, since the line of names
-/// is missing, or if the fields are separated by semicolons or tabs
+/// Checks the names of columns.
+/// \throws InputError at `where` if a name occurs twice, if all names are numbers (the line of names is then
+/// missing), or if the fields are separated by semicolons or tabs
 void check_column_names(const std::vector<std::string>& names, const Where& where);
 
 }  // namespace twincell

@@ -27,15 +27,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Paths that a signal handler may read: fixed places, no allocation. More than fit are removed by
-/// destructors alone.
+/// Paths that a signal handler may read: in fixed storage, without allocation. Paths that do not fit are
+/// removed only by destructors.
 struct Slot {
   std::atomic<bool> taken{false}, filled{false};
   std::array<char, 4096> path{};
 };
 std::array<Slot, 64> slots;
-/// Held while a slot is searched for: a search for one path reads those of others, and another
-/// thread may free such a slot meanwhile. A signal handler takes no lock: it reads filled slots alone.
+/// Locked during a search of the slots: the search for one path reads other slots, which another thread may
+/// free at the same time. A signal handler takes no lock; it reads filled slots only.
 std::mutex slots_mutex;
 
 void remember(const fs::path& path) {
@@ -59,7 +59,7 @@ void forget(const fs::path& path) {
     }
 }
 
-/// What the temporaries of one output have in common: names of 255 bytes have some too.
+/// Common prefix of the temporaries of one output: a hash, which also fits if the name has 255 bytes.
 std::string stem_of(const fs::path& final) {
   Sha256 sum;
   const std::string name = final.filename().string();
@@ -67,7 +67,7 @@ std::string stem_of(const fs::path& final) {
   return kTemporaryPrefix + sum.hex().substr(0, 16);
 }
 
-/// A folder that is itself unfinished belongs to one process: what is written in it needs no lock.
+/// Whether the path is inside an unfinished folder. Such a folder belongs to one process and needs no locks.
 bool in_own_folder(const fs::path& path) {
   for (const fs::path& part : path.parent_path())
     if (part.string().starts_with(kTemporaryPrefix)) return true;
@@ -94,8 +94,8 @@ Locks& locks() {
   return all;
 }
 
-/// Opens and locks a file of this name; -1 where the file system has no locks or the file cannot be made.
-/// \throws ConfigError if another process has the lock
+/// Opens and locks a file of this name; -1 if the file system has no locks or the file cannot be created.
+/// \throws ConfigError if another process holds the lock
 int locked(const fs::path& name, const fs::path& final) {
   for (;;) {
     const int file = ::open(name.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -106,7 +106,7 @@ int locked(const fs::path& name, const fs::path& final) {
       if (!taken) return -1;
       throw ConfigError({final.string(), 0, 0, ""}, "another process is writing this output.");
     }
-    // Its holder may have removed the name between the two calls above: then the lock is of no use.
+    // The previous owner may have removed the name between the two calls above; this lock is then useless.
     struct stat by_name = {}, by_file = {};
     if (::stat(name.c_str(), &by_name) == 0 && ::fstat(file, &by_file) == 0 &&
         by_name.st_ino == by_file.st_ino && by_name.st_dev == by_file.st_dev)
@@ -115,7 +115,7 @@ int locked(const fs::path& name, const fs::path& final) {
   }
 }
 
-/// Removes what killed runs left. \pre the output's lock is held
+/// Removes temporaries that killed runs left behind. \pre this process holds the lock of the output
 void remove_leftovers(const fs::path& final) {
   const std::string stem = stem_of(final) + "-";
   std::error_code ec;
@@ -158,7 +158,8 @@ OutputLock::~OutputLock() {
   const auto found = locks().held.find(final_);
   if (found == locks().held.end() || --found->second.times > 0) return;
   if (found->second.file >= 0) {
-    ::unlink(found->second.name.c_str());  // while it is held: nobody locks a name that goes
+    // Unlinked while locked, so that no other process locks a name that is being removed.
+    ::unlink(found->second.name.c_str());
     forget(found->second.name);
     ::close(found->second.file);
   }
@@ -166,7 +167,7 @@ OutputLock::~OutputLock() {
 }
 
 void hold_until_exit(const fs::path& final) {
-  locks();  // made before `held`, so that it outlives it
+  locks();  // constructed before `held`, so that it outlives `held`
   static std::vector<OutputLock> held;
   held.emplace_back(final);
 }
@@ -194,9 +195,9 @@ fs::path make_temporary(const fs::path& final, bool folder) {
     }
     if (errno != EEXIST)
       throw ConfigError({final.string(), 0, 0, ""},
-                        fmt::format("nothing can be written beside it ({}).", std::strerror(errno)));
+                        fmt::format("no file can be created in its folder ({}).", std::strerror(errno)));
   }
-  throw RunError(final.string() + ": no free temporary name was found beside it.");
+  throw RunError(final.string() + ": no free temporary name was found in its folder.");
 }
 
 void care_for_temporary(const fs::path& path) {
@@ -220,8 +221,8 @@ void remove_temporaries() noexcept {
   for (Slot& slot : slots) {
     if (!slot.filled.load()) continue;
     if (::unlink(slot.path.data()) == 0) continue;
-    // A folder. It gets another name first, so that threads that still run can write nothing more into it.
-    // Walking it is not async-signal-safe; starting a program is.
+    // The path is a folder. It is renamed first, so that running threads cannot write into it any more.
+    // Walking a folder is not async-signal-safe, but starting a program is.
     static std::array<char, 4096 + 8> aside;
     const std::size_t length = ::strlen(slot.path.data());
     std::memcpy(aside.data(), slot.path.data(), length);

@@ -1,19 +1,20 @@
 #pragma once
 /// \file
-/// Temporary files and folders beside an output, and the lock that keeps two runs from one output. Both are
-/// removed at every end of the process that it can see: return, exception, signal; after SIGKILL the next run
-/// with the same output removes them.
+/// Temporary files and folders in the folder of an output, and the lock that prevents two runs from writing
+/// the same output. Both are removed when the process ends by return, exception or signal. After SIGKILL, the
+/// next run with the same output removes them.
 
 #include <filesystem>
 #include <string>
 
 namespace twincell {
 
-/// The exclusive right to write an output, held until it is destroyed or the process ends, however it ends.
+/// Exclusive lock of an output, released by the destructor or by any end of the process. Locking also removes
+/// temporaries of the same output that killed runs left behind.
 class OutputLock {
  public:
-  /// \param final absolute path of the output; a process may hold the lock of one output several times
-  /// \throws ConfigError if another process holds it
+  /// \param final absolute path of the output; a process may lock the same output several times
+  /// \throws ConfigError if another process holds the lock
   explicit OutputLock(std::filesystem::path final);
   OutputLock(OutputLock&& other) noexcept;
   OutputLock& operator=(OutputLock&&) = delete;
@@ -25,23 +26,25 @@ class OutputLock {
   std::filesystem::path final_;
 };
 
-/// Holds the lock of an output until the process ends.
+/// Locks an output until the process ends.
 void hold_until_exit(const std::filesystem::path& final);
 
-/// Makes an empty file or folder beside `final` under a name that nobody has, and removes what killed runs
-/// left of the same output. The file's name keeps the extension of `final`. \throws ConfigError
+/// Creates an empty file or folder with a unique name in the folder of `final`. The name of a file has the
+/// extension of `final`.
+/// \throws ConfigError if it cannot be created, RunError if no free name is found
 std::filesystem::path make_temporary(const std::filesystem::path& final, bool folder);
 
-/// Takes a file or folder that somebody else made into the same care.
+/// Registers a file or folder that was created elsewhere for removal by remove_temporaries.
 void care_for_temporary(const std::filesystem::path& path);
 
-/// The folder for what needs no name: TMPDIR, or /tmp. \throws RunError saying so if it cannot be used
+/// Folder for temporary files that are not tied to the folder of an output: TMPDIR, or /tmp.
+/// \throws RunError if it cannot be used
 std::filesystem::path folder_for_temporaries();
 
-/// Ends the care for a temporary that was made: it has been renamed, or removed.
+/// Unregisters a temporary file or folder that has been renamed or removed.
 void forget_temporary(const std::filesystem::path& path);
 
-/// Removes all temporaries and locks of the process. Async-signal-safe.
+/// Removes all registered temporary files, folders and locks of the process. Async-signal-safe.
 void remove_temporaries() noexcept;
 
 }  // namespace twincell

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Measured numbers with intervals, and how they fare against a target.
+/// Measured numbers with intervals, and their verdicts against a target.
 
 #include <optional>
 #include <string>
@@ -10,25 +10,25 @@
 
 namespace twincell::reproduce {
 
-/// A measured number.
+/// A measured number with its interval.
 struct Estimate {
   double value = 0;
-  std::optional<double> low, high;  ///< 95 %
+  std::optional<double> low, high;  ///< 95 % interval; an absent end is open
   /// "0.412 [0.405, 0.419]"
   [[nodiscard]] std::string text() const;
 };
 
-/// A number without error, as a closed form gives it.
+/// A number without error, as from a closed form.
 Estimate exact(double value);
 
-/// met: the value lies within; missed: the whole interval does not; open: the interval does not decide.
+/// met: the value is within [low, high]; missed: the whole interval is outside; open: neither.
 Verdict within(const Estimate& e, double low, double high);
-/// met: a's interval lies above b's; missed: below; else open.
+/// met: the interval of a is above that of b; missed: below; open: the intervals overlap or are not closed.
 Verdict above(const Estimate& a, const Estimate& b);
-/// met: the intervals overlap; missed: they do not; open: one of them is not closed.
+/// met: the intervals overlap; missed: they do not; open: one of the intervals is not closed.
 Verdict agree(const Estimate& a, const Estimate& b);
-/// The verdict on a statement that holds if each of these does: missed if one is, open if one is, absent if
-/// there is none.
+/// Verdict on a statement that is true if all of its parts are: missed if one part is missed, else open if
+/// one is open, else met if one is met; absent without any of these.
 Verdict all_of(const std::vector<Verdict>& fates);
 
 }  // namespace twincell::reproduce

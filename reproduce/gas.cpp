@@ -17,21 +17,21 @@ namespace {
 
 using nlohmann::json;
 
-/// Results that some figure needs. All figures ask for the same ones, so that their points are the same.
+/// Results that any figure needs. All figures request the same list, so that they share their points.
 constexpr const char* kResults =
     R"(["T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar", "T_z_tau", "h_cm", "delta_h_cm", )"
     R"("delta_h_bar", "profile_z", "phi_z", "T_z_z", "T_z_frames_z", "T_z_volume", "phi_top", "phi_cm"])";
 
 constexpr double kSigmaMetres = 0.005, kGravity = 9.81;
 
-/// Share of their time in contact up to which beads are a gas.
+/// Largest fraction of time in contact at which the beads count as a gas.
 constexpr double kHard = 0.1;
 
 std::vector<int> coarse_rpm() {
   return {300, 400, 500, 600, 700, 800, 900, 1000, 1200, 1500, 2000, 2500, 3000, 3500, 4000};
 }
 
-/// Errors are halves of 95 % intervals, 2 standard errors.
+/// Relative errors are half 95 % intervals, 2 standard errors.
 const std::vector<GasSize>& sizes() {
   static const std::vector<GasSize> all = {{0, coarse_rpm(), 0.1, 300},
                                            {10, coarse_rpm(), 0.05, 1000},
@@ -114,8 +114,8 @@ std::size_t Gas::add(const GasCurve& curve) {
   std::string values;
   for (const double value : curve.values)
     values += fmt::format("{}{:.17g}", values.empty() ? "" : ", ", value);
-  // Split at n = 6.37 is no less accurate than Verlet at n = 50 in any single collision (docs/accuracy.md).
-  // TOML wants a point in a number that is compared with others of the same list.
+  // The split integrator at n = 6.37 is at least as accurate as Verlet at n = 50 in every single collision
+  // (docs/accuracy.md).
   const std::string text = fmt::format(
       "seed = {}\nresults = {}\n[scene]\n{}\ntime.integrator = \"split\"\ntime.steps_per_contact = 6.37\n"
       "time.discard = {}\ntime.cycles = {}\nuntil.quantity = \"{}\"\nuntil.relative_error = {}\n"
@@ -147,7 +147,7 @@ bool Gas::run() {
 
 void Gas::read(Runs& runs) const {
   runs.points.clear();
-  const auto& curves = runs.schedule->curves();  // one point each: nothing but the key's value varies
+  const auto& curves = runs.schedule->curves();  // one point each, because only the key varies
   for (std::size_t k = 0; k < curves.size(); ++k) {
     GasPoint p;
     p.at = runs.curve.values[k];
@@ -197,7 +197,7 @@ std::string Gas::table() const {
         const auto e = p.get(name);
         return e ? fmt::format("{:.4g}", e->value * scale) : std::string("-");
       };
-      // V_p^2 from two conventions of the same number.
+      // T_bar_z/T_z is 1/V_p^2, which scales the other temperatures.
       const auto t = p.get("T_z"), bar = p.get("T_bar_z");
       const double per = t && bar && t->value > 0 ? bar->value / t->value : std::nan("");
       s += fmt::format(
@@ -321,7 +321,7 @@ Figure series_figure(const std::string& name, const std::string& title, const st
                                : fmt::format("yerrorbars lw 1 ps 0.8 pt {}", kPoints[turn % kPoints.size()]),
                         kColours[turn % kColours.size()], s.title);
   }
-  if (plot.empty()) {  // gnuplot refuses to draw nothing
+  if (plot.empty()) {  // gnuplot rejects an empty plot
     f.data = "# nothing measured\n";
     f.plot =
         "set xrange [0:1]\nset yrange [0:1]\nset label 'not measured at this budget' at 0.5,0.5 center\n"

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Vibrated gases: the runs that the figures of Bhateja, Sharma & Singh 2016 share, and how they are drawn.
+/// Vibrated gases: the runs and plots that the figures of Bhateja, Sharma & Singh 2016 share.
 
 #include <deque>
 #include <map>
@@ -15,9 +15,10 @@
 
 namespace twincell::reproduce {
 
-/// W = V_p^2/(d g) of the paper's frequency at A = d. The printed W fix d = 5 mm with g = 9.81 m/s^2.
+/// W = V_p^2/(d g) at the paper's frequency in rpm, with A = d. The printed W imply d = 5 mm with g = 9.81
+/// m/s^2.
 double w_of_rpm(double rpm);
-/// The paper's 300 to 4000 rpm in steps of 100.
+/// The paper's frequencies, 300 to 4000 rpm in steps of 100.
 std::vector<int> all_rpm();
 
 /// One of the canonical systems of Fig. 2.
@@ -27,76 +28,78 @@ struct GasSystem {
   [[nodiscard]] std::string name() const;    ///< "2D rough"
   [[nodiscard]] std::string preset() const;  ///< "bhateja-2016-rough-2d"
 };
-/// The four of them, the rough one of the plane first.
+/// The four systems, beginning with the rough 2D system.
 const std::vector<GasSystem>& gas_systems();
 
-/// What a budget buys: frequencies, the error asked of T_bar_z (half of the 95 % interval over the value) and
-/// the cap of cycles. Never other physics.
+/// Extent of a study at a given budget: frequencies, required relative error of T_bar_z (half of the 95 %
+/// interval over the value), and largest number of cycles. The physics does not depend on the budget.
 struct GasSize {
-  double core_minutes;  ///< from which on this size is chosen
+  double core_minutes;  ///< smallest budget for this size, core-minutes
   std::vector<int> rpm;
   double relative_error;
   int cycles;
 };
-/// The size for a request that needs `share` of what Fig. 2 needs.
+/// The size for a request whose work is `share` of that of Fig. 2.
 const GasSize& gas_size_for(const Request& request, double share = 1);
 
-/// a/b with the intervals' half-widths added as independent errors.
+/// a/b, with the half-widths of the intervals combined as independent relative errors.
 Estimate quotient(const Estimate& a, const Estimate& b);
 /// One run of a gas.
 struct GasPoint {
   double at = 0;  ///< value of the curve's key
   std::string id;
   bool done = false;
-  std::string failed;  ///< what went wrong
+  std::string failed;  ///< error message of a failed run; else empty
   std::string until;   ///< how the run ended
   bool precise = false;
   std::int64_t cycles = 0;
   double contact_fraction = 0;
-  std::map<std::string, Estimate> scalars;  ///< results of the analysis by name; absent ones are not here
+  std::map<std::string, Estimate> scalars;  ///< results of the analysis by name, without absent ones
   std::map<std::string, std::vector<double>> arrays;
 
-  /// The result called `name`, if the run gave it.
+  /// The result called `name`, if the run has it.
   [[nodiscard]] std::optional<Estimate> get(const std::string& name) const;
-  /// T_bar_z below kSolid: the bed rides on the plate.
+  /// Whether T_bar_z is below kSolid: the bed moves with the plate as a solid.
   [[nodiscard]] bool solid() const;
 };
-/// Greatest T_bar_z of a bed that counts as solid.
+/// T_bar_z below which a bed counts as solid.
 inline constexpr double kSolid = 1e-4;
 
 /// Runs that differ in one key of their scene.
 struct GasCurve {
   std::string name;               ///< "2D rough", "e = 0.8"
-  std::string scene;              ///< "preset = …" and keys, a line each
-  std::string key = "drive.k_m";  ///< what is varied
+  std::string scene;              ///< "preset = …" and keys, one per line
+  std::string key = "drive.k_m";  ///< key that is varied
   std::vector<double> values = {};
-  double relative_error = 0.05;  ///< of `quantity`
-  int cycles = 1000;             ///< at most
+  double relative_error = 0.05;  ///< required relative error of `quantity`
+  int cycles = 1000;             ///< largest number of cycles
   int discard = 100;
   std::string quantity = "T_bar_z";
 };
 
-/// Curves and their runs, kept in a sweep's folder that all figures of the paper share: a point that one has
-/// computed is there for the others.
+/// Curves and their runs, stored in a sweep folder that all figures of the paper share, so that a point is
+/// computed only once.
 class Gas {
  public:
   explicit Gas(const Request& request);
-  /// Adds a curve; those added first are run first. \returns its number
+  /// Adds a curve. \returns its index
   std::size_t add(const GasCurve& curve);
-  /// A canonical system of Fig. 2 at these frequencies.
+  /// Adds a canonical system of Fig. 2 at these frequencies. \returns its index
   std::size_t add(const GasSystem& system, const GasSize& size, const std::vector<int>& rpm);
-  /// Computes what is open as far as the time goes, all curves equally far. \returns whether all is done
+  /// Computes the open points within the time limit, all curves at equal progress. \returns whether all
+  /// points are done
   bool run();
   [[nodiscard]] const GasCurve& curve(std::size_t k) const { return runs_[k].curve; }
   /// All points, in order of the key's values.
   [[nodiscard]] const std::vector<GasPoint>& points(std::size_t k) const { return runs_[k].points; }
-  /// A line a point: W, T_bar_z in its conventions, the other results, correlation time, how the run ended.
+  /// Text table with one line per point: W, T_bar_z in its conventions, the other results, correlation time,
+  /// and how the run ended.
   [[nodiscard]] std::string table() const;
   /// The same as JSON.
   [[nodiscard]] std::string as_json() const;
-  /// What must be stated beside each number: contacts, step, start, cycles, seed, conventions.
+  /// Conditions to state with each number: contacts, step, start, cycles, seed, conventions.
   [[nodiscard]] std::vector<std::string> conditions() const;
-  /// What the runs of this gas did more cheaply than the paper, and which of them the cap ended.
+  /// Simplifications relative to the paper, and the number of runs that the limit of cycles ended.
   [[nodiscard]] std::vector<std::string> cheaper() const;
 
  private:
@@ -110,10 +113,10 @@ class Gas {
 
   const Request& request_;
   sweep::Store store_;
-  std::deque<Runs> runs_;  // schedules point to their plans: nothing may move
+  std::deque<Runs> runs_;  // schedules refer to their plans, so elements must not move
 };
 
-/// Points of a drawn curve.
+/// Points of a curve in a figure.
 struct Series {
   std::string title;
   std::vector<double> x;
@@ -121,29 +124,29 @@ struct Series {
   bool line = false;  ///< drawn as a line without points
   int dash = 1;
 };
-/// A result of a curve against its key, in units of `scale`(point) where given; points without it left out.
+/// A result of the points against their key, without the points that lack it.
 Series series_of(const std::string& title, const std::vector<GasPoint>& points, const std::string& result);
-/// Points with error bars and lines in gnuplot's own colours. \param setup gnuplot commands before the plot
+/// Figure with error bars for points, and with lines. \param setup gnuplot commands before the plot
 Figure series_figure(const std::string& name, const std::string& title, const std::string& x_label,
                      const std::string& y_label, const std::vector<Series>& all, const std::string& setup,
                      const std::string& caption);
 
-/// W_f: where T_bar_z is largest, refined by the parabola in ln W through the largest point and its
-/// neighbours. Empty for fewer than three fluid points.
+/// Maximum of T_bar_z(W), at W_f.
 struct Peak {
-  double w = 0;         ///< refined
-  double grid = 0;      ///< the point itself
-  double height = 0;    ///< T_bar_z there
-  bool inside = false;  ///< a point on either side is lower
+  double w = 0;         ///< W_f, refined by the parabola in ln W through the largest point and its neighbours
+  double grid = 0;      ///< W of the largest point
+  double height = 0;    ///< T_bar_z of the largest point
+  bool inside = false;  ///< whether there is a lower point on either side
 };
+/// Finds W_f. Empty for fewer than three points that are not solid.
 std::optional<Peak> peak_of(const std::vector<GasPoint>& points);
-/// The smallest x from which on a series stays within 5 % of its last value; empty for none.
-/// \param errors_count  an interval that reaches there is enough
+/// Smallest x from which a series stays within 5 % of its last value; empty for an empty series. \param
+/// errors_count accept points whose interval reaches into this range
 std::optional<double> flat_from(const Series& s, bool errors_count);
-/// W_2: the smallest W beyond which T_bar_z stays within 5 % of its value at the largest W.
+/// W_2: smallest W from which T_bar_z stays within 5 % of its value at the largest W.
 std::optional<double> w_2_of(const std::vector<GasPoint>& points);
 
-/// Table III of the paper: T_bar_z(W) of the rough systems.
+/// T_bar_z(W) of the rough systems by the printed fits of the paper's Table III.
 double table_3(int dimension, bool algebraic, double w);
 
 }  // namespace twincell::reproduce

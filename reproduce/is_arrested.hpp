@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Beds whose s_c passes sigma though they do not convect.
+/// Test for arrested beds: s_c exceeds sigma although the bed does not convect.
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 namespace twincell::reproduce {
 
 /// Whether the tracers came to rest: s_j (Fortini & Huang 2015, eq. B1, in sigma, cycle by cycle) changed by
-/// less than 0.1 sigma in the second half of the cycles. Where a bed convects its tracers keep changing
-/// places, and s_j scatters by sigma and more; where it has rearranged once, s_j stays, and s_c with it.
-/// Numbers that are not finite are passed over. \returns false for fewer than four cycles
+/// less than 0.1 sigma in the second half of the cycles. In a convecting bed the tracers keep changing
+/// places, and s_j fluctuates by sigma and more. In a bed that has rearranged once, s_j and therefore s_c
+/// remain constant. Values that are not finite are skipped. \returns false for fewer than four cycles
 inline bool is_arrested(const std::vector<double>& s_j) {
   constexpr double kStays = 0.1;
   constexpr std::size_t kLeast = 4;

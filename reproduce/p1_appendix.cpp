@@ -1,5 +1,5 @@
-// Fortini & Huang 2015, appendices: one contact of the model (A, Fig. 6) and the measures of the phases (B),
-// both against closed forms.
+// Fortini & Huang 2015, appendices: one contact of the model (A, Fig. 6) and the order parameters of the
+// phases (B), both against closed forms.
 
 #include <fmt/format.h>
 
@@ -27,7 +27,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kSteps = 50.37;  ///< per contact, the paper's 50; a whole number would hide errors of entry
+/// Steps per contact. The paper has 50, but a whole number would hide errors of contact entry.
+constexpr double kSteps = 50.37;
 
 Target near(const std::string& name, double wanted, double tolerance, double measured, const char* digits) {
   const auto number = [&](double v) { return fmt::format(fmt::runtime(digits), v); };
@@ -39,14 +40,14 @@ Target near(const std::string& name, double wanted, double tolerance, double mea
 
 struct Contact {
   const char* name;
-  double m_eff, t_c, e_n;  ///< the numbers of MODEL for eq. A5
+  double m_eff, t_c, e_n;  ///< values of MODEL for eq. A5
 };
 constexpr std::array<Contact, 2> kContacts = {
     {{"bead-bead", 0.5, 2.222831e-3, 0.894812}, {"bead-wall", 1.0, 3.145527e-3, 0.854468}}};
 
-/// One moment of a collision.
+/// State at one instant of a collision.
 struct Moment {
-  double time, overlap, force;  ///< since first touch; of unit approach speed
+  double time, overlap, force;  ///< time since first touch; unit approach speed
 };
 
 sim::Scene scene_of(const std::string& more) {
@@ -65,14 +66,14 @@ sim::LinearCollision closed_form(const Contact& contact) {
           sim::read_normal_damping(table, sim::read_stiffness(table)).eta(contact.m_eff), contact.m_eff};
 }
 
-/// A bead meets another, or the left wall, with unit speed and without gravity.
+/// Collision of a bead with another bead or with the left wall, at unit approach speed and without gravity.
 std::vector<Moment> collide(const Contact& contact) {
   const bool pair = contact.m_eff < 1;
   const sim::Scene scene = scene_of("cell.gravity = 0.0\ntime.integrator = \"verlet\"\n");
   const sim::Plan plan = sim::make_plan(scene);
   sim::System system = sim::make_system(scene, plan);
   system.dt = contact.t_c / kSteps;
-  const double gap = 1.4 * system.dt;  // entry falls within a step
+  const double gap = 1.4 * system.dt;  // the contact starts within a step
   const auto add = [&](double x, double vx) {
     system.beads.push_back({x, 50, vx, 0, 0, scene.radius, scene.mass,
                             scene.inertia_factor * scene.mass * scene.radius * scene.radius});
@@ -91,7 +92,7 @@ std::vector<Moment> collide(const Contact& contact) {
   return moments;
 }
 
-/// Time from first touch to overlap 0, by the chord between the two moments around it.
+/// Time from first touch to overlap 0, by linear interpolation between the two instants around the end.
 double duration_of(const std::vector<Moment>& moments) {
   for (std::size_t k = 2; k < moments.size(); ++k) {
     const Moment &a = moments[k - 1], &b = moments[k];
@@ -132,7 +133,8 @@ void add_contacts(Reproduction& r, json& measured) {
     r.table += fmt::format(
         "  {}: t_c {:.6e} t_0, e_n {:.6f}; run: t_c {:.6e}, e_n {:.6f} in the mean, worst error {:.5f}\n",
         kind, form.contact_time(), form.restitution(), t_c, form.restitution() + e.mean, e.largest);
-    // As drawn: time in 10^-3 t_0, overlap in 10^-4 sigma and force in 10^2 m g, all of unit approach speed.
+    // Units of the figure: time in 10^-3 t_0, overlap in 10^-4 sigma and force in 10^2 m g, at unit approach
+    // speed.
     data += fmt::format("# {}, run: t, overlap, normal force\n", kind);
     for (const Moment& m : moments)
       if (m.overlap > 0)
@@ -156,11 +158,12 @@ void add_contacts(Reproduction& r, json& measured) {
            fmt::format("{:.9g}*{} + {:.9g}*{}", k / w / 100, wave, eta / w * 1e3 / 100, slope));
     ++index;
   }
-  // One phase a period: more of them round the number up to a multiple of theirs.
+  // One phase per period, because more phases round the number of steps up to a multiple of the phases.
   const sim::Scene paper = scene_of("time.steps_per_contact = 50\ntime.phases = 1\n");
   const auto steps = static_cast<double>(sim::make_plan(paper).steps_per_period);
   r.targets.push_back(near("steps a period at n = 50", 141333, 0, steps, "{:.0f}"));
   measured.push_back({{"steps_per_period", steps}});
+  // Figure of overlap and force against time.
   Figure f{.name = "p1-appendix-a", .title = "One collision", .width = 760, .height = 360};
   f.data = data;
   f.plot =
@@ -178,7 +181,7 @@ void add_contacts(Reproduction& r, json& measured) {
   r.figures.push_back(f);
 }
 
-/// Fig. 6: what the symbols of a contact mean.
+/// Fig. 6: sketch of the symbols of a contact.
 Figure contact_sketch() {
   Figure f{.name = "p1-fig6", .title = "Contact of two beads", .width = 540, .height = 360};
   f.data = "# centres and radii\n-0.84 -0.24 1\n0.84 0.24 1\n";
@@ -226,7 +229,8 @@ double threshold_gamma(SbForm form) {
 }
 
 void add_measures(Reproduction& r, json& measured) {
-  // s_b of a completely inelastic rigid bed, worked out for this page alone.
+  // Gamma, and s_b of a completely inelastic rigid bed as variance and about rest, computed independently of
+  // the analysis.
   constexpr std::array<std::array<double, 3>, 9> kTable = {{{1.05, 0.0027, 0.0029},
                                                             {1.10, 0.0119, 0.0131},
                                                             {1.15, 0.0279, 0.0314},
@@ -272,6 +276,7 @@ void add_measures(Reproduction& r, json& measured) {
   r.table += fmt::format("  sheared line of {:g} tracers: s_c {:.9f}, closed form {:.9f}\n", n, found, s_c);
   measured.push_back({{"sheared_line_s_c", found}, {"closed_form", s_c}});
 
+  // Figure of s_b against Gamma.
   Figure f{.name = "p1-appendix-b", .title = "s_b of a rigid inelastic bed", .width = 540, .height = 400};
   f.data = "# Gamma, s_b found by the analysis: variance, about rest; closed form: variance, about rest\n" +
            points;

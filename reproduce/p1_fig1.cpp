@@ -1,4 +1,4 @@
-// Fortini & Huang 2015, Fig. 1: the beds before the drive begins, coloured by local order.
+// Fortini & Huang 2015, Fig. 1: the beds before the drive starts, coloured by local order.
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Beads inside the bed: their Voronoi cells touch no wall, hole or free surface.
+/// Order parameters over the beads inside the bed, whose Voronoi cells touch no wall, hole or free surface.
 struct Bulk {
   double least_q6 = INFINITY, largest_q6 = -INFINITY, sum_q6 = 0, least_psi6 = INFINITY;
   std::size_t n = 0;
@@ -37,8 +37,9 @@ Bulk bulk_of(const Packing& p) {
   return b;
 }
 
-/// Of the beads inside that have not six neighbours, the share that touches another such bead, over the share
-/// that would if they lay anywhere: 1 - (1 - f)^6.
+/// Clustering of defects. A defect is a bead inside the bed that does not have six neighbours. The number is
+/// the share of defects that touch another defect, divided by that share at random positions, 1 - (1 - f)^6,
+/// where f is the share of defects.
 double clustering_of(const Packing& p) {
   const VoronoiCells cells = voronoi_cells(p.moment.frame, p.box);
   const auto defect = [&](std::size_t i) { return cells.enclosed[i] != 0 && cells.neighbours.count(i) != 6; };
@@ -105,7 +106,7 @@ Figure figure_of(const Packings& all) {
   const auto add = [&](const Packing& p) { panels.push_back({p.title(), &p.moment, p.box, p.radius}); };
   if (const Packing* crystal = all.crystal("crystal_a")) add(*crystal);
   for (std::size_t i = 0; i < std::min<std::size_t>(2, all.random.size()); ++i) add(all.random[i]);
-  // Seeds are long numbers; the table has them.
+  // Omit the seeds, which are long numbers; the table contains them.
   for (std::size_t i = 0; i < panels.size(); ++i)
     if (panels[i].title.starts_with("random"))
       panels[i].title = panels.size() == 3 && i == 2 ? "random, another seed" : "random";

@@ -1,5 +1,5 @@
-// Fortini & Huang 2015, Fig. 2: the two ways in which a hexagonal lattice stands at a side wall, and which of
-// them beds take.
+// Fortini & Huang 2015, Fig. 2: the two orientations of a hexagonal lattice at a side wall, and the shares of
+// random beds in each.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ using nlohmann::json;
 
 struct Orientation {
   const char *start, *name, *colour;
-  double angle;  ///< of close-packed rows, degrees; 60 brings the lattice back
+  double angle;  ///< of close-packed rows to the floor, degrees; the lattice repeats every 60 degrees
 };
 constexpr Orientation kA = {"crystal_a", "A", colours::kSky, 0},
                       kB = {"crystal_b", "B", colours::kOrange, 30};
@@ -70,10 +70,11 @@ std::vector<Target> targets_of(const Packings& all) {
 }
 
 Figure figure_of(const Packings& all) {
-  constexpr double kSide = 6;  // sigma; enough rows to see how they stand
+  constexpr double kSide = 6;  // sigma; enough rows to show the orientation
   Figure f{
       .name = "p1-fig2", .title = "Orientations of the lattice at a side wall", .width = 760, .height = 360};
   f.plot = "set multiplot\nunset grid\n";
+  // Left panels: a corner of the crystal in each orientation.
   int index = 0;
   for (const Orientation& o : {kA, kB}) {
     const Packing* crystal = all.crystal(o.start);
@@ -99,6 +100,7 @@ Figure figure_of(const Packings& all) {
         left, left + 0.3, kSide, o.name, f.name, index, o.colour);
     ++index;
   }
+  // Right panel: shares of the orientations in the random beds.
   if (!all.random.empty()) {
     f.data += "# random beds: number, shares of A, between, B\n";
     for (std::size_t i = 0; i < all.random.size(); ++i) {

@@ -1,5 +1,5 @@
-// Fortini & Huang 2015, Fig. 3: the phases on the plane of Gamma and bed height. Onsets of bouncing and of
-// convection, from random and crystalline starts, for each N_l.
+// Fortini & Huang 2015, Fig. 3: phase diagram in Gamma and bed height. Onsets of bouncing and convection,
+// from random and crystalline starts, for each N_l.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,17 +27,18 @@ namespace {
 using nlohmann::json;
 using sweep::Onset;
 
-/// What a budget buys. Never other physics: fewer heights, runs and cycles.
+/// Extent of the study at a given budget: heights, runs and cycles. The physics does not depend on the
+/// budget.
 struct Size {
-  double core_minutes;  ///< from which on this size is chosen
+  double core_minutes;  ///< smallest budget for this size, core-minutes
   std::vector<int> layers;
   int bounce_cycles, convect_cycles, runs;
   double bounce_width, convect_width;
 };
 
-/// N_f = 200 cycles belong to the definition of s_c, and at N_l = 20 half of the random beds need more than
-/// 60 to tell: a budget that cannot pay 200 for several heights pays them for one. N_l = 20 is begun first,
-/// so that a slow machine shows less, not nothing.
+/// s_c is defined over N_f = 200 cycles, and at N_l = 20 half of the random beds need more than 60 cycles to
+/// decide. A budget that is too small for 200 cycles at several heights therefore pays for one height. N_l =
+/// 20 runs first, so that a slow machine still gives a partial result.
 const std::array<Size, 6>& sizes() {
   static const std::array<Size, 6> all = {{
       {0, {20}, 30, 100, 30, 0.05, 0.4},
@@ -66,8 +67,7 @@ P1Run run_of(int layers, bool random, int cycles) {
   return {layers, random ? "random" : "crystal_a", cycles};
 }
 
-/// Results that the targets need, and no others: order and temperature of every frame would take as long as
-/// the run.
+/// Whether the analysis has the result "slips".
 bool has_slips() {
   const auto names = result_names();
   return std::find(names.begin(), names.end(), "slips") != names.end();
@@ -85,11 +85,11 @@ struct Boundary {
   [[nodiscard]] std::string start() const { return random ? "random" : "crystal"; }
   [[nodiscard]] std::string verdict() const { return convecting ? "convecting" : "bouncing"; }
 
-  /// Of the runs with s_c > sigma so many had come to rest: the bed had rearranged, which the paper's rule
-  /// does not tell from convection.
+  /// Runs with s_c > sigma whose bed had come to rest: it had rearranged once, which the paper's criterion
+  /// does not distinguish from convection.
   struct Rest {
     std::size_t at_rest = 0;
-    Onset moving;  ///< of s_c > sigma in beds that go on moving, from the same runs
+    Onset moving;  ///< onset of s_c > sigma in beds that keep moving, from the same runs
   };
   [[nodiscard]] Rest rest() const {
     Rest all;
@@ -117,7 +117,8 @@ struct Boundary {
 };
 
 sweep::Plan plan_of(const Size& size, int layers, bool random, bool convecting, std::uint64_t seed) {
-  // Ranges of TARGETS: bouncing 1.0 to 1.5, convection 1.2 to 3 from random starts, 1.8 to 5 from crystals.
+  // Ranges of TARGETS in Gamma: bouncing 1.0 to 1.5, convection 1.2 to 3 from random starts, 1.8 to 5 from
+  // crystals.
   const double low = convecting ? (random ? 1.2 : 1.8) : 1.0, high = convecting ? (random ? 3.0 : 5.0) : 1.5;
   const int cycles = convecting ? size.convect_cycles : size.bounce_cycles;
   const std::string text = fmt::format(
@@ -157,7 +158,7 @@ json as_json(const Boundary& b, const std::optional<Boundary::Rest>& rest) {
   return j;
 }
 
-/// Slips of crystals in region A1, counted.
+/// Runs of crystals in region A1, and the count of their slips.
 struct Crystals {
   sweep::Plan plan;
   std::optional<sweep::Schedule> schedule;
@@ -200,12 +201,13 @@ const Boundary* find(const std::deque<Boundary>& all, int layers, bool random, b
   return found == all.end() || !found->begun() ? nullptr : &*found;
 }
 
-/// Onsets that an experiment found at one height of the bed; NaN where it found none.
+/// Onsets measured in an experiment at one height of the bed; NaN if not measured.
 struct Filmed {
   double layers, bouncing, convection;
 };
 
-/// The experiment's points from a table with the columns N_l and bouncing, convection (Gamma), by height.
+/// The experiment's points from a table with the columns N_l, bouncing and convection (Gamma), in the order
+/// of the height.
 std::vector<Filmed> filmed_in(const std::filesystem::path& file) {
   if (file.empty()) return {};
   const Table table = read_table(file);
@@ -220,7 +222,7 @@ std::vector<Filmed> filmed_in(const std::filesystem::path& file) {
   return points;
 }
 
-/// The paper's random beds begin to convect below the experiment where N_l is 60 and 80.
+/// Target that at N_l = 60 and 80 the onset of convection of random beds is below that of the experiment.
 Target below_experiment(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
   Target t{"onset of convection, random, below the experiment at N_l = 60, 80", "below", "", Verdict::absent,
            ""};
@@ -272,7 +274,7 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
     targets.push_back(t);
   }
   {
-    // The paper does not say which N_l its Figs. 4 and 5 are of; the target is that of any.
+    // The paper does not state N_l of its Figs. 4 and 5; the best verdict over all N_l counts.
     constexpr double kLow = 3.3 * 0.75, kHigh = 3.3 * 1.25;
     Target t{"onset of convection, random, at the N_l of Figs. 4, 5", "K_m 3.3 +- 25 %", "", Verdict::absent,
              "the paper does not state that N_l; any of these counts"};
@@ -318,8 +320,8 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
   return targets;
 }
 
-/// Values with bars where the interval is closed, arrows where it is a limit; random and crystal a little to
-/// the left and right of their N_l, that bars stay apart.
+/// Values with error bars if the interval is closed, arrows for one-sided limits. Random and crystal points
+/// are shifted slightly to the left and right of their N_l, so that the bars do not overlap.
 Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
   Figure f{.name = "p1-fig3", .title = "Onsets of bouncing and convection", .width = 620, .height = 480};
   struct Style {
@@ -331,6 +333,7 @@ Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& fil
                                                     {false, true, 7, colours::kBlue, "convection, crystal"},
                                                     {true, false, 8, colours::kGreen, "bouncing, random"},
                                                     {false, false, 6, colours::kBlue, "bouncing, crystal"}}};
+  // Onsets of the runs, one data block of values and one of limits for each style.
   std::string plot;
   int index = 0;
   for (const Style& style : kStyles) {
@@ -355,6 +358,7 @@ Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& fil
         fmt::format("title '{}'", style.title));
     add(limits, "vectors head filled lw 1.5", "notitle");
   }
+  // Onsets of the experiment.
   const auto add_filmed = [&](double Filmed::*onset, int point, const char* title) {
     std::string block;
     for (const Filmed& p : filmed)
@@ -367,7 +371,7 @@ Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& fil
   };
   add_filmed(&Filmed::convection, 5, "convection, experiment");
   add_filmed(&Filmed::bouncing, 4, "bouncing, experiment");
-  // K_m = Gamma^2 at omega = 1: its ticks stand where Gamma is the root.
+  // K_m = Gamma^2 at omega = 1: the ticks of K_m are at Gamma = sqrt(K_m).
   std::vector<std::string> ticks;
   for (const double k_m : {1.0, 2.0, 4.0, 6.0, 9.0, 12.0, 16.0, 20.0, 25.0})
     ticks.push_back(fmt::format("'{:g}' {:.6f}", k_m, std::sqrt(k_m) / kOmega));
@@ -408,11 +412,11 @@ std::vector<std::string> cheaper_of(const Size& size, const std::deque<Boundary>
 
 Reproduction run(const Request& request) {
   if (request.window)
-    throw ConfigError({.file = {}, .key = "window"}, "says nothing to p1-fig3, which has no W.");
+    throw ConfigError({.file = {}, .key = "window"}, "has no effect on p1-fig3, which has no W.");
   const std::vector<Filmed> filmed = filmed_in(request.data);
   const Size& size = size_for(request);
   const sweep::Store store(request.folder);
-  std::deque<Boundary> boundaries;  // schedules point to their plans: nothing may move
+  std::deque<Boundary> boundaries;  // schedules refer to their plans, so elements must not move
   for (const int layers : size.layers)
     for (const bool convecting : {true, false})
       for (const bool random : {true, false}) {
@@ -428,8 +432,7 @@ Reproduction run(const Request& request) {
   Reproduction r;
   r.title = "Fortini & Huang 2015, Fig. 3: onsets of bouncing and convection";
   r.complete = true;
-  // The height that most targets speak of first: what the time does not suffice for is then what matters
-  // least.
+  // Run the height that most targets use first, so that a lack of time affects the least important runs.
   for (const bool first : {true, false}) {
     std::vector<sweep::Schedule*> schedules;
     if (first && crystals) schedules.push_back(&*crystals->schedule);

@@ -12,7 +12,7 @@ namespace twincell::reproduce {
 
 namespace {
 
-/// Rungs whose bed leaves the plate: below, T_g is what contacts tremble with.
+/// Points whose bed leaves the plate. At weaker drives T_g only measures vibrations at contacts.
 std::vector<DataPoint> points_of(const StrengthSweep& ladder, double above = 0, double below = 1e300) {
   std::vector<DataPoint> points;
   for (const SweepPoint& r : ladder.points)
@@ -21,9 +21,9 @@ std::vector<DataPoint> points_of(const StrengthSweep& ladder, double above = 0, 
   return points;
 }
 
-constexpr std::size_t kRunsForScatter = 3;  ///< from which on an interval speaks of beds, not of one run
+constexpr std::size_t kRunsForScatter = 3;  ///< runs from which the interval covers the scatter between beds
 
-/// All points: how far it rises, and where it falls by more than its error.
+/// Target that T_g* rises over all points: decades of the rise, and the points where T_g* falls.
 Target rise_of(const StrengthSweep& ladder) {
   Target t{fmt::format("{}: T_g* rises monotonically, over many decades",
                        ladder.is_random() ? "(a) random" : "(b) crystal"),
@@ -116,13 +116,14 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const std::optional<Cu
   return targets;
 }
 
-/// A dashed line at K_m and a name for the region to its right.
+/// gnuplot commands for a dashed line at K_m.
 std::string border(double k_m, int arrow) {
   return fmt::format(
       "set arrow {0} from first {1:.5g},graph 0 to first {1:.5g},graph 1 nohead dt 2 lw 1.3 lc rgb "
       "'#666666'\n",
       arrow, k_m);
 }
+/// gnuplot commands for the name of a region between two K_m.
 std::string region(const char* name, double from, double to, int label) {
   return fmt::format("set label {} '{}' at first {:.5g},graph 0.06 center\n", label, name,
                      std::sqrt(from * to));
@@ -131,7 +132,7 @@ std::string region(const char* name, double from, double to, int label) {
 Figure figure_of(const StrengthSweeps& all, const std::optional<CurveFit>& bend) {
   Figure f{.name = "p1-fig4", .title = "Granular temperature", .width = 820, .height = 400};
   constexpr double kFrom = 0.7, kTo = 36;
-  double low = 1, high = 0;  // whole decades around all that is drawn
+  double low = 1, high = 0;  // whole decades around the drawn points
   for (const StrengthSweep* l : {&all.random, &all.crystal})
     for (const SweepPoint& r : l->points) {
       const double t = r.mean_temperature().value;
@@ -145,6 +146,7 @@ Figure figure_of(const StrengthSweeps& all, const std::optional<CurveFit>& bend)
       "y '10^{{%L}}'\nset xlabel "
       "'K_m'\nset ylabel 'T_g^{{*}}' offset 0.5,0\nset lmargin 9\n",
       kFrom, kTo, low, high);
+  // One panel per start: points, borders of the regions, fitted line.
   int index = 0;
   for (const StrengthSweep* l : {&all.random, &all.crystal}) {
     f.data += fmt::format("# {}: K_m, T_g*, low, high, convecting share\n", l->start);

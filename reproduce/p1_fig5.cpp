@@ -14,7 +14,8 @@ namespace {
 constexpr double kBarrier = 7, kBarrierError = 1;           ///< random, and crystal in B
 constexpr double kNucleation = 130, kNucleationError = 20;  ///< crystal in A2
 
-/// Rungs with slips. Slips come in rows of beads, so their scatter is not binomial: all points count alike.
+/// Points with slips. Rows of beads slip together, so the scatter is not binomial and all points have equal
+/// weight.
 std::vector<DataPoint> points_of(const StrengthSweep& ladder, double above = 0, double below = 1e300) {
   std::vector<DataPoint> points;
   for (const SweepPoint& r : ladder.points)
@@ -37,7 +38,7 @@ Barriers barriers_of(const StrengthSweeps& all) {
   return fits;
 }
 
-/// Whether a barrier is known at all.
+/// Whether the interval of a barrier excludes 0.
 bool told(const Estimate& e) {
   return e.low && *e.low > 0;
 }
@@ -76,6 +77,7 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const Barriers& fits) 
     one.fate = fits.random_bent->p_nested < 0.05 ? Verdict::missed : Verdict::met;
   }
   targets.push_back(one);
+  // Slips in region A1.
   Target zero{"(b) crystal: slips in region A1", "exactly 0", "", Verdict::absent, ""};
   if (all.crystal.first_slips) {
     double slips = 0, eligible = 0;
@@ -90,7 +92,7 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const Barriers& fits) 
         "{:.0f} of {:.0f} bead-periods on {} bouncing rungs, up to K_m {:.3g}; first "
         "slips at K_m {:.3g}",
         slips, eligible, points, *all.crystal.first_slips->low, *all.crystal.first_slips->high);
-    // Two bouncing points or more: a region, not a point that happened to see nothing.
+    // At least two bouncing points: a single point could lack slips by chance.
     zero.fate = slips == 0 && points >= 2 ? Verdict::met : Verdict::open;
   } else if (!all.crystal.points.empty()) {
     for (const SweepPoint& r : all.crystal.points)
@@ -101,6 +103,7 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const Barriers& fits) 
       }
   }
   targets.push_back(zero);
+  // Barriers of the crystal, and their relation to each other and to that of random beds.
   constexpr const char* kRegion = "convection not found, or fewer than two rungs with slips in the region";
   targets.push_back(barrier_target("(b) crystal, A2", fits.a2, kNucleation, kNucleationError, kRegion));
   targets.push_back(barrier_target("(b) crystal, B", fits.b, kBarrier, kBarrierError, kRegion));
@@ -132,7 +135,7 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const Barriers& fits) 
   return targets;
 }
 
-/// The line of an Arrhenius law between two K_m, as a clause of a plot against u = 1/K_m.
+/// Clause of a gnuplot command that draws an Arrhenius law against 1/K_m between two K_m.
 std::string line_of(const std::optional<CurveFit>& fit, double from, double to, const char* dash) {
   if (!fit) return "";
   const Estimate e = parameter(*fit, "E_b");
@@ -148,6 +151,7 @@ Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
   f.plot =
       "set multiplot layout 1,2\nset logscale y\nset xrange [0:0.75]\nset yrange [3e-7:2]\nset format y "
       "'10^{%L}'\nset xlabel '1/K_m'\nset ylabel 'p_s' offset 0.5,0\nset key top right\nset lmargin 9\n";
+  // One panel per start: counted slips, upper limits, borders of the regions, Arrhenius lines.
   int index = 0;
   for (const StrengthSweep* l : {&all.random, &all.crystal}) {
     std::string counted, none;

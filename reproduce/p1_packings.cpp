@@ -17,9 +17,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kCutoff = 1.2;  ///< touching beads are at 1, the next shell at 1.41 or 1.73
+constexpr double kCutoff = 1.2;  ///< sigma; touching beads are at 1, the next shell at 1.41 or 1.73
 
-/// What a budget buys. The paper shows N_l = 60.
+/// Extent of the study at a given budget. The paper shows N_l = 60.
 struct Size {
   double core_minutes;
   int layers, seeds;
@@ -34,7 +34,7 @@ const Size& size_for(const Request& request) {
   return *chosen;
 }
 
-/// A bed that is not driven: one frame of it.
+/// Plan of beds without drive; one frame of each.
 sweep::Plan plan_of(const P1Run& run, const std::string& axes, std::uint64_t seed) {
   return sweep::read_plan_text(
       fmt::format("seed = {}\nresults = [\"q6\", \"psi6\", \"ordered_fraction\", \"orientation\", "

@@ -9,7 +9,7 @@ namespace twincell::reproduce {
 
 namespace {
 
-constexpr double kPerturbation = 1e-9;  ///< of crystals, sigma
+constexpr double kPerturbation = 1e-9;  ///< perturbation of crystals, sigma
 
 }  // namespace
 
@@ -30,7 +30,7 @@ time.cycles = {}
 
 namespace {
 
-/// A run as a scene, at a strength of the drive that none of what is said depends on.
+/// Scene of a run. The strength of the drive is arbitrary, because no condition depends on it.
 sim::Scene read(const P1Run& run) {
   std::string text = p1_scene(run);
   text.erase(0, text.find('\n') + 1);

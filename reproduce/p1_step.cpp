@@ -1,6 +1,6 @@
-// What the time step does to the physics of Fortini & Huang 2015: T_g*, p_s, s_b and s_c of its beds against
+// Effect of the time step on the physics of Fortini & Huang 2015: T_g*, p_s, s_b and s_c of its beds against
 // the steps per contact, for Verlet, whose friction is of first order, and for the split integrator, whose
-// friction is of second.
+// friction is of second order.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -29,19 +29,19 @@ const std::vector<std::string> kStarts = {"crystal_a", "random"};
 const std::vector<double> kGammas = {1.5, 2.0, 2.5, 3.0};
 const std::vector<std::string> kIntegrators = {"verlet", "split"};
 constexpr const char *kAliasing = "T_g_aliasing", *kEligible = "bead_cycles";
-constexpr double kUsual = 50;  ///< the paper's and the common choice of n, with Verlet
+constexpr double kUsual = 50;  ///< n of the paper, a common choice with Verlet
 
 struct Quantity {
   const char* name;   ///< result of the analysis
-  const char* label;  ///< gnuplot's
-  bool relative;      ///< drawn over the value of the shortest split step
+  const char* label;  ///< gnuplot label
+  bool relative;      ///< drawn relative to the value at the shortest split step
 };
 constexpr std::array<Quantity, 4> kQuantities = {{{"T_g", "T_g^{*}/T_g^{*}(converged)", true},
                                                   {"p_s", "p_s", false},
                                                   {"s_b", "s_b/s_b(converged)", true},
                                                   {"s_c", "s_c/{/Symbol s}", false}}};
 
-/// What a budget buys.
+/// Extent of the study at a given budget.
 struct Size {
   double core_minutes;
   int cycles, seeds;
@@ -76,7 +76,7 @@ sweep::Plan plan_of(const Size& size, const std::string& integrator, std::uint64
       "the step's physics, " + integrator);
 }
 
-/// A quantity of a bed at a step, over the seeds.
+/// Identifies a quantity of a bed at one time step; its values are over the seeds.
 struct Place {
   std::string quantity, start, integrator;
   double gamma = 0, steps = 0;
@@ -93,7 +93,7 @@ void collect(const std::string& integrator, const sweep::Schedule& schedule, Val
         const auto& axes = schedule.plan().axes;
         const auto at = std::find_if(axes.begin(), axes.end(), [&](const auto& a) { return a.key == key; });
         std::string value = curve.values[static_cast<std::size_t>(at - axes.begin())];
-        std::erase_if(value, [](char c) { return c == '\'' || c == '"'; });  // a word as TOML writes it
+        std::erase_if(value, [](char c) { return c == '\'' || c == '"'; });  // remove TOML's quotes
         return value;
       };
       const auto file_under = [&](const char* name, double value) {
@@ -120,7 +120,7 @@ std::optional<Estimate> estimate(const Values& values, const Place& place) {
     e.low = place.quantity == kAliasing ? interval->low : std::max(0.0, interval->low);
     e.high = interval->high;
   }
-  // Where nothing slips in any run, the number of beads and cycles bounds what could have been missed.
+  // If no run has a slip, the number of bead-cycles gives an upper limit.
   const auto trials = values.find({kEligible, place.start, place.integrator, place.gamma, place.steps});
   if (place.quantity == "p_s" && e.value == 0 && trials != values.end()) {
     double all = 0;
@@ -207,7 +207,8 @@ std::string json_of(const Values& values) {
   return json_text(all);
 }
 
-/// Curves over n: Verlet filled and joined, split open and joined by dashes, a colour for each Gamma.
+/// Curves over n: Verlet with filled symbols and solid lines, split with open symbols and dashed lines, one
+/// colour for each Gamma.
 Figure figure_of(const Values& values, const Size& size) {
   Figure f{.name = "p1-step", .title = "What the step does to the physics", .width = 1180, .height = 620};
   const double finest = size.split.back();
@@ -233,7 +234,7 @@ Figure figure_of(const Values& values, const Size& size) {
           std::string points;
           for (const double n : size.steps(integrator))
             if (const auto e = estimate(values, {q.name, start, integrator, kGammas[g], n}))
-              // A little apart, so that bars do not lie upon each other.
+              // Shifted slightly, so that error bars do not overlap.
               points += fmt::format("{:.5g} {:.6g} {:.6g} {:.6g}\n",
                                     n * (1 + 0.04 * (static_cast<double>(g) - 1.5)), e->value / unit,
                                     e->low.value_or(e->value) / unit, e->high.value_or(e->value) / unit);

@@ -20,13 +20,13 @@ namespace {
 
 using nlohmann::json;
 
-/// What a budget buys. The paper does not say of which N_l its Figs. 4 and 5 are.
+/// Extent of the study at a given budget. The paper does not state N_l of its Figs. 4 and 5.
 struct Size {
   double core_minutes;
-  int layers, cycles, seeds, every;  ///< every so manieth point
+  int layers, cycles, seeds, every;  ///< every: use every n-th point
 };
 constexpr int kPaperCycles = 200;
-constexpr double kOnsetWidth = 0.2;  ///< of Gamma; about the distance of points
+constexpr double kOnsetWidth = 0.2;  ///< in Gamma; about the spacing of points
 
 const Size& size_for(const Request& request) {
   static constexpr std::array<Size, 7> all = {{{0, 20, 30, 1, 4},
@@ -43,7 +43,7 @@ const Size& size_for(const Request& request) {
   return *chosen;
 }
 
-/// K_m from 0.8 to 30; close together where slips and convection begin.
+/// Values of Gamma, for K_m from 0.8 to 30, dense around the onsets of slips and convection.
 const std::vector<double>& gammas(bool random) {
   static const std::vector<double> of_random = {0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8,
                                                 1.9, 2.0, 2.2, 2.4, 2.7, 3.0, 3.5, 4.2, 5.0, 5.5};
@@ -52,8 +52,8 @@ const std::vector<double>& gammas(bool random) {
   return random ? of_random : of_crystal;
 }
 
-/// Every so manieth, in an order in which any beginning is spread over the whole: where the time is up early,
-/// the curve is coarse, not cut off. (Van der Corput's sequence.)
+/// Every `every`-th value, in the order of van der Corput's sequence: any first part covers the whole range,
+/// so that an early stop leaves a coarse curve instead of a truncated one.
 std::vector<double> spread(const std::vector<double>& all, int every) {
   std::vector<double> some;
   for (std::size_t i = 0; i < all.size(); i += static_cast<std::size_t>(every)) some.push_back(all[i]);
@@ -63,7 +63,7 @@ std::vector<double> spread(const std::vector<double>& all, int every) {
     for (std::size_t k = i; k > 0; k /= 2, digit /= 2) key += digit * static_cast<double>(k % 2);
     keyed.emplace_back(key, 0);
   }
-  // The i-th place to be taken is the rank of the i-th key.
+  // The index of the i-th value is the rank of the i-th key.
   std::vector<double> ordered;
   for (const auto& [key, unused] : keyed) {
     const auto rank =

@@ -1,4 +1,4 @@
-// Fortini & Huang 2015, Table I: the parameters of the model, as the preset holds them.
+// Fortini & Huang 2015, Table I: the parameters of the model, as in the preset.
 
 #include <fmt/format.h>
 
@@ -44,14 +44,14 @@ Reproduction run(const Request&) {
     const double bead = scene.contact.bead.required(row.key);
     const double wall = scene.contact.wall.at("bottom").required(row.key);
     r.targets.push_back(exactly(fmt::format("{}, bead-bead", row.name), row.printed, bead));
-    for (const auto& [name, table] : scene.contact.wall)  // where one differs it has a line of its own
+    for (const auto& [name, table] : scene.contact.wall)  // a wall that differs has its own line
       if (name == "bottom" || table.required(row.key) != wall)
         r.targets.push_back(exactly(fmt::format("{}, bead-{}", row.name, name == "bottom" ? "wall" : name),
                                     row.printed, table.required(row.key)));
     r.table += fmt::format("  {:<22} {:<8} {:>14g} {:>14g}\n", row.name, row.key, bead, wall);
     measured.push_back({{"coefficient", row.key}, {"unit", row.unit}, {"bead", bead}, {"wall", wall}});
   }
-  // Section II, beside the table.
+  // Values from section II of the paper.
   r.targets.push_back(exactly("moment of inertia, m sigma^2", 1.0 / 8,
                               scene.inertia_factor * scene.mass * scene.radius * scene.radius));
   r.targets.push_back(exactly("wall separation L_x, sigma", 20, scene.width));

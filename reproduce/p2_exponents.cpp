@@ -1,5 +1,5 @@
-// Bhateja, Sharma & Singh 2016, Tables I and II: exponents of T_z and of the centre of mass's lift with V_p,
-// over the windows of W of earlier experiments, or over the user's own.
+// Bhateja, Sharma & Singh 2016, Tables I and II: exponents of T_z and of the lift of the centre of mass with
+// V_p, over the windows of W of earlier experiments or over the user's own window.
 
 #include <fmt/format.h>
 
@@ -18,9 +18,11 @@ namespace twincell::reproduce {
 
 namespace {
 
-/// W_f on the paper's grid for the rough system of the plane, 700 rpm: where Warr's fit of T_z must begin.
+/// Marks a window that starts at W_f on the paper's grid (700 rpm for the rough 2D system), as Warr's fit of
+/// T_z does.
 constexpr double kFromPeak = -1;
 
+/// An earlier experiment with its window and the paper's exponent.
 struct Study {
   const char* name;
   int dimension;
@@ -44,7 +46,8 @@ const std::vector<Study>& studies(bool of_height) {
   return of_height ? height : temperature;
 }
 
-/// ln y = ln C + alpha ln V_p over a window of W, unweighted; solid points have no logarithm and are counted.
+/// Unweighted fit of ln y = ln C + alpha ln V_p over a window of W. Solid points have y = 0, so they are left
+/// out and counted.
 struct Exponent {
   std::string name;
   double low = 0, high = 0;
@@ -95,7 +98,7 @@ std::vector<DataPoint> of_gas(const std::vector<GasPoint>& points, bool of_heigh
   return all;
 }
 
-/// The user's columns W and T_bar_z (or delta_h_bar): y = that times V_p^2, V_p^2 = W.
+/// Points from the user's columns W and T_bar_z (or delta_h_bar): y is the second column times V_p^2 = W.
 std::vector<DataPoint> of_user(const std::filesystem::path& path, bool of_height) {
   const Table table = read_table(path);
   const auto &w = table.column("W"), &y = table.column(of_height ? "delta_h_bar" : "T_bar_z");
@@ -159,7 +162,7 @@ Figure figure_of(const std::string& name, const std::vector<Exponent>& all, bool
 
 Reproduction run(const Request& request, bool of_height) {
   const GasSize& size = gas_size_for(request);
-  std::vector<DataPoint> own;  // read first: a table that cannot be is found before the work
+  std::vector<DataPoint> own;  // read before the runs, so that an invalid table is reported early
   if (!request.data.empty()) own = of_user(request.data, of_height);
   Gas gas(request);
   std::vector<std::size_t> rough;
@@ -170,6 +173,7 @@ Reproduction run(const Request& request, bool of_height) {
                         symbol(of_height));
   r.complete = gas.run();
 
+  // Windows of the earlier experiments.
   std::vector<Exponent> fitted;
   for (const Study& study : studies(of_height)) {
     if (std::isnan(study.high)) {
@@ -187,7 +191,7 @@ Reproduction run(const Request& request, bool of_height) {
                                  of_gas(points, of_height), low, std::min(study.high, kEndOfData)));
     r.targets.push_back(target_of(study, &fitted.back(), of_height));
   }
-  // The universal window of the paper's sec. V, and whatever the user asks for.
+  // The universal window of the paper's sec. V, and the user's window.
   for (const std::size_t k : rough) {
     const auto peak = peak_of(gas.points(k));
     const auto w_2 = w_2_of(gas.points(k));
@@ -202,6 +206,7 @@ Reproduction run(const Request& request, bool of_height) {
     const auto window = request.window.value_or(std::pair(1e-300, 1e300));
     fitted.push_back(exponent_of("your data", own, window.first, window.second));
   }
+  // Output.
   nlohmann::json exponents = nlohmann::json::array();
   r.table = fmt::format("  {} by least squares in the logarithms, unweighted\n", symbol(of_height));
   for (const Exponent& e : fitted) {

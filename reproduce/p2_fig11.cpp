@@ -1,4 +1,4 @@
-// Bhateja, Sharma & Singh 2016, Fig. 11: T_z/(m g d) with A/d at fixed W, beside W at A = d.
+// Bhateja, Sharma & Singh 2016, Fig. 11: T_z/(m g d) for several A/d at fixed W, and against W at A = d.
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ std::optional<Estimate> t_z(const Gas& gas, std::size_t i, std::size_t j) {
   return gas.points(j)[i].get("T_z");
 }
 
-/// Mean over the three W of 100 (T_z(j)/T_z(k) - 1), and its error.
+/// Mean over the three W of 100 (T_z(j)/T_z(k) - 1), in %, with its interval.
 std::optional<Estimate> mean_change(const Gas& gas, std::size_t j, std::size_t k) {
   Estimate sum{.value = 0, .low = {}, .high = {}};
   double squares = 0;
@@ -40,14 +40,14 @@ Reproduction run(const Request& request) {
   const GasSize& size = gas_size_for(request, 0.15);
   Gas gas(request);
   for (const double amplitude : kAmplitudes)
-    gas.add(
-        {.name = fmt::format("2D rough, A/d = {:g}", amplitude),
-         .scene = fmt::format("preset = \"bhateja-2016-rough-2d\"\ndrive.amplitude = {}", amplitude),
-         .values = {std::begin(kW), std::end(kW)},
-         .relative_error = size.relative_error / 2,  // what is looked for are differences of some per cent
-         // At fixed W a period is as long as the amplitude, the bed's own times are not.
-         .cycles = static_cast<int>(2 * size.cycles / amplitude),
-         .discard = static_cast<int>(100 / amplitude)});
+    gas.add({.name = fmt::format("2D rough, A/d = {:g}", amplitude),
+             .scene = fmt::format("preset = \"bhateja-2016-rough-2d\"\ndrive.amplitude = {}", amplitude),
+             .values = {std::begin(kW), std::end(kW)},
+             .relative_error = size.relative_error / 2,  // the differences are a few per cent
+             // At fixed W the period is proportional to the amplitude, but the relaxation times of the bed
+             // are not.
+             .cycles = static_cast<int>(2 * size.cycles / amplitude),
+             .discard = static_cast<int>(100 / amplitude)});
   Reproduction r;
   r.title = "Bhateja et al. 2016, Fig. 11: temperature with amplitude at fixed W";
   r.complete = gas.run();

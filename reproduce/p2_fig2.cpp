@@ -11,12 +11,11 @@ namespace twincell::reproduce {
 
 namespace {
 
-const std::vector<int> kBothStarts = {500, 600,
-                                      1400};  ///< W = 1.397, 2.012, 10.95: where the start may matter
+const std::vector<int> kBothStarts = {500, 600, 1400};  ///< W = 1.397, 2.012, 10.95: the start may matter
 
 struct Runs {
-  std::vector<std::size_t> systems;  ///< beside gas_systems()
-  std::size_t boiling = 0;           ///< 2D rough once more at kBothStarts, begun from a boiling bed
+  std::vector<std::size_t> systems;  ///< curve of each of gas_systems()
+  std::size_t boiling = 0;           ///< curve of 2D rough at kBothStarts, started from a boiling bed
 };
 
 Runs add_runs(Gas& gas, const GasSize& size) {
@@ -58,7 +57,7 @@ Target shape_of(const GasSystem& system, const std::vector<GasPoint>& points) {
   return t;
 }
 
-/// Every point of a rough curve from W_f to the end of the data beside Table III.
+/// Comparison of every point of a rough curve, from W_f to the end of the data, with Table III.
 Target against_table_3(int dimension, const std::vector<GasPoint>& points) {
   constexpr double kTolerance = 0.10;
   Target t{fmt::format("{}D rough: Table III, algebraic, W_f < W <= 89.4", dimension), "each within 10 %", "",
@@ -94,7 +93,7 @@ Target against_table_3(int dimension, const std::vector<GasPoint>& points) {
   return t;
 }
 
-/// Whether one system lies above another wherever both are a gas.
+/// Whether T_bar_z of one system is above that of another at each W at which both are a gas.
 Target ordered(const std::string& name, const std::vector<GasPoint>& upper,
                const std::vector<GasPoint>& lower) {
   Target t{name, "at each W >= W_f", "", Verdict::absent, ""};
@@ -185,7 +184,7 @@ std::string both_starts(const Gas& gas, const Runs& runs) {
   return s;
 }
 
-/// The user's points, read before the work: a table that cannot be is found early.
+/// The user's points, read before the runs, so that an invalid table is reported early.
 std::optional<Series> own_of(const Request& request) {
   if (request.data.empty()) return std::nullopt;
   const Table table = read_table(request.data);

@@ -1,4 +1,4 @@
-// Bhateja, Sharma & Singh 2016, Fig. 3: which layers move below, just below and at W_f.
+// Bhateja, Sharma & Singh 2016, Fig. 3: which layers move well below W_f, just below it and at it.
 
 #include <fmt/format.h>
 
@@ -19,8 +19,8 @@ namespace {
 constexpr int kRpm[] = {500, 600, 700};  ///< W = 1.397 < W_f, 2.012, 2.739 = W_f
 constexpr std::size_t kLayers = 4;
 
-/// Beads that moved by more than a fifth of a diameter relative to the centre of mass within a cycle, by the
-/// layer in which they began it.
+/// Share of mobile beads per layer: beads that move by more than a fifth of a diameter relative to the centre
+/// of mass within a cycle. A bead belongs to the layer in which it starts the cycle.
 class Mobility : public TrajectorySink {
  public:
   explicit Mobility(const Box& box) : box_(box) {}

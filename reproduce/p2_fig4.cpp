@@ -10,8 +10,8 @@ namespace twincell::reproduce {
 
 namespace {
 
-/// T_x < T < T_z. T lies between the two as soon as T_x < T_z, whose intervals must be apart; the ratio is
-/// said.
+/// T_x < T < T_z. T is between the two if T_x < T_z, so the intervals of these two must be separate. The
+/// target also reports the ratio T_x/T_z.
 Target order_of(const GasSystem& system, const std::vector<GasPoint>& points) {
   Target t{system.name() + ": T_x < T < T_z", "for all W > 1", "", Verdict::absent, ""};
   std::vector<Verdict> fates;
@@ -43,7 +43,7 @@ Target same_shape(const GasSystem& system, const std::vector<GasPoint>& points) 
   }
   if (!peak || top == nullptr) return t;
   t.measured = fmt::format("T_bar largest at W = {:.3g}, T_bar_z at {:.3g}", top->at, peak->grid);
-  // Neighbours on the paper's grid count as the same place.
+  // Neighbouring points of the paper's grid count as the same W.
   const bool near = std::max(top->at, peak->grid) / std::min(top->at, peak->grid) < 2.1;
   t.fate = all_of({near ? Verdict::met : Verdict::missed, above(*top->get("T_bar"), *last->get("T_bar"))});
   return t;

@@ -1,4 +1,4 @@
-// Bhateja, Sharma & Singh 2016, Fig. 5: a channel shaken sideways, with and without gravity.
+// Bhateja, Sharma & Singh 2016, Fig. 5: a horizontally shaken channel, with and without gravity.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,8 @@ namespace twincell::reproduce {
 
 namespace {
 
-/// What a budget buys: frequencies and the period of the channel along y, with beads in proportion.
+/// Extent of the study at a given budget: frequencies, and the period of the channel along y, to which the
+/// number of beads is proportional.
 struct Size {
   double core_minutes;
   std::vector<int> rpm;
@@ -41,7 +42,7 @@ const Size& size_for(const Request& request) {
 
 constexpr double kAmplitude = 10, kBeadsPerDepth = 3000.0 / 35;
 
-/// W of a point: its key is omega, which has a meaning without gravity too.
+/// W of a point. The key is omega, which is also defined without gravity.
 double w_of(const GasPoint& p) {
   return kAmplitude * kAmplitude * p.at * p.at;
 }
@@ -69,6 +70,7 @@ Reproduction run(const Request& request) {
     for (const int rpm : size.rpm) curve.values.push_back(std::sqrt(w_of_rpm(rpm)));  // omega: V_p at A = d
     gas.add(curve);
   }
+  // Targets: constant without gravity; with gravity a maximum, and a second one when beads reach the lid.
   Reproduction r;
   r.title = "Bhateja et al. 2016, Fig. 5: vertical temperature in a channel shaken sideways";
   r.complete = gas.run();
@@ -110,6 +112,7 @@ Reproduction run(const Request& request) {
     second.reason = "too few frequencies at this budget";
   }
   r.targets = {peak, second, constant};
+  // Figure.
   std::vector<Series> series;
   for (const bool gravity : {true, false}) {
     Series s{.title = gravity ? "with gravity" : "without gravity", .x = {}, .y = {}};

@@ -1,4 +1,4 @@
-// Bhateja, Sharma & Singh 2016, Fig. 6: without gravity alpha = 2, whatever the amplitude and the density.
+// Bhateja, Sharma & Singh 2016, Fig. 6: without gravity alpha = 2, independent of amplitude and density.
 
 #include <fmt/format.h>
 
@@ -13,13 +13,13 @@ namespace twincell::reproduce {
 
 namespace {
 
-/// d/V_p is the only clock. With k_n ~ V_p^2, and so dt ~ 1/V_p, every number of a run is that of another
-/// times a power of two: alpha = 2 to the last bit. With one k_n collisions last longer against the flights
-/// at high V_p.
+/// Without gravity d/V_p is the only time scale. With k_n ~ V_p^2, and therefore dt ~ 1/V_p, all numbers of
+/// two runs differ by a power of two: alpha = 2 to the last bit. With constant k_n, collisions at high V_p
+/// last longer relative to the flights.
 struct Setting {
   std::string name;
   double amplitude, layers;
-  std::vector<std::size_t> scaled, fixed;  ///< curves of one run each, beside kPeakVelocities
+  std::vector<std::size_t> scaled, fixed;  ///< curves of one run each, one per V_p of kPeakVelocities
 };
 
 constexpr double kPeakVelocities[] = {1, 2, 4};

@@ -1,4 +1,4 @@
-// Bhateja, Sharma & Singh 2016, Fig. 7: T_bar_z over the scaled lift of the centre of mass, against W.
+// Bhateja, Sharma & Singh 2016, Fig. 7: T_bar_z divided by the scaled lift of the centre of mass, against W.
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ Series ratio_of(const std::string& name, const std::vector<GasPoint>& points) {
   return s;
 }
 
-/// The value nearest to `w` on a logarithmic axis; nothing within a fifth of it.
+/// Value of the point nearest to `w` on a logarithmic axis; null if none is within |ln(W/w)| < 0.2.
 const Estimate* near(const Series& s, double w) {
   const Estimate* best = nullptr;
   double distance = 0.2;

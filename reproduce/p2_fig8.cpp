@@ -1,5 +1,4 @@
-// Bhateja, Sharma & Singh 2016, Fig. 8 and Table III: algebraic and exponential fits of T_bar_z(W) from W_f
-// on.
+// Bhateja, Sharma & Singh 2016, Fig. 8 and Table III: algebraic and exponential fits of T_bar_z(W), W >= W_f.
 
 #include <fmt/format.h>
 
@@ -41,8 +40,8 @@ Fitted fit_of(int dimension, bool algebraic, const std::vector<GasPoint>& points
   for (const GasPoint& p : points)
     if (const auto t = p.get("T_bar_z"); t && p.at >= peak->grid && !p.solid())
       f.points.push_back({.x = p.at, .y = t->value});
-  constexpr std::size_t kFewest = 5;  // three parameters and something to judge them by
-  // Unweighted, as least squares of a plotting program are; the paper does not say.
+  constexpr std::size_t kFewest = 5;  // three parameters and two degrees of freedom
+  // Unweighted, as in plotting programs; the paper does not state its weights.
   if (f.points.size() >= kFewest)
     f.fit = fit_curve(law_named(algebraic ? "algebraic" : "exponential"), f.points);
   return f;

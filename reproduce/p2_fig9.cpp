@@ -1,5 +1,5 @@
-// Bhateja, Sharma & Singh 2016, Figs. 9 and 10: T_bar_z(W) and alpha with stiffness, restitution, friction,
-// layers.
+// Bhateja, Sharma & Singh 2016, Figs. 9 and 10: dependence of T_bar_z(W) and alpha on stiffness, restitution,
+// friction and layers.
 
 #include <fmt/format.h>
 
@@ -14,14 +14,14 @@ namespace twincell::reproduce {
 
 namespace {
 
-/// One panel: what is varied in the rough system of the plane, from the canonical value to the others.
+/// One panel: a parameter of the rough 2D system and its values, the canonical one included.
 struct Panel {
   std::string name, symbol, key;
   std::vector<double> values;
-  std::vector<std::size_t> curves;  ///< beside values
+  std::vector<std::size_t> curves;  ///< one per value
 };
 
-/// The paper does not say which system Figs. 9 and 10 are of.
+/// Panels of Fig. 9. The paper does not state the system of Figs. 9 and 10.
 std::vector<Panel> panels() {
   return {{"d", "N", "beads.layers", {2, 4, 6, 8}, {}},
           {"b", "e", "contact.restitution", {0.7, 0.8, 0.9, 0.95}, {}},
@@ -33,7 +33,8 @@ const std::vector<int> kFrequencies = {500, 600, 700, 900, 1200, 1500, 2000, 300
 constexpr double kSoftest = 1e5;
 constexpr double kSoftUpTo = 23;  ///< W above which beads of k_n = 1e5 overlap by more than 5 %
 
-/// Canonical values are left out of the scene, so that the points are those of the other panels and figures.
+/// Whether a value is canonical. Canonical values are left out of the scene, so that the other panels and
+/// figures share the points.
 bool canonical(const Panel& p, double value) {
   return (p.symbol == "N" && value == 4) || (p.symbol == "e" && value == 0.9) ||
          (p.symbol == "mu" && value == 0.4) || (p.symbol == "k_n" && value == 1e6);
@@ -77,7 +78,8 @@ Target close_to_each_other(const Gas& gas, const Panel& p) {
   return t;
 }
 
-/// At W = 22 the values follow the parameter in one direction, neighbours apart.
+/// Target that T_bar_z at W = 22 is monotonic in the parameter, with separate intervals for neighbouring
+/// values.
 Target monotonic(const Gas& gas, const Panel& p, bool rising, const std::string& name,
                  const std::string& wanted) {
   Target t{name, wanted, "", Verdict::absent, ""};

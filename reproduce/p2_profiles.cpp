@@ -16,35 +16,37 @@ namespace {
 /// W = 5.58, 22.35, 50.3, 68.46, 85.01 of the paper.
 const std::vector<int> kFrequencies = {1000, 2000, 3000, 3500, 3900};
 
-/// The paper averages "the temperature T_z in a box" about z, and does not say about which mean, nor what a
-/// moment counts when the box is empty. Every target and figure is there in both readings.
+/// The paper averages "the temperature T_z in a box" around z. It does not state which mean velocity is
+/// subtracted, or how an instant with an empty box counts. Every target and figure is given for both
+/// readings.
 struct Reading {
   const char* result;  ///< array of the observable, analysis/gas/profiles.hpp
-  const char* said;    ///< behind a target
-  const char* figure;  ///< behind a figure's name
+  const char* said;    ///< appended to a target
+  const char* figure;  ///< appended to a figure's name
 };
 constexpr Reading kReadings[] = {{"T_z_z", "", ""},
                                  {"T_z_frames_z", " (mean over time, an empty slab counts as 0)", "-time"}};
 
-/// A profile over height with the relative error of each slab, estimated from how many beads it saw in how
-/// many cycles (frames of one cycle know little of each other's fluctuations).
+/// A profile over height with the relative error of each slab, estimated from the number of beads in it
+/// summed over the cycles.
 struct Profile {
   std::vector<double> z, t, phi, error;
 
-  /// Where T is largest; nothing without a temperature.
+  /// Slab with the largest T; empty without a temperature.
   [[nodiscard]] std::optional<std::size_t> hottest() const {
     std::optional<std::size_t> top;
     for (std::size_t k = 0; k < t.size(); ++k)
       if (std::isfinite(t[k]) && (!top || t[k] > t[*top])) top = k;
     return top;
   }
+  /// Slab with the largest phi.
   [[nodiscard]] std::size_t densest() const {
     return static_cast<std::size_t>(std::max_element(phi.begin(), phi.end()) - phi.begin());
   }
-  /// A maximum above another one, which rises over the dip between them by three errors of the difference and
-  /// by a twentieth of the first.
+  /// A second maximum of T above the first one. It exceeds the minimum between them by three errors of the
+  /// difference and by a twentieth of the first maximum.
   struct Second {
-    double z = 0, over_first = 0;  ///< height; its temperature over that of the maximum below
+    double z = 0, over_first = 0;  ///< height; temperature relative to the first maximum
   };
   [[nodiscard]] std::optional<Second> second() const {
     constexpr double kErrors = 3, kRise = 0.05;
@@ -72,8 +74,7 @@ std::optional<Profile> profile_of(const GasPoint& p, const Reading& reading, dou
   const auto z = p.arrays.find("profile_z"), t = p.arrays.find(reading.result), phi = p.arrays.find("phi_z");
   if (z == p.arrays.end() || t == p.arrays.end() || phi == p.arrays.end()) return std::nullopt;
   Profile profile{z->second, t->second, phi->second, {}};
-  // Frames of one cycle know little of each other, so that beads are counted once a cycle; a slab that a few
-  // flights passed has no temperature of its own.
+  // Count the beads of a slab once per cycle. A slab that only a few beads crossed gets no temperature.
   constexpr double kFewest = 100;
   const double bead = flat ? std::numbers::pi / 4 : std::numbers::pi / 6;
   for (std::size_t k = 0; k < profile.phi.size(); ++k) {
@@ -139,7 +140,7 @@ Verdict yes(bool holds) {
 
 // ---------------------------------------------------------------- Figs. 12 and 13
 
-/// The bed at one depth and frequency.
+/// Profile of the bed at one depth and frequency.
 using ProfileOf = std::function<std::optional<Profile>(std::size_t depth, std::size_t frequency)>;
 
 std::vector<Target> targets_12(const std::vector<double>& depths, const ProfileOf& of,
@@ -232,7 +233,7 @@ Reproduction run_12(const Request& request) {
 // ---------------------------------------------------------------- Figs. 14 and 15
 
 struct Pair {
-  std::vector<std::optional<Profile>> smooth, rough;  ///< beside kFrequencies
+  std::vector<std::optional<Profile>> smooth, rough;  ///< one per frequency of kFrequencies
 };
 
 void add_pair(Gas& gas, const Request& request) {
@@ -252,7 +253,7 @@ Pair pair_of(const Gas& gas, const Reading& reading) {
 
 std::vector<Figure> pair_figures(const std::string& name, const Pair& pair, bool of_packing,
                                  const Reading& reading) {
-  // A bead that once flew far above the bed would leave the bed a corner of the picture.
+  // Limit the axis: a single bead far above the bed would compress the bed into a corner of the figure.
   constexpr double kShown = 1e-3;
   std::vector<Figure> figures;
   for (const bool rough : {false, true}) {
@@ -391,7 +392,7 @@ Series station(const Gas& gas, std::size_t curve, const Reading& reading, int di
   Series s{.title = fmt::format("z = {:g} d", z), .x = {}, .y = {}};
   for (const GasPoint& point : gas.points(curve)) {
     const auto p = profile_of(point, reading, area_of(dimension), dimension == 2);
-    if (!p || point.at < 1 || point.solid()) continue;  // a block has no temperature
+    if (!p || point.at < 1 || point.solid()) continue;  // a solid bed has no temperature
     for (std::size_t k = 0; k < p->z.size(); ++k)
       if (p->z[k] == z && std::isfinite(p->t[k])) {
         const double t = p->t[k] / point.at;  // V_p^2 = W d g
@@ -402,7 +403,7 @@ Series station(const Gas& gas, std::size_t curve, const Reading& reading, int di
   return s;
 }
 
-/// Whether it falls, or rises, from W = 5 to the largest.
+/// Target that a series falls, or rises, from W = 5 to the largest W.
 Target trend(const std::string& name, const Series& s, bool falls) {
   constexpr double kFrom = 5;
   Target t{name + ", z = " + s.title.substr(4), falls ? "falls with W" : "rises with W", "", Verdict::absent,
@@ -417,7 +418,7 @@ Target trend(const std::string& name, const Series& s, bool falls) {
   return t;
 }
 
-/// Whether the temperature of all beads is flat in W before that at any height is.
+/// Target that the temperature over all beads becomes constant in W at a smaller W than at any fixed height.
 Target volume_first(const std::string& name, const Series& volume, const std::vector<Series>& stations) {
   Target t{name + ": the mean over the volume flattens before those at fixed heights",
            "from a smaller W on than at any height", "", Verdict::absent,

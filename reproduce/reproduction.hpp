@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// What it means to reproduce a figure or table of the papers: targets, what was measured, and what was
-/// cheaper.
+/// Reproduction of a figure or table of the papers: targets, measured values, and simplifications.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,7 +15,7 @@
 
 namespace twincell::reproduce {
 
-/// How a target fared.
+/// Verdict on a target.
 enum class Verdict {
   met,
   missed,
@@ -26,49 +25,49 @@ enum class Verdict {
 /// "met", "MISSED", "open", "absent".
 std::string word_of(Verdict fate);
 
-/// One number or statement of the paper beside what was measured.
+/// One number or statement of the paper, with the measured value and the verdict.
 struct Target {
   std::string name;      ///< "onset of bouncing, random, N_l = 20"
   std::string wanted;    ///< "1.10 to 1.35"
   std::string measured;  ///< with interval
   Verdict fate = Verdict::absent;
-  std::string reason;  ///< why, where that is not plain
+  std::string reason;  ///< explanation of the verdict, if needed
 };
 
-/// How much may be spent.
+/// Budget and options of a reproduction.
 struct Request {
-  double minutes = 10;  ///< of clock time; ignored if full
-  bool full = false;    ///< whatever the paper's own numbers take
+  double minutes = 10;  ///< clock time; ignored if full
+  bool full = false;    ///< use the paper's own numbers, without a time limit
   int threads = 1;
   std::uint64_t seed = 1;
-  std::filesystem::path folder;     ///< for the sweep; taken up if it is there
-  std::filesystem::path runs = {};  ///< for runs that several figures share (Reproducible::shared_runs)
+  std::filesystem::path folder;     ///< folder of the sweep; existing results are used
+  std::filesystem::path runs = {};  ///< folder of runs that figures share (Reproducible::shared_runs)
   std::optional<std::pair<double, double>> window = {};  ///< the user's own window of W
   std::filesystem::path data = {};                       ///< the user's own points, CSV; empty: none
-  sweep::Watch* watch = nullptr;                         ///< never null when a reproduction runs
+  sweep::Watch* watch = nullptr;                         ///< must not be null when a reproduction runs
 };
 
-/// All that is to be said.
+/// Complete result of a reproduction.
 struct Reproduction {
   std::string title;
   std::vector<Target> targets;
-  std::vector<std::string> cheaper;          ///< what was cheaper than the paper, in sentences
-  std::vector<std::string> conditions = {};  ///< what must be stated beside each number, in sentences
-  std::string table;                         ///< what was measured, for a reader
-  std::string measured;                      ///< the same as JSON
+  std::vector<std::string> cheaper;          ///< simplifications relative to the paper, in sentences
+  std::vector<std::string> conditions = {};  ///< conditions to state with each number, in sentences
+  std::string table;                         ///< measured values as a text table
+  std::string measured;                      ///< measured values as JSON
   std::vector<Figure> figures;
-  bool complete = false;  ///< false: the time was up; the same command goes on
+  bool complete = false;  ///< false if the time ran out; the same command continues
 };
 
-/// One entry of the list: a file p1_fig3.cpp has a `Reproducible p1_fig3()`.
+/// One entry of the list. A file p1_fig3.cpp defines `Reproducible p1_fig3()`.
 struct Reproducible {
   std::string name;  ///< "p1-fig3"
   std::string what;  ///< one line
   std::function<Reproduction(const Request&)> run;
-  std::string shared_runs = {};  ///< folder beside the figure's where runs lie that other figures use too
-  bool takes_data = false;       ///< whether Request::window and Request::data mean something to it
+  std::string shared_runs = {};  ///< folder of runs that other figures also use, next to the figure's
+  bool takes_data = false;       ///< whether it uses Request::window or Request::data
 };
-/// All that can be reproduced. To add one: its file, a line here, a word in list.cpp, a test.
+/// All reproductions. To add one: its file, a declaration below, an entry in list.cpp, a test.
 const std::vector<Reproducible>& list();
 
 Reproducible p1_fig1();
@@ -98,11 +97,11 @@ Reproducible p2_table1();
 Reproducible p2_table2();
 Reproducible p2_table3();
 
-/// Whether an onset lies within [low, high]: met if its value does, missed if its whole interval does not,
-/// else open.
+/// Verdict on whether an onset is within [low, high]: met if its value is, missed if its whole interval is
+/// outside, absent without runs, else open.
 Verdict within(const sweep::Onset& onset, double low, double high);
-/// Whether one onset lies above another: met or missed if the opposite is excluded (evidence_above), else
-/// open.
+/// Verdict on whether one onset is above another: met or missed if the opposite is excluded (evidence_above),
+/// absent without runs, else open.
 Verdict above(const sweep::Onset& upper, const sweep::Onset& lower);
 
 }  // namespace twincell::reproduce

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// A bed whose motion is known in closed form: a completely inelastic rigid crystal on a vibrating plate
-/// (omega = 1, g = 1, A = Gamma), optionally sheared a little more every cycle. What s_b and s_c of it must
-/// be can be written down.
+/// (omega = 1, g = 1, A = Gamma), optionally with a shear that grows every cycle. Its s_b and s_c therefore
+/// have closed forms.
 
 #include <cmath>
 #include <numbers>
@@ -12,8 +12,8 @@
 
 namespace twincell::reproduce {
 
-/// Height of the bed above the plate at phase angle phi in [0, 2 pi): it leaves at sin(phi) = 1/Gamma, flies,
-/// and sticks where it lands. For Gamma < 3.29, where the flight is shorter than a period.
+/// Height of the bed above the plate at phase angle phi in [0, 2 pi). The bed takes off at sin(phi) = 1/Gamma
+/// and sticks to the plate when it lands. Valid for Gamma < 3.29, where the flight is shorter than a period.
 inline double rigid_bed_height(double gamma, double phi) {
   if (gamma <= 1) return 0;
   const double start = std::asin(1 / gamma);
@@ -34,6 +34,7 @@ inline double rigid_bed_height(double gamma, double phi) {
   return since < low ? gap(since) : 0;
 }
 
+/// Parameters of the rigid bed.
 struct RigidBed {
   double gamma = 1.5;
   int columns = 20;  ///< beads in an even row; odd rows have one less
@@ -72,6 +73,7 @@ inline void film_rigid_bed(const RigidBed& bed, const TrajectoryInfo& info, Traj
     }
 }
 
+/// Metadata of the bed's trajectory.
 inline TrajectoryInfo rigid_bed_info(const RigidBed& bed) {
   TrajectoryInfo info;
   info.n_beads = 0;
@@ -87,6 +89,7 @@ inline TrajectoryInfo rigid_bed_info(const RigidBed& bed) {
   return info;
 }
 
+/// Trajectory of the bed.
 inline MemoryTrajectory rigid_bed(const RigidBed& bed) {
   MemoryTrajectory trajectory(rigid_bed_info(bed));
   film_rigid_bed(bed, trajectory.info(), trajectory);

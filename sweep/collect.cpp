@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A TOML scalar as JSON; what JSON spells otherwise stays text.
+/// A TOML scalar as JSON; a literal that is not valid JSON becomes a string.
 json value_of(const std::string& literal) {
   if (literal.size() >= 2 && literal.front() == '\'') return literal.substr(1, literal.size() - 2);
   const json value = json::parse(literal, nullptr, false);
@@ -37,8 +37,8 @@ json optional(const std::optional<double>& value) {
   return value ? json(*value) : json(nullptr);
 }
 
-/// Points of a curve in the order of the search's key, then of their replicas; nothing here may tell in which
-/// order they were computed.
+/// Points of a curve in the order of the search's key, then of the replica, so that the output does not
+/// depend on the order of computation.
 std::vector<std::size_t> order_of(const Curve& curve) {
   std::vector<std::size_t> order(curve.points.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -77,15 +77,15 @@ json onset_json(const Plan& plan, const Curve& curve) {
           {"text", o.text()}};
 }
 
-/// Points that differ in nothing but the seed.
+/// Runs that differ only in the seed.
 struct Group {
   json axes;
   std::vector<std::vector<Result>> runs;
-  std::size_t repeats = 0;  ///< runs left out because they are another one's, bit for bit
+  std::size_t repeats = 0;  ///< runs left out because they equal another run bit for bit
 };
 
-/// Of the points with results, in the order of the points. The seed may be an axis of the plan; it tells no
-/// conditions apart.
+/// Groups of the points with results, in the order of the points. If the seed is an axis of the plan, it does
+/// not separate groups.
 std::vector<Group> groups_of(const json& points) {
   std::vector<Group> groups;
   std::map<std::string, std::size_t> number;
@@ -110,7 +110,7 @@ std::vector<Group> groups_of(const json& points) {
   return groups;
 }
 
-/// Scalars and words of every group of two runs or more.
+/// Pooled scalars and words of every group with two or more runs.
 json pooled_json(const json& points) {
   json pooled = json::array();
   for (const Group& group : groups_of(points)) {
@@ -148,8 +148,8 @@ std::string cell(const json& value) {
   return csv_field(value.get<std::string>());
 }
 
-/// A line for each of `rows`: what `lead` lists, the axes, the keys, then value, low and high of every
-/// scalar.
+/// CSV with one line per row: the columns `lead`, the axes, the columns `keys_of_row`, then value, low and
+/// high of every scalar result.
 std::string table_of(const json& rows, const std::vector<std::string>& lead,
                      const std::vector<std::string>& keys_of_row) {
   std::set<std::string> keys, names;
@@ -201,9 +201,8 @@ std::string pooled_csv(const Schedule& schedule) {
 std::string collected_text(const Schedule& schedule) {
   const Plan& plan = schedule.plan();
   const Counts counts = schedule.counts();
-  std::string text =
-      fmt::format("{} of {} points done{}\n", counts.done, counts.known,
-                  counts.failed > 0 ? fmt::format(", {} of them went wrong", counts.failed) : "");
+  std::string text = fmt::format("{} of {} points done{}\n", counts.done, counts.known,
+                                 counts.failed > 0 ? fmt::format(", {} of them failed", counts.failed) : "");
   for (const Curve& curve : schedule.curves()) {
     if (!curve.onset) continue;
     std::string place;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// All results of a sweep in one file.
+/// Collected results of a sweep as JSON, CSV or text.
 
 #include <string>
 
@@ -8,23 +8,25 @@
 
 namespace twincell::sweep {
 
-/// {"format", "plan": its TOML, "seed": master seed, "points": [{"id", "axes": {key: value}, "replica",
-/// "seed", and of the result all that does not depend on where and when it was computed}], "open": points
-/// that are not done, "onsets": [{"axes", "key", "verdict", "value", "low", "high", "level", "method",
-/// "runs", "yes", "text", "complete"}], "pooled": [{"axes", "runs", "results"}]}. `pooled` holds, for the
-/// points with two runs or more that differ in nothing but the seed, their scalars and words as
-/// analysis/runs/pooling.hpp pools them. The same bytes for the same plan, whichever process computed the
-/// points in whatever order.
+/// All results of a sweep as one JSON object:
+/// {"format", "plan": TOML of the plan, "seed": master seed, "points": [{"id", "axes": {key: value},
+/// "replica", "seed", and every part of the result that does not depend on where and when it was computed}],
+/// "open": number of points that are not done, "onsets": [{"axes", "key", "verdict", "value", "low", "high",
+/// "level", "method", "range", "runs", "yes", "complete", "text"}], "pooled": [{"axes", "runs", "results"}]}.
+///
+/// `pooled` contains, for points with two or more runs that differ only in the seed, their scalars and words,
+/// pooled by analysis/runs/pooling.hpp. The bytes depend on the plan only, not on which process computed the
+/// points or in which order.
 std::string collected_json(const Schedule& schedule);
 
-/// A line a point: id, axes, replica, seed, answer, then value, low and high of every scalar result; empty
-/// where there is none.
+/// CSV with one line per point: id, axes, replica, seed, answer, number of cycles, failure, then value, low
+/// and high of every scalar result; empty fields for absent values.
 std::string collected_csv(const Schedule& schedule);
 
-/// The same for `pooled`: a line for each set of axes; empty if no point has two runs.
+/// CSV of `pooled`, one line per set of axes; empty if no point has two runs.
 std::string pooled_csv(const Schedule& schedule);
 
-/// A line an onset, for a reader; for a grid the number of points.
+/// Summary for a reader: the number of points, then one line per onset.
 std::string collected_text(const Schedule& schedule);
 
 }  // namespace twincell::sweep

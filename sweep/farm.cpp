@@ -28,6 +28,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
+/// Worker threads that take points from the schedules, and the calling thread that reports progress.
 class Farm {
  public:
   Farm(const std::vector<Schedule*>& schedules, const Store& store, const FarmOptions& options, Watch& watch)
@@ -79,10 +80,10 @@ class Farm {
     }
   }
 
-  /// Particle-steps a second of one worker, analysis included; NaN until a point is done.
+  /// Particle-steps per second of one worker, analysis included; NaN until a point is done.
   [[nodiscard]] double rate() const { return seconds_ > 0 ? work_ / seconds_ : kUnknown; }
 
-  /// Work that fits into the time left. Before anything is known a point is simply begun.
+  /// Largest work, in particle-steps, that fits into the time left. Unlimited while the speed is unknown.
   [[nodiscard]] double most_work() const {
     const double left = watch_.time_left();
     if (left <= 0) return -1;
@@ -135,7 +136,8 @@ class Farm {
     changed_.notify_all();
   }
 
-  /// The schedule with the fewest points begun first: what a stop leaves behind is then equally far.
+  /// Schedules in the order of the points started, fewest first, so that all have progressed equally when a
+  /// run stops.
   [[nodiscard]] std::vector<Schedule*> in_turn() const {
     std::vector<std::pair<std::size_t, Schedule*>> begun;
     for (Schedule* s : schedules_) {
@@ -150,7 +152,7 @@ class Farm {
     return order;
   }
 
-  /// Nothing runs here, and what is open does not fit into the time left.
+  /// Whether no point runs here and the time is limited, so that no open point fits into the time left.
   [[nodiscard]] bool nothing_will_come() const {
     if (busy_ > 0 || watch_.time_left() > 1e200) return false;
     return true;
@@ -160,7 +162,7 @@ class Farm {
   const Store& store_;
   const FarmOptions& options_;
   Watch& watch_;
-  std::mutex mutex_;  ///< of the schedules and of all below
+  std::mutex mutex_;  ///< guards the schedules and the members below
   std::condition_variable changed_;
   std::atomic<bool> closing_ = false;
   int started_ = 0, working_ = 0, busy_ = 0;
@@ -178,7 +180,7 @@ void require_memory_together(const Schedule& schedule, int together, const std::
   for (const Curve& curve : schedule.curves()) {
     if (curve.complete) continue;
     const Point* end = nullptr;
-    // The strength of the drive, which searches mostly vary, takes no memory.
+    // Most searches vary the strength of the drive, which does not change the memory demand.
     if (plan.search && !plan.search->key.starts_with("drive."))
       for (const double at : {plan.search->low, plan.search->high}) {
         ends.push_back(std::make_unique<const Point>(make_point(plan, curve.values, at, 0)));
@@ -205,14 +207,14 @@ void require_memory_together(const Schedule& schedule, int together, const std::
   if (fit == 0)
     throw ConfigError(
         {.file = plan.file, .key = key},
-        fmt::format("asks for {} beads in one point, which take about {} of memory; the machine "
-                    "has {} to give.",
+        fmt::format("requires {} beads in one point, which take about {} of memory; the machine "
+                    "has {} available.",
                     scene.n_beads.value_or(0), sim::bytes_text(largest.memory), sim::bytes_text(available)));
   throw ConfigError(
       {.file = plan.file, .key = key},
       fmt::format(
           "with up to {} beads in a point, {} points that run at once take about {} of memory, and the "
-          "machine has {} to give; with {} {} they fit.",
+          "machine has {} available; with {} {} they fit.",
           scene.n_beads.value_or(0), open.size(), sim::bytes_text(sum), sim::bytes_text(available), way,
           fit));
 }

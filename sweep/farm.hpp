@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The cores of this machine at work on a sweep, a point on each.
+/// Computes the points of sweeps on the cores of this machine, one point per core.
 
 #include <string>
 #include <vector>
@@ -10,31 +10,33 @@
 
 namespace twincell::sweep {
 
-/// Told how things stand, several times a second, by the thread that called.
+/// Callbacks of a running sweep.
 class Watch {
  public:
   virtual ~Watch() = default;
-  /// \param seconds_left by the speed so far; NaN when nothing is known yet. May throw Interrupted
+  /// Receives the progress several times a second, in the calling thread. May throw Interrupted. \param
+  /// seconds_left estimate from the speed so far; NaN until the first point is done
   virtual void look(const Counts& /*counts*/, double /*seconds_left*/) {}
-  /// Seconds that are left to this call; points that would take longer are not begun.
+  /// Remaining time in seconds; points that would take longer are not started.
   [[nodiscard]] virtual double time_left() const { return 1e300; }
 };
 
+/// Options of run_here.
 struct FarmOptions {
   int threads = 1;
   bool keep_trajectories = false;
 };
 
-/// Whether the open points that take most memory can run at once; later rounds of a search are counted with
-/// the ends of its range. \param together how many run at once on this machine \param way option that says so
-/// \param available bytes \throws ConfigError naming `way`, or the key of the beads where one point is too
-/// much
+/// Checks that the open points with the largest memory demand can run at once. Later rounds of a search count
+/// with the ends of the search range. \param together number of points that run at once on this machine
+/// \param way option that sets this number, for the message \param available bytes \throws ConfigError naming
+/// `way`, or the key of the number of beads if a single point needs too much
 void require_memory_together(const Schedule& schedule, int together, const std::string& way,
                              double available = memory_available());
 
-/// Computes what schedules ask for until all is done, or nothing fits into the time that is left. Where
-/// points are at work in other processes it waits for them. \returns whether all is done \throws Interrupted,
-/// NotStored, InputError, ConfigError
+/// Computes the points of the schedules until all are done or no remaining point fits into the time left.
+/// Without a time limit it waits for points that other processes compute. \returns whether all points are
+/// done \throws Interrupted, NotStored, InputError, ConfigError
 bool run_here(const std::vector<Schedule*>& schedules, const Store& store, const FarmOptions& options,
               Watch& watch);
 

@@ -7,7 +7,7 @@ namespace twincell::sweep {
 
 namespace {
 
-/// Holds one frame.
+/// Sink that stores the latest frame.
 class Hand : public TrajectorySink {
  public:
   explicit Hand(Frame& frame) : frame_(frame) {}

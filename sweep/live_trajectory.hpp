@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A simulation that is analysed while it runs: its frames are made when they are asked for, and not kept.
+/// A running simulation as a trajectory: each frame is computed when it is read and not stored.
 
 #include <cstddef>
 #include <functional>
@@ -11,17 +11,18 @@
 
 namespace twincell::sweep {
 
+/// Trajectory source that advances a simulation by one frame per read.
 class LiveTrajectory : public TrajectorySource {
  public:
-  /// Called with each frame as it is made; false ends the trajectory with that frame's cycle, at its last
-  /// phase.
+  /// Called with each new frame. A return value of false at the last phase of a cycle ends the trajectory
+  /// there.
   using Watcher = std::function<bool(const Frame& frame)>;
 
-  /// Settles the run. \param name for messages \throws RunError, Interrupted
+  /// Settles the bed before the first frame. \param name for messages \throws RunError, Interrupted
   LiveTrajectory(sim::Simulation& run, std::string name, Progress& progress, Watcher watcher);
 
   [[nodiscard]] const TrajectoryInfo& info() const override { return info_; }
-  /// Of the whole run, or up to where the watcher ended it.
+  /// Number of frames of the whole run, or up to the frame where the watcher ended it.
   [[nodiscard]] std::size_t n_frames() const override { return n_frames_; }
   /// \pre index is that of the last frame read, or the next one \throws RunError, Interrupted
   void read(std::size_t index, Frame& frame) const override;

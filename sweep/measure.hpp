@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A simulation and its analysis in one pass: no frame is kept.
+/// Simulation and analysis in one pass, without storing frames.
 
 #include <cstdint>
 #include <functional>
@@ -14,26 +14,27 @@
 
 namespace twincell::sweep {
 
-/// What a run gave.
+/// Results of a run.
 struct Measured {
   std::vector<Result> results;
-  std::int64_t cycles = 0;            ///< that were run and analysed
-  std::optional<bool> precise;        ///< whether the scene's [until] was reached; empty: it has none
-  std::string until;                  ///< what became of it, in a sentence
-  std::optional<double> rest_height;  ///< sigma; of the bed as it rested before the drive
+  std::int64_t cycles = 0;            ///< cycles that were run and analysed
+  std::optional<bool> precise;        ///< whether the scene's [until] was reached; empty without [until]
+  std::string until;                  ///< the precision reached, in a sentence
+  std::optional<double> rest_height;  ///< centre-of-mass height of the resting bed before the drive, sigma
   std::optional<double> contact_fraction;
 };
 
-/// Called before the first frame and with every frame; `frame` false ends the run with its cycle.
+/// Callbacks before the first frame and with every frame. If `frame` returns false at the last phase of a
+/// cycle, the run ends there.
 struct Observer {
   std::function<void(const TrajectoryInfo&)> begin = [](const TrajectoryInfo&) {};
   std::function<bool(const Frame&)> frame = [](const Frame&) { return true; };
 };
 
 /// Runs the bed and analyses it while it runs, to the scene's last cycle or until its [until] is reached
-/// (precision_rule.hpp). The height at rest from which delta_h_cm is taken is that of this very bed, settled
-/// on the plate at rest (A = 0), unless the options name one; there is none without gravity, or where the bed
-/// still moves with more than 0.005 m g sigma a bead when settling ends.
+/// (precision_rule.hpp). delta_h_cm is relative to the rest height given in the options, else to the height
+/// of this bed after settling on the plate at rest (A = 0). There is no rest height without gravity, or if
+/// the bed still has more than 0.005 m g sigma of energy per bead when settling ends.
 /// \throws ConfigError, RunError, Interrupted
 Measured measure(sim::Simulation& run, AnalysisOptions options, const std::string& name, Progress& progress,
                  const Observer& beside = {});

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Where along an axis an answer turns from no to yes, from runs that differ in their seeds.
+/// Onset along an axis, where the answer changes from no to yes, from runs with different seeds.
 
 #include <cstddef>
 #include <optional>
@@ -15,46 +15,48 @@ struct Trial {
   bool yes = false;
 };
 
-/// How likely a mu is: ln(L(mu)/L_max), at most 0.
+/// Log-likelihood ratio of an onset mu: ln(L(mu)/L_max), at most 0.
 struct Likelihood {
   double mu = 0, log = 0;
 };
 
-/// 2 ln(L_max/L(mu)) from which on a mu is held to be excluded (onset.cpp says why not 3.841).
+/// Value of 2 ln(L_max/L(mu)) from which a mu is excluded at 95 % (onset.cpp explains why it is not 3.841).
 inline constexpr double kLikelihoodDrop = 6.0;
 
-/// The onset mu and how far it is known.
+/// Estimate of the onset mu with its interval.
 struct Onset {
-  std::optional<double> value;      ///< most likely mu; absent unless it lies within the range
-  std::optional<double> low, high;  ///< 95 % interval; absent where it is open: a one-sided limit
+  std::optional<double> value;      ///< most likely mu; absent outside the range or if all answers agree
+  std::optional<double> low, high;  ///< 95 % interval; an absent end is open (one-sided limit)
   double level = 0.95;
-  std::size_t n = 0, yes = 0;       ///< trials
-  std::vector<Likelihood> profile;  ///< of mu on a grid over the range and half a range beyond either end
+  std::size_t n = 0, yes = 0;       ///< number of trials, and of those with the answer yes
+  std::vector<Likelihood> profile;  ///< on a grid over the range and half a range beyond either end
 
-  /// "1.17 [1.15, 1.19], 9 of 20 runs"; "above 2.9, 0 of 12 runs up to 3".
+  /// "1.17 [1.15, 1.19], yes in 9 of 20 runs"; "above 2.9, yes in 0 of 12 runs".
   [[nodiscard]] std::string text() const;
 };
 
-/// P(yes at x) = 1/(1 + exp(-(x - mu)/w)) (logistic regression). mu by maximum likelihood, its interval by
-/// the profile likelihood, {mu: 2 ln(L_max/L(mu)) < 6} with w free between width/8 and half the range; a
-/// lower bound of w keeps the fit finite when all noes lie below all yeses, and its upper one is what makes a
-/// single flip worth little: four or so agreeing runs on either side are needed before a side is closed. mu
-/// is looked for up to half a range beyond either end; an interval that leaves the range is open on that
-/// side. \param low, high range in which the trials lie \param width to which mu is to be known \pre low <
-/// high, width > 0
+/// Logistic regression P(yes at x) = 1/(1 + exp(-(x - mu)/w)). mu is the maximum-likelihood value; its
+/// interval comes from the profile likelihood, {mu: 2 ln(L_max/L(mu)) < 6}, with w free between width/8 and
+/// half the range. The lower bound of w keeps the fit finite if all answers no are below all answers yes. The
+/// upper bound gives a single change of answer little weight: about four agreeing runs on either side are
+/// needed before that side of the interval is closed. mu is searched up to half a range beyond either end; an
+/// interval that extends beyond the range is open on that side.
+/// \param low, high range of the trials \param width wanted width of the interval \pre low < high, width > 0
 Onset estimate_onset(const std::vector<Trial>& trials, double low, double high, double width);
 
-/// `batch` places for the next runs: the (i + 1/2)/batch quantiles of the likelihood of mu, so that runs go
-/// where the onset may still be; rounded to multiples of width/2 from `low`, within the range.
+/// Positions of the next `batch` runs: the (i + 1/2)/batch quantiles of the likelihood of mu, so that runs
+/// are placed where the onset may still be. They are rounded to multiples of width/2 from `low`, within the
+/// range.
 std::vector<double> next_places(const Onset& onset, double low, double high, double width, int batch);
 
-/// How much worse it fits that `upper` lies no higher than `lower`: 2 ln(L_max/L), L the largest joint
-/// likelihood with mu_upper <= mu_lower (likelihood ratio of two independent onsets). 0 if that fits best;
-/// compare with kLikelihoodDrop. This decides where two intervals overlap a little. \pre both have a profile
+/// Likelihood-ratio statistic against the hypothesis that `upper` is not above `lower`: 2 ln(L_max/L), where
+/// L is the largest joint likelihood of two independent onsets with mu_upper <= mu_lower. It is 0 if that
+/// hypothesis fits best. A value above kLikelihoodDrop excludes it, also where the two intervals overlap
+/// slightly. \pre both have a profile
 double evidence_above(const Onset& upper, const Onset& lower);
 
-/// Whether nothing is left to ask: the interval is closed and no wider than `width`, or the onset is known to
-/// lie less than `width` from an end of the range or beyond it.
+/// Whether the search is finished: the interval is closed and not wider than `width`, or a one-sided limit
+/// places the onset less than `width` from an end of the range or beyond it.
 bool settled(const Onset& onset, double low, double high, double width);
 
 }  // namespace twincell::sweep

@@ -47,7 +47,7 @@ void require_result(const Where& where, const std::string& name) {
                                          fmt::join(names, ", ")));
 }
 
-/// Marks a dotted path and the tables on its way as asked for.
+/// Marks a dotted path and the tables that contain it as read, so that they do not count as unknown keys.
 void know(const ConfigSection& table, const std::string& path) {
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1))
     static_cast<void>(table.has(path.substr(0, dot)));
@@ -60,13 +60,13 @@ Verdict read_verdict(const ConfigSection& s) {
   const auto above = s.number("above");
   if (word && (result || above))
     throw ConfigError(s.where("verdict"),
-                      "is given together with 'result' or 'above'; only one of the two can be.");
+                      "is given together with 'result' or 'above'; give only one of the two.");
   if (word && *word == "bouncing") return {"bouncing", "s_b", kBouncingThreshold};
   if (word) return {"convecting", "s_c", kConvectionThreshold};
   if (!result || !above)
     throw ConfigError(
         s.where("verdict"),
-        "is missing: \"bouncing\", \"convecting\", or a result of the analysis and what it is above.");
+        "is missing: \"bouncing\", \"convecting\", or a 'result' of the analysis and its bound 'above'.");
   require_result(s.where("result"), *result);
   return {*result, *result, *above};
 }
@@ -83,8 +83,7 @@ Search read_search(const ConfigSection& s) {
                       fmt::format("goes from {:g} to {:g}; it must rise.", search.low, search.high));
   const double all = search.high - search.low;
   const auto width = s.number_in("width", 0, all, true);
-  if (!width)
-    throw ConfigError(s.where("width"), "is missing: how narrow the interval of the onset is to be.");
+  if (!width) throw ConfigError(s.where("width"), "is missing: the wanted width of the onset's interval.");
   if (*width < all / 1000)
     throw ConfigError(s.where("width"),
                       fmt::format("{:g} is less than a thousandth of the range, {:g}.", *width, all / 1000));
@@ -130,7 +129,7 @@ void check_axis(const Plan& plan, const Where& where, const TomlLeaf& leaf) {
     throw ConfigError(where, "names a value twice; it would be the same run, counted twice.");
   if (leaf.path == "start.seed" && (plan.search || plan.seeds > 1))
     throw ConfigError(where,
-                      "fixes the seed, and the runs that differ in nothing else would be the same run; "
+                      "fixes the seed, so the runs that differ only in the seed would be the same run; "
                       "leave out start.seed, or axes.seeds and [search].");
 }
 
@@ -143,7 +142,7 @@ void read_axes(Plan& plan, const ConfigSection& root) {
       plan.seeds = static_cast<int>(table.integer_in("seeds", 1, kMostRuns).value_or(1));
       if (plan.search)
         throw ConfigError(table.where("seeds"),
-                          "a search chooses by itself how many seeds it runs; search.runs bounds them.");
+                          "a search chooses its number of seeds itself; search.runs limits it.");
       continue;
     }
     plan.axes.push_back({leaf.path, leaf.items, table.where(leaf.path).line});
@@ -191,11 +190,11 @@ Plan interpret(const Config& config, const std::string& name, const fs::path& fo
       (!plan.verdict || (plan.verdict->name != "bouncing" && plan.verdict->name != "convecting")))
     throw ConfigError(
         root.where("stop_early"),
-        "needs a search with the verdict \"bouncing\" or \"convecting\", which a run may settle early.");
+        "needs a search with the verdict \"bouncing\" or \"convecting\", which a run can decide early.");
   return plan;
 }
 
-/// The scene of a point. A complaint about what an axis says points to the plan.
+/// Scene of a point. An error in the value of an axis is reported with the plan's file and line.
 sim::Scene scene_of(const Plan& plan, const std::vector<std::string>& assignments) {
   try {
     return sim::read_scene_text(plan.scene, plan.scene_name, assignments, plan.scene_folder);
@@ -238,7 +237,7 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
   point.replica = replica;
   point.seed = scene.seed;
   if (!seeded) {
-    // 53 bits, which TOML's, JSON's and everybody's numbers hold.
+    // 53 bits, which TOML and JSON numbers represent exactly.
     const std::string drawn = sha256_text(fmt::format("{}\n{}\n{}", plan.seed, replica, scene.resolved));
     point.seed = std::stoull(drawn.substr(0, 14), nullptr, 16) >> 3U;
     assignments.push_back(fmt::format("start.seed={}", point.seed));

@@ -23,13 +23,13 @@ namespace twincell::sweep {
 
 namespace {
 
-/// Debian's HDF5 library serves one thread at a time.
+/// Mutex for HDF5: Debian's HDF5 library is not thread-safe.
 std::mutex& hdf5_turn() {
   static std::mutex turn;
   return turn;
 }
 
-/// A trajectory file that threads may write beside each other.
+/// A trajectory writer for use while other threads write their own trajectories.
 class SharedWriter {
  public:
   SharedWriter(const std::filesystem::path& path, TrajectoryInfo info) {
@@ -55,7 +55,7 @@ class SharedWriter {
   std::unique_ptr<H5mdWriter> writer_;
 };
 
-/// What went wrong on the disk, told apart from what went wrong in the bed.
+/// Wraps an error of the disk, to distinguish it from a failure of the simulation.
 struct DiskTrouble {
   Error error;
 };
@@ -70,11 +70,11 @@ void on_disk(Work work) {
 }
 
 sim::RunState placed_in_turn(const sim::Scene& scene, Progress& progress) {
-  const std::lock_guard lock(hdf5_turn());  // a start may be read from a trajectory
+  const std::lock_guard lock(hdf5_turn());  // the start may be read from a trajectory file
   return sim::placed(scene, progress);
 }
 
-/// The number that the plan's verdict is about; NaN where the run has none.
+/// Value of the plan's verdict quantity; NaN if the run has none.
 double asked_of(const Plan& plan, const std::vector<Result>& results) {
   const Result& result = find_result(results, plan.verdict->result);
   if (!result.shape.empty() || !result.text.empty())

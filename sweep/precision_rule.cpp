@@ -14,7 +14,7 @@ namespace twincell::sweep {
 
 namespace {
 
-constexpr double kBetweenLooks = 1.2;
+constexpr double kBetweenLooks = 1.2;  // ratio of run lengths at consecutive checks
 constexpr double kFewestCycles = 100, kFewestFlights = 40;
 
 std::int64_t first_look(const sim::Scene& scene) {
@@ -53,7 +53,7 @@ bool PrecisionRule::reached(const Frame& frame) {
   if (name == "h_cm") {
     sum_ += centre_of_mass_height(frame, mass_);
   } else {
-    // Over time as `analyze` takes it; the first frame of a run has nothing before it but itself.
+    // Time mean since the previous frame, as in `analyze`; the first frame has only its own value.
     const Vec3 t = frame.time_mean.temperature.allFinite() ? frame.time_mean.temperature
                                                            : temperature_components(frame, mass_);
     double value = t.sum() / dimension_;
@@ -67,7 +67,7 @@ bool PrecisionRule::reached(const Frame& frame) {
   if (frame.phase + 1 < phases_) return false;
   const double mean = sum_ / phases_;
   sum_ = 0;
-  if (std::isfinite(mean)) cycles_.add(mean);  // a cell without beads has none
+  if (std::isfinite(mean)) cycles_.add(mean);  // a cell without beads has no mean
   const std::int64_t done = frame.cycle + 1;
   if (done < next_look_ && done < cap_) return false;
   next_look_ = static_cast<std::int64_t>(std::ceil(kBetweenLooks * static_cast<double>(done)));
@@ -76,7 +76,7 @@ bool PrecisionRule::reached(const Frame& frame) {
 }
 
 bool PrecisionRule::narrow() const {
-  // What does not scatter from cycle to cycle is known to its last digit.
+  // A quantity that does not vary between cycles has no statistical error.
   if (cycles_.has_no_scatter()) return true;
   const auto interval = cycles_.interval("cycles");
   if (!interval) return false;

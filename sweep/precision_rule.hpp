@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// When a mean of a running bed is known as well as the scene asks.
+/// Stop criterion for a running simulation: a mean has reached the precision that the scene requires.
 
 #include <cstdint>
 #include <string>
@@ -12,23 +12,25 @@
 
 namespace twincell::sweep {
 
-/// Follows the scene's `until.quantity` frame by frame and ends the run once half of its 95 % interval is at
-/// most the larger of until.relative_error times the mean and until.absolute_error. The interval is that of
-/// `analyze`: means of whole cycles, overlapping blocks (BlockAverage); five of five correlation times must
-/// fit into the run. It is first looked at after 100 cycles and after forty flights of a bead thrown
-/// at V_p into an open cell (2 V_p/g each), for in less a gas does not show how slowly its height fluctuates;
-/// then each time the run has become a fifth longer, so that it is not ended at the first lucky look of many;
-/// and at the cap.
+/// Follows the scene's `until.quantity` frame by frame. The run ends once half of the 95 % interval of its
+/// mean is at most the larger of until.relative_error times the mean and until.absolute_error. The interval
+/// is that of `analyze`: means of whole cycles, overlapping blocks (BlockAverage); five blocks of five
+/// correlation times each must fit into the run.
+///
+/// The first check is after 100 cycles and after forty flights of a bead thrown at V_p into an open cell (2
+/// V_p/g each), because a shorter gas run does not show how slowly its height fluctuates. Further checks
+/// follow each time the run has become a fifth longer, so that it does not end at the first favourable one of
+/// many checks, and at the cycle limit (cap).
 class PrecisionRule {
  public:
-  /// \pre scene.until \throws ConfigError naming the quantities there are
+  /// \pre scene.until is set \throws ConfigError listing the valid quantities
   PrecisionRule(const sim::Scene& scene, const TrajectoryInfo& info);
-  /// Takes a frame of the run. \returns true at the last phase of a cycle when the error is reached
+  /// Processes a frame of the run. \returns true at the last phase of a cycle when the precision is reached
   bool reached(const Frame& frame);
-  /// Whether it was at the last look.
+  /// Whether the precision was reached at the last check.
   [[nodiscard]] bool is_reached() const { return reached_; }
-  /// "T_z is known to 0.95 % after 1240 cycles, 1 % was asked, correlation time 7.3 cycles"; where the cap
-  /// ended the run: "the cap of 400 cycles ended the run: T_z is known to 3.1 %, …".
+  /// "T_z is known to 0.95 % after 1240 cycles; 1 % was asked; correlation time 7.3 cycles", or, if the cap
+  /// ended the run, "the cap of 400 cycles ended the run: T_z is known to 3.1 %; …".
   [[nodiscard]] std::string text() const;
 
  private:
@@ -45,7 +47,7 @@ class PrecisionRule {
   bool reached_ = false;
 };
 
-/// What `until.quantity` may be: T_x, T_y, T_z, T, T_g, T_bar_z, T_bar, h_cm, as `analyze` defines them.
+/// Valid values of `until.quantity`: T_x, T_y, T_z, T, T_g, T_bar_z, T_bar, h_cm, as `analyze` defines them.
 const std::vector<std::string>& precision_quantities();
 
 }  // namespace twincell::sweep

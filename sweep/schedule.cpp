@@ -23,15 +23,14 @@ std::vector<Trial> trials_of(const Curve& curve) {
   return trials;
 }
 
-/// The values of all axes but the seed.
+/// Axis values with the seed cleared.
 std::vector<std::string> besides_seed(const Plan& plan, std::vector<std::string> values) {
   for (std::size_t a = 0; a < plan.axes.size(); ++a)
     if (plan.axes[a].key == "start.seed") values[a].clear();
   return values;
 }
 
-/// The place next to x, by sixteenths of the asked width, at which the curve has no run; x if there is none
-/// within the range.
+/// Position closest to x, in steps of width/16, at which the curve has no run; x if the range has none.
 double place_without_run(const Curve& curve, const Search& search, double x) {
   const auto taken = [&](double place) {
     return std::any_of(curve.points.begin(), curve.points.end(),
@@ -68,7 +67,7 @@ Schedule::Schedule(const Plan& plan, const Store& store, Shard shard) : plan_(pl
     Point first = make_point(plan, values, std::nullopt, 0);
     const bool chance = first.chance;
     if (!chance && !without_chance.insert(besides_seed(plan, values)).second) {
-      ++repeats_;  // the seed is an axis, and this one is not the first
+      ++repeats_;  // the seed is an axis, and this value is not the first
       continue;
     }
     if (ours()) curve.points.push_back(std::move(first));
@@ -81,7 +80,8 @@ Schedule::Schedule(const Plan& plan, const Store& store, Shard shard) : plan_(pl
   for (std::size_t c = 0; c < curves_.size(); ++c) advance(c, 0);
 }
 
-/// Takes up what the disk has of points from `unseen` on; when a round is whole, asks for the next.
+/// Reads the stored results of the points from `unseen` on. When a round of a search is complete, adds the
+/// points of the next round.
 void Schedule::advance(std::size_t index, std::size_t unseen) {
   Curve& curve = curves_[index];
   for (;;) {
@@ -112,7 +112,7 @@ void Schedule::advance(std::size_t index, std::size_t unseen) {
       const auto before =
           std::count_if(curve.points.begin(), curve.points.end(), [&](const Point& p) { return p.at == x; });
       Point point = make_point(plan_, curve.values, x, static_cast<int>(before));
-      // The same run again would count one answer twice; a run beside it is another one.
+      // Without randomness the same position would count one answer twice; use a free position next to it.
       if (!point.chance && before > 0)
         point = make_point(plan_, curve.values, place_without_run(curve, search, x), 0);
       curve.points.push_back(std::move(point));
@@ -136,7 +136,7 @@ std::optional<Task> Schedule::take(double most) {
     auto claim = store_.claim(point);
     if (!claim) continue;
     store_.announce(plan_, point);
-    // The former owner of the claim may have finished since we looked.
+    // The previous owner of the claim may have finished after the results were read.
     if (const auto result = store_.result(point)) {
       file(o.curve, o.number, *result);
       return take(most);
@@ -166,9 +166,8 @@ void Schedule::give_up(const Task& task) {
 std::string Schedule::repeats_text() const {
   if (repeats_ == 0) return "";
   return fmt::format(
-      "{} of the plan's runs would repeat another bit for bit and {} left out: no random start, perturbation "
-      "or "
-      "size spread makes a seed matter there.",
+      "{} of the plan's runs would repeat another bit for bit and {} left out: without a random start, "
+      "perturbation or size spread the seed has no effect.",
       repeats_, repeats_ == 1 ? "is" : "are");
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Which points a sweep needs next.
+/// Schedule of a sweep: which points are done and which are needed next.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,59 +14,61 @@
 
 namespace twincell::sweep {
 
-/// Part `index` of `of`, from 1: the points of a grid, or the searches, whose number in the plan leaves that
-/// remainder.
+/// Part `index` of `of` of a sweep, from 1: every `of`-th point of a grid, or every `of`-th search, in the
+/// order of the plan.
 struct Shard {
   int index = 1, of = 1;
 };
 
-/// A point that is to be computed, with the right to do so.
+/// A point to compute, with the exclusive right to do so.
 struct Task {
   Point point;
   Claim claim;
-  std::size_t curve = 0, number = 0;  ///< where the result belongs
+  std::size_t curve = 0, number = 0;  ///< indices of the result's place in the curves
 };
 
+/// Progress of a schedule in points.
 struct Counts {
-  std::size_t known = 0;  ///< points that the plan is known to need by now; a search may need more
+  std::size_t known = 0;  ///< points known to be needed so far; a search may need more
   std::size_t done = 0;
   std::size_t here = 0;    ///< being computed by this process
-  std::size_t failed = 0;  ///< done, but the run went wrong
-  double work_left = 0;    ///< particle-steps of known points that are not done
+  std::size_t failed = 0;  ///< done, but the run failed
+  double work_left = 0;    ///< particle-steps of the known points that are not done
 };
 
-/// One set of the axes' values: a part of a grid, or one search.
+/// Points at one set of axis values: part of a grid, or one search.
 struct Curve {
   std::vector<std::string> values;
   std::vector<Point> points;
-  std::vector<std::optional<std::string>> results;  ///< text of result.json, beside the points
-  std::vector<char> failed;                         ///< whether the run went wrong, beside the points
-  std::optional<Onset> onset;                       ///< of a search, by the results of its whole rounds
+  std::vector<std::optional<std::string>> results;  ///< [points] text of result.json
+  std::vector<char> failed;                         ///< [points] whether the run failed
+  std::optional<Onset> onset;                       ///< of a search, from its completed rounds
   bool complete = false;
 };
 
-/// What is to be done, found from the plan and the results so far. A search asks in rounds: the points of a
-/// round follow from the plan and the results of the rounds before, and from nothing else; that is why
-/// results do not depend on who computes what when. Not safe for threads.
+/// Determines the open points from the plan and the results so far. A search proceeds in rounds: the points
+/// of a round depend only on the plan and the results of the earlier rounds, so the results do not depend on
+/// which process computes which point, or when. Not thread-safe.
 class Schedule {
  public:
-  /// Takes up what the store holds. \throws ConfigError for a point that cannot be, InputError for a damaged
-  /// result
+  /// Reads the results that are in the store. \throws ConfigError for a point with an invalid scene,
+  /// InputError for a damaged result
   Schedule(const Plan& plan, const Store& store, Shard shard = {});
 
-  /// The longest point that is open and nobody works at. Nothing if there is none now: all() says whether one
-  /// may come. \param most particle-steps that the point may have \throws NotStored, InputError
+  /// Claims the longest open point that no process computes. Empty if there is none at present;
+  /// more can follow unless all() is true. \param most largest work of the point, particle-steps \throws
+  /// NotStored, InputError
   std::optional<Task> take(double most = 1e300);
-  /// Files the result of a task. \throws ConfigError
+  /// Enters the result of a task. \throws ConfigError
   void done(const Task& task, const std::string& result);
-  /// Puts a task back.
+  /// Returns a task without a result.
   void give_up(const Task& task);
   /// Whether every point is done.
   [[nodiscard]] bool all() const;
   [[nodiscard]] Counts counts() const;
   [[nodiscard]] const std::vector<Curve>& curves() const { return curves_; }
-  /// Runs that the plan asks for and that would repeat another bit for bit, because nothing in their scene is
-  /// drawn from the seed; they are left out. Of a grid; a search asks at another place instead.
+  /// Number of runs of a grid that are left out because they would repeat another run bit for bit: nothing in
+  /// their scene depends on the seed. A search moves such a run to another position instead.
   [[nodiscard]] std::size_t repeats() const { return repeats_; }
   /// repeats() as a sentence; empty without any.
   [[nodiscard]] std::string repeats_text() const;
@@ -80,10 +82,10 @@ class Schedule {
   const Store& store_;
   std::vector<Curve> curves_;
   std::size_t repeats_ = 0;
-  std::vector<std::vector<char>> here_;  ///< beside Curve::points
+  std::vector<std::vector<char>> here_;  ///< [curves][points] whether this process computes the point
 };
 
-/// What a result answers; nothing if its run went wrong or had no such value.
+/// Answer of a result; empty if the run failed or has no value of the verdict quantity.
 std::optional<bool> answer_of(const std::string& result);
 
 }  // namespace twincell::sweep

@@ -16,8 +16,9 @@ namespace {
 
 constexpr std::int64_t kFirstLook = 20, kBetweenLooks = 10;
 
-/// Mean over `all` cycles of a series of which the first are known, if the rest follows the straight line
-/// through the later half, raised and steepened by three standard errors of its slope.
+/// Upper estimate of the mean over `all` cycles of a series whose first cycles are known. The rest starts
+/// from the maximum of the later half and rises with the slope of its straight line plus three standard
+/// errors, at least 0.
 double highest_mean(const std::vector<double>& y, std::int64_t all) {
   const std::size_t n = y.size(), from = n / 2;
   const double m = static_cast<double>(n - from);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* kSum = "sha256";
 
-/// Of a result without its own sum, and without what differs from machine to machine.
+/// SHA-256 of a result without its own checksum and without "computed", which differs between machines.
 std::string sum_of(nlohmann::json document) {
   document.erase(kSum);
   document.erase("computed");
@@ -33,7 +33,7 @@ std::string sum_of(nlohmann::json document) {
   return sum.hex();
 }
 
-/// Whether a document is this point's whole result. Results of earlier versions have no sum.
+/// Whether a document is the complete result of this point. Results of earlier versions have no checksum.
 bool is_sound(const nlohmann::json& document, const Point& point) {
   if (!document.is_object() || !document.contains("id") || document["id"] != point.id) return false;
   if (!document.contains("computed") || !document["computed"].is_object()) return false;
@@ -46,8 +46,9 @@ void storing(const fs::path& folder, Work work) {
   try {
     work();
   } catch (const Error& e) {
-    throw NotStored(fmt::format("{} What is done stays in {}; the same command goes on from there.", e.what(),
-                                folder.string()));
+    throw NotStored(
+        fmt::format("{} The results so far are kept in {}; the same command continues from there.", e.what(),
+                    folder.string()));
   }
 }
 
@@ -64,7 +65,7 @@ Claim::~Claim() {
 
 Store::Store(fs::path folder, Access access) : folder_(std::move(folder)) {
   if (access == Access::read) return;
-  // Sweeps of earlier versions have no manifest, but points.
+  // Folders of earlier versions have no manifest; their folder `points` identifies them.
   std::error_code ec;
   if (!fs::is_directory(folder_ / "points", ec)) claim_shared_folder(folder_, Product::runs());
   fs::create_directory(folder_ / "points", ec);
@@ -106,7 +107,7 @@ std::optional<std::string> Store::result(const Point& point) const {
 std::optional<Claim> Store::claim(const Point& point) const {
   const fs::path file = of(point) / "lock";
   std::error_code ec;
-  fs::create_directory(of(point), ec);  // if it cannot be made, neither can the file in it
+  fs::create_directory(of(point), ec);  // an error shows when the file in it is opened
   const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (lock < 0)
     storing(folder_, [&] {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A sweep on the disk: one folder per point, which any number of processes may work in.
+/// A sweep on disk: one folder per point; any number of processes may work in it.
 
 #include <filesystem>
 #include <optional>
@@ -11,13 +11,14 @@
 
 namespace twincell::sweep {
 
-/// The disk did not take a result. Exit code 5: what is done stays done.
+/// A result could not be stored. Exit code 5: the results stored so far are kept.
 class NotStored : public Error {
  public:
   explicit NotStored(const std::string& sentence) : Error(ExitCode::partial, sentence) {}
 };
 
-/// The right to compute one point, held until it is destroyed or its process ends, however that ends.
+/// Exclusive right to compute one point. It lasts until the object is destroyed or its process ends for any
+/// reason.
 class Claim {
  public:
   explicit Claim(int file) : file_(file) {}
@@ -31,26 +32,29 @@ class Claim {
   int file_;
 };
 
-/// FOLDER/points/ID/point.json (scene and place in the plan), result.json (there when the point is done,
-/// whole or not at all, with the SHA-256 of its content), lock, and trajectory.h5 if it is kept.
+/// Files FOLDER/points/ID/point.json (scene and place in the plan), result.json (exists when the point is
+/// done; written atomically, with the SHA-256 of its content), lock, and trajectory.h5 if trajectories are
+/// kept.
 class Store {
  public:
   enum class Access { read, write };
-  /// To write, makes the folder. \throws ConfigError if it cannot be made or written to, or is not a sweep's
+  /// With write access, creates the folder. \throws ConfigError if it cannot be created or written to, or is
+  /// not the folder of a sweep
   explicit Store(std::filesystem::path folder, Access access = Access::write);
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] std::filesystem::path of(const Point& point) const { return folder_ / "points" / point.id; }
-  /// Writes point.json unless it is there. \pre the point is claimed \throws NotStored
+  /// Writes point.json unless it exists. \pre the point is claimed \throws NotStored
   void announce(const Plan& plan, const Point& point) const;
-  /// The text of result.json, if the point is done. \throws InputError if it is damaged or another point's
+  /// The text of result.json if the point is done. \throws InputError if it is damaged or belongs to another
+  /// point
   [[nodiscard]] std::optional<std::string> result(const Point& point) const;
-  /// The right to compute a point; nothing if somebody else has it. On file systems without locks everybody
-  /// gets it: two would then write the same bytes, one after the other. \throws NotStored
+  /// Claims a point; empty if another process has claimed it. On file systems without locks every process
+  /// gets the claim; two processes would then write the same bytes, one after the other. \throws NotStored
   [[nodiscard]] std::optional<Claim> claim(const Point& point) const;
-  /// Whether somebody computes it now.
+  /// Whether a process computes the point now.
   [[nodiscard]] bool claimed(const Point& point) const;
-  /// \throws NotStored
+  /// Writes result.json. \throws NotStored
   void keep(const Point& point, const std::string& result) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How a point that is being computed is told that its farm closes.
+/// Cancellation of a running point.
 
 #include <atomic>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace twincell::sweep {
 
-/// Ends a point when the farm closes.
+/// Progress that throws Interrupted once `closing` is set, which ends the running point.
 class Until : public Progress {
  public:
   explicit Until(const std::atomic<bool>& closing) : closing_(closing) {}

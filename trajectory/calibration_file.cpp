@@ -18,7 +18,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr bool kWhole = true, kCell = true, kScene = true;
 
-/// Numbers of which a configuration that states `enough` needs no other.
+/// Interchangeable keys: a configuration that sets `enough` of them takes none from the calibration.
 struct Group {
   std::vector<std::string> words;
   std::size_t enough;
@@ -31,7 +31,7 @@ const std::array kGroups = {
     Group{{"contact.wall.restitution", "contact.wall.gamma_n", "contact.wall.c_n"}, 1},
 };
 
-/// "[15, 16]" or "15"; whole numbers without a point, "nan" where there is none.
+/// TOML literal "[15, 16]" or "15"; integers without a decimal point, "nan" for a missing number.
 std::string literal(const std::vector<double>& v, bool whole) {
   std::vector<std::string> items;
   for (const double x : v) {
@@ -123,7 +123,7 @@ Calibration read_calibration(const std::filesystem::path& file) {
   Calibration out;
   for (const Quantity& q : quantities()) {
     if (!states(config, q.name + ".value")) {
-      // A table of that name without a value is a mistake, unless it only holds other tables.
+      // A table of that name without a value is an error, unless it contains only other tables.
       if (states(config, q.name + ".standard_error") || states(config, q.name + ".unit"))
         throw ConfigError(config.root().where(q.name), "has no value.");
       continue;
@@ -145,6 +145,7 @@ Calibration read_calibration(const std::filesystem::path& file) {
     m.data = s.text("data").value_or("");
     out.measured.push_back(m);
   }
+  // Covariance of the camera: must be symmetric and consistent with its variances.
   if (states(config, "covariance.camera")) {
     constexpr std::size_t kNames = 5;
     const ConfigSection s = config.root().section("covariance").section("camera");
@@ -152,13 +153,14 @@ Calibration read_calibration(const std::filesystem::path& file) {
         .names = {"pixels_per_sigma", "origin_x_px", "origin_y_px", "rotation_deg", "distortion"},
         .matrix = s.numbers("matrix", kNames * kNames).value_or(std::vector<double>{})};
     if (out.camera->matrix.empty()) throw ConfigError(s.where("matrix"), "is missing.");
-    constexpr double kRounding = 1e-5;  // of seven digits, as they are written
+    constexpr double kRounding = 1e-5;  // of the seven digits that are written
     const auto& m = out.camera->matrix;
     for (std::size_t r = 0; r < kNames; ++r) {
       const double variance = m[r * kNames + r];
       if (variance < 0)
-        throw ConfigError(s.where("matrix"), fmt::format("holds the variance {:g} of {}; none is negative.",
-                                                         variance, out.camera->names[r]));
+        throw ConfigError(s.where("matrix"),
+                          fmt::format("contains the variance {:g} of {}, which must not be negative.",
+                                      variance, out.camera->names[r]));
       for (std::size_t c = 0; c < r; ++c) {
         const double one = m[r * kNames + c], other = m[c * kNames + r];
         if (std::abs(one - other) > kRounding * std::max(std::abs(one), std::abs(other)))
@@ -168,8 +170,9 @@ Calibration read_calibration(const std::filesystem::path& file) {
         if (std::abs(one) > std::sqrt(variance * m[c * kNames + c]) * (1 + kRounding))
           throw ConfigError(
               s.where("matrix"),
-              fmt::format("holds the covariance {:g} of {} and {}, which their variances exclude.", one,
-                          out.camera->names[r], out.camera->names[c]));
+              fmt::format(
+                  "contains the covariance {:g} of {} and {}, which is too large for their variances.", one,
+                  out.camera->names[r], out.camera->names[c]));
       }
     }
   }
@@ -212,7 +215,7 @@ Included include_calibration(Config& config, const std::filesystem::path& config
   const ConfigSection table = config.root().section("calibration");
   if (!config.root().has("calibration")) return out;
   const auto from = table.text("from");
-  if (!from) throw ConfigError(table.where("from"), "is missing: the file that calibrate wrote.");
+  if (!from) throw ConfigError(table.where("from"), "is missing; it names the file that calibrate wrote.");
   out.file = std::filesystem::path(*from).is_absolute() ? std::filesystem::path(*from)
                                                         : config_file.parent_path() / *from;
   Calibration measured;

@@ -11,8 +11,9 @@
 
 namespace twincell {
 
-/// sum m_i z_i/sum m_i over the beads present, sigma, in the frame of the cell (plate mean at 0); NaN if
-/// there is none.
+/// Height of the centre of mass, sum m_i z_i/sum m_i over the beads present, sigma, in the frame of the cell
+/// (plate mean at 0); NaN if no bead is present.
+/// \param mass per slot; empty: all 1
 inline double centre_of_mass_height(const Frame& frame, const std::vector<double>& mass) {
   double moment = 0, total = 0;
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
@@ -24,8 +25,9 @@ inline double centre_of_mass_height(const Frame& frame, const std::vector<double
   return total > 0 ? moment / total : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// sum m v/sum m over the beads whose velocity is known, sigma/t0. \param mass per slot; empty: all 1.
-/// \returns nothing where no velocity is known
+/// Velocity of the centre of mass, sum m v/sum m over the beads whose velocity is known, sigma/t0; nullopt if
+/// no velocity is known.
+/// \param mass per slot; empty: all 1
 inline std::optional<Vec3> centre_of_mass_velocity(const Frame& frame, const std::vector<double>& mass) {
   Vec3 momentum = Vec3::Zero();
   double total = 0;

@@ -22,7 +22,7 @@ double Drive::velocity(double fraction) const {
 
 namespace {
 
-/// Every quantity is A^p omega^q times a constant: c = A^p omega^q.
+/// A given number without its constant factor: value = A^p omega^q.
 struct Term {
   const char* name;
   double value;
@@ -57,7 +57,7 @@ DriveSpec read_drive_spec(const ConfigSection& drive) {
 
 Drive solve_drive(const DriveSpec& spec, double gravity, const Where& where, Axis axis) {
   const auto terms = terms_of(spec, gravity, where);
-  // Of two independent statements the exponents form an invertible 2 x 2 matrix in (ln A, ln omega).
+  // The exponents of two independent numbers form an invertible 2 x 2 matrix in (ln A, ln omega).
   for (std::size_t a = 0; a < terms.size(); ++a) {
     for (std::size_t b = a + 1; b < terms.size(); ++b) {
       const Term &s = terms[a], &t = terms[b];
@@ -68,15 +68,16 @@ Drive solve_drive(const DriveSpec& spec, double gravity, const Where& where, Axi
       const double d = det;
       drive.amplitude = power(s.value, t.q / d) * power(t.value, -s.q / d);
       drive.omega = power(t.value, s.p / d) * power(s.value, -t.p / d);
-      // A at rest (A = 0) leaves omega open unless it was stated itself.
+      // A plate at rest (A = 0) leaves omega undetermined unless omega itself is given.
       if (s.value == 0 || t.value == 0) {
         const Term* stated = s.p == 0 ? &s : t.p == 0 ? &t : nullptr;
         if (stated == nullptr)
-          throw ConfigError(where, "a plate at rest needs omega or frequency to say how long a cycle is.");
+          throw ConfigError(where,
+                            "a plate at rest needs omega or frequency, which set the length of a cycle.");
         drive.amplitude = 0;
         drive.omega = stated->value;
       }
-      // A stated number is kept to the bit; only what was not stated comes out of the powers.
+      // A given A or omega is kept to the bit; only a derived one comes from the powers.
       for (const Term& u : terms) {
         if (u.p == 1 && u.q == 0) drive.amplitude = u.value;
         if (u.p == 0 && u.q == 1) drive.omega = u.value;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Granular temperature of one moment, which the simulation averages over time and the analysis over frames.
+/// Granular temperature of one frame. The simulation averages it over time, the analysis over frames.
 
 #include <cmath>
 #include <cstddef>
@@ -12,11 +12,11 @@
 
 namespace twincell {
 
-/// m <v'^2> of one frame, per component, in m g sigma:  (1/N) sum m_i (v_i - v_cm)^2  over the beads present,
-/// v_cm the centre-of-mass velocity of that instant; rotation does not enter. `mass` empty: every mass is 1.
-/// For N beads with independent velocities of variance T/m per component it is T (1 - 1/N): the factor
-/// belongs to the definition and is not corrected. NaN for no beads or no velocities.
-/// Fortini & Huang 2015, eq. 2; Bhateja et al. 2016, eq. 5.
+/// Granular temperature of one frame, m <v'^2> = (1/N) sum m_i (v_i - v_cm)^2 over the beads present, per
+/// component, in m g sigma. v_cm is the centre-of-mass velocity at that instant; rotation is not included. If
+/// `mass` is empty, every mass is 1. For N beads with independent velocities of variance T/m per component,
+/// the expectation is T (1 - 1/N); the factor belongs to the definition and is not corrected. NaN without
+/// beads or velocities. Fortini & Huang 2015, eq. 2; Bhateja et al. 2016, eq. 5.
 inline Vec3 temperature_components(const Frame& frame, const std::vector<double>& mass) {
   const auto v_cm = centre_of_mass_velocity(frame, mass);
   if (!v_cm) return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// The trajectory: the one thing that imaging and simulation both make and that analysis reads.
+/// The trajectory: the data that imaging and simulation produce and that analysis reads.
 ///
-/// Frames x beads, in reduced units (units.hpp), in the frame of Box (plate mean at z = 0, z up). A bead's
-/// slot is its identity: slot i is the same bead in every frame. Beads of an experiment come and go: a slot
-/// that is empty in a frame has id -1 and position NaN, never zero. A column that nobody measured is absent
-/// (an empty vector), never filled in.
+/// Frames x beads, in reduced units (units.hpp) and in the coordinates of Box (plate mean at z = 0, z up).
+/// The slot of a bead is its identity: slot i is the same bead in every frame. In an experiment, a bead may
+/// be missing from some frames. A slot that is empty in a frame has id -1 and position NaN, never zero. A
+/// column that was not measured is absent (an empty vector), never filled with substitutes.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace twincell {
 
-/// Which per-frame columns a trajectory has. Position is always there.
+/// Which per-frame columns a trajectory has. Position is always present.
 struct Columns {
   bool velocity = false;        ///< Frame::velocity
   bool spin = false;            ///< Frame::spin
@@ -32,41 +32,41 @@ struct Columns {
   bool contacts = false;        ///< Frame::contacts, force, moment and rim_speed
 };
 
-/// What is the same for all frames.
+/// Data common to all frames.
 struct TrajectoryInfo {
   std::size_t n_beads = 0;  ///< slots
   Columns columns;
   Box box;
   std::optional<Drive> drive;
   int phases_per_cycle = 0;   ///< N_k, frames per drive cycle; 0 if not phase-locked
-  int samples_per_cycle = 0;  ///< of Frame::time_mean; 0 without
+  int samples_per_cycle = 0;  ///< of Frame::time_mean; 0 if absent
   Scale scale;
   std::string source = "unknown";    ///< "simulation", "experiment" or "unknown"
   std::vector<double> radius;        ///< per slot, sigma; empty if absent
   std::vector<double> mass;          ///< per slot, m; empty if absent
   std::vector<std::uint8_t> tracer;  ///< per slot, 1 for a tracer bead; empty if absent
   std::string provenance_json;       ///< provenance.hpp; empty if absent
-  std::string tracking_json;         ///< what the tracking of an experiment says of itself; empty if absent
+  std::string tracking_json;         ///< report of the tracking of an experiment, JSON; empty if absent
 };
 
-/// Granular temperature averaged over the time since the frame before, m g sigma, per component as
-/// temperature_components (temperature.hpp) defines it: what a few phases a cycle would alias, because it
-/// jumps when the bed lands. NaN where it is not known, as before the first frame of a run.
+/// Granular temperature averaged over the time since the previous frame, m g sigma, per component as defined
+/// by temperature_components (temperature.hpp). It jumps when the bed lands, so that samples at a few phases
+/// per cycle would alias it. NaN where unknown, as before the first frame of a run.
 struct TimeMean {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   Vec3 temperature = Vec3::Constant(kUnknown);
-  Vec3 temperature_coarse = Vec3::Constant(kUnknown);  ///< from every second sample of those
+  Vec3 temperature_coarse = Vec3::Constant(kUnknown);  ///< from every second one of the same samples
 };
 
-/// What a contact remembers: tangential displacement and whatever else its laws keep while it lasts. Only a
-/// simulation of the same laws can read the values.
+/// History of a contact: its tangential displacement and any other state that its laws keep for its duration.
+/// Only a simulation with the same laws can interpret the values.
 struct ContactMemory {
   std::int32_t i = 0;  ///< bead
   std::int32_t j = 0;  ///< bead, > i; or -1 - w for wall w
   std::vector<double> values;
 };
 
-/// One moment.
+/// State of all beads at one instant.
 struct Frame {
   static constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
 
@@ -75,29 +75,28 @@ struct Frame {
   std::int32_t phase = -1;           ///< k in 0 .. N_k-1: at k/N_k of a cycle; -1 unknown
   std::int64_t cycle = -1;           ///< j, from 0; -1 unknown
   double plate_height = kNoHeight;   ///< z_b, sigma; NaN unknown
-  TimeMean time_mean;                ///< over the time since the frame before
+  TimeMean time_mean;                ///< over the time since the previous frame
   std::vector<Vec3> position;        ///< [n_beads], sigma; NaN where empty; not wrapped across periods
   std::vector<Vec3> position_sigma;  ///< [n_beads] or empty, standard uncertainty of each coordinate, sigma;
                                      ///< NaN where empty or not measured
   std::vector<Vec3> velocity;        ///< [n_beads] or empty, sigma/t0
   std::vector<Vec3> spin;  ///< [n_beads] or empty, angular velocity, 1/t0. A disc's counter-clockwise spin
                            ///< omega in the (x right, z up) drawing is the vector (0, -omega, 0)
-  // What a simulation goes on from, beside positions and velocities; empty if absent.
+  // State from which a simulation continues, in addition to positions and velocities; empty if absent.
   std::vector<ContactMemory> contacts;  ///< sorted by (i, j)
-  std::vector<Vec3> force;              ///< [n_beads], of contacts, m g; NaN where it is not known
-  std::vector<Vec3>
-      moment;  ///< [n_beads], of contacts over the bead's radius, m g, as the simulation turns beads
-  std::vector<Vec3>
-      rim_speed;  ///< [n_beads], radius times angular velocity, sigma/t0; NaN where it is not known
+  std::vector<Vec3> force;              ///< [n_beads], sum over the bead's contacts, m g; NaN where unknown
+  std::vector<Vec3> moment;      ///< [n_beads], torque of the contacts divided by the radius, m g, as Force
+                                 ///< (sim/system/system.hpp) defines it
+  std::vector<Vec3> rim_speed;   ///< [n_beads], radius times angular velocity, sigma/t0; NaN where unknown
   std::vector<std::int64_t> id;  ///< [n_beads] or empty; slot number where filled, -1 where empty
 
-  /// Whether slot i holds a bead in this frame.
+  /// Whether slot i contains a bead in this frame.
   [[nodiscard]] bool present(std::size_t i) const { return id.empty() || id[i] >= 0; }
   /// Number of filled slots.
   [[nodiscard]] std::size_t n_present() const;
 };
 
-/// Gives frames one at a time; memory does not grow with their number.
+/// Source of frames, read one at a time. Memory use does not grow with their number.
 class TrajectorySource {
  public:
   virtual ~TrajectorySource() = default;
@@ -109,7 +108,7 @@ class TrajectorySource {
   [[nodiscard]] virtual std::string name() const = 0;
 };
 
-/// Takes frames one at a time, in order of `step`.
+/// Destination of frames, written one at a time in order of `step`.
 class TrajectorySink {
  public:
   virtual ~TrajectorySink() = default;
@@ -117,7 +116,7 @@ class TrajectorySink {
   virtual void append(const Frame& frame) = 0;
 };
 
-/// A short trajectory held in memory: both ends in one.
+/// A short trajectory in memory, both source and sink.
 class MemoryTrajectory : public TrajectorySource, public TrajectorySink {
  public:
   MemoryTrajectory() = default;

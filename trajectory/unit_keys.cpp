@@ -14,7 +14,7 @@ namespace {
 
 enum class Sign { any, not_negative, positive };
 
-/// A key as it is written, and the plain reduced one that it stands for.
+/// A key with a unit, and the plain reduced key that it sets.
 struct Spelling {
   const char *section, *plain, *written;
   Unit unit;
@@ -25,7 +25,7 @@ struct Spelling {
 constexpr const char* kIntruder = "beads.intruder";
 
 constexpr std::array kSpellings = {
-    // The scale comes first: the others are converted with it.
+    // The scale comes first, because the other keys are converted with it.
     Spelling{"scale", "sigma_m", "sigma_mm", Unit::per_mille, Sign::positive},
     Spelling{"drive", "amplitude", "amplitude_sigma", Unit::one, Sign::not_negative},
     Spelling{"drive", "amplitude", "amplitude_mm", Unit::length_mm, Sign::not_negative},
@@ -59,7 +59,7 @@ constexpr std::array kSpellings = {
     Spelling{kIntruder, "z", "z_mm", Unit::length_mm, Sign::any},
 };
 
-/// Words that have a dimension, with their reduced and their laboratory's spelling.
+/// Keys with a dimension, with their reduced and their laboratory spelling.
 struct Dimensional {
   const char *section, *plain, *reduced, *physical;
 };
@@ -82,7 +82,8 @@ std::string path_of(const char* section, const char* key) {
   return std::string(section) + "." + key;
 }
 
-/// The table at a dotted path, if it is there: asking must make no other one known.
+/// The table at a dotted path, if present. Stops at the first absent table, so that no key below it is marked
+/// as known.
 std::optional<ConfigSection> table_at(const Config& config, std::string_view path) {
   ConfigSection at = config.root();
   for (std::size_t begin = 0; begin <= path.size();) {
@@ -144,8 +145,8 @@ double reduced_quantity(double value, Unit unit, const Scale& scale, const Where
 
 void refuse_bare(const Where& where, double value, const std::string& scale, const std::string& reduced,
                  const std::string& physical) {
-  throw ConfigError(where, fmt::format("is {:g} without a unit where {} says the laboratory's scale; say "
-                                       "{} for reduced units or {} for the laboratory's.",
+  throw ConfigError(where, fmt::format("is {:g} without a unit although {} sets the laboratory scale; write "
+                                       "{} for reduced units or {} for laboratory units.",
                                        value, scale, reduced, physical));
 }
 
@@ -166,10 +167,11 @@ void reduce_units(Config& config) {
     require_sign(where, value, s.sign);
     const double here = reduced_quantity(value, s.unit, scale, where) / s.per_plain;
     require_sign(where, here, s.sign);
-    // Which of two spellings was meant is the user's to say, also where they agree today.
+    // The user must decide which of two spellings is meant, even if their values agree now.
     if (table->has(s.plain))
-      throw ConfigError(where, fmt::format("is {:g}, and {} says the same quantity; say one of the two.",
-                                           value, table->where(s.plain).text()));
+      throw ConfigError(
+          where, fmt::format("is {:g}, but {} sets the same quantity; give only one of the two.", value,
+                             table->where(s.plain).text()));
     config.restate(path_of(s.section, s.written), path_of(s.section, s.plain), here);
   }
 }

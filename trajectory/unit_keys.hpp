@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Quantities that a configuration states with their units (`drive.frequency_hz`, `cell.width_mm`), turned
-/// into the reduced ones that everything else reads. The one place where laboratory units are converted.
+/// Converts configuration keys with units (`drive.frequency_hz`, `cell.width_mm`) to the plain reduced keys,
+/// which all other code reads. Laboratory units of a configuration are converted only here.
 ///
 ///     key                           in laboratory units              in reduced units
 ///     scale.sigma_m                 sigma_mm
@@ -22,31 +22,32 @@
 
 namespace twincell {
 
-/// What a number is divided by to be reduced.
+/// Unit of a number, which selects its conversion to reduced units.
 enum class Unit { one, per_mille, length_mm, time_us, rate_per_s, velocity_mm_s, acceleration_m_s2 };
 
-/// The number in reduced units. \throws ConfigError at `where` if the scale does not say what converts it
+/// The number in reduced units.
+/// \throws ConfigError at `where` if `scale` lacks a number that the conversion requires
 double reduced_quantity(double value, Unit unit, const Scale& scale, const Where& where);
 
-/// \throws ConfigError always: the number at `where` has no unit although `scale` says the laboratory's
-/// scale; the sentence offers both spellings
+/// \throws ConfigError always: the number at `where` has no unit although the key `scale` sets the laboratory
+/// scale. The message names the `reduced` and the `physical` key as alternatives.
 [[noreturn]] void refuse_bare(const Where& where, double value, const std::string& scale,
                               const std::string& reduced, const std::string& physical);
 
-/// Restates every quantity with a unit under its plain reduced key; complaints about it still name the
-/// spelling and the line that the user wrote. `peak_acceleration_g` is in units of the scene's gravity.
-/// \throws ConfigError for a value that is out of range; for a laboratory unit without the part of [scale]
-///         that converts it; for two spellings of one quantity; and for a plain key of the table above beside
-///         a [scale] that says sigma, gamma excepted, since nothing tells whether a laboratory's number is
-///         meant
+/// Replaces every key with a unit by its plain reduced key. Error messages about the quantity still name the
+/// key and the line that the user wrote. `peak_acceleration_g` is in units of the scene's gravity.
+/// \throws ConfigError for a value out of range; for a laboratory unit whose conversion requires an absent
+/// key of [scale]; for two spellings of one quantity; and, if [scale] sets sigma, for a plain key of the
+/// table above except gamma, since its unit is then ambiguous
 void reduce_units(Config& config);
 
-/// Removes from `config` every spelling of what "section.key=value" is about to state in its own words, of
-/// omega and frequency and of gamma, k_m and peak_velocity those of each other.
+/// Prepares the assignment "section.key=value": removes from `config` every spelling of the quantity that it
+/// sets. omega and frequency count as one quantity here, and so do gamma, k_m and peak_velocity.
 void displace_spellings(Config& config, const std::string& assignment);
 
-/// The configuration as TOML that means the same when it is read again: with a [scale] the quantities of the
-/// table above are written under their explicit reduced names. \pre reduce_units
+/// The configuration as TOML that has the same meaning when it is read again. If [scale] sets sigma, the
+/// quantities of the table above are written under their explicit reduced keys.
+/// \pre reduce_units was called
 std::string resolved_text(Config& config);
 
 }  // namespace twincell

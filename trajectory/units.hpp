@@ -1,17 +1,17 @@
 #pragma once
 /// \file
-/// Reduced units and what they are in the laboratory.
+/// Reduced units and their laboratory values.
 ///
-/// Inside `sim` and `analysis` everything is in reduced units: bead diameter sigma, bead mass m, gravity g;
-/// hence t0 = sqrt(sigma/g), v0 = sqrt(g sigma) (Fortini & Huang 2015, sec. II). Inside `imaging`: pixels and
-/// frame numbers. A scale that is not known is absent, never 1.
+/// `sim` and `analysis` use reduced units throughout: bead diameter sigma, bead mass m, gravity g; hence t0 =
+/// sqrt(sigma/g), v0 = sqrt(g sigma) (Fortini & Huang 2015, sec. II). `imaging` uses pixels and frame
+/// numbers. An unknown scale is absent, never 1.
 
 #include <cmath>
 #include <optional>
 
 namespace twincell {
 
-/// Physical scale of a trajectory; each part may be absent.
+/// Physical scale of a trajectory; each member may be absent.
 struct Scale {
   std::optional<double> sigma_m;           ///< bead diameter, metres
   std::optional<double> gravity_m_s2;      ///< gravity, m/s^2

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a page can hold: bead positions of all moments together, and bytes of pictures.
+/// Limits of a report page: bead positions of all snapshots together, bytes of pictures, snapshots per run.
 constexpr std::size_t kMostPositions = 400000, kMostPictureBytes = 12000000, kMostMoments = 20,
                       kFewestMoments = 4;
 
@@ -30,7 +30,7 @@ std::size_t moments_of_each(const std::vector<std::unique_ptr<H5mdReader>>& read
   return std::clamp(kMostPositions / std::max<std::size_t>(1, slots), kFewestMoments, kMostMoments);
 }
 
-/// Every other picture goes until the rest fits.
+/// Drops every other picture until the rest fits into `bytes`.
 void thin(std::vector<std::string>& pictures, std::size_t bytes) {
   const auto total = [&] {
     std::size_t sum = 0;
@@ -45,8 +45,9 @@ void thin(std::vector<std::string>& pictures, std::size_t bytes) {
 /// The stack behind a tracked trajectory, if its provenance names one.
 fs::path stack_of(const TrajectoryInfo& info) {
   const auto provenance = nlohmann::json::parse(info.provenance_json, nullptr, false);
-  if (!provenance.is_object() || provenance.value("inputs", nlohmann::json::array()).empty()) return {};
-  return provenance["inputs"][0].value("path", "");
+  const nlohmann::json::json_pointer path("/inputs/0/path");
+  if (!provenance.is_object() || !provenance.contains(path) || !provenance.at(path).is_string()) return {};
+  return provenance.at(path).get<std::string>();
 }
 
 /// The stack of experiment number `i`.
@@ -54,32 +55,39 @@ fs::path stack_behind(const ComparingOptions& options, const TrajectorySource& t
   return options.stacks.empty() ? stack_of(trajectory.info()) : options.stacks[i];
 }
 
-/// The camera's frames of an experiment's moments.
+/// Adds the camera's scale and the frames at the snapshots of an experiment.
 void show_frames(const TrajectoryInfo& info, const fs::path& stack, Run& run,
                  std::vector<std::string>& notes) {
   const auto tracking = nlohmann::json::parse(info.tracking_json, nullptr, false);
   if (!tracking.is_object() || !tracking.contains("camera"))
-    return;  // not made by `track`, or by an older one
-  const auto& camera = tracking["camera"];
-  run.show.camera = {.pixels_per_sigma = camera["pixels_per_sigma"],
-                     .origin_x = camera["origin_px"][0],
-                     .origin_y = camera["origin_px"][1],
-                     .width = camera["width_px"],
-                     .height = camera["height_px"]};
+    return;  // not made by `track`, or by an older version of it
+  double rotation_deg = 0, distortion = 0;
+  try {
+    const auto& camera = tracking.at("camera");
+    run.show.camera = {.pixels_per_sigma = camera.at("pixels_per_sigma"),
+                       .origin_x = camera.at("origin_px").at(0),
+                       .origin_y = camera.at("origin_px").at(1),
+                       .width = camera.at("width_px"),
+                       .height = camera.at("height_px")};
+    rotation_deg = camera.value("rotation_deg", 0.0);
+    distortion = camera.value("distortion", 0.0);
+  } catch (const nlohmann::json::exception&) {
+    notes.push_back(run.name + ": the record of the camera is damaged, so its frames are not shown.");
+    return;
+  }
   if (stack.empty()) return;
   std::vector<std::int64_t> numbers;
   for (const Snapshot& moment : run.show.moments) numbers.push_back(moment.frame.step);
   try {
     const auto frames = open_frames(stack);
     constexpr int kLongest_px = 800;
-    run.show.pictures = picture_frames(*frames, numbers, kLongest_px, camera.value("rotation_deg", 0.0),
-                                       camera.value("distortion", 0.0));
+    run.show.pictures = picture_frames(*frames, numbers, kLongest_px, rotation_deg, distortion);
   } catch (const InputError& e) {
     notes.push_back(fmt::format("{}: the report shows no camera frames of it: {}", run.name, e.what()));
   }
 }
 
-/// Runs whose files are called alike are told apart by their folders: "gamma-0.9/experiment.h5".
+/// Adds the folder to the names of runs whose files have the same name: "gamma-0.9/experiment.h5".
 void tell_apart(std::vector<Run>& runs, const std::vector<std::unique_ptr<H5mdReader>>& readers) {
   std::map<std::string, int> count;
   for (const Run& run : runs) ++count[run.name];
@@ -90,12 +98,12 @@ void tell_apart(std::vector<Run>& runs, const std::vector<std::unique_ptr<H5mdRe
     }
 }
 
-/// A folder of our own, gone at the end.
+/// Temporary folder that is removed on destruction.
 struct Scratch {
   explicit Scratch(const fs::path& parent) {
     std::string name = (parent / "twincell-film-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr)
-      throw ConfigError({.file = parent.string()}, "no folder for the film can be made there.");
+      throw ConfigError({.file = parent.string()}, "no folder for the film can be created there.");
     path = name;
     care_for_temporary(path);
   }
@@ -109,23 +117,24 @@ struct Scratch {
   fs::path path;
 };
 
-/// A camera, and where it comes from.
+/// A camera and the origin of its noise.
 struct LikeCamera {
   CameraOptions options;
-  std::string origin;  ///< in words, after a comma; empty: the user's
+  std::string origin;  ///< in words, after a comma; empty if the user chose the camera
 };
 
-/// The camera that took an experiment, as far as its frames tell: scale, kind of light and noise.
+/// Camera options like those of the experiment, as far as its frames show them: scale, illumination and
+/// noise.
 LikeCamera camera_of(const TrajectoryInfo& experiment, const fs::path& stack) {
   CameraOptions camera;
   if (experiment.scale.pixels_per_sigma) camera.pixels_per_sigma = *experiment.scale.pixels_per_sigma;
   if (stack.empty()) return {camera, ", the camera's default noise"};
   const auto tracking = nlohmann::json::parse(experiment.tracking_json, nullptr, false);
   const bool bright =
-      tracking.is_object() && tracking.contains("camera") && tracking["camera"].value("bright", false);
+      tracking.is_object() && tracking.value("/camera/bright"_json_pointer, nlohmann::json()) == true;
   try {
     camera = with_noise_of(*open_frames(stack), camera.pixels_per_sigma, bright, camera);
-  } catch (const InputError&) {  // show_frames() has told the user that the frames are gone
+  } catch (const InputError&) {  // show_frames() has already reported the missing frames
     return {camera, ", the camera's default noise"};
   }
   return {
@@ -134,7 +143,7 @@ LikeCamera camera_of(const TrajectoryInfo& experiment, const fs::path& stack) {
                   camera.read_noise, camera.electrons_per_level)};
 }
 
-/// The first simulation of a match, filmed over as many cycles as the experiment has.
+/// Virtual experiment of a simulation of a match, over as many cycles as the experiment has.
 Checks::Filmed film(const Run& experiment, Run& simulation, std::size_t index,
                     const TrajectorySource& trajectory, const TrajectoryInfo& of_experiment,
                     const fs::path& stack, const ComparingOptions& options, Progress& progress) {
@@ -145,7 +154,7 @@ Checks::Filmed film(const Run& experiment, Run& simulation, std::size_t index,
     frames = frames * static_cast<std::size_t>(simulation.phases_per_cycle) /
              static_cast<std::size_t>(experiment.phases_per_cycle);
   const Beginning seen(trajectory, std::max<std::size_t>(1, frames));
-  // Asked only here: a TMPDIR that does not exist is no matter for what needs none.
+  // Determine the temporary folder only here: without a film, a TMPDIR that does not exist is no error.
   const Scratch scratch(options.scratch.empty() ? folder_for_temporaries() : options.scratch);
   const fs::path tracked = scratch.path / "filmed.h5";
   film_and_track(seen, camera, tracked, options.threads, simulation.show, progress);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Trajectories of both sides become a comparison: analysed, matched, filmed, and with frames to look at.
+/// Comparison of experiments with simulations: analysis, matching, virtual experiment, and frames for the
+/// report.
 
 #include <filesystem>
 #include <functional>
@@ -14,28 +15,31 @@
 
 namespace twincell {
 
+/// Options of compare_runs.
 struct ComparingOptions {
   std::vector<std::filesystem::path> experiments, simulations;
-  /// Frames of the experiments, in their order; empty: where their provenance says, if they are there still.
+  /// Frame stacks of the experiments, in their order; empty: the stacks that the provenance names, if they
+  /// still exist.
   std::vector<std::filesystem::path> stacks;
   std::vector<std::filesystem::path> sweeps;  ///< collected results of sweeps
   AnalysisOptions analysis;
   double tolerance = 0.02;  ///< of Gamma, as in match_runs
-  bool film = true;         ///< one simulation of each match with both sides goes through camera and tracker
-  /// The camera of the film; absent: the defaults at the scale of the match's experiment, with the noise of
-  /// its frames where these are there still.
+  bool film = true;         ///< run a virtual experiment for one simulation of each match
+  /// Camera of the virtual experiment; absent: the defaults at the scale of the experiment, with the noise of
+  /// its frames if they still exist.
   std::optional<CameraOptions> camera;
-  std::filesystem::path scratch = {};  ///< where the film waits; empty: the folder for temporary files
+  std::filesystem::path scratch = {};  ///< folder of the film; empty: the folder for temporary files
   int threads = 1;
 };
 
 /// Makes the progress of one stage, named for the user.
 using ProgressOf = std::function<std::unique_ptr<Progress>(const std::string& stage)>;
 
-/// Every run analysed and placed; boundaries; differences with what they come from. At most 20 moments of
-/// each run are kept to be looked at, fewer where many runs or beads would make a page of more than some 20
-/// MB. \param notes sentences for the user: frames that are not there any more, simulations that could not be
-/// filmed \throws InputError, ConfigError, RunError as analyze_run
+/// Analyses every run, places it in the phase diagram, finds phase boundaries, and traces the differences
+/// between the sides to their sources. Each run keeps at most 20 snapshots for the report, fewer if many runs
+/// or beads would make the page larger than about 20 MB.
+/// \param notes sentences for the user: frames that no longer exist, simulations that could not be filmed
+/// \throws InputError, ConfigError, RunError as analyze_run
 Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress,
                         std::vector<std::string>& notes);
 

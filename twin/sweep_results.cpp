@@ -18,10 +18,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The base scene of a sweep, as far as N_l, Gamma and start hang on it.
+/// The settings of a sweep's base scene that determine N_l, Gamma and start.
 struct BaseScene {
   std::string preset, start;
-  std::vector<TomlLeaf> leaves;  ///< of the tables that place a point, in whatever unit they are stated
+  std::vector<TomlLeaf> leaves;  ///< keys of the tables that determine N_l and Gamma, in their stated units
 };
 
 const std::vector<std::string>& placing_tables() {
@@ -29,12 +29,14 @@ const std::vector<std::string>& placing_tables() {
   return tables;
 }
 
+/// Whether a key is in a table that determines N_l or Gamma.
 bool places(const std::string& key) {
   return std::any_of(placing_tables().begin(), placing_tables().end(),
                      [&](const std::string& table) { return key.starts_with(table); });
 }
 
-/// The base scene: a table of the plan, or a file beside the plan, where the sweep's folder is too.
+/// Base scene: a table of the plan, or a file that is searched next to `file`, one folder above, and in the
+/// working folder.
 BaseScene base_scene(const std::string& plan, const fs::path& file) {
   const Config config = Config::from_text(plan, file.string() + ": plan");
   std::vector<TomlLeaf> leaves = toml_leaves(config.text(), "scene");
@@ -53,7 +55,7 @@ BaseScene base_scene(const std::string& plan, const fs::path& file) {
     if (leaves.empty())
       throw InputError(
           {.file = file.string(), .key = "plan.scene"},
-          fmt::format("the sweep's scene {} is not there, so N_l and Gamma are not known.", name.string()));
+          fmt::format("the sweep's scene {} does not exist, so N_l and Gamma are unknown.", name.string()));
   }
   BaseScene base{.preset = scene.text("preset").value_or(""),
                  .start = scene.section("start").text("kind").value_or("crystal_a"),
@@ -63,15 +65,15 @@ BaseScene base_scene(const std::string& plan, const fs::path& file) {
   return base;
 }
 
-/// What places a point in the phase diagram.
+/// Position of a point in the phase diagram, with its start.
 struct Place {
   double n_l = 0, gamma = 0;
   std::string start;
 };
 
-/// The base scene with the values of a point's axes.
+/// Position of the base scene with the values of a point's axes.
 Place place_of(const BaseScene& base, const json& axes, const std::string& file) {
-  // Contacts place nothing, but a scene must have some.
+  // Contacts do not affect the position, but a valid scene needs some.
   std::string text = base.preset.empty() ? "contact.k_n = 1e6\ncontact.restitution = 0.9\n"
                                          : fmt::format("preset = \"{}\"\n", base.preset);
   for (const TomlLeaf& leaf : base.leaves) text += leaf.path + " = " + leaf.literal + "\n";
@@ -91,7 +93,7 @@ std::optional<double> number(const json& object, const char* key) {
                                                          : std::nullopt;
 }
 
-/// As the analysis says; from s_b and s_c where a plan's `results` leave the phase out.
+/// Phase from the analysis, or from s_b and s_c if the plan's `results` omit the phase.
 BedPhase phase_of(const json& results) {
   const auto value = [&](const char* name) {
     return results.value(name, json::object()).value("value", json());
@@ -106,16 +108,16 @@ BedPhase phase_of(const json& results) {
 
 void add_points(const json& document, const BaseScene& base, const std::string& file,
                 Comparison& comparison) {
-  for (const json& point : document["points"]) {
+  for (const json& point : document.at("points")) {
     const BedPhase phase = phase_of(point.value("results", json::object()));
     if (phase == BedPhase::undetermined) continue;
-    const Place place = place_of(base, point["axes"], file);
+    const Place place = place_of(base, point.at("axes"), file);
     comparison.sweep.push_back(
         {.n_l = place.n_l, .gamma = place.gamma, .start = place.start, .phase = phase});
   }
 }
 
-/// Gamma in either of its words.
+/// Whether the key is one of the two names of Gamma.
 bool is_gamma(const std::string& key) {
   return key == "drive.gamma" || key == "drive.peak_acceleration_g";
 }
@@ -125,14 +127,15 @@ void add_onsets(const json& document, const BaseScene& base, const std::string& 
   for (const json& onset : document.value("onsets", json::array())) {
     const BedPhase phase = phase_named(onset.value("verdict", ""));
     if (phase == BedPhase::undetermined || !is_gamma(onset.value("key", ""))) continue;
-    json axes = onset["axes"];
-    axes[onset["key"].get<std::string>()] = onset["range"][0];  // some Gamma, so that the scene is whole
+    json axes = onset.at("axes");
+    axes[onset.at("key").get<std::string>()] =
+        onset.at("range").at(0);  // any Gamma, so that the scene is complete
     const Place place = place_of(base, axes, file);
     comparison.boundaries.push_back({.side = Side::simulation,
                                      .start = place.start,
                                      .onset = phase,
                                      .n_l = place.n_l,
-                                     .n_runs = onset["runs"].get<std::size_t>(),
+                                     .n_runs = onset.at("runs").get<std::size_t>(),
                                      .below = number(onset, "low"),
                                      .above = number(onset, "high"),
                                      .sweep = true,
@@ -148,7 +151,7 @@ void add_sweep(const fs::path& file, Comparison& comparison) {
     throw InputError({.file = file.string()},
                      "is not a sweep's collected results (\"format\": \"twincell sweep 1\").");
   try {
-    const BaseScene base = base_scene(document["plan"].get<std::string>(), file);
+    const BaseScene base = base_scene(document.at("plan").get<std::string>(), file);
     add_points(document, base, file.string(), comparison);
     add_onsets(document, base, file.string(), comparison);
   } catch (const json::exception& e) {

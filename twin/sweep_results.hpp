@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The collected results of a sweep, as points and boundaries of a comparison.
+/// Adds the collected results of a sweep to a comparison, as points and phase boundaries.
 
 #include <filesystem>
 
@@ -8,9 +8,9 @@
 
 namespace twincell {
 
-/// Reads a file "twincell sweep 1" (JSON) and adds its points with a phase, and its onsets of bouncing and
-/// convecting, to `comparison`. N_l, Gamma and start of each are those of the sweep's scene with the point's
-/// axes. \throws InputError if it is no such file or does not say what its scene is
+/// Reads a file "twincell sweep 1" (JSON) and adds to `comparison` its points with a known phase, and its
+/// onsets of bouncing and convecting. N_l, Gamma and start come from the sweep's scene and the axes of each
+/// point. \throws InputError if the file has another format, is damaged, or its scene is not found
 void add_sweep(const std::filesystem::path& file, Comparison& comparison);
 
 }  // namespace twincell

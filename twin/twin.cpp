@@ -25,9 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A scene refuses larger shifts (start.perturbation).
+/// Largest shift that a scene accepts (start.perturbation), sigma.
 constexpr double kLargestShift = 0.01;
-/// By which a scene of ours is known when the twin is made anew.
+/// First line of a generated scene, which allows a later run to replace the file.
 const char* const kSceneHead = "# The scene of a filmed cell, by twincell match.\n";
 
 void require_known(const CellDescription& cell, const fs::path& file) {
@@ -44,14 +44,14 @@ const char* word_of_sides(const CellDescription& cell, const fs::path& file) {
   if (cell.sides == Boundary::periodic) return "periodic";
   if (cell.sides == Boundary::wall) return "walls";
   throw ConfigError({.file = file.string(), .key = "cell.sides"},
-                    "\"open\" sides cannot be simulated: beads would leave; say \"walls\" or \"periodic\".");
+                    "\"open\" sides cannot be simulated: beads would leave; use \"walls\" or \"periodic\".");
 }
 
-/// The first frame at phase 0, from which the twin begins, and what it holds.
+/// The first frame at phase 0, from which the twin starts, and its beads.
 struct FirstPacking {
   std::size_t frame = 0, beads = 0;
   double position_error = 0;
-  std::int64_t cycles = 0;  ///< whole ones from there
+  std::int64_t cycles = 0;  ///< number of cycles from this frame to the last one
 };
 FirstPacking find_first_packing(const TrajectorySource& trajectory) {
   FirstPacking b;
@@ -79,7 +79,8 @@ void simulate(const sim::Scene& scene, const fs::path& output, const TwinProvena
               Progress& progress) {
   sim::RunState start = sim::placed(scene, progress);
   const std::string said = provenance.of_simulation(scene, start.beads);
-  // A small bed on many threads waits for them at every step, without end where others use the processor too.
+  // Limit the threads: a small bed on many threads waits for them at every step, and stalls if other programs
+  // use the processor.
   const int worth = std::min(threads, sim::threads_for(start.beads.size(), 0));
   sim::Simulation run(scene, std::move(start), sim::SolverKind::best, worth);
   run.settle(progress);
@@ -111,7 +112,7 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
                      ? Config::from_text("preset = \"fortini-huang-2015\"\n", "preset of the twin")
                      : Config::from_text(base, base_name);
   reduce_units(scene);
-  // What the scene says in laboratory units was converted with its own scale.
+  // Values of the scene in laboratory units were converted with its own scale, so both scales must agree.
   for (const auto& [key, of_cell] :
        {std::pair{"sigma_m", cell.scale.sigma_m}, std::pair{"gravity_m_s2", cell.scale.gravity_m_s2}}) {
     constexpr double kAgree = 1e-9;
@@ -122,7 +123,7 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
           own.where(key),
           fmt::format("is {:g} and the cell's {} is {:g}; one of them is wrong.", *here, key, *of_cell));
   }
-  // One file speaks for cell and contacts.
+  // The calibration that the cell includes also applies to the contacts of the scene.
   if (!cell.included.file.empty() && !scene.root().has("calibration"))
     scene.assign("calibration.from=" + toml_quoted(fs::absolute(cell.included.file).string()));
   include_calibration(scene, base_name, Includer::scene);
@@ -150,13 +151,14 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   const auto scene_text = [&](std::size_t frame, std::int64_t cycles) {
     return twin_scene(base, options.scene.string(), cell, twin.experiment.filename(), frame, cycles);
   };
-  // A scene that cannot be is refused before the stack is read.
+  // Validate the scene before the stack is read.
   (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
 
+  // Check the stated drive against the plate in the frames.
   const auto require_agreement = [&](const DriveCheck& check) {
     if (!check.disagreement.empty())
       throw ConfigError({.file = options.cell_file.string(), .key = "drive"},
-                        check.disagreement + "; correct one of them, or say --trust-stated-drive.");
+                        check.disagreement + "; correct one of them, or use --trust-stated-drive.");
   };
   DriveCheck check{.not_comparable = "the stated drive is trusted"};
   const bool checked = drive.empty() && !options.trust_stated_drive;
@@ -165,6 +167,8 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
     check = check_by_plate(cell, options.stack, options.threads, *bar);
     require_agreement(check);
   }
+  // Track the experiment. If the plate is not visible, the bed checks the drive before the trajectory is
+  // kept.
   const auto frames = open_frames(options.stack);
   claim_shared_folder(folder, twin_folder());
 
@@ -176,7 +180,7 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
     const TrackedStack stack =
         track_stack(*frames, locator, options.link, cell, options.threads, *bar, {}, folder);
     TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
-    if (checked && check.by.empty()) {  // the plate is not in the picture
+    if (checked && check.by.empty()) {  // the plate gave no drive
       BedSteps bed(plan.info);
       write_trajectory(stack, plan, cell, bed);
       check = check_by_bed(bed, plan.info, check.frame_rate_hz);
@@ -189,6 +193,7 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
     writer.finish();
     twin.pixels_per_sigma = plan.pixel_frame.pixels_per_sigma;
   }
+  // Write the scene and simulate, each further simulation from shifted positions.
   const FirstPacking begin = find_first_packing(H5mdReader(twin.experiment));
   twin.beads = begin.beads;
   twin.cycles = begin.cycles;

@@ -14,7 +14,7 @@
 namespace twincell {
 namespace {
 
-/// Pictures of those moments that were filmed.
+/// Adds the pictures of the snapshots that were filmed, and the camera.
 void add_pictures(const TrajectorySource& filmed, const std::filesystem::path& frames,
                   const CellDescription& cell, const TrackedStack& stack, Show& show) {
   std::map<std::int64_t, std::int64_t> number_of_step;
@@ -37,7 +37,7 @@ void add_pictures(const TrajectorySource& filmed, const std::filesystem::path& f
   const double s = *cell.pixels_per_sigma;
   show.camera = {
       .pixels_per_sigma = s,
-      .origin_x = cell.origin->x_px - filmed.info().box.lower.x() * s,  // the film's cell begins at 0
+      .origin_x = cell.origin->x_px - filmed.info().box.lower.x() * s,  // the film's cell starts at x = 0
       .origin_y = cell.origin->y_px,
       .width = stack.width_px,
       .height = stack.height_px};
@@ -49,10 +49,10 @@ void film_and_track(const TrajectorySource& simulation, const CameraOptions& cam
                     const std::filesystem::path& tracked, int threads, Show& show, Progress& progress) {
   std::filesystem::path place = tracked;
   place += ".frames";
-  const AtomicPath film(place, Product::whole_folder("a film"));  // never committed: gone at the end
+  const AtomicPath film(place, Product::whole_folder("a film"));  // not committed, so removed at the end
   const std::filesystem::path frames = film.part() / "frames";
   CameraOptions whole = camera;
-  whole.drop = whole.doubled = 0;  // the phases of the film are counted, not found
+  whole.drop = whole.doubled = 0;  // the phases of the film follow from the frame numbers
   render(simulation, whole, RenderJob{.folder = frames, .threads = threads}, progress);
 
   const CellDescription cell = read_cell(frames / "CELL.toml");
@@ -62,7 +62,8 @@ void film_and_track(const TrajectorySource& simulation, const CameraOptions& cam
   const auto source = open_frames(frames);
   const TrackedStack stack = track_stack(*source, locator, {}, cell, threads, progress, {}, film.part());
   TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
-  // Where the simulation marks no tracers, none are darker in the film: both are then chosen by one rule.
+  // If the simulation marks no tracers, the film has no darker beads; the analysis then chooses the tracers
+  // of both by the same rule.
   if (simulation.info().tracer.empty()) plan.info.tracer.clear();
   H5mdWriter writer(tracked, plan.info);
   write_trajectory(stack, plan, cell, writer);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The way of an experiment, gone by a simulation: camera, locator, tracker.
+/// Virtual experiment: a simulation is filmed by the synthetic camera, then located and tracked as an
+/// experiment.
 
 #include <algorithm>
 #include <filesystem>
@@ -27,11 +28,12 @@ class Beginning : public TrajectorySource {
   std::size_t n_;
 };
 
-/// Films a simulation and tracks the film as `track` would, with a cell description that says what the camera
-/// knows. No frame is dropped or doubled, whatever the camera says. The tracked trajectory is written to
-/// `tracked` (H5MD). Frames wait in a folder beside it, which is gone at the end. \param show moments that
-/// are to be looked at get their pictures and the camera (frame.step names the frames) \throws ConfigError,
-/// RunError as render(), InputError as track_stack()
+/// Films a simulation and tracks the film as `track` does, with the cell description that the camera writes.
+/// No frame is dropped or doubled, whatever `camera` states. The tracked trajectory is written to `tracked`
+/// (H5MD). The frames are in a temporary folder next to it, which is removed at the end.
+/// \param show its snapshots that are in the film receive their pictures and the camera (frame.step
+/// identifies the frames)
+/// \throws ConfigError, RunError as render(), InputError as track_stack()
 void film_and_track(const TrajectorySource& simulation, const CameraOptions& camera,
                     const std::filesystem::path& tracked, int threads, Show& show,
                     Progress& progress = Progress::none());

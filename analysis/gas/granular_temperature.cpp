@@ -10,15 +10,20 @@
 namespace twincell {
 namespace {
 
+constexpr NamedResult kResults[] = {{"T_g"},         {"T_x"},     {"T_y"},          {"T_z"},
+                                    {"T"},           {"T_z_eq5"}, {"T_z_field"},    {"T_bar_z"},
+                                    {"T_bar"},       {"T_z_tau"}, {"T_g_aliasing"}, {"T_z_aliasing"},
+                                    {"T_g_sampling"}};
+
 const char* const kPaper1 = "Fortini & Huang 2015, eq. 2";
 const char* const kPaper2 = "Bhateja et al. 2016, eq. 5 and Table III";
 
-/// Mean over the frames of whole cycles; over all frames where no cycle is whole.
+/// Mean over the frames of whole cycles, or over all frames if no cycle is whole.
 class CycleAverage {
  public:
   explicit CycleAverage(int frames_per_cycle) : frames_per_cycle_(frames_per_cycle) {}
 
-  /// The mean of the cycle that this frame makes whole.
+  /// Adds the value of a frame. Returns the mean of the cycle if this frame completes it.
   std::optional<double> add(const Frame& frame, double value) {
     frames_.add(value);
     if (frames_per_cycle_ <= 0 || frame.cycle < 0) return std::nullopt;
@@ -44,13 +49,13 @@ class CycleAverage {
   BlockAverage cycles_, frames_;
 };
 
-/// m <v'^2> and its mean over cycles, per component.
+/// Averages of m <v'^2> over cycles, for each component and for their sum.
 class Components {
  public:
   explicit Components(int frames_per_cycle)
       : x(frames_per_cycle), y(frames_per_cycle), z(frames_per_cycle), sum(frames_per_cycle) {}
 
-  /// Of the cycle that this frame makes whole: mean of z, and of the sum of all.
+  /// Means over a completed cycle of the z component and of the sum of all components.
   struct Whole {
     double z, sum;
   };
@@ -64,7 +69,7 @@ class Components {
   CycleAverage x, y, z, sum;
 };
 
-/// By how much one mean lies above another, as a share of the latter, over the cycles that have both.
+/// Samples for the relative excess of one mean over another, from the cycles that have both.
 struct Excess {
   std::vector<double> difference, of;
   void add(double mean, double other) {
@@ -73,7 +78,7 @@ struct Excess {
   }
 };
 
-/// Mass and first two moments of the vertical velocity in one slab at one phase.
+/// Number of beads, mass, and first two moments of the vertical velocity in one slab at one phase.
 struct SlabSums {
   double n = 0, mass = 0, momentum = 0, squares = 0;
 };
@@ -109,11 +114,11 @@ class GranularTemperature : public Observable {
       const std::string reason =
           info_.columns.velocity
               ? "no bead has a velocity in any frame"
-              : "the trajectory has no velocities, and differences between frames are another quantity";
-      std::vector<Result> none = {absent_result("T_g", reason, kPaper1)};
-      for (const char* name : {"T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar",
-                               "T_z_tau", "T_g_aliasing", "T_z_aliasing", "T_g_sampling"})
-        none.push_back(absent_result(name, reason, kPaper2));
+              : "the trajectory has no velocities, and differences between frames are a different quantity";
+      std::vector<Result> none;
+      for (const NamedResult& result : kResults)
+        none.push_back(
+            absent_result(std::string(result.name), reason, result.name == "T_g" ? kPaper1 : kPaper2));
       return none;
     }
     const Components& means = best();
@@ -131,19 +136,21 @@ class GranularTemperature : public Observable {
     all.push_back(field_result());
     add_scaled_by_drive(all, d_f);
     all.push_back(correlation_result());
-    const std::string where = fmt::format(
-        "mean over the frames of whole cycles, {} a cycle, above that over time", info_.phases_per_cycle);
+    const std::string where =
+        fmt::format("mean over the frames of whole cycles ({} per cycle) minus the mean over time",
+                    info_.phases_per_cycle);
     all.push_back(excess("T_g_aliasing", aliasing_, where, kPaper1));
     all.push_back(excess("T_z_aliasing", aliasing_z_, where, kPaper2));
-    all.push_back(excess("T_g_sampling", sampling_,
-                         fmt::format("time mean from every second of {} samples a cycle above that from all",
-                                     info_.samples_per_cycle),
-                         kPaper1));
+    all.push_back(
+        excess("T_g_sampling", sampling_,
+               fmt::format("time mean from every second of {} samples per cycle minus that from all",
+                           info_.samples_per_cycle),
+               kPaper1));
     return all;
   }
 
  private:
-  /// Over time where the frames bring such means, over the frames otherwise.
+  /// Whether means over time are available; otherwise the means are over frames.
   [[nodiscard]] bool over_time() const { return time_.sum.by_cycles(); }
   [[nodiscard]] const Components& best() const { return over_time() ? time_ : frames_; }
 
@@ -152,21 +159,22 @@ class GranularTemperature : public Observable {
     if (e.of.empty())
       return absent_result(
           name,
-          "not known: the trajectory has no means over time between its frames, as `simulate` "
-          "writes them",
+          "not known: the trajectory has no means over the time between its frames, which `simulate` "
+          "writes",
           source);
     const double difference = std::accumulate(e.difference.begin(), e.difference.end(), 0.0),
                  of = std::accumulate(e.of.begin(), e.of.end(), 0.0), share = difference / of;
-    if (!(of > 0)) return absent_result(name, "no share of a temperature that is 0", source);
+    if (!(of > 0)) return absent_result(name, "the temperature is 0: no relative excess is defined", source);
     Result r{.name = name,
              .values = {share},
              .unit = "1",
              .n = e.of.size(),
              .n_of = "cycles",
-             .convention = what + ", as a share of the latter",
+             .convention = what + ", relative to the latter",
              .source = source};
-    // Both sums fluctuate, and together: what scatters in their ratio is the difference less its share of the
-    // other.
+    // The numerator and the denominator of the ratio fluctuate and are correlated. To first order, the
+    // scatter of the ratio is that of the difference minus share times the denominator (linearised ratio
+    // estimator).
     BlockAverage rest;
     const double mean = of / static_cast<double>(e.of.size());
     for (std::size_t j = 0; j < e.of.size(); ++j)
@@ -177,9 +185,9 @@ class GranularTemperature : public Observable {
   }
 
   [[nodiscard]] std::string mean_over(const CycleAverage& cycles) const {
-    if (over_time()) return fmt::format("time, {} samples a cycle", info_.samples_per_cycle);
+    if (over_time()) return fmt::format("time, {} samples per cycle", info_.samples_per_cycle);
     if (!cycles.by_cycles()) return "frames";
-    return fmt::format("the frames of whole cycles; what {} phases a cycle alias is not known",
+    return fmt::format("the frames of whole cycles; the aliasing of {} phases per cycle is not known",
                        info_.phases_per_cycle);
   }
 
@@ -222,11 +230,13 @@ class GranularTemperature : public Observable {
     const CycleAverage& z = best().z;
     const BlockAverage& average = z.average();
     const double tau = average.correlation_time();
-    if (!std::isfinite(tau)) return absent_result("T_z_tau", "one value has no correlation", kPaper2);
+    if (!std::isfinite(tau))
+      return absent_result("T_z_tau", "a single value has no correlation time", kPaper2);
     Result r{.name = "T_z_tau", .values = {tau}, .unit = z.of_what(), .n = average.n(), .n_of = z.of_what()};
-    r.no_interval = "it is itself what the intervals of the means rest on";
+    r.no_interval = "the intervals of the means are themselves based on it";
     r.convention =
-        "integrated correlation time of T_z, 1/2 + sum of rho_k; blocks of the error bar are five of it";
+        "integrated correlation time of T_z, 1/2 + sum of rho_k; the error bar uses blocks of five such "
+        "times";
     r.source = "Sokal 1997; Wolff 2004";
     return r;
   }
@@ -244,7 +254,8 @@ class GranularTemperature : public Observable {
     }
   }
 
-  /// Every mean velocity that is estimated takes one sample with it, hence the divisor.
+  /// T_z_field. Each estimated mean velocity uses up one degree of freedom, hence the divisor samples -
+  /// means.
   [[nodiscard]] Result field_result() const {
     double fluctuation = 0, samples = 0;
     for (const auto& [where, slab] : field_) {
@@ -264,7 +275,7 @@ class GranularTemperature : public Observable {
              .unit = "m g sigma",
              .n = static_cast<std::size_t>(samples),
              .n_of = "bead-frames"};
-    r.no_interval = "the field is estimated from the same frames; that of T_z is a guide";
+    r.no_interval = "the mean velocities are estimated from the same frames; the interval of T_z is a guide";
     r.convention = fmt::format(
         "m mean w'^2, w' about the mean vertical velocity at its phase and height: {} slabs of sigma and "
         "phases, "
@@ -286,8 +297,7 @@ double granular_temperature(const Frame& frame, const std::vector<double>& mass)
   return temperature_components(frame, mass).sum() / 2;
 }
 
-std::unique_ptr<Observable> make_granular_temperature(const AnalysisContext& context) {
-  return std::make_unique<GranularTemperature>(context);
-}
+constinit const ObservableEntry granular_temperature_observable = {kResults,
+                                                                   &make_observable<GranularTemperature>};
 
 }  // namespace twincell

@@ -11,10 +11,13 @@
 namespace twincell {
 namespace {
 
+constexpr NamedResult kResults[] = {{"profile_z"}, {"phi_z"},        {"T_z_z"},
+                                    {"T_x_z"},     {"T_z_frames_z"}, {"T_z_volume"}};
+
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const char* const kSource = "Bhateja, Sharma & Singh 2016, Figs. 12 to 16";
 
-/// Mean and variance of a velocity, weighted by mass, in one pass.
+/// Mass-weighted mean and sum of squares of a velocity, updated in one pass.
 struct Spread {
   double mass = 0, mean = 0, sum = 0;
   std::size_t n = 0;
@@ -31,11 +34,13 @@ struct Spread {
   }
 };
 
+/// Sums of one slab.
 struct Slab {
-  double filled = 0;
-  Spread w, u;
-  double now = 0;  ///< of this frame: sum of m (w - w_cm)^2
-  std::size_t n_now = 0;
+  double filled =
+      0;           ///< overlap of the beads with the slab, summed over frames: sigma^2 (2D) or sigma^3 (3D)
+  Spread w, u;     ///< vertical velocity, horizontal velocity along x
+  double now = 0;  ///< current frame: sum of m (w - w_cm)^2
+  std::size_t n_now = 0;   ///< current frame: number of beads
   double over_frames = 0;  ///< sum over frames of the mean over beads
 };
 
@@ -80,7 +85,7 @@ class Profiles : public Observable {
     const Vec3 size = info_.box.size();
     const double slab_size = size.x() * (info_.box.dimension == 2 ? 1 : size.y());
     for (const auto& [k, slab] : slabs_) {
-      if (!(slab.filled > 0)) continue;  // a bead that ends at the border of a slab
+      if (!(slab.filled > 0)) continue;  // a bead touches the border of this slab without overlapping it
       z.push_back(static_cast<double>(k) + 0.5);
       phi.push_back(slab.filled / slab_size / static_cast<double>(frames_));
       t_z.push_back(slab.w.temperature());
@@ -115,8 +120,8 @@ class Profiles : public Observable {
   }
 
  private:
-  /// The local temperature averaged over volume, not over beads: with an open top the volume is that of the
-  /// lowest slabs that hold kMostOfTheBeads of the velocities.
+  /// Local temperature averaged over volume instead of over beads. Because the top is open, the volume is
+  /// that of the lowest slabs that contain the share kMostOfTheBeads of the velocities.
   [[nodiscard]] Result volume_mean() const {
     std::size_t all = 0;
     for (const auto& [k, slab] : slabs_) all += slab.w.n;
@@ -135,8 +140,9 @@ class Profiles : public Observable {
              .unit = "m g sigma",
              .n = n,
              .n_of = "slabs"};
-    r.no_interval = "a mean over slabs that share their beads";
-    r.convention = "mean of T_z_z over the lowest slabs that hold 99 % of the beads, all slabs alike";
+    r.no_interval = "the slabs share their beads and are not independent";
+    r.convention =
+        "mean of T_z_z over the lowest slabs that hold 99 % of the beads, all slabs weighted equally";
     r.source = "Bhateja, Sharma & Singh 2016, eq. 1";
     return r;
   }
@@ -144,7 +150,8 @@ class Profiles : public Observable {
   static constexpr double kMostOfTheBeads = 0.99;
   const TrajectoryInfo& info_;
   std::size_t frames_ = 0;
-  std::map<std::int64_t, Slab> slabs_;  // sparse: a bead far above the bed makes two slabs, not thousands
+  std::map<std::int64_t, Slab>
+      slabs_;  // sparse: a bead far above the bed adds two slabs instead of thousands
 };
 
 }  // namespace
@@ -159,8 +166,6 @@ double sphere_below(double radius, double height) {
   return std::numbers::pi * radius * radius * radius * (2.0 / 3 + u - u * u * u / 3);
 }
 
-std::unique_ptr<Observable> make_profiles(const AnalysisContext& context) {
-  return std::make_unique<Profiles>(context);
-}
+constinit const ObservableEntry profiles_observable = {kResults, &make_observable<Profiles>};
 
 }  // namespace twincell

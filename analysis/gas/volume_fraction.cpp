@@ -9,6 +9,8 @@
 namespace twincell {
 namespace {
 
+constexpr NamedResult kResults[] = {{"phi_top"}, {"phi_cm"}};
+
 const char* const kSource = "Bhateja, Sharma & Singh 2016, sec. IV";
 
 class VolumeFraction : public Observable {
@@ -38,8 +40,8 @@ class VolumeFraction : public Observable {
       if (fraction.sunk)
         return absent_result(
             name,
-            "in some frame the bed lies lower, measured from the plate's mean, than its beads "
-            "fill: it rides on the plate",
+            "in some frame the beads need more volume than there is between the plate's mean height "
+            "and the top of the bed: the bed moves with the plate",
             kSource);
       const BlockAverage& mean = fraction.mean;
       Result r =
@@ -60,7 +62,7 @@ class VolumeFraction : public Observable {
  private:
   struct Fraction {
     BlockAverage mean;
-    bool sunk = false;  ///< a frame had more beads than room
+    bool sunk = false;  ///< in some frame the beads need more volume than there is
   };
   static void add_to(Fraction& fraction, double per_height, double height) {
     if (height < per_height)
@@ -75,8 +77,6 @@ class VolumeFraction : public Observable {
 
 }  // namespace
 
-std::unique_ptr<Observable> make_volume_fraction(const AnalysisContext& context) {
-  return std::make_unique<VolumeFraction>(context);
-}
+constinit const ObservableEntry volume_fraction_observable = {kResults, &make_observable<VolumeFraction>};
 
 }  // namespace twincell

@@ -13,25 +13,33 @@
 namespace twincell {
 namespace {
 
+constexpr NamedResult kResults[] = {{"flight_time"}, {"flight_share"}};
+
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const char* const kSource = "Mehta & Luck 1990, the completely inelastic case";
-const char* const kNoCycle = "no whole cycle after a moment on the plate";
-constexpr double kThrowingSupport = 2;  // a bed at rest is carried with less than its weight before it leaves
-constexpr double kThrownSpeed = 0.1;    // of the plate's: faster off the plate, and it was thrown
+const char* const kNoCycle = "no whole cycle after the first contact with the plate";
+/// Support, in weights of the bed, above which a bed is thrown off. A bed that rests on the plate is
+/// supported with less than its weight before it leaves.
+constexpr double kThrowingSupport = 2;
+/// Take-off speed relative to the plate, in units of the plate's peak velocity, above which a bed is thrown
+/// off.
+constexpr double kThrownSpeed = 0.1;
 constexpr int kFewestPhases = 8;
-constexpr int kMomentsPerCycle = 20;  // between which second differences are taken
+constexpr int kMomentsPerCycle = 20;  ///< instants per cycle from which second differences are taken
+
+/// Height of the centre of mass at one instant.
 
 struct Moment {
   std::int64_t tick = 0;  ///< cycle N_k + phase
   double time = 0, height = 0;
 };
 
-/// z = a + b s - s^2/2 through moments from a time on, s counted from the first of all so that sums stay
-/// exact.
+/// Least-squares parabola z = a + b s - s^2/2 through the instants from a given time on. The time s is
+/// counted from the first instant, so that the sums lose no precision.
 class Parabola {
  public:
-  /// \pre two moments of different times
+  /// \pre at least two instants with different times
   Parabola(const std::vector<Moment>& moments, double from) : origin_(moments.front().time) {
     double n = 0, t = 0, tt = 0, y = 0, ty = 0;
     for (const Moment& m : moments) {
@@ -52,7 +60,8 @@ class Parabola {
   double origin_, a_ = 0, b_ = 0;
 };
 
-/// Where between `holds`, at which it does, and `not_any_more` a condition ceases to hold.
+/// Bisection: the point between `holds`, where the condition is true, and `not_any_more`, where it is false,
+/// at which the condition becomes false.
 template <class Condition>
 double boundary(double holds, double not_any_more, const Condition& condition) {
   constexpr int kHalvings = 30;
@@ -70,11 +79,11 @@ class BedFlight : public Observable {
         stride_(std::max<std::int64_t>(
             1, std::llround(static_cast<double>(context.info.phases_per_cycle) / kMomentsPerCycle))) {
     if (!info_.drive || info_.drive->amplitude == 0)
-      reason_ = "the trajectory does not say how it was driven";
+      reason_ = "the trajectory does not state its drive";
     else if (info_.drive->axis != Axis::z)
       reason_ = "the drive is not along z";
     else if (!info_.columns.phase || info_.phases_per_cycle < kFewestPhases)
-      reason_ = fmt::format("flights are told from at least {} frames per cycle", kFewestPhases);
+      reason_ = fmt::format("the detection of flights needs at least {} frames per cycle", kFewestPhases);
   }
 
   void add(const FrameView& view) override {
@@ -82,7 +91,7 @@ class BedFlight : public Observable {
     if (!reason_.empty() || frame.phase < 0 || frame.cycle < 0) return;
     if (!rise(frame)) return;
     const Moment now{frame.cycle * info_.phases_per_cycle + frame.phase, frame.time, height_};
-    // A gap in the film: what flew before it is cut off.
+    // Gap in the film: a flight in progress before the gap is discarded.
     if (!last_.empty() && now.tick != last_.back().tick + 1) {
       last_.clear();
       since_.reset();
@@ -124,9 +133,9 @@ class BedFlight : public Observable {
   }
 
  private:
-  /// Adds to the height how far the beads that were there in the frame before have risen: a bead that is seen
-  /// in one frame and not in the next shifts the centre of mass of those seen, and no bead. \returns whether
-  /// there was any, or this is the first
+  /// Adds to the height the mean rise of the beads that are present in this frame and in the previous one.
+  /// The centre of mass of all detected beads would jump whenever a bead appears or disappears. \returns true
+  /// if there is such a bead, or if this is the first frame
   bool rise(const Frame& frame) {
     double moment = 0, mass = 0;
     const bool first = before_.empty();
@@ -141,15 +150,15 @@ class BedFlight : public Observable {
     return first || mass > 0;
   }
 
-  /// A moment and what carries the bed then, in weights of the bed.
+  /// Processes one instant, with the support in units of the bed's weight.
   void judge(const Moment& m, double support) {
     if (support < kFlyingSupport) {
       if (flight_.empty()) thrown_ = std::max(carried_[0], carried_[1]) > kThrowingSupport;
       flight_.push_back(m);
     } else {
       if (since_ && flight_.size() >= 2) land(m.time);
-      // Cycles are counted from the first moment on the plate: a flight that the film's beginning cuts off
-      // counts neither as one nor as time.
+      // Cycles are counted from the first instant on the plate, so that a flight cut off by the beginning of
+      // the film adds neither a flight nor time.
       if (!since_) since_ = m.tick;
       carried_ = {carried_[1], support};
       flight_.clear();
@@ -161,24 +170,28 @@ class BedFlight : public Observable {
     }
   }
 
+  /// Phase of the drive at `time`, as a fraction of the period in [0, 1).
   [[nodiscard]] double turns(double time) const {
     const double turns = time / info_.drive->period();
     return turns - std::floor(turns);
   }
 
-  /// The flight has ended before `carried`, the first moment at which the plate carries the bed again.
+  /// Evaluates a flight that has ended before `carried`, the first instant at which the plate supports the
+  /// bed again.
   void land(double carried) {
     const double frame = carried - flight_.back().time, reach = static_cast<double>(stride_) * frame,
                  fine = frame / 32;
     Parabola way(flight_, -HUGE_VAL);
     auto take_off = taken_off(way, reach, frame);
     if (!take_off) return;
-    // The first moments may be of a plate that still carried a little: now without them.
+    // At the first instants the plate may still have supported part of the weight. The second fit leaves them
+    // out.
     if (flight_.end()[-2].time > *take_off) {
       way = Parabola(flight_, *take_off);
       take_off = taken_off(way, reach, frame);
       if (!take_off) return;
     }
+    // Landing: the first later instant at which the parabola is at its take-off height above the plate.
     const double least = above(way, *take_off), latest = carried + reach;
     double landing = std::max(*take_off + 2 * fine, flight_.back().time - reach);
     while (landing < latest && above(way, landing) > least) landing += fine;
@@ -189,16 +202,17 @@ class BedFlight : public Observable {
     landed_ = landing;
   }
 
-  /// Height of the parabola over the plate.
+  /// Height of the parabola above the plate.
   [[nodiscard]] double above(const Parabola& way, double t) const {
     return way.height(t) - info_.drive->displacement(turns(t));
   }
 
+  /// Take-off time of the flight. Absent if the bed cannot have left the plate.
   [[nodiscard]] std::optional<double> taken_off(const Parabola& way, double reach, double frame) const {
     const double first = flight_.front().time, fine = frame / 32;
     const Drive& drive = *info_.drive;
-    // A bed that rested has h' = h'' = 0 where it leaves. Noise parts the two zeros, or lifts h' above its
-    // own: the later of both is then nearest.
+    // A bed that rested on the plate has h' = h'' = 0 at take-off. Noise separates the two zeros, or keeps h'
+    // positive so that it has no zero. The later of the two zeros is then the best estimate.
     const auto rises = [&](double t) { return way.velocity(t) - drive.velocity(turns(t)); };
     const auto leaves = [&](double t) {
       return rises(t) > 0 && drive.omega * drive.omega * drive.displacement(turns(t)) > 1;
@@ -212,8 +226,8 @@ class BedFlight : public Observable {
     if (take_off < inside) take_off = boundary(take_off + fine, take_off, leaves);
     const bool fast = thrown_ && rises(take_off) > kThrownSpeed * drive.peak_velocity();
     if (take_off < inside && take_off > earliest && !fast) return take_off;
-    // A plate that falls away by less than g is never left. Thrown, a bed leaves at any phase: the throw is
-    // part of the second differences up to here.
+    // A resting bed does not leave a plate whose downward acceleration is below g. A thrown bed may leave at
+    // any phase; the second differences contain the throw up to this time.
     if (!thrown_) return std::nullopt;
     return std::max(first - reach - frame / 2, landed_);
   }
@@ -221,22 +235,20 @@ class BedFlight : public Observable {
   const TrajectoryInfo& info_;
   std::int64_t stride_;
   std::string reason_;
-  double height_ = 0;           ///< of the centre of mass, from where it was in the first frame
-  std::vector<double> before_;  ///< of each bead in the last frame; NaN where it was not seen
+  double height_ = 0;           ///< of the centre of mass, relative to the first frame
+  std::vector<double> before_;  ///< height of each bead in the last frame; NaN if it was not detected
   std::deque<Moment> last_;
-  std::optional<std::int64_t> since_;  ///< first tick of the cycle that is being counted
-  double in_cycle_ = 0;                ///< time of flights that ended in it
-  std::vector<Moment> flight_;         ///< moments of the flight under way
-  double landed_ = -HUGE_VAL;          ///< when the flight before it ended
-  std::array<double, 2> carried_{};    ///< support at the last two moments on the plate
-  bool thrown_ = false;                ///< the flight began with a throw
+  std::optional<std::int64_t> since_;  ///< first tick of the current cycle
+  double in_cycle_ = 0;                ///< total duration of the flights that ended in the current cycle
+  std::vector<Moment> flight_;         ///< instants of the current flight
+  double landed_ = -HUGE_VAL;          ///< end of the previous flight
+  std::array<double, 2> carried_{};    ///< support at the last two instants on the plate
+  bool thrown_ = false;                ///< the current flight began with a throw
   BlockAverage durations_, share_;
 };
 
 }  // namespace
 
-std::unique_ptr<Observable> make_bed_flight(const AnalysisContext& context) {
-  return std::make_unique<BedFlight>(context);
-}
+constinit const ObservableEntry bed_flight_observable = {kResults, &make_observable<BedFlight>};
 
 }  // namespace twincell

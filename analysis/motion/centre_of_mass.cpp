@@ -11,6 +11,8 @@
 namespace twincell {
 namespace {
 
+constexpr NamedResult kResults[] = {{"h_cm"}, {"h_cm_k"}, {"h_cm_j"}, {"delta_h_cm"}, {"delta_h_bar"}};
+
 const char* const kSource = "Bhateja, Sharma & Singh 2016, Table II and Fig. 7";
 
 class CentreOfMass : public Observable {
@@ -37,7 +39,7 @@ class CentreOfMass : public Observable {
       count_ = 0;
     }
     sum_ += height;
-    // A part of a cycle would weigh the phases it has.
+    // Only whole cycles count: an incomplete cycle would give more weight to the phases that it contains.
     if (++count_ == phases_) {
       by_cycle_.push_back(sum_ / static_cast<double>(phases_));
       mean_.add(by_cycle_.back());
@@ -74,7 +76,7 @@ class CentreOfMass : public Observable {
   }
 
  private:
-  /// V_p^2/g in sigma; NaN if the drive is not known or at rest.
+  /// V_p^2/g in sigma; NaN if the drive is unknown or at rest.
   [[nodiscard]] double velocity_scale() const {
     if (!info_.drive || info_.drive->peak_velocity() == 0) return std::numeric_limits<double>::quiet_NaN();
     return info_.drive->peak_velocity() * info_.drive->peak_velocity();
@@ -84,11 +86,10 @@ class CentreOfMass : public Observable {
                             double scale) const {
     if (!h.present()) return absent_result(name, h.absent, kSource);
     if (!context_.rest_height)
-      return absent_result(name, "the height at rest is neither given nor seen: " + context_.no_rest_height,
+      return absent_result(name, "the rest height is neither given nor measured: " + context_.no_rest_height,
                            kSource);
     const double rest = *context_.rest_height;
-    if (std::isnan(scale))
-      return absent_result(name, "the trajectory does not say how it was driven", kSource);
+    if (std::isnan(scale)) return absent_result(name, "the trajectory does not state its drive", kSource);
     Result r = h;
     r.name = name;
     r.unit = unit;
@@ -97,9 +98,9 @@ class CentreOfMass : public Observable {
       r.interval->low = (r.interval->low - rest) / scale;
       r.interval->high = (r.interval->high - rest) / scale;
     }
-    r.convention = fmt::format("h_cm above its height at rest, {:.6g} sigma ({}){}; {}", rest,
+    r.convention = fmt::format("h_cm above its rest height, {:.6g} sigma ({}){}; {}", rest,
                                context_.options.rest_height ? "as given" : "of the first frame, at rest",
-                               scale == 1 && unit != "1" ? "" : ", over V_p^2/g", h.convention);
+                               scale == 1 && unit != "1" ? "" : ", divided by V_p^2/g", h.convention);
     return r;
   }
 
@@ -124,7 +125,7 @@ std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& fr
     return std::nullopt;
   }
   if (frame.velocity.empty()) {
-    why_not = "the trajectory has no velocities by which to see whether its first frame is a bed at rest";
+    why_not = "the trajectory has no velocities that show whether the bed is at rest in its first frame";
     return std::nullopt;
   }
   Vec3 of_plate = Vec3::Zero();
@@ -138,17 +139,17 @@ std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& fr
     still += frame.velocity[i].squaredNorm() / 2;
     ++n;
   }
-  // A bed at the top of its flight stands still as well, but not at time 0.
+  // At time 0 a bed at rest in the lab counts as well. At other times it does not, because the bed may be at
+  // the top of its flight.
   const double energy = (frame.time == 0 ? std::min(riding, still) : riding) / n;
   if (energy <= kAtRest) return height - *plate;
   why_not = fmt::format(
-      "beads of the first frame move by {:.2g} m g sigma each against the plate; at most {:g} at rest",
+      "the beads of the first frame move with {:.2g} m g sigma each relative to the plate; at most {:g} at "
+      "rest",
       energy, kAtRest);
   return std::nullopt;
 }
 
-std::unique_ptr<Observable> make_centre_of_mass(const AnalysisContext& context) {
-  return std::make_unique<CentreOfMass>(context);
-}
+constinit const ObservableEntry centre_of_mass_observable = {kResults, &make_observable<CentreOfMass>};
 
 }  // namespace twincell

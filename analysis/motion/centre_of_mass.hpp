@@ -2,7 +2,6 @@
 /// \file
 /// Height of the centre of mass.
 
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -11,20 +10,27 @@
 
 namespace twincell {
 
-/// Kinetic energy per bead, m g sigma, up to which a bed counts as resting: it is by no more than that, in
-/// sigma, that the centre of mass may still sink or rise. Smooth beds never come to rest altogether, for a
-/// bead may glide on them for ever, nor do those of a law without static friction.
+/// Maximum kinetic energy per bead of a bed at rest, m g sigma. The centre of mass can then still rise or
+/// sink by at most this number, in sigma. The limit is not 0, because smooth beds, on which a bead may glide
+/// for ever, and beds of a law without static friction never come to rest completely.
 inline constexpr double kAtRest = 0.005;
 
-/// Height of the centre of mass above the plate, sigma, if the bed rests in this frame: beads known by their
-/// velocities to move with the plate, or not at all before the drive begins (time 0), up to kAtRest.
-/// \param why_not why there is none, if so
+/// Height of the centre of mass above the plate, sigma, if the bed rests in this frame. The bed rests if the
+/// kinetic energy per bead relative to the plate, or at time 0 (before the drive begins) relative to the lab,
+/// is at most kAtRest.
+/// \param why_not set to the reason if the result is absent
 std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& frame, std::string& why_not);
 
-/// Results h_cm (mean over whole cycles, or over frames without phases), h_cm_k (mean in each phase), h_cm_j
-/// (mean of each whole cycle), delta_h_cm = h_cm - AnalysisContext::rest_height (absent without it: a rest
-/// height is measured and never assumed) and delta_h_bar = delta_h_cm g/V_p^2. Bhateja, Sharma & Singh 2016,
-/// Table II and Fig. 7.
-std::unique_ptr<Observable> make_centre_of_mass(const AnalysisContext& context);
+/// Height of the centre of mass above the mean height of the plate. Results:
+///
+/// - h_cm: scalar, mean over whole cycles, or over frames if they have no phase, sigma
+/// - h_cm_k: [N_k] mean at each phase, sigma
+/// - h_cm_j: [cycles] mean of each whole cycle, sigma
+/// - delta_h_cm: scalar, h_cm - AnalysisContext::rest_height, sigma. Absent without a rest height, which is
+///   measured and never assumed
+/// - delta_h_bar: scalar, delta_h_cm g/V_p^2
+///
+/// Bhateja, Sharma & Singh 2016, Table II and Fig. 7.
+extern const ObservableEntry centre_of_mass_observable;
 
 }  // namespace twincell

@@ -11,12 +11,16 @@
 namespace twincell {
 namespace {
 
+constexpr NamedResult kResults[] = {{"displacement_field"}, {"field_x"},           {"field_z"},
+                                    {"circulation_left"},   {"circulation_right"}, {"rolls"},
+                                    {"convection_sense"}};
+
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kMostRows = 4096;  // one bead on its way to the moon makes no table of that height
+constexpr std::size_t kMostRows = 4096;  // bounds the table: a bead that is thrown far up must not enlarge it
 constexpr std::size_t kMostBlocks = 20;
 constexpr std::size_t kFewestBlocks = 4;
-/// A roll carries at least this far in the whole run, sigma, across the side of a cell: half a pixel of paper
-/// 1's camera. Less is the creep of a bed that yields elastically.
+/// Minimum transport of a roll over the whole run across the side of a cell, sigma: half a pixel of paper 1's
+/// camera. Weaker transport is the creep of a bed that yields elastically.
 constexpr double kLeastCarried = 1.0 / 30;
 const char* const kSource = "Fortini & Huang 2015, sec. V";
 
@@ -50,7 +54,7 @@ class Convection : public Observable {
     const double width = box_.size().x();
     columns_ = static_cast<std::size_t>(std::max(1.0, std::round(width / context.options.field_cell)));
     cell_ = width / static_cast<double>(columns_);
-    // Close packing: 2/sqrt(3) discs to sigma^2, sqrt(2) spheres to sigma^3.
+    // Close packing: 2/sqrt(3) discs per sigma^2, sqrt(2) spheres per sigma^3.
     full_ = cell_ * cell_ * (box_.dimension == 2 ? 2 / std::sqrt(3.0) : std::sqrt(2.0) * box_.size().y());
     blocks_.emplace_back();
   }
@@ -75,7 +79,7 @@ class Convection : public Observable {
                                                 : "";
     const std::string rule = fmt::format(
         "displacements between beginnings of consecutive cycles, averaged in cells of {:.4g} sigma that are "
-        "at least {:.2g} full on average and hold at least {} displacements",
+        "at least {:.2g} full on average and contain at least {} displacements",
         cell_, kFieldFilling, kFieldSamples);
     std::vector<Result> all;
     const auto add = [&](Result r, const std::string& absent) {
@@ -86,6 +90,7 @@ class Convection : public Observable {
       all.push_back(absent.empty() ? r : absent_result(r.name, absent, r.source));
     };
 
+    // The field and its axes.
     Result u{.name = "displacement_field", .unit = "sigma per cycle"};
     Result x{.name = "field_x", .unit = "sigma", .convention = "centres of the cells"};
     Result z{.name = "field_z", .unit = "sigma", .convention = "centres of the cells"};
@@ -105,6 +110,7 @@ class Convection : public Observable {
       return all;
     }
 
+    // Circulation of the two halves.
     const Circulation circulation = circulation_of(field);
     const bool knows_left = std::isfinite(circulation.left), knows_right = std::isfinite(circulation.right);
     const std::string no_cells = "no four adjoining cells have enough displacements";
@@ -131,37 +137,39 @@ class Convection : public Observable {
          .no_interval = right ? "" : few,
          .convention = sign},
         why.empty() && !knows_right ? no_cells + " in this half" : why);
+    // Rolls and the sense of rotation, if there are enough blocks of cycles to distinguish them from chance.
     const bool enough = blocks_.size() >= kFewestRollBlocks;
     const std::string untold = !why.empty()                   ? why
                                : !(knows_left && knows_right) ? no_cells + " in one half"
-                               : !left                        ? few + ": the sense cannot be told from chance"
-                                                              : "";
+                               : !left ? few + ": the sense cannot be distinguished from chance"
+                                       : "";
     const double least = kLeastCarried * cell_ / static_cast<double>(total.cycles);
     add({.name = "rolls",
          .values = {why.empty() && enough ? static_cast<double>(count_rolls(shares(total), least)) : kNaN},
          .unit = "1",
-         .no_interval = "a count of what is no chance",
+         .no_interval = "a count of significant regions",
          .convention =
              fmt::format("regions of one sense of the stream function psi of the circulation, psi = 0 at "
                          "walls, floor and "
-                         "surface; |t| of psi over {} blocks of cycles exceeds what {:g} % of 999 draws with "
-                         "random signs of "
-                         "the blocks reach anywhere: a bed without steady flow shows a roll with that "
-                         "probability; |psi| at "
-                         "least {:g} of the largest and {:.3g} sigma^2 in the whole run",
+                         "surface; |t| of psi over {} blocks of cycles exceeds the value that the largest "
+                         "|t| exceeds in {:g} % of 999 draws with random signs of the blocks, the "
+                         "probability of any roll in a bed without steady flow; |psi| is at least {:g} of "
+                         "the largest and {:.3g} sigma^2 in the whole run",
                          blocks_.size(), 100 * kRollFalseAlarm, kSmallestRoll, kLeastCarried * cell_)},
         why.empty() && !enough
-            ? fmt::format("fewer than {} blocks of cycles: rolls cannot be told from chance",
+            ? fmt::format("fewer than {} blocks of cycles: rolls cannot be distinguished from chance",
                           kFewestRollBlocks)
             : why);
     Result sense{.name = "convection_sense"};
     if (untold.empty()) sense.text = words(*left, *right);
-    sense.convention = "from the signs of both circulations where their intervals leave out 0";
+    sense.convention = "from the signs of both circulations where their intervals exclude 0";
     add(sense, untold);
     return all;
   }
 
  private:
+  /// Adds the displacements of one cycle to the last block. When all blocks are used, pairs of blocks are
+  /// merged and the block length doubles.
   void add_cycle(const Frame& frame) {
     if (blocks_.back().cycles == block_length_) {
       if (blocks_.size() == kMostBlocks) {
@@ -183,7 +191,7 @@ class Convection : public Observable {
       const Vec3 middle = box_.wrap(last_[i] + 0.5 * step);
       const double column = std::floor((middle.x() - box_.lower.x()) / cell_);
       const double row = std::floor((middle.z() - box_.lower.z()) / cell_);
-      // Beads touch walls with their surface, so that no centre is outside; one that is has no cell.
+      // Beads touch walls with their surface, so that a centre outside the box is an error; it has no cell.
       if (column < 0 || column >= static_cast<double>(columns_) || row < 0 || row >= kMostRows) continue;
       const std::size_t c = static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column);
       block.grow((static_cast<std::size_t>(row) + 1) * columns_);
@@ -193,8 +201,8 @@ class Convection : public Observable {
     }
   }
 
-  /// Cells that hold enough in all cycles together. Fields of fewer cycles keep them: a cell that came and
-  /// went would be taken for a change of the flow.
+  /// Cells with enough displacements over all cycles. Fields of fewer cycles use the same cells, because a
+  /// cell that appears and disappears would count as a change of the flow.
   [[nodiscard]] std::vector<bool> cells_of(const FieldSums& total) const {
     const double least = std::max(static_cast<double>(kFieldSamples),
                                   kFieldFilling * full_ * static_cast<double>(total.cycles));
@@ -218,7 +226,8 @@ class Convection : public Observable {
     return field;
   }
 
-  /// Values of `statistic` with one block of cycles left out at a time; empty with too few full blocks.
+  /// Jackknife values: `statistic` with one full block of cycles left out at a time. Empty for fewer than
+  /// kFewestBlocks full blocks.
   template <class Statistic>
   [[nodiscard]] std::vector<double> left_out(const FieldSums& total, const Statistic& statistic) const {
     std::vector<double> values;
@@ -232,7 +241,7 @@ class Convection : public Observable {
     return values;
   }
 
-  /// Standard error of the jackknife.
+  /// Jackknife standard error.
   static double spread(const std::vector<double>& values) {
     double mean = 0, sum = 0;
     const double n = static_cast<double>(values.size());
@@ -247,8 +256,8 @@ class Convection : public Observable {
     const auto values = left_out(total, [&](const DisplacementField& f) { return part(circulation_of(f)); });
     if (values.empty() || !std::ranges::all_of(values, [](double v) { return std::isfinite(v); }))
       return std::nullopt;
-    // The strength of a roll outlasts a block. Leaving blocks out turns signs about, which a correlation does
-    // not see.
+    // The strength of a roll persists for longer than a block, so that the blocks are correlated. Leaving out
+    // a block reverses the sign of its deviation, which does not change the correlation time.
     const double tau = correlation_time(values), count = static_cast<double>(values.size());
     const double half =
         student_t_95(std::max(1.0, count / (2 * tau) - 1)) * spread(values) * std::sqrt(2 * tau);
@@ -257,7 +266,8 @@ class Convection : public Observable {
         fmt::format("jackknife over {} blocks of cycles, correlation time {:.3g} blocks", count, tau)};
   }
 
-  /// The blocks' shares of the mean field: in cells that a block hardly visits it has little to say.
+  /// Contributions of the blocks to the mean circulation. Each is normalised by the counts of the whole run,
+  /// so that a block with few displacements in a cell contributes little there.
   [[nodiscard]] CirculationBlocks shares(const FieldSums& total) const {
     const std::vector<bool> cells = cells_of(total);
     CirculationBlocks shares;
@@ -276,6 +286,7 @@ class Convection : public Observable {
     return shares;
   }
 
+  /// The sense of rotation in words, from the intervals of both circulations.
   static std::string words(const Interval& left, const Interval& right) {
     const auto sign = [](const Interval& i) { return i.low > 0 ? 1 : i.high < 0 ? -1 : 0; };
     const int l = sign(left), r = sign(right);
@@ -297,7 +308,8 @@ class Convection : public Observable {
   std::vector<Vec3> last_;
   std::int64_t last_cycle_ = -2;
   std::vector<FieldSums> blocks_;
-  std::size_t block_length_ = 2;  // beds may repeat after two cycles: a block of one would see half of that
+  std::size_t block_length_ =
+      2;  // a bed may repeat after two cycles, of which a block of one cycle would contain half
 };
 
 }  // namespace
@@ -315,7 +327,7 @@ Circulation circulation_of(const DisplacementField& field) {
                                  field.dz * (field.uz[b] + field.uz[b2] - field.uz[a] - field.uz[a2]));
       c.plaquettes.push_back(loop);
       if (!std::isfinite(loop)) continue;
-      // Plaquette k lies on the border of columns k and k + 1.
+      // Plaquette k is centred on the border between columns k and k + 1.
       const std::size_t twice = 2 * (k + 1);
       const double to_left = twice < field.columns ? 1 : twice == field.columns ? 0.5 : 0;
       if (to_left > 0) c.left = (std::isfinite(c.left) ? c.left : 0) + to_left * loop;
@@ -324,8 +336,6 @@ Circulation circulation_of(const DisplacementField& field) {
   return c;
 }
 
-std::unique_ptr<Observable> make_convection(const AnalysisContext& context) {
-  return std::make_unique<Convection>(context);
-}
+constinit const ObservableEntry convection_observable = {kResults, &make_observable<Convection>};
 
 }  // namespace twincell

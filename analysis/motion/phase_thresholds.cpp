@@ -13,10 +13,28 @@
 namespace twincell {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kJump = 0.5;
+constexpr NamedResult kResults[] = {{"s_k"},
+                                    {"s_b", Pooling::root_mean_square},
+                                    {"s_b_variance", Pooling::root_mean_square},
+                                    {"s_b_about_rest", Pooling::root_mean_square},
+                                    {"s_b_as_printed", Pooling::root_mean_square},
+                                    {"half_pixel", Pooling::mean, true},
+                                    {"s_b_noise"},
+                                    {"s_j_noise"},
+                                    {"s_j", Pooling::root_mean_square},
+                                    {"s_c", Pooling::root_mean_square},
+                                    {"cycle_of_convection"},
+                                    {"s_j_growth"},
+                                    {"s_j_growth_late"},
+                                    {"drift"},
+                                    {"phase"},
+                                    {"tracers", Pooling::per_bead},
+                                    {"tracer_heights", Pooling::per_bead}};
 
-/// Sums of tracer heights over the plate for each (tracer, phase).
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kJump = 0.5;  ///< sigma; larger changes of a height within one cycle are reported as jumps
+
+/// Sums of the tracers' heights above the plate for each (tracer, phase).
 struct HeightSums {
   std::vector<double> sum;
   std::vector<std::size_t> count;
@@ -58,7 +76,7 @@ class PhaseThresholds : public Observable {
 
   [[nodiscard]] std::vector<Result> results() const override {
     PhaseThresholds closed =
-        *this;  // the last cycle may be whole: closing it must not disturb the accumulation
+        *this;  // a copy: the last cycle may be whole, and closing it must not disturb the accumulation
     closed.close_cycle();
     return closed.closed_results();
   }
@@ -101,12 +119,13 @@ class PhaseThresholds : public Observable {
       ++noise_count_;
     }
   }
-  /// Standard uncertainty of one height, rms over tracers and frames; NaN unknown.
+  /// Standard uncertainty of one height, rms over tracers and frames; NaN if unknown.
   [[nodiscard]] double noise() const {
     return noise_count_ > 0 ? std::sqrt(noise_squares_ / static_cast<double>(noise_count_)) : kNaN;
   }
 
-  /// A whole cycle joins its partner; a pair joins the total.
+  /// Adds a whole cycle to the current pair, and a complete pair to the total, so that the total contains an
+  /// even number of cycles.
   void close_cycle() {
     const bool whole = !phase_seen_.empty() && std::all_of(phase_seen_.begin(), phase_seen_.end(),
                                                            [](char seen) { return seen != 0; });
@@ -143,8 +162,8 @@ class PhaseThresholds : public Observable {
     return "";
   }
 
-  /// s(k) of a resample of the tracers: each tracer's own mean at that phase first, so that a tracer that is
-  /// missing now and then does not shift the curve.
+  /// s(k) of a resample of the tracers. Each tracer is averaged at each phase first, so that a tracer that is
+  /// missing in some cycles does not shift the curve.
   [[nodiscard]] std::vector<double> curve(const HeightSums& sums,
                                           const std::vector<std::size_t>& tracers) const {
     std::vector<double> s(n_phases_, kNaN);
@@ -162,8 +181,8 @@ class PhaseThresholds : public Observable {
     return s;
   }
 
-  /// Mean rest height of a resample of the tracers: another line of tracers rests at another height, so that
-  /// it goes with the curve. NaN if none of them has one.
+  /// Mean rest height of a resample of the tracers. A different set of tracers rests at a different height,
+  /// so that the rest height is resampled with the curve. NaN if no tracer has a rest height.
   [[nodiscard]] double rest_of(const std::vector<std::size_t>& tracers) const {
     double sum = 0;
     std::size_t n = 0;
@@ -220,6 +239,7 @@ class PhaseThresholds : public Observable {
     s_k.no_interval = "s_b has the interval of the curve as a whole";
     const std::vector<double> curve_of_all = s_k.values;
     all.push_back(std::move(s_k));
+    // s_b in each of the readings of eq. B4.
     const auto s_b = [&](const std::string& name, SbForm form) {
       const double rest = context_.tracer_rest_height;
       if (n_phases_ < 2) return absent_result(name, "a curve s(k) needs at least 2 phases per cycle", b4);
@@ -237,7 +257,7 @@ class PhaseThresholds : public Observable {
             return s_b_of(curve(sums, pick), form, rest_of(pick));
           },
           "tracers");
-      // A spread is not negative.
+      // A spread cannot be negative.
       if (r.interval) r.interval->low = std::max(0.0, r.interval->low);
       if (!r.interval)
         r.no_interval = n_tracers_ < 2 ? "one tracer only" : "the same for every choice of the tracers";
@@ -255,7 +275,7 @@ class PhaseThresholds : public Observable {
     all.push_back(s_b("s_b_as_printed", SbForm::as_printed));
   }
 
-  /// What the camera could not have seen, to stand beside sigma/30.
+  /// Detection limits of the camera, for comparison with the threshold sigma/30.
   void add_detection(std::vector<Result>& all) const {
     const std::string source = "Fortini & Huang 2015, app. B";
     const auto beside = [](double limit) {
@@ -270,7 +290,7 @@ class PhaseThresholds : public Observable {
       all.push_back(std::move(r));
     } else {
       all.push_back(
-          absent_result("half_pixel", "the trajectory has no pixels per sigma: no camera saw it", source));
+          absent_result("half_pixel", "the trajectory has no pixels per sigma: it was not filmed", source));
     }
     const std::size_t used = std::max<std::size_t>(1, whole_cycles_ - whole_cycles_ % 2);
     if (!std::isfinite(noise())) {
@@ -282,23 +302,23 @@ class PhaseThresholds : public Observable {
     const auto noise_result = [&](const std::string& name, double value, const std::string& how) {
       Result r{.name = name, .values = {value}, .unit = "sigma", .n = noise_count_, .n_of = "heights"};
       r.convention = how + fmt::format("; one height is uncertain by {:.4g} sigma (rms)", noise());
-      r.no_interval = "from the uncertainties that the locating states";
+      r.no_interval = "from the position uncertainties given by the locator";
       r.source = source;
       all.push_back(std::move(r));
     };
     noise_result(
         "s_b_noise", floor,
-        fmt::format("s_b of a bed at rest by the camera's noise alone, sigma_z/sqrt(N_t N_f) with {} "
+        fmt::format("s_b of a bed at rest from the camera's noise alone, sigma_z/sqrt(N_t N_f) with {} "
                     "tracers and {} cycles; {}",
                     n_tracers_, used, beside(floor)));
-    noise_result("s_j_noise", noise(), "what the noise alone adds in square to s_j");
+    noise_result("s_j_noise", noise(), "contribution of the noise alone to s_j, added in quadrature");
   }
 
   void add_convection(std::vector<Result>& all) const {
     const std::string b1 = "Fortini & Huang 2015, eq. B1", b2 = "Fortini & Huang 2015, eq. B2";
     std::string reason = why_no_cycles();
     if (reason.empty() && n_tracers_ < 2) reason = "a spread of heights needs at least 2 tracers";
-    if (reason.empty() && line_.n() == 0) reason = "no frame lies at the beginning of a cycle";
+    if (reason.empty() && line_.n() == 0) reason = "no frame is at the beginning of a cycle";
     std::vector<std::size_t> everyone(n_tracers_);
     std::iota(everyone.begin(), everyone.end(), std::size_t{0});
     std::vector<double> spread;
@@ -332,6 +352,7 @@ class PhaseThresholds : public Observable {
     s_j.no_interval = "single cycles; s_c has the interval of their mean square";
     s_j.source = b1;
 
+    // s_c, the root mean square of s_j.
     Result s_c{.name = "s_c",
                .values = {std::sqrt(squares.mean())},
                .unit = "sigma",
@@ -343,6 +364,7 @@ class PhaseThresholds : public Observable {
         fmt::format("root mean square of s_j over N_f = {} cycles; threshold sigma", squares.n());
     s_c.source = b2;
 
+    // The first cycle that exceeds the threshold of convection.
     const auto first =
         std::find_if(spread.begin(), spread.end(), [](double s) { return s > kConvectionThreshold; });
     all.push_back(std::move(s_j));
@@ -355,13 +377,14 @@ class PhaseThresholds : public Observable {
     Result onset{.name = "cycle_of_convection", .unit = "cycles", .n = squares.n(), .n_of = "cycles"};
     onset.values = {static_cast<double>(line_.cycle[static_cast<std::size_t>(first - spread.begin())])};
     onset.convention = "first cycle at whose beginning s_j > sigma";
-    onset.no_interval = "one event of one run; seeds give its scatter";
+    onset.no_interval = "a single event in one run; runs with other seeds give its scatter";
     onset.source = b1;
     all.push_back(std::move(onset));
   }
 
-  /// Block averages where s_j is stationary. A line that drifts or comes to rest is one event, not a series;
-  /// the scatter of the tracers remains.
+  /// Interval of s_c by block averages over cycles if s_j is stationary. The motion of a line that drifts or
+  /// comes to rest is a single event, not a stationary series; the interval is then from the scatter between
+  /// tracers.
   [[nodiscard]] std::optional<Interval> interval_of_s_c(const BlockAverage& squares) const {
     auto interval = squares.interval("cycles");
     if (!interval) {
@@ -384,17 +407,17 @@ class PhaseThresholds : public Observable {
       return;
     }
     const auto slope = [&](const std::string& name, const Growth& line, std::size_t first) {
-      if (!std::isfinite(line.rate)) return absent_result(name, "one cycle has no slope", source);
+      if (!std::isfinite(line.rate)) return absent_result(name, "a slope needs at least 2 cycles", source);
       Result r{
           .name = name, .values = {line.rate}, .unit = "sigma^2", .n = line_.n() - first, .n_of = "cycles"};
       r.interval = line.interval;
-      if (!r.interval) r.no_interval = "fewer than 3 tracers, or all of them alike";
+      if (!r.interval) r.no_interval = "fewer than 3 tracers, or the same slope for all tracers";
       r.convention = fmt::format("d s_j^2/dj by least squares, cycles {} to {}; per cycle",
                                  line_.cycle[first], line_.cycle.back());
       r.source = source;
       return r;
     };
-    const double last = s_j.values.back();  // the reference does not outlive what is added below
+    const double last = s_j.values.back();  // copied: additions to `all` below invalidate the reference
     const DriftVerdict verdict = judge_drift(line_, std::isfinite(noise()) ? noise() : 0);
     all.push_back(slope("s_j_growth", growth(line_, 0, line_.n()), 0));
     if (verdict.drift == Drift::undetermined) {
@@ -428,7 +451,7 @@ class PhaseThresholds : public Observable {
     if (line_.n() == 0) {
       const std::string none = why_no_cycles();
       all.push_back(absent_result("tracer_heights",
-                                  none.empty() ? "no frame lies at the beginning of a cycle" : none, source));
+                                  none.empty() ? "no frame is at the beginning of a cycle" : none, source));
       return;
     }
     Result heights{.name = "tracer_heights",
@@ -454,7 +477,7 @@ class PhaseThresholds : public Observable {
       return;
     }
     Result r{.name = "phase", .text = phase_name(phase), .n = s_b.n, .n_of = s_b.n_of};
-    r.convention = "s_b > sigma/30: leaves the plate; and s_c > sigma: convects";
+    r.convention = "s_b > sigma/30: the bed leaves the plate; s_c > sigma as well: it convects";
     if (phase == BedPhase::convecting && find_result(all, "drift").text == drift_name(Drift::annealed))
       r.convention += "; but annealed: s_c shows the first rearrangement, not steady convection";
     r.source = source;
@@ -464,9 +487,9 @@ class PhaseThresholds : public Observable {
   const AnalysisContext& context_;
   std::size_t n_tracers_;
   std::size_t n_phases_;
-  HeightSums total_;  ///< whole cycles, an even number
-  HeightSums pair_;   ///< whole cycles since then
-  HeightSums cycle_;  ///< the cycle being read
+  HeightSums total_;  ///< an even number of whole cycles
+  HeightSums pair_;   ///< the whole cycles after those
+  HeightSums cycle_;  ///< the current cycle
   std::vector<char> phase_seen_;
   std::int64_t current_cycle_ = -1;
   std::size_t whole_cycles_ = 0;
@@ -518,8 +541,6 @@ double s_b_of(const std::vector<double>& s_k, SbForm form, double rest_height) {
   return std::sqrt(sum / n);
 }
 
-std::unique_ptr<Observable> make_phase_thresholds(const AnalysisContext& context) {
-  return std::make_unique<PhaseThresholds>(context);
-}
+constinit const ObservableEntry phase_thresholds_observable = {kResults, &make_observable<PhaseThresholds>};
 
 }  // namespace twincell

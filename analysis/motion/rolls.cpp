@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kDraws = 999;
 
-/// The loops that have a circulation, and who is beside whom.
+/// The loops that have a circulation, and their adjacency.
 class Loops {
  public:
   Loops(const std::vector<double>& circulation, std::size_t columns, bool periodic)
@@ -46,7 +46,7 @@ class Loops {
     go(k + 1 < columns_ || periodic_, k + 1 < columns_ ? p + 1 : p + 1 - columns_);
   }
 
-  /// psi of each column of `circulation` [n x m].
+  /// Solves for psi [n x m] for each column of `circulation` [n x m].
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& circulation) const {
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t i = 0; i < n(); ++i) {
@@ -59,7 +59,7 @@ class Loops {
     return factors.solve(circulation);
   }
 
-  /// Connected regions in which `in` holds.
+  /// Connected regions of loops for which `in` is true.
   template <class In>
   [[nodiscard]] std::vector<std::vector<std::size_t>> regions(const In& in) const {
     std::vector<std::vector<std::size_t>> found;
@@ -83,18 +83,19 @@ class Loops {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::size_t columns_, rows_;
   bool periodic_;
-  std::vector<std::size_t> number_;  ///< of each place; kNone: no loop there
+  std::vector<std::size_t> number_;  ///< index of the loop at each place; kNone: no loop
   std::vector<std::size_t> place_;
 };
 
-/// mean/(standard error) over blocks, for blocks whose values are psi [n x blocks] times `sign`.
+/// t = mean/(standard error) over blocks, for blocks with the values psi [n x blocks] times `sign`.
 Eigen::VectorXd t_values(const Eigen::MatrixXd& psi, const Eigen::VectorXd& squares,
                          const Eigen::VectorXd& sign) {
   const auto blocks = static_cast<double>(psi.cols());
   const Eigen::VectorXd mean = psi * sign / blocks;
   const Eigen::ArrayXd variance =
       (squares.array() - blocks * mean.array().square()).max(0.0) / (blocks - 1) / blocks;
-  // Equal in every block up to rounding: as certain as numbers are.
+  // Values that are equal in every block up to rounding get a finite t: the variance has a floor at the
+  // rounding error.
   return (mean.array() / (variance + 1e-24 * squares.array()).max(std::numeric_limits<double>::min()).sqrt())
       .matrix();
 }
@@ -130,6 +131,7 @@ std::size_t count_rolls(const CirculationBlocks& blocks, double least) {
   const Eigen::VectorXd squares = psi.rowwise().squaredNorm(), mean = psi.rowwise().mean();
   const Eigen::VectorXd t = t_values(psi, squares, Eigen::VectorXd::Ones(count));
 
+  // Threshold T: distribution of the largest |t| under random signs of the blocks.
   std::mt19937_64 generator(1);
   std::vector<double> largest;
   Eigen::VectorXd sign(count);
@@ -142,6 +144,7 @@ std::size_t count_rolls(const CirculationBlocks& blocks, double least) {
       largest[static_cast<std::size_t>(std::ceil((1 - kRollFalseAlarm) * static_cast<double>(kDraws + 1))) -
               1];
 
+  // Regions of one sense that exceed T and are strong enough.
   const double weakest = std::max(least, kSmallestRoll * mean.cwiseAbs().maxCoeff());
   std::size_t rolls = 0;
   for (const double sense : {1.0, -1.0})

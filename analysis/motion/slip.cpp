@@ -10,10 +10,16 @@
 namespace twincell {
 namespace {
 
-constexpr std::size_t kDirections = 36;
-constexpr double kWithin = 15;  ///< degrees about a direction
+constexpr NamedResult kResults[] = {
+    {"p_s", Pooling::probability, true},     {"slips", Pooling::sum, true},
+    {"p_s_j", Pooling::mean, true},          {"slip_directions", Pooling::sum, true},
+    {"slip_oblique", Pooling::mean, true},   {"slip_vertical", Pooling::mean, true},
+    {"slip_horizontal", Pooling::mean, true}};
 
-/// Bonds of one period that moved, by direction.
+constexpr std::size_t kDirections = 36;
+constexpr double kWithin = 15;  ///< maximum angle to a nominal direction, degrees
+
+/// Number of slipped bonds in one period, by direction.
 struct Moved {
   double all = 0, oblique = 0, vertical = 0, horizontal = 0;
 };
@@ -25,12 +31,14 @@ double direction_of(const Vec3& d) {
   return line >= 180 ? 0 : line;
 }
 
+/// Angle between two lines, degrees in [0, 90].
 double between_lines(double a, double b) {
   const double d = std::abs(a - b);
   return std::min(d, 180 - d);
 }
 
-/// 99th percentile of the heights of the beads in `frame`: the surface, without those that fly.
+/// Height of the free surface: 99th percentile of the heights of the beads in `frame`, so that airborne beads
+/// do not raise it.
 double free_surface(const Frame& frame) {
   std::vector<double> z;
   for (std::size_t i = 0; i < frame.position.size(); ++i)
@@ -59,9 +67,8 @@ class Slip : public Observable {
     const std::string reason = why_none();
     if (!reason.empty()) {
       std::vector<Result> none;
-      for (const char* name :
-           {"p_s", "slips", "p_s_j", "slip_directions", "slip_oblique", "slip_vertical", "slip_horizontal"})
-        none.push_back(absent_result(name, reason, source));
+      for (const NamedResult& result : kResults)
+        none.push_back(absent_result(std::string(result.name), reason, source));
       return none;
     }
     std::vector<Result> all;
@@ -113,7 +120,7 @@ class Slip : public Observable {
     if (slipping > 0) count_directions(end);
   }
 
-  /// Each bond once, though both of its beads may slip.
+  /// Counts the slipped bonds by direction. A bond counts once even if both of its beads slip.
   void count_directions(const Frame& end) {
     Moved now;
     for (std::size_t i = 0; i < slips_now_.size(); ++i) {
@@ -137,16 +144,17 @@ class Slip : public Observable {
   [[nodiscard]] std::string why_none() const {
     if (!context_.info.columns.phase) return "the frames are not locked to the drive's phase";
     if (periods_ == 0)
-      return "slip is counted from the beginning of a cycle to that of the next, and no two consecutive ones "
-             "are there";
+      return "slip is counted between the beginnings of consecutive cycles, and the trajectory does not "
+             "contain two of them";
     if (trials_ == 0)
       return fmt::format(
-          "no eligible bead: none lies {:g} sigma below the free surface with two neighbours in {} periods",
+          "no eligible bead: no bead is {:g} sigma below the free surface with two neighbours in {} periods",
           kSlipDepth, periods_);
     return "";
   }
 
-  /// Beads that slip together are not independent trials. The scatter from period to period says by how much.
+  /// Ratio of the observed variance of p_s to that of independent trials, at least 1, with its description.
+  /// Beads that slip together are not independent; the scatter from period to period measures the effect.
   [[nodiscard]] std::pair<double, std::string> design_effect() const {
     const auto interval = fraction_.interval("periods");
     if (!interval)
@@ -164,8 +172,8 @@ class Slip : public Observable {
 
   void add_probability(std::vector<Result>& all, const std::string& source) const {
     const std::string rule = fmt::format(
-        "at least {} neighbours at its start moved relative to the bead by more than {:g} sigma in one "
-        "period; beads "
+        "at least {} neighbours moved relative to the bead by more than {:g} sigma in one period, neighbours "
+        "at the start of the period; beads "
         "{:g} sigma or more below the 99th percentile of heights; {}",
         kSlipBonds, kSlipDistance, kSlipDepth, neighbour_rule_text(context_));
     Result p_s{
@@ -280,8 +288,6 @@ class Slip : public Observable {
 
 }  // namespace
 
-std::unique_ptr<Observable> make_slip(const AnalysisContext& context) {
-  return std::make_unique<Slip>(context);
-}
+constinit const ObservableEntry slip_observable = {kResults, &make_observable<Slip>};
 
 }  // namespace twincell

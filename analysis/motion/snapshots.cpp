@@ -10,7 +10,7 @@
 namespace twincell {
 namespace {
 
-/// At most `most` of `all`, first and last among them, evenly spread.
+/// At most `most` elements of `all`, evenly spread, with the first and the last.
 std::vector<std::size_t> spread(const std::vector<std::size_t>& all, std::size_t most) {
   if (all.size() <= most) return all;
   if (most < 2) return {all.front()};
@@ -43,7 +43,8 @@ std::vector<std::size_t> representative_frames(const TrajectorySource& trajector
     if (frame.phase == 0) beginnings.push_back(i);
   }
   if (beginnings.size() < 2) return spread(all, most);
-  // The last whole cycle ends where a beginning or the run's end is N_k frames on.
+  // The last cycle is whole if the run contains N_k frames from its beginning on; otherwise the one before is
+  // used.
   const auto per_cycle = static_cast<std::size_t>(std::max(1, trajectory.info().phases_per_cycle));
   const bool last_is_whole = beginnings.back() + per_cycle <= n;
   const std::size_t from = last_is_whole ? beginnings.back() : beginnings[beginnings.size() - 2];

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewestCycles = 8;
-constexpr double kCameToRest = 0.2;
+constexpr double kCameToRest =
+    0.2;  ///< motion of the second half relative to the first, below which it is annealed
 
 std::vector<std::size_t> everyone(const TracerLine& line) {
   std::vector<std::size_t> all(line.n_tracers);
@@ -30,7 +31,7 @@ std::vector<double> spreads(const TracerLine& line, std::size_t first, std::size
   return series;
 }
 
-/// Squared height of one tracer about the line's mean, row by row, where there is one.
+/// Squared height of one tracer about the line's mean, for each row that contains the tracer.
 std::vector<double> squares_about_line(const TracerLine& line, std::size_t first, std::size_t last,
                                        std::size_t tracer) {
   std::vector<double> series;
@@ -48,6 +49,7 @@ std::vector<double> squares_about_line(const TracerLine& line, std::size_t first
   return series;
 }
 
+/// Least-squares slope per entry; NaN for fewer than 2 entries.
 double slope_of(const std::vector<double>& series) {
   const auto n = static_cast<double>(series.size());
   double xx = 0, xy = 0;
@@ -161,7 +163,7 @@ DriftVerdict judge_drift(const TracerLine& line, double noise) {
     because = "s_j^2 does not grow over the second half";
   }
   verdict.reason = fmt::format(
-      "tracers moved {:.3g} sigma against each other in cycles {} to {} and {:.3g} sigma in {} to {}; {}",
+      "tracers moved {:.3g} sigma relative to each other in cycles {} to {} and {:.3g} sigma in {} to {}; {}",
       early, line.cycle.front(), line.cycle[middle], late, line.cycle[middle], line.cycle[end], because);
   return verdict;
 }

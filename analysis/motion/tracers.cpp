@@ -10,8 +10,8 @@
 namespace twincell {
 namespace {
 
-/// Rows of a lattice are at least 1/2 apart; images scatter by some 0.03. A random bed has less than half a
-/// row in such a band.
+/// Half width of the band that contains a lattice row, sigma. Lattice rows are at least 1/2 apart, and
+/// positions from images scatter by about 0.03. In a random bed such a band contains less than half a row.
 constexpr double kRowTolerance = 0.2;
 
 std::vector<std::size_t> beads_of(const Frame& frame) {
@@ -21,6 +21,7 @@ std::vector<std::size_t> beads_of(const Frame& frame) {
   return beads;
 }
 
+/// Half the sum of the lowest height and the 99th percentile of the heights.
 double mid_height(const Frame& frame, const std::vector<std::size_t>& beads) {
   std::vector<double> z;
   z.reserve(beads.size());
@@ -30,7 +31,7 @@ double mid_height(const Frame& frame, const std::vector<std::size_t>& beads) {
   return (z.front() + top) / 2;
 }
 
-/// The row through the bead nearest to `middle`.
+/// The row of beads through the bead nearest to `middle`.
 std::vector<std::size_t> row_at(const Frame& frame, const std::vector<std::size_t>& beads, double middle) {
   const auto nearest = *std::min_element(beads.begin(), beads.end(), [&](std::size_t a, std::size_t b) {
     return std::abs(frame.position[a].z() - middle) < std::abs(frame.position[b].z() - middle);
@@ -41,7 +42,7 @@ std::vector<std::size_t> row_at(const Frame& frame, const std::vector<std::size_
   return row;
 }
 
-/// For each column of width sigma the bead nearest to `middle`.
+/// In each column of width sigma, the bead nearest to `middle`.
 std::vector<std::size_t> one_per_column(const Frame& frame, const std::vector<std::size_t>& beads,
                                         const Box& box, double middle) {
   const auto columns = static_cast<std::size_t>(std::max(1.0, std::floor(box.size().x())));
@@ -103,7 +104,8 @@ TracerChoice in_band(const TrajectoryInfo& info, const Frame& first, const std::
 
 TracerChoice choose_tracers(const TrajectoryInfo& info, const Frame& first, const TracerWish& wish) {
   if (!wish.ids.empty() && wish.band)
-    throw ConfigError({.file = {}, .key = "tracers"}, "ids and a band are two choices of tracers; state one");
+    throw ConfigError({.file = {}, .key = "tracers"},
+                      "tracers are chosen by ids or by a band; state only one");
   if (!wish.ids.empty()) return of_ids(info, wish.ids);
   if (wish.band) return in_band(info, first, *wish.band);
   TracerChoice choice;

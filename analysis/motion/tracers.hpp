@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The line of tracer beads whose heights tell the phases apart, and the plate under them.
+/// The line of tracer beads whose heights determine the phase of the bed, and the height of the plate.
 
 #include <array>
 #include <cstdint>
@@ -12,33 +12,34 @@
 
 namespace twincell {
 
-/// Slots of the tracers and how they were found.
+/// Slots of the tracers and how they were chosen.
 struct TracerChoice {
   std::vector<std::size_t> slots;
   std::string how;
 };
 
-/// A user's own choice: by id (the bead's slot), or by where the beads begin.
+/// The user's choice of tracers: by id (the bead's slot), or by the initial heights of the beads.
 struct TracerWish {
   std::vector<std::int64_t> ids = {};
   std::optional<std::array<double, 2>> band = {};  ///< heights [low, high] above the plate, sigma
 };
 
-/// The tracers of `wish`; else those the trajectory names (TrajectoryInfo::tracer); otherwise a straight
+/// The tracers of `wish`, else those marked in the trajectory (TrajectoryInfo::tracer), else a straight
 /// horizontal line at mid-height H/2 of the bed in `first` (Fortini & Huang 2015, app. B, "initially at the
-/// centre"): the lattice row nearest to H/2 if a row within 0.2 sigma of one height holds at least 3/4 of the
-/// width's beads (crystal), else for each column of width sigma the bead nearest to H/2. H from the lowest
-/// bead to the 99th percentile, so that one high flyer does not shift it. Ties: the lower slot. \throws
-/// ConfigError for ids that are not beads of the trajectory or are named twice, a band that is empty or holds
-/// no bead, ids and a band together
+/// centre"). In a crystal the line is the lattice row nearest to H/2, if the row within 0.2 sigma of its
+/// height has at least 3/4 of the beads that fit into the width. Otherwise it is, in each column of width
+/// sigma, the bead nearest to H/2. H is measured from the lowest bead to the 99th percentile of the heights,
+/// so that a single airborne bead does not shift it. Ties go to the lower slot.
+/// \throws ConfigError for ids that are not beads of the trajectory or are named twice, for a band that is
+/// empty or contains no bead, and for ids and a band together
 TracerChoice choose_tracers(const TrajectoryInfo& info, const Frame& first, const TracerWish& wish = {});
 
-/// The same choice, made `above` sigma over mid-height, whatever beads are marked: another line by which to
-/// see what the choice of the line is worth. Empty if the frame holds no bead.
+/// The line of tracers at `above` sigma above mid-height, independent of any marked beads. Such lines show
+/// how much a result depends on the choice of the line. Empty if the frame contains no bead.
 TracerChoice line_of_tracers(const TrajectoryInfo& info, const Frame& first, double above);
 
-/// Height of the plate in `frame`, sigma: measured if the trajectory has it, else of the drive at the frame's
-/// phase (0 for a horizontal drive). Absent if neither is known.
+/// Height of the plate in `frame`, sigma: the measured height if the trajectory has it, else that of the
+/// drive at the frame's phase (0 for a horizontal drive). Absent if neither is known.
 std::optional<double> plate_height(const TrajectoryInfo& info, const Frame& frame);
 
 }  // namespace twincell

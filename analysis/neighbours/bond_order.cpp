@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// a_m = (4 pi/13) |Y_6m(pi/2, 0)|^2 for m = 0, 2, 4, 6; odd m vanish in the plane. With Y_lm of the standard
-/// library, which is normalised as in Steinhardt's definition.
+/// a_m = (4 pi/13) |Y_6m(pi/2, 0)|^2 for m = 0, 2, 4, 6. The terms of odd m vanish in the plane. The Y_lm of
+/// the standard library have the same normalisation as Steinhardt's definition.
 const std::array<double, 4>& planar_weights() {
   static const std::array<double, 4> weights = [] {
     std::array<double, 4> a{};
@@ -40,7 +40,7 @@ BondOrder bond_order(const Neighbours& neighbours, const std::vector<double>& we
     for (std::size_t e = neighbours.first[i]; e < neighbours.first[i + 1]; ++e) {
       const double x = neighbours.bond[e].x(), z = neighbours.bond[e].z();
       const double w = weight.empty() ? 1.0 : weight[e];
-      // exp(2 i phi) needs no square root.
+      // exp(2 i phi) follows from x and z without a square root.
       const double norm = x * x + z * z;
       const std::complex<double> e2((x * x - z * z) / norm, 2 * x * z / norm);
       const std::complex<double> e4 = e2 * e2;

@@ -11,8 +11,8 @@ namespace {
 
 using Cell = std::array<std::int64_t, 3>;
 
-/// Cells at least one cutoff wide; a periodic axis is divided evenly, or not at all if fewer than 3 would
-/// fit.
+/// Layout of search cells that are at least one cutoff wide. A periodic axis is divided evenly, or not at all
+/// if fewer than 3 cells fit.
 class CellLayout {
  public:
   CellLayout(const Box& box, double cutoff, const Vec3& lowest) : box_(box) {
@@ -38,16 +38,17 @@ class CellLayout {
     for (std::size_t a = 0; a < 3; ++a) {
       const auto axis = static_cast<Eigen::Index>(a);
       const double last = static_cast<double>(periodic_count_[a] > 0 ? periodic_count_[a] - 1 : kLargest);
-      // Far-away beads share the last cell: that costs time there, never a neighbour.
+      // Distant beads share the last cell: the search there is slower, but no neighbour is missed.
       cell[a] = static_cast<std::int64_t>(
           std::clamp(std::floor((wrapped[axis] - origin_[axis]) / width_[axis]), 0.0, last));
     }
     return cell;
   }
 
-  /// Steps to take along axis a to meet every cell within a cutoff exactly once.
+  /// Number of cells to search on either side along axis a, so that every cell within a cutoff is visited
+  /// once.
   [[nodiscard]] std::int64_t reach(std::size_t a) const { return alone_[a] ? 0 : 1; }
-  /// Says that all beads lie in one layer of cells across axis a, as those of a plane do across y.
+  /// Declares that all beads are in one layer of cells along axis a, as planar beds are along y.
   void one_layer(std::size_t a) { alone_[a] = true; }
   [[nodiscard]] bool periodic(std::size_t a) const { return periodic_count_[a] > 0; }
 
@@ -56,7 +57,7 @@ class CellLayout {
     for (std::size_t a = 0; a < 3; ++a) {
       if (periodic_count_[a] > 0) cell[a] = (cell[a] + periodic_count_[a]) % periodic_count_[a];
       packed = (packed << kBits) |
-               static_cast<std::uint64_t>(cell[a] + 1);  // + 1: a step below cell 0 stays positive
+               static_cast<std::uint64_t>(cell[a] + 1);  // + 1: one step below cell 0 stays non-negative
     }
     return packed;
   }
@@ -94,6 +95,8 @@ Neighbours find_neighbours(const Frame& frame, const Box& box, double cutoff) {
     }
   if (beads.empty()) return result;
 
+  // Sort the beads by cell, so that the beads of a cell are consecutive. Axes with a single layer are not
+  // searched.
   CellLayout layout(box, cutoff, lowest);
   std::vector<Entry> sorted;
   sorted.reserve(beads.size());
@@ -109,6 +112,8 @@ Neighbours find_neighbours(const Frame& frame, const Box& box, double cutoff) {
   std::sort(sorted.begin(), sorted.end(),
             [](const Entry& a, const Entry& b) { return a.key != b.key ? a.key < b.key : a.bead < b.bead; });
 
+  // Search the adjacent cells of each bead, and sort its neighbours so that the order of the cells has no
+  // effect.
   const double cutoff2 = cutoff * cutoff;
   struct Found {
     std::size_t bead;
@@ -138,7 +143,7 @@ Neighbours find_neighbours(const Frame& frame, const Box& box, double cutoff) {
           return layout.key({home[0] + dx, home[1] + dy, home[2] + dz});
         };
         if (!layout.periodic(2))
-          look(key(-up), key(up));  // keys of one column follow each other
+          look(key(-up), key(up));  // the keys of one column are consecutive
         else
           for (std::int64_t dz = -up; dz <= up; ++dz) look(key(dz), key(dz));
       }

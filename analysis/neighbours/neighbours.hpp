@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Who is near whom: the one neighbour search that observables use.
+/// The neighbour search used by all observables.
 
 #include <cstddef>
 #include <vector>
@@ -9,7 +9,8 @@
 
 namespace twincell {
 
-/// Neighbours of every bead of one frame. Bead i's are entries first[i] .. first[i + 1] - 1.
+/// Neighbours of every bead of one frame. The neighbours of bead i are the entries first[i] .. first[i + 1] -
+/// 1.
 struct Neighbours {
   double cutoff = 0;               ///< sigma
   std::vector<std::size_t> first;  ///< [n_beads + 1]
@@ -24,10 +25,11 @@ struct Neighbours {
   }
 };
 
-/// All pairs of beads present in `frame` whose centres are no farther apart than `cutoff` (<=, so that a tie
-/// does not depend on the order of beads), across periodic walls by the nearest image. Empty slots have no
-/// neighbours. Cells are sorted, not stored as a grid: a bead that flew to z = 1e4 costs nothing. Cost O(N
-/// log N). A period shorter than 2 cutoff sees only the nearest image of each pair. \pre cutoff > 0
+/// Finds all pairs of beads present in `frame` whose centres are at most `cutoff` apart (<=, so that a tie
+/// does not depend on the order of beads). Periodic boundaries use the nearest image. Empty slots have no
+/// neighbours. The cells are sorted instead of being stored as a grid, so that a bead at z = 1e4 costs
+/// nothing extra. Cost O(N log N). If a period is shorter than 2 cutoff, only the nearest image of each pair
+/// is found. \pre cutoff > 0
 Neighbours find_neighbours(const Frame& frame, const Box& box, double cutoff);
 
 }  // namespace twincell

@@ -7,8 +7,8 @@
 namespace twincell {
 namespace {
 
-/// What is left of the bisector of a bond: points bond/2 + s m, low <= s <= high, with m the bond turned by
-/// 90 degrees to its left.
+/// Remaining segment of the bisector of a bond: points bond/2 + s m, low <= s <= high, with m the bond
+/// rotated by 90 degrees to its left.
 struct Segment {
   double low, high;
   bool low_on_rim = true, high_on_rim = true;
@@ -16,18 +16,20 @@ struct Segment {
   [[nodiscard]] double length(double bond) const { return std::max(0.0, high - low) * bond; }
 };
 
+/// Clips the bisector of bond `entry` of `bead` to the shared edge. An empty segment if there is no shared
+/// edge.
 Segment shared_edge(const Neighbours& near, std::size_t bead, std::size_t entry, double radius) {
   const double bx = near.bond[entry].x(), bz = near.bond[entry].z();
   const double d2 = bx * bx + bz * bz;
   const double rim2 = radius * radius / d2 - 0.25;
-  // Two beads in one place have no bisector; beads too far apart, none within reach.
+  // Coincident beads have no bisector. Beads too far apart have no point of it within `radius`.
   if (d2 == 0 || rim2 <= 0) return {0, 0};
   const double rim = std::sqrt(rim2);
   Segment segment{-rim, rim};
   for (std::size_t k = near.first[bead]; k < near.first[bead + 1]; ++k) {
     if (k == entry) continue;
     const double kx = near.bond[k].x(), kz = near.bond[k].z();
-    // Nearer to the bead than to k:  p . k <= k^2/2  with  p = b/2 + s m,  m = (-bz, bx).
+    // Points nearer to the bead than to k satisfy  p . k <= k^2/2  with  p = b/2 + s m,  m = (-bz, bx).
     const double slope = kz * bx - kx * bz;
     const double room = 0.5 * (kx * kx + kz * kz - kx * bx - kz * bz);
     if (slope > 0) {
@@ -41,7 +43,7 @@ Segment shared_edge(const Neighbours& near, std::size_t bead, std::size_t entry,
         segment.low_on_rim = false;
       }
     } else if (room < 0) {
-      return {0, 0};  // k lies between the two
+      return {0, 0};  // k is between the two beads
     }
     if (segment.low >= segment.high) return {0, 0};
   }
@@ -73,7 +75,8 @@ VoronoiCells voronoi_cells(const Frame& frame, const Box& box, double radius) {
         edges[e] = {segment.length(std::hypot(near.bond[e].x(), near.bond[e].z())), segment.high_on_rim,
                     segment.low_on_rim};
       } else {
-        // Each pair is computed once, so that it cannot be one bead's neighbour and not the other's.
+        // The edge of each pair is computed once, so that the neighbour relation is symmetric despite
+        // rounding.
         const auto begin = near.index.begin() + static_cast<std::ptrdiff_t>(near.first[j]);
         const auto end = near.index.begin() + static_cast<std::ptrdiff_t>(near.first[j + 1]);
         const Edge& twin =

@@ -1,16 +1,19 @@
 #pragma once
 /// \file
-/// What an observable is and what it gives.
+/// Observables and their results.
 ///
-/// To add one: NAME.hpp and NAME.cpp with a make_NAME in a room of analysis/, one row in the list of
-/// observables.cpp, a test. Observables see frames and neighbours, never each other.
+/// To add an observable, write NAME.hpp and NAME.cpp, which define NAME_observable, in a room of analysis/,
+/// add its word to the list in observables.cpp, and write a test. Observables use frames and neighbours,
+/// never each other.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/neighbours/bond_order.hpp"
@@ -22,104 +25,108 @@
 
 namespace twincell {
 
-/// One measured quantity, or the reason why there is none.
+/// One measured quantity, or the reason why it is absent.
 struct Result {
   std::string name = {};
-  std::vector<double> values = {};      ///< row-major; one for a scalar; NaN where an element has no value
+  std::vector<double> values = {};  ///< row-major; one value for a scalar; NaN where an element has no value
   std::vector<std::size_t> shape = {};  ///< empty for a scalar
-  std::string text = {};                ///< value of a result that is a word (phase)
+  std::string text = {};                ///< value of a result that is a word, such as phase
   std::string unit = {};                ///< "sigma", "m g sigma", "1"
-  std::size_t n = 0;                    ///< how many independent samples entered
-  std::string n_of = {};                ///< samples of what: "cycles", "frames"
+  std::size_t n = 0;                    ///< number of samples used
+  std::string n_of = {};                ///< kind of the samples: "cycles", "frames"
   std::optional<Interval> interval = {};
   std::string no_interval = {};      ///< why a value has no interval; empty if it has one
-  std::string convention = {};       ///< choices that the definition leaves open, as made here
-  std::string source = {};           ///< equation
-  std::string absent = {};           ///< why there is no value; empty if there is one
-  std::vector<double> of_runs = {};  ///< of a pooled scalar (pooling.hpp): the value of each run
+  std::string convention = {};       ///< choices made here that the definition leaves open
+  std::string source = {};           ///< paper and equation
+  std::string absent = {};           ///< why there is no value; empty if there is a value
+  std::vector<double> of_runs = {};  ///< for a pooled scalar (pooling.hpp): the value of each run
 
   [[nodiscard]] bool present() const { return absent.empty(); }
   /// The scalar value; NaN if absent.
   [[nodiscard]] double value() const;
 };
 
-/// A result without a value.
+/// A result without a value, with the reason.
 Result absent_result(const std::string& name, const std::string& reason, const std::string& source);
 
-/// `r` with the mean of `series`, its interval and its count; absent for that reason if the series is empty.
+/// `r` with the mean of `series`, its interval and its count; absent with the reason `why_absent` if the
+/// series is empty.
 Result mean_of(const BlockAverage& series, Result r, const std::string& why_absent);
-/// `r` with these values as an array of one axis and the count of those that are numbers; absent if none is.
+/// `r` with `values` as a one-dimensional array and the count of finite values; absent with the reason
+/// `why_absent` if no value is finite.
 Result array_of(const std::vector<double>& values, Result r, const std::string& why_absent);
 
-/// Which of the readings of eq. B4 (s_b_of in phase_thresholds.hpp).
+/// Readings of eq. B4 (s_b_of in phase_thresholds.hpp).
 enum class SbForm { variance, about_rest, as_printed };
-/// The form of that name. \throws ConfigError for another
+/// The form with this name. \throws ConfigError for an unknown name
 SbForm s_b_named(const std::string& name);
 
-/// Whose bonds make the order of a bead.
+/// Definition of the neighbours that enter a bead's bond order.
 enum class NeighbourRule {
   cutoff,    ///< centres within AnalysisOptions::neighbour_cutoff
   delaunay,  ///< beads whose Voronoi cells share an edge (voronoi.hpp)
   voronoi,   ///< the same, each bond weighted by the length of that edge
 };
-/// The rule of that name. \throws ConfigError for another
+/// The rule with this name. \throws ConfigError for an unknown name
 NeighbourRule neighbour_rule_named(const std::string& name);
 
-/// Choices for one analysis.
+/// Options of one analysis.
 struct AnalysisOptions {
-  std::int64_t discard_cycles = 0;         ///< cycles left out at the beginning
-  std::int64_t cycles = 0;                 ///< N_f: cycles used after those; 0: all. s_c depends on it
+  std::int64_t discard_cycles = 0;  ///< number of cycles left out at the beginning
+  std::int64_t cycles = 0;          ///< N_f: number of cycles used after those; 0: all. s_c depends on it
   std::vector<std::int64_t> tracers = {};  ///< ids of the tracers; empty: as marked or chosen (tracers.hpp)
-  std::optional<std::array<double, 2>> tracer_band = {};  ///< or all beads that begin at heights in [low,
-                                                          ///< high] above the plate, sigma
+  /// Instead of `tracers`: all beads whose initial heights above the plate are in [low, high], sigma.
+  std::optional<std::array<double, 2>> tracer_band = {};
   SbForm s_b = SbForm::variance;
   NeighbourRule neighbours = NeighbourRule::cutoff;
   std::optional<double> neighbour_cutoff;  ///< sigma; default 1.2, for experiments 1.3
-  double cell_radius = kCellRadius;        ///< sigma; size of a Voronoi cell (voronoi.hpp)
+  double cell_radius = kCellRadius;        ///< sigma; radius of a Voronoi cell (voronoi.hpp)
   double field_cell = 2;                   ///< sigma; side of the cells in which displacements are averaged
-  std::optional<double> rest_height;       ///< sigma; centre of mass of the bed at rest, above the plate
-  std::vector<std::string> only;           ///< names of results wanted; empty: all
+  std::optional<double> rest_height;  ///< sigma; height of the resting bed's centre of mass above the plate
+  std::vector<std::string> only;      ///< names of the requested results; empty: all
 
-  /// Whether the result of that name is wanted.
+  /// Whether the result `name` is requested.
   [[nodiscard]] bool wants(const std::string& name) const;
 };
 
-/// The cutoff of these options for this trajectory, sigma: touching beads are at 1, the next shell of a
-/// square lattice at 1.414; 1.2 lies between, and 1.3 leaves room for the noise of positions from images
-/// (0.03 sigma).
+/// Neighbour cutoff for this trajectory, sigma: the cutoff of the options, else 1.3 for experiments and 1.2
+/// for simulations. Touching beads are 1 apart, and the next shell of a square lattice is at 1.414. The value
+/// 1.2 is between the two; 1.3 leaves room for the noise of positions from images (0.03 sigma).
 double neighbour_cutoff(const TrajectoryInfo& info, const AnalysisOptions& options);
 
-/// What observables may know before the first frame.
+/// Data that are available to observables before the first frame.
 struct AnalysisContext {
   const TrajectoryInfo& info;
   const AnalysisOptions& options;
   double cutoff;                     ///< neighbour cutoff, sigma
   std::vector<std::size_t> tracers;  ///< slots
-  std::string tracer_choice;         ///< how they were chosen
-  std::string no_tracers;            ///< why there are none, if so
-  /// Mean height of the tracers above the plate when they were chosen; NaN unknown.
+  std::string tracer_choice;         ///< how the tracers were chosen
+  std::string no_tracers;            ///< why there are no tracers; empty if there are any
+  /// Mean height of the tracers above the plate in the frame in which they were chosen, sigma; NaN if
+  /// unknown.
   double tracer_rest_height;
-  /// The same of each tracer, beside `tracers`; NaN where it is not known.
+  /// [tracers] the same height for each tracer; NaN if unknown.
   std::vector<double> tracer_rest_heights = {};
-  /// Height of the bed's centre of mass above the plate at rest, sigma: as the options say, else of the first
-  /// frame at phase 0 if the bed rests on the plate there (resting_height in centre_of_mass.hpp).
+  /// Height of the resting bed's centre of mass above the plate, sigma: the value in the options, else that
+  /// of the first frame at phase 0 if the bed rests on the plate in it (resting_height in
+  /// centre_of_mass.hpp).
   std::optional<double> rest_height = {};
-  std::string no_rest_height = {};  ///< why there is none, if so
+  std::string no_rest_height = {};  ///< why there is no rest height; empty if there is one
 };
 
-/// How neighbours were found, in words.
+/// The neighbour rule of the analysis, in words.
 std::string neighbour_rule_text(const AnalysisContext& context);
 
-/// One frame with what is computed at most once for all observables.
+/// One frame with derived data that are computed at most once and shared by all observables.
 class FrameView {
  public:
   FrameView(const Frame& frame, const AnalysisContext& context) : frame_(frame), context_(context) {}
   [[nodiscard]] const Frame& frame() const { return frame_; }
-  /// By the rule of the analysis.
+  /// Neighbours by the rule of the analysis.
   [[nodiscard]] const Neighbours& neighbours() const;
-  /// Of those neighbours.
+  /// Bond order from those neighbours.
   [[nodiscard]] const BondOrder& order() const;
-  /// The Voronoi cells, whatever the rule. \pre the trajectory is planar
+  /// The Voronoi cells, independent of the rule. \pre the trajectory is planar
   [[nodiscard]] const VoronoiCells& cells() const;
 
  private:
@@ -130,7 +137,7 @@ class FrameView {
   mutable std::optional<VoronoiCells> cells_;
 };
 
-/// An accumulator: sees each frame once, in order.
+/// An accumulator that receives each frame once, in order.
 class Observable {
  public:
   virtual ~Observable() = default;
@@ -138,17 +145,50 @@ class Observable {
   [[nodiscard]] virtual std::vector<Result> results() const = 0;
 };
 
-/// All results of a trajectory in one pass; memory does not grow with the number of frames (series per cycle
-/// excepted). \throws ConfigError for an unknown name in `only`, a negative discard or number of cycles, a
-/// cutoff that is not positive, tracers that are not there; InputError for a
-///         trajectory without frames
+/// How the values of several runs of one setting are combined (runs/pooling.hpp).
+enum class Pooling {
+  mean,
+  probability,       ///< the mean; its interval lies in [0, 1] and is binomial if no run has an event
+  root_mean_square,  ///< square root of the mean square: displacements
+  sum,               ///< counts
+  angle,             ///< circular mean with the period of a hexagonal lattice, 60 degrees
+  per_bead,          ///< not pooled: an element belongs to a bead, and the beads of two runs differ
+};
+
+/// A result that an observable gives.
+struct NamedResult {
+  std::string_view name;
+  Pooling pooling = Pooling::mean;
+  bool may_repeat =
+      false;  ///< two different runs may well give the same value: a count, or a camera constant
+};
+
+/// One observable: its results and its factory. NAME.cpp defines NAME_observable, the list in observables.cpp
+/// names it.
+struct ObservableEntry {
+  std::span<const NamedResult> results;
+  std::unique_ptr<Observable> (*make)(const AnalysisContext&);
+};
+/// The factory of an observable that is constructed from the context.
+template <class O>
+std::unique_ptr<Observable> make_observable(const AnalysisContext& context) {
+  return std::make_unique<O>(context);
+}
+
+/// The entry of the result of that name; without a known name, a result that is pooled by its mean.
+NamedResult named_result(std::string_view name);
+
+/// Computes all results of a trajectory in one pass. Except for series with one value per cycle, memory does
+/// not grow with the number of frames.
+/// \throws ConfigError for an unknown name in `only`, a negative number of discarded or used cycles, a cutoff
+/// that is not positive, or tracers that do not exist; InputError for a trajectory without frames
 std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOptions& options = {},
                             Progress& progress = Progress::none());
 
-/// Names that `analyze` can give, in order.
+/// Names of all results that `analyze` can return, in order.
 std::vector<std::string> result_names();
 
-/// The result called `name`. \pre it is there
+/// The result called `name`. \pre it exists
 const Result& find_result(const std::vector<Result>& results, const std::string& name);
 /// The result called `name`, or null.
 const Result* seek_result(const std::vector<Result>& results, const std::string& name);

@@ -63,7 +63,7 @@ nlohmann::json to_json(const Result& r) {
   return j;
 }
 
-/// HDF5 attributes are ASCII here; the few other characters our sentences may hold become '?'.
+/// Text for an HDF5 attribute, which is ASCII: every other byte becomes '?'.
 std::string ascii(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c >= 128; }, '?');
@@ -150,7 +150,7 @@ std::string results_text(const std::vector<Result>& results) {
     text += fmt::format("{:<{}}  {:<{}}  {:<{}}  {:<9}  {} {}\n", r.name, name_width, value_text(r),
                         value_width, interval_text(r), interval_width, r.unit, r.n, r.n_of);
   }
-  text += "\nHow each was made\n";
+  text += "\nHow each result is computed\n";
   for (const Result& r : results) {
     if (!r.present()) continue;
     text += fmt::format("  {}: {}", r.name, r.convention);

@@ -10,21 +10,26 @@
 
 namespace twincell {
 
-/// A table for a reader: value, interval, unit, count of each scalar, then how each was made. Arrays are
-/// named with their range.
+/// Text table: value, interval, unit and count of each scalar, then how each result is computed. For an array
+/// the table gives its shape and range.
 std::string results_text(const std::vector<Result>& results);
 
-/// {"NAME": {"value": number | text | array, "shape": […], "unit", "n", "n_of", "interval": {"low", "high",
-/// "level", "method"} | "no_interval": reason, "convention", "source"} | {"absent": reason, "source"}}. NaN
-/// becomes null. Pooled scalars (pooling.hpp) have "runs" as well, the value of each run. Text of one JSON
-/// object.
+/// Results as the text of one JSON object with one member per result:
+///
+///     {"NAME": {"value": number | text | array, "shape": […], "unit", "n", "n_of",
+///               "interval": {"low", "high", "level", "method"} | "no_interval": reason,
+///               "convention", "source"}
+///            | {"absent": reason, "source"}}
+///
+/// NaN becomes null. Pooled scalars (pooling.hpp) also have "runs", the value of each run.
 std::string results_json(const std::vector<Result>& results);
 
-/// What results_json wrote, in the order of names. \pre `text` is such
+/// Inverse of results_json, in alphabetical order of the names. \pre `text` is the output of results_json
 std::vector<Result> results_from_json(const std::string& text);
 
-/// One group per result below /results: dataset `value` with the attributes of results_json, or attribute
-/// `absent`; text /provenance. Whole or not at all. \throws ConfigError, RunError
+/// Writes an HDF5 file with one group per result below /results, and the text /provenance. A group has the
+/// dataset `value` and the members of results_json as attributes, or the attribute `absent`. The file appears
+/// only when it is complete. \throws ConfigError, RunError
 void write_results(const std::filesystem::path& path, const std::vector<Result>& results,
                    const std::string& provenance_json);
 

@@ -10,10 +10,15 @@
 namespace twincell {
 namespace {
 
+constexpr NamedResult kResults[] = {
+    {"disclinations_5"}, {"disclinations_7"},    {"disclinations_other"},
+    {"dislocations"},    {"free_disclinations"}, {"holes"},
+    {"defect_fraction"}, {"defect_fraction_j"},  {"coordination_beads", Pooling::per_bead}};
+
 constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
 const char* const kSource = "Fortini & Huang 2015, sec. III, after Nelson & Halperin 1979";
 
-/// Largest number of pairs of neighbours (5-fold, 7-fold) without a bead in two, by augmenting paths.
+/// Maximum number of pairs of neighbours (5-fold, 7-fold) with no bead in two pairs, by augmenting paths.
 std::size_t bound_pairs(const Neighbours& neighbours, const std::vector<std::size_t>& coordination) {
   const std::size_t n = coordination.size();
   std::vector<std::size_t> partner(n, kNobody), seen(n, kNobody);
@@ -36,11 +41,12 @@ std::size_t bound_pairs(const Neighbours& neighbours, const std::vector<std::siz
   return pairs;
 }
 
-/// Walks round every face that has a rim: a turn to the left around it is a hole, to the right the outside.
+/// Counts the holes. Traverses every face with an open rim: a counter-clockwise loop encloses a hole, a
+/// clockwise loop borders the outside.
 std::size_t count_holes(const VoronoiCells& cells) {
   const Neighbours& graph = cells.neighbours;
   const auto direction = [&](std::size_t e) { return std::atan2(graph.bond[e].z(), graph.bond[e].x()); };
-  // The next side of the face to the left of i -> j: at j, the bond that follows j -> i clockwise.
+  // The next side of the face to the left of i -> j is the bond of j that follows j -> i clockwise.
   const auto next = [&](std::size_t i, std::size_t e) {
     const std::size_t j = graph.index[e];
     std::size_t back = graph.first[j];
@@ -76,7 +82,7 @@ std::size_t count_holes(const VoronoiCells& cells) {
         bead = graph.index[side];
         side = following;
       }
-      // A loop that ends a period away from where it began goes round the cell, not round a hole.
+      // A loop that ends one period away from its start winds around the periodic cell, not around a hole.
       if (area > 0 && at.squaredNorm() < 1e-12) ++holes;
     }
   return holes;
@@ -93,7 +99,7 @@ class DefectsObservable : public Observable {
     if (dimension_ != 2) return;
     const Defects d = find_defects(view.cells());
     double fraction = std::numeric_limits<double>::quiet_NaN();
-    if (d.bulk > 0) {  // with no bead that could be a defect, none is no measurement
+    if (d.bulk > 0) {  // without an enclosed bead, zero defects is not a measurement
       const auto count = [](BlockAverage& series, std::size_t number) {
         series.add(static_cast<double>(number));
       };
@@ -141,13 +147,13 @@ class DefectsObservable : public Observable {
         mean("disclinations_7", seven_, "beads with 7 neighbours"),
         mean("disclinations_other", other_, "beads with neither 5, 6 nor 7 neighbours"),
         mean("dislocations", dislocations_,
-             "neighbouring pairs of a 5- and a 7-fold bead, as many as can be made at once"),
+             "neighbouring pairs of a 5- and a 7-fold bead, maximum number of disjoint pairs"),
         mean("free_disclinations", free_, "5- and 7-fold beads in no such pair"),
         mean("holes", holes_, "holes of the packing that reach farther than a cell's radius from every bead"),
-        mean("defect_fraction", fraction_, "share of the beads that have not 6 neighbours"),
+        mean("defect_fraction", fraction_, "share of the beads that do not have 6 neighbours"),
         array("defect_fraction_j", evolution_, has_cycles_ ? "cycles" : "frames",
-              has_cycles_ ? "share of the beads that have not 6 neighbours at the beginning of each cycle"
-                          : "share of the beads that have not 6 neighbours in each frame"),
+              has_cycles_ ? "share of the beads that do not have 6 neighbours at the beginning of each cycle"
+                          : "share of the beads that do not have 6 neighbours in each frame"),
         array("coordination_beads", last_, "beads", "number of neighbours in the last frame")};
   }
 
@@ -178,8 +184,6 @@ Defects find_defects(const VoronoiCells& cells) {
   return d;
 }
 
-std::unique_ptr<Observable> make_defects(const AnalysisContext& context) {
-  return std::make_unique<DefectsObservable>(context);
-}
+constinit const ObservableEntry defects_observable = {kResults, &make_observable<DefectsObservable>};
 
 }  // namespace twincell

@@ -2,7 +2,6 @@
 /// \file
 /// Defects of the hexagonal lattice: disclinations, dislocations, holes.
 
-#include <memory>
 #include <vector>
 
 #include "analysis/neighbours/voronoi.hpp"
@@ -10,8 +9,8 @@
 
 namespace twincell {
 
-/// The defects of one frame. Only enclosed beads (VoronoiCells) count: at a wall or a free surface a bead has
-/// fewer neighbours without being a defect.
+/// The defects of one frame. Only enclosed beads (VoronoiCells) are counted: at a wall or a free surface a
+/// bead has fewer neighbours without being a defect.
 struct Defects {
   std::vector<std::size_t> coordination;  ///< [n_beads] number of neighbours; 0 for a bead at a surface
   std::size_t bulk = 0;                   ///< enclosed beads
@@ -21,16 +20,26 @@ struct Defects {
   std::size_t holes = 0;         ///< closed loops of surface beads inside the packing
 };
 
-/// Coordination by Voronoi neighbours. Dislocations are as many as can be paired at once (maximum matching),
-/// so that the number does not depend on the order in which pairs are looked for; a disclination without a
-/// partner is free. A hole is a face of the neighbour graph that no circle of the cell's radius covers: a
-/// missing bead of a perfect crystal leaves one, and its six neighbours are then surface, not disclinations.
+/// Finds the defects from the coordination by Voronoi neighbours. The number of dislocations is the maximum
+/// number of simultaneous pairs (maximum matching), so that it does not depend on the order of the search. A
+/// disclination without a partner is free. A hole is a face of the neighbour graph that no circle of the
+/// cell's radius covers. A missing bead of a perfect crystal leaves a hole; its six neighbours are then
+/// surface beads, not disclinations.
 Defects find_defects(const VoronoiCells& cells);
 
-/// Results disclinations_5, disclinations_7, disclinations_other, dislocations, free_disclinations, holes
-/// (mean numbers per frame), defect_fraction (share of enclosed beads that have not 6 neighbours),
-/// defect_fraction_j (the same at the beginning of every cycle), coordination_beads (last frame). Fortini &
-/// Huang 2015, sec. III, "topological defects"; the Delaunay definition is Nelson & Halperin 1979's.
-std::unique_ptr<Observable> make_defects(const AnalysisContext& context);
+/// Defects of the hexagonal lattice. Results:
+///
+/// - disclinations_5, disclinations_7: scalars, mean number per frame of enclosed beads with 5, 7 neighbours
+/// - disclinations_other: scalar, mean number of enclosed beads with fewer than 5 or more than 7 neighbours
+/// - dislocations: scalar, mean number per frame
+/// - free_disclinations: scalar, mean number per frame of 5- and 7-fold beads that are not in a dislocation
+/// - holes: scalar, mean number per frame
+/// - defect_fraction: scalar, share of the enclosed beads that do not have 6 neighbours, mean over frames
+/// - defect_fraction_j: [cycles] the same at the beginning of each cycle ([frames] without phases)
+/// - coordination_beads: [n_beads] number of neighbours in the last frame, NaN for surface beads
+///
+/// Absent in a cell that is not planar. Fortini & Huang 2015, sec. III, "topological defects"; the definition
+/// by the Delaunay triangulation follows Nelson & Halperin 1979.
+extern const ObservableEntry defects_observable;
 
 }  // namespace twincell

@@ -13,9 +13,15 @@
 namespace twincell {
 namespace {
 
+constexpr NamedResult kResults[] = {{"grains"},
+                                    {"largest_grain"},
+                                    {"grain_boundary_fraction"},
+                                    {"grain_boundary_angle"},
+                                    {"grain_beads", Pooling::per_bead}};
+
 const char* const kSource = "Fortini & Huang 2015, sec. III";
 
-/// Groups of beads joined pair by pair.
+/// Disjoint sets of beads (union-find).
 class Groups {
  public:
   explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
@@ -33,7 +39,8 @@ class Groups {
   std::vector<std::size_t> parent_;
 };
 
-/// One layer of the beads without a grain joins its neighbours' grains. False if none could.
+/// Lets one layer of beads without a grain join the grains of their neighbours. Returns false if no bead
+/// joined.
 bool grow(Grains& grains, const VoronoiCells& cells) {
   std::vector<std::pair<std::size_t, std::size_t>> joining;
   for (std::size_t i = 0; i < grains.of_bead.size(); ++i) {
@@ -93,7 +100,8 @@ class GrainsObservable : public Observable {
     const std::string why = dimension_ != 2 ? "the cell is not planar" : "no frame holds a bead";
     const std::string definition = fmt::format(
         "grain: at least {} beads joined by Voronoi neighbours with psi6 >= {} that are turned by at most {} "
-        "degrees, and the beads between grains, which join the one with which they share most; {}",
+        "degrees, and the beads between grains, which join the grain with which they share the "
+        "greatest edge length; {}",
         kGrainBeads, kGrainOrder, kGrainTurn, rule_);
     const auto mean = [&](const char* name, const BlockAverage& series, const char* unit,
                           const std::string& of, const std::string& absent) {
@@ -115,7 +123,8 @@ class GrainsObservable : public Observable {
                      {.name = "grain_beads",
                       .unit = "1",
                       .n_of = "beads",
-                      .convention = "last frame; 0 the largest grain; NaN for a bead in none; " + definition,
+                      .convention = "last frame; 0 for the largest grain; NaN for a bead without a grain; " +
+                                    definition,
                       .source = kSource},
                      dimension_ != 2 ? why : "the last frame has no grain")};
   }
@@ -132,6 +141,7 @@ class GrainsObservable : public Observable {
 Grains find_grains(const BondOrder& order, const VoronoiCells& cells, bool fill) {
   const std::size_t n = order.psi6.size();
   const auto ordered = [&](std::size_t i) { return order.psi6[i] >= kGrainOrder; };  // false for NaN
+  // Groups of ordered neighbours with similar lattice directions.
   Groups groups(n);
   for (std::size_t i = 0; i < n; ++i)
     if (ordered(i))
@@ -143,6 +153,7 @@ Grains find_grains(const BondOrder& order, const VoronoiCells& cells, bool fill)
   for (std::size_t i = 0; i < n; ++i)
     if (ordered(i)) ++members[groups.of(i)];
 
+  // Grains are the groups that are large enough, numbered from the largest to the smallest.
   std::vector<std::size_t> roots;
   for (std::size_t i = 0; i < n; ++i)
     if (members[i] >= kGrainBeads) roots.push_back(i);
@@ -167,8 +178,6 @@ Grains find_grains(const BondOrder& order, const VoronoiCells& cells, bool fill)
   return grains;
 }
 
-std::unique_ptr<Observable> make_grains(const AnalysisContext& context) {
-  return std::make_unique<GrainsObservable>(context);
-}
+constinit const ObservableEntry grains_observable = {kResults, &make_observable<GrainsObservable>};
 
 }  // namespace twincell

@@ -1,8 +1,7 @@
 #pragma once
 /// \file
-/// Grains: connected regions of one lattice direction, and the boundaries between them.
+/// Grains (connected regions of one lattice direction) and the boundaries between them.
 
-#include <memory>
 #include <vector>
 
 #include "analysis/neighbours/bond_order.hpp"
@@ -11,28 +10,36 @@
 
 namespace twincell {
 
-inline constexpr double kGrainOrder = 0.9;     ///< least psi6 of a bead that makes a grain
+inline constexpr double kGrainOrder = 0.9;     ///< minimum psi6 of a bead in the core of a grain
 inline constexpr double kGrainTurn = 5;        ///< degrees; largest misorientation of neighbours in one grain
-inline constexpr std::size_t kGrainBeads = 7;  ///< least number of beads: one with its six neighbours
+inline constexpr std::size_t kGrainBeads = 7;  ///< minimum number of beads: one bead and its six neighbours
 
 /// The grains of one frame.
 struct Grains {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> of_bead;  ///< [n_beads] grain of the bead, kNone
+  std::vector<std::size_t> of_bead;  ///< [n_beads] grain of the bead, or kNone
   std::vector<std::size_t> beads;    ///< [grains] number of beads; descending
   std::vector<double> angle;         ///< [grains] lattice_angle of the sum of its beads' psi_6, degrees
 };
 
-/// Neighbours (beads whose Voronoi cells share an edge) belong to one grain if both have psi6 >= kGrainOrder
-/// and their lattices differ by at most kGrainTurn; groups of fewer than kGrainBeads beads are none. With
-/// `fill`, the beads in between then join the grain with which they share most of their cell's edges, layer
-/// by layer, so that grains meet and a boundary is a line: its disorder has no width of its own.
+/// Finds the grains. Neighbours (beads whose Voronoi cells share an edge) belong to one grain if both have
+/// psi6 >= kGrainOrder and their lattice directions differ by at most kGrainTurn. Groups of fewer than
+/// kGrainBeads beads are not grains. With `fill`, the remaining beads then join, layer by layer, the grain
+/// with which they share the greatest total edge length. Grains then touch, and a boundary is a line without
+/// a disordered layer between the grains.
 Grains find_grains(const BondOrder& order, const VoronoiCells& cells, bool fill = true);
 
-/// Results grains (number per frame), largest_grain (its share of the beads), grain_boundary_fraction (share
-/// of the beads with a neighbour in another grain), grain_boundary_angle (misorientation of the two grains
-/// there, degrees, mean over pairs of neighbours), grain_beads (grain of each bead in the last frame, 0 the
-/// largest). Orientation by the neighbour rule of the analysis. Fortini & Huang 2015, sec. III.
-std::unique_ptr<Observable> make_grains(const AnalysisContext& context);
+/// Grains of the packing. Results:
+///
+/// - grains: scalar, number of grains, mean over frames
+/// - largest_grain: scalar, share of the beads in the largest grain, mean over frames
+/// - grain_boundary_fraction: scalar, share of the beads with a neighbour in another grain, mean over frames
+/// - grain_boundary_angle: scalar, misorientation of two grains at their boundary, degrees, mean over pairs
+///   of neighbours and over frames
+/// - grain_beads: [n_beads] grain of each bead in the last frame: 0 the largest grain, NaN without grain
+///
+/// Bond order uses the neighbour rule of the analysis, adjacency always uses Voronoi neighbours. Absent in a
+/// cell that is not planar. Fortini & Huang 2015, sec. III.
+extern const ObservableEntry grains_observable;
 
 }  // namespace twincell

@@ -5,6 +5,15 @@
 namespace twincell {
 namespace {
 
+constexpr NamedResult kResults[] = {{"q6"},
+                                    {"psi6"},
+                                    {"psi4"},
+                                    {"hexagonal_fraction"},
+                                    {"square_fraction"},
+                                    {"q6_beads", Pooling::per_bead},
+                                    {"psi6_beads", Pooling::per_bead},
+                                    {"psi4_beads", Pooling::per_bead}};
+
 const char* const kSource = "Steinhardt et al. 1983 as used in Fortini & Huang 2015, sec. III";
 
 class BondOrderObservable : public Observable {
@@ -86,8 +95,6 @@ class BondOrderObservable : public Observable {
 
 }  // namespace
 
-std::unique_ptr<Observable> make_bond_order(const AnalysisContext& context) {
-  return std::make_unique<BondOrderObservable>(context);
-}
+constinit const ObservableEntry bond_order_observable = {kResults, &make_observable<BondOrderObservable>};
 
 }  // namespace twincell

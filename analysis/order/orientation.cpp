@@ -9,12 +9,18 @@
 namespace twincell {
 namespace {
 
+constexpr NamedResult kResults[] = {{"ordered_fraction"},
+                                    {"orientation", Pooling::angle},
+                                    {"orientation_a"},
+                                    {"orientation_b"},
+                                    {"orientation_beads", Pooling::per_bead}};
+
 const char* const kSource = "Fortini & Huang 2015, Fig. 2";
 
-/// 60 degrees bring a lattice back to itself.
+/// Rotation that maps a hexagonal lattice onto itself, degrees.
 constexpr double kTurn = 60;
 
-/// A lattice turned by exactly the width is near, whatever rounding says.
+/// The tolerance includes a lattice rotated by exactly the width despite rounding.
 bool within_width(double angle, double other) {
   return misorientation(angle, other) <= kOrientationWidth + 1e-9;
 }
@@ -45,8 +51,8 @@ class Orientation : public Observable {
     };
     if (bulk > 0) ordered_.add(share(bulk_ordered, bulk));
     if (ordered == 0) return;
-    // Frames of a lattice near 45 degrees, which is -15, must not cancel each other: each angle is taken on
-    // the side of the first.
+    // Near 45 degrees, which equals -15, the angles of successive frames may jump by 60 degrees, and their
+    // mean would be wrong. Each angle is therefore unwrapped to the value nearest the first.
     const double angle = lattice_angle(sum.real(), sum.imag());
     if (angle_.n() == 0) first_ = angle;
     angle_.add(first_ + std::remainder(angle - first_, kTurn));
@@ -71,12 +77,13 @@ class Orientation : public Observable {
         "share of beads with psi6 > {} whose lattice is within {} degrees of ", kOrdered, kOrientationWidth);
     return {
         mean("ordered_fraction", ordered_, "1",
-             fmt::format("share of beads with psi6 > {} among those that are no surface", kOrdered),
+             fmt::format("share of beads with psi6 > {} among those not at a surface", kOrdered),
              dimension_ != 2 ? planar : "every bead is at a surface"),
         back(mean(
             "orientation", angle_, "degrees",
-            fmt::format("arg of the sum of psi_6 over beads with |psi_6| > {}, over 6; -15 to 45: A 0, B 30",
-                        kOrdered),
+            fmt::format(
+                "arg of the sum of psi_6 over beads with |psi_6| > {}, divided by 6; -15 to 45: A 0, B 30",
+                kOrdered),
             none)),
         mean("orientation_a", a_, "1", near + "0", none), mean("orientation_b", b_, "1", near + "30", none),
         array_of(
@@ -90,7 +97,7 @@ class Orientation : public Observable {
   }
 
  private:
-  /// A mean angle brought back to -15 … 45, its interval with it.
+  /// Maps a mean angle, and its interval with it, back to the range -15 … 45.
   static Result back(Result angle) {
     if (!angle.present()) return angle;
     const double turns = kTurn * std::floor((angle.value() + kTurn / 4) / kTurn);
@@ -111,8 +118,6 @@ class Orientation : public Observable {
 
 }  // namespace
 
-std::unique_ptr<Observable> make_orientation(const AnalysisContext& context) {
-  return std::make_unique<Orientation>(context);
-}
+constinit const ObservableEntry orientation_observable = {kResults, &make_observable<Orientation>};
 
 }  // namespace twincell

@@ -1,23 +1,26 @@
 #pragma once
 /// \file
-/// How the lattice lies in the cell: orientation A, B, or between.
-
-#include <memory>
+/// Orientation of the lattice in the cell: A, B, or between.
 
 #include "analysis/observable/observable.hpp"
 
 namespace twincell {
 
-/// A bead is ordered if its psi6 is larger (Fortini & Huang 2015, Fig. 1: "hexagonally ordered").
+/// A bead is ordered if its psi6 is larger than this (Fortini & Huang 2015, Fig. 1: "hexagonally ordered").
 inline constexpr double kOrdered = 0.9;
-/// A bead has orientation A or B if its lattice_angle is no farther than this from 0 or 30 degrees. Of
-/// lattices lying anyhow a third is A, a third B, a third neither.
+/// A bead has orientation A or B if its lattice_angle is within this many degrees of 0 or 30. For random
+/// lattice directions one third is A, one third B, and one third neither.
 inline constexpr double kOrientationWidth = 10;
 
-/// Results ordered_fraction (share of enclosed beads with psi6 > kOrdered), orientation (lattice_angle of the
-/// sum of the ordered beads' psi_6 exp(i arg), degrees, mean over frames), orientation_a and orientation_b
-/// (shares of the ordered beads), orientation_beads (lattice_angle of each bead in the last frame). Fortini &
-/// Huang 2015, Fig. 2: A has close-packed rows along the floor (0 degrees), B along the side walls (30).
-std::unique_ptr<Observable> make_orientation(const AnalysisContext& context);
+/// Orientation of the lattice with the neighbour rule of the analysis. Results:
+///
+/// - ordered_fraction: scalar, share of the enclosed beads with psi6 > kOrdered, mean over frames
+/// - orientation: scalar, lattice_angle of the summed complex psi_6 of the ordered beads, degrees, frame mean
+/// - orientation_a, orientation_b: scalars, shares of the ordered beads with orientation A and B, frame mean
+/// - orientation_beads: [n_beads] lattice_angle of each bead in the last frame, degrees
+///
+/// Orientation A has close-packed rows along the floor (0 degrees), B along the side walls (30 degrees):
+/// Fortini & Huang 2015, Fig. 2. Absent in a cell that is not planar.
+extern const ObservableEntry orientation_observable;
 
 }  // namespace twincell

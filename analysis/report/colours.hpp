@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Colours of all figures, of Okabe and Ito's palette: told apart by readers with any colour vision. Every
-/// colour has a shape of its own as well.
+/// Colours of all figures, from the palette of Okabe and Ito, which readers with any colour vision can
+/// distinguish. Every colour is also paired with its own symbol shape.
 
 #include <array>
 #include <string>
@@ -21,11 +21,11 @@ inline constexpr const char* kSand = "#E8E0C8";
 inline constexpr const char* kPale = "#EEEEEE";
 inline constexpr const char* kWhite = "#FFFFFF";
 
-/// For as many curves as there are, one after the other.
+/// Colours of successive curves.
 inline constexpr std::array<const char*, 7> kCurves = {kBlue,   kVermilion, kGreen, kPurple,
                                                        kOrange, kSky,       kBlack};
 
-/// The palette as variables of gnuplot, which stand at the head of every script: `lc rgb blue`.
+/// The palette as gnuplot variables for the head of every script, for use as in `lc rgb blue`.
 inline std::string for_gnuplot() {
   std::string text;
   for (const auto& [name, colour] :

@@ -42,7 +42,7 @@ const char* phase_colour(BedPhase phase) {
   return kGrey;
 }
 
-/// gnuplot point types: circle, square, triangle, star; open for the experiment, filled for the simulation.
+/// gnuplot point type: circle, square, triangle, star; open for the experiment, filled for the simulation.
 int phase_point(BedPhase phase, Side side) {
   const int filled = side == Side::simulation ? 1 : 0;
   switch (phase) {
@@ -58,7 +58,7 @@ int phase_point(BedPhase phase, Side side) {
   return 2 + filled;
 }
 
-/// From dark blue to yellow, equal steps in lightness (viridis): for an ordered set of curves.
+/// Colour of curve i of n in an ordered set: viridis, from dark blue to yellow in equal steps of lightness.
 std::string ordered_colour(std::size_t i, std::size_t n) {
   static constexpr std::array<std::array<double, 3>, 5> stops = {
       {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {222, 195, 30}}};
@@ -71,7 +71,7 @@ std::string ordered_colour(std::size_t i, std::size_t n) {
   return fmt::format("#{:02X}{:02X}{:02X}", mix(0), mix(1), mix(2));
 }
 
-/// Commands all figures begin with.
+/// Commands at the beginning of all figures.
 const char* kStyle =
     "set encoding utf8\n"
     "set border lw 1 lc rgb '#444444'\n"
@@ -105,7 +105,7 @@ struct Range {
   }
 };
 
-/// Distance of tics that puts 4 to 10 of them on a range: 1, 2 or 5 times a power of ten.
+/// Distance of tics that gives 4 to 10 tics on the range: 1, 2 or 5 times a power of ten.
 double tic_step(const Range& range) {
   const double rough = std::max(1e-6, (range.high - range.low) / 8);
   const double decade = std::pow(10, std::floor(std::log10(rough)));
@@ -118,7 +118,8 @@ Range gamma_range(const std::vector<Run>& runs) {
   return range.padded(0.08, 0.1);
 }
 
-/// Blocks of one phase and side each, `point(run)` one line; returns the plot clauses that draw them.
+/// Appends to `data` one block for each phase and side, with the line `point(run)` for each run. Returns the
+/// plot clauses that draw the blocks.
 template <class Point>
 std::string phase_blocks(const std::vector<Run>& runs, const std::string& name, std::string& data,
                          const Point& point) {
@@ -156,8 +157,8 @@ std::string gamma_colour(const std::vector<double>& gammas, double gamma) {
   return ordered_colour(i, gammas.size());
 }
 
-/// A panel per side, one curve per run, colours in order of Gamma. `points(run)` gives the block of one run
-/// ("" if absent).
+/// One panel per side with one curve per run, coloured in order of Gamma. `points(run)` returns the data
+/// block of a run ("" if absent).
 template <class Points>
 std::string curve_panels(const std::vector<Run>& runs, const std::string& name, std::string& data,
                          const std::string& extra_clause, const Points& points) {
@@ -169,7 +170,7 @@ std::string curve_panels(const std::vector<Run>& runs, const std::string& name, 
     if (!extra_clause.empty()) clauses.push_back(extra_clause);
     bool any = false;
     for (const double gamma : gammas) {
-      bool named = false;  // runs of one Gamma share a colour and one entry in the key
+      bool named = false;  // runs with the same Gamma share a colour and one entry in the key
       for (const Run& run : runs) {
         if (run.side != side || gamma_colour(gammas, run.gamma) != gamma_colour(gammas, gamma)) continue;
         const std::string block = points(run);
@@ -202,7 +203,8 @@ constexpr std::array<StructureStyle, 4> kStructures = {{{Structure::hexagonal, k
                                                         {Structure::other, kSand, "other"},
                                                         {Structure::undefined, kWhite, "under 2 bonds"}}};
 
-/// Rows: first, last; columns: experiment, simulation. With one side only: one row, first and last.
+/// Panels with the rows first and last, and the columns experiment and simulation. With one side only, one
+/// row with first and last.
 std::vector<BeadPanel> snapshot_panels(const Run* experiment, const Run* simulation) {
   std::vector<BeadPanel> panels;
   for (const bool last : {false, true})
@@ -226,7 +228,7 @@ void for_each_bead(const BeadPanel& p, const Visit& visit) {
   }
 }
 
-/// Where panels lie on the sheet, in pixels at 100 %.
+/// Layout of the panels on the sheet, in pixels at 100 %.
 struct SnapshotSheet {
   Range x, z;  ///< common to all panels, z above the plate
   std::size_t columns, rows;
@@ -243,7 +245,8 @@ struct SnapshotSheet {
       for_each_bead(p,
                     [&](double, double height, double radius, std::size_t) { z.add(height + radius + 0.5); });
     }
-    z.high = std::min(z.high, 3 * (x.high - x.low));  // one high flyer shall not shrink the bed to a strip
+    z.high =
+        std::min(z.high, 3 * (x.high - x.low));  // one bead thrown high must not shrink the bed to a strip
     scale = (kWidth - kMargin * static_cast<double>(columns + 1)) / static_cast<double>(columns) /
             (x.high - x.low);
   }
@@ -261,7 +264,7 @@ struct SnapshotSheet {
   }
 };
 
-/// The sheet as SVG with true circles: gnuplot's would be polygons of 72 corners, 50 times the size.
+/// The sheet as SVG with true circles. gnuplot would draw polygons with 72 corners, a file 50 times as large.
 std::string snapshots_svg(const std::vector<BeadPanel>& panels, const SnapshotSheet& sheet) {
   const int height = static_cast<int>(std::ceil(sheet.height()));
   std::string svg = fmt::format(
@@ -360,7 +363,7 @@ void run_gnuplot(const std::filesystem::path& folder, const std::string& script)
   posix_spawn_file_actions_addopen(&actions, 2, (script + ".log").c_str(), O_WRONLY | O_CREAT | O_TRUNC,
                                    0644);
   posix_spawn_file_actions_addclosefrom_np(&actions,
-                                           3);  // our files, locks and pipes are none of its business
+                                           3);  // gnuplot must not inherit files, locks and pipes
   std::string program = "gnuplot", argument = script;
   std::array<char*, 3> arguments = {program.data(), argument.data(), nullptr};
   pid_t child = 0;
@@ -371,7 +374,7 @@ void run_gnuplot(const std::filesystem::path& folder, const std::string& script)
   if (failure != 0) throw RunError(fmt::format("gnuplot could not be started: {}.", std::strerror(failure)));
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) throw RunError(fmt::format("gnuplot was lost: {}.", std::strerror(errno)));
+    if (errno != EINTR) throw RunError(fmt::format("Waiting for gnuplot failed: {}.", std::strerror(errno)));
     if (cancellation_requested() == 0 || finishing_first()) continue;
     kill(child, SIGKILL);
     waitpid(child, &status, 0);
@@ -440,7 +443,7 @@ Figure phase_diagram_figure(const std::vector<Run>& runs) {
     one_omega = one_omega && std::abs(run.omega - runs.front().omega) <= 1e-3 * runs.front().omega;
   }
   const Range x = n_l.padded(0.12, 5);
-  // Side by side at one (N_l, Gamma): a symbol on top of another would hide it.
+  // Symbols of both sides at the same (N_l, Gamma) are drawn side by side, so that neither hides the other.
   const double aside = 0.014 * (x.high - x.low);
   const std::string clauses = phase_blocks(runs, f.name, f.data, [&](const Run& run) {
     return fmt::format("{} {} {} # {}\n", run.n_l + (run.side == Side::experiment ? -aside : aside),
@@ -500,7 +503,7 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
            .plot = {},
            .data = {},
            .svg = {}};
-  static constexpr double kFloor = 1e-4;  // a logarithmic axis has no zero
+  static constexpr double kFloor = 1e-4;  // the logarithmic axes cannot show zero
   const Range x = gamma_range(runs);
   f.plot = fmt::format(
       "set multiplot layout 2,1\nset logscale y\nset format y '10^{{%T}}'\nset xrange [{}:{}]\nset xlabel 'Γ "
@@ -512,7 +515,8 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
     std::string clauses;
     Range y;
     y.add(bounce ? kBouncingThreshold : kConvectionThreshold);
-    for (const Side side : kSides) {  // the small filled symbol over the large open one: both stay visible
+    for (const Side side :
+         kSides) {  // small filled symbols are drawn over large open ones, so both are visible
       std::string block;
       std::vector<const Run*> ordered;
       for (const Run& run : runs)
@@ -550,9 +554,9 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
   }
   f.plot += "unset multiplot\n";
   f.caption =
-      "Top: s_b, how far the bed's height over the plate varies through a cycle; above σ/30 the bed bounces. "
-      "Bottom: s_c, how far the tracer line is bent; above σ it "
-      "convects. Bars: 95 % intervals (s_b by bootstrap over tracers, s_c by block averages over cycles). "
+      "Top: s_b, the variation of the bed's height above the plate through a cycle; above σ/30 the bed "
+      "bounces. Bottom: s_c, the deformation of the tracer line; above σ the bed convects. Bars: 95 % "
+      "intervals (s_b by bootstrap over tracers, s_c by block averages over cycles). "
       "Values below 10⁻⁴ are drawn at 10⁻⁴.";
   return f;
 }
@@ -588,7 +592,7 @@ Figure s_k_figure(const std::vector<Run>& runs) {
       "set key outside right top samplen 1.5 Left reverse\n{}unset multiplot\n",
       range.low, range.high, panels);
   f.caption =
-      "Mean height of the tracers above the plate in each phase of the drive, about its mean over the cycle; "
+      "Mean height of the tracers above the plate in each phase of the drive, minus its mean over the cycle; "
       "s_b is the root mean square of each curve.";
   return f;
 }
@@ -626,7 +630,7 @@ Figure s_j_figure(const std::vector<Run>& runs) {
       range.low, range.high, panels);
   f.caption =
       "Spread of the tracers' heights at the beginning of each cycle. A curve that rises and then stays "
-      "tells of rearrangement, not of steady convection.";
+      "constant shows rearrangement, not steady convection.";
   return f;
 }
 

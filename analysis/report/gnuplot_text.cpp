@@ -8,6 +8,7 @@
 namespace twincell {
 namespace {
 
+/// `text` without characters that could end a quoted string; the characters in `marks` get a backslash.
 std::string safe(std::string_view text, std::string_view marks) {
   std::string out;
   while (!text.empty()) {

@@ -1,22 +1,23 @@
 #pragma once
 /// \file
-/// The one place where a string from outside the program (a column, a file, a run, a unit) becomes gnuplot
-/// text.
+/// Conversion of strings from outside the program (a column, a file, a run, a unit) into gnuplot text. No
+/// other code may put such strings into a script.
 
 #include <string>
 #include <string_view>
 
 namespace twincell {
 
-/// `text` as gnuplot's enhanced text shows it literally, for a place between single quotes: marks of enhanced
-/// text get a backslash; quotes and backquotes become typographic ones, so that nothing ends the string;
-/// control characters (newlines too) become spaces; bytes that are no UTF-8 become U+FFFD.
+/// `text` for use between single quotes, escaped so that gnuplot's enhanced text mode shows it literally.
+/// Special characters of enhanced text get a backslash. Quotes and backquotes become typographic quotes, so
+/// that they cannot end the string. Control characters, including newlines, become spaces. Bytes that are not
+/// valid UTF-8 become U+FFFD.
 std::string gnuplot_text(std::string_view text);
 
-/// The same for text that is followed by `noenhanced`: no backslashes.
+/// As gnuplot_text, for text that is followed by `noenhanced`: without backslashes.
 std::string gnuplot_plain_text(std::string_view text);
 
-/// gnuplot_text with what follows the first underscore set as an index: `T_z` becomes `T_{z}`.
+/// As gnuplot_text, with the text after the first underscore as a subscript: `T_z` becomes `T_{z}`.
 std::string gnuplot_symbol(std::string_view name);
 
 /// True if `name` can be a figure's file name in a script: letters, digits, `_`, `-`, `.` of ASCII, not

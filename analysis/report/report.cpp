@@ -20,13 +20,13 @@
 
 namespace twincell {
 
-namespace embedded {  // files of analysis/report/, put into the program by cmake/embed.cmake
+namespace embedded {  // files of analysis/report/, embedded into the program by cmake/embed.cmake
 extern const std::string_view page_css, page_js, plotly_js, plotly_license;
 }
 
 namespace {
 
-/// Escaped, with s_b, q6 and the like set as symbols with an index.
+/// `text` escaped for HTML, with names such as s_b and q6 set as symbols with a subscript.
 std::string typeset(const std::string& text) {
   return std::regex_replace(
       std::regex_replace(html_text(text), std::regex("\\b([sTNK])_([a-z])\\b"), "$1<sub>$2</sub>"),
@@ -37,7 +37,7 @@ std::string number(double v, const char* absent = "–") {
   return std::isfinite(v) ? fmt::format("{:.4g}", v) : absent;
 }
 
-/// Value and, on a line of its own, its interval; or "absent".
+/// The value and, on a separate line, its interval; or "absent".
 std::string value_and_interval(const Run& run, const std::string& name) {
   const Result& r = find_result(run.results, name);
   if (!r.present()) return "absent";
@@ -57,7 +57,7 @@ std::string phases_of(const std::vector<Run>& runs, const std::vector<std::size_
   return fmt::format("{}", fmt::join(names, " / "));
 }
 
-/// What the end of the text says: where the sides differ.
+/// Concluding sentences: where the sides differ.
 std::string conclusion(const std::vector<Run>& runs, const std::vector<Match>& matches) {
   std::vector<std::string> differ;
   std::size_t paired = 0, same = 0;
@@ -81,7 +81,7 @@ nlohmann::json or_null(double v) {
   return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr);
 }
 
-/// Names of the results that are one number, in the order of the observables.
+/// Names of the scalar results, in the order of the observables.
 std::vector<std::string> scalar_names(const std::vector<Run>& runs) {
   std::vector<std::string> names;
   for (const std::string& name : result_names()) {
@@ -123,7 +123,7 @@ std::string runs_csv(const std::vector<Run>& runs) {
   return text;
 }
 
-/// One line per match and number; an empty field was not determined.
+/// One line per match and number; an empty field is a value that was not determined.
 std::string differences_csv(const Comparison& c) {
   std::string text =
       "gamma,number,unit,experiment,experiment_error,simulation,simulation_error,difference,filmed,camera,"
@@ -142,7 +142,7 @@ std::string differences_csv(const Comparison& c) {
   return text;
 }
 
-/// Long form: one line per run and element.
+/// A series in long form: one line per run and element.
 std::string series_csv(const std::vector<Run>& runs, const std::string& name, const std::string& index) {
   std::string text = fmt::format("side,run,gamma,{},{}\n", index, name);
   for (const Run& run : runs) {
@@ -172,7 +172,7 @@ std::string numbers_of(const std::vector<Run>& runs, const std::vector<std::size
   return fmt::format("{}", fmt::join(lines, "<br>"));
 }
 
-/// A table that sorts by its headings and can be saved, once the page is alive.
+/// An HTML table. The script of the page makes it sortable by its headings and downloadable.
 class Table {
  public:
   Table(const std::string& name, const std::vector<std::string>& heads)
@@ -285,7 +285,7 @@ std::string differences_table(const Comparison& c) {
   return table.html();
 }
 
-/// How each number was made, once per distinct sentence and with the runs it holds for.
+/// The conventions of each result. Each distinct sentence appears once, with the runs to which it applies.
 std::string conventions(const std::vector<Run>& runs) {
   std::string html = "<ul>\n";
   for (const std::string& name : result_names()) {
@@ -315,7 +315,8 @@ std::string conventions(const std::vector<Run>& runs) {
   return html + "</ul>\n";
 }
 
-/// The drawing alone, its identifiers made its own: several drawings share one page.
+/// The svg element of a drawing, with `prefix` added to its identifiers, because several drawings share one
+/// page.
 std::string inline_svg(const std::string& file, const std::string& prefix, const std::string& title) {
   std::string svg = file.substr(file.find("<svg"));
   svg = std::regex_replace(svg, std::regex("(\\sid\\s*=\\s*[\"'])"), fmt::format("$1{}-", prefix));
@@ -324,7 +325,7 @@ std::string inline_svg(const std::string& file, const std::string& prefix, const
   return svg.replace(0, 4, fmt::format("<svg role=\"img\" aria-label=\"{}\"", html_text(title)));
 }
 
-/// Text for the inside of a script element.
+/// Text for the content of a script element, escaped so that it cannot end the element.
 std::string script(std::string_view text) {
   std::string safe(text);
   for (std::size_t at = safe.find("</script"); at != std::string::npos; at = safe.find("</script", at))
@@ -332,11 +333,12 @@ std::string script(std::string_view text) {
   return safe;
 }
 
-/// Where the script draws. Hidden without it: the figures by gnuplot, further down, then stand alone.
+/// The elements in which the script draws. Without JavaScript they are hidden, and only the figures by
+/// gnuplot further down are shown.
 constexpr std::string_view kLive = R"(
 <div class="needs-script">
 <h2>Phase diagram</h2>
-<p>Open symbols: experiment; filled: simulation. A click on one shows its bed below.</p>
+<p>Open symbols: experiment; filled: simulation. Click a symbol to show its bed below.</p>
 <div id="phase-diagram"></div>
 <section id="point">
 <h2 id="point-title">A point</h2>
@@ -354,7 +356,7 @@ constexpr std::string_view kLive = R"(
 <figure id="panel-experiment"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
 <figure id="panel-simulation"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
 </div>
-<p><small>The wheel zooms (with Ctrl outwards from the whole picture), a drag moves, a double click goes back.</small></p>
+<p><small>Use the wheel to zoom (with Ctrl to zoom out beyond the whole picture), drag to move, double-click to reset.</small></p>
 <div class="pair">
 <div><h3>Height of the tracers above the plate, s(k)</h3><div id="series-s_k"></div></div>
 <div><h3>Spread of the tracer line, s<sub>j</sub></h3><div id="series-s_j"></div></div>
@@ -374,7 +376,7 @@ std::string filmed_words(const Comparison& c) {
   for (const Checks::Filmed& f : c.checks.filmed)
     names.push_back(fmt::format("{} ({})", c.runs[f.run].name, f.camera));
   return names.empty()
-             ? "Nothing was filmed, so what camera and tracking do is not known."
+             ? "Nothing was filmed, so the effect of camera and tracking is not known."
              : fmt::format("Filmed by the synthetic camera, located, linked and analysed again: {}.",
                            fmt::join(names, "; "));
 }
@@ -408,22 +410,21 @@ std::string page(const Comparison& c, const std::vector<Figure>& figures,
   html += kLive;
   if (!c.boundaries.empty())
     html +=
-        "<h2>Boundaries</h2>\n<p>Each lies between the strongest drive without the phase and the weakest "
-        "with it: "
-        "a bracket, no fit; those of a sweep are fitted, with their 95 % interval.</p>\n" +
+        "<h2>Boundaries</h2>\n<p>Each boundary is between the strongest drive without the phase and the "
+        "weakest drive with it: a bracket, not a fit. Those of a sweep are fitted, with their 95 % "
+        "interval.</p>\n" +
         boundary_table(c.boundaries);
   if (!c.differences.empty())
     html +=
-        "<h2>Differences</h2>\n<p>Experiment minus simulation. What camera and tracking make of it is the "
-        "difference between the simulation as filmed and tracked and the simulation itself; what is left is "
-        "held "
-        "against the errors (± one standard error). " +
+        "<h2>Differences</h2>\n<p>Experiment minus simulation. The contribution of camera and tracking is "
+        "the difference between the simulation as filmed and tracked and the simulation itself; what is left "
+        "is compared with the errors (± one standard error). " +
         html_text(filmed_words(c)) + "</p>\n" + differences_table(c);
   html += "<h2>Runs</h2>\n" + runs_table(c.runs);
   html += "<details><summary>The same figures, drawn by gnuplot</summary>\n" +
           static_figures(figures, figure_folder) + "</details>\n";
   html +=
-      "<h2>How each number was made</h2>\n<details><summary>Convention, interval and source of every "
+      "<h2>How each number is computed</h2>\n<details><summary>Convention, interval and source of every "
       "number</summary>\n" +
       conventions(c.runs) + "</details>\n";
   html += "<h2>Provenance</h2>\n<p>" + html_text(version_line()) +

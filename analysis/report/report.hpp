@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The report of a comparison: a folder with figures, tables and one page that opens offline.
+/// The report of a comparison: a folder with figures, tables and a page that opens offline.
 
 #include <filesystem>
 #include <string>
@@ -11,22 +11,23 @@
 
 namespace twincell {
 
-/// Phases of both sides at each drive strength, where they differ, the boundaries, and the differences with
-/// what they are attributed to; as text for a terminal.
+/// The comparison as text for a terminal: phases of both sides at each drive strength, the drive strengths at
+/// which they differ, the phase boundaries, and the differences with their attribution.
 std::string comparison_text(const Comparison& comparison);
 
-/// The same for machines: {"runs": […], "matches": […], "boundaries": […], "differences": […]}. Text of one
-/// JSON object.
+/// The comparison as the text of one JSON object: {"conclusion": "…", "runs": […], "matches": […],
+/// "boundaries": […], "differences": […]}.
 std::string comparison_json(const Comparison& comparison);
 
-/// The kind of output that the folder of a report is.
+/// The kind of output to which a report folder belongs.
 inline Product report_folder() {
   return Product::whole_folder("a report");
 }
 
-/// Writes `folder` whole or not at all: report.html (one file, no outside request), figures/ (SVG, PDF, PNG,
-/// .gp, .dat), runs.csv, differences.csv, series_s_k.csv, series_s_j.csv, phases.txt, results.json,
-/// provenance.json. \throws ConfigError if the folder cannot be written; RunError if gnuplot is missing
+/// Writes `folder`, which appears only when it is complete: report.html (one file without external requests),
+/// figures/ (SVG, PDF, PNG, .gp, .dat), runs.csv, differences.csv, series_s_k.csv, series_s_j.csv,
+/// phases.txt, results.json, provenance.json. \throws ConfigError if the folder cannot be written; RunError
+/// if gnuplot is missing
 void write_report(const std::filesystem::path& folder, const Comparison& comparison,
                   const std::string& provenance_json, Progress& progress = Progress::none());
 

@@ -66,7 +66,8 @@ json moment_json(const Snapshot& moment, int phases, const std::string& picture)
   return j;
 }
 
-/// Results without those of single beads: the moments hold what is shown of them.
+/// Results without those of single beads and the displacement field, which the page takes from moments and
+/// convection.
 json results_of(const Run& run) {
   json all = json::parse(results_json(run.results));
   for (auto it = all.begin(); it != all.end();)
@@ -77,8 +78,8 @@ json results_of(const Run& run) {
   return all;
 }
 
-/// The convection field, if the results hold one: displacements per cycle [rows x columns x 2] and the
-/// centres of its cells.
+/// The convection field, or null if it is absent: displacements per cycle (u along x, w along z), row by row,
+/// and the extent of the field.
 json convection_json(const std::vector<Result>& results) {
   const Result *field = seek_result(results, "displacement_field"), *x = seek_result(results, "field_x"),
                *z = seek_result(results, "field_z");
@@ -86,7 +87,7 @@ json convection_json(const std::vector<Result>& results) {
     if (r == nullptr || !r->present()) return nullptr;
   const std::size_t rows = z->values.size(), columns = x->values.size();
   if (rows == 0 || columns == 0 || field->values.size() != 2 * rows * columns) return nullptr;
-  // Cells are square, so one row or column has the other's spacing.
+  // The cells are square, so that a single row or column has the spacing of the other axis.
   const auto spacing = [](const Result& r, double other) {
     return r.values.size() > 1 ? r.values[1] - r.values[0] : other;
   };
@@ -135,7 +136,7 @@ json run_json(const Run& run) {
                    {"h", c->height}};
   for (std::size_t m = 0; m < run.show.moments.size(); ++m) {
     Snapshot moment = run.show.moments[m];
-    for (Vec3& r : moment.frame.position)  // across a periodic side a bead is shown where the cell is
+    for (Vec3& r : moment.frame.position)  // a bead beyond a periodic boundary is shown inside the cell
       if (r.allFinite()) r = run.box.wrap(r);
     j["moments"].push_back(moment_json(moment, run.phases_per_cycle,
                                        m < run.show.pictures.size() ? run.show.pictures[m] : std::string()));

@@ -19,7 +19,7 @@ std::string cell_text(double v) {
   return std::isfinite(v) ? fmt::format("{:.6g}", v) : "?";
 }
 
-/// What a bead of the lattice figure looks like.
+/// Colour and name of a class of beads in the lattice figure.
 struct BeadStyle {
   const char* colour;
   const char* name;
@@ -50,7 +50,7 @@ Figure convection_figure(const std::vector<Result>& results, const Box& box) {
   const double top = (z.values.empty() ? 1 : z.values.back()) + cell;
   f.height = static_cast<int>(std::clamp(160 + 430 * (top - box.lower.z()) / box.size().x(), 300.0, 1100.0));
   for (const bool up : {true, false}) {
-    f.data += fmt::format("# beads on their way {}: x, z, u_x, u_z per cycle (sigma)\n", up ? "up" : "down");
+    f.data += fmt::format("# beads that move {}: x, z, u_x, u_z per cycle (sigma)\n", up ? "up" : "down");
     bool any = false;
     for (std::size_t r = 0; r < z.values.size(); ++r)
       for (std::size_t c = 0; c < x.values.size(); ++c) {
@@ -72,9 +72,8 @@ Figure convection_figure(const std::vector<Result>& results, const Box& box) {
       "head size graph 0.015,20 lw 1.8 lc rgb (i == 0 ? '{}' : '{}') title (i == 0 ? 'up' : 'down')\n",
       longest, box.lower.x(), box.upper.x(), box.lower.z(), top, scale, f.name, kVermilion, kBlue);
   f.caption = fmt::format(
-      "Mean displacement from the beginning of one cycle to that of the next in cells of {:.3g} σ, {:.3g} "
-      "times "
-      "enlarged: the longest arrow is {:.3g} σ per cycle.",
+      "Mean displacement between the beginnings of consecutive cycles in cells of {:.3g} σ, magnified {:.3g} "
+      "times: the longest arrow is {:.3g} σ per cycle.",
       cell, scale, longest);
   return f;
 }
@@ -112,9 +111,8 @@ Figure profiles_figure(const std::vector<Result>& results) {
                 : "set label 9 'no value' at graph 0.5,0.5 center\nplot NaN notitle\nunset label 9\n";
   f.plot += "unset multiplot\n";
   f.caption =
-      "Slabs one σ thick, mean over all frames. Left: share of the slab that beads fill. Right: m⟨(v − "
-      "⟨v⟩)²⟩ of "
-      "beads whose centres are in the slab.";
+      "Slabs one σ thick, mean over all frames. Left: share of the slab that is filled by beads. Right: m⟨(v "
+      "− ⟨v⟩)²⟩ of the beads whose centres are in the slab.";
   return f;
 }
 
@@ -122,7 +120,7 @@ Figure defect_evolution_figure(const std::vector<Result>& results) {
   Figure f{.name = "defect_evolution", .title = "Defects through time"};
   f.height = 340;
   const Result& series = find_result(results, "defect_fraction_j");
-  f.data = fmt::format("# {}, share of enclosed beads that have not 6 neighbours\n", series.n_of);
+  f.data = fmt::format("# {}, share of enclosed beads that do not have 6 neighbours\n", series.n_of);
   for (std::size_t j = 0; j < series.values.size(); ++j)
     f.data += fmt::format("{} {}\n", j, cell_text(series.values[j]));
   f.plot = fmt::format(
@@ -130,7 +128,8 @@ Figure defect_evolution_figure(const std::vector<Result>& results) {
       "yrange "
       "[0:*]\nplot '{}.dat' using 1:2 with linespoints pt 7 ps 0.6 lw 1.8 lc rgb '{}' notitle\n",
       series.n_of, f.name, kBlue);
-  f.caption = "Share of the beads, walls, free surfaces and holes left out, that have not six neighbours.";
+  f.caption =
+      "Share of the beads that do not have six neighbours, without beads at walls, free surfaces and holes.";
   return f;
 }
 
@@ -146,11 +145,12 @@ Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const Anal
       low = std::min(low, frame.position[i].z() - 0.5);
     }
   std::sort(heights.begin(), heights.end());
-  // One high flyer shall not shrink the bed.
+  // A single bead thrown high must not shrink the bed.
   const double high =
       heights.empty() ? low + 1
                       : heights[static_cast<std::size_t>(0.99 * static_cast<double>(heights.size() - 1))] + 2;
 
+  // Data and symbols of every bead.
   Figure f{.name = "lattice", .title = "Lattice and defects"};
   constexpr double kMargin = 12, kLegend = 66;
   const double scale = (f.width - 2 * kMargin) / (right - left);
@@ -178,6 +178,7 @@ Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const Anal
                       x - s, y - s, 2 * s, 2 * s, kBlue);
   }
   f.data = data;
+  // SVG drawing with true circles, which gnuplot does not draw, and with the legend.
   std::string svg = fmt::format(
       "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 "
       "{0} {1}\" "
@@ -205,6 +206,7 @@ Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const Anal
       "y=\"{1:.1f}\">7</text>\n</svg>\n",
       floor + 36, floor + 47, kVermilion, kBlue);
   f.svg = svg;
+  // gnuplot script for the other formats.
   f.plot = fmt::format(
       "set size ratio -1\nunset tics\nunset grid\nunset border\nset xrange [{0}:{1}]\nset yrange [{2}:{3}]\n"
       "set key outside below center maxrows 3 samplen 1 Left reverse\n"
@@ -227,7 +229,7 @@ Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const Anal
       "walls. "
       "Triangles and squares: five and seven neighbours by Voronoi cells; beads at walls, free surfaces and "
       "holes "
-      "bear no mark.";
+      "are not marked.";
   return f;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Figures of one trajectory: its lattice, its convection field, its profiles, its defects through time.
+/// Figures of one trajectory: lattice, convection field, profiles, and defects over time.
 
 #include <vector>
 
@@ -10,20 +10,20 @@
 namespace twincell {
 
 /// The displacement field as arrows (results displacement_field, field_x, field_z), magnified so that the
-/// longest is as long as a cell is wide. Colours: up, down.
+/// longest arrow is as long as a cell is wide. The colours distinguish up and down.
 Figure convection_figure(const std::vector<Result>& results, const Box& box);
 
-/// phi_z, T_z_z and T_x_z over height.
+/// phi_z, T_z_z and T_x_z against height.
 Figure profiles_figure(const std::vector<Result>& results);
 
-/// defect_fraction_j over cycles.
+/// defect_fraction_j against the cycle.
 Figure defect_evolution_figure(const std::vector<Result>& results);
 
-/// Beads of one frame to scale: filled by the direction of the lattice (A to B, pale where psi6 is below
-/// kOrdered), marked where coordination is 5 or 7. \pre the box is planar
+/// Beads of one frame to scale, coloured by the lattice direction (A to B, pale where psi6 is below kOrdered)
+/// and marked where the coordination is 5 or 7. \pre the box is planar
 Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const AnalysisOptions& options);
 
-/// Those of the figures for which the results hold values, and the lattice of the last frame.
+/// All figures for which the results have values, and the lattice of the last frame.
 std::vector<Figure> spatial_figures(const std::vector<Result>& results, const TrajectorySource& trajectory,
                                     const AnalysisOptions& options);
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// All that is known when experiment and simulation are put beside each other: what a report is made from.
+/// Complete comparison of experiment and simulation: the input of a report.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace twincell {
 
-/// A point of a sweep: analysed elsewhere, its frames are not kept.
+/// A point of a sweep, analysed elsewhere; its frames are not kept.
 struct SweepPoint {
   double n_l = 0;  ///< N_l sigma
   double gamma = 0;
@@ -19,6 +19,7 @@ struct SweepPoint {
   BedPhase phase = BedPhase::undetermined;
 };
 
+/// Runs of both sides with everything derived from them.
 struct Comparison {
   std::vector<Run> runs;
   std::vector<Match> matches;

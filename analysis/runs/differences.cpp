@@ -13,14 +13,14 @@
 namespace twincell {
 namespace {
 
-/// A difference is one if it exceeds this many standard errors.
+/// A difference is significant if it exceeds this many standard errors.
 constexpr double kSignificant = 2;
-/// Fewer runs of a start than these hardly say how much seeds differ.
+/// Minimum number of runs of one start for a reliable spread between seeds.
 constexpr std::size_t kFewSeeds = 5;
-/// Heights of the lines of tracers over mid-height, sigma.
+/// Heights of the lines of tracers above mid-height, sigma.
 constexpr std::array<double, 3> kLines = {-1, 0, 1};
 
-/// The scalar of that name, or nothing.
+/// The finite scalar result called `name`, or null.
 const Result* scalar(const std::vector<Result>& results, const std::string& name) {
   const Result* found = seek_result(results, name);
   const bool usable = found != nullptr && found->present() && found->shape.empty() && found->text.empty() &&
@@ -28,8 +28,8 @@ const Result* scalar(const std::vector<Result>& results, const std::string& name
   return usable ? found : nullptr;
 }
 
-/// Standard error behind a result's interval. A number that never changed has an interval of rounding errors,
-/// which says nothing of how well it is known.
+/// Standard error from a result's interval. Absent for a number that never changed: its interval consists of
+/// rounding errors and does not measure its uncertainty.
 std::optional<double> standard_error(const Result& r) {
   if (!r.interval || !std::isfinite(r.interval->high - r.interval->low)) return std::nullopt;
   const double error = standard_error(*r.interval);
@@ -60,7 +60,7 @@ double deviation(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
-/// Mean of a number over some runs; its error from their intervals.
+/// Mean of a number over the runs `members`, with its error from their intervals.
 std::optional<Measured> measured(const std::vector<Run>& runs, const std::vector<std::size_t>& members,
                                  const std::string& name) {
   std::vector<double> values;
@@ -80,7 +80,7 @@ std::optional<Measured> measured(const std::vector<Run>& runs, const std::vector
   return m;
 }
 
-/// Spread over seeds within a start, and between starts.
+/// Sets the spread between seeds of one start, and the difference between starts.
 void compare_simulations(const std::vector<Run>& runs, const Match& match, Difference& d) {
   std::map<std::string, std::vector<double>> of_start;
   for (const std::size_t i : match.simulations)
@@ -89,7 +89,8 @@ void compare_simulations(const std::vector<Run>& runs, const Match& match, Diffe
   for (const auto& [start, values] : of_start) {
     low = std::min(low, mean(values));
     high = std::max(high, mean(values));
-    // Crystals hardly differ from each other; the experiment may be of the kind that does.
+    // The largest spread of all starts is used: crystals hardly differ from each other, but the experiment
+    // may have a start that varies more.
     if (values.size() < 2) continue;
     const double spread = deviation(values);
     if (d.seeds && spread <= *d.seeds) continue;
@@ -99,8 +100,8 @@ void compare_simulations(const std::vector<Run>& runs, const Match& match, Diffe
   if (of_start.size() > 1) d.defects = high - low;
 }
 
-/// Standard deviation of E - S from line to line. Both sides move along: what the choice does to both alike
-/// is no difference.
+/// Standard deviation of E - S over the lines of tracers. The line is shifted on both sides, because an
+/// effect of the choice that is equal on both sides is not a difference.
 std::optional<double> spread_over_lines(const Checks& checks, const Match& match, const std::string& name) {
   std::vector<double> differences(kLines.size(), 0);
   for (const auto& [members, sign] :
@@ -156,12 +157,12 @@ std::string Difference::attribution() const {
   const double size = std::abs(difference());
   if (size == 0 && remainder() == 0) return "none: the same on both sides";
   const auto t = in_errors();
-  if (!t) return "no error is known, so nothing can be said";
+  if (!t) return "no error is known, so that no conclusion is possible";
   std::string by_camera;
   if (camera && std::abs(*camera) > 0.5 * size && *camera * difference() > 0)
     by_camera = *camera / difference() < 1
-                    ? fmt::format("camera and tracking make {:.0f} % of it", 100 * *camera / difference())
-                    : "camera and tracking make all of it";
+                    ? fmt::format("camera and tracking cause {:.0f} % of it", 100 * *camera / difference())
+                    : "camera and tracking cause all of it";
   if (std::abs(*t) <= kSignificant) {
     if (!by_camera.empty() && size > kSignificant * *error())
       return by_camera + "; the rest is within its error";
@@ -170,17 +171,18 @@ std::string Difference::attribution() const {
     const auto largest = std::max_element(
         std::begin(sources), std::end(sources),
         [](const auto& a, const auto& b) { return a.second.value_or(0) < b.second.value_or(0); });
-    std::string text = fmt::format("within its error, of which most is {}", largest->first);
+    std::string text = fmt::format("within its error, of which the largest part is {}", largest->first);
     if (largest->second == seed_error() && seeds && seed_runs < kFewSeeds)
       text += fmt::format(", known from {} runs only", seed_runs);
     return text;
   }
   if (defects && std::abs(remainder()) <= *defects)
-    return fmt::format("{:.1f} errors; no more than starts with other defects differ by", std::abs(*t));
+    return fmt::format("{:.1f} errors; not larger than the difference between starts with other defects",
+                       std::abs(*t));
   return fmt::format("{:.1f} errors: a real difference{}{}{}", std::abs(*t),
                      by_camera.empty() ? "" : ", though " + by_camera,
-                     camera ? "" : ", unless camera and tracking make it: nothing was filmed",
-                     defects ? "" : "; whether defects make it, one start alone cannot tell");
+                     camera ? "" : ", unless camera and tracking cause it: nothing was filmed",
+                     defects ? "" : "; one start alone does not show whether defects cause it");
 }
 
 std::vector<Checks::TracerLines> tracer_lines(const TrajectorySource& trajectory, std::size_t run,
@@ -231,7 +233,7 @@ std::vector<Difference> find_differences(const std::vector<Run>& runs, const std
         const Result *seen = scalar(filmed.seen, r.name), *after = scalar(filmed.filmed, r.name);
         if (seen == nullptr || after == nullptr) continue;
         d.camera = after->value() - seen->value();
-        d.filmed = simulation->value + *d.camera;  // the camera's share, on the mean of all seeds
+        d.filmed = simulation->value + *d.camera;  // the effect of the camera, added to the mean of all seeds
         if (const auto error = standard_error(*after))
           other_error = std::max(*error, other_error.value_or(0));
       }

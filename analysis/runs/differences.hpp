@@ -1,16 +1,15 @@
 #pragma once
 /// \file
-/// How far experiment and simulation are apart in each number, and what of that is known to come from
-/// elsewhere.
+/// Differences between experiment and simulation in each number, and their attribution to known causes.
 ///
-/// With E the experiment, S the simulation and F the simulation as the experiment's camera and tracker would
-/// have given it, over the same frames,
+/// Let E be the experiment, S the simulation, and F the same frames of the simulation as filmed and tracked
+/// like the experiment (virtual experiment). Then
 ///
 ///     E - S = (F - S) + (E - F)
 ///
-/// The first term is what camera and tracking do to the number. The second is like against like; it is held
-/// against what else moves the number: the statistics of both sides, the choice of the tracers, the seed, and
-/// the start with its defects.
+/// The first term is the effect of camera and tracking on the number. The second term compares like with
+/// like. It is compared with the other causes of scatter: the statistics of both sides, the choice of the
+/// tracers, the seed, and the start with its defects.
 
 #include <optional>
 #include <string>
@@ -20,19 +19,19 @@
 
 namespace twincell {
 
-/// A number with its standard error; the error is absent where nothing is known of it.
+/// A number with its standard error; the error is absent if unknown.
 struct Measured {
   double value = 0;
   std::optional<double> error;
 };
 
-/// One number, both sides. All parts in the number's unit; absent parts were not determined.
+/// One number on both sides. All values have the unit of the number; absent values were not determined.
 struct Difference {
   std::size_t match = 0;  ///< index of the match
   std::string quantity, unit;
   Measured experiment, simulation;   ///< means over the match's runs
   std::optional<double> filmed;      ///< F
-  std::optional<double> camera;      ///< F - S, of the run that was filmed
+  std::optional<double> camera;      ///< F - S, from the run that was filmed
   std::optional<double> statistics;  ///< standard error of E - F (or E - S) from the intervals of both
   std::optional<double> seeds;       ///< largest standard deviation between simulations of one start
   std::size_t seed_runs = 0;         ///< simulations of that start
@@ -40,29 +39,30 @@ struct Difference {
   std::optional<double> defects;  ///< largest difference between the means of simulations of different starts
 
   [[nodiscard]] double difference() const { return experiment.value - simulation.value; }
-  /// E - F, or E - S where nothing was filmed.
+  /// E - F, or E - S if nothing was filmed.
   [[nodiscard]] double remainder() const { return experiment.value - filmed.value_or(simulation.value); }
-  /// The seeds' share in the error: their standard deviation s, as that of E - S, s sqrt(1 + 1/n), and
-  /// widened by t/1.96 (Student, n - 1 degrees of freedom) for what n runs do not show of s. 7.9 s for two
-  /// runs, 2.5 s for three, 1.2 s for ten.
+  /// Contribution of the seeds to the error of E - S: s sqrt(1 + 1/n) with s the standard deviation between n
+  /// seeds, widened by t/1.96 (Student's t, n - 1 degrees of freedom) because n runs give an uncertain s. The
+  /// result is 7.9 s for two runs, 2.5 s for three, 1.2 s for ten.
   [[nodiscard]] std::optional<double> seed_error() const;
-  /// Statistics, seeds and tracers in quadrature, as far as they are known; absent if none is.
+  /// Statistics, seeds and tracers added in quadrature, as far as they are known; absent if none of them is
+  /// known.
   [[nodiscard]] std::optional<double> error() const;
   /// remainder / error; absent without an error.
   [[nodiscard]] std::optional<double> in_errors() const;
-  /// One sentence: what the difference is attributed to.
+  /// The cause to which the difference is attributed, in one sentence.
   [[nodiscard]] std::string attribution() const;
 };
 
-/// What was done beyond the runs of a comparison to see where differences come from.
+/// Additional analyses that show where the differences of a comparison come from.
 struct Checks {
-  /// A simulation, the same frames of it as seen (S) and as filmed and tracked (F).
+  /// The results of the same frames of a simulation directly (S) and as filmed and tracked (F).
   struct Filmed {
     std::size_t run = 0;  ///< index of the simulation
     std::vector<Result> seen, filmed;
     std::string camera;  ///< which camera, in words
   };
-  /// A result on three lines of tracers: one sigma below mid-height, at it, one above.
+  /// A result for three lines of tracers: one sigma below mid-height, at mid-height, one sigma above.
   struct TracerLines {
     std::size_t run = 0;
     std::string quantity;
@@ -72,15 +72,15 @@ struct Checks {
   std::vector<TracerLines> tracers;
 };
 
-/// s_b and s_c on these lines; without one that is absent on any of them.
+/// s_b and s_c of run number `run` for these three lines. A result that is absent for any line is left out.
 std::vector<Checks::TracerLines> tracer_lines(const TrajectorySource& trajectory, std::size_t run,
                                               const AnalysisOptions& options);
 
-/// The differences of every match with both sides, in every scalar that both have.
+/// The differences of every match that has both sides, for every scalar that both sides have.
 std::vector<Difference> find_differences(const std::vector<Run>& runs, const std::vector<Match>& matches,
                                          const Checks& checks = {});
 
-/// A table for a terminal.
+/// The differences as a table for a terminal.
 std::string differences_text(const std::vector<Difference>& differences, const std::vector<Match>& matches);
 
 }  // namespace twincell

@@ -13,11 +13,12 @@ struct Gammas {
   std::vector<double> with, without;
 };
 
+/// Sets the bracket of a boundary.
 void bracket(const Gammas& gammas, PhaseBoundary& boundary) {
   for (const double g : gammas.without) boundary.below = std::max(boundary.below.value_or(g), g);
   for (const double g : gammas.with) boundary.above = std::min(boundary.above.value_or(g), g);
   if (!boundary.below || !boundary.above || *boundary.above > *boundary.below) return;
-  // Seeds differ: the bracket reaches to the next runs on either side that are all of one kind.
+  // Seeds differ: the bracket extends to the next runs on either side of the overlap.
   boundary.overlap = true;
   const double first = *boundary.above, last = *boundary.below;
   boundary.below = first;
@@ -47,7 +48,7 @@ std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs) {
   std::vector<PhaseBoundary> found;
   std::vector<Gammas> gammas;
   for (const BedPhase onset : {BedPhase::bouncing, BedPhase::convecting}) {
-    std::vector<double> leaders;  // N_l of the first run of each
+    std::vector<double> leaders;  // N_l of the first run of each boundary
     const std::size_t first = found.size();
     for (const Run& run : runs) {
       if (run.phase == BedPhase::undetermined) continue;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Where along Gamma one phase of the bed gives way to another, from the runs at hand.
+/// Phase boundaries: the Gamma at which the phase of the bed changes, from the given runs.
 
 #include <optional>
 #include <string>
@@ -13,28 +13,32 @@ namespace twincell {
 /// A point on a phase boundary (Fortini & Huang 2015, Fig. 3): bracketed by runs, or fitted by a sweep.
 struct PhaseBoundary {
   Side side = Side::simulation;
-  std::string start = {};               ///< kind of start of the simulation; empty: not known
+  std::string start = {};               ///< kind of start of the simulation; empty: unknown
   BedPhase onset = BedPhase::bouncing;  ///< the phase that begins here: bouncing or convecting
   double n_l = 0;                       ///< N_l sigma, mean of the runs
   std::size_t n_runs = 0;               ///< runs of known phase
-  std::optional<double> below = {};  ///< largest Gamma below which no run has the phase; absent: none was run
-  std::optional<double> above = {};  ///< smallest Gamma above which every run has it; absent: none was run
-  bool overlap = false;  ///< between them runs with the phase lie below runs without: seeds differ
-  bool sweep = false;    ///< of a sweep: `below` and `above` are the ends of its interval
-  std::optional<double> fitted = {};  ///< the onset that a sweep has fitted
-  /// As fitted; else the middle of the bracket, absent if it is open on one side.
+  /// Lower end of the bracket: the largest Gamma of the runs at which the phase is still absent, and below
+  /// which no run has it. Absent if every run has the phase.
+  std::optional<double> below = {};
+  /// Upper end of the bracket: the smallest Gamma of the runs at which the phase is present, and above which
+  /// every run has it. Absent if no run has the phase.
+  std::optional<double> above = {};
+  bool overlap = false;  ///< inside the bracket, runs with the phase are below runs without: seeds differ
+  bool sweep = false;    ///< from a sweep: `below` and `above` are the ends of its interval
+  std::optional<double> fitted = {};  ///< the onset fitted by a sweep
+  /// The fitted onset, else the middle of the bracket; absent if the bracket is open on one side.
   [[nodiscard]] std::optional<double> gamma() const;
   /// Half width of the bracket; absent if it is open.
   [[nodiscard]] std::optional<double> half_width() const;
 };
 
-/// One boundary of each kind for each side, start and N_l (runs within 10 %), where runs of known phase
-/// exist. A convecting bed counts as bouncing.
+/// One boundary of each kind for each side, start and N_l (runs within 10 %) that has runs of known phase. A
+/// convecting bed also counts as bouncing.
 std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs);
 
-/// "experiment", "simulation", "simulation, random", "sweep, random".
+/// Origin of a boundary: "experiment", "simulation", "simulation, random", "sweep, random".
 std::string boundary_of(const PhaseBoundary& boundary);
-/// "1.25 ± 0.35", "above 2.5", "below 0.9".
+/// Position of a boundary in Gamma: "1.25 ± 0.35", "above 2.5", "below 0.9".
 std::string boundary_text(const PhaseBoundary& boundary);
 
 }  // namespace twincell

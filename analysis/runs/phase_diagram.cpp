@@ -12,7 +12,8 @@
 namespace twincell {
 namespace {
 
-/// Index of the first frame at phase 0 from `start` in steps of `step`; `start` itself if there is none.
+/// Index of the first (`forward`) or the last frame at phase 0; `start` if there is no such frame. If the
+/// frames have no phase, the first or the last frame.
 std::size_t find_phase_0(const TrajectorySource& trajectory, std::size_t start, bool forward) {
   Frame frame;
   const std::size_t n = trajectory.n_frames();
@@ -28,9 +29,15 @@ std::size_t find_phase_0(const TrajectorySource& trajectory, std::size_t start, 
 
 std::string start_of(const TrajectoryInfo& info) {
   const auto provenance = nlohmann::json::parse(info.provenance_json, nullptr, false);
-  if (info.source != "simulation" || !provenance.is_object() || !provenance.contains("config")) return {};
-  const std::string text = provenance["config"].get<std::string>();
-  return Config::from_text(text, "scene").root().section("start").text("kind").value_or("");
+  if (info.source != "simulation" || !provenance.is_object() || !provenance.contains("config") ||
+      !provenance.at("config").is_string())
+    return {};
+  const std::string text = provenance.at("config").get<std::string>();
+  try {
+    return Config::from_text(text, "scene").root().section("start").text("kind").value_or("");
+  } catch (const ConfigError&) {  // a damaged record places no run
+    return {};
+  }
 }
 
 std::string side_name(Side side) {
@@ -42,7 +49,7 @@ Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOpt
   const TrajectoryInfo& info = trajectory.info();
   if (!info.drive)
     throw InputError({.file = trajectory.name(), .key = "drive"},
-                     "the trajectory does not say how it was driven, so that it has no Gamma");
+                     "the trajectory does not state its drive, so that it has no Gamma");
   Run run;
   run.side = side;
   run.start = start_of(info);

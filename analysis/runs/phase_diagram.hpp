@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Runs of an experiment and of its simulation, placed by drive strength and put beside each other.
+/// Phase diagram: runs of experiment and simulation, ordered and matched by drive strength.
 
 #include <optional>
 #include <string>
@@ -13,29 +13,33 @@
 
 namespace twincell {
 
+/// Origin of a run.
 enum class Side { experiment, simulation };
-/// "experiment", "simulation".
+/// Name of a side: "experiment", "simulation".
 std::string side_name(Side side);
 
-/// Where a run's camera frames show its cell: (x, z) of the cell lies at (origin_x + s x, origin_y - s z) px.
+/// Position of the cell in a run's camera frames: the point (x, z) of the cell is at (origin_x + s x,
+/// origin_y - s z) px, with s = pixels_per_sigma.
 struct PictureFrame {
   double pixels_per_sigma = 0;
-  double origin_x = 0, origin_y = 0;  ///< px; of (0, 0): pixel (0, 0) has its centre there
-  int width = 0, height = 0;          ///< px
+  double origin_x = 0,
+         origin_y = 0;        ///< px; position of (0, 0); the centre of a pixel has integer coordinates
+  int width = 0, height = 0;  ///< px
 };
 
-/// What a reader sees of a run. Filled on request: frames are large.
+/// Data for displaying a run. Filled on request, because frames are large.
 struct Show {
   std::vector<Snapshot> moments;
-  std::vector<std::string> pictures;  ///< PNG of each moment, empty where none is kept; or empty
+  std::vector<std::string>
+      pictures;  ///< PNG of each snapshot, empty string if not kept; or no entries at all
   std::optional<PictureFrame> camera;
 };
 
-/// One trajectory, analysed: a point of the phase diagram.
+/// One analysed trajectory: a point of the phase diagram.
 struct Run {
   Side side = Side::simulation;
   std::string name;         ///< file name
-  std::string start;        ///< kind of start of a simulation, as in its scene; empty: not known
+  std::string start;        ///< kind of start of a simulation, as in its scene; empty: unknown
   double gamma = 0;         ///< A omega^2/g
   double k_m = 0;           ///< A^2 omega^2/(sigma g)
   double omega = 0;         ///< 1/t0
@@ -53,29 +57,29 @@ struct Run {
   Show show;
 };
 
-/// Kind of start of a simulation, by the scene that it keeps in its provenance; empty: not known.
+/// Kind of start of a simulation, from the scene in its provenance; empty if unknown.
 std::string start_of(const TrajectoryInfo& info);
 
-/// Analyses a trajectory and places it. \throws InputError if it has no drive; otherwise as `analyze`
+/// Analyses a trajectory and places it in the phase diagram. \throws InputError if it has no drive; otherwise
+/// as `analyze`
 Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOptions& options = {},
                 Progress& progress = Progress::none());
 
-/// Runs of both sides at one drive strength, as indices.
+/// Runs of both sides at one drive strength, as indices into the list of runs.
 struct Match {
   double gamma = 0;  ///< mean of the members
   std::vector<std::size_t> experiments;
   std::vector<std::size_t> simulations;
 };
 
-/// Gathers runs whose Gamma agree within `tolerance` relative (to the smallest of the group) and whose N_l
-/// agree within 10 %, in order of Gamma. A group may have members on one side only.
+/// Groups runs whose Gamma agree within the relative `tolerance` (relative to the smallest Gamma of the
+/// group) and whose N_l agree within 10 %, in order of Gamma. A group may have members on one side only.
 std::vector<Match> match_runs(const std::vector<Run>& runs, double tolerance = 0.02);
 
-/// Phase of several runs (seeds) together: theirs if they agree, else undetermined. Undetermined for none.
+/// Common phase of several runs (seeds); undetermined if they disagree or if there are no runs.
 BedPhase common_phase(const std::vector<Run>& runs, const std::vector<std::size_t>& members);
 
-/// What a reader wants to know of a match: "same", "differ", "only experiment", "only simulation",
-/// "undetermined".
+/// Verdict on the phases of a match: "same", "differ", "only experiment", "only simulation", "undetermined".
 std::string verdict(const std::vector<Run>& runs, const Match& match);
 
 }  // namespace twincell

@@ -22,63 +22,38 @@ namespace twincell {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-/// Degrees that bring a hexagonal lattice back.
+/// Rotation that maps a hexagonal lattice onto itself, degrees.
 constexpr double kTurn = 60;
 
-/// What is averaged over runs.
-enum class Rule { mean, squares, sum, angle };
-
-struct Ruled {
-  std::string_view name;
-  Rule rule;
-};
-constexpr std::array kRules = {Ruled{"s_b", Rule::squares},
-                               Ruled{"s_b_variance", Rule::squares},
-                               Ruled{"s_b_about_rest", Rule::squares},
-                               Ruled{"s_b_as_printed", Rule::squares},
-                               Ruled{"s_j", Rule::squares},
-                               Ruled{"s_c", Rule::squares},
-                               Ruled{"slips", Rule::sum},
-                               Ruled{"slip_directions", Rule::sum},
-                               Ruled{"orientation", Rule::angle}};
-
-Rule rule_of(const std::string& name) {
-  const auto found =
-      std::find_if(kRules.begin(), kRules.end(), [&](const Ruled& ruled) { return ruled.name == name; });
-  return found == kRules.end() ? Rule::mean : found->rule;
-}
-
-/// Arrays with a place for each bead.
-bool of_single_beads(const std::string& name) {
-  return name.ends_with("_beads") || name == "tracers" || name == "tracer_heights";
-}
-
+/// Circular mean with the period kTurn.
 double mean_angle(const std::vector<double>& degrees) {
   std::complex<double> sum = 0;
   for (const double a : degrees) sum += std::polar(1.0, 2 * std::numbers::pi * a / kTurn);
   return std::arg(sum) * kTurn / (2 * std::numbers::pi);
 }
 
-/// The number of which the mean over runs is taken, and back.
-double onto(Rule rule, double value, double centre) {
-  if (rule == Rule::squares) return value * value;
-  return rule == Rule::angle ? centre + std::remainder(value - centre, kTurn) : value;
+/// Transforms a value to the scale in which means over runs are taken. Angles are unwrapped to the period
+/// about `centre`.
+double onto(Pooling rule, double value, double centre) {
+  if (rule == Pooling::root_mean_square) return value * value;
+  return rule == Pooling::angle ? centre + std::remainder(value - centre, kTurn) : value;
 }
-double back(Rule rule, double value) {
-  return rule == Rule::squares ? std::sqrt(std::max(0.0, value)) : value;
+/// Inverse of `onto`; angles stay unwrapped.
+double back(Pooling rule, double value) {
+  return rule == Pooling::root_mean_square ? std::sqrt(std::max(0.0, value)) : value;
 }
 
-/// The scalar values of those runs that have one.
+/// The scalar values of the runs that have one.
 struct Values {
-  std::vector<double> values;                 ///< in the scale in which means are taken
-  std::vector<std::optional<double>> errors;  ///< standard errors behind the runs' own intervals, same scale
-  std::vector<std::string> methods;           ///< of those intervals
+  std::vector<double> values;                 ///< on the scale in which means are taken
+  std::vector<std::optional<double>> errors;  ///< standard errors from the runs' own intervals, same scale
+  std::vector<std::string> methods;           ///< methods of those intervals
 };
 
-Values values_of(const std::vector<const Result*>& runs, Rule rule) {
+Values values_of(const std::vector<const Result*>& runs, Pooling rule) {
   std::vector<double> plain;
   for (const Result* r : runs) plain.push_back(r->value());
-  const double centre = rule == Rule::angle ? mean_angle(plain) : 0;
+  const double centre = rule == Pooling::angle ? mean_angle(plain) : 0;
   Values v;
   for (const Result* r : runs) {
     v.values.push_back(onto(rule, r->value(), centre));
@@ -100,7 +75,8 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// How runs scatter, and how well each is known.
+/// Interval from the scatter between runs, widened to the uncertainties of the single runs. Absent if the
+/// runs agree and have no uncertainty.
 std::optional<Interval> interval_over_runs(const Values& v) {
   const std::size_t n = v.values.size();
   const double centre = mean(v.values), count = static_cast<double>(n);
@@ -116,11 +92,11 @@ std::optional<Interval> interval_over_runs(const Values& v) {
   if (interval->low <= centre - half_own && interval->high >= centre + half_own) return interval;
   interval->low = std::min(interval->low, centre - half_own);
   interval->high = std::max(interval->high, centre + half_own);
-  interval->method += fmt::format(", widened to what each run's own interval allows ({})", v.methods.front());
+  interval->method += fmt::format(", widened to the runs' own intervals ({})", v.methods.front());
   return interval;
 }
 
-/// How many runs have it, and how one of them made it.
+/// Convention of a pooled result: how many runs have it, and the convention of the first of them.
 std::string convention_of(const std::vector<const Result*>& with, std::size_t runs, const std::string& how) {
   const std::string part = with.size() == runs
                                ? fmt::format("{} runs", runs)
@@ -149,26 +125,27 @@ Result pooled_word(const std::vector<const Result*>& with, std::size_t runs) {
 
 Result pooled_scalar(const std::vector<const Result*>& with, const std::vector<double>& of_runs) {
   const Result& first = *with.front();
-  const Rule rule = rule_of(first.name);
+  const Pooling rule = named_result(first.name).pooling;
   Result r{.name = first.name, .unit = first.unit, .n = with.size(), .n_of = "runs"};
   r.of_runs = of_runs;
   r.source = first.source;
   const Values v = values_of(with, rule);
-  if (rule == Rule::sum) {
+  if (rule == Pooling::sum) {
     r.values = {mean(v.values) * static_cast<double>(with.size())};
     r.convention = convention_of(with, of_runs.size(), "sum");
     r.no_interval = "a count, exact";
     return r;
   }
   r.values = {back(rule, mean(v.values))};
-  r.convention = convention_of(with, of_runs.size(), rule == Rule::squares ? "root mean square" : "mean");
+  r.convention =
+      convention_of(with, of_runs.size(), rule == Pooling::root_mean_square ? "root mean square" : "mean");
   if (with.size() == 1) {
     r.interval = first.interval;
     r.no_interval = first.no_interval;
     if (r.interval) r.interval->method += ", of the only run that has it";
     return r;
   }
-  const bool is_probability = first.name == "p_s";
+  const bool is_probability = rule == Pooling::probability;
   if (is_probability && *std::max_element(v.values.begin(), v.values.end()) == 0) {
     double trials = 0;
     for (const Result* run : with) trials += static_cast<double>(run->n);
@@ -192,8 +169,8 @@ Result pooled_scalar(const std::vector<const Result*>& with, const std::vector<d
 
 Result pooled_array(const std::vector<const Result*>& with, std::size_t runs) {
   const Result& first = *with.front();
-  if (of_single_beads(first.name))
-    return absent_result(first.name, "values of single beads: the beads of another run are other beads",
+  if (named_result(first.name).pooling == Pooling::per_bead)
+    return absent_result(first.name, "values of single beads: the beads of different runs do not correspond",
                          first.source);
   std::vector<std::size_t> shape = first.shape;
   bool cut = false;
@@ -203,7 +180,7 @@ Result pooled_array(const std::vector<const Result*>& with, std::size_t runs) {
     cut = cut || r->shape.front() != shape.front();
     shape.front() = std::min(shape.front(), r->shape.front());
   }
-  const Rule rule = rule_of(first.name);
+  const Pooling rule = named_result(first.name).pooling;
   Result r{.name = first.name, .shape = shape, .unit = first.unit, .n = with.size(), .n_of = "runs"};
   std::size_t size = 1;
   for (const std::size_t s : shape) size *= s;
@@ -211,31 +188,26 @@ Result pooled_array(const std::vector<const Result*>& with, std::size_t runs) {
     std::vector<double> of_element;
     for (const Result* run : with)
       if (std::isfinite(run->values[e])) of_element.push_back(onto(rule, run->values[e], 0));
-    const double scale = rule == Rule::sum ? static_cast<double>(of_element.size()) : 1;
+    const double scale = rule == Pooling::sum ? static_cast<double>(of_element.size()) : 1;
     r.values.push_back(of_element.empty() ? kNaN : back(rule, scale * mean(of_element)));
   }
   r.convention = convention_of(with, runs,
-                               rule == Rule::squares ? "root mean square"
-                               : rule == Rule::sum   ? "sum"
-                                                     : "mean");
+                               rule == Pooling::root_mean_square ? "root mean square"
+                               : rule == Pooling::sum            ? "sum"
+                                                                 : "mean");
   if (cut) r.convention += fmt::format("; up to the end of the shortest, {}", shape.front());
-  r.no_interval = "an array: one value for each element";
+  r.no_interval = "no interval is computed for the elements of an array";
   r.source = first.source;
   return r;
 }
 
-/// Whether a number can be the same in two runs by chance: a count, or a share of few counts.
+/// Whether a number may be equal in two runs by chance: a count, or a ratio of small counts.
 bool may_recur(double value) {
   constexpr int kLargest = 1000;
   if (!std::isfinite(value)) return true;
   for (int q = 1; q <= kLargest; ++q)
     if (std::abs(value * q - std::round(value * q)) <= 1e-11 * std::abs(value * q)) return true;
   return false;
-}
-
-/// Of counts, or of the camera alone.
-bool recurs(const std::string& name) {
-  return name.starts_with("p_s") || name.starts_with("slip") || name == "half_pixel";
 }
 
 bool same_run(const std::vector<Result>& a, const std::vector<Result>& b) {
@@ -247,7 +219,8 @@ bool same_run(const std::vector<Result>& a, const std::vector<Result>& b) {
     if (other == nullptr || r.text != other->text || r.values.size() != other->values.size() ||
         !std::equal(r.values.begin(), r.values.end(), other->values.begin(), same))
       return false;
-    told = told || (!recurs(r.name) && !std::all_of(r.values.begin(), r.values.end(), may_recur));
+    told = told ||
+           (!named_result(r.name).may_repeat && !std::all_of(r.values.begin(), r.values.end(), may_recur));
   }
   return told;
 }
@@ -271,7 +244,7 @@ std::vector<Result> pool(const std::vector<std::vector<Result>>& runs) {
     if (first[i] != i)
       throw ConfigError({.file = {}, .key = "runs"},
                         fmt::format("runs {} and {} are the same run, to the last digit; another seed or "
-                                    "repeat is needed to see its scatter",
+                                    "repeat is needed to measure the scatter",
                                     first[i] + 1, i + 1));
   std::vector<Result> pooled;
   for (const Result& like : runs.front()) {
@@ -324,6 +297,7 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
                fmt::format("{} is {:.6g} there, {:.6g} here; at most {:g} % apart", what, of_a, of_b,
                            100 * tolerance));
     };
+    // Conditions: every run is compared with the first one.
     words("source:", p.source, q.source);
     numbers("the dimension", p.box.dimension, q.box.dimension, 0);
     numbers("the number of phases per cycle", p.phases_per_cycle, q.phases_per_cycle, 0);
@@ -336,6 +310,7 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
     numbers("the number of beads", static_cast<double>(ends[0].first.n_present()),
             static_cast<double>(ends[i].first.n_present()), kSameBeads);
     words("start:", start_of(p), start_of(q));
+    // Repeats: first and last frames that agree in every coordinate are those of the same run.
     for (std::size_t k = 0; k < i; ++k) {
       const auto same = [](const Frame& f, const Frame& g) {
         return f.position.size() == g.position.size() &&
@@ -345,7 +320,8 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
       if (trajectories[k]->n_frames() == b.n_frames() && same(ends[k].first, ends[i].first) &&
           same(ends[k].last, ends[i].last))
         refuse(*trajectories[k], b,
-               "both hold the same run, bead for bead; another seed or repeat is needed to see its scatter");
+               "both contain the same run, bead for bead; another seed or repeat is needed to measure the "
+               "scatter");
     }
   }
 }

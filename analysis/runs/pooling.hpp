@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Several runs of one bed that differ by chance alone (seeds, repeats of an experiment), as one measurement.
+/// Pooling: several runs of one bed that differ by chance alone (seeds, repeats of an experiment) as one
+/// measurement.
 
 #include <string>
 #include <vector>
@@ -9,28 +10,33 @@
 
 namespace twincell {
 
-/// The results of all runs together, in the order of the first.
+/// The pooled results of all runs, in the order of the first run.
 ///
-/// A number is the mean over the runs that have it, each counting once: beds are what differs by chance, not
-/// cycles. s_b and s_c are means of squares and pooled as squares; counts (slips, slip_directions) are added;
-/// the orientation is the mean angle of a lattice that 60 degrees bring back. The 95 % interval is that of a
-/// mean of independent runs: Student's t over 2 to 5 runs, bootstrap (studentised) over 6 and more, and not
-/// narrower than the runs' own intervals (over their tracers or cycles) allow when they are taken together.
-/// No slip in any run: exact binomial over the trials of all. A word (phase, drift) is that of most runs,
-/// with the counts; absent if two words tie. Arrays are pooled element by element, those of different length
-/// up to the end of the shortest; values of single beads are not pooled, for they are other beads in each
-/// run. `n` counts runs, `of_runs` holds the value of each (NaN where a run has none). \pre runs is not empty
-/// \throws ConfigError if one run repeats another (repeated_runs)
+/// - Numbers: the mean over the runs that have the number. Each run has the same weight, because the
+///   independent samples are the beds, not the cycles. s_b, s_j and s_c are root mean squares and are pooled
+///   as squares. Counts (slips, slip_directions) are added. The orientation is the mean angle, with a period
+///   of 60 degrees
+/// - Intervals: the 95 % interval of a mean of independent runs, by Student's t for 2 to 5 runs and by the
+///   studentised bootstrap for 6 or more. It is widened, if necessary, to the combined own intervals of the
+///   runs (over their tracers or cycles). Without a slip in any run, the interval of p_s is exact binomial
+///   over the trials of all runs
+/// - Words (phase, drift): the word of most runs, with the counts; absent if two words tie
+/// - Arrays: pooled element by element, up to the end of the shortest. Values of single beads are not pooled,
+///   because the beads of different runs do not correspond
+///
+/// `n` is the number of runs, and `of_runs` has the value of each run (NaN if a run has none).
+/// \pre runs is not empty \throws ConfigError if one run repeats another (repeated_runs)
 std::vector<Result> pool(const std::vector<std::vector<Result>>& runs);
 
-/// For each run the index of the first one whose results are the same to the last bit, itself if none is: the
-/// same run given twice, or a seed that changes nothing. Runs may agree by chance in counts and in shares of
-/// counts, so that only runs with a number that is no fraction of small integers are told to be the same.
+/// For each run, the index of the first run whose results are identical to the last bit, or its own index if
+/// there is no such run. Identical results mean that the same run was given twice, or that a seed has no
+/// effect. Different runs may agree by chance in counts and ratios of counts; runs therefore count as
+/// identical only if they share at least one number that is not a fraction of small integers.
 std::vector<std::size_t> repeated_runs(const std::vector<std::vector<Result>>& runs);
 
-/// Refuses runs that cannot be pooled. \throws ConfigError naming two of them and what tells them apart:
-/// source, dimension, Gamma, omega or width (2 %), number of beads (10 %), phases per cycle, kind of start;
-/// or that both hold the same run, bead for bead \pre every trajectory has frames
+/// Rejects runs that cannot be pooled. \throws ConfigError with the names of two runs and the property in
+/// which they differ: source, dimension, Gamma, omega or width (2 %), number of beads (10 %), phases per
+/// cycle, kind of start; or if both contain the same run, bead for bead \pre every trajectory has frames
 void require_one_condition(const std::vector<const TrajectorySource*>& trajectories);
 
 }  // namespace twincell

@@ -15,25 +15,27 @@ namespace twincell {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Maximum number of stored means of consecutive values.
 constexpr std::size_t kCoarse = 4096;
-/// Numbers that differ by less, relative to their size, differ by rounding.
+/// Relative difference below which two numbers are equal up to rounding.
 constexpr double kSame = 1e-12;
-/// What rounding leaves of the variance of equal numbers, over their square: they are summed.
+/// Upper bound of the ratio variance/mean^2 that rounding leaves when equal numbers are accumulated.
 constexpr double kRounding = 1e-13;
-/// Few long blocks: a shaken gas breathes, and what it was 18 cycles ago it is again when the first zero of
-/// its correlation is long past. With 20 blocks, disjoint, 81 to 87 % of intervals of such series (N = 2,
-/// W = 22, 143 to 600 cycles) held the mean.
+/// Few long blocks, because a shaken gas has slow breathing modes: it is correlated with its state 18 cycles
+/// earlier, long after the first zero of its correlation function. With 20 disjoint blocks, only 81 to 87 %
+/// of the intervals of such series (N = 2, W = 22, 143 to 600 cycles) contained the mean.
 constexpr std::size_t kMaxBlocks = 8;
 constexpr std::size_t kMinBlocks = 5;
+/// Minimum length of a block, in correlation times.
 constexpr double kBlockTimes = 5;
-/// Degrees of freedom of overlapping blocks over those of disjoint ones.
+/// Degrees of freedom of overlapping blocks, relative to disjoint blocks.
 constexpr double kOverlap = 1.2;
-/// Below this a short series shows no correlation; its values are blocks of their own.
+/// Correlation time below which a short series is treated as uncorrelated, so that each value may be a block.
 constexpr double kUncorrelated = 0.65;
 
-/// From this many items on the interval is a bootstrap over items; Student's t below it, where a resample has
-/// too few items to choose from. Of normal values t covers 95 % at every number; of exponentially distributed
-/// ones it covers 87 % of the means of 6, the bootstrap 94 %.
+/// Minimum number of items for a bootstrap. Below it the interval is Student's t, because resamples of so few
+/// items have too little variety. For normally distributed values Student's t has 95 % coverage at every
+/// number of items. For 6 exponentially distributed values its coverage is 87 %, that of the bootstrap 94 %.
 constexpr std::size_t kItemsToResample = 6;
 
 double mean_of(const std::vector<double>& x) {
@@ -64,7 +66,7 @@ double correlation_time(const std::vector<double>& series) {
     return sum / static_cast<double>(n - lag);
   };
   const double variance = covariance(0);
-  // A series that is constant to the last digits has no correlation to speak of.
+  // The correlation of a series that is constant up to rounding is meaningless.
   if (variance <= 1e-28 * mean * mean) return 0.5;
   double tau = 0.5;
   std::size_t window = 1;
@@ -87,6 +89,7 @@ void BlockAverage::add(double value) {
   coarse_.push_back(open_sum_ / static_cast<double>(coarse_length_));
   open_sum_ = 0;
   open_count_ = 0;
+  // When the buffer is full, adjacent means are merged, so that the memory stays constant.
   if (coarse_.size() < kCoarse) return;
   for (std::size_t b = 0; b < kCoarse / 2; ++b) coarse_[b] = (coarse_[2 * b] + coarse_[2 * b + 1]) / 2;
   coarse_.resize(kCoarse / 2);
@@ -104,7 +107,8 @@ double BlockAverage::variance() const {
 double BlockAverage::correlation_time() const {
   const double coarse = twincell::correlation_time(coarse_);
   if (coarse_length_ == 1 || !(variance() > 0)) return coarse;
-  // The variance of the mean is the same number seen in either series.
+  // The variance of the mean is the same in the coarse and in the full series, which gives tau of the full
+  // one.
   const double centre = mean_of(coarse_);
   double squares = 0;
   for (const double block : coarse_) squares += (block - centre) * (block - centre);
@@ -141,9 +145,9 @@ bool BlockAverage::all_the_same() const {
 }
 
 bool BlockAverage::has_no_scatter() const {
-  if (all_the_same()) return true;  // rounding looks correlated, so that no block would be long enough
+  if (all_the_same()) return true;  // rounding errors are correlated, so that no block would be long enough
   const std::size_t length = block_length();
-  // A mean that is zero by cancellation has the values' own size as its scale.
+  // The variance enters the scale because the mean may be zero by cancellation.
   return length > 0 && !(half_width(length) > kSame * std::sqrt(mean_ * mean_ + variance()));
 }
 
@@ -160,22 +164,24 @@ double BlockAverage::half_width(std::size_t length) const {
   }
   const auto m = static_cast<double>(length), all = static_cast<double>(n);
   const double of_coarse = m * squares / ((all - m + 1) * (all - m));
-  // Neighbouring blocks still share a little: for exponential correlation the variance of their means falls
-  // short by (tau - 1/(4 tau))/length.
+  // Adjacent blocks are still weakly correlated: for exponential correlation the variance of their means is
+  // too small by the fraction (tau - 1/(4 tau))/length.
   const std::size_t values = length * coarse_length_;
   const double tau = correlation_time();
   const double shared = (tau - 1 / (4 * tau)) / static_cast<double>(values);
   const double error = std::sqrt(of_coarse * all * static_cast<double>(coarse_length_) /
                                  static_cast<double>(n_) / (1 - shared));
-  // Overlapping blocks tell half as much again as disjoint ones, but the correlation time that made them is
-  // uncertain too: with half as many degrees again, 88 to 93 % of intervals of 40 values held the mean.
+  // Overlapping blocks have 1.5 times the degrees of freedom of disjoint blocks, but the correlation time
+  // that sets their length is uncertain too. With the factor 1.5, only 88 to 93 % of the intervals of 40
+  // values contained the mean.
   const double degrees = static_cast<double>(count - 1) * (length > 1 ? kOverlap : 1);
   return student_t_95(degrees) * error;
 }
 
-/// By how much the interval lies above the mean rather than about it, in standard errors: a few values of a
-/// skewed distribution show a mean that is too low together with a scatter that is too small. The second term
-/// of the Edgeworth series of Student's t (Hall 1992), (2 z^2 + 1)/6 times the skewness of the mean.
+/// Upward shift of the interval's centre from the mean, in standard errors. In a small sample from a
+/// distribution with positive skewness, a mean that is too low comes with a scatter that is too small. The
+/// shift is the second term of the Edgeworth series of Student's t (Hall 1992), (2 z^2 + 1)/6 times the
+/// skewness of the mean.
 double BlockAverage::lift() const {
   if (n_ < 3) return 0;
   const auto n = static_cast<double>(n_);
@@ -187,7 +193,7 @@ std::optional<Interval> BlockAverage::interval(const std::string& of_what) const
   const std::size_t length = block_length();
   if (length == 0 || has_no_scatter()) return std::nullopt;
   const double half = half_width(length);
-  // The mean stays well inside.
+  // The limit keeps the mean well inside the interval.
   const double lifted = mean() + half * std::clamp(lift() / kStandardErrors, -0.5, 0.5);
   return Interval{
       lifted - half, lifted + half, 0.95,
@@ -204,6 +210,7 @@ std::optional<Interval> bootstrap_interval(
   const double value = statistic(pick);
   if (!std::isfinite(value)) return std::nullopt;
 
+  // Jackknife: leaving out one item at a time gives the acceleration.
   std::vector<double> left_out;
   for (std::size_t i = 0; i < n; ++i) {
     std::vector<std::size_t> others;
@@ -223,6 +230,7 @@ std::optional<Interval> bootstrap_interval(
     if (second > 0) acceleration = third / (6 * std::pow(second, 1.5));
   }
 
+  // Bootstrap: the statistic of random resamples.
   std::mt19937_64 generator(seed);
   std::vector<double> values;
   values.reserve(resamples);
@@ -233,6 +241,7 @@ std::optional<Interval> bootstrap_interval(
   }
   if (values.size() < 40) return std::nullopt;
   std::sort(values.begin(), values.end());
+  // Bias correction: the share of resamples below the value sets the shift of the quantiles.
   const auto count = static_cast<double>(values.size());
   const auto below =
       static_cast<double>(std::lower_bound(values.begin(), values.end(), value) - values.begin());
@@ -247,10 +256,10 @@ std::optional<Interval> bootstrap_interval(
     return values[static_cast<std::size_t>(std::lround(normal_cdf(shift + stretched) * (count - 1)))];
   };
   const Interval interval{at(-wide), at(wide), 0.95, "bootstrap over " + of_what};
-  // What differs by rounding alone does not scatter.
+  // Differences due to rounding alone are not scatter.
   if (interval.high - interval.low <= 1e-12 * std::abs(value)) return std::nullopt;
   if (interval.low <= value && value <= interval.high) return interval;
-  // Resamples that all lie on one side tell nothing of how far the value may be off on the other.
+  // Resamples that are all on one side give no bound on the other side: the jackknife error replaces it.
   if (left_out.size() != n) return std::nullopt;
   const double centre = mean_of(left_out);
   double squares = 0;
@@ -288,8 +297,8 @@ std::optional<Interval> mean_interval(const std::vector<double>& items, const st
     if (its_error > 1e-9 * error) t.push_back((again - mean) / its_error);
   }
   const std::string method = "bootstrap (studentised) over " + of_what;
-  // A few items show less skewness than their distribution has: without this, 20 squares of Gaussians are
-  // covered to 93.8 %.
+  // A few items show less skewness than their distribution has. Without this factor, the coverage for 20
+  // squares of Gaussians is 93.8 %.
   const double wide = error * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 2));
   if (t.size() < 40) return std::nullopt;
   std::sort(t.begin(), t.end());
@@ -308,7 +317,8 @@ std::string why_no_mean_interval(const std::vector<double>& items, const std::st
   const auto [least, largest] = std::minmax_element(items.begin(), items.end());
   if (*largest - *least <= kSame * static_cast<double>(n) * std::abs(*largest))
     return fmt::format("the same in all {} {}", n, of_what);
-  return fmt::format("the {} {} scatter too little beside their size to be resampled", n, of_what);
+  return fmt::format("the {} {} scatter too little, relative to their magnitude, for a bootstrap", n,
+                     of_what);
 }
 
 Interval binomial_interval(double successes, double trials, const std::string& of_what) {

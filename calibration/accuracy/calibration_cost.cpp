@@ -41,7 +41,7 @@ Frame frame_at(int f, const TrajectoryInfo& info) {
   return frame;
 }
 
-/// The first pictures of a film.
+/// The first n pictures of a film.
 class Pictures : public FrameSource {
  public:
   Pictures(const std::vector<cv::Mat>& all, int n) : all_(all), n_(static_cast<std::size_t>(n)) {}
@@ -58,7 +58,7 @@ class Pictures : public FrameSource {
   std::size_t n_, at_ = 0;
 };
 
-/// Heights of a bead dropped from 4 sigma onto a plate at rest, located to 0.005 sigma, 50 frames a t0.
+/// Heights of a bead that is dropped from 4 sigma onto a plate at rest; noise 0.005 sigma, 50 frames per t0.
 std::vector<BounceSample> bouncing_bead(int n) {
   constexpr double kDrop = 4, kStep = 0.02, kNoise = 0.005;
   RandomStream noise(1, Chance::noise, n);
@@ -117,7 +117,7 @@ CalibrationCost measure_calibration(const std::vector<int>& frames, Progress& pr
     add("camera.period", "frames", lock.period_error, lock.period - kPhases);
     add("camera.phase_offset", "frames", lock.phase_offset_error, lock.phase_offset);
     add("beads.diameter", "px", census.diameter.error, census.diameter.value - kScale);
-    // The first impact comes after 141 frames.
+    // The first impact occurs after 141 frames; shorter films do not show enough impacts for a restitution.
     if (n >= 300) {
       const BounceFit bounce = fit_bounces(bouncing_bead(n));
       add("contact.wall.restitution", "1", bounce.restitution_error, bounce.restitution - kRestitution);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What calibration is worth and costs: errors of every number against frames used and time, on frames whose
-/// truth is known.
+/// Accuracy and cost of a calibration: error and processor time against the number of frames, measured on
+/// synthetic frames whose parameters are known.
 
 #include <string>
 #include <vector>
@@ -10,21 +10,21 @@
 
 namespace twincell {
 
-/// One number from so many frames.
+/// One calibrated number, obtained from `frames` frames.
 struct CalibrationPrecision {
   std::string name;  ///< "drive.amplitude"
   std::string unit;
   int frames = 0;
-  double stated = 0;  ///< standard error as stated
-  double actual = 0;  ///< value minus truth
+  double stated = 0;  ///< standard error that the calibration reports
+  double actual = 0;  ///< actual error: value minus truth
 };
 
-/// What it took.
+/// Processor time of one calibration.
 struct CalibrationTime {
   int frames = 0;
-  double edges_s = 0;  ///< processor time of reading edges from the pictures (without reading files)
-  double fit_s = 0;    ///< of all fits to them
-  double beads_s = 0;  ///< of locating the beads of up to twelve frames
+  double edges_s = 0;  ///< finding the edges in the pictures, without reading files
+  double fit_s = 0;    ///< all fits to the edges
+  double beads_s = 0;  ///< locating the beads of up to twelve frames
 };
 
 struct CalibrationCost {
@@ -33,9 +33,11 @@ struct CalibrationCost {
   std::vector<CalibrationTime> times;
 };
 
-/// A crystal of 12 x 6 beads that rides on a plate (Gamma = 0.9, 20 frames a cycle, 14.3 px a bead), filmed
-/// with the synthetic camera's defaults and then calibrated from the first n frames, for each n. A bead that
-/// bounces is filmed with the same number of frames. \param frames each at least 20, rising
+/// Measures the accuracy and cost of a calibration. The synthetic camera, with its default options, films a
+/// crystal of 12 x 6 beads that rides on a plate (Gamma = 0.9, 20 frames per cycle, 14.3 px per bead). For
+/// each n in `frames` the calibration uses the first n frames. The restitution comes from the synthetic
+/// heights of a bouncing bead, with the same number of frames. \param frames frame counts, each at least 20,
+/// in rising order
 CalibrationCost measure_calibration(const std::vector<int>& frames, Progress& progress = Progress::none());
 
 }  // namespace twincell

@@ -15,10 +15,11 @@
 namespace twincell {
 namespace {
 
-constexpr double kSlice = 0.5;  // sigma
-constexpr std::size_t kFewest = 20;
+constexpr double kSlice = 0.5;       // sigma
+constexpr std::size_t kFewest = 20;  // beads that a slice needs
 
-/// Height and outermost place of each slice; `sign` -1: the left wall.
+/// Height and outermost surface position of each slice. \param sign -1 for the left wall, +1 for the right
+/// wall
 std::vector<DataPoint> outermost_places(const std::map<long, std::vector<std::pair<double, double>>>& slices,
                                         double sign) {
   std::vector<DataPoint> points;
@@ -59,7 +60,7 @@ BeadWalls walls_from_beads(const TrajectorySource& trajectory) {
   if (l.size() < 3 || r.size() < 3)
     throw InputError(
         {.file = trajectory.name(), .key = {}},
-        fmt::format("has beads enough at {} heights of the left and {} of the right wall; 3 are needed.",
+        fmt::format("has enough beads at {} heights of the left and {} of the right wall; 3 are needed.",
                     l.size(), r.size()));
   const CurveFit a = fit_curve(law_named("line"), l), b = fit_curve(law_named("line"), r);
   const auto degrees = [](double slope, double error) {

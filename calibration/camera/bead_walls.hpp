@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Side walls from the beads that lean on them, where only a trajectory is left.
+/// Side walls of a cell from the beads that touch them, for trajectories without the original frames.
 
 #include <cstddef>
 
@@ -8,18 +8,20 @@
 
 namespace twincell {
 
-/// Walls x = x_left - tan(tilt_left) z and x = x_left + width + tan(tilt_right) z; lengths in sigma, degrees
-/// outward, z from the plate.
+/// Walls x = x_left - tan(tilt_left) z and x = x_left + width + tan(tilt_right) z. Lengths are in sigma,
+/// tilts in degrees outward, and z counts from the plate.
 struct BeadWalls {
   double x_left = 0, x_left_error = 0, x_right_error = 0;
   double width = 0, width_error = 0;
   double tilt_left = 0, tilt_left_error = 0, tilt_right = 0, tilt_right_error = 0;
-  std::size_t rows = 0;  ///< heights at which beads leaned on a wall, the fewer of both sides
+  std::size_t rows = 0;  ///< slices with enough beads at a wall; the smaller number of the two sides
 };
 
-/// In slices of half a bead's height, the outermost places of the beads' surfaces over all frames: the mean
-/// of the outermost hundredth (at least three). A wall that is never touched is put where beads came nearest,
-/// which is inside it. \throws InputError if fewer than three slices hold beads enough
+/// Fits one straight line per wall. Beads are sorted into slices of height 0.5 sigma. In each slice with at
+/// least 20 beads, the point of the wall is the mean position of the outermost hundredth (at least three) of
+/// the beads' surfaces over all frames. If no bead touches a wall, the fitted wall is at the closest approach
+/// of the beads, which is inside the true wall. \throws InputError if fewer than three slices of a side have
+/// enough beads
 BeadWalls walls_from_beads(const TrajectorySource& trajectory);
 
 }  // namespace twincell

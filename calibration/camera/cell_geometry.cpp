@@ -21,12 +21,14 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::size_t kWallFrames = 40;   // frames whose walls are read
-constexpr std::size_t kPlateFrames = 40;  // frames whose plates tell turn and bend
-constexpr double kWindow_px = 0.6;        // within which points are of one edge
-constexpr double kWorstSigma = 4;         // beyond it a point is not of the edge
+constexpr std::size_t kWallFrames = 40;  // frames in which the walls are searched
+constexpr std::size_t kPlateFrames =
+    40;                             // frames whose plate points enter the fit of rotation and distortion
+constexpr double kWindow_px = 0.6;  // width of the window in which points belong to one edge
+constexpr double kWorstSigma = 4;   // points beyond it do not belong to the edge
 
-/// A point seen along an edge: u along, v across, larger v further inside the cell.
+/// An edge point in the edge's coordinates: u along, v across the edge; v increases towards the cell's
+/// interior.
 struct Along {
   double u, v;
 };
@@ -38,13 +40,15 @@ struct Line {
   [[nodiscard]] double distance(const Along& p) const { return p.v - offset - slope * p.u; }
 };
 
-/// The outermost window in which at least `need` of the sorted values lie: its median and their number.
+/// Median and count of the outermost window of width kWindow_px that contains at least `need` of the sorted
+/// values; {0, 0} if there is no such window.
 std::pair<double, std::size_t> outermost(const std::vector<double>& sorted, std::size_t need) {
   for (std::size_t a = 0, b = 0; a < sorted.size(); ++a) {
     b = std::max(b, a);
     while (b < sorted.size() && sorted[b] <= sorted[a] + kWindow_px) ++b;
     if (b - a < need) continue;
-    // The first window that is full enough may have caught only the edge's near half.
+    // The first window with enough points may contain only the outer half of the edge, so take the fullest
+    // window that begins within one window width of it.
     std::size_t best = b - a, at = a;
     for (std::size_t c = a, e = b; c < sorted.size() && sorted[c] <= sorted[a] + kWindow_px; ++c) {
       while (e < sorted.size() && sorted[e] <= sorted[c] + kWindow_px) ++e;
@@ -55,6 +59,7 @@ std::pair<double, std::size_t> outermost(const std::vector<double>& sorted, std:
   return {0, 0};
 }
 
+/// Outermost line that at least `share` of the points follow, by a scan over slopes within +-steepest.
 std::optional<Line> outermost_line(std::vector<Along> points, double steepest, double share) {
   constexpr std::size_t kMost = 400;
   if (points.size() > kMost) {
@@ -75,7 +80,7 @@ std::optional<Line> outermost_line(std::vector<Along> points, double steepest, d
     for (std::size_t i = 0; i < points.size(); ++i) r[i] = points[i].v - slope * (points[i].u - middle);
     std::sort(r.begin(), r.end());
     const auto [offset, support] = outermost(r, need);
-    // A tie goes to the line that is less steep.
+    // If two slopes have equal support, take the less steep line.
     if (support > best.support || (support == best.support && std::abs(slope) < std::abs(best.slope)))
       best = {slope, offset - slope * middle, support};
   }
@@ -88,7 +93,7 @@ double spread_of(std::vector<double> r) {
   return r.empty() ? 0 : 1.4826 * upper_median(std::move(r));
 }
 
-/// Ideal place of a point of the picture; the formulae of Lens, for Ceres' numbers.
+/// Position of a picture point in the ideal picture: the formulas of Lens, templated for Ceres.
 template <class T>
 void ideal(const T& rotation_deg, const T& k1, double x, double y, cv::Size size, T* out) {
   const double mx = 0.5 * (size.width - 1), my = 0.5 * (size.height - 1),
@@ -102,7 +107,7 @@ void ideal(const T& rotation_deg, const T& k1, double x, double y, cv::Size size
   out[1] = my + shrink * (s * u + c * v);
 }
 
-/// Which parameter is where; -1: not fitted, 0.
+/// Index of each parameter in the parameter vector; -1: not fitted, its value is 0.
 struct Places {
   int x_left = -1, tilt_left = -1, x_right = -1, tilt_right = -1, rotation = -1, distortion = -1;
   std::vector<std::string> names;
@@ -116,8 +121,8 @@ T value_at(const T* p, int place) {
   return place < 0 ? T(0.0) : p[place];
 }
 
-/// Distance of a wall's point from its line, over `error`. plate_row is held: the walls' feet are counted
-/// from it.
+/// Distance of a wall point from its line, divided by `error`. plate_row, from which the walls' heights
+/// count, is constant.
 struct WallResidual {
   PixelPoint at;
   double error, plate_row;
@@ -137,7 +142,7 @@ struct WallResidual {
   }
 };
 
-/// Rows of one frame's plate about their mean: the plate's height drops out.
+/// Rows of one frame's plate points relative to their mean, so that the plate's height cancels.
 struct PlateResidual {
   std::vector<PixelPoint> at;
   double error;
@@ -170,15 +175,15 @@ Along along_of(const PixelPoint& p, int side) {
   return side == 0 ? Along{p.y_px, p.x_px} : side == 1 ? Along{p.y_px, -p.x_px} : Along{p.x_px, -p.y_px};
 }
 
-/// A wall's place in a row: the mean of `frames` of them.
+/// Position of a wall in one picture row, averaged over `frames` frames.
 struct WallRow {
   PixelPoint at;
   double frames = 1;
-  std::vector<std::size_t> seen = {};  // in these: beads and plate hide a row in some phases only
-  double floor = 0;                    // mean row of the plate in them, ideal picture
+  std::vector<std::size_t> seen = {};  // these frames; beads and plate hide a row at some phases
+  double floor = 0;                    // mean row of the plate in these frames, ideal picture
 };
 
-/// One point a row: the mean over the frames of what lies on the wall.
+/// One point per picture row: the mean over the frames of the points on the wall.
 std::vector<WallRow> rows_of_wall(const std::vector<std::vector<EdgePoint>>& frames, int side) {
   constexpr double kSteepest = 0.25;
   std::vector<Along> all;
@@ -187,7 +192,7 @@ std::vector<WallRow> rows_of_wall(const std::vector<std::vector<EdgePoint>>& fra
   const auto line = outermost_line(all, kSteepest, 0.05);
   std::vector<WallRow> rows;
   if (!line) return rows;
-  // A bent wall leaves the straight line: a parabola follows it, in a window that closes about it.
+  // Distortion curves the wall, so a parabola is fitted in a window that narrows with each round.
   Eigen::Vector3d bend(line->offset, line->slope, 0);
   double middle = 0;
   const auto distance = [&](const Along& p) {
@@ -226,7 +231,7 @@ std::vector<WallRow> rows_of_wall(const std::vector<std::vector<EdgePoint>>& fra
       ++row.frames;
     }
   for (auto& [y, row] : sums) {
-    // A row that few frames show is one that beads hide most of the time.
+    // Skip rows that are detected in less than a quarter of the frames: beads hide them most of the time.
     if (row.frames * 4 < static_cast<double>(frames.size())) continue;
     row.at.x_px /= row.frames;
     rows.push_back(std::move(row));
@@ -234,7 +239,7 @@ std::vector<WallRow> rows_of_wall(const std::vector<std::vector<EdgePoint>>& fra
   return rows;
 }
 
-/// The plate's points in a frame; `line` says its slope.
+/// Points of the plate's edge in one frame: those within `window` of the outermost line with the given slope.
 std::vector<PixelPoint> on_plate(const std::vector<EdgePoint>& frame, double slope, double window) {
   std::vector<double> r;
   for (const EdgePoint& p : frame) r.push_back(along_of(p.at, 2).v - slope * p.at.x_px);
@@ -249,7 +254,7 @@ std::vector<PixelPoint> on_plate(const std::vector<EdgePoint>& frame, double slo
   return points;
 }
 
-/// Rows of the plate in the ideal picture: its place and error from the points' own scatter.
+/// Height of the plate in the ideal picture, with its standard error from the scatter of the points.
 PlateSighting sighting(const std::vector<PixelPoint>& points, double rotation_deg, double k1, cv::Size size) {
   PlateSighting s{.height_px = kNaN, .sigma_px = kNaN, .points = 0};
   std::vector<double> rows;
@@ -295,9 +300,10 @@ FitReport solve_geometry(const Chosen& c, const Places& places, std::vector<doub
   return solve(problem, p.data(), places.names, residuals);
 }
 
-/// By how much the squared error of a mean of residuals is larger than if each were by itself: what stands in
-/// the light beside an edge, a bead, a speck of dust, moves the points of one block alike. `block` numbers
-/// them; `fitted` numbers were taken from all.
+/// Factor by which the squared error of a mean of residuals exceeds that of independent residuals. An object
+/// at an edge, such as a bead or a dust particle, shifts all points of one block together. \param
+/// block_and_residual block number and residual of each point \param fitted number of parameters fitted to
+/// all points
 double block_factor(const std::vector<std::pair<int, double>>& block_and_residual, double fitted) {
   std::map<int, double> sums;
   double squares = 0, of_blocks = 0;
@@ -387,8 +393,8 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
   CellGeometry g;
   g.size = edges.size;
   g.blur_px = edges.blur_px;
-  // The plate's slope: each frame says one; beads that lie in a row high above never win where the plate is
-  // seen.
+  // Slope of the plate: the median over frames. A row of beads above a visible plate is never the outermost
+  // line.
   const std::size_t stride = std::max<std::size_t>(1, edges.plate.size() / kPlateFrames);
   std::vector<double> slopes;
   for (std::size_t f = 0; f < edges.plate.size(); f += stride) {
@@ -403,8 +409,8 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
   for (std::size_t f = 0; f < edges.plate.size(); f += stride)
     all.plate.push_back(on_plate(edges.plate[f], slope, window));
 
-  // Where the walls' feet are in each frame that shows walls, in the ideal picture; the mean where no plate
-  // is seen.
+  // Plate row in each frame whose walls are used, in the ideal picture; the mean row where the plate is not
+  // detected.
   const auto put_floors = [&](double rotation_deg, double k1) {
     std::vector<double> floors;
     double known = 0, sum = 0;
@@ -434,7 +440,7 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
   if (!g.has_plate && !g.has_left && !g.has_right)
     throw InputError(
         {.file = {}, .key = "edges"},
-        "neither a plate nor a wall is seen: each needs 3 px of dark border and light beside it.");
+        "neither a plate nor a wall is seen: each needs a dark border of 3 px with light next to it.");
 
   Places places;
   std::vector<double> p;
@@ -442,7 +448,8 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
     p.push_back(start);
     return places.add(name);
   };
-  // No plate, no level: the turn then cannot be told from tilts of the walls.
+  // Parameters and start values. Without a plate there is no level, and the rotation cannot be distinguished
+  // from tilts of the walls.
   if (g.has_plate) places.rotation = add("rotation", std::atan(slope) / kDegree);
   const auto mean_x = [](const std::vector<WallRow>& wall) {
     double sum = 0;
@@ -480,11 +487,13 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
     for (std::size_t i = 0; i < q.size(); ++i) r[i] = q[i] - middle;
     return r;
   };
+  // Rounds: fit, then estimate the scatter of each edge and reject outliers. The last round is weighted and
+  // includes the correlation within blocks.
   constexpr int kRounds = 4;
   for (int round = 0; round < kRounds; ++round) {
     const bool last = round == kRounds - 1;
     if (last) {
-      // Blocks of one bead's width; three numbers of each edge are fitted.
+      // Blocks are one bead wide; three parameters are fitted to each edge.
       const auto block_of = [&](double place) { return static_cast<int>(place / edges.diameter_px); };
       for (const bool left : {true, false}) {
         std::vector<std::pair<int, double>> r;
@@ -503,7 +512,7 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
         solve_geometry(kept, places, p, g.size, error, last ? Residuals::weighted : Residuals::unweighted);
     if (last) break;
     put_floors(value_at(p.data(), places.rotation), value_at(p.data(), places.distortion));
-    // Each kind of edge is known as well as its points scatter; those too far away are not of it.
+    // The scatter of its points gives the error of each edge; points beyond kWorstSigma are rejected.
     kept = {};
     for (const bool left : {true, false}) {
       const auto& points = left ? all.left : all.right;
@@ -526,7 +535,7 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
     }
   }
   if (g.fit.covariance.size() > 0) {
-    // A line that is off by so much at one end leans.
+    // Systematic error: an offset of kEdgeModelError_px at one end of a line also changes its tilt.
     const auto add_error = [&](int place, double more) {
       if (place < 0) return;
       g.fit.covariance(place, place) += more * more;
@@ -543,7 +552,8 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
     add_error(places.rotation, e / edges.size.width / kDegree);
     add_error(places.distortion, 4 * e / std::hypot(edges.size.width, edges.size.height));
   }
-  // Rims of beads that a frame cuts are no wall: they are in no line.
+  // Beads cut by the border of the frame can look like a wall, but their rims do not form a line. Drop such a
+  // wall and fit again.
   const auto is_line = [&](const char* name) {
     constexpr double kLargest_px = 0.25;
     return g.fit.standard_errors.empty() || g.fit.standard_error(name) < kLargest_px;
@@ -557,7 +567,7 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
   if (with_distortion) {
     g.distortion_found = g.fit.value("distortion");
     g.distortion_error = g.fit.standard_error("distortion");
-    // A bend that is not there costs accuracy everywhere else.
+    // An insignificant distortion would reduce the accuracy of all other parameters.
     if (!(std::abs(*g.distortion_found) > 3 * *g.distortion_error)) {
       CellGeometry straight = fit_cell_geometry(edges, false);
       straight.distortion_found = g.distortion_found;
@@ -568,6 +578,7 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
   }
   g.rotation_deg = g.has_plate ? g.fit.value("rotation") : 0;
 
+  // Results: residuals of the edges, then the plate's height in every frame.
   for (const bool left : {true, false})
     for (const WallRow& row : left ? kept.left : kept.right)
       g.residuals.push_back({row.at, residual_of(row, left)});
@@ -588,7 +599,7 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
   if (n > 0) {
     const double row = sum / n;
     g.plate_row = row;
-    // What turn and bend leave open moves and stretches the heights too.
+    // Errors of rotation and distortion also shift and stretch the heights.
     if (g.fit.covariance.size() > 0) {
       const PlateSighting *low = nullptr, *high = nullptr;
       for (const PlateSighting& s : g.heights) {

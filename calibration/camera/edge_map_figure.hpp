@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Where the edges lie away from the fitted lines.
+/// Figure of the edge residuals.
 
 #include "analysis/report/figures.hpp"
 #include "calibration/camera/cell_geometry.hpp"
 
 namespace twincell {
 
-/// "edges": the map of residuals over the picture above, their size along each edge below.
+/// "edges": map of the residuals in px over the picture, at most 8000 points.
 Figure edge_map_figure(const CellGeometry& geometry);
 
 }  // namespace twincell

@@ -26,7 +26,8 @@ double median_spread(const std::vector<double>& v, double middle) {
   return 1.4826 * upper_median(r);
 }
 
-/// The middle of the shortest half, again and again (Robertson & Cryer 1974): the mode of few numbers.
+/// Mode of a small sample by repeated halving: keep the shortest interval that contains half of the values
+/// (Robertson & Cryer 1974).
 double half_sample_mode(std::vector<double> v) {
   std::sort(v.begin(), v.end());
   while (v.size() > 3) {
@@ -40,7 +41,7 @@ double half_sample_mode(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-/// Distances of pairs that may touch: up to a tenth further than the mean diameter.
+/// Centre distances of pairs that may touch: up to 1.1 mean diameters.
 std::vector<double> near_pairs(const std::vector<SizedBead>& frame, double diameter) {
   std::vector<SizedBead> sorted = frame;
   std::sort(sorted.begin(), sorted.end(), [](const SizedBead& a, const SizedBead& b) { return a.x < b.x; });
@@ -53,8 +54,9 @@ std::vector<double> near_pairs(const std::vector<SizedBead>& frame, double diame
   return r;
 }
 
-/// Counts in a bin of distances: beads that touch at d, and beads that nearly do, at any distance above it
-/// alike; both as the camera sees them, blurred by s. 2 sqrt(n + 3/8) of a count n scatters by 1.
+/// Number of pairs in a bin of distances. The model is a peak of touching pairs at distance d plus a uniform
+/// density of separate pairs above d; the camera noise s blurs both. The residual uses 2 sqrt(n + 3/8), which
+/// has unit variance for a count n.
 struct PairsInBin {
   double at, width, count;
   template <class T>
@@ -68,18 +70,19 @@ struct PairsInBin {
   }
 };
 
-/// Distance of touching beads, from all pairs that are near. In a bed that moves, most are only nearly in
-/// touch: the mean about the mode, which this replaces, came out eight of its errors too large.
+/// Centre distance of touching beads, from all near pairs. In a moving bed most near pairs do not quite
+/// touch. The mean around the mode, which was tried first, was too large by eight of its standard errors.
 std::optional<Estimate> touching(const std::vector<double>& pairs, double diameter, std::size_t frames) {
   constexpr std::size_t kFewest = 20;
-  constexpr double kBin = 0.5, kBelow = 5, kAbove = 0.015;  // widths of the pile, twice; of the diameter
+  constexpr double kBin = 0.5, kBelow = 5,
+                   kAbove = 0.015;  // bin and lower limit in peak widths; upper limit in diameters
   if (pairs.size() < kFewest) return std::nullopt;
   const double mode = half_sample_mode(pairs);
   std::vector<double> below;
   for (const double r : pairs)
     if (r < mode) below.push_back(mode - r);
   if (below.size() < kFewest / 2) return std::nullopt;
-  // Only the side on which no gap can be tells the noise.
+  // Distances below the mode contain no gaps, so only they give the noise.
   const double width = std::max(1e-4 * diameter, 1.4826 * upper_median(below));
   const double low = mode - kBelow * width, high = mode + std::max(kBelow * width, kAbove * diameter),
                bin = kBin * width;
@@ -98,15 +101,15 @@ std::optional<Estimate> touching(const std::vector<double>& pairs, double diamet
   const FitReport fit =
       solve(problem, p.data(), {"distance", "noise", "touching", "apart"}, Residuals::weighted);
   const double moved = std::abs(fit.values[0] - mode);
-  // Without a pile there is no such distance.
+  // Without a peak of touching pairs the distance is not defined.
   if (!fit.usable || !(moved < 3 * width) || !(fit.values[2] * fit.values[2] > kFewest / 2.0))
     return std::nullopt;
   const double error = fit.standard_errors.empty() ? width / std::sqrt(n) : fit.standard_errors[0];
-  // The same pairs come back in other frames.
+  // The same pairs recur in other frames, so frames do not add independent data.
   return Estimate{fit.values[0], error * std::sqrt(static_cast<double>(frames))};
 }
 
-/// Straight line of the diameters in x and y, of what lies within `width` of their middle.
+/// Linear fit of the diameters in x and y, from the beads whose diameter is within `width` of `middle`.
 void add_gradient(SizeStatistics& c, const BeadFrames& beads, double middle, double width,
                   double independent) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -129,8 +132,8 @@ void add_gradient(SizeStatistics& c, const BeadFrames& beads, double middle, dou
     const Eigen::Vector3d at(1, b.x - centre[1], b.y - centre[2]);
     squares += std::pow(2 * b.radius - middle - line.dot(at), 2);
   });
-  // The same beads come back in other frames, but not at the same places: their sizes are as many as they
-  // are.
+  // The same beads recur in other frames at other positions, so the number of independent sizes is the number
+  // of beads.
   const Eigen::Matrix3d covariance =
       squares / std::max(1.0, n - 3) * (n / std::max(4.0, independent)) * normal.inverse();
   c.gradient_x = {line[1] / middle, std::sqrt(covariance(1, 1)) / middle};
@@ -141,7 +144,7 @@ void add_gradient(SizeStatistics& c, const BeadFrames& beads, double middle, dou
 
 BeadFrames locate_beads(FrameSource& frames, const LocatorOptions& options, const std::optional<Lens>& lens,
                         int most, int threads, Progress& progress) {
-  /// Every so-and-so-many-th frame of another source.
+  /// Every stride-th frame of another source.
   class Thinned : public FrameSource {
    public:
     Thinned(FrameSource& whole, std::size_t stride) : whole_(whole), stride_(stride) {}
@@ -232,7 +235,7 @@ SizeStatistics count_beads(const BeadFrames& beads) {
                                           std::sqrt(static_cast<double>(counts.size()))
                                     : kNaN;
 
-  // Discs that are none, or half hidden, are not of the distribution.
+  // Mean and variance, without false detections and half-hidden discs, whose diameters are outliers.
   const double middle = upper_median(diameters),
                width = std::max(median_spread(diameters, middle), 1e-6 * middle);
   double sum = 0, squares = 0, cubes = 0, n = 0;
@@ -250,17 +253,18 @@ SizeStatistics count_beads(const BeadFrames& beads) {
     cubes += std::pow(d / mean, 3);
   }
   const double variance = squares / std::max(1.0, n - 1), kurtosis = fourth / n;
-  // Independent are the beads of one frame, and no more than were kept.
+  // The number of independent sizes is the largest number of beads in one frame, at most the number accepted.
   const double independent = std::max(2.0, std::min(n, most));
   c.diameter = {mean, std::hypot(std::sqrt(variance / independent), beads.mean_model_error)};
   const double true_variance = std::max(0.0, variance - noise);
-  // Near zero the spread is no better known than its square is.
-  // The variance of a variance of n beads, mu_4/n - (n - 3)/(n (n - 1)) s^4, its own bias in mu_4 taken off.
+  // Variance of the sample variance of n beads, mu_4/n - (n - 3)/(n (n - 1)) s^4, corrected for the bias of
+  // mu_4.
   const double of_few = std::max(1.0, independent - 3);
   const double error_of_variance = std::sqrt(
       std::max(kurtosis * independent / of_few - variance * variance * of_few / (independent - 1), 0.0) /
       independent);
   const double error_of_true = std::hypot(error_of_variance, beads.model_scatter * beads.model_scatter);
+  // The error of the spread follows from that of its square; near zero the linear propagation would diverge.
   c.spread.value = std::sqrt(true_variance) / mean;
   c.spread.error = true_variance > error_of_true ? error_of_true / (2 * std::sqrt(true_variance)) / mean
                                                  : std::sqrt(error_of_true) / mean;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The beads of a cell: how large, how unlike, how many, how far apart when they touch.
+/// Statistics of the beads of a cell: number, diameter, polydispersity, and centre distance of touching
+/// beads.
 
 #include <cstdint>
 #include <optional>
@@ -21,23 +22,26 @@ struct SizedBead {
   double radius = 0;
   double sigma_radius = 0;  ///< 0: unknown
 };
-/// [frames][beads]. Beads cut by the frame's border are left out of the sizes but counted.
+/// Beads of some frames. Beads that the frame's border cuts are counted, but their sizes are left out.
 struct BeadFrames {
-  std::vector<std::vector<SizedBead>> frames;
-  std::vector<std::size_t> counts;  ///< [frames], cut ones included
-  /// What a disc's diameter may be off by beyond its noise: the mean of all, and from disc to disc, by who
-  /// touches whom. 0: by nothing.
+  std::vector<std::vector<SizedBead>> frames;  ///< [frames][beads]
+  std::vector<std::size_t> counts;             ///< [frames], beads cut by the border included
+  /// Systematic errors of the diameters beyond their noise: of the mean, and from disc to disc, which depends
+  /// on the contacts of each disc. 0: no systematic error.
   double mean_model_error = 0, model_scatter = 0;
 };
 
-/// Of diameters as locate_beads finds them, px: touching discs come out so much too large
-/// (end_to_end.Calibrate.AccuracyCostsFrames), and discs of one size scatter so much with their neighbours.
+/// Systematic errors of the diameters from locate_beads, px. Touching discs are measured too large by the
+/// first number (end_to_end.Calibrate.AccuracyCostsFrames). The second is the standard deviation between
+/// discs of equal size, which is due to their neighbours.
 inline constexpr double kDiameterModelError_px = 0.002, kDiameterModelScatter_px = 0.012;
-/// Locates up to `most` frames of a stack, spread over it. What the options leave open is found from the
-/// first frames (configure_locator.hpp). \param lens undone where given
+/// Locates the beads in up to `most` frames, spread over the stack. Options that are not set are chosen from
+/// the first frames (configure_locator.hpp). \param lens if given, its distortion is removed from positions
+/// and radii
 BeadFrames locate_beads(FrameSource& frames, const LocatorOptions& options, const std::optional<Lens>& lens,
                         int most, int threads, Progress& progress = Progress::none());
-/// The same of a trajectory, in sigma, radii as it has them. \throws InputError if it has none
+/// The same from up to `most` frames of a trajectory, in sigma, with the trajectory's own radii. \throws
+/// InputError if it has no radii
 BeadFrames beads_of(const TrajectorySource& trajectory, int most);
 
 /// A number and its standard error.
@@ -45,22 +49,23 @@ struct Estimate {
   double value = 0, error = 0;
 };
 
-/// What the beads say.
+/// Statistics of number, size and spacing of the beads.
 struct SizeStatistics {
   std::size_t frames = 0, sizes = 0;
   Estimate count;     ///< beads in a frame: median, error of the median from the scatter between frames
   Estimate diameter;  ///< mean; in the unit of the frames
-  Estimate spread;    ///< standard deviation of the diameters over their mean, the fit's own error taken off
-  Estimate mass;      ///< mean of (d/<d>)^3: the mean mass over that of a bead of mean size
-  /// Relative change of the diameters along x and y, 1 over the frames' unit: a camera that looks askew sees
-  /// far beads smaller. Errors as if beads did not sort themselves by size.
+  Estimate spread;    ///< standard deviation of the diameters over their mean, measurement noise subtracted
+  Estimate mass;      ///< mean of (d/<d>)^3: mean mass over the mass of a bead of mean diameter
+  /// Relative change of the diameters per length unit along x and y: a camera that is not perpendicular to
+  /// the cell images distant beads smaller. The errors assume that beads are not sorted by size.
   Estimate gradient_x, gradient_y;
-  std::vector<double> diameters;    ///< all of one frame's worth, for the picture, sorted
-  std::optional<Estimate> spacing;  ///< distance of touching beads; absent where none show
+  std::vector<double> diameters;    ///< accepted diameters of all frames, sorted, for the histogram
+  std::optional<Estimate> spacing;  ///< centre distance of touching beads; absent if it cannot be determined
 };
 
-/// \throws InputError for fewer than 3 beads. Beads of one frame count as independent, the same beads in
-/// other frames do not: standard errors of what differs between beads go with the beads of a frame.
+/// Computes the statistics. Beads of one frame count as independent, the same beads in other frames do not:
+/// the standard errors of quantities that vary between beads use the number of beads in one frame. \throws
+/// InputError for fewer than 3 beads
 SizeStatistics count_beads(const BeadFrames& beads);
 
 }  // namespace twincell

@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// How the diameters of the beads are spread.
+/// Figure of the distribution of bead diameters.
 
 #include "analysis/report/figures.hpp"
 #include "calibration/camera/size_statistics.hpp"
 
 namespace twincell {
 
-/// "beads": histogram of the diameters. \param unit_px pixels in the census' unit; NaN: drawn in its unit,
-/// sigma
+/// "beads": histogram of the diameters. \param unit_px pixels per length unit of `census`; NaN: the axis is
+/// in the unit of `census`, sigma
 Figure size_statistics_figure(const SizeStatistics& census, double unit_px);
 
 }  // namespace twincell

@@ -12,14 +12,14 @@ namespace twincell {
 namespace {
 
 struct PointResidual {
-  double a, b;  // spacings from the middle
+  double a, b;  // spacings from the target's centre
   PixelPoint seen;
   cv::Size size;
   template <class T>
   bool operator()(const T* p, T* residual) const {
     const double mx = 0.5 * (size.width - 1), my = 0.5 * (size.height - 1),
                  unit = 0.5 * std::hypot(size.width, size.height);
-    // b counts rows downwards, and so does y.
+    // Both b and y increase downwards.
     const T u = p[0] * a, v = p[0] * b, w = 1.0 + p[4] * u + p[5] * v;
     const T x = p[1] + u / w - mx, y = p[2] + v / w - my;
     const T c = cos(p[3] * (std::numbers::pi / 180)), s = sin(p[3] * (std::numbers::pi / 180));
@@ -39,7 +39,7 @@ TargetFit fit_target(const std::vector<PixelPoint>& points, const TargetPattern&
   if (points.size() != columns * rows || columns < 3 || rows < 3)
     throw InputError(
         {.file = {}, .key = "target"},
-        fmt::format("shows {} of {} x {} points, of which each side needs 3.", points.size(), columns, rows));
+        fmt::format("shows {} of {} x {} points; each side needs at least 3.", points.size(), columns, rows));
   const PixelPoint &first = points.front(), &along = points[columns - 1], &last = points.back();
   const double dx = along.x_px - first.x_px, dy = along.y_px - first.y_px;
   double p[7] = {std::hypot(dx, dy) / static_cast<double>(columns - 1),
@@ -49,7 +49,7 @@ TargetFit fit_target(const std::vector<PixelPoint>& points, const TargetPattern&
                  0,
                  0,
                  0};
-  // Where the picture's turn is undone, the middle moves.
+  // Start value of the centre in the ideal picture: undoing the rotation moves it.
   const double mx = 0.5 * (picture.width - 1), my = 0.5 * (picture.height - 1),
                angle = p[3] * std::numbers::pi / 180;
   const double u = p[1] - mx, v = p[2] - my;

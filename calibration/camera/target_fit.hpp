@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Scale, turn, bend and tilt of a camera from a flat target with points at equal spacing.
+/// Camera calibration from a flat target with equally spaced points: scale, rotation, distortion and tilt.
 
 #include <vector>
 
@@ -10,20 +10,21 @@
 
 namespace twincell {
 
-/// In the ideal picture (camera/lens.hpp) a point (a, b) of the target, in spacings from its middle, is seen
-/// at
-///     x = x0 + s (c a - n b)/(1 + s (g_x (c a - n b) + g_y (n a + c b))),   likewise y,   c, n = cos,
-///     sin(turn),
-/// g the relative change of scale per pixel along x and y: the target's plane leans away from the camera.
+/// Model of the target. The point (a, b) of the target, in spacings from its centre, appears in the ideal
+/// picture (camera/lens.hpp) at
+///     x = x0 + s (c a - n b)/(1 + s (g_x (c a - n b) + g_y (n a + c b))),   likewise y,
+/// with c, n = cos, sin(rotation), s the pixels per spacing, and g the relative change of scale per pixel
+/// along x and y, which is nonzero if the plane of the target is tilted against the picture plane.
 struct TargetFit {
   /// "pixels_per_spacing" and "x0", "y0" (px, ideal picture), "rotation" (degrees, counter-clockwise),
   /// "gradient_x", "gradient_y" (1/px), "distortion".
   FitReport fit;
-  double rms_px = 0;                    ///< of both coordinates together
+  double rms_px = 0;                    ///< over both coordinates
   std::vector<EdgeResidual> residuals;  ///< distance_px: length of the residual
 };
 
-/// \param points as find_target gives them \throws InputError for other than columns x rows points
+/// Fits the model to the points of one picture. \param points as returned by find_target \throws InputError
+/// for other than columns x rows points
 TargetFit fit_target(const std::vector<PixelPoint>& points, const TargetPattern& pattern, cv::Size picture);
 
 }  // namespace twincell

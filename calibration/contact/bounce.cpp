@@ -15,15 +15,16 @@
 namespace twincell {
 namespace {
 
-constexpr std::size_t kFewestSamples = 6;
-constexpr double kWorstSigma = 4;
+constexpr std::size_t kFewestSamples = 6;  // of a flight
+constexpr double kWorstSigma = 4;          // outliers lie beyond it
 
 struct Flight {
   double begin = 0, end = 0;
   [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
 };
 
-/// (1 - exp(-x))/x and (x - 1 + exp(-x))/x^2 by their series, which hold at 0 too; good to 1e-9 for |x| < 1.
+/// (1 - exp(-x))/x and (x - 1 + exp(-x))/x^2 by their series, which are also valid at 0; accurate to 1e-9 for
+/// |x| < 1.
 template <class T>
 void drag_factors(const T& x, T& one, T& two) {
   one = two = T(0.0);
@@ -48,7 +49,7 @@ double velocity_of(double v, double g, double d, double t) {
   return v * (1 - d * t * one) - g * t * one;
 }
 
-/// Where gravity, drag and the flights' numbers stand among the parameters.
+/// Indices of gravity, drag and the flights' heights and velocities in the parameter vector; -1: not fitted.
 struct Layout {
   int gravity = -1, drag = -1, first = 0;
   double held_gravity = 0;
@@ -74,7 +75,8 @@ double median_of(std::vector<double> v) {
   return upper_median(std::move(v));
 }
 
-/// Least absolute residuals of z = c0 + c1 t - c2 t^2/2 about `middle`, by weights; and their median.
+/// Fit of z = c0 + c1 t - c2 t^2/2, t from `middle`, by least absolute residuals (iteratively reweighted),
+/// and the median absolute residual.
 struct Parabola {
   Eigen::Vector3d c = Eigen::Vector3d::Zero();
   double median_residual = 0;
@@ -108,7 +110,8 @@ std::vector<const BounceSample*> between(const std::vector<BounceSample>& s, dou
   return in;
 }
 
-/// Moments at which heights above the plate, single wild ones taken out, turn from falling to rising.
+/// Times at which the height above the plate, after a median filter against single outliers, turns from
+/// falling to rising.
 std::vector<double> turning_points(const std::vector<BounceSample>& s, const PlateMotionAt& plate) {
   constexpr std::size_t kSide = 3;
   const std::size_t n = s.size();
@@ -142,7 +145,7 @@ std::vector<double> turning_points(const std::vector<BounceSample>& s, const Pla
   return times;
 }
 
-/// Those of the turning points at which the bead really hit something: both sides are not one flight.
+/// Turning points that are impacts: one parabola does not describe both sides.
 std::vector<double> rough_impacts(const std::vector<BounceSample>& s, const PlateMotionAt& plate, double dt) {
   std::vector<double> edges = {s.front().time - dt};
   const std::vector<double> turns = turning_points(s, plate);
@@ -152,14 +155,15 @@ std::vector<double> rough_impacts(const std::vector<BounceSample>& s, const Plat
     const auto in = between(s, begin, end);
     return in.size() < 4 ? 0.0 : least_absolute(in, 0.5 * (begin + end)).median_residual;
   };
-  // The smoothest third of the stretches says how much the film scatters.
+  // The lower third of the residuals of all intervals gives the noise of the film.
   std::vector<double> own;
   for (std::size_t i = 0; i + 1 < edges.size(); ++i)
     if (between(s, edges[i], edges[i + 1]).size() >= kFewestSamples)
       own.push_back(residual(edges[i], edges[i + 1]));
   if (own.empty()) return {};
   std::sort(own.begin(), own.end());
-  // Heights of a simulation scatter by rounding alone, and no two halves of one flight round alike.
+  // Simulated heights scatter by rounding only, which differs between the two halves of a flight: set a lower
+  // limit.
   constexpr double kFinest = 1e-5;
   const auto [low, high] = std::minmax_element(
       s.begin(), s.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
@@ -182,7 +186,7 @@ struct State {
   std::vector<std::string> names;
 };
 
-/// Crossing of two flights near `guess`.
+/// Time near `guess` at which flights i and i + 1 cross.
 double crossing(const State& s, std::size_t i, double guess) {
   const double g =
       s.layout.gravity < 0 ? s.layout.held_gravity : s.p[static_cast<std::size_t>(s.layout.gravity)];
@@ -205,6 +209,7 @@ double crossing(const State& s, std::size_t i, double guess) {
   return t;
 }
 
+/// Restitution at the crossing of flights i and i + 1, with its time and impact speed if pointers are given.
 double restitution_at(const State& s, std::size_t i, double guess, const PlateMotionAt& plate, double* time,
                       double* speed) {
   const double t = crossing(s, i, guess);
@@ -228,20 +233,22 @@ BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& op
                 [](const BounceSample& s) { return !std::isfinite(s.time) || !std::isfinite(s.height); });
   std::sort(samples.begin(), samples.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   const auto too_few = [&](std::size_t flights) -> InputError {
-    return {{.file = {}, .key = "bounces"},
-            fmt::format(
-                "{} samples show {} flights of at least {} samples; two that follow each other are needed.",
-                samples.size(), flights, kFewestSamples)};
+    return {
+        {.file = {}, .key = "bounces"},
+        fmt::format("{} samples show {} flights of at least {} samples; two consecutive flights are needed.",
+                    samples.size(), flights, kFewestSamples)};
   };
   if (samples.size() < 2 * kFewestSamples) throw too_few(0);
   const double dt = (samples.back().time - samples.front().time) / static_cast<double>(samples.size() - 1);
 
+  // Split the series into flights at the impacts.
   State s;
   std::vector<double> impacts = rough_impacts(samples, options.plate, dt);
   std::vector<double> edges = {samples.front().time - dt};
   edges.insert(edges.end(), impacts.begin(), impacts.end());
   edges.push_back(samples.back().time + dt);
-  // Flights that are too short, as at the end of all bouncing, end the series; a short first one is left out.
+  // The first flight that is too short, as when the bouncing dies out, ends the series; short flights at the
+  // beginning are skipped.
   const auto count = [&](double a, double b) {
     return static_cast<std::size_t>(std::count_if(samples.begin(), samples.end(), [&](const BounceSample& q) {
       return q.time > a + 0.5 * dt && q.time < b - 0.5 * dt;
@@ -255,6 +262,7 @@ BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& op
   }
   if (s.flights.size() < 2) throw too_few(s.flights.size());
 
+  // Parameters: gravity and drag unless fixed, then height and velocity of each flight.
   BounceFit out;
   s.layout.held_gravity = options.gravity.value_or(0);
   if (!options.gravity) s.layout.gravity = static_cast<int>(s.names.size()), s.names.emplace_back("gravity");
@@ -265,10 +273,12 @@ BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& op
     s.names.push_back(fmt::format("v_{}", f + 1));
   }
 
+  // Rounds: the first uses Cauchy's loss from parabolas; later ones move the ends of the flights to their
+  // crossings and reject outliers.
   double scale = 0;
   FitReport report;
   for (int round = 0; round < 4; ++round) {
-    // Start: a parabola through each flight, curvature from the longest.
+    // Start values: a parabola through each flight, gravity from the curvature of the longest one.
     if (round == 0) {
       s.p.assign(s.names.size(), 0);
       double longest = 0;
@@ -283,12 +293,12 @@ BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& op
         }
       }
     } else {
-      // Flights end where they cross.
+      // Move the end of each flight to its crossing with the next one.
       for (std::size_t f = 0; f + 1 < s.flights.size(); ++f) {
         const double before_middle = s.flights[f].middle(), after_middle = s.flights[f + 1].middle();
         const double t = crossing(s, f, s.flights[f].end);
         if (!(t > before_middle && t < after_middle)) continue;
-        // The numbers of a flight count from its middle: move them along.
+        // Height and velocity refer to the middle of the flight: propagate them to the new middle.
         const auto move = [&](std::size_t k, double begin, double end) {
           const double shift = 0.5 * (begin + end) - s.flights[k].middle();
           const double g =
@@ -373,7 +383,7 @@ BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& op
     throw InputError({.file = {}, .key = "bounces"},
                      fmt::format("the flights do not determine restitution: {}.", report.why_not));
 
-  // e of each impact and its slope in all parameters, by differences: smooth, and few.
+  // Restitution of each impact and its derivatives with respect to all parameters, by central differences.
   const auto n = static_cast<Eigen::Index>(s.p.size());
   const std::size_t n_impacts = s.flights.size() - 1;
   Eigen::MatrixXd slopes(static_cast<Eigen::Index>(n_impacts), n);
@@ -397,7 +407,7 @@ BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& op
   Eigen::MatrixXd c = slopes * report.covariance * slopes.transpose();
   for (std::size_t i = 0; i < n_impacts; ++i)
     out.impacts[i].error = std::sqrt(c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
-  // The best linear mean; where the impacts differ by more than their errors, all errors grow alike.
+  // Best linear unbiased mean. If the impacts differ by more than their errors, its error is scaled up.
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(n_impacts));
   const Eigen::VectorXd w = c.ldlt().solve(one);
   out.restitution = w.dot(e) / w.dot(one);
@@ -405,14 +415,14 @@ BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& op
   const double chi2 = left.dot(c.ldlt().solve(left));
   const double freedom = static_cast<double>(n_impacts) - 1;
   const double excess = freedom > 0 ? chi2 / freedom : 1;
-  // Chi^2 of a few impacts scatters by itself.
+  // Scale only beyond three standard deviations of chi^2, which itself fluctuates for few impacts.
   const bool grown = freedom > 0 && chi2 > freedom + 3 * std::sqrt(2 * freedom);
   out.restitution_error = std::sqrt((grown ? excess : 1) / w.dot(one));
   if (grown)
     out.notes.push_back(
         fmt::format("the impacts differ by more than the film's noise (chi^2 = {:.3g} of {:g}): e_n depends "
                     "on the impact, or the "
-                    "bead spins; the error is scaled up for it",
+                    "bead spins; the error is scaled up accordingly",
                     chi2, freedom));
   return out;
 }

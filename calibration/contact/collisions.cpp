@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// When two discs that move straight against each other touch, within (0, longest).
+/// Time in [0, longest] at which two discs in uniform relative motion touch; none if they do not.
 std::optional<double> meeting(const Vec3& r, const Vec3& v, double reach, double longest) {
   const double b = r.dot(v), c = r.squaredNorm() - reach * reach, a = v.squaredNorm();
   if (!(b < 0) || c < 0 || a == 0) return std::nullopt;
@@ -34,7 +34,7 @@ class Finder {
   FoundCollisions find() {
     found_.spins = info_.columns.spin;
     const bool velocities = info_.columns.velocity;
-    // Steps need a frame on either side.
+    // Velocities from differences need one more frame on either side.
     const std::size_t margin = velocities ? 0 : 1, n = (source_.n_frames() + stride_ - 1) / stride_;
     if (n < 2 + 2 * margin)
       throw InputError({.file = source_.name(), .key = {}},
@@ -57,7 +57,8 @@ class Finder {
     const double dt = at.time - other->time;
     Vec3 v = (at.position[i] - other->position[i]) / dt;
     v.y() = 0;
-    v.z() -= options_.gravity * 0.5 * dt;  // of the middle, brought to this end; dt < 0 behind the collision
+    v.z() -=
+        options_.gravity * 0.5 * dt;  // from the interval's middle to this end; dt < 0 after the collision
     return v;
   }
   [[nodiscard]] double radius(std::size_t i) const { return info_.radius.empty() ? 0.5 : info_.radius[i]; }
@@ -83,7 +84,7 @@ class Finder {
     }
     std::sort(order.begin(), order.end(),
               [&](std::size_t i, std::size_t k) { return a.position[i].x() < a.position[k].x(); });
-    // Pairs across a periodic border are not looked at: few, and no different from the others.
+    // Pairs across a periodic boundary are skipped: they are few and do not differ from the others.
     for (std::size_t p = 0; p < order.size(); ++p)
       for (std::size_t q = p + 1; q < order.size(); ++q) {
         const std::size_t i = order[p], k = order[q];
@@ -102,7 +103,7 @@ class Finder {
     const Vec3 r = flat(a.position[i] - a.position[k]), u = flat(v[i] - v[k]);
     const Vec3 r2 = flat(b.position[i] - b.position[k]), u2 = flat(w[i] - w[k]);
     const auto t = meeting(r, u, reach, dt);
-    // Run backwards, what parts approaches.
+    // Backwards in time, separating beads approach.
     const auto t2 = meeting(r2, -u2, reach, dt);
     if (!t || !t2 || std::abs(*t + *t2 - dt) > 0.5 * dt) return;
     const Vec3 n = ((r + u * *t).normalized() + (r2 - u2 * *t2).normalized()).normalized();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Collisions of two beads found in a trajectory, with their velocities before and after.
+/// Binary collisions in a trajectory, with the velocities before and after.
 
 #include <cstddef>
 #include <vector>
@@ -10,30 +10,32 @@
 
 namespace twincell {
 
+/// Options of find_collisions.
 struct CollisionOptions {
   double gravity = 1;        ///< along -z, reduced units
-  double least_speed = 0.1;  ///< of approach, sigma/t0
-  /// How far the two beads' common momentum may change between the frames, in speeds of approach: more says
-  /// that a third body took part.
+  double least_speed = 0.1;  ///< smallest approach speed, sigma/t0
+  /// Largest change of the pair's centre-of-mass velocity between the frames, beyond gravity, as a fraction
+  /// of the approach speed. A larger change means that a third body took part.
   double largest_kick = 0.05;
-  /// Every how manyth frame is looked at; 0: 1, 2, 4 ... while each finds clearly more. A collision that
-  /// lasts longer than half of the time between two frames is not seen between them.
+  /// Uses every stride-th frame. 0: tries 1, 2, 4 ... as long as each finds clearly more collisions. A
+  /// collision that lasts longer than half of the time between two frames is not detected between them.
   std::size_t stride = 0;
 };
 
-/// What was found.
+/// Collisions that were found.
 struct FoundCollisions {
   std::vector<Impact> impacts;
-  std::size_t pairs = 0;    ///< that met between two frames
-  std::size_t crowded = 0;  ///< of them left out because a third body took part
+  std::size_t pairs = 0;    ///< pairs that met between two frames
+  std::size_t crowded = 0;  ///< pairs left out because a third body took part
   bool spins = false;       ///< whether psi_1 and psi_2 are known
-  std::size_t stride = 1;   ///< every how manyth frame was looked at
+  std::size_t stride = 1;   ///< every stride-th frame was used
 };
 
-/// Two beads that are apart in two frames that follow each other, approach in the first, part in the second,
-/// and meet in between on straight lines against each other (gravity is common to both). The normal is that
-/// of the meeting, from both sides. Velocities are the file's, or, where it has none, steps between two
-/// frames with gravity taken off; spins are the file's or unknown. \throws InputError for fewer than 2 frames
+/// Finds pairs of beads that are separate in two consecutive frames, approach in the first, separate in the
+/// second, and meet in between on straight relative paths (gravity is common to both beads). The collision
+/// normal is the mean of the normals extrapolated from both frames. Velocities come from the file or, if it
+/// has none, from differences between two frames, corrected for gravity. Spins come from the file or are
+/// unknown. \throws InputError for fewer than 2 frames, or 4 if the file has no velocities
 FoundCollisions find_collisions(const TrajectorySource& trajectory, const CollisionOptions& options = {});
 
 }  // namespace twincell

@@ -64,11 +64,11 @@ Figure profile_figure(const Inference& inference) {
   double highest = 0;
   for (const Profile& p : inference.profiles) highest = std::max(highest, p.drop);
   Figure f{.name = "profile",
-           .title = "What the measurement determines",
+           .title = "Profiles of the parameters",
            .width = static_cast<int>(420 * n),
            .height = 400};
   f.plot = fmt::format(
-      "set multiplot layout 1,{}\nset yrange [0:{:.6g}]\nset ylabel 'χ^2 above its least'\nunset key\n", n,
+      "set multiplot layout 1,{}\nset yrange [0:{:.6g}]\nset ylabel 'χ^2 above its minimum'\nunset key\n", n,
       3 * highest);
   for (std::size_t i = 0; i < n; ++i) {
     const Profile& p = inference.profiles[i];
@@ -85,13 +85,13 @@ Figure profile_figure(const Inference& inference) {
         gnuplot_text(label), p.sought.lower, p.sought.upper, i, p.drop);
   }
   f.plot += "unset multiplot\n";
-  f.caption = "The dashed line cuts the 95 % interval";
+  f.caption = "The dashed line marks the 95 % interval";
   return f;
 }
 
 Figure curve_figure(const std::string& name, const std::vector<double>& measured,
                     const std::vector<double>& predicted) {
-  Figure f{.name = name, .title = name + ", measured and of the best parameters"};
+  Figure f{.name = name, .title = name + ", measured and for the best parameters"};
   f.data = "# element, measured, of the best parameters\n";
   for (std::size_t k = 0; k < measured.size(); ++k)
     f.data += fmt::format("{} {:.8g} {:.8g}\n", k, measured[k], predicted[k]);
@@ -102,7 +102,8 @@ Figure curve_figure(const std::string& name, const std::vector<double>& measured
       "plot '{1}.dat' using 1:2 with points pt 7 lc rgb '#222222' title 'measured', '{1}.dat' using 1:3 with "
       "lines lw 2 lc rgb blue title 'best parameters'\n",
       gnuplot_text(label), name);
-  f.caption = "The curve of the best parameters is made of the forms in which the curves of the runs differ";
+  f.caption =
+      "The curve of the best parameters is composed of the principal components of the curves of the runs";
   return f;
 }
 

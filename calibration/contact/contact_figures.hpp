@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Pictures of what collisions say.
+/// Figures of the contact calibration.
 
 #include <string>
 #include <vector>
@@ -17,9 +17,9 @@ namespace twincell {
 Figure bounce_figure(const BounceFit& fit);
 /// "collisions": e_n against speed, and Walton's plane with the fitted branches. \param shape K
 Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, double shape);
-/// "profile": chi^2 of each parameter above its least, with the 95 % line.
+/// "profile": chi^2 above its minimum against each parameter, with the 95 % line.
 Figure profile_figure(const Inference& inference);
-/// NAME: a measured curve and that of the best parameters, element by element.
+/// NAME: a measured curve and the curve predicted for the best parameters, element by element.
 Figure curve_figure(const std::string& name, const std::vector<double>& measured,
                     const std::vector<double>& predicted);
 

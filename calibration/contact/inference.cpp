@@ -17,12 +17,12 @@ namespace twincell {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kSteps = 60;  // of a profile
+constexpr int kSteps = 60;  // sets the grid steps of a profile
 
-/// All products of at most `degree` of the x_i, from -1 to 1 over the ranges: 1, x_i, x_i x_k, ...
+/// All monomials 1, x_i, x_i x_k, ... up to `degree`, where each x_i is scaled to -1 ... 1 over its range.
 Eigen::VectorXd terms(const std::vector<Sought>& ranges, const std::vector<double>& theta, int degree) {
   std::vector<double> out = {1};
-  std::vector<std::size_t> newest(1, 0);  // the largest i of each term, so that none comes twice
+  std::vector<std::size_t> newest(1, 0);  // largest i of each term, so that no term appears twice
   for (std::size_t begin = 0, d = 0; d < static_cast<std::size_t>(degree); ++d) {
     const std::size_t end = out.size();
     for (std::size_t k = begin; k < end; ++k)
@@ -36,20 +36,20 @@ Eigen::VectorXd terms(const std::vector<Sought>& ranges, const std::vector<doubl
   return Eigen::Map<const Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
 }
 
-/// A surface of one degree through values.
+/// A polynomial surface fitted to values.
 struct Polynomial {
   int degree = 0;
   Eigen::VectorXd c;
   Eigen::MatrixXd spread;  ///< covariance of c over the scatter squared
   Eigen::VectorXd left;    ///< residuals
-  double left_out = 0;     ///< rms of what is predicted of each value by the others
+  double left_out = 0;     ///< rms leave-one-out prediction error
 };
 
-/// The surface of degree 2 or 3 that better predicts values that it was not fitted to. What changes little
-/// over most of a range and much at its end (beds of nearly elastic beads) no parabola describes.
+/// The surface of degree 2 or 3 with the smaller leave-one-out error. Observables that are nearly constant
+/// over most of a range and change strongly at its end (beds of nearly elastic beads) need degree 3.
 Polynomial best_surface(const std::vector<Sought>& ranges, const std::vector<std::vector<double>>& places,
                         const Eigen::VectorXd& y) {
-  constexpr double kClearly = 0.95;  // better by less is chance
+  constexpr double kClearly = 0.95;  // a smaller improvement may be chance
   Polynomial best;
   for (const int degree : {2, 3}) {
     Polynomial p{.degree = degree, .c = {}, .spread = {}, .left = {}};
@@ -68,10 +68,10 @@ Polynomial best_surface(const std::vector<Sought>& ranges, const std::vector<std
   return best;
 }
 
-/// One observable as a function of the parameters, with its condition as the last of them.
+/// One observable as a function of the parameters; its condition, if any, is the last variable.
 class Surface {
  public:
-  /// Runs that a surface of second degree over so many ranges needs, and two to say how far they scatter.
+  /// Number of runs that a quadratic surface over `ranges` variables needs, plus two for the scatter.
   static std::size_t fewest(std::size_t ranges) { return (ranges + 1) * (ranges + 2) / 2 + 2; }
 
   Surface(std::vector<Sought> sought, const std::vector<SimulatedPoint>& runs, std::size_t o,
@@ -100,7 +100,7 @@ class Surface {
   }
 
   struct Value {
-    double y, leverage, slope;  ///< slope: against the condition
+    double y, leverage, slope;  ///< slope: derivative by the condition
   };
   [[nodiscard]] Value at(const std::vector<double>& theta) const {
     if (!condition_) return value(theta, 0);
@@ -123,12 +123,12 @@ class Surface {
 
   std::vector<Sought> ranges_;
   std::optional<Condition> condition_;
-  std::vector<double> residual_;  ///< of each run; NaN where it has no value
+  std::vector<double> residual_;  ///< of each run; NaN if the run has no value
   Polynomial p_;
   double scatter_ = 0, freedom_ = 0;
 };
 
-/// How the residuals of two observables go together in the runs that have both.
+/// Correlation of the residuals of two observables over the runs that have both.
 double correlation(const Surface& a, const Surface& b) {
   if (!a.shares_runs() || !b.shares_runs()) return 0;
   double ab = 0, aa = 0, bb = 0;
@@ -137,11 +137,11 @@ double correlation(const Surface& a, const Surface& b) {
     if (!std::isfinite(x) || !std::isfinite(y)) continue;
     ab += x * y, aa += x * x, bb += y * y;
   }
-  // Short of 1, so that two names of one observable do not make the covariance singular.
+  // Limited below 1, so that the same observable under two names does not make the covariance singular.
   return aa > 0 && bb > 0 ? std::clamp(ab / std::sqrt(aa * bb), -1 + 1e-6, 1 - 1e-6) : 0;
 }
 
-/// chi^2 of the docstring.
+/// chi^2(theta) as defined in inference.hpp.
 class ChiSquared {
  public:
   ChiSquared(const std::vector<Surface>& surfaces, const std::vector<MeasuredObservable>& measured)
@@ -176,7 +176,8 @@ class ChiSquared {
   Eigen::MatrixXd correlation_;
 };
 
-/// By how much chi^2 may exceed its least within the 95 % interval.
+/// Rise of chi^2 above its minimum at the ends of the 95 % interval, by Student's t with Hotelling's
+/// correction.
 double drop_of(const std::vector<Surface>& surfaces) {
   double freedom = HUGE_VAL, together = 0;
   for (const Surface& s : surfaces) {
@@ -187,17 +188,17 @@ double drop_of(const std::vector<Surface>& surfaces) {
   if (left < 2)
     throw InputError(
         {.file = {}, .key = "runs"},
-        fmt::format("{:g} observables of the same runs need {:g} runs more.", together, 2 - left));
+        fmt::format("{:g} observables of the same runs need {:g} more runs.", together, 2 - left));
   const double t95 = boost::math::quantile(boost::math::students_t(left), 0.975);
   return t95 * t95 * freedom / left;
 }
 
-/// chi^2 on a grid over all parameters: few, and it costs nothing.
+/// chi^2 on a grid over all parameters. There are few of them, so the full grid is cheap.
 struct GridSearch {
   int steps = 0;
-  std::vector<std::vector<double>> least;  ///< [parameters][steps + 1], over all others
+  std::vector<std::vector<double>> least;  ///< [parameters][steps + 1], minimum over all other parameters
   std::vector<double> best;
-  double chi2 = HUGE_VAL;  ///< there
+  double chi2 = HUGE_VAL;  ///< at the best point
 };
 GridSearch search(const std::vector<Sought>& sought, const ChiSquared& chi2, int coarser) {
   GridSearch g;
@@ -227,8 +228,8 @@ GridSearch search(const std::vector<Sought>& sought, const ChiSquared& chi2, int
   return g;
 }
 
-/// How far above its least the profile of each parameter is where a run's own parameter lies, the run taken
-/// for the measurement and its surfaces made of all others.
+/// Leave-one-run-out test: the run replaces the measurement, and the surfaces are fitted to all other runs.
+/// \return for each parameter, the rise of the profile above its minimum at the run's own parameter value
 std::vector<double> excess_of(const std::vector<Sought>& sought, const std::vector<SimulatedPoint>& runs,
                               std::vector<MeasuredObservable> measured, std::size_t run) {
   std::vector<SimulatedPoint> others = runs;
@@ -251,13 +252,13 @@ std::vector<double> excess_of(const std::vector<Sought>& sought, const std::vect
   return excess;
 }
 
-/// By how much chi^2 of each parameter may exceed its least: what Student's t says, and so much more that, of
-/// the runs in the measurement's place, 95 % hold their own parameter. Beds scatter with long tails, and more
-/// at one end of a range than at the other: t alone held 25 of 30 of them.
+/// Rise of chi^2 at the ends of each parameter's interval: the value by Student's t, or larger if fewer than
+/// 95 % of the runs, taken as the measurement in turn, have their own parameter inside. Beds have long-tailed
+/// scatter, which is larger at one end of a range than at the other: with t alone, 25 of 30 runs were inside.
 std::vector<double> drops_of(const std::vector<Sought>& sought, const std::vector<SimulatedPoint>& runs,
                              const std::vector<MeasuredObservable>& measured, double by_t) {
   std::vector<std::vector<double>> excess(sought.size());
-  // Judged by the others only where these are enough for surfaces of their own.
+  // The test needs enough other runs to fit the surfaces.
   const auto spare = [&](std::size_t o) {
     const auto have = std::count_if(runs.begin(), runs.end(),
                                     [&](const SimulatedPoint& r) { return std::isfinite(r.y[o]); });
@@ -274,11 +275,11 @@ std::vector<double> drops_of(const std::vector<Sought>& sought, const std::vecto
   for (std::vector<double>& e : excess) {
     std::sort(e.begin(), e.end());
     if (e.empty()) e = {by_t};
-    const double rank = 0.95 * static_cast<double>(e.size() + 1) - 1;  // between two of them
+    const double rank = 0.95 * static_cast<double>(e.size() + 1) - 1;  // interpolated between two values
     const auto below = std::min(static_cast<std::size_t>(std::max(rank, 0.0)), e.size() - 1);
     const double own = std::lerp(e[below], e[std::min(below + 1, e.size() - 1)],
                                  std::min(1.0, rank - static_cast<double>(below)));
-    // Never less: the runs that judge are those that made the surfaces, and few.
+    // Never below the value by t: the runs of the test are few and also made the surfaces.
     drops.push_back(std::max(by_t, own));
   }
   return drops;
@@ -339,12 +340,12 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     p.standard_error = p.open_low || p.open_high ? kNaN : (p.high - p.low) / (2 * kStandardErrors);
     if (p.undetermined())
       out.notes.push_back(
-          fmt::format("{} is undetermined: nothing between {:g} and {:g} contradicts what was measured",
+          fmt::format("{} is undetermined: all values between {:g} and {:g} agree with the measurement",
                       sought[i].name, sought[i].lower, sought[i].upper));
     else if (p.open_low || p.open_high)
-      out.notes.push_back(
-          fmt::format("{} is only bounded: {} {:.4g} at 95 %; the other end of what was looked at fits",
-                      sought[i].name, p.open_low ? "below" : "above", p.open_low ? p.high : p.low));
+      out.notes.push_back(fmt::format(
+          "{} is only bounded: {} {:.4g} at 95 %; the other end of the search range is not excluded",
+          sought[i].name, p.open_low ? "below" : "above", p.open_low ? p.high : p.low));
     out.profiles.push_back(std::move(p));
   }
   for (const Surface& s : surfaces) {
@@ -353,8 +354,9 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     out.slope.push_back(v.slope);
   }
   if (out.freedom > 0 && out.chi2 > out.freedom + 3 * std::sqrt(2 * out.freedom) + 4)
-    out.notes.push_back(fmt::format(
-        "no parameters looked at describe the measurement: chi^2 = {:.3g} of {:g}", out.chi2, out.freedom));
+    out.notes.push_back(
+        fmt::format("no parameters in the search range describe the measurement: chi^2 = {:.3g} of {:g}",
+                    out.chi2, out.freedom));
   return out;
 }
 

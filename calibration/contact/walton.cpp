@@ -47,7 +47,7 @@ FitReport solve_branches(const std::vector<Point>& points, double reach, double 
   return solve(problem, p, {"mu", "beta_0"}, weighted ? Residuals::weighted : Residuals::unweighted);
 }
 
-/// Sum of Cauchy's losses: a start that outliers do not choose.
+/// Sum of Cauchy's losses: outliers do not determine the start values.
 double loss_of(const std::vector<Point>& points, double reach, double mu, double beta, double scale) {
   double sum = 0;
   for (const Point& q : points) {
@@ -97,14 +97,14 @@ void fit_tangential(const std::vector<Impact>& impacts, double shape, WaltonFit&
     if (kept.size() < 4) break;
   }
   out.has_tangential = true;
-  // mu is a slope over (1 + e_n): what e_n leaves open, it leaves open too.
+  // mu is a fitted coefficient divided by (1 + e_n), so the error of e_n adds to its error.
   if (!out.tangential.standard_errors.empty()) {
     const double share = mu / (1 + out.restitution) * out.restitution_error;
     out.tangential.covariance(0, 0) += share * share;
     out.tangential.standard_errors[0] = std::sqrt(out.tangential.covariance(0, 0));
   }
   for (const Point& q : kept) (-beta * q.psi_1 >= q.psi_1 - mu * reach ? out.sticking : out.sliding) += 1;
-  // A branch of two or three impacts is no branch: scatter can make it.
+  // Scatter alone can place two or three impacts on a branch.
   constexpr std::size_t kFewest = 4;
   const auto leave_open = [&](const char* name, const char* branch, std::size_t n) {
     if (n >= kFewest) return;
@@ -128,6 +128,7 @@ WaltonFit fit_walton(const std::vector<Impact>& impacts, double shape) {
     throw InputError(
         {.file = {}, .key = "impacts"},
         fmt::format("{} impacts cannot determine a restitution and its error; 3 are needed.", finite.size()));
+  // Outliers: more than four robust standard deviations from the median, plus the impact's own excess error.
   std::vector<double> e;
   for (const Impact& i : finite) e.push_back(i.restitution);
   const double middle = upper_median(e),
@@ -150,7 +151,7 @@ WaltonFit fit_walton(const std::vector<Impact>& impacts, double shape) {
   }
   out.impacts = kept.size();
   const auto n = static_cast<double>(kept.size());
-  // Weights 1/(s^2 + error^2), s^2 such that chi^2 comes to n - 1 (Mandel & Paule 1982).
+  // Mean of e_n: weights 1/(s^2 + error^2), with s^2 such that chi^2 equals n - 1 (Mandel & Paule 1982).
   const auto chi = [&](double s2, double& mean, double& weight) {
     double sum = 0;
     weight = 0;
@@ -181,6 +182,7 @@ WaltonFit fit_walton(const std::vector<Impact>& impacts, double shape) {
   out.restitution_error = 1 / std::sqrt(weight);
   out.scatter = std::sqrt(s2);
 
+  // Dependence of e_n on speed.
   std::vector<DataPoint> points;
   for (const Impact& i : kept)
     points.push_back(
@@ -197,7 +199,7 @@ WaltonFit fit_walton(const std::vector<Impact>& impacts, double shape) {
             out.slope, out.slope_error));
     }
   } catch (const InputError&) {
-    // All speeds alike: no slope to speak of.
+    // All speeds are equal, so the slope is undefined.
   }
   fit_tangential(kept, shape, out);
   return out;

@@ -1,27 +1,28 @@
 #pragma once
 /// \file
-/// The drive as an accelerometer on the plate saw it.
+/// Frequency and acceleration amplitude of the drive from an accelerometer on the plate.
 
 #include <filesystem>
 #include <vector>
 
 namespace twincell {
 
-/// A record: columns `time_s` and `acceleration_m_s2` of a CSV table.
+/// An accelerometer record: columns `time_s` and `acceleration_m_s2` of a CSV table.
 struct VibrationTable {
   std::string file;
   std::vector<double> time_s, acceleration;
 };
-/// \throws InputError, ConfigError as read_table
+/// Reads a record from a CSV file. \throws InputError, ConfigError as read_table
 VibrationTable read_vibration(const std::filesystem::path& file);
 
-/// Frequency and amplitude of its fundamental, |a| = A omega^2, with standard errors.
+/// Frequency and acceleration amplitude A omega^2 of the fundamental, with standard errors.
 struct VibrationFit {
   double frequency_hz = 0, frequency_error = 0;
   double acceleration = 0, acceleration_error = 0;  ///< m/s^2
 };
-/// The same robust harmonic fit as of the plate's heights (drive_fit.hpp). Samples need equal steps in time
-/// to one per cent. \throws InputError naming the file
+/// Applies the robust harmonic fit of the plate's heights (drive_fit.hpp) to the accelerations.
+/// \throws InputError naming the file, for fewer than 8 samples, or for times that depart from equal steps by
+/// more than 1 % of the record
 VibrationFit fit_vibration(const VibrationTable& table);
 
 }  // namespace twincell

@@ -13,22 +13,22 @@ namespace twincell {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-/// Fewer beads say nothing of a bed.
+/// Fewest columns of beads that give a step of the bed.
 constexpr std::size_t kFewestBeads = 5;
-/// Cycles that tell a scatter.
+/// Fewest cycles that give a scatter between cycles.
 constexpr std::size_t kFewestCycles = 3;
-/// Steps that tell two components and a misfit.
+/// Fewest steps per cycle that determine two components and a misfit.
 constexpr std::size_t kFewestSteps = 4;
-/// For how long after its landing the bed is still set in motion by it, cycles.
+/// Time after a landing, in cycles, during which the impact still moves the beads.
 constexpr double kImpact = 0.1;
-/// Of the steps' own size, by how much a rigid bed may depart from its plate, in the mean over the cycles.
+/// Largest rms departure of the bed's cycle-averaged steps from the plate's, relative to the steps.
 constexpr double kMisfit = 0.06;
-/// rad by which it may be ahead or behind.
+/// Largest phase error of the bed relative to the plate, rad.
 constexpr double kPhaseError = 0.15;
-/// Amplitudes that are tried: as many times the stated one, and from one to the next.
+/// Trial amplitudes: range in units of the stated one, and ratio of consecutive ones.
 constexpr double kSmallest = 0.2, kLargest = 5, kRatio = 1.01;
 
-/// What the steps that lie wholly in [from, to] give.
+/// Fit to the steps that are wholly within [from, to].
 struct Fit {
   double a = 0, b = 0, error = 0, misfit = 0;
   std::size_t steps = 0, cycles = 0;
@@ -121,11 +121,11 @@ void BedSteps::append(const Frame& frame) {
       }
       Step step{.cycle = before_.cycle, .phase = before_.phase};
       const double period = info_.drive->period();
-      // Time may be counted from another cycle than cycles are.
+      // The origin of time may be in another cycle than that of the cycle count.
       const double phase = static_cast<double>(before_.phase) / info_.phases_per_cycle;
       step.begin = phase + std::remainder(before_.time / period - phase, 1.0);
       step.end = step.begin + (frame.time - before_.time) / period;
-      // The upper of two middle values would lift the bed a little in every step.
+      // The upper median alone would bias every step upwards; average it with the lower median.
       step.dz = (upper_median(std::move(dz)) - upper_median(std::move(down))) / 2;
       steps_.push_back(step);
     }
@@ -139,27 +139,29 @@ BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
     none.not_comparable = std::move(why);
     return none;
   };
-  if (info.phases_per_cycle == 0) return because("the frames keep no phase");
+  if (info.phases_per_cycle == 0) return because("the frames have no fixed phases");
   if (bed.steps().empty())
-    return because(fmt::format("no {} columns of beads are seen in consecutive frames", kFewestBeads));
+    return because(
+        fmt::format("fewer than {} columns of beads are seen in consecutive frames", kFewestBeads));
   const double stated = info.drive->amplitude, per = info.drive->omega * info.drive->omega;
-  // a(A)/A falls through 1 where the phases in which a bed of amplitude A lies give that amplitude back.
+  // Scan over A: the solution is where a(A)/A falls through 1, that is, where the phases of a bed at
+  // amplitude A return that amplitude.
   std::optional<BedDrive> found;
   double last = 0;
-  std::string why = "in no phase of the cycle do its lowest beads move as a plate would";
+  std::string why = "at no phase of the cycle do its lowest beads move like a plate";
   for (double amplitude = kSmallest * stated; amplitude < kLargest * stated; amplitude *= kRatio) {
     const auto on = time_on_plate(amplitude * per);
     if (!on) break;
     const double from = amplitude * per <= 1 ? on->from : on->from + kImpact;
     const Fit fit = fit_steps(bed.steps(), from, on->to);
-    if (fit.cycles < kFewestCycles || fit.steps < kFewestSteps) break;  // flights only grow longer
+    if (fit.cycles < kFewestCycles || fit.steps < kFewestSteps) break;  // larger A leaves fewer phases
     const double ratio = fit.a / amplitude;
     const bool through = last > 1 && ratio <= 1;
     last = ratio;
     if (!through || fit.misfit > kMisfit || std::abs(fit.b) > kPhaseError * fit.a) continue;
     const BedDrive here{
         .amplitude = fit.a, .amplitude_error = fit.error, .cycles = fit.cycles, .from = from, .to = on->to};
-    // Of several that explain the motion the stated one is believed.
+    // If several amplitudes explain the motion, take the one closest to the stated amplitude.
     if (!found || std::abs(std::log(here.amplitude / stated)) < std::abs(std::log(found->amplitude / stated)))
       found = here;
   }

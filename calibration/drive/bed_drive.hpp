@@ -1,14 +1,16 @@
 #pragma once
 /// \file
-/// The drive's amplitude from the bed: while it lies on the plate, its lowest beads move as the plate does.
+/// Amplitude of the drive from the motion of the bed: while the bed rests on the plate, its lowest beads move
+/// with the plate.
 ///
-/// Of the beads seen in two consecutive frames, the lowest of every column one sigma wide give, by their
-/// median, the step of the bed's lower side. In the phases in which a bed lies on a plate of amplitude A,
+/// Of the beads seen in two consecutive frames, the lowest bead of each column one sigma wide is taken; the
+/// median of their displacements is the step of the bed's lower surface. At the phases at which a bed rests
+/// on a plate of amplitude A,
 ///     steps z(t_{k+1}) - z(t_k) = a (sin th_{k+1} - sin th_k) + b (cos th_{k+1} - cos th_k),
-/// a and b by least squares for each cycle; b, which is 0 where the frames' phases are right, is a check.
-/// Those phases depend on A: all of the cycle for Gamma <= 1, else from the landing of a body that does not
-/// rebound, and a tenth of a cycle for what the impact sets in motion, to its take-off at sin th = 1/Gamma.
-/// The amplitude is the A whose phases give a = A back.
+/// with a and b from least squares for each cycle. b is 0 if the phases of the frames are correct, and serves
+/// as a check. The phases depend on A: the whole cycle for Gamma <= 1. Above, they last from the landing of a
+/// body that does not rebound, plus a tenth of a cycle for the motion that the impact excites, until its
+/// take-off at sin th = 1/Gamma. The amplitude is the A for which the fit at these phases returns a = A.
 
 #include <cstdint>
 #include <optional>
@@ -20,15 +22,16 @@
 
 namespace twincell {
 
-/// Fractions of a cycle between which a body that does not rebound lies on the plate: from its landing, below
-/// 0 where it landed in the cycle before, to its take-off. A whole cycle for Gamma <= 1; nothing if it flies
-/// for longer than a cycle (Gamma > 3.3).
+/// Interval, in fractions of a cycle, in which a body that does not rebound rests on the plate: from its
+/// landing, negative if that was in the previous cycle, to its take-off. The whole cycle for Gamma <= 1; no
+/// value if the flight lasts longer than a cycle (Gamma > 3.3).
 struct TimeOnPlate {
   double from = 0, to = 1;
 };
 std::optional<TimeOnPlate> time_on_plate(double gamma);
 
-/// Takes a trajectory's frames and keeps the steps of the bed's lower side, some 40 bytes a frame.
+/// Receives the frames of a trajectory and stores the steps of the bed's lower surface, about 40 bytes per
+/// frame.
 class BedSteps : public TrajectorySink {
  public:
   struct Step {
@@ -47,15 +50,16 @@ class BedSteps : public TrajectorySink {
   std::vector<Step> steps_;
 };
 
-/// The drive as the bed shows it.
+/// Amplitude of the drive as measured on the bed.
 struct BedDrive {
-  double amplitude = 0, amplitude_error = 0;  ///< sigma; standard error by the scatter between cycles
-  std::size_t cycles = 0;                     ///< that were fitted
-  double from = 0, to = 1;                    ///< fractions of a cycle that were fitted
-  std::string not_comparable;                 ///< why the bed does not show it; empty: it does
+  double amplitude = 0, amplitude_error = 0;  ///< sigma; standard error from the scatter between cycles
+  std::size_t cycles = 0;                     ///< number of fitted cycles
+  double from = 0, to = 1;                    ///< fitted interval, fractions of a cycle
+  std::string not_comparable;                 ///< why the bed gives no amplitude; empty if it does
 };
 
-/// \pre the drive of `info` is known
+/// Fits the amplitude to the steps of the bed. Of several solutions it returns the one closest to the stated
+/// amplitude. \pre `info` states the drive
 BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info);
 
 }  // namespace twincell

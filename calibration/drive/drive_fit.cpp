@@ -22,14 +22,14 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWorstSigma = 4;
 constexpr std::size_t kSearched = 2000;  // samples of the periodogram
-constexpr double kSuspicious = 0.01;
+constexpr double kSuspicious = 0.01;     // largest p of a second harmonic that is reported as significant
 
 struct Sample {
   double t, z;
   std::size_t frame;
 };
 
-/// Fit minus height; with a second harmonic, or with four parameters only.
+/// Fit minus height: with a second harmonic six parameters, without it four.
 template <bool kSecond>
 struct Motion {
   double t, z;
@@ -61,7 +61,7 @@ double spread_of(std::vector<double> r) {
   return 1.4826 * upper_median(std::move(r));
 }
 
-/// Heights without their wildest: what a periodogram, which has no loss function, can stand.
+/// Heights with outliers clamped, because a periodogram has no robust loss function.
 std::vector<Sample> clipped(std::vector<Sample> samples) {
   std::vector<double> z;
   for (const Sample& s : samples) z.push_back(s.z);
@@ -72,7 +72,7 @@ std::vector<Sample> clipped(std::vector<Sample> samples) {
   return samples;
 }
 
-/// Sum of squares that a sine of this omega leaves, and its parameters.
+/// Residual sum of squares of the best sine of frequency omega, and its coefficients `c`.
 double left_by(const std::vector<Sample>& samples, double omega, Eigen::Vector3d& c) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -87,27 +87,31 @@ double left_by(const std::vector<Sample>& samples, double omega, Eigen::Vector3d
   return zz - c.dot(right);
 }
 
+/// Frequency of the smallest residual in a periodogram of the first kSearched samples, rad per frame
+/// interval.
 double search_omega(const std::vector<Sample>& all) {
   const std::vector<Sample> samples = clipped(std::vector<Sample>(
       all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), kSearched))));
   const double length = samples.back().t - samples.front().t;
-  const double step = 2 * kPi / (6 * length);  // a sixth of the peak's own width
+  const double step = 2 * kPi / (6 * length);  // a sixth of the width of a peak
   double best = 0, least = std::numeric_limits<double>::infinity();
   Eigen::Vector3d c;
-  // Below one cycle a drift looks like a drive; above half a cycle a frame a drive looks like a slower one.
+  // Range: with less than one cycle in the samples a drift looks like a drive; above half a cycle per frame
+  // the drive aliases to a lower frequency.
   for (double omega = 2 * kPi / length; omega <= kPi * 0.999; omega += step)
     if (const double left = left_by(samples, omega, c); left < least) least = left, best = omega;
   return best;
 }
 
-/// Parameters at the middle of the samples' time.
+/// Parameters, with time counted from the middle of the samples.
 struct Fitted {
   FitReport report;
   double middle = 0;
   bool second = false;
 };
 
-/// Cauchy's loss from a start; the frequency walks from the first samples to all.
+/// Robust start values by Cauchy's loss. The fit begins with the first samples and extends to all, four times
+/// as many each round, so that the frequency stays within its minimum.
 std::vector<double> robust_start(const std::vector<Sample>& all, double omega, double middle, bool second) {
   std::vector<double> p(second ? 6 : 4, 0.0);
   for (std::size_t n = std::min(all.size(), kSearched);; n = std::min(all.size(), 4 * n)) {
@@ -137,7 +141,7 @@ std::vector<double> robust_start(const std::vector<Sample>& all, double omega, d
   }
 }
 
-/// What residuals scatter by: the heights' own noise, and what jittering moments add where the plate is fast.
+/// Scatter of the residuals: noise of the heights, plus timing jitter where the plate moves fast.
 struct Scatter {
   double still = 0, moving = 0;  // moving: at full speed
   [[nodiscard]] double at(double theta) const { return std::hypot(still, moving * std::cos(theta)); }
@@ -145,7 +149,8 @@ struct Scatter {
 
 Scatter scatter_of(const std::vector<Sample>& all, const Fitted& f, const std::vector<double>& p,
                    const std::vector<double>& residuals) {
-  // Medians over the slow and the fast half: <cos^2> is 0.1817 in the one, 0.8183 in the other.
+  // Spreads over the slow and the fast half of the cycle: <cos^2> is 0.1817 in the slow half, 0.8183 in the
+  // fast one.
   constexpr double kSlow = 0.1817, kFast = 0.8183;
   std::vector<double> slow, fast;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -160,6 +165,7 @@ Scatter scatter_of(const std::vector<Sample>& all, const Fitted& f, const std::v
   return {std::max(std::sqrt(still), floor), std::sqrt(moving)};
 }
 
+/// Fit of all samples: robust start, then least squares with outliers rejected and weights from the scatter.
 Fitted fit_motion(const std::vector<Sample>& all, double omega, bool second, std::vector<double>& residuals,
                   Scatter& scatter) {
   Fitted f;
@@ -177,7 +183,7 @@ Fitted fit_motion(const std::vector<Sample>& all, double omega, bool second, std
     for (std::size_t i = 0; i < all.size(); ++i) {
       const double s = scatter.at(p[3] * (all[i].t - f.middle) + p[2]);
       if (std::abs(residuals[i]) > kWorstSigma * s) continue;
-      // Relative weights only: the size of the errors comes from the residuals themselves.
+      // The weights are relative; the residuals set the scale of the errors.
       problem.AddResidualBlock(
           cost_of(all[i], f.middle, second),
           scatter.moving > 0 ? new ceres::ScaledLoss(nullptr, std::pow(usual / s, 2), ceres::TAKE_OWNERSHIP)
@@ -196,6 +202,7 @@ Fitted fit_motion(const std::vector<Sample>& all, double omega, bool second, std
   return f;
 }
 
+/// Fit to one assignment of times to the frames, and the frames that do not follow it.
 struct Attempt {
   Fitted fitted;
   std::vector<Sample> samples;
@@ -212,7 +219,7 @@ struct Attempt {
 Attempt attempt(std::vector<Sample> samples, double omega) {
   Attempt a;
   a.samples = std::move(samples);
-  // Four phases a cycle or fewer do not tell a second harmonic.
+  // Four or fewer phases per cycle do not determine a second harmonic.
   const bool second = omega < 2 * kPi / 4.5 && a.samples.size() >= 12;
   a.fitted = fit_motion(a.samples, omega, second, a.residuals, a.scatter);
   if (second && a.fitted.report.standard_errors.empty())
@@ -234,7 +241,7 @@ std::vector<Sample> samples_of(const std::vector<double>& heights, const std::ve
   return samples;
 }
 
-/// Gaps filled on straight lines: for the path search, which wants every frame.
+/// Heights with gaps interpolated linearly, because the path search needs every frame.
 std::vector<double> filled(std::vector<double> h) {
   std::size_t last = h.size();
   for (std::size_t f = 0; f < h.size(); ++f) {
@@ -250,9 +257,10 @@ std::vector<double> filled(std::vector<double> h) {
   return h;
 }
 
-/// What comes back every cycle is no noise: the residuals' power at the drive's third and higher harmonics,
-/// over that of noise as white. Beads that hide the plate at the same phase of each cycle do that, and no
-/// number of cycles averages it away. At least 1; `harmonics` is how many were looked at.
+/// Power of the residuals at the drive's third and higher harmonics, relative to white noise; at least 1.
+/// Errors that recur every cycle are not noise: beads that hide the plate at the same phase of each cycle
+/// cause them, and no number of cycles averages them away. \param harmonics set to the number of harmonics
+/// used
 double cyclic_factor(const Attempt& a, int& harmonics) {
   constexpr int kFirst = 3, kMost = 10;
   const std::vector<double>& p = a.fitted.report.values;
@@ -276,7 +284,8 @@ double cyclic_factor(const Attempt& a, int& harmonics) {
 }
 
 void add_jitter(DriveFit& lock, const Attempt& a) {
-  // E r^2 = s_z^2 + (A omega cos theta)^2 s_t^2: a straight line whose slope is the variance of the moments.
+  // E r^2 = s_z^2 + (A omega cos theta)^2 s_t^2: a straight line whose slope is the variance of the exposure
+  // times.
   const double v = lock.amplitude * lock.omega;
   std::vector<double> x, y;
   for (std::size_t i = 0; i < a.samples.size(); ++i) {
@@ -315,7 +324,7 @@ void add_phases(DriveFit& lock, std::size_t n_frames) {
   const double fraction = lock.phi / (2 * kPi);
   if (n >= 2 && drift < 0.25) {
     lock.frames_per_cycle = static_cast<int>(n);
-    // In the middle of the stack, where it is known best.
+    // Evaluate the phase at the middle of the stack, where its error is smallest.
     const double half = 0.5 * static_cast<double>(n_frames - 1);
     const double at = fraction * n + half * (n / lock.period - 1);
     const double whole = std::round(at);
@@ -323,11 +332,10 @@ void add_phases(DriveFit& lock, std::size_t n_frames) {
         ((static_cast<long>(whole) % lock.frames_per_cycle) + lock.frames_per_cycle) % lock.frames_per_cycle);
     lock.phase_offset = at - whole;
   } else {
-    lock.notes.push_back(
-        fmt::format("the period of {:.5g} frames is no whole number: phases drift by {:.2g} frames over the "
-                    "stack. Hand the list "
-                    "of --phases to track --phase-lock",
-                    lock.period, drift));
+    lock.notes.push_back(fmt::format(
+        "the period of {:.5g} frames is not a whole number: phases drift by {:.2g} frames over the "
+        "stack. Pass the list of --phases to track --phase-lock",
+        lock.period, drift));
   }
 }
 
@@ -351,10 +359,11 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
   const auto followed = [](const Attempt& b) {
     return 1 - static_cast<double>(b.off) / static_cast<double>(b.samples.size());
   };
-  // A fit through slipped phases scatters widely, and then nothing is off.
+  // If frames are missing, the fit scatters widely and no single frame counts as out of lock.
   const auto scatters = [](const Attempt& b) { return b.scatter.at(0) > 0.05 * b.fitted.report.values[1]; };
   if (options.mend && (followed(a) < 0.97 || a.longest_run >= 3 || scatters(a))) {
-    // Dropped frames shorten the period as it seems.
+    // Repair dropped and doubled frames: dropped frames shorten the apparent period, so try several N_k, find
+    // the best path of phases for each, and fit again.
     std::vector<int> candidates = {options.frames_per_cycle};
     const double period = 2 * kPi / a.fitted.report.values[3];
     constexpr int kMost = 24;
@@ -365,8 +374,7 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
       candidates.push_back(n);
     const std::vector<double> whole = filled(heights);
     for (const int n : candidates) try {
-        const PhaseTable table =
-            estimate_phases({whole, {}}, {.frames_per_cycle = n, .gamma = {}, .amplitude = {}});
+        const PhaseTable table = estimate_phases({whole, {}}, {.frames_per_cycle = n, .gamma = {}});
         if (table.dropped + table.doubled == 0) continue;
         std::vector<double> mended(heights.size());
         double tick = 0;
@@ -383,15 +391,16 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
           lock.doubled = table.doubled;
         }
       } catch (const InputError&) {
-        // No period by that way: the plain fit stands, with its frames out of lock.
+        // The path search finds no period: keep the plain fit and its out-of-lock frames.
       }
     if (scatters(a))
       lock.notes.push_back(
           fmt::format("the heights scatter by {:.2g} of A about a sine: frames may be missing; "
-                      "--frames-per-cycle would help",
+                      "state --frames-per-cycle",
                       a.scatter.at(0) / a.fitted.report.values[1]));
   }
 
+  // Results: parameters of the first frame, with errors that include recurring residuals and the model error.
   const FitReport& report = a.fitted.report;
   lock.fit = report;
   const double z0 = report.values[0], amplitude = report.values[1], omega = report.values[3];
@@ -403,11 +412,11 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
   int harmonics = 0;
   lock.cyclic_factor = cyclic_factor(a, harmonics);
   const double cyclic = std::sqrt(lock.cyclic_factor);
-  const double angle = options.model_error / amplitude;  // of the phase, and of a harmonic
+  const double angle = options.model_error / amplitude;  // model error of the phase and of a harmonic, rad
   lock.z0_error = std::hypot(cyclic * report.standard_error("z0"), options.model_error);
   lock.amplitude_error = std::hypot(cyclic * report.standard_error("A"), options.model_error);
-  // Over few cycles what comes back every cycle looks like a drift of the phase too: eps sin(omega t)
-  // regressed on A t cos(omega t) over a time T gives 6 eps/(A omega T^2) at most.
+  // Over few cycles a recurring error also looks like a drift of the phase: eps sin(omega t) regressed on A t
+  // cos(omega t) over a time T gives at most 6 eps/(A omega T^2).
   const double turned = omega * (ticks.back() - ticks.front());
   lock.omega_error = std::hypot(report.standard_error("omega"), omega * angle * 6 / (turned * turned));
   if (report.covariance.size() > 0)
@@ -416,7 +425,7 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
   if (!(amplitude > 5 * lock.amplitude_error) || !(a.scatter.at(0) < amplitude))
     throw InputError(
         {.file = {}, .key = "plate"},
-        fmt::format("does not move by more than its heights scatter: amplitude {:.3g}, error {:.2g}, "
+        fmt::format("does not move by more than the scatter of its heights: amplitude {:.3g}, error {:.2g}, "
                     "scatter {:.2g}.",
                     amplitude, lock.amplitude_error, a.scatter.at(0)));
   if (a.fitted.second && report.covariance.size() > 0) {
@@ -435,9 +444,10 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
           fmt::format("the drive is not a pure sine: second harmonic {:.2g} +- {:.1g} of A (p = {:.1g})",
                       *lock.second_harmonic, *lock.second_harmonic_error, *lock.p_sinusoidal));
   } else {
-    lock.notes.emplace_back("too few phases a cycle to tell a second harmonic");
+    lock.notes.emplace_back("too few phases per cycle to determine a second harmonic");
   }
 
+  // Phase and lock of every frame.
   lock.frames.resize(heights.size());
   for (std::size_t f = 0; f < heights.size(); ++f) {
     lock.frames[f].tick = ticks[f];
@@ -447,7 +457,7 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
   double squares = 0;
   for (std::size_t i = 0; i < a.samples.size(); ++i) {
     LockedFrame& frame = lock.frames[a.samples[i].frame];
-    frame.residual = -a.residuals[i];  // Ceres has fit minus height
+    frame.residual = -a.residuals[i];  // the cost function has the opposite sign
     frame.lock = a.follows(i, 2 * options.model_error) ? FrameLock::locked : FrameLock::out_of_lock;
     if (frame.lock == FrameLock::locked)
       squares += a.residuals[i] * a.residuals[i], ++lock.locked;
@@ -458,7 +468,7 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
   lock.rms = std::sqrt(squares / static_cast<double>(std::max<std::int64_t>(1, lock.locked)));
   add_phases(lock, static_cast<std::size_t>(std::lround(ticks.back() - ticks.front())) + 1);
   if (lock.frames_per_cycle > 0) {
-    // The phase at the middle of the stack; its own covariance, not that of the first frame.
+    // The offset refers to the middle of the stack, so it uses the error of the phase there.
     lock.phase_offset_error =
         std::hypot(angle, cyclic * report.standard_error("phi")) * lock.frames_per_cycle / (2 * kPi);
   }

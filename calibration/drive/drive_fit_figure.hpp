@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The plate's heights folded on one cycle, with the fit and what it leaves.
+/// Figure of the plate's heights folded onto one cycle, with the fit and its residuals.
 
 #include "analysis/report/figures.hpp"
 #include "calibration/drive/drive_fit.hpp"

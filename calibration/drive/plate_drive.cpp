@@ -17,7 +17,7 @@
 namespace twincell {
 namespace {
 
-/// Numbers of the drive that are stated, amplitude apart.
+/// Number of stated drive quantities other than the amplitude.
 int stated(const DriveSpec& s) {
   int n = 0;
   for (const auto& number : {s.omega, s.frequency, s.gamma, s.k_m, s.peak_velocity}) n += number ? 1 : 0;
@@ -28,18 +28,18 @@ bool is_whole(const DriveSpec& s) {
   return stated(s) + (s.amplitude ? 1 : 0) >= 2;
 }
 
-/// Pixels per sigma: as stated, else by the walls.
+/// Pixels per sigma: as stated, else from the distance of the walls.
 double scale_of(const CellDescription& cell, const CellGeometry& geometry, const Where& where) {
   if (cell.pixels_per_sigma) return *cell.pixels_per_sigma;
   if (cell.width && geometry.has_left && geometry.has_right) return geometry.width_px() / *cell.width;
   throw ConfigError(where,
-                    "is not stated, and the plate's motion gives it in pixels alone: say "
-                    "camera.pixels_per_sigma, or cell.width where both walls are in the picture.");
+                    "is not stated, and the plate's motion gives it only in pixels: state "
+                    "camera.pixels_per_sigma, or cell.width if both walls are in the picture.");
 }
 
-/// The plate's edge and its motion. Where the plate is not in the picture, the lowest row of beads, or the
-/// picture's own border, passes for an edge. \throws InputError if no edge is seen to move as a plate does,
-/// or if it lies more than half a bead from where the cell says its plate is
+/// Plate edge and its motion. If the plate is outside the picture, the detection may return the lowest row of
+/// beads or the picture's border instead, so the edge is checked. \throws InputError if no edge moves as a
+/// plate does, or if the edge is more than half a bead from the stated position of the plate
 std::pair<CellGeometry, DriveFit> plate_in_picture(const CellDescription& cell, const StackEdges& edges) {
   const CellGeometry geometry = fit_cell_geometry(edges);
   const DriveFit drive =
@@ -50,8 +50,8 @@ std::pair<CellGeometry, DriveFit> plate_in_picture(const CellDescription& cell, 
     constexpr double kFarthest = 0.5;
     const double row = geometry.plate_row - drive.z0;
     if (std::abs(row - cell.origin->y_px) > kFarthest * *cell.pixels_per_sigma)
-      throw InputError({}, fmt::format("the lowest edge in the picture lies at row {:.1f}, and the plate, by "
-                                       "camera.origin_px, at {:.1f}",
+      throw InputError({}, fmt::format("the lowest edge in the picture is at row {:.1f}, but the plate, by "
+                                       "camera.origin_px, is at row {:.1f}",
                                        row, cell.origin->y_px));
   }
   return {geometry, drive};
@@ -91,7 +91,7 @@ std::string complete_drive(CellDescription& cell, const std::filesystem::path& c
       if (!rate || !t0)
         throw ConfigError(
             where("drive.omega"),
-            fmt::format("is not stated, and the plate's motion gives it per frame alone: say it, or {}.",
+            fmt::format("is not stated, and the plate's motion gives it only per frame: state it, or {}.",
                         !rate ? "camera.frame_rate_hz" : "scale.sigma_m and gravity_m_s2"));
       spec.omega = lock.omega * *rate * *t0;
       said += fmt::format("{} omega = {:.6g} +- {:.2g} /t0", said.back() == ':' ? "" : ",", *spec.omega,
@@ -102,8 +102,8 @@ std::string complete_drive(CellDescription& cell, const std::filesystem::path& c
     if (lock.frames_per_cycle == 0)
       throw ConfigError(
           where("camera.frames_per_cycle"),
-          fmt::format("is missing, and {:.5g} frames per cycle, as the plate moves, is no whole "
-                      "number that lasts: the frames keep no phase.",
+          fmt::format("is missing, and the plate's period of {:.5g} frames is not a whole number "
+                      "over the stack, so the frames have no fixed phases.",
                       lock.period));
     cell.phase_lock = {lock.frames_per_cycle, lock.first_phase, lock.phase_offset};
     said += fmt::format("{} {} frames per cycle, the first at phase {}", said.back() == ':' ? "" : ",",
@@ -114,7 +114,7 @@ std::string complete_drive(CellDescription& cell, const std::filesystem::path& c
 
 namespace {
 
-/// The beginning of a stack.
+/// The first frames of a stack, at most `most`.
 class FirstFrames : public FrameSource {
  public:
   FirstFrames(const std::filesystem::path& stack, std::size_t most)
@@ -135,16 +135,16 @@ class FirstFrames : public FrameSource {
 };
 
 constexpr double kErrors = 5, kShare = 0.03, kPixels = 0.3;
-/// A bed's lower side departs from its plate by up to 4 % of A (recovery.BedDrive): landings, beads pushed
-/// up.
+/// The bed's lower surface departs from the plate by up to 4 % of A (recovery.BedDrive), because of landings
+/// and of beads that are pushed up.
 constexpr double kShareOfBed = 0.1;
 
-/// Compares what `check` has seen with what is stated.
+/// Compares the measured amplitude in `check` with the stated one.
 void compare_amplitude(DriveCheck& check, const std::string& what, double stated, double share,
                        double scale) {
   if (std::abs(check.amplitude - stated) >
       std::max({kErrors * check.amplitude_error, share * stated, kPixels / scale}))
-    check.disagreement = fmt::format("{} moves by A = {:.4g} +- {:.2g} sigma, and the cell states {:.4g}",
+    check.disagreement = fmt::format("{} moves with A = {:.4g} +- {:.2g} sigma, but the cell states {:.4g}",
                                      what, check.amplitude, check.amplitude_error, stated);
 }
 void compare_omega(DriveCheck& check, const std::string& what, const DriveFit& seen, double stated,
@@ -154,7 +154,7 @@ void compare_omega(DriveCheck& check, const std::string& what, const DriveFit& s
                error = seen.omega_error * *check.frame_rate_hz * *t0;
   if (std::abs(omega - stated) > std::max(kErrors * error, kShare * stated))
     check.disagreement =
-        fmt::format("{} moves at omega = {:.4g} +- {:.2g} per t0, and the cell states {:.4g}", what, omega,
+        fmt::format("{} moves with omega = {:.4g} +- {:.2g} per t0, but the cell states {:.4g}", what, omega,
                     error, stated);
 }
 
@@ -180,7 +180,8 @@ DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::pa
     return check;
   }
   const double scale = *cell.pixels_per_sigma;
-  // Three cycles tell an amplitude; the rest of a long film would cost as much as locating its beads.
+  // Three cycles determine the amplitude; reading all of a long film would cost as much as locating its
+  // beads.
   constexpr std::size_t kCycles = 3, kFewest = 40;
   FirstFrames beginning(
       stack, std::max(kFewest, kCycles * static_cast<std::size_t>(cell.phase_lock.frames_per_cycle)));
@@ -195,7 +196,7 @@ DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::pa
     const std::string what = "the plate in the frames";
     compare_amplitude(check, what, drive->amplitude, kShare, scale);
     compare_omega(check, what, seen, drive->omega, cell.scale.t0_s());
-  } catch (const InputError& e) {  // no plate in the picture, or none that moves
+  } catch (const InputError& e) {  // no plate in the picture, or it does not move
     check.not_comparable = e.what();
   }
   return check;
@@ -221,7 +222,7 @@ DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info,
     for (const BedSteps::Step& step : bed.steps()) heights.push_back(heights.back() + step.dz);
     compare_omega(check, what, fit_drive(heights, {.frames_per_cycle = info.phases_per_cycle, .mend = false}),
                   info.drive->omega, info.scale.t0_s());
-  } catch (const InputError&) {  // the amplitude was told from phases, the period cannot be
+  } catch (const InputError&) {  // the amplitude was found, the period cannot be fitted
   }
   return check;
 }

@@ -33,8 +33,7 @@ struct Harmonic {
   }
 };
 
-/// z0, A, phi by linear least squares at a known omega: the start, from which phi cannot land in a wrong
-/// minimum.
+/// z0, A, phi by linear least squares at a known omega: a start from which phi cannot end in a wrong minimum.
 std::array<double, 4> linear_start(const std::vector<HeightSample>& samples, double omega) {
   const auto n = static_cast<Eigen::Index>(samples.size());
   Eigen::MatrixXd basis(n, 3);

@@ -12,7 +12,7 @@
 namespace twincell {
 namespace {
 
-constexpr double kEnough = 0.999;  // of the spread
+constexpr double kEnough = 0.999;  // share of the variance
 
 bool finite(const std::vector<double>& curve) {
   return std::all_of(curve.begin(), curve.end(), [](double v) { return std::isfinite(v); });

@@ -19,7 +19,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSuspicious = 0.05;
 constexpr double kCorrelated = 0.99;
-/// Residual squares below this share of the ordinates' own are rounding.
+/// A residual sum of squares below this share of the ordinates' sum of squares is rounding error.
 constexpr double kExact = 1e-26;
 
 struct Selected {
@@ -34,6 +34,7 @@ double error_of(const DataPoint& p, bool logarithmic) {
   return logarithmic ? sigma / p.y : sigma;
 }
 
+/// Classifies the points, records the counts in `result`, and returns those that enter the fit.
 Selected select(const Law& law, const std::vector<DataPoint>& points, const FitWindow& window,
                 CurveFit& result) {
   Selected selected;
@@ -64,11 +65,10 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
     errors = errors && error > 0;
     constexpr double kMost = 1e150;
     if (std::abs(p.x) > kMost || std::abs(p.y) > kMost)
-      throw InputError(
-          {.file = {}, .key = "points"},
-          fmt::format("a point is at ({:g}, {:g}); both must lie within +-{:g}, or their squares "
-                      "are no numbers any more",
-                      p.x, p.y, kMost));
+      throw InputError({.file = {}, .key = "points"},
+                       fmt::format("a point is at ({:g}, {:g}); both must be within +-{:g}, or their squares "
+                                   "overflow",
+                                   p.x, p.y, kMost));
     selected.points.push_back({p.x, law.logarithmic ? std::log(p.y) : p.y, error});
   }
   selected.weighted = errors;
@@ -81,11 +81,11 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
   const FitWindow everything;
   if (selected.points.empty() && window.low == everything.low && window.high == everything.high)
     throw InputError({.file = {}, .key = "points"},
-                     fmt::format("none of {} can be fitted: {} zero, {} invalid for {}", points.size(),
-                                 result.n_zero, result.n_invalid, law.name));
+                     fmt::format("none of the {} points can be fitted: {} zero, {} invalid for {}",
+                                 points.size(), result.n_zero, result.n_invalid, law.name));
   if (selected.points.empty())
     throw InputError({.file = {}, .key = "window"},
-                     fmt::format("no point to fit lies in [{:g}, {:g}]; {}", window.low, window.high, data));
+                     fmt::format("no point to fit is in [{:g}, {:g}]; {}", window.low, window.high, data));
   std::set<double> abscissas;
   for (const FitPoint& p : selected.points) abscissas.insert(p.x);
   const std::size_t needed = law.parameters.size();
@@ -97,7 +97,7 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
   return selected;
 }
 
-/// From one start to its end. \return the report; cost_after tells the ends apart
+/// Fit from one start. \return the report; cost_after ranks the results of several starts
 FitReport from_start(const Law& law, const Selected& selected, std::vector<double> parameters) {
   ceres::Problem problem;
   for (const FitPoint& point : selected.points)
@@ -118,7 +118,7 @@ FitReport best_of_starts(const Law& law, const Selected& selected) {
     else if (!best || report.cost_after < best->cost_after)
       best = std::move(report);
   }
-  if (!best) throw RunError(fmt::format("The fit of {} did not come to an end: {}", law.name, failure));
+  if (!best) throw RunError(fmt::format("The fit of {} did not converge: {}", law.name, failure));
   return *best;
 }
 
@@ -138,14 +138,15 @@ double correlation_of(const std::vector<FitPoint>& points, const std::vector<dou
   return yy > 0 && ff > 0 ? yf / std::sqrt(yy * ff) : kNaN;
 }
 
-/// Half of the squares of the ordinates in units of their errors.
+/// Half the sum of squares of the ordinates, in units of their errors.
 double squares_of(const Selected& selected) {
   double total = 0;
   for (const FitPoint& p : selected.points) total += p.y * p.y / (p.error * p.error) / 2;
   return total;
 }
 
-/// Probability of reducing the squares so far with `extra` parameters that do nothing.
+/// Probability that `extra` parameters without effect reduce the sum of squares by this much (F test, chi^2
+/// if weighted).
 double chance_of_gain(double nested_squares, double squares, std::size_t points, std::size_t parameters,
                       std::size_t extra, bool weighted) {
   const double gain = std::max(0.0, nested_squares - squares);
@@ -178,21 +179,21 @@ void compare_with_nested(CurveFit& result, const Selected& selected) {
                                      simple.name, result.p_nested, fmt::join(law.lost, " and ")));
 }
 
-/// All bends whose squares exceed the least ones by less than a parameter's worth of chance (profile of the
-/// squares). At a kink the derivative jumps wherever a point is, so that the covariance there says too
-/// little.
+/// 95 % interval of the bend by profile of the sum of squares: all bends whose sum of squares exceeds the
+/// least one by less than the threshold for one parameter. The covariance would be too small, because the
+/// derivative at a kink jumps at every point.
 Interval interval_of_bend(const CurveFit& result, const Selected& selected, double reach) {
   const Law& law = *result.law;
   const double freedom = static_cast<double>(result.n_used - result.fit.values.size());
   const double least = 2 * result.fit.cost_after, best = result.fit.values.back();
   const double most = least + reach * reach * (result.weighted ? 1 : least / freedom);
   const auto inside = [&](double bend) { return law.squares_bent_at(selected.points, bend) <= most; };
-  // Between the first and the last gap that have two points on their outer side; a bend beyond is no bend.
+  // A bend needs two points on either side.
   const double low = selected.points[1].x, high = selected.points[selected.points.size() - 2].x;
   const auto edge = [&](double end) {
     constexpr int kSteps = 400;
     double in = best, out = end;
-    for (int i = 0; i <= kSteps; ++i) {  // from the end inwards: the outermost bend that is not excluded
+    for (int i = 0; i <= kSteps; ++i) {  // from the end inwards to the outermost bend that is not excluded
       const double x = end * std::pow(best / end, static_cast<double>(i) / kSteps);
       if (!inside(x)) {
         out = x;
@@ -225,7 +226,7 @@ void add_intervals(CurveFit& result, const Selected& selected) {
                                    fit.values[p] + reach * fit.standard_errors[p], 0.95, method};
   if (result.law->squares_bent_at && fit.values.back() > 0)
     result.intervals.back() = interval_of_bend(result, selected, reach);
-  // Data without scatter would make an error of 0 even of what they leave undetermined.
+  // Data without scatter would give undetermined parameters an error of 0, so they get no interval.
   if (!result.weighted && result.fit.cost_after <= kExact * squares_of(selected))
     for (std::size_t p = 0; p < fit.values.size(); ++p)
       if (std::find(fit.undetermined.begin(), fit.undetermined.end(), fit.names[p]) != fit.undetermined.end())

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A law (law.hpp) fitted to measured points, with an account of what entered, what came out, and what did
-/// not.
+/// Least-squares fit of a law (law.hpp) to measured points, with a report of the points used, the parameters
+/// with intervals, and tests of the fit.
 
 #include <cstddef>
 #include <optional>
@@ -19,7 +19,7 @@ struct DataPoint {
   double x = 0;
   double y = 0;
   double sigma = 0;   ///< standard deviation of y; 0: unknown
-  double trials = 0;  ///< of how many trials y is a frequency (bead-periods of p_s); 0: it is none
+  double trials = 0;  ///< number of trials if y is a frequency (bead-periods of p_s); 0: y is no frequency
 };
 
 /// Window of the abscissa, both ends included.
@@ -28,53 +28,55 @@ struct FitWindow {
   double high = 1e300;
 };
 
-/// What became of a point.
+/// Whether a point was used, and if not, why.
 enum class PointUse { used, zero, outside, invalid };
 
-/// Are the signs of the residuals, ordered by x, in random order? Wald and Wolfowitz's runs, exactly counted.
+/// Test of whether the signs of the residuals, ordered by x, are in random order: Wald-Wolfowitz runs test
+/// with exact probabilities.
 struct RunsTest {
   std::size_t positive = 0, negative = 0;  ///< residuals of either sign; zeros are left out
-  std::size_t runs = 0;                    ///< stretches of one sign
-  double p = 0;  ///< probability of a number of runs at least as unlikely on its side, doubled, at most 1;
-                 ///< NaN if all have one sign
+  std::size_t runs = 0;                    ///< uninterrupted sequences of one sign
+  double p = 0;  ///< two-sided probability of so few or so many runs; NaN if all have one sign
 };
+/// \param residuals in the order of x
 RunsTest runs_test(const std::vector<double>& residuals);
 
-/// A fit and all that is to be said of it.
+/// A fitted law with its report.
 struct CurveFit {
   const Law* law = nullptr;
   FitReport fit;
-  bool weighted = false;  ///< by the points' own errors; else all alike, the error from the scatter
-  std::vector<std::optional<Interval>> intervals;  ///< 95 %, of each parameter
-  std::vector<PointUse> use;                       ///< of each point given
+  bool weighted = false;  ///< true: by the points' errors; false: equal weights, error from scatter
+  std::vector<std::optional<Interval>> intervals;  ///< 95 % interval of each parameter
+  std::vector<PointUse> use;                       ///< for each input point
   std::size_t n_used = 0;
-  std::size_t n_zero = 0;     ///< in the window, with y = 0 where a logarithm is fitted: left out
+  std::size_t n_zero = 0;     ///< in the window, but y = 0 and the law is logarithmic: left out
   std::size_t n_outside = 0;  ///< outside the window
-  std::size_t n_invalid = 0;  ///< not finite, y below 0 for a logarithm, x not above 0 where it must be
-  std::vector<double> upper_limits;  ///< 95 % limits of the zero points with known trials, in order
-  double correlation = 0;  ///< of y (or ln y) and the curve at the points; NaN if either is constant
+  std::size_t n_invalid = 0;  ///< not finite, y < 0 in a logarithmic law, x <= 0 where it must be positive
+  std::vector<double> upper_limits;  ///< 95 % limits of zero points with known trials, in input order
+  double correlation = 0;            ///< between y (or ln y) and the curve; NaN if either is constant
   RunsTest runs;
-  double p_nested =
-      0;  ///< probability of gaining so much over the nested law by chance; NaN if there is none
-  std::vector<std::string> notes;  ///< what a reader must know before quoting the parameters
+  double p_nested = 0;             ///< chance probability of the gain over the nested law; NaN without one
+  std::vector<std::string> notes;  ///< caveats for anyone who quotes the parameters
 
   /// The curve at x, in y (not ln y).
   [[nodiscard]] double at(double x) const;
-  /// Its standard error at x from the covariance, in the ordinate that was fitted (ln y for a logarithm); NaN
-  /// without covariance.
+  /// Standard error of the curve at x from the covariance, in the fitted ordinate (ln y for a logarithmic
+  /// law); NaN without covariance.
   [[nodiscard]] double error_at(double x) const;
 };
 
-/// Least squares by Ceres from each of the law's starts; the best end is taken. Points are weighted by sigma,
-/// or by the binomial error of a frequency, var = y (1 - y)/trials, if every point used has one; in ln y
-/// divided by y. Otherwise all count alike and the error is estimated from the scatter (Student's t).
+/// Fits the law by least squares (Ceres) from each of its starts and returns the best result. Points are
+/// weighted by sigma, or by the binomial error of a frequency, var = y (1 - y)/trials, if every point used
+/// has one; in ln y the error is divided by y. Otherwise all points have equal weight and the error is
+/// estimated from the scatter (Student's t).
 ///
-/// A law with a simpler one inside (Law::nested) is compared with it by the gain in squares (F; chi^2 if
-/// weighted): where p > 0.05 its `lost` parameters are named undetermined, for data that do not bend cannot
-/// say where. Also noted: two points (values without errors), a constant ordinate, an ill-conditioned fit,
-/// coefficients correlated beyond 0.99, residuals not in random order (p < 0.05).
+/// A law that contains a simpler one (Law::nested) is compared with it by the reduction of the sum of squares
+/// (F test; chi^2 if weighted). If p > 0.05, its `lost` parameters are reported as undetermined, because data
+/// without a bend cannot locate it. Notes also report: as many points as parameters (values without errors),
+/// a constant ordinate, an ill-conditioned fit, parameters correlated beyond 0.99, and residuals that are not
+/// in random order (p < 0.05).
 /// \throws InputError naming the window and the data's range if no point, fewer than 2 distinct abscissas, or
-/// fewer points than parameters remain; RunError if no start comes to an end
+/// fewer points than parameters remain; RunError if the fit converges from no start
 CurveFit fit_curve(const Law& law, const std::vector<DataPoint>& points, const FitWindow& window = {});
 
 }  // namespace twincell

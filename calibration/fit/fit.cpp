@@ -17,10 +17,10 @@ namespace twincell {
 namespace {
 
 constexpr double kLargestCondition = 1e12;
-/// Share in a direction that the data leave open from which on a parameter is called undetermined.
+/// A parameter is undetermined if its component in an undetermined direction exceeds this value.
 constexpr double kShare = 0.1;
 
-/// J at the solution, dense: our problems have few parameters.
+/// Jacobian at the present parameters, dense because the problems have few parameters.
 Eigen::MatrixXd jacobian_at(ceres::Problem& problem) {
   ceres::CRSMatrix sparse;
   problem.Evaluate(ceres::Problem::EvaluateOptions(), nullptr, nullptr, nullptr, &sparse);
@@ -34,7 +34,7 @@ Eigen::MatrixXd jacobian_at(ceres::Problem& problem) {
 
 void add_covariance(FitReport& report, const Eigen::MatrixXd& jacobian, Residuals residuals) {
   const Eigen::Index n = jacobian.cols();
-  // Columns scaled to length 1, so that the condition number does not depend on the parameters' units.
+  // Scale columns to unit length, so that the condition number does not depend on the parameters' units.
   Eigen::VectorXd scale(n);
   for (Eigen::Index c = 0; c < n; ++c) scale[c] = jacobian.col(c).norm();
   if (scale.minCoeff() <= 0) {
@@ -57,7 +57,7 @@ void add_covariance(FitReport& report, const Eigen::MatrixXd& jacobian, Residual
                (!(s[0] * s[0] <= kLargestCondition * s[d] * s[d]) && std::abs(svd.matrixV()(c, d)) > kShare);
       if (open) report.undetermined.push_back(report.names[static_cast<std::size_t>(c)]);
     }
-    report.why_not = fmt::format("the data do not tell {} apart (condition number {:.1e})",
+    report.why_not = fmt::format("the data do not separate {} (condition number {:.1e})",
                                  fmt::join(report.undetermined, ", "), report.condition);
     return;
   }
@@ -77,8 +77,8 @@ void add_covariance(FitReport& report, const Eigen::MatrixXd& jacobian, Residual
   for (Eigen::Index c = 0; c < n; ++c) report.standard_errors.push_back(std::sqrt(report.covariance(c, c)));
 }
 
-/// Largest cosine of the angle between the residuals and a column of J: 0 at a minimum, whatever the units;
-/// infinite where the law has no value.
+/// Largest cosine of the angle between the residuals and a column of J: 0 at a minimum, independent of units;
+/// infinite where the law has no finite value.
 double slope_left(ceres::Problem& problem) {
   std::vector<double> residuals;
   if (!problem.Evaluate(ceres::Problem::EvaluateOptions(), nullptr, &residuals, nullptr, nullptr))
@@ -94,8 +94,8 @@ double slope_left(ceres::Problem& problem) {
   return largest;
 }
 
-/// Newton's last steps. Ceres stops where the sum of squares no longer changes, which leaves half of the
-/// parameters' digits; the slope still knows the way.
+/// Final Gauss-Newton steps. Ceres stops when the sum of squares no longer changes, at half of the
+/// parameters' digits. The gradient still converges beyond that point.
 void polish(ceres::Problem& problem, double* parameters, std::size_t n) {
   double left = slope_left(problem);
   for (int step = 0; step < 100; ++step) {
@@ -114,7 +114,7 @@ void polish(ceres::Problem& problem, double* parameters, std::size_t n) {
   }
 }
 
-/// Below this the start is the minimum, to the digits that a step could still improve.
+/// If slope_left is below this, the start is the minimum to working precision.
 constexpr double kAtMinimum = 1e-11;
 
 }  // namespace
@@ -141,14 +141,15 @@ namespace {
 constexpr int kMostIterations = 2000;
 constexpr double kTolerance = 1e-15;
 
-/// In our words: Ceres's own hold the addresses of its parameters.
+/// Reason in the program's own words, because Ceres's messages contain memory addresses.
 std::string why_stopped(const ceres::Solver::Summary& summary) {
   switch (summary.termination_type) {
     case ceres::CONVERGENCE:
       return fmt::format(
-          "The sum of squares, its slope or the parameters changed by less than {:g} of theirs.", kTolerance);
+          "The relative change of the sum of squares, its gradient or the parameters fell below {:g}.",
+          kTolerance);
     case ceres::NO_CONVERGENCE:
-      return fmt::format("It had not converged after {} iterations.", kMostIterations);
+      return fmt::format("The fit had not converged after {} iterations.", kMostIterations);
     default:
       return "No step lowers the sum of squares, or the law has no finite value there.";
   }
@@ -168,12 +169,12 @@ FitReport solve(ceres::Problem& problem, double* parameters, const std::vector<s
   options.gradient_tolerance = kTolerance;
   options.parameter_tolerance = kTolerance;
 #ifdef TWINCELL_HAS_GLOG
-  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres would say on stderr is said by the report
+  FLAGS_minloglevel = google::GLOG_FATAL;  // the report states what Ceres would print on stderr
 #endif
   FitReport report;
   report.names = names;
   report.n_residuals = problem.NumResiduals();
-  // A linear problem may begin at its end, where Ceres finds no step that improves and calls that a failure.
+  // A linear problem may start at its solution, where Ceres finds no improving step and reports a failure.
   if (slope_left(problem) <= kAtMinimum) {
     report.values.assign(parameters, parameters + names.size());
     problem.Evaluate(ceres::Problem::EvaluateOptions(), &report.cost_after, nullptr, nullptr, nullptr);

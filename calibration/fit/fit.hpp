@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Least squares by Ceres, with an honest account of what came out.
+/// Least-squares solution by Ceres, with errors, condition number and undetermined parameters.
 
 #include <Eigen/Core>
 #include <string>
@@ -12,7 +12,7 @@ class Problem;
 
 namespace twincell {
 
-/// What a fit found and how far it can be trusted.
+/// Result of a fit and its reliability.
 struct FitReport {
   std::vector<std::string> names;
   std::vector<double> values;
@@ -20,30 +20,32 @@ struct FitReport {
   Eigen::MatrixXd covariance;  ///< of the values; empty if not identifiable or no degree of freedom is left
   int n_residuals = 0;
   double cost_before = 0;  ///< (1/2) sum of squared residuals at the start
-  double cost_after = 0;   ///< and at the end
-  double condition =
-      0;  ///< condition number of the scaled normal matrix; large: the data do not tell parameters apart
-  std::vector<std::string> undetermined;  ///< parameters that the data leave open; empty if none is
+  double cost_after = 0;   ///< the same at the solution
+  /// Condition number of the scaled normal matrix. If it is large, the data do not separate the parameters.
+  double condition = 0;
+  std::vector<std::string> undetermined;  ///< parameters that the data do not determine
   std::string stop_reason;
   bool usable = false;
-  std::string why_not;  ///< if not usable, or usable without errors: the reason
+  std::string why_not;  ///< reason if the fit is not usable, or usable but without errors
 
   /// Root mean square residual, sqrt(2 cost_after/n_residuals).
   [[nodiscard]] double rms() const;
-  /// Value of the parameter called `name`. \pre it is there
+  /// Value of the parameter called `name`. \pre `names` contains it
   [[nodiscard]] double value(const std::string& name) const;
+  /// Its standard error; NaN without errors. \pre `names` contains it
   [[nodiscard]] double standard_error(const std::string& name) const;
 };
 
-/// Are residuals in units of their own standard deviation?
+/// Whether residuals are in units of their standard deviation.
 enum class Residuals {
   weighted,    ///< yes: the covariance is (J^T J)^-1
   unweighted,  ///< no: it is s^2 (J^T J)^-1 with s^2 = sum r^2/(n_residuals - n_parameters)
 };
 
-/// Solves `problem`, whose only parameter block is `parameters` (one per name), to the last digits
-/// (tolerances 1e-15). A fit whose scaled normal matrix has a condition number above 1e12 is reported without
-/// errors: not identifiable; the parameters that have a share in what the data leave open are named.
+/// Solves `problem`, whose only parameter block is `parameters` (one per name), to machine precision
+/// (tolerances 1e-15). If the condition number of the scaled normal matrix exceeds 1e12, the problem is not
+/// identifiable: the report has no errors and names the parameters that contribute to the undetermined
+/// directions.
 FitReport solve(ceres::Problem& problem, double* parameters, const std::vector<std::string>& names,
                 Residuals residuals = Residuals::unweighted);
 

@@ -17,7 +17,7 @@ double error_of(const DataPoint& p) {
   return p.trials > 0 ? std::sqrt(std::max(0.0, p.y * (1 - p.y)) / p.trials) : 0;
 }
 
-/// The plot with the name of its data file put in.
+/// Inserts the name of the data file into the gnuplot commands.
 std::string reading(const std::string& name, std::string plot) {
   static const std::string kFile = "'fit.dat'";
   for (std::size_t at = plot.find(kFile); at != std::string::npos; at = plot.find(kFile, at + name.size()))
@@ -35,7 +35,7 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
 
   double low = INFINITY, high = -INFINITY;
   std::string used, left_out, limits;
-  double left = INFINITY, right = -INFINITY;  // of the picture
+  double left = INFINITY, right = -INFINITY;  // range of the x axis
   std::size_t limit = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const DataPoint& p = points[i];
@@ -88,7 +88,7 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
         "'zero: 95 % upper limit'",
         index++);
   }
-  // Both panels need the same axis, which gnuplot would choose for each alone.
+  // Set the x range explicitly: gnuplot would choose a different one for each panel.
   const bool ratio = law.axis == Law::Axis::logarithmic;
   const double pad = ratio ? std::pow(right / left, 0.04) : 0.04 * (right - left);
   const std::string x_range = ratio ? fmt::format("[{:.9g}:{:.9g}]", left / pad, right * pad)

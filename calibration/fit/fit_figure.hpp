@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A fit as a picture.
+/// Figure of a fit with its residuals.
 
 #include <string>
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace twincell {
 
-/// Above: the points (open where they did not enter; triangles for upper limits of zeros), the curve with its
-/// 95 % band. Below: the residuals in the ordinate that was fitted, in units of their errors if they have
-/// any. x is drawn as the law likes it (Law::axis). \param name of the figure's files
+/// Upper panel: the points used, points outside the window (open), upper limits of zeros (triangles), and the
+/// curve with its 95 % band. Lower panel: the residuals in the fitted ordinate, in units of their errors if
+/// the fit is weighted. The axis of x follows Law::axis. \param name base name of the figure's files
 Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, const std::string& x_name,
                   const std::string& y_name, const std::string& name = "fit");
 

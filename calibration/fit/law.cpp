@@ -30,7 +30,7 @@ const Law& law_named(const std::string& name) {
     names += (names.empty() ? "" : ", ") + law->name;
   }
   throw ConfigError({.file = {}, .key = "law"},
-                    fmt::format("there is no law called \"{}\"; there are {}", name, names));
+                    fmt::format("there is no law called \"{}\"; the laws are {}", name, names));
 }
 
 }  // namespace twincell

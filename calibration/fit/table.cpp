@@ -45,8 +45,9 @@ double number_of(const std::string& field, const Where& where) {
 const std::vector<double>& Table::column(const std::string& name) const {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    throw ConfigError({.file = file, .key = "column"},
-                      fmt::format("there is no column \"{}\"; there are {}", name, fmt::join(names, ", ")));
+    throw ConfigError(
+        {.file = file, .key = "column"},
+        fmt::format("there is no column \"{}\"; the columns are {}", name, fmt::join(names, ", ")));
   return columns[static_cast<std::size_t>(found - names.begin())];
 }
 
@@ -68,14 +69,14 @@ Table read_table(const std::filesystem::path& path) {
     }
     const Where where{.file = table.file, .line = line_number, .key = {}};
     if (fields.size() != table.names.size())
-      throw InputError(where,
-                       fmt::format("{} fields; the line of names has {}", fields.size(), table.names.size()));
+      throw InputError(
+          where, fmt::format("has {} fields; the header line has {}", fields.size(), table.names.size()));
     for (std::size_t c = 0; c < fields.size(); ++c)
       table.columns[c].push_back(
           number_of(fields[c], {.file = table.file, .line = line_number, .key = table.names[c]}));
   }
   if (table.n_rows() == 0)
-    throw InputError({.file = table.file, .key = {}}, "there is no row of numbers below a line of names");
+    throw InputError({.file = table.file, .key = {}}, "there is no row of numbers below the header line");
   return table;
 }
 

@@ -27,7 +27,7 @@ const Law& arrhenius_break_law() {
                                 .lost = {"x_b"},
                                 .starts =
                                     [](const std::vector<FitPoint>& points) {
-                                      // In u = 1/x the region below x_b lies above the bend.
+                                      // In u = 1/x, x < x_b is above the bend.
                                       auto starts = bend_starts(points, [](double x) { return 1 / x; });
                                       for (auto& s : starts) s = {s[0], -s[2], -s[1], 1 / s[3]};
                                       return starts;

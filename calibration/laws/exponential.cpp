@@ -27,7 +27,7 @@ const Law& exponential_law() {
        .starts = [](const std::vector<FitPoint>& points) {
          const auto [least, most] = std::minmax_element(
              points.begin(), points.end(), [](const FitPoint& p, const FitPoint& q) { return p.x < q.x; });
-         std::vector<double> rates;  // from a decay over ten spans to one over a hundredth
+         std::vector<double> rates;  // decay lengths from ten spans of x to a hundredth
          for (const double r : {0.1, 0.3, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 100.0})
            rates.push_back(r / (most->x - least->x));
          return decay_starts(points, rates, [](double b, double x) { return std::exp(-b * x); });

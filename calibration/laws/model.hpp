@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// From a formula to a Law: what the files of this folder share. Not installed, for it needs Ceres.
+/// Templates that turn a formula into a Law, shared by the files of this folder. Not installed, because it
+/// needs Ceres.
 
 #include <ceres/ceres.h>
 
@@ -14,7 +15,7 @@
 
 namespace twincell {
 
-/// (Model::value(x, p) - y)/error.
+/// Residual (Model::value(x, p) - y)/error.
 template <class Model>
 struct ModelResidual {
   FitPoint point;
@@ -25,8 +26,8 @@ struct ModelResidual {
   }
 };
 
-/// Completes `law` with the formula of Model: `template <class T> static T value(double x, const T* p)` for
-/// `Model::kParameters` parameters.
+/// Adds value and residual of Model to `law`. A Model has `template <class T> static T value(double x, const
+/// T* p)` for `Model::kParameters` parameters.
 template <class Model>
 Law make_law(Law law) {
   law.value = [](double x, const double* p) { return Model::value(x, p); };
@@ -37,9 +38,10 @@ Law make_law(Law law) {
   return law;
 }
 
+/// Basis functions of x.
 using Basis = std::vector<std::function<double(double)>>;
 
-/// Weights of `basis` by linear least squares, and the sum of squared residuals in units of the errors.
+/// Coefficients of `basis` by linear least squares, and the sum of squared residuals in units of the errors.
 inline std::pair<std::vector<double>, double> least_squares(const std::vector<FitPoint>& points,
                                                             const Basis& basis) {
   const auto rows = static_cast<Eigen::Index>(points.size()),
@@ -56,8 +58,8 @@ inline std::pair<std::vector<double>, double> least_squares(const std::vector<Fi
   return {{weights.begin(), weights.end()}, (matrix * weights - y).squaredNorm()};
 }
 
-/// The best line in u(x) that bends at u = bend: {value at the bend, slope below, slope above} towards rising
-/// u, and its squares.
+/// Best continuous line in u(x) with a bend at u = bend: {value at the bend, slope below, slope above} with
+/// respect to u, and its sum of squared residuals.
 inline std::pair<std::vector<double>, double> bent_line(const std::vector<FitPoint>& points,
                                                         const std::function<double(double)>& u_of,
                                                         double bend) {
@@ -66,8 +68,8 @@ inline std::pair<std::vector<double>, double> bent_line(const std::vector<FitPoi
                         [&](double x) { return std::max(u_of(x) - bend, 0.0); }});
 }
 
-/// Starts of a line in u(x) that bends at a point: one for each gap between neighbouring u that leaves two on
-/// either side, as {value at the bend, slope below, slope above, u of the bend}, slopes towards rising u.
+/// Starts for a line in u(x) with a bend: one for each gap between neighbouring u that has two points on
+/// either side, as {value at the bend, slope below, slope above, u of the bend}, slopes with respect to u.
 inline std::vector<std::vector<double>> bend_starts(const std::vector<FitPoint>& points,
                                                     const std::function<double(double)>& u_of) {
   std::vector<double> u;
@@ -84,8 +86,8 @@ inline std::vector<std::vector<double>> bend_starts(const std::vector<FitPoint>&
   return starts;
 }
 
-/// Starts of y = a + d shape(b, x): for each b of a list the linear weights, the three best kept, as {a, b,
-/// d/a}.
+/// Starts for y = a + d shape(b, x): the linear coefficients for each b in `rates`; the three best are
+/// returned as {a, b, d/a}.
 inline std::vector<std::vector<double>> decay_starts(const std::vector<FitPoint>& points,
                                                      const std::vector<double>& rates,
                                                      const std::function<double(double, double)>& shape) {

@@ -10,7 +10,7 @@ struct SlopeBreak {
   template <class T>
   static T value(double x, const T* p) {
     using std::log;
-    // ln |x_b|, so that a trial step below 0 has a value and is refused for its cost.
+    // ln |x_b|, so that a trial step below 0 has a finite value and is rejected for its cost.
     const T beyond = std::log(x) - 0.5 * log(p[3] * p[3]);
     return p[0] + (beyond < T(0) ? p[1] : p[2]) * beyond;
   }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStep = 1.0 / 16;
 
-// exp(-z) I_n(z): the standard library's, and its asymptotic series where that overflows.
+// exp(-z) I_n(z): from the standard library, or from the asymptotic series where the library overflows.
 double scaled_bessel(double n, double z) {
   if (z < 500) return std::exp(-z) * std::cyl_bessel_i(n, z);
   const double m = 4 * n * n;
@@ -37,7 +37,7 @@ BlurredDisc::BlurredDisc(double radius, double blur) : radius_(radius), blur_(bl
     slope_.push_back(-along_rim(1, r));
     by_radius_.push_back(along_rim(0, r));
   }
-  // P by Simpson's rule from the outside, where it is 0.
+  // P: Simpson's rule on dP/dr, starting outside the disc, where P is 0.
   value_.assign(slope_.size(), 0);
   for (int i = n - 2; i >= 0; --i) {
     const auto k = static_cast<std::size_t>(i);

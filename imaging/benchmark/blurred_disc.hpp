@@ -2,29 +2,31 @@
 /// \file
 /// A disc seen through Gaussian optics: exact value and exact derivatives.
 ///
-/// P(r; R, s) = disc of radius R convolved with a Gaussian of standard deviation s, at distance r from the
-/// centre. By Gauss's theorem its derivatives are integrals of the Gaussian along the rim,
-///     dP/dr = -(R/s^2) exp(-(r^2 + R^2)/2s^2) I1(rR/s^2),   dP/dR = (R/s^2) exp(-(r^2 + R^2)/2s^2)
-///     I0(rR/s^2),
-/// with the modified Bessel functions, and P(0) = 1 - exp(-R^2/2s^2). No edge is taken as straight.
+/// P(r; R, s) is the disc of radius R convolved with a Gaussian of standard deviation s, at distance r from
+/// the centre. By Gauss's theorem its derivatives are integrals of the Gaussian along the rim,
+///     dP/dr = -(R/s^2) exp(-(r^2 + R^2)/2s^2) I1(rR/s^2),
+///     dP/dR =  (R/s^2) exp(-(r^2 + R^2)/2s^2) I0(rR/s^2),
+/// with the modified Bessel functions I0 and I1, and P(0) = 1 - exp(-R^2/2s^2). The rim is never approximated
+/// by a straight edge.
 
 #include <vector>
 
 namespace twincell::rendered {
 
+/// P and its derivatives, tabulated for one radius R and one blur s. Lengths in px.
 class BlurredDisc {
  public:
   BlurredDisc(double radius, double blur);
-  /// Half width of the rim outside which P is 1 or 0 to 1e-12.
+  /// Half width of the rim; beyond it P is 1 or 0 to 1e-12.
   [[nodiscard]] double rim() const { return rim_; }
   [[nodiscard]] double radius() const { return radius_; }
-  [[nodiscard]] double value(double r) const;        ///< P
-  [[nodiscard]] double by_distance(double r) const;  ///< dP/dr
-  [[nodiscard]] double by_radius(double r) const;    ///< dP/dR
+  [[nodiscard]] double value(double r) const;        ///< P, by cubic Hermite interpolation
+  [[nodiscard]] double by_distance(double r) const;  ///< dP/dr, by linear interpolation
+  [[nodiscard]] double by_radius(double r) const;    ///< dP/dR, by linear interpolation
 
  private:
   double radius_, blur_, rim_, first_;
-  std::vector<double> value_, slope_, by_radius_;  // on a grid from first_, step kStep: cubic Hermite between
+  std::vector<double> value_, slope_, by_radius_;  // on a grid from first_ with spacing kStep
 };
 
 }  // namespace twincell::rendered

@@ -19,8 +19,9 @@ double uniform(Random& random, double a, double b) {
   return std::uniform_real_distribution<double>(a, b)(random);
 }
 
-// Beads of `diameter` px, sizes spread evenly by +-spread, deposited in a frame of 40 x 100 diameters.
-// `over`: how far the bed's room reaches beyond the frame, px; below 0 it keeps that far inside.
+// Bed of beads of `diameter` px in a frame of 40 x 100 diameters. The radii are uniformly distributed within
+// +-spread. `over`: distance by which the bed extends beyond the left, right and bottom of the frame, px; a
+// negative value keeps the bed that far inside.
 Picture bed(Random& random, double diameter = 15, double spread = 0, double over = -10) {
   Picture p;
   p.width = static_cast<int>(40 * diameter);
@@ -33,7 +34,7 @@ Picture bed(Random& random, double diameter = 15, double spread = 0, double over
   return p;
 }
 
-// The same with every other disc of another size.
+// Bed in which half of the discs have one size and half another, in random order.
 Picture mixed_bed(Random& random, double one, double other) {
   Picture p;
   const double mean = 0.5 * (one + other);
@@ -80,17 +81,17 @@ const std::vector<double> kLevels{164, 51, 18.5, 8.5};
 const std::vector<double> kOne{51};
 
 const std::vector<Case> kCases{
-    {"sparse", "apart, over the whole frame", 15, kLevels,
+    {"sparse", "isolated beads over the whole frame", 15, kLevels,
      [](std::uint64_t seed) {
        Random random(seed);
        return spread_out(random);
      }},
-    {"hexagonal", "a crystal, every bead touching six", 15, kLevels,
+    {"hexagonal", "a crystal, every bead touches six others", 15, kLevels,
      [](std::uint64_t seed) {
        Random random(seed);
        return crystal(random);
      }},
-    {"random", "a bed dropped and rolled, touching", 15, kLevels,
+    {"random", "a bed made by drop and roll, beads touch", 15, kLevels,
      [](std::uint64_t seed) {
        Random random(seed);
        return bed(random);
@@ -102,7 +103,7 @@ const std::vector<Case> kCases{
        move_together(p, 3, uniform(random, 0, std::numbers::pi));
        return p;
      }},
-    {"motion_3px_each", "sparse, every bead moves by 3 px its own way", 15, kOne,
+    {"motion_3px_each", "sparse, every bead moves by 3 px in its own direction", 15, kOne,
      [](std::uint64_t seed) {
        Random random(seed);
        Picture p = spread_out(random);
@@ -182,7 +183,7 @@ const std::vector<Case> kCases{
        p.light = 210;
        return p;
      }},
-    {"tracers", "random, one bead in twenty lets 40 % of the light through", 15, kOne,
+    {"tracers", "random, one bead in twenty transmits 40 % of the light", 15, kOne,
      [](std::uint64_t seed) {
        Random random(seed);
        Picture p = bed(random);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The pictures on which locators are measured.
+/// Benchmark cases: the rendered pictures on which locators are measured.
 
 #include <cstdint>
 #include <string>
@@ -10,16 +10,17 @@
 
 namespace twincell::rendered {
 
+/// One benchmark case: a kind of picture and the noise levels at which it is rendered.
 struct Case {
   std::string name;
-  std::string what;  ///< in words
-  double diameter;   ///< nominal, px: what a locator is told
-  std::vector<double> snr;
+  std::string what;         ///< description in words
+  double diameter;          ///< nominal diameter given to the locator, px
+  std::vector<double> snr;  ///< signal-to-noise ratios (picture.hpp)
   Picture (*make)(std::uint64_t seed);
-  std::vector<double> other_diameters = {};  ///< likewise, of further sizes
+  std::vector<double> other_diameters = {};  ///< nominal diameters of further sizes, px
 };
 
-/// To add a case: one entry in the list in cases.cpp.
+/// All cases. To add one, add an entry to the list in cases.cpp.
 const std::vector<Case>& cases();
 
 }  // namespace twincell::rendered

@@ -30,6 +30,7 @@ void Marks::add(const Picture& picture, const std::vector<cv::Point2d>& found,
       ++beads_;
       bounds_ += bound[k] * bound[k];
     }
+  // Nearest pairs first: each disc and each detection is matched at most once.
   std::vector<bool> disc_taken(discs.size(), false), find_taken(found.size(), false);
   for (const Pair& p : pairs) {
     if (disc_taken[p.disc] || find_taken[p.find]) continue;

@@ -21,7 +21,7 @@ namespace {
 using rendered::Marks;
 using rendered::Picture;
 
-/// OpenCV's own threads would hide a part of the time.
+/// Limits OpenCV to the calling thread, because cpu_seconds() does not count the time of its worker threads.
 class OneThread {
  public:
   OneThread() { cv::setNumThreads(1); }
@@ -77,6 +77,7 @@ std::vector<LocatePrecision> locate_precision(const std::vector<LocateSetting>& 
                                               const LocateScene& scene, int rounds, Progress& progress) {
   const OneThread one_thread;
   const auto runs = static_cast<std::int64_t>(settings.size()) * rounds;
+  // Exposures: rendered once for each bead size and noise level, and shared by all settings.
   std::vector<Exposure> exposures;
   for (const LocateSetting& s : settings) {
     const bool known = std::any_of(exposures.begin(), exposures.end(), [&](const Exposure& e) {
@@ -100,6 +101,7 @@ std::vector<LocatePrecision> locate_precision(const std::vector<LocateSetting>& 
     p.seconds = std::numeric_limits<double>::infinity();
     all.push_back(p);
   }
+  // Timing: rounds over all settings. The detections do not change, so only the first round is scored.
   std::int64_t done = 0;
   for (int round = 0; round < rounds; ++round)
     for (std::size_t k = 0; k < settings.size(); ++k) {

@@ -15,15 +15,16 @@ double uniform(std::mt19937_64& random, double a, double b) {
   return std::uniform_real_distribution<double>(a, b)(random);
 }
 
-// Height is up here, from the floor.
+// A placed disc. Its height is measured upwards from the floor.
 struct Placed {
   double x, height, radius;
 };
 
-// Where a disc of radius r falling at x comes to rest among those already there.
+// Rest position of a disc of radius r that falls at x onto the discs already placed.
 Placed drop(const std::vector<Placed>& bed, double x, double r, double left, double right) {
   constexpr double kEps = 1e-9, kTouching = 1e-6;
-  // What it meets on its way down from `from`: the floor (none) or a disc.
+  // First support below the height `from`: the height of the disc on it, and the index of the supporting disc
+  // (absent for the floor).
   auto fall = [&](double at, double from, std::size_t except) {
     double highest = r;
     std::optional<std::size_t> on;
@@ -46,7 +47,8 @@ Placed drop(const std::vector<Placed>& bed, double x, double r, double left, dou
     const Placed& under = bed[i];
     const double reach = r + under.radius;
     if (side == 0) side = x >= under.x ? 1 : -1;
-    // Rolls over `under` to the side, by the angle from the vertical, until something is in the way.
+    // Rolling: `angle` from the vertical is where the disc stops on `under`: at a wall, at the floor, at
+    // another disc, or level with `under`, where it falls again.
     const double start = std::asin(std::clamp(side * (x - under.x) / reach, -1.0, 1.0));
     double angle = std::numbers::pi / 2;
     enum class End { over, wall, floor, disc } end = End::over;
@@ -64,13 +66,13 @@ Placed drop(const std::vector<Placed>& bed, double x, double r, double left, dou
       const double dx = side * (bed[j].x - under.x), dh = bed[j].height - under.height,
                    other = r + bed[j].radius, apart = std::hypot(dx, dh);
       if (j == i || apart >= reach + other || apart < kEps) continue;
-      // Angle from the vertical of j as seen from `under`, less the angle at `under` of the triangle of the
-      // three.
+      // Angle at which the disc touches j: direction from `under` to j, from the vertical, less the angle at
+      // `under` in the triangle of the three centres.
       const double opening = std::acos(
           std::clamp((reach * reach + apart * apart - other * other) / (2 * reach * apart), -1.0, 1.0));
       const double met = std::atan2(dx, dh) - opening;
       if (met < start - kTouching || met >= angle) continue;
-      // Touched where it starts: in the way only if it lies ahead.
+      // A disc touched at the start blocks the roll only if it is ahead.
       const double at = std::max(met, start);
       const double ahead =
           std::cos(at) * (dx - reach * std::sin(at)) - std::sin(at) * (dh - reach * std::cos(at));
@@ -85,8 +87,8 @@ Placed drop(const std::vector<Placed>& bed, double x, double r, double left, dou
     height = under.height + reach * std::cos(angle);
     if (end == End::wall || end == End::floor) break;
     if (end == End::disc) {
-      if (side * (bed[hit].x - x) >= 0) break;  // carried from both sides
-      on = hit;                                 // rolls on over the next, to the same side
+      if (side * (bed[hit].x - x) >= 0) break;  // supported from both sides
+      on = hit;                                 // continues over the next disc, to the same side
       continue;
     }
     std::tie(height, on) = fall(x, height, i);

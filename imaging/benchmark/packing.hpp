@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Where discs lie that cannot overlap. Lengths in px, y down, inside a rectangle.
+/// Packings of discs that do not overlap, inside a rectangle. Lengths in px, y down.
 
 #include <opencv2/core.hpp>
 #include <random>
@@ -10,17 +10,17 @@
 
 namespace twincell::rendered {
 
-/// One disc per radius, nearest neighbours at least two px apart: a square grid over the whole room, each
-/// disc moved at random by what is free.
+/// One disc per radius on a square grid over the whole rectangle, each disc displaced at random within the
+/// free space of its cell. Nearest neighbours are at least two px apart.
 std::vector<Disc> sparse(const std::vector<double>& radii, cv::Rect2d room, std::mt19937_64& random);
 
-/// `count` discs in contact with six others, from the room's floor up; rows turned by 7 degrees, so that
-/// every sub-pixel place occurs.
+/// Up to `count` discs of a hexagonal crystal, filled from the floor of the rectangle upwards. The rows are
+/// rotated by 7 degrees, so that every sub-pixel position occurs.
 std::vector<Disc> hexagonal(std::size_t count, double radius, cv::Rect2d room, std::mt19937_64& random);
 
-/// Drop and roll (Visscher and Bolsterli, Nature 239, 504 (1972)): each disc falls at a random place and
-/// rolls over others until two of them, or one and a wall, or the floor carry it. Contacts are exact, nothing
-/// overlaps.
+/// Drop and roll (Visscher and Bolsterli, Nature 239, 504 (1972)): each disc falls at a random horizontal
+/// position and rolls over others until two discs, one disc and a wall, or the floor support it. Contacts are
+/// exact, and discs do not overlap.
 std::vector<Disc> deposited(const std::vector<double>& radii, cv::Rect2d room, std::mt19937_64& random);
 
 }  // namespace twincell::rendered

@@ -18,11 +18,11 @@ namespace {
 struct Node {
   double at, weight;
 };
-// Gauss-Legendre on (-1/2, 1/2).
+// Gauss-Legendre nodes on (-1/2, 1/2).
 constexpr std::array<Node, 3> kPixel{
     {{-0.387298334620741689, 5.0 / 18}, {0, 8.0 / 18}, {0.387298334620741689, 5.0 / 18}}};
 
-// The same nodes on pieces of the path no longer than a pixel.
+// The same nodes on segments of the path, each at most one pixel long.
 std::vector<Node> path_nodes(const Disc& d) {
   if (d.path_x == 0 && d.path_y == 0) return {{0, 1}};
   const int pieces = std::max(1, cvCeil(std::hypot(d.path_x, d.path_y)));
@@ -41,7 +41,7 @@ double light_at(const Picture& p, double x, double y) {
 
 using Vec4 = Eigen::Vector4d;
 
-// A disc's profile and its rectangle of pixels.
+// A disc's profile on the rectangle of pixels that it darkens.
 class Stamp {
  public:
   Stamp(const Picture& picture, const Disc& disc, const BlurredDisc& profile)
@@ -55,7 +55,7 @@ class Stamp {
   }
   [[nodiscard]] const cv::Rect& window() const { return window_; }
 
-  // Mean over pixel and path of f(dx, dy, r).
+  // Mean of f(dx, dy, r) over the pixel and the path.
   template <class F>
   [[nodiscard]] auto mean(int x, int y, F&& f) const {
     auto sum = f(0.0, 0.0, 1e9);
@@ -95,7 +95,7 @@ class Stamp {
   cv::Rect window_;
 };
 
-// One profile per radius.
+// Stores one profile per radius.
 class Profiles {
  public:
   explicit Profiles(double blur) : blur_(blur) {}
@@ -144,7 +144,7 @@ cv::Mat1b expose(const cv::Mat1d& expected, const Picture& picture, double snr, 
 std::vector<double> cramer_rao_bound(const cv::Mat1d& expected, const Picture& picture, double snr) {
   constexpr double kRounding = 1.0 / 12;
   const double sigma = picture.light / snr, slope = sigma * sigma * (1 - kReadShare) / picture.light;
-  // Information per pixel about its level, times the light there squared: I = ... - light a P.
+  // Weights: information per pixel about its grey level I, times the squared light, as I = ... - light a P.
   cv::Mat1d weight(expected.size());
   for (int y = 0; y < weight.rows; ++y)
     for (int x = 0; x < weight.cols; ++x) {
@@ -153,6 +153,7 @@ std::vector<double> cramer_rao_bound(const cv::Mat1d& expected, const Picture& p
       weight(y, x) = light * light * (1 / v + 0.5 * slope * slope / (v * v));
     }
 
+  // Gradients: d(a P)/d(x, y, R, a) of each disc on its own pixels.
   struct Gradient {
     cv::Rect window;
     std::vector<Vec4> of;
@@ -178,6 +179,7 @@ std::vector<double> cramer_rao_bound(const cv::Mat1d& expected, const Picture& p
     return sum;
   };
 
+  // Blocks: Fisher information of each pair of discs whose blurred rims touch.
   const std::size_t n = picture.discs.size();
   std::vector<std::vector<std::size_t>> near(n);
   std::map<std::pair<std::size_t, std::size_t>, Eigen::Matrix4d> block;
@@ -190,6 +192,7 @@ std::vector<double> cramer_rao_bound(const cv::Mat1d& expected, const Picture& p
       near[k].push_back(j);
       if (j != k) near[j].push_back(k);
     }
+  // Bound: the information matrix of a disc and its neighbours is inverted, for the variances of x and y.
   std::vector<double> bound;
   for (std::size_t k = 0; k < n; ++k) {
     const auto m = static_cast<Eigen::Index>(near[k].size());
@@ -207,7 +210,7 @@ std::vector<double> cramer_rao_bound(const cv::Mat1d& expected, const Picture& p
         else
           fisher.block<4, 4>(4 * a, 4 * b) = found->second.transpose();
       }
-      // A disc outside the frame tells nothing: without this the matrix has no inverse.
+      // A disc outside the frame has no information; this term keeps the matrix invertible.
       fisher.block<4, 4>(4 * a, 4 * a) += 1e-6 * Eigen::Matrix4d::Identity();
     }
     Eigen::MatrixXd two = Eigen::MatrixXd::Zero(4 * m, 2);

@@ -52,7 +52,7 @@ class Table {
     row_ = split(line);
     if (row_.size() != width_)
       throw InputError(Where{.file = file_.string(), .line = line_, .key = {}},
-                       "has not as many cells as the heading.");
+                       "has a different number of cells from the header row.");
     return true;
   }
   [[nodiscard]] bool has(const std::string& name) const { return column_.count(name) > 0; }
@@ -65,7 +65,7 @@ class Table {
       throw InputError(where(name), "is '" + t + "', not a finite number.");
     return value;
   }
-  /// A whole number within bounds.
+  /// An integer within bounds.
   [[nodiscard]] std::int64_t whole(const std::string& name, double lower, double upper) const {
     const double value = number(name);
     if (!(value >= lower && value <= upper) || value != std::floor(value))
@@ -127,6 +127,7 @@ void Scorer::add(const std::vector<TruthBead>& truth, const std::vector<FoundBea
     squares_ += dx * dx + dy * dy;
     sum_x_ += dx;
     sum_y_ += dy;
+    // Uncertainties within 1 % are equal; a clearly smaller one restarts the sums of the surest beads.
     constexpr double kAlike = 1.01;
     if (b.u * kAlike < least_u_) least_u_ = b.u, squares_sure_ = 0, sums_.sure = 0;
     if (b.u <= least_u_ * kAlike) squares_sure_ += dx * dx + dy * dy, ++sums_.sure;
@@ -177,7 +178,7 @@ std::vector<std::vector<TruthBead>> read_truth(const fs::path& path) {
     if (name.starts_with("truth_") && name.ends_with(".csv")) files.push_back(entry.path());
   }
   if (files.empty())
-    throw InputError(Where{.file = path.string(), .key = {}}, "holds no truth.csv and no truth_NN.csv.");
+    throw InputError(Where{.file = path.string(), .key = {}}, "contains neither truth.csv nor truth_NN.csv.");
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return natural_less(a.filename().string(), b.filename().string());
   });

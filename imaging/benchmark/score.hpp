@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Located beads against known truth.
+/// Scores of located beads and links against known truth.
 
 #include <cmath>
 #include <cstdint>
@@ -9,38 +9,38 @@
 
 namespace twincell {
 
-/// A bead whose place is known.
+/// A bead with known position.
 struct TruthBead {
-  std::int64_t id = -1;  ///< the same in all frames; -1: not known, links are not scored
+  std::int64_t id = -1;  ///< the same in all frames; -1: unknown, links are not scored
   double x = 0, y = 0;   ///< px
   double r = 0;          ///< px
   double u = 0;          ///< standard uncertainty of x and y, px; 0 if exact
-  bool counts = true;    ///< false: it may be found or not (another kind of bead)
+  bool counts = true;    ///< false: not scored, whether found or not (another kind of bead)
 };
 
-/// A band of rows in which finds are not scored (a water line, a glued base).
+/// The rows that are scored. They exclude, for example, a water line or a glued base.
 struct ScoredRows {
-  double first = -1e9;  ///< px; finds and truths above are ignored
-  double last = 1e9;    ///< px; likewise below
+  double first = -1e9;  ///< px; detections and truths above are ignored
+  double last = 1e9;    ///< px; detections and truths below are ignored
 };
 
-/// A found bead as far as scoring is concerned.
+/// The data of a detected bead that scoring needs.
 struct FoundBead {
   double x = 0, y = 0;      ///< px
-  std::int64_t track = -1;  ///< identity given by the linker; -1: none
+  std::int64_t track = -1;  ///< identity given by the linker; -1: no identity
 };
 
 /// Score of one or several frames.
 struct Score {
-  std::size_t truths = 0;         ///< beads that count
-  std::size_t found = 0;          ///< of them, those with a find within a radius
-  std::size_t false_finds = 0;    ///< finds that answer to no bead
+  std::size_t truths = 0;         ///< beads that are scored
+  std::size_t found = 0;          ///< of these, beads with a detection within one radius
+  std::size_t false_finds = 0;    ///< detections that match no bead
   double rms = 0;                 ///< per coordinate, px: sqrt(mean(dx^2 + dy^2)/2)
-  std::size_t sure = 0;           ///< of the found, those whose truth is as certain as that of any
-  double rms_sure = 0;            ///< of these
+  std::size_t sure = 0;           ///< of the found beads, those with the smallest uncertainty u (within 1 %)
+  double rms_sure = 0;            ///< rms of these beads
   double bias_x = 0, bias_y = 0;  ///< mean error, px
-  std::size_t links = 0;          ///< pairs of consecutive frames in which a bead was found in both
-  std::size_t wrong_links = 0;    ///< of them, those with two identities
+  std::size_t links = 0;        ///< pairs of consecutive frames in which a bead is found and has an identity
+  std::size_t wrong_links = 0;  ///< of these, pairs with two different identities
 
   [[nodiscard]] double recall() const { return truths > 0 ? double(found) / double(truths) : 1; }
   [[nodiscard]] double precision() const {
@@ -48,8 +48,8 @@ struct Score {
   }
 };
 
-/// Accumulates a score over the frames of a stack, in order. Finds are given to the nearest truths, closest
-/// pair first, within one radius.
+/// Accumulates a score over the frames of a stack, in order. Detections are matched to the nearest truths,
+/// closest pair first, within one radius.
 class Scorer {
  public:
   explicit Scorer(ScoredRows rows = {}) : rows_(rows) {}
@@ -67,9 +67,10 @@ class Scorer {
   std::vector<Link> previous_;
 };
 
-/// Reads the truth of a stack: a file truth.csv, its rows of frame 0 if it has no column `frame`, or a folder
-/// with one truth_NN.csv per frame (natural order). Columns by name: x_px, y_px, r_px; id, u_px and kind if
-/// there (a kind other than "black" does not count). \throws InputError naming file and line
+/// Reads the truth of a stack: a file truth.csv, or a folder that contains truth.csv or one truth_NN.csv per
+/// frame (natural order). In a file without a column `frame`, all rows belong to frame 0. Columns by name:
+/// x_px, y_px, r_px; id, u_px and kind if present (a bead of a kind other than "black" is not scored).
+/// \throws InputError naming file and line
 std::vector<std::vector<TruthBead>> read_truth(const std::filesystem::path& path);
 
 }  // namespace twincell

@@ -10,7 +10,7 @@ namespace twincell {
 
 namespace {
 
-// Darkens by `depth` where the distance from the segment a-b is below `half_width`, with the blurred edges.
+// Darkens by `depth` where the distance from the segment a-b is below `half_width`; the edges are blurred.
 void darken(cv::Mat1f& glass, cv::Point2d a, cv::Point2d b, double half_width, double depth, double blur) {
   const double reach = half_width + 5 * blur, edge = std::numbers::sqrt2 * blur;
   const cv::Point2d along = b - a;

@@ -8,8 +8,8 @@ namespace twincell {
 
 namespace {
 
-// P(r): across the line of sight the Gaussian integrates to an error function, along it the midpoint rule in
-// the disc's own angle converges exponentially.
+// P(r): perpendicular to the line from the centre to the point, the Gaussian integrates to an error function.
+// Along this line, the midpoint rule in the disc's polar angle converges exponentially.
 double blurred(double radius, double s, double r) {
   const int n = std::max(200, static_cast<int>(40 * radius / s));
   double sum = 0;
@@ -23,7 +23,7 @@ double blurred(double radius, double s, double r) {
   return sum;
 }
 
-// Gauss-Legendre on a pixel.
+// Gauss-Legendre nodes and weights on a pixel.
 constexpr std::array<std::pair<double, double>, 4> kNodes{{{-0.43056815579702629, 0.17392742256872693},
                                                            {-0.16999052179242813, 0.32607257743127307},
                                                            {0.16999052179242813, 0.32607257743127307},
@@ -33,7 +33,7 @@ constexpr std::array<std::pair<double, double>, 4> kNodes{{{-0.43056815579702629
 
 DiscImage::DiscImage(double radius, double blur) {
   constexpr double kHalfDiagonal = 0.7072;
-  constexpr int kFine = 32;  // of P, per pixel; cubic between
+  constexpr int kFine = 32;  // samples of P per pixel; cubic interpolation between them
   const double rim = 6.2 * blur + kHalfDiagonal;
   first_ = std::max(0.0, radius - rim);
   last_ = radius + rim;
@@ -46,7 +46,8 @@ DiscImage::DiscImage(double radius, double blur) {
     if (t <= 0) return fine.front();
     const auto i = std::clamp<std::size_t>(static_cast<std::size_t>(t), 1, fine.size() - 3);
     const double f = t - static_cast<double>(i);
-    const double a = fine[i - 1], b = fine[i], c = fine[i + 1], d = fine[i + 2];  // Lagrange's cubic
+    const double a = fine[i - 1], b = fine[i], c = fine[i + 1],
+                 d = fine[i + 2];  // Lagrange cubic
     return -f * (f - 1) * (f - 2) / 6 * a + (f + 1) * (f - 1) * (f - 2) / 2 * b -
            (f + 1) * f * (f - 2) / 2 * c + (f + 1) * f * (f - 1) / 6 * d;
   };
@@ -57,7 +58,7 @@ DiscImage::DiscImage(double radius, double blur) {
         sum += wu * wv * p(std::hypot(r * std::cos(angle) + u, r * std::sin(angle) + v));
     return sum;
   };
-  // Exact at 0, pi/8 and pi/4 for the harmonics 0, 4 and 8; the eighth is thrown away.
+  // The values at the angles 0, pi/8 and pi/4 separate the harmonics 0, 4 and 8; the eighth is dropped.
   for (int i = 0; i <= static_cast<int>((last_ - first_) * kPerPixel) + 1; ++i) {
     const double r = first_ + i / kPerPixel;
     const double axis = pixel(r, 0), half = pixel(r, std::numbers::pi / 8),

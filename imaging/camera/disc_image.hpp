@@ -1,24 +1,27 @@
 #pragma once
 /// \file
-/// The share of a pixel's light that an opaque disc takes away: disc * Gaussian of the optics * square of the
-/// pixel.
+/// Share of a pixel's light that an opaque disc blocks: the convolution disc * Gaussian of the optics *
+/// square of the pixel.
 ///
-/// The first two make P(r), a function of the distance alone. Its mean over a pixel's square is, to 1e-6,
-/// F0(r) + F4(r) cos 4 theta, with theta the direction from the centre to the pixel: both are tabulated, so
-/// that a pixel costs one look-up. The closed form of a straight edge is not used anywhere.
+/// The disc convolved with the Gaussian is P(r), a function of the distance alone. The mean of P over a
+/// pixel's square is, to 1e-6, F0(r) + F4(r) cos 4 theta, with theta the direction from the centre to the
+/// pixel. F0 and F4 are tabulated, so that a pixel costs one look-up. The closed form for a straight edge is
+/// not used.
 
 #include <cmath>
 #include <vector>
 
 namespace twincell {
 
+/// The tabulated image of a disc with one radius and one blur.
 class DiscImage {
  public:
   /// \param radius_px, blur_px > 0
   DiscImage(double radius_px, double blur_px);
-  /// Beyond this distance nothing is taken away (1e-9).
+  /// Distance beyond which the disc blocks no light (to 1e-9), px.
   [[nodiscard]] double reach() const { return last_; }
-  /// Share of the pixel at (dx, dy) from the centre, whose distance is given as r (the lens may stretch it).
+  /// Blocked share of the pixel at (dx, dy) from the centre. The distance r is given separately, because the
+  /// lens may stretch it.
   [[nodiscard]] float at(double dx, double dy, double r) const {
     if (r < first_) return 1;
     const double t = (r - first_) * kPerPixel;

@@ -14,8 +14,8 @@ namespace twincell {
 
 namespace {
 
-/// Appends a box that players skip ("free" of MP4, "JUNK" of AVI) and that ends with kFilmMark, by which an
-/// earlier film of ours is known.
+/// Appends a box that players skip ("free" of MP4, "JUNK" of AVI). The box ends with kFilmMark, which
+/// identifies a film written by this program.
 void sign(const std::filesystem::path& film) {
   const std::string mark = Product::kFilmMark;
   const auto size = static_cast<std::uint32_t>(mark.size());
@@ -52,7 +52,7 @@ Movie::Movie(const std::filesystem::path& file, cv::Size size, double rate)
                                                                VideoWriter::fourcc('m', 'p', '4', 'v')};
   for (const int codec : codecs)
     if (writer_->video.open(place_.part().string(), codec, rate, size_, true)) return;
-  throw RunError(file.string() + ": this OpenCV cannot write such a film.");
+  throw RunError(file.string() + ": this build of OpenCV cannot write films of this format.");
 }
 
 Movie::~Movie() {
@@ -75,7 +75,7 @@ void Movie::commit() {
   std::error_code error;
   if (std::filesystem::file_size(place_.part(), error) == 0 || error)
     throw RunError(place_.final().string() + ": cannot be written.");
-  // OpenCV does not say when the disk is full: the frames that can be read back do.
+  // OpenCV does not report a full disk, so the frames that can be read back are counted.
   cv::VideoCapture back(place_.part().string());
   std::size_t kept = 0;
   while (kept <= frames_ && back.grab()) ++kept;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Frames to a film.
+/// Writing frames to a film.
 
 #include <filesystem>
 #include <memory>
@@ -10,18 +10,19 @@
 
 namespace twincell {
 
-/// Writes .mp4 (H.264, or MPEG-4 where this OpenCV has no H.264) or .avi (Motion JPEG). 8 bit grey; an odd
-/// width or height is made even by repeating the last column or row. Appears at commit().
+/// Writes .mp4 (H.264, or MPEG-4 if this build of OpenCV has no H.264) or .avi (Motion JPEG), 8-bit grey. An
+/// odd width or height is made even by repeating the last column or row. The file appears at commit().
 class Movie {
  public:
-  /// \throws ConfigError for another extension or a rate outside 0 .. 1000, RunError if the film cannot be
-  /// begun
+  /// \throws ConfigError for another extension or a rate outside 0.01 .. 1000,
+  /// RunError if the film cannot be opened
   Movie(const std::filesystem::path& file, cv::Size size, double frames_per_second);
   ~Movie();
   Movie(const Movie&) = delete;
   Movie& operator=(const Movie&) = delete;
-  /// \param bits depth of the frame: the upper eight are shown
+  /// \param bits depth of the frame; the upper eight bits are shown
   void add(const cv::Mat& frame, int bits);
+  /// Reads the film back, then moves it to its final name. \throws RunError if a frame is missing
   void commit();
 
  private:

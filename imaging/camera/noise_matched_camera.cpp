@@ -16,7 +16,8 @@ CameraOptions with_noise_of(FrameSource& stack, double diameter_px, bool bright,
   cv::Mat frame;
   cv::RNG chance(1);
   for (; n < kFrames && stack.next(frame); ++n) {
-    // Medians of whole levels are whole levels: noise below a level or two would be told wrongly by a factor.
+    // The median of integer grey levels is an integer, so noise below one or two levels would be wrong by a
+    // factor. A dither of one level removes this error; its variance is subtracted below.
     cv::Mat1f grey, dither(frame.size());
     frame.convertTo(grey, CV_32F);
     const bool counted = frame.depth() != CV_32F;
@@ -28,7 +29,7 @@ CameraOptions with_noise_of(FrameSource& stack, double diameter_px, bool bright,
     dark += std::max(0.0, noise.dark - level * level / 12);
     light += noise.light;
   }
-  if (n == 0) throw InputError({.file = stack.current(), .key = {}}, "the stack holds no frame");
+  if (n == 0) throw InputError({.file = stack.current(), .key = {}}, "the stack contains no frames.");
   const double levels = camera.backlight;
   const double counted = std::pow(2.0, 8 - camera.bits);
   const double read = dark / n * levels * levels - counted * counted / 12;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMostReduced = 1e6, kMostPhysical = 1e9;
 
-/// The spellings of a length or time: without a unit, reduced, in the laboratory's.
+/// Adds the three spellings of a length or time: without a unit, in reduced units, and in laboratory units.
 void add_quantity(std::vector<CameraOption>& list, const std::string& key, const std::string& help,
                   double& value, CameraUnit& unit, const char* reduced, const char* physical,
                   bool both_ways = false) {
@@ -25,8 +25,10 @@ void add_quantity(std::vector<CameraOption>& list, const std::string& key, const
     list.push_back({name, text, &value, both_ways ? -most : 0, most, {}, &unit, means});
   };
   const bool length = std::string_view(reduced) == "sigma";
-  spelling(key, fmt::format("{}, {}; a trajectory with a scale needs one of the next two", help, reduced),
-           CameraUnit::bare);
+  spelling(
+      key,
+      fmt::format("{}, {}; if the trajectory has a scale, use one of the next two options", help, reduced),
+      CameraUnit::bare);
   spelling(key + "-" + reduced, fmt::format("{}, {}", help, reduced), CameraUnit::reduced);
   spelling(key + "-" + physical, fmt::format("{}, {}", help, length ? "mm" : "microseconds"),
            CameraUnit::physical);
@@ -37,29 +39,29 @@ void add_quantity(std::vector<CameraOption>& list, const std::string& key, const
 std::vector<CameraOption> camera_option_list(CameraOptions& o) {
   std::vector<CameraOption> list = {
       {"pixels-per-sigma", "Camera pixels per bead diameter", &o.pixels_per_sigma, 3, 400, {}},
-      {"margin", "Wall shown around the cell, px", &o.margin_px, 0, 1000, {}},
+      {"margin", "Width of the wall shown around the cell, px", &o.margin_px, 0, 1000, {}},
       {"rotation",
-       "Turn of the picture about its middle, degrees, counter-clockwise",
+       "Rotation of the picture about its centre, degrees, counter-clockwise",
        &o.rotation_deg,
        -180,
        180,
        {}},
       {"distortion",
-       "Radial distortion k1: a point at distance r from the middle, in half diagonals, is seen at r (1 + k1 "
+       "Radial distortion k1: a point at distance r from the centre, in half diagonals, appears at r (1 + k1 "
        "r^2)",
        &o.distortion,
        -0.2,
        0.2,
        {}},
       {"left-tilt",
-       "Lean of the left wall, degrees outward, about its foot on the plate; 0: as the trajectory says",
+       "Outward tilt of the left wall, degrees, about its foot on the plate; 0: as in the trajectory",
        &o.left_tilt,
        -30,
        30,
        {}},
-      {"right-tilt", "Lean of the right wall, likewise", &o.right_tilt, -30, 30, {}},
+      {"right-tilt", "Outward tilt of the right wall, likewise", &o.right_tilt, -30, 30, {}},
       {"blur", "Blur of the optics, standard deviation, px", &o.blur_px, 0.2, 5, {}},
-      {"backlight", "Grey levels of the light in the middle", &o.backlight, 1, 255, {}},
+      {"backlight", "Grey level of the light at the centre of the picture", &o.backlight, 1, 255, {}},
       {"vignetting", "Relative loss of light in the corners", &o.vignetting, 0, 0.9, {}},
       {"lamp-drift",
        "Relative change of the light from the first frame to the last",
@@ -73,21 +75,21 @@ std::vector<CameraOption> camera_option_list(CameraOptions& o) {
        0,
        0.5,
        {}},
-      {"bright", "Light from the front: bright beads, walls and plate on black", &o.bright, 0, 0, {}},
+      {"bright", "Front light: bright beads, walls and plate on black", &o.bright, 0, 0, {}},
       {"electrons-per-level",
-       "Shot noise: electrons in one grey level; 0: none",
+       "Shot noise: electrons per grey level; 0: no shot noise",
        &o.electrons_per_level,
        0,
        1e9,
        {}},
-      {"read-noise", "Noise of the electronics, grey levels, standard deviation", &o.read_noise, 0, 50, {}},
+      {"read-noise", "Read noise, grey levels, standard deviation", &o.read_noise, 0, 50, {}},
       {"black-level", "Grey level without light", &o.black_level, 0, 100, {}},
-      {"bits", "Depth of the picture: 8, 10, 12, 14 or 16", &o.bits, 8, 16, {}},
+      {"bits", "Bit depth of the picture: 8, 10, 12, 14 or 16", &o.bits, 8, 16, {}},
       {"tracer-darkness", "Darkness of a tracer disc", &o.tracer_darkness, 0.4, 1, {}},
-      {"glare", "Brightest level of a spot of light on a bead, share of the light", &o.glare, 0, 2, {}},
-      {"glare-share", "Share of the beads that have one", &o.glare_share, 0, 1, {}},
+      {"glare", "Peak level of a bright spot on a bead, share of the light", &o.glare, 0, 2, {}},
+      {"glare-share", "Share of the beads that have a bright spot", &o.glare_share, 0, 1, {}},
       {"glare-kind",
-       "Where it sits: reflected (upper left, as from a lamp in front) or transmitted (the middle)",
+       "Position of the spot: reflected (upper left, as from a lamp in front) or transmitted (the centre)",
        &o.glare_kind,
        0,
        0,
@@ -97,13 +99,13 @@ std::vector<CameraOption> camera_option_list(CameraOptions& o) {
       {"drop", "Probability that a frame is lost", &o.drop, 0, 0.9, {}},
       {"double", "Probability that a frame is stored twice", &o.doubled, 0, 0.9, {}},
   };
-  add_quantity(list, "max-height", "Height shown (0: as high as beads get)", o.max_height, o.max_height_unit,
-               "sigma", "mm");
-  add_quantity(list, "exposure", "Motion blur: exposure, centred on the moment", o.exposure, o.exposure_unit,
-               "t0", "us");
-  add_quantity(list, "trigger-offset", "Every picture is taken this much too late", o.trigger_offset,
+  add_quantity(list, "max-height", "Height shown (0: up to the highest bead)", o.max_height,
+               o.max_height_unit, "sigma", "mm");
+  add_quantity(list, "exposure", "Motion blur: exposure time, centred on the time of the picture", o.exposure,
+               o.exposure_unit, "t0", "us");
+  add_quantity(list, "trigger-offset", "Delay of every picture after the time of its frame", o.trigger_offset,
                o.trigger_offset_unit, "t0", "us", true);
-  add_quantity(list, "trigger-jitter", "Scatter of the moment, standard deviation", o.trigger_jitter,
+  add_quantity(list, "trigger-jitter", "Scatter of the trigger time, standard deviation", o.trigger_jitter,
                o.trigger_jitter_unit, "t0", "us");
   return list;
 }
@@ -133,7 +135,7 @@ void CameraOptions::check() const {
     if (option.kept()) check_option(option, Where{.file = {}, .key = option.key});
   if (bits % 2 != 0)
     throw ConfigError(Where{.file = {}, .key = "bits"},
-                      fmt::format("is {}; cameras have 8, 10, 12, 14 or 16.", bits));
+                      fmt::format("is {}; it must be 8, 10, 12, 14 or 16.", bits));
 }
 
 CameraOptions CameraOptions::reduced(const Scale& scale) const {
@@ -164,8 +166,9 @@ CameraOptions read_camera(const std::filesystem::path& file) {
     if (option.stated_in != nullptr) {
       if (!root.has(key)) continue;
       if (const auto [other, fresh] = said.emplace(option.stated_in, key); !fresh)
-        throw ConfigError(root.where(key), fmt::format("and {} say the same quantity; say one of the two.",
-                                                       root.where(other->second).text()));
+        throw ConfigError(root.where(key),
+                          fmt::format("and {} set the same quantity; give only one of the two.",
+                                      root.where(other->second).text()));
       *option.stated_in = option.unit;
     }
     std::visit(

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Everything that can be set about the synthetic camera, in one list.
+/// All options of the synthetic camera, in one list.
 ///
-/// Grey levels are those of an 8-bit picture whatever the depth of the output: with `bits` = 12 the same
-/// scene is the same light, counted sixteen times finer.
+/// Grey levels are those of an 8-bit picture, whatever the depth of the output: with `bits` = 12 the same
+/// scene gives the same light, resolved sixteen times finer.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,14 +15,14 @@
 
 namespace twincell {
 
-/// How a length or a time is stated.
+/// Unit in which a length or a time is given.
 enum class CameraUnit {
   reduced,   ///< sigma, t0
   physical,  ///< mm, us
-  bare       ///< no unit: reduced, unless the trajectory has a laboratory's scale
+  bare       ///< no unit: reduced; an error if the trajectory has a laboratory scale
 };
 
-/// The camera. check() is called by all users, reduced() by those who know the trajectory.
+/// The camera. All callers use check(); callers that have the trajectory also use reduced().
 struct CameraOptions {
   // Geometry
   double pixels_per_sigma = 15;
@@ -61,38 +61,38 @@ struct CameraOptions {
   double drop = 0;
   double doubled = 0;
 
-  std::uint64_t seed = 1;  ///< of everything that chance decides
+  std::uint64_t seed = 1;  ///< of all random numbers
 
   /// \throws ConfigError naming the option and its bound
   void check() const;
-  /// The same with every length and time in sigma and t0.
-  /// \throws ConfigError for laboratory units without the part of the scale that converts them, and for a
-  ///         number without a unit, not 0, where the scale says sigma
+  /// The same options with every length and time in sigma and t0.
+  /// \throws ConfigError for a laboratory unit if the scale lacks the value that converts it, and for a
+  ///   nonzero number without a unit if the scale states sigma
   [[nodiscard]] CameraOptions reduced(const Scale& scale) const;
 };
 
-/// One option: its name on the command line (in a CAMERA.toml with underscores), what it means, where it is
-/// kept and its bounds or words.
+/// One option: its name on the command line (with underscores in a CAMERA.toml), its meaning, the variable
+/// that stores it, and its bounds or allowed words.
 struct CameraOption {
   std::string key, help;
   std::variant<double*, int*, bool*, std::string*> value;
   double lower = 0, upper = 0;
   std::vector<std::string> words;
-  CameraUnit* stated_in = nullptr;        ///< of a length or time: where its unit is kept,
-  CameraUnit unit = CameraUnit::reduced;  ///< and the one that this spelling means
+  CameraUnit* stated_in = nullptr;        ///< for a length or time: the variable that stores its unit
+  CameraUnit unit = CameraUnit::reduced;  ///< for a length or time: the unit that this spelling implies
 
-  /// Whether its value is the one that is kept: of the spellings of a length or time one is.
+  /// Whether this spelling is the one in use. Of the spellings of a length or time, exactly one is in use.
   [[nodiscard]] bool kept() const { return stated_in == nullptr || *stated_in == unit; }
 };
 
-/// The list: command line, CAMERA.toml, check and documentation are made from it. To add an option: a member
-/// above and a line there.
+/// The list from which the command line, CAMERA.toml, check() and the documentation are made. To add an
+/// option, add a member to CameraOptions and a line to this list.
 std::vector<CameraOption> camera_option_list(CameraOptions& options);
 
 /// Reads a CAMERA.toml; absent keys keep their defaults. \throws InputError, ConfigError
 CameraOptions read_camera(const std::filesystem::path& file);
 
-/// All options as a CAMERA.toml.
+/// All options as the text of a CAMERA.toml.
 std::string camera_text(const CameraOptions& options);
 
 }  // namespace twincell

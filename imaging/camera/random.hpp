@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Chance that depends on what it is for and not on who asks first, so that threads do not matter.
+/// Random numbers that depend on their purpose and not on the order of the calls, so that the result does not
+/// depend on the number of threads.
 
 #include <cmath>
 #include <cstdint>
@@ -9,10 +10,10 @@
 
 namespace twincell {
 
-/// What a stream of random numbers decides.
+/// Purpose of a stream of random numbers.
 enum class Chance : std::uint64_t { noise = 1, lamp, trigger, storage, dirt, glare };
 
-/// SplitMix64 (Steele, Lea & Flood, OOPSLA 2014), begun from a hash of seed, purpose and two numbers.
+/// SplitMix64 (Steele, Lea & Flood, OOPSLA 2014), seeded by a hash of seed, purpose and two numbers.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, Chance purpose, std::int64_t a, std::int64_t b = 0) : state_(seed) {
@@ -26,8 +27,8 @@ class RandomStream {
     return (static_cast<double>(mixed(state_) >> 11) + 0.5) * 0x1p-53;
   }
   double uniform(double a, double b) { return a + (b - a) * uniform(); }
-  /// Mean 0, variance 1. Box-Muller, spelt out: the library's own normal distribution differs between
-  /// implementations.
+  /// Normal distribution with mean 0 and variance 1, by the Box-Muller method. std::normal_distribution is
+  /// not used, because it differs between implementations.
   double normal() {
     if (kept_) {
       kept_ = false;

@@ -1,4 +1,4 @@
-// A trajectory filmed: which frames are stored, what is written about them.
+// Films a trajectory: selects the frames that are stored, and writes their pictures and records.
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ namespace twincell {
 
 namespace {
 
-// The box of a simulation is tall enough never to be touched, so most of it would be a picture of nothing.
+// The box of a simulation is much taller than its beads reach; a picture of all of it would be mostly empty.
 double height_of_beads(const TrajectorySource& trajectory, Progress& progress) {
   constexpr double kHeadroom = 2;
   double top = 0;
@@ -34,7 +34,7 @@ double height_of_beads(const TrajectorySource& trajectory, Progress& progress) {
   return std::min(trajectory.info().box.size().z(), top + kHeadroom);
 }
 
-// Frames that come in the wrong order are no film.
+// A trigger error larger than the interval between frames would store frames in the wrong order.
 void check_trigger(const TrajectorySource& trajectory, const CameraOptions& options) {
   const double most = std::abs(options.trigger_offset) + 4 * options.trigger_jitter;
   if (most == 0 || trajectory.n_frames() < 2) return;
@@ -60,10 +60,10 @@ std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info,
   if (options.bright) text += "bright = true\n";
   if (!camera.lens().identity())
     text += fmt::format(
-        "# The picture is turned by {} degrees and distorted by {}; origin_px is that of the ideal "
+        "# The picture is rotated by {} degrees and has radial distortion {}; origin_px refers to the ideal "
         "picture.\n",
         options.rotation_deg, options.distortion);
-  // A bare length beside a scale is refused.
+  // If the file has a scale, a length without a unit is refused.
   const char* sigma = info.scale.sigma_m ? "_sigma" : "";
   text += fmt::format("\n[cell]\nwidth{0} = {1:.17g}\nheight{0} = {2:.17g}\nsides = \"{3}\"\n", sigma,
                       info.box.size().x(), info.box.size().z(),
@@ -81,14 +81,14 @@ std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info,
   return text;
 }
 
-// A frame of the trajectory on its way to the disk.
+// A frame of the trajectory while it is rendered and written.
 struct Take {
   std::size_t index = 0;   // in the trajectory
-  std::size_t number = 0;  // of its first copy among the stored ones
+  std::size_t number = 0;  // of its first copy among the stored frames
   int copies = 1;          // 0: dropped
-  int phase = -1;          // of the frame
-  Moment moment;
-  cv::Mat picture;     // kept for the film
+  int phase = -1;          // drive phase of the frame
+  Exposure exposure;
+  cv::Mat picture;     // for the film
   std::string truth;   // rows of truth.csv
   std::string record;  // rows of frames.csv
 };
@@ -102,28 +102,30 @@ class Filming {
         moves_(options.exposure > 0 || options.trigger_jitter > 0 || options.trigger_offset != 0) {}
   [[nodiscard]] const SyntheticCamera& camera() const { return camera_; }
 
-  // Fills one take: light and trigger, picture, texts. Touches nothing but the take and its files.
+  // Fills one take: lamp and trigger, picture, records. Writes only to the take and its files, so that takes
+  // can be filled in parallel.
   void shoot(Take& take, const std::filesystem::path& folder, bool keep) const {
-    const Frame& frame = *take.moment.now;
+    const Frame& frame = *take.exposure.now;
     const double n = static_cast<double>(trajectory_.n_frames());
-    take.moment.late =
+    take.exposure.late =
         options_.trigger_offset +
         options_.trigger_jitter * RandomStream(options_.seed, Chance::trigger, frame.step).normal();
-    take.moment.lamp = std::max(
+    take.exposure.lamp = std::max(
         0.0,
         (1 + options_.lamp_drift * (n > 1 ? static_cast<double>(take.index) / (n - 1) : 0)) *
             (1 + options_.lamp_flicker * RandomStream(options_.seed, Chance::lamp, frame.step).normal()));
     take.phase = frame.phase;
     if (take.copies == 0) return;
-    const cv::Mat picture = camera_.expose(take.moment);
-    const std::vector<TrueBead> beads = camera_.truth(take.moment);
+    const cv::Mat picture = camera_.expose(take.exposure);
+    const std::vector<TrueBead> beads = camera_.truth(take.exposure);
     const TrajectoryInfo& info = trajectory_.info();
     const double period = info.drive ? info.drive->period() : 0;
     for (int copy = 0; copy < take.copies; ++copy) {
       const std::size_t number = take.number + static_cast<std::size_t>(copy);
       if (!folder.empty()) {
         const auto file = folder / fmt::format("frame_{:05}.png", number);
-        // Noise does not compress: the first level is a tenth larger and five times faster than the last.
+        // Noise does not compress: the lowest compression level gives files a tenth larger than the highest
+        // and is five times faster.
         if (!cv::imwrite(file.string(), picture, {cv::IMWRITE_PNG_COMPRESSION, 1}))
           throw RunError(file.string() + ": cannot be written.");
       }
@@ -132,14 +134,15 @@ class Filming {
                        b.slot, b.x, b.y, b.radius, int{b.tracer}, frame.phase, frame.cycle, b.visible);
       take.record +=
           fmt::format("{},{},{},{:.9g},{:.9g},{},{},{},{:.9g},{:.6f},{}\n", number, take.index, frame.step,
-                      frame.time + take.moment.late, take.moment.late, frame.phase, frame.cycle,
-                      phase_text(frame, take.moment.late, period),
-                      camera_.shutter().plate(take.moment, take.moment.late), take.moment.lamp, copy);
+                      frame.time + take.exposure.late, take.exposure.late, frame.phase, frame.cycle,
+                      phase_text(frame, take.exposure.late, period),
+                      camera_.shutter().plate(take.exposure, take.exposure.late), take.exposure.lamp, copy);
     }
     if (keep) take.picture = picture;
   }
 
-  // Reads frames [from, to) and the neighbours that their paths need; shoots them with `threads` threads.
+  // Reads the frames of the takes and the neighbours that their paths need, then fills the takes with
+  // `threads` threads.
   void shoot(std::vector<Take>& takes, int threads, const std::filesystem::path& folder, bool keep) const {
     const std::size_t from = takes.front().index, to = takes.back().index + 1;
     const std::size_t first = moves_ && from > 0 ? from - 1 : from,
@@ -148,15 +151,15 @@ class Filming {
     for (std::size_t f = first; f < last; ++f) trajectory_.read(f, frames[f - first]);
     for (Take& take : takes) {
       const std::size_t i = take.index - first;
-      take.moment.now = &frames[i];
-      if (moves_ && i > 0) take.moment.before = &frames[i - 1];
-      if (moves_ && i + 1 < frames.size()) take.moment.after = &frames[i + 1];
+      take.exposure.now = &frames[i];
+      if (moves_ && i > 0) take.exposure.before = &frames[i - 1];
+      if (moves_ && i + 1 < frames.size()) take.exposure.after = &frames[i + 1];
     }
     in_parallel(takes.size(), threads, [&](std::size_t i) { shoot(takes[i], folder, keep); });
   }
 
  private:
-  // Fraction of the period at which the picture was really taken; nothing where that is unknown.
+  // Fraction of the period at which the picture is actually taken; empty if unknown.
   [[nodiscard]] std::string phase_text(const Frame& frame, double late, double period) const {
     if (frame.phase < 0 || trajectory_.info().phases_per_cycle <= 0) return {};
     const double nominal = static_cast<double>(frame.phase) / trajectory_.info().phases_per_cycle;
@@ -174,7 +177,7 @@ class Filming {
 
 Rendered render(const TrajectorySource& trajectory, const CameraOptions& options, const RenderJob& job,
                 Progress& progress) {
-  cv::setNumThreads(1);  // one pool only: ours
+  cv::setNumThreads(1);  // only the thread pool of this program
   const TrajectoryInfo& info = trajectory.info();
   options.check();
   CameraOptions fitted = options.reduced(info.scale);
@@ -182,6 +185,7 @@ Rendered render(const TrajectorySource& trajectory, const CameraOptions& options
   if (fitted.max_height == 0) fitted.max_height = height_of_beads(trajectory, progress);
   const Filming filming(trajectory, fitted);
 
+  // Outputs: written under temporary names and committed at the end, so that no incomplete output appears.
   std::optional<AtomicPath> place;
   std::optional<Movie> movie;
   std::filesystem::path folder;
@@ -196,6 +200,8 @@ Rendered render(const TrajectorySource& trajectory, const CameraOptions& options
   }
   if (!job.movie.empty()) movie.emplace(job.movie, filming.camera().size(), job.frames_per_second);
 
+  // Batches: a few frames per thread bound the memory; drops and copies are drawn first, because they number
+  // the files.
   Rendered done;
   int first_phase = -1;
   const std::size_t n = trajectory.n_frames(), batch = 4 * static_cast<std::size_t>(std::max(job.threads, 1));
@@ -219,6 +225,7 @@ Rendered render(const TrajectorySource& trajectory, const CameraOptions& options
     progress.update(static_cast<std::int64_t>(std::min(n, from + batch)), static_cast<std::int64_t>(n));
   }
   if (done.frames == 0) throw RunError("every frame was dropped: nothing is left to write.");
+  // Descriptions: CELL.toml and CAMERA.toml, with which the stack can be tracked like an experiment.
   if (place) {
     truth.close();
     record.close();

@@ -9,7 +9,7 @@ namespace twincell {
 
 namespace {
 
-// Few electrons: Poisson, by the inverse of its distribution.
+// Poisson distribution for few electrons, by inversion of the cumulative distribution.
 double poisson(double mean, RandomStream& chance) {
   const double u = chance.uniform();
   double probability = std::exp(-mean), sum = probability;
@@ -21,7 +21,8 @@ double poisson(double mean, RandomStream& chance) {
   return n;
 }
 
-// A level with its noise. Many electrons are normal, and the sum of two normal numbers is one.
+// A grey level with noise. Many electrons are normally distributed; as the sum of two normal numbers is
+// normal, shot and read noise then take one random number.
 double noisy(double level, const CameraOptions& o, RandomStream& chance) {
   constexpr double kMany = 50;
   const double electrons = level * o.electrons_per_level;

@@ -11,8 +11,8 @@ namespace twincell {
 
 namespace {
 
-// Without velocities, frames further apart than this share of a period cannot be joined: a stroboscopic stack
-// of one frame per cycle would stand still.
+// Fewest frames per period that can be interpolated without velocities. Beads in a stroboscopic stack of one
+// frame per cycle would seem to stand still.
 constexpr int kFewestPhases = 8;
 
 bool has(const Frame* frame, std::size_t slot) {
@@ -37,46 +37,46 @@ Shutter::Shutter(const TrajectoryInfo& info)
 
 void Shutter::require_paths(const TrajectoryInfo& info, const char* option) {
   if (!info.columns.velocity && info.phases_per_cycle > 0 && info.phases_per_cycle < kFewestPhases)
-    throw ConfigError(
-        Where{.file = {}, .key = option},
-        fmt::format("needs paths, but the trajectory has no velocities and {} frames per cycle; {} frames "
-                    "can be joined.",
-                    info.phases_per_cycle, kFewestPhases));
+    throw ConfigError(Where{.file = {}, .key = option},
+                      fmt::format("needs the paths of beads, but the trajectory has no velocities and only "
+                                  "{} frames per cycle; at least {} are needed.",
+                                  info.phases_per_cycle, kFewestPhases));
 }
 
-Vec3 Shutter::position(const Moment& m, std::size_t slot, double tau) const {
-  const Vec3& x = m.now->position[slot];
+Vec3 Shutter::position(const Exposure& exposure, std::size_t slot, double tau) const {
+  const Vec3& x = exposure.now->position[slot];
   if (tau == 0) return x;
-  const Frame* neighbour = tau > 0 ? m.after : m.before;
-  const double gap = has(neighbour, slot) ? neighbour->time - m.now->time : 0;
+  const Frame* neighbour = tau > 0 ? exposure.after : exposure.before;
+  const double gap = has(neighbour, slot) ? neighbour->time - exposure.now->time : 0;
   const bool near = gap != 0 && std::abs(gap) <= longest_gap_;
   if (velocities_) {
-    const Vec3& v = m.now->velocity[slot];
+    const Vec3& v = exposure.now->velocity[slot];
     if (!near) return x + tau * v;
     const double u = tau / gap;
     const Vec3 d = neighbour->position[slot] - x, p = gap * v, q = gap * neighbour->velocity[slot];
     return x + u * p + u * u * ((3 * d - 2 * p - q) + u * (p + q - 2 * d));
   }
-  const bool before = has(m.before, slot), after = has(m.after, slot);
+  const bool before = has(exposure.before, slot), after = has(exposure.after, slot);
   if (before && after)
-    return parabola<Vec3>(m.before->position[slot], m.before->time - m.now->time, x, m.after->position[slot],
-                          m.after->time - m.now->time, tau);
-  const Frame* one = after ? m.after : before ? m.before : nullptr;
-  return one == nullptr ? x : Vec3(x + tau / (one->time - m.now->time) * (one->position[slot] - x));
+    return parabola<Vec3>(exposure.before->position[slot], exposure.before->time - exposure.now->time, x,
+                          exposure.after->position[slot], exposure.after->time - exposure.now->time, tau);
+  const Frame* one = after ? exposure.after : before ? exposure.before : nullptr;
+  return one == nullptr ? x : Vec3(x + tau / (one->time - exposure.now->time) * (one->position[slot] - x));
 }
 
-double Shutter::plate(const Moment& m, double tau) const {
-  if (drive_ && phases_per_cycle_ > 0 && m.now->phase >= 0) {
-    const double fraction = static_cast<double>(m.now->phase) / phases_per_cycle_ + tau / drive_->period();
+double Shutter::plate(const Exposure& exposure, double tau) const {
+  if (drive_ && phases_per_cycle_ > 0 && exposure.now->phase >= 0) {
+    const double fraction =
+        static_cast<double>(exposure.now->phase) / phases_per_cycle_ + tau / drive_->period();
     return drive_->displacement(fraction - std::floor(fraction));
   }
-  const double z = m.now->plate_height;
+  const double z = exposure.now->plate_height;
   if (!std::isfinite(z)) return 0;
-  const bool before = m.before != nullptr && std::isfinite(m.before->plate_height),
-             after = m.after != nullptr && std::isfinite(m.after->plate_height);
+  const bool before = exposure.before != nullptr && std::isfinite(exposure.before->plate_height),
+             after = exposure.after != nullptr && std::isfinite(exposure.after->plate_height);
   if (tau == 0 || !before || !after) return z;
-  return parabola(m.before->plate_height, m.before->time - m.now->time, z, m.after->plate_height,
-                  m.after->time - m.now->time, tau);
+  return parabola(exposure.before->plate_height, exposure.before->time - exposure.now->time, z,
+                  exposure.after->plate_height, exposure.after->time - exposure.now->time, tau);
 }
 
 }  // namespace twincell

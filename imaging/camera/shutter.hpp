@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What the shutter sees: where beads and plate are a little before and after a stored frame.
+/// Shutter: positions of beads and plate shortly before and after a stored frame.
 
 #include <optional>
 
@@ -8,27 +8,28 @@
 
 namespace twincell {
 
-/// A frame and its neighbours. A neighbour may be absent.
-struct Moment {
+/// A frame, its neighbours (either may be absent), and when and how brightly it is exposed.
+struct Exposure {
   const Frame* before = nullptr;
   const Frame* now = nullptr;
   const Frame* after = nullptr;
-  double late = 0;  ///< the picture is taken this much after the frame's own time, t0
-  double lamp = 1;  ///< light, relative
+  double late = 0;  ///< delay of the picture after the frame's own time, t0
+  double lamp = 1;  ///< relative brightness of the lamp
 };
 
-/// Positions between frames. With velocities: the cubic through both frames' positions and velocities (exact
-/// in free flight), or a straight line where there is no near neighbour. Without: the parabola through three
-/// frames, the line through two. A bead on its own stays.
+/// Interpolates positions between frames. With velocities: the cubic through the positions and velocities of
+/// both frames (exact in free flight), or a straight line if no neighbour is close enough in time. Without
+/// velocities: the parabola through three frames or the line through two; a bead without a neighbour frame
+/// stays at rest.
 class Shutter {
  public:
   explicit Shutter(const TrajectoryInfo& info);
-  /// Position of a slot at `tau` after the frame's own time, t0. Needs the slot filled in moment.now.
-  [[nodiscard]] Vec3 position(const Moment& moment, std::size_t slot, double tau) const;
-  /// Plate height likewise: from the drive and the frame's phase; from the frames where those are unknown.
-  [[nodiscard]] double plate(const Moment& moment, double tau) const;
-  /// Whether paths can be drawn at all: velocities, or frames close enough to connect.
-  /// \throws ConfigError naming the option that needs them
+  /// Position of a slot at `tau` after the frame's own time, t0. \pre the slot is filled in exposure.now
+  [[nodiscard]] Vec3 position(const Exposure& exposure, std::size_t slot, double tau) const;
+  /// Plate height likewise: from the drive and the frame's phase, or from the frames if these are unknown.
+  [[nodiscard]] double plate(const Exposure& exposure, double tau) const;
+  /// Checks that paths can be interpolated: the trajectory has velocities, or frames close enough in time.
+  /// \throws ConfigError naming the option that needs paths
   static void require_paths(const TrajectoryInfo& info, const char* option);
 
  private:

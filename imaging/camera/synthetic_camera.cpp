@@ -19,18 +19,18 @@ namespace twincell {
 
 namespace {
 
-// Gauss-Legendre on (-1/2, 1/2).
+// Gauss-Legendre nodes and weights on (-1/2, 1/2).
 constexpr std::array<std::pair<double, double>, 3> kNodes{
     {{-0.387298334620741689, 5.0 / 18}, {0, 8.0 / 18}, {0.387298334620741689, 5.0 / 18}}};
 
-// Share of light beside a straight edge; `distance` > 0 in the dark.
+// Share of light at a signed distance from a straight edge; `distance` > 0 on the dark side.
 float edge(double distance, double s) {
   return static_cast<float>(0.5 * std::erfc(distance / (std::numbers::sqrt2 * s)));
 }
 
-// Moments of the exposure and their weights: pieces short enough that nothing moves further than about a
-// pixel in one.
-std::vector<std::pair<double, double>> moments(double exposure, double length_px) {
+// Times within the exposure and their weights. The exposure is split so that nothing moves much further than
+// a pixel in one segment.
+std::vector<std::pair<double, double>> exposure_times(double exposure, double length_px) {
   if (exposure == 0 || length_px < 1e-3) return {{0, 1}};
   const int pieces = std::clamp(cvCeil(length_px / 1.5), 1, 64);
   std::vector<std::pair<double, double>> nodes;
@@ -42,7 +42,8 @@ std::vector<std::pair<double, double>> moments(double exposure, double length_px
 
 }  // namespace
 
-// Disc images for all radii that occur, in steps of 1/50 px; a radius between two is a shift of the nearest.
+// Disc images for all radii in use, in steps of 1/50 px. A radius between two steps is a radial shift of the
+// nearest image.
 class SyntheticCamera::Discs {
  public:
   static constexpr double kPerPixel = 50;
@@ -93,11 +94,14 @@ SyntheticCamera::SyntheticCamera(const CameraOptions& stated, const TrajectoryIn
                  size_.height - 1 - options.margin_px - amplitude * options.pixels_per_sigma};
   lens_ = std::make_shared<Lens>(size_, options.rotation_deg, options.distortion);
 
+  // Disc images: made once for all radii, at every magnification that the lens produces.
   std::vector<double> radii;
   for (std::size_t k = 0; k < (info.radius.empty() ? 1 : info.n_beads); ++k) radii.push_back(radius_px(k));
   const double corner = lens_->magnification({-0.5, -0.5});
   discs_ = std::make_shared<Discs>(radii, std::min(1.0, corner), std::max(1.0, corner), options.blur_px);
 
+  // Constant layers: light with dirt, upright walls and the map to the ideal picture do not change between
+  // frames. Straight edges are blurred by the optics and by the pixel's width (variance 1/12).
   const double s = std::hypot(options.blur_px, std::sqrt(1.0 / 12));
   const bool walls = info.box.boundary[0] == Boundary::wall && left_tilt == 0 && right_tilt == 0;
   const double left = map_.pixel_from_cell(info.box.lower).x_px,
@@ -121,21 +125,21 @@ double SyntheticCamera::radius_px(std::size_t slot) const {
   return (info_.radius.empty() ? 0.5 : info_.radius[slot]) * options_.pixels_per_sigma;
 }
 
-Vec3 SyntheticCamera::place(const Moment& moment, std::size_t slot, double tau) const {
-  Vec3 r = shutter_.position(moment, slot, moment.late + tau);
+Vec3 SyntheticCamera::place(const Exposure& exposure, std::size_t slot, double tau) const {
+  Vec3 r = shutter_.position(exposure, slot, exposure.late + tau);
   if (info_.box.periodic(Axis::x)) r.x() = info_.box.wrap(r).x();
   return r;
 }
 
-void SyntheticCamera::draw_plate(const Moment& moment, cv::Mat1f& share) const {
+void SyntheticCamera::draw_plate(const Exposure& exposure, cv::Mat1f& share) const {
   const double s = std::hypot(options_.blur_px, std::sqrt(1.0 / 12));
   auto floor_at = [&](double tau) {
-    return map_.pixel_from_cell(Vec3(0, 0, shutter_.plate(moment, moment.late + tau))).y_px;
+    return map_.pixel_from_cell(Vec3(0, 0, shutter_.plate(exposure, exposure.late + tau))).y_px;
   };
   const double e = options_.exposure;
   std::vector<std::pair<double, double>> floors;  // row and weight
-  for (const auto& [tau, weight] :
-       moments(e, std::abs(floor_at(0.5 * e) - floor_at(0)) + std::abs(floor_at(-0.5 * e) - floor_at(0))))
+  for (const auto& [tau, weight] : exposure_times(
+           e, std::abs(floor_at(0.5 * e) - floor_at(0)) + std::abs(floor_at(-0.5 * e) - floor_at(0))))
     floors.emplace_back(floor_at(tau), weight);
   auto light = [&](double y) {
     float sum = 0;
@@ -158,12 +162,12 @@ void SyntheticCamera::draw_plate(const Moment& moment, cv::Mat1f& share) const {
   }
 }
 
-void SyntheticCamera::draw_leaning_walls(const Moment& moment, cv::Mat1f& share) const {
+void SyntheticCamera::draw_leaning_walls(const Exposure& exposure, cv::Mat1f& share) const {
   constexpr double kDegree = std::numbers::pi / 180;
   const double s = std::hypot(options_.blur_px, std::sqrt(1.0 / 12));
   const double left = map_.pixel_from_cell(info_.box.lower).x_px,
                right = map_.pixel_from_cell(info_.box.upper).x_px;
-  const double floor = map_.pixel_from_cell(Vec3(0, 0, shutter_.plate(moment, moment.late))).y_px;
+  const double floor = map_.pixel_from_cell(Vec3(0, 0, shutter_.plate(exposure, exposure.late))).y_px;
   const double l = info_.box.side_tilt[0] * kDegree, r = info_.box.side_tilt[1] * kDegree;
   for (int y = 0; y < share.rows; ++y)
     for (int x = 0; x < share.cols; ++x) {
@@ -175,8 +179,9 @@ void SyntheticCamera::draw_leaning_walls(const Moment& moment, cv::Mat1f& share)
     }
 }
 
-cv::Mat1f SyntheticCamera::light(const Moment& moment) const {
-  const Frame& frame = *moment.now;
+cv::Mat1f SyntheticCamera::light(const Exposure& exposure) const {
+  // Discs: each is stamped into its own window, averaged over its path.
+  const Frame& frame = *exposure.now;
   cv::Mat1f share(size_, 1.0F), glow;
   if (options_.glare > 0) glow = cv::Mat1f::zeros(size_);
   const double e = options_.exposure;
@@ -187,16 +192,16 @@ cv::Mat1f SyntheticCamera::light(const Moment& moment) const {
     const double radius = radius_px(k);
     const auto depth =
         static_cast<float>(!info_.tracer.empty() && info_.tracer[k] != 0 ? options_.tracer_darkness : 1);
-    const Vec3 here = place(moment, k, 0);
+    const Vec3 here = place(exposure, k, 0);
     double length = 0;
     if (e > 0)
-      length =
-          options_.pixels_per_sigma *
-          ((shutter_.position(moment, k, moment.late + 0.5 * e) - shutter_.position(moment, k, moment.late))
-               .norm() +
-           (shutter_.position(moment, k, moment.late - 0.5 * e) - shutter_.position(moment, k, moment.late))
-               .norm());
-    const auto nodes = moments(e, length);
+      length = options_.pixels_per_sigma * ((shutter_.position(exposure, k, exposure.late + 0.5 * e) -
+                                             shutter_.position(exposure, k, exposure.late))
+                                                .norm() +
+                                            (shutter_.position(exposure, k, exposure.late - 0.5 * e) -
+                                             shutter_.position(exposure, k, exposure.late))
+                                                .norm());
+    const auto nodes = exposure_times(e, length);
     const double magnification = lens_->magnification(map_.pixel_from_cell(here));
     const Discs::Sized disc = discs_->of(radius * magnification);
     const PixelPoint middle = lens_->picture_from_ideal(map_.pixel_from_cell(here));
@@ -214,9 +219,9 @@ cv::Mat1f SyntheticCamera::light(const Moment& moment) const {
     const double off = reflected ? -0.35 * radius : 0, spot = (reflected ? 0.13 : 0.25) * radius,
                  spot_reach = 4 * spot;
     for (const auto& [tau, weight] : nodes) {
-      Vec3 at = shutter_.position(moment, k, moment.late + tau);
-      at.x() +=
-          here.x() - shutter_.position(moment, k, moment.late).x();  // the same image of a periodic cell
+      Vec3 at = shutter_.position(exposure, k, exposure.late + tau);
+      at.x() += here.x() -
+                shutter_.position(exposure, k, exposure.late).x();  // one periodic image for the whole path
       const PixelPoint ideal = map_.pixel_from_cell(at), c = lens_->picture_from_ideal(ideal);
       const auto w = static_cast<float>(weight);
       std::size_t i = 0;
@@ -240,6 +245,7 @@ cv::Mat1f SyntheticCamera::light(const Moment& moment) const {
         }
     }
     std::size_t i = 0;
+    // In two dimensions discs do not overlap and the blocked light adds up; in three it multiplies.
     const bool flat = info_.box.dimension == 2;
     for (int y = window.y; y < window.y + window.height; ++y) {
       auto* row = share.ptr<float>(y);
@@ -247,10 +253,11 @@ cv::Mat1f SyntheticCamera::light(const Moment& moment) const {
         row[x] = flat ? row[x] - depth * stamp[i] : row[x] * (1 - depth * stamp[i]);
     }
   }
+  // Walls, plate and lamp: applied after the discs, because they multiply the light that passes all discs.
   share = cv::max(share, 0.0F);
-  draw_plate(moment, share);
-  if (walls_.empty() && info_.box.boundary[0] == Boundary::wall) draw_leaning_walls(moment, share);
-  const auto lamp = static_cast<float>(moment.lamp);
+  draw_plate(exposure, share);
+  if (walls_.empty() && info_.box.boundary[0] == Boundary::wall) draw_leaning_walls(exposure, share);
+  const auto lamp = static_cast<float>(exposure.lamp);
   for (int y = 0; y < size_.height; ++y)
     for (int x = 0; x < size_.width; ++x) {
       float left = share(y, x);
@@ -262,23 +269,24 @@ cv::Mat1f SyntheticCamera::light(const Moment& moment) const {
   return share;
 }
 
-cv::Mat SyntheticCamera::expose(const Moment& moment) const {
-  return read_out(light(moment), options_, moment.now->step);
+cv::Mat SyntheticCamera::expose(const Exposure& exposure) const {
+  return read_out(light(exposure), options_, exposure.now->step);
 }
 
-std::vector<TrueBead> SyntheticCamera::truth(const Moment& moment) const {
+std::vector<TrueBead> SyntheticCamera::truth(const Exposure& exposure) const {
   constexpr int kRim = 64;
   std::vector<TrueBead> beads;
   for (std::size_t k = 0; k < info_.n_beads; ++k) {
-    if (!moment.now->present(k) || !std::isfinite(moment.now->position[k].x())) continue;
-    const PixelPoint ideal = map_.pixel_from_cell(place(moment, k, 0)), p = lens_->picture_from_ideal(ideal);
+    if (!exposure.now->present(k) || !std::isfinite(exposure.now->position[k].x())) continue;
+    const PixelPoint ideal = map_.pixel_from_cell(place(exposure, k, 0)),
+                     p = lens_->picture_from_ideal(ideal);
     beads.push_back({k, p.x_px, p.y_px, radius_px(k) * lens_->magnification(ideal), 1,
                      !info_.tracer.empty() && info_.tracer[k] != 0});
   }
   auto inside = [&](double x, double y) {
     return x >= -0.5 && y >= -0.5 && x <= size_.width - 0.5 && y <= size_.height - 0.5;
   };
-  // In order of x, so that discs in front are sought nearby only.
+  // Sorted by x, so that only nearby discs are tested for covering a bead.
   std::vector<std::size_t> order(beads.size());
   std::iota(order.begin(), order.end(), 0);
   double largest = 0;
@@ -307,7 +315,7 @@ std::vector<TrueBead> SyntheticCamera::truth(const Moment& moment) const {
     }
     bead.visible = static_cast<double>(seen) / kRim;
   }
-  // The truth is of what can be seen: a bead that flies out of the picture is not in it.
+  // Beads outside the picture are removed last, because they can cover beads inside it.
   std::erase_if(beads, [&](const TrueBead& b) { return !inside(b.x, b.y); });
   return beads;
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Corners of a chessboard, or dots of a grid, in a picture.
+/// Detection of a calibration target in a picture: corners of a chessboard or dots of a grid.
 
 #include <opencv2/core.hpp>
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace twincell {
 
-/// A flat pattern with equal spacing.
+/// A flat pattern of points with equal spacing.
 struct TargetPattern {
   std::string kind = "chessboard";  ///< "chessboard" (inner corners) or "dots"
   int columns = 9, rows = 6;        ///< points along x and y, 3 .. 200
 };
 
-/// The points, row by row, to sub-pixel (OpenCV's findChessboardCorners with cornerSubPix, or
-/// findCirclesGrid); empty if the whole pattern is not seen.
+/// The points of the target, row by row, with sub-pixel precision (OpenCV's findChessboardCorners with
+/// cornerSubPix, or findCirclesGrid). Empty if the whole pattern is not visible.
 std::vector<PixelPoint> find_target(const cv::Mat& grey, const TargetPattern& pattern);
 
 }  // namespace twincell

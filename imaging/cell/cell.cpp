@@ -20,6 +20,8 @@ PixelFrame CellDescription::pixel_frame(cv::Size picture, double scale_px, Pixel
 CellDescription read_cell(const std::filesystem::path& path, const std::vector<std::string>& assignments) {
   constexpr std::int64_t kMostPhases = 100000;
   Config config = path.empty() ? Config::from_text("", "the command line") : Config::from_file(path);
+  // Assignments are applied before units are converted, so that an assigned spelling replaces another
+  // spelling of the same quantity in the file.
   for (const std::string& assignment : assignments) displace_spellings(config, assignment);
   for (const std::string& assignment : assignments) config.assign(assignment);
   CellDescription cell;

@@ -1,22 +1,22 @@
 #pragma once
 /// \file
-/// CELL.toml: what is known of a filmed cell.
+/// CELL.toml: description of a filmed cell.
 ///
 ///     [camera]
 ///     pixels_per_sigma = 15.0      # camera pixels per bead diameter
 ///     origin_px = [40.0, 560.0]    # lower-left inside corner, plate at its mean height
 ///     frames_per_cycle = 20        # 0 or absent: not phase-locked
 ///     first_phase = 0              # phase of the first frame
-///     phase_offset = 0.0           # frames by which each was taken later than its phase says
-///     rotation_deg = 0.0           # turn of the picture about its middle, counter-clockwise
-///     distortion = 0.0             # k1: what lies at r, in half diagonals, is seen at r (1 + k1 r^2)
+///     phase_offset = 0.0           # delay of every frame after its nominal phase, in frames
+///     rotation_deg = 0.0           # rotation of the picture about its centre, counter-clockwise
+///     distortion = 0.0             # k1: a point at r, in half diagonals, appears at r (1 + k1 r^2)
 ///     bright = false               # discs brighter than their surroundings
-///     frame_rate_hz = 1000.0       # wins over what the stack says of itself
+///     frame_rate_hz = 1000.0       # overrides the rate that the stack states
 ///     [cell]
 ///     width_mm = 40.0              # between the side walls; or width_sigma
 ///     height_mm = 80.0             # or height_sigma
 ///     sides = "walls"              # "walls", "periodic" or "open"
-///     side_tilt = [0.0, 0.0]       # degrees by which the left and the right wall lean outward
+///     side_tilt = [0.0, 0.0]       # outward tilt of the left and the right wall, degrees
 ///     [drive]                      # any two that determine A and omega, as in a scene
 ///     gamma = 2.0
 ///     amplitude_mm = 2.0
@@ -25,11 +25,10 @@
 ///     gravity_m_s2 = 9.81
 ///
 ///     [calibration]
-///     from = "cell.calibration.toml"  # what calibrate measured (calibration_file.hpp); keys above win over
-///     it
+///     from = "cell.calibration.toml"  # result of calibrate (calibration_file.hpp); keys above override it
 ///
-/// Every key may be absent; an unknown one is an error. With a turn or a distortion, origin_px is a place of
-/// the picture as it would be without them.
+/// Every key may be absent; an unknown key is an error. If there is a rotation or a distortion, origin_px
+/// refers to the ideal picture without them.
 
 #include <array>
 #include <filesystem>
@@ -47,12 +46,12 @@
 
 namespace twincell {
 
-/// The cell as far as it is known.
+/// Description of a cell. Absent values are unknown.
 struct CellDescription {
   std::optional<double> pixels_per_sigma;  ///< > 0
   std::optional<PixelPoint> origin;        ///< px
   double rotation_deg = 0;                 ///< of the picture, counter-clockwise
-  double distortion = 0;                   ///< k1 (camera/lens.hpp)
+  double distortion = 0;                   ///< k1 (geometry/lens.hpp)
   PhaseLock phase_lock;
   bool bright = false;
   std::optional<double> frame_rate_hz;             ///< > 0
@@ -61,21 +60,22 @@ struct CellDescription {
   Boundary sides = Boundary::wall;
   DriveSpec drive_spec;  ///< empty: unknown
   Scale scale;           ///< pixels_per_sigma is not repeated here
-  Included included;     ///< what a calibration gave
-  std::string text;      ///< the file's own text, for provenance
+  Included included;     ///< values taken from a calibration
+  std::string text;      ///< the resolved configuration as TOML, for provenance
 
-  /// Map between a picture of that size and the cell. \pre origin and pixels_per_sigma are known
+  /// Map between a picture of this size and the cell. \pre origin and pixels_per_sigma are known
   [[nodiscard]] PixelFrame pixel_frame(cv::Size picture) const {
     return pixel_frame(picture, *pixels_per_sigma, *origin);
   }
   /// The same with scale and origin given.
   [[nodiscard]] PixelFrame pixel_frame(cv::Size picture, double scale_px, PixelPoint zero) const;
-  /// A and omega, if the drive is stated. \throws ConfigError as solve_drive
+  /// A and omega; absent if no drive is stated. \throws ConfigError as solve_drive
   [[nodiscard]] std::optional<Drive> drive() const;
 };
 
-/// Reads a CELL.toml, with "section.key=value" laid over it; without a file these alone. \throws InputError
-/// if it cannot be read, ConfigError for syntax, unknown keys, types and bounds
+/// Reads a CELL.toml and applies the assignments "section.key=value" to it. Without a file, only the
+/// assignments are read.
+/// \throws InputError if the file cannot be read, ConfigError for syntax, unknown keys, types and bounds
 CellDescription read_cell(const std::filesystem::path& file,
                           const std::vector<std::string>& assignments = {});
 

@@ -12,11 +12,11 @@
 namespace twincell {
 namespace {
 
-constexpr int kBorder = 3;     // px of dark that make a wall
-constexpr double kEdge = 3.2;  // standard deviations of the blur within which an edge shows
-// A bead that leaves less than this of the light hides what is behind it. At 0.75 the edges of an agitated
-// bed filmed with an exposure lay 0.01 px off: its beads are drawn out, each its own way, which their discs
-// do not have.
+constexpr int kBorder = 3;     // px; width of the dark border that makes a wall
+constexpr double kEdge = 3.2;  // half width of an edge, standard deviations of the blur
+// A bead that transmits less than this share of the light hides the edge behind it. With 0.75 the edges of an
+// agitated bed filmed with an exposure were off by 0.01 px: each bead is smeared along its own path, and its
+// fitted disc is not.
 constexpr float kLeastShare = 0.97F;
 
 enum class From { left, right, bottom };
@@ -24,7 +24,7 @@ enum class From { left, right, bottom };
 /// A line of pixels from the border inwards.
 struct Line {
   From from;
-  int number, light;  // row or column; its first pixel that is light
+  int number, light;  // row or column; index of its first light pixel
 };
 
 cv::Point pixel(const cv::Size& size, From from, int number, int i) {
@@ -52,7 +52,7 @@ double normal_density(double x) {
   return std::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi);
 }
 
-/// Share of the light that the beads let through, by their fitted discs (ring_normal_equations.hpp).
+/// Share of the light that the beads transmit, from their fitted discs (ring_normal_equations.hpp).
 cv::Mat1f light_past_beads(const Located& located, cv::Size size) {
   constexpr double kSeen = 4;  // standard deviations of the blur
   cv::Mat1f share(size, 1.0F);
@@ -71,8 +71,8 @@ cv::Mat1f light_past_beads(const Located& located, cv::Size size) {
   return share;
 }
 
-/// Quadratic surface through grey levels, least squares from `start`; share(x, y): what part of the surface a
-/// pixel shows, 0 where it shows another thing.
+/// Quadratic surface through grey levels, by least squares from `start`. share(x, y) is the share of the
+/// surface that a pixel shows; 0 excludes the pixel.
 template <class Share>
 Surface surface_through(const Prepared& image, Surface start, const Share& share) {
   constexpr double kWild = 0.1, kFewest = 60, kSamples = 30000;
@@ -100,16 +100,16 @@ Surface surface_through(const Prepared& image, Surface start, const Share& share
   return start;
 }
 
-/// The light: prepare() takes it from the brightest pixels, which the beads' shadows draw down where they
-/// crowd. Here it goes through what is seen past the beads, `inside` of all edges.
+/// The local light. prepare() fits it to the brightest pixels, which the shadows of beads darken where beads
+/// are dense. Here it is fitted to the pixels visible past the beads, `inside` all edges.
 Surface light_inside(const Prepared& image, const cv::Mat1f& share, const cv::Mat1b& inside) {
   return surface_through(image, image.light, [&](int x, int y) {
     return inside(y, x) == 0 || share(y, x) < kLeastShare ? 0 : share(y, x);
   });
 }
 
-/// The walls' own light, from the border to 6 px before the edges: lit from the front, they are not equally
-/// bright.
+/// Light from the walls themselves, from the border to 6 px before the edges. Under front light the walls are
+/// not equally bright.
 Surface light_of_walls(const Prepared& image, const std::vector<Line>& lines) {
   constexpr int kBefore = 6;
   const cv::Mat1f& d = image.darkness;
@@ -127,8 +127,8 @@ Surface light_of_walls(const Prepared& image, const std::vector<Line>& lines) {
   return surface_through(image, start, [&](int x, int y) { return static_cast<float>(wall(y, x)); });
 }
 
-/// Where noise about black is cut at zero the walls look brighter than they are, by a part of the noise:
-/// black is then zero.
+/// Whether the noise around black is clipped at zero. The mean of the walls is then too bright by a fraction
+/// of the noise, so that zero is used as their level.
 bool clipped_black(const cv::Mat1f& d, const std::vector<Line>& lines) {
   constexpr double kShare = 0.2;
   double zeros = 0, n = 0;
@@ -138,7 +138,7 @@ bool clipped_black(const cv::Mat1f& d, const std::vector<Line>& lines) {
   return zeros > kShare * n;
 }
 
-/// Pixels 4 px and more behind the first that is light, seen from every side.
+/// Pixels at least 4 px behind the first light pixel, seen from every side.
 cv::Mat1b inside_of(const std::vector<Line>& lines, const cv::Size& size) {
   constexpr int kInside = 4;
   cv::Mat1b inside(size, uchar{1});
@@ -148,9 +148,9 @@ cv::Mat1b inside_of(const std::vector<Line>& lines, const cv::Size& size) {
   return inside;
 }
 
-/// In a corner each edge takes light from the other: points that near are left out.
+/// Removes points close to a corner, where each edge takes light from the other.
 void leave_corners_out(CellEdges& edges, double reach) {
-  constexpr std::size_t kNear = 25;  // points that say where the other edge passes
+  constexpr std::size_t kNear = 25;  // points that locate the other edge
   const auto median = [](std::vector<double> v) {
     return v.empty() ? std::nan("") : upper_median(std::move(v));
   };
@@ -169,15 +169,15 @@ void leave_corners_out(CellEdges& edges, double reach) {
   };
   const double left = lowest(edges.left), right = lowest(edges.right), row_left = row_beside(true),
                row_right = row_beside(false);
-  // Comparisons with what is not there are false.
+  // The median of an absent edge is NaN, and comparisons with NaN are false: no point is removed.
   std::erase_if(edges.plate,
                 [&](const EdgePoint& p) { return p.at.x_px < left + reach || p.at.x_px > right - reach; });
   std::erase_if(edges.left, [&](const EdgePoint& p) { return p.at.y_px > row_left - reach; });
   std::erase_if(edges.right, [&](const EdgePoint& p) { return p.at.y_px > row_right - reach; });
 }
 
-/// Lit from the front, what lies behind is black, and likewise cut at zero: it is then exactly that. Grey
-/// levels from the brightest down, as prepare() turns them.
+/// Level of the background under front light, if it is black and clipped at zero: it is then exactly zero.
+/// Grey levels are counted from the brightest down, as prepare() inverts them.
 std::optional<Surface> clipped_background(const cv::Mat& grey, const cv::Mat1f& d) {
   constexpr double kShare = 0.2;
   constexpr float kClear = 0.15F;
@@ -191,17 +191,19 @@ std::optional<Surface> clipped_background(const cv::Mat& grey, const cv::Mat1f& 
   return light;
 }
 
+/// A fitted step. `at` is the distance from the centre of the border's first pixel, px; `error` is the
+/// standard deviation of `at` for pixel noise 1.
 struct Step {
-  double at = 0, blur = 0, error = 0;  // px from the border's first pixel centre; error for a pixel's error 1
+  double at = 0, blur = 0, error = 0;
 };
 
-/// What is seen of a step: pixels i = first ..., in shares of the local light, and what beads leave of it.
+/// The pixels of a step, i = first ...: light relative to the local light, and share that beads transmit.
 struct Window {
   int first = 0;
   std::vector<double> light, share;
 };
 
-/// l_i = T_i Phi((i - e)/s) by Gauss and Newton's steps on e, and on s if it is not given.
+/// Fits l_i = T_i Phi((i - e)/s) by Gauss-Newton steps in e, and in s if free_blur.
 std::optional<Step> fit_step(const Window& w, double start, double s, bool free_blur, double noise) {
   constexpr double kLargestMisfit = 3.5, kModelError = 0.015;
   double e = start;
@@ -241,12 +243,14 @@ CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) 
   const cv::Mat1f& d = image.darkness;
   const Noise variance = noise_of(d);
   const double noise = std::sqrt(variance.dark + variance.light);
+  // Lines: every row and column with a dark border.
   CellEdges edges;
   std::vector<Line> lines;
   for (const From from : {From::left, From::right, From::bottom})
     for (int number = 0; number < (from == From::bottom ? d.cols : d.rows); ++number)
       if (const auto light = first_light(d, from, number)) lines.push_back({from, number, *light});
   if (lines.empty()) return edges;
+  // Light: levels of the background and of the walls, and the light that the located beads block.
   LocatorOptions locator;
   locator.diameter_px = diameter_px;
   locator.preprocess.bright = bright;
@@ -257,6 +261,7 @@ CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) 
 
   const bool black_is_clipped = clipped_black(d, lines);
 
+  // Windows: pixels around the step of a line, scaled so that the wall is 0 and the background is 1.
   const auto window_of = [&](const Line& line, double s) {
     const int reach = static_cast<int>(std::ceil(kEdge * s)) + 1, n = length(d.size(), line.from);
     Window w{.first = std::max(1, line.light - reach), .light = {}, .share = {}};
@@ -272,7 +277,7 @@ CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) 
     }
     return w;
   };
-  // Side walls share one blur, the plate, which moves, has its own.
+  // Blur: the side walls share one blur; the plate has its own, because it moves.
   double blur[2] = {kUsualBlur, kUsualBlur};
   for (int round = 0; round < 2; ++round) {
     std::vector<double> found[2];
@@ -284,6 +289,7 @@ CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) 
     for (int kind = 0; kind < 2; ++kind)
       if (!found[kind].empty()) blur[kind] = upper_median(std::move(found[kind]));
   }
+  // Positions: with the blur fixed, each line has a single unknown.
   edges.blur_px = blur[1];
   for (const Line& line : lines) {
     const double s = blur[line.from == From::bottom ? 1 : 0];

@@ -1,16 +1,17 @@
 #pragma once
 /// \file
-/// Edges of side walls and plate in a frame, to sub-pixel.
+/// Sub-pixel edges of side walls and plate in a frame.
 ///
-/// Every row is followed from the left and from the right border, every column from the bottom, through the
-/// dark to the first light. On the step there, at e, light in shares of the local light is
+/// Every row is searched from the left and from the right border, and every column from the bottom, through
+/// the dark to the first bright pixel. At the step there, at position e, the light relative to the local
+/// light is
 ///     l_i = T_i Phi((i - e)/s),
-/// with the blur s that all rows (and all columns) of a frame share and T_i the light that the beads let
-/// pass, by their own fitted discs; pixels with T_i < 0.97 are left out. The local light is a quadratic
-/// surface through what is seen past the beads. Without a bead near it the step is symmetric, and e does not
-/// depend on s. Within 4.5 s of a corner there is no point, nor where no light reaches the step. A bead that
-/// touches the wall and was not located hides it: the point then lies on the bead's far side, always further
-/// inside the cell, never outside.
+/// with a blur s common to all rows of a frame (and another common to all columns), and T_i the share of
+/// light that the beads transmit, from their fitted discs. Pixels with T_i < 0.97 are left out. The local
+/// light is a quadratic surface through the pixels visible past the beads. Without a bead nearby the step is
+/// symmetric, and e does not depend on s. There is no point within 4.5 s of a corner, or where no light
+/// reaches the step. A bead that touches the wall and was not located hides the wall: the point is then on
+/// the bead's far side, always further inside the cell, never outside.
 
 #include <opencv2/core.hpp>
 #include <vector>
@@ -22,18 +23,19 @@ namespace twincell {
 /// A point of an edge.
 struct EdgePoint {
   PixelPoint at;
-  double sigma = 0;  ///< standard deviation across the edge from the camera's noise, px
+  double sigma = 0;  ///< standard deviation across the edge due to the camera's noise, px
 };
 
-/// What one frame shows of the cell's limits. Points on beads are among them.
+/// Edges of the cell in one frame. Some points can be on beads.
 struct CellEdges {
-  std::vector<EdgePoint> left, right;  ///< one a row at most
-  std::vector<EdgePoint> plate;        ///< one a column at most
-  double blur_px = 0;  ///< standard deviation of the plate's blur, the pixels' own width in it; 0: no edge
+  std::vector<EdgePoint> left, right;  ///< at most one per row
+  std::vector<EdgePoint> plate;        ///< at most one per column
+  double blur_px = 0;  ///< standard deviation of the plate's blur, including the pixel width; 0: no edge
 };
 
-/// Pure. A side without a dark border of at least 3 px has no points.
-/// \param bright beads, walls and plate are brighter than what lies behind them \param diameter_px of a bead
+/// Finds the edges. A side without a dark border of at least 3 px has no points. Pure.
+/// \param bright beads, walls and plate are brighter than the background
+/// \param diameter_px bead diameter
 CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px);
 
 }  // namespace twincell

@@ -1,6 +1,6 @@
 /// \file
-/// Chosen lanes of vectors of eight floats moved to the front, once for each kind of vectors that the
-/// including file is read for.
+/// Moves selected lanes of vectors of eight floats to the front (stream compaction). Compiled once for each
+/// SIMD target of the including file.
 
 #include <hwy/highway.h>
 
@@ -8,12 +8,12 @@
 #include <cstddef>
 #include <cstdint>
 
-// Read again for each kind of vectors.
-#if defined(TWINCELL_FRONT_LANES) == defined(HWY_TARGET_TOGGLE)
-#ifdef TWINCELL_FRONT_LANES
-#undef TWINCELL_FRONT_LANES
+// This include guard lets the file be read again for each SIMD target.
+#if defined(TWINCELL_LANE_COMPACTION) == defined(HWY_TARGET_TOGGLE)
+#ifdef TWINCELL_LANE_COMPACTION
+#undef TWINCELL_LANE_COMPACTION
 #else
-#define TWINCELL_FRONT_LANES
+#define TWINCELL_LANE_COMPACTION
 #endif
 
 HWY_BEFORE_NAMESPACE();
@@ -21,17 +21,17 @@ namespace twincell::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The order that brings the lanes of a mask to the front; it is found once, and serves several vectors.
-class FrontLanes {
+/// The permutation that brings the lanes of a mask to the front, computed once for several vectors.
+class LaneCompaction {
  public:
   using Tag = hn::CappedTag<float, 8>;
   using Vector = hn::Vec<Tag>;
   using Mask = hn::Mask<Tag>;
 
 #if HWY_TARGET == HWY_AVX2
-  // Highway 1.0 copies its own table of a kilobyte onto the stack in each function that asks for it: an
-  // eighth of the time in which a frame is located.
-  HWY_INLINE explicit FrontLanes(Mask mask) {
+  // hn::Compress is not used here: Highway 1.0 copies its own table of a kilobyte onto the stack in each
+  // function that needs it, which took an eighth of the time to locate a frame.
+  HWY_INLINE explicit LaneCompaction(Mask mask) {
     std::uint8_t bits[8];
     hn::StoreMaskBits(Tag(), mask, bits);
     const hn::Rebind<std::int32_t, Tag> whole;
@@ -43,12 +43,12 @@ class FrontLanes {
     return hn::TableLookupLanes(v, order_);
   }
 #else
-  HWY_INLINE explicit FrontLanes(Mask mask) : mask_(mask), count_(hn::CountTrue(Tag(), mask)) {}
+  HWY_INLINE explicit LaneCompaction(Mask mask) : mask_(mask), count_(hn::CountTrue(Tag(), mask)) {}
   [[nodiscard]] HWY_INLINE Vector operator()(Vector v) const {
     return hn::Compress(v, mask_);
   }
 #endif
-  /// How many lanes there are at the front.
+  /// Number of selected lanes.
   [[nodiscard]] HWY_INLINE std::size_t count() const {
     return count_;
   }
@@ -57,7 +57,7 @@ class FrontLanes {
 #if HWY_TARGET == HWY_AVX2
   static constexpr std::size_t kLanes = 8;
   using Order = std::array<std::uint8_t, kLanes>;
-  /// For each pattern of bits: the lanes whose bit is set, in turn, then the others.
+  /// For each bit pattern: the lanes whose bit is set, in order, then the other lanes.
   static constexpr std::array<Order, 256> orders() {
     std::array<Order, 256> all{};
     for (std::size_t pattern = 0; pattern < all.size(); ++pattern) {
@@ -77,7 +77,7 @@ class FrontLanes {
 };
 
 #if HWY_TARGET == HWY_AVX2
-inline constexpr std::array<FrontLanes::Order, 256> FrontLanes::kOrders = FrontLanes::orders();
+inline constexpr std::array<LaneCompaction::Order, 256> LaneCompaction::kOrders = LaneCompaction::orders();
 #endif
 
 }  // namespace twincell::HWY_NAMESPACE

@@ -7,17 +7,17 @@
 #include <utility>
 #include <vector>
 
-// This file is read once for each kind of vectors.
-#ifndef TWINCELL_DISC_SUMS_ONCE
-#define TWINCELL_DISC_SUMS_ONCE
-namespace twincell::disc_sums {
+// This file is compiled once for each SIMD target.
+#ifndef TWINCELL_RING_NORMAL_EQUATIONS_ONCE
+#define TWINCELL_RING_NORMAL_EQUATIONS_ONCE
+namespace twincell::ring_normal_equations {
 
-/// Of Gauss and Legendre, on -1/2 .. 1/2.
+/// Gauss-Legendre node on -1/2 .. 1/2.
 struct GaussNode {
   double at, weight;
 };
 
-/// By Newton's method on the Legendre polynomial of that degree.
+/// The nodes of the Legendre polynomial of degree n, by Newton's method.
 inline std::vector<GaussNode> gauss_nodes(int n) {
   std::vector<GaussNode> nodes;
   for (int k = 0; k < n; ++k) {
@@ -33,7 +33,7 @@ inline std::vector<GaussNode> gauss_nodes(int n) {
   return nodes;
 }
 
-/// As many as a path takes that is so many s long: two, and one more for each s.
+/// The nodes for the path of a blur: two, and one more for each s of its length, up to 12.
 inline std::span<const GaussNode> nodes_of(const EdgeBlur& blur) {
   constexpr int kLeast = 2, kMost = 12;
   if (blur.path == std::array<double, 2>{}) return {};
@@ -46,7 +46,7 @@ inline std::span<const GaussNode> nodes_of(const EdgeBlur& blur) {
   return kNodes[static_cast<std::size_t>(std::min(widths, 1.0 * (kMost - kLeast)))];
 }
 
-}  // namespace twincell::disc_sums
+}  // namespace twincell::ring_normal_equations
 #endif
 
 #undef HWY_TARGET_INCLUDE
@@ -60,9 +60,9 @@ HWY_BEFORE_NAMESPACE();
 namespace twincell::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using disc_sums::GaussNode, disc_sums::nodes_of;
+using ring_normal_equations::GaussNode, ring_normal_equations::nodes_of;
 
-// Rows of a ring are some twenty pixels: with wider vectors more lanes would idle.
+// A row of a ring has about twenty pixels: with wider vectors more lanes would be idle.
 using Tag = hn::CappedTag<float, 8>;
 using V = hn::Vec<Tag>;
 using Mask = hn::Mask<Tag>;
@@ -96,7 +96,7 @@ HWY_INLINE V inverse(V a) {
   return hn::Mul(guess, hn::NegMulAdd(a, guess, set(2)));
 }
 
-constexpr double kFar = 4;  // beyond so many s the edge is 0 or 1 to 3e-5
+constexpr double kFar = 4;  // in units of s; beyond this distance the edge is 0 or 1 to 3e-5
 
 struct Edge {
   V p;        // P
@@ -117,12 +117,12 @@ HWY_INLINE Edge edge_at(V z) {
   return {hn::IfThenElse(hn::Lt(z, hn::Zero(Tag())), hn::Sub(set(1), tail), tail), density};
 }
 
-/// Without the spare columns.
+/// Size of the frame, without the spare columns.
 HWY_INLINE cv::Size frame_of(const cv::Mat1f& picture) {
   return {picture.cols - kSpareColumns, picture.rows};
 }
 
-/// What a pixel says of a disc's edge: P, and the slopes of a P by x, y, R and the blur's unknowns.
+/// P at a pixel, and the derivatives of a P with respect to x, y, R and the blur parameters.
 template <int kBlurs>
 struct Slopes {
   V p, x, y, radius;
@@ -133,12 +133,12 @@ constexpr int blurs_of(BlurFit fit) {
   return fit == BlurFit::none ? 0 : fit == BlurFit::round ? 1 : RingSums::kBlurs;
 }
 
-/// A disc in the coordinates of the bordered picture, with what the pixels of a ring need.
+/// A disc relative to a base pixel, with the constants that all pixels of its ring use.
 struct Ring {
   int base_x, base_y;
   float x, y;  // centre from the base pixel
   V half_over_radius, inv_s, shift, steepest;
-  std::span<const GaussNode> nodes;  // of the path; none where nothing moved
+  std::span<const GaussNode> nodes;  // of the path; empty if there is no motion
   std::array<double, 2> path;
 
   Ring(const Disc& disc, const EdgeBlur& blur)
@@ -161,7 +161,7 @@ struct Ring {
     const V inv_r = inverse_sqrt(r2);
     return {hn::Mul(dx, inv_r), hn::Mul(dy, inv_r), hn::Mul(hn::MulAdd(r2, inv_r, shift), inv_s)};
   }
-  /// dP/d(s^2) = density (z/2s - 1/2R) / s: the half level moves along.
+  /// dP/d(s^2) = density (z/2s - 1/2R) / s: the half level depends on s too.
   HWY_INLINE V by_variance(V z, V slope) const {
     return hn::Mul(slope, hn::Sub(hn::Mul(hn::Mul(set(0.5), z), inv_s), half_over_radius));
   }
@@ -213,19 +213,19 @@ struct Ring {
     }
     return q;
   }
-  /// A pixel as a disc on its way sees it.
+  /// A pixel relative to the disc at a node of its path.
   HWY_INLINE Point passed(const GaussNode& node, V dx, V dy) const {
     return at(hn::Sub(dx, set(node.at * path[0])), hn::Sub(dy, set(node.at * path[1])));
   }
 
-  /// Calls use(row, column, dx, dy^2 or dy, inside) for runs of pixels that touch low < r < high; inside: all
-  /// of them are nearer than low, and passed over unless kFill.
+  /// Calls use(row, column, dx, dy, inside) for runs of pixels that touch low < r < high. `inside` means that
+  /// all pixels of the run are nearer than low; such runs are skipped unless kFill.
   template <bool kFill, class Use>
   HWY_INLINE void over(cv::Size frame, double low, double high, int row_step, Use&& use) const {
     constexpr int n = static_cast<int>(hn::MaxLanes(Tag()));
     const Tag tag;
     const auto far = static_cast<float>(high), near = static_cast<float>(low);
-    // Whole numbers below, without a call; never below -kShift.
+    // Floor without a function call, for numbers not below -kShift.
     constexpr int kShift = 1 << 12;
     const auto floor_of = [](float a) { return static_cast<int>(a + kShift) - kShift; };
     const int first_row = std::max(-base_y, floor_of(y - far) + 1);
@@ -250,23 +250,24 @@ struct Ring {
   }
 };
 
-/// Pixels of a ring, side by side, and what they say.
+/// Pixels of a ring in contiguous arrays, and their derivatives, weights and residuals.
 struct RingPixels {
   static constexpr std::size_t kMost = 512;
   using Row = std::array<float, kMost + kSpareColumns>;
   alignas(64) Row dx, dy, d, t;  // from the centre; picture; model
-  // What they say of a disc takes the place of what was read, for all of it to stay in the nearest cache.
+  // The derivatives overwrite the input, so that all arrays stay in the first-level cache.
   Row &x = dx, &y = dy, &radius = d, &p = t;
   alignas(64) Row w, residual;
   alignas(64) Row blur[RingSums::kBlurs];
 };
 
+/// The sums over one ring, for one choice of blur parameters.
 template <BlurFit kBlur>
 struct Sums {
   static constexpr int kF = RingSums::kFitted, kB = blurs_of(kBlur);
   static constexpr int kSome = kB > 0 ? kB : 1;
 
-  /// What each pixel says.
+  /// Computes weight, residual and derivatives of each pixel.
   static HWY_INLINE void read(RingPixels& q, std::size_t n, const Ring& ring, const RingArgs& args,
                               const Disc& disc, RingSums& s) {
     const Tag tag;
@@ -279,7 +280,7 @@ struct Sums {
       const V d = hn::Load(tag, &q.d[k]), t = hn::Load(tag, &q.t[k]);
       const V bright = hn::Max(hn::Sub(one, t), zero);
       const V residual = hn::Sub(d, t), size = hn::Abs(residual);
-      // Huber's weight, min(1, k/|residual|).
+      // Huber weight, min(1, huber/|residual|).
       const V cut = hn::Min(one, hn::Mul(huber, inverse(hn::Max(size, set(1e-6)))));
       const V variance = hn::MulAdd(set(args.light_variance), hn::Min(bright, one), set(args.dark_variance));
       const V w = hn::IfThenElseZero(counts, hn::Mul(cut, inverse(variance)));
@@ -304,7 +305,7 @@ struct Sums {
     s.residual_squares += total(tamed_squares);
   }
 
-  /// The normal equations of x, y, R and a.
+  /// Sums the normal equations of x, y, R and a.
   static HWY_INLINE void gather(const RingPixels& q, std::size_t n, RingSums& s) {
     const Tag tag;
     V jj[kF * (kF + 1) / 2], jr[kF];
@@ -325,7 +326,7 @@ struct Sums {
     for (std::size_t m = 0; m < s.jr.size(); ++m) s.jr[m] += total(jr[m]);
   }
 
-  /// Those of the blur, and what it shares with the four.
+  /// Sums the normal equations of the blur, and its coupling to x, y, R and a.
   static HWY_INLINE void gather_blur(const RingPixels& q, std::size_t n, RingSums& s) {
     const Tag tag;
     V jb[kF * kSome], bb[kSome * (kSome + 1) / 2], br[kSome];
@@ -363,7 +364,7 @@ struct Sums {
     RingSums s;
     std::size_t n = 0;
     const auto flush = [&]() HWY_ATTR {
-      // What stands behind the last pixel counts for nothing, but must be numbers.
+      // The lanes behind the last pixel have weight 0, but must be finite.
       for (RingPixels::Row* row : {&q.dx, &q.dy, &q.d, &q.t}) hn::StoreU(hn::Zero(tag), tag, row->data() + n);
       read(q, n, ring, args, disc, s);
       gather(q, n, s);
@@ -379,12 +380,12 @@ struct Sums {
           const V d = hn::LoadU(tag, args.picture->ptr<float>(ring.base_y + row) + ring.base_x + column);
           const V t = hn::LoadU(tag, args.model->ptr<float>(ring.base_y + row) + ring.base_x + column);
           const Mask counts = hn::And(hn::And(hn::Gt(r2, low2), hn::Lt(r2, high2)), hn::Lt(d, unseen));
-          const FrontLanes front(counts);
-          hn::StoreU(front(dx), tag, &q.dx[n]);
-          hn::StoreU(front(dy), tag, &q.dy[n]);
-          hn::StoreU(front(d), tag, &q.d[n]);
-          hn::StoreU(front(t), tag, &q.t[n]);
-          n += front.count();
+          const LaneCompaction compact(counts);
+          hn::StoreU(compact(dx), tag, &q.dx[n]);
+          hn::StoreU(compact(dy), tag, &q.dy[n]);
+          hn::StoreU(compact(d), tag, &q.d[n]);
+          hn::StoreU(compact(t), tag, &q.t[n]);
+          n += compact.count();
           if (n + hn::MaxLanes(tag) > RingPixels::kMost) flush();
         });
     if (n > 0) flush();
@@ -392,7 +393,7 @@ struct Sums {
   }
 };
 
-/// What the pixels that two rings share say of both discs.
+/// Sums over the pixels that the rings of two discs share.
 class SharedPixels {
  public:
   SharedPixels(const RingArgs& args, const Disc& a, const Disc& b)
@@ -407,8 +408,8 @@ class SharedPixels {
     beside_y_ = static_cast<float>(rings_[0].base_y - rings_[1].base_y) + rings_[0].y - rings_[1].y;
   }
 
-  /// Takes those of a vector of pixels that both rings have; most rows of a lens are narrow, so they are
-  /// put side by side first.
+  /// Collects the pixels of a vector that are in both rings. Most rows of the overlap are narrow, so pixels
+  /// are compacted before they are summed.
   HWY_INLINE void take(int x, int y) {
     const Tag tag;
     const Ring& ring = rings_[0];
@@ -422,12 +423,12 @@ class SharedPixels {
                                 hn::And(hn::And(hn::Gt(r2, low2_[0]), hn::Lt(r2, high2_[0])),
                                         hn::And(hn::Gt(other_r2, low2_[1]), hn::Lt(other_r2, high2_[1]))));
     if (hn::AllFalse(tag, counts)) return;
-    const FrontLanes front(counts);
-    hn::StoreU(front(dx), tag, &dx_[n_]);
-    hn::StoreU(front(dy), tag, &dy_[n_]);
-    hn::StoreU(front(d), tag, &d_[n_]);
-    hn::StoreU(front(hn::LoadU(tag, args_.model->ptr<float>(y) + x)), tag, &t_[n_]);
-    n_ += front.count();
+    const LaneCompaction compact(counts);
+    hn::StoreU(compact(dx), tag, &dx_[n_]);
+    hn::StoreU(compact(dy), tag, &dy_[n_]);
+    hn::StoreU(compact(d), tag, &d_[n_]);
+    hn::StoreU(compact(hn::LoadU(tag, args_.model->ptr<float>(y) + x)), tag, &t_[n_]);
+    n_ += compact.count();
     if (n_ + hn::MaxLanes(tag) > kMost) add();
   }
 
@@ -445,7 +446,7 @@ class SharedPixels {
 
   HWY_INLINE void add() {
     const Tag tag;
-    // What stands behind the last pixel counts for nothing, but must be numbers.
+    // The lanes behind the last pixel have weight 0, but must be finite.
     for (Row* row : {&dx_, &dy_, &d_, &t_}) hn::StoreU(hn::Zero(tag), tag, row->data() + n_);
     for (std::size_t k = 0; k < n_; k += hn::MaxLanes(tag)) {
       const V dx = hn::Load(tag, &dx_[k]), dy = hn::Load(tag, &dy_[k]), d = hn::Load(tag, &d_[k]),
@@ -470,8 +471,8 @@ class SharedPixels {
   const RingArgs& args_;
   std::array<Ring, 2> rings_;
   V low2_[2], high2_[2], sums_[16];
-  float beside_x_, beside_y_;        // from the second disc to the first
-  alignas(64) Row dx_, dy_, d_, t_;  // from the first disc; picture; model
+  float beside_x_, beside_y_;        // centre of the first disc relative to the second
+  alignas(64) Row dx_, dy_, d_, t_;  // position from the first disc; picture; model
   std::size_t n_ = 0;
 };
 
@@ -533,7 +534,7 @@ DiscMoments moments(const cv::Mat1f& picture, cv::Size size, const Disc& disc) {
   V mass = zero, x = zero, y = zero, xx = zero, xy = zero, yy = zero, most = zero;
   ring.over<true>(size, 0, disc.radius, 1, [&](int row, int column, V dx, V dy, bool) HWY_ATTR {
     const V d = hn::LoadU(tag, picture.ptr<float>(ring.base_y + row) + ring.base_x + column);
-    // The last run of a row may reach beyond the frame.
+    // The last run of a row may extend beyond the frame.
     const Mask counts = hn::And(hn::Lt(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), reach2),
                                 hn::FirstN(tag, static_cast<std::size_t>(size.width - ring.base_x - column)));
     const V v = hn::IfThenElseZero(counts, hn::Max(d, zero)), vx = hn::Mul(v, dx), vy = hn::Mul(v, dy);

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// What proposes the centres of circles in a frame, and the list of those that do.
+/// Circle finders, which propose the centres of circles in a frame, and the list of all finders.
 ///
-/// To add a finder: a class that satisfies CircleFinder in a header of its own, its .cpp, and one word in the
-/// list in finders.cpp. Nothing else names it.
+/// To add a finder, write a class that satisfies CircleFinder in its own header and .cpp, and add it to the
+/// list in finders.cpp. No other file names it.
 
 #include <concepts>
 #include <string>
@@ -15,27 +15,27 @@
 
 namespace twincell {
 
-/// What every finder is told.
+/// Options of every finder.
 struct FindOptions {
   double radius_px = 0;  ///< bead radius, > 1.5
   /// Share of a full circle's edge that must point at a centre, 0 .. 1. Inside a hexagonal packing only the
-  /// six small voids face a bead, 5 to 10 % of its edge; false proposals are cheap, the fit and the judge
-  /// drop them.
+  /// six small voids face a bead, 5 to 10 % of its edge. False proposals are cheap: the fit and the judge
+  /// reject them.
   double min_score = 0.04;
-  double apart = 0.8;  ///< no two proposals are nearer to each other, diameters
+  double apart = 0.8;  ///< smallest distance between two proposals, diameters
 };
 
-/// A finder: a type with a name that turns darkness into proposals, best first.
+/// A finder: a type with a name and a function that converts darkness to proposals, best first.
 template <class F>
 concept CircleFinder = requires(const Prepared& image, const FindOptions& options) {
   { F::name } -> std::convertible_to<std::string_view>;
   { F::find(image, options) } -> std::same_as<std::vector<Proposal>>;
 };
 
-/// Names that LocatorOptions::finder may take; the default is the first.
+/// Allowed values of LocatorOptions::finder; the first is the default.
 std::vector<std::string> finder_names();
 
-/// What the finder of that name, one of finder_names(), proposes; none by another name. Pure.
+/// Proposals of the finder with this name, one of finder_names(); empty for any other name. Pure.
 std::vector<Proposal> propose(const std::string& finder, const Prepared& image, const FindOptions& options);
 
 }  // namespace twincell

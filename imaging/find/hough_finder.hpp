@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Proposals by OpenCV's Hough transform: the baseline.
+/// Proposals by OpenCV's Hough transform, the baseline.
 
 #include <string_view>
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace twincell {
 
-/// cv::HoughCircles (HOUGH_GRADIENT) on the darkness enlarged three times, radius +- 10 %, centres at least
-/// 0.8 d apart. Its centres sit on accumulator cells, so it must be followed by a refinement; it loses some
-/// beads at contacts (recall 0.996 in a random packing at SNR 51), and those cut by the frame. The score
-/// falls with the rank.
+/// cv::HoughCircles (HOUGH_GRADIENT) on the picture enlarged three times, radius +- 10 %, centres at least
+/// 0.8 d apart. Its centres are accumulator cells, so a refinement must follow. It misses some beads at
+/// contacts (recall 0.996 in a random packing at SNR 51), and beads cut by the frame. The score decreases
+/// with the rank.
 struct HoughFinder {
   static constexpr std::string_view name = "hough";
   static std::vector<Proposal> find(const Prepared& image, const FindOptions& options);

@@ -9,10 +9,10 @@
 namespace twincell {
 
 double lattice_constant(const cv::Mat& grey) {
-  constexpr double kBroad = 10;       // px; walls and the bed's shape are broader
-  constexpr double kStandsOut = 0.2;  // of the fall to the first minimum; random packings stay below
-  constexpr double kRing = 0.12;
-  constexpr double kNearly = 0.6;  // gaps are nearer to each other than discs, and stand out less
+  constexpr double kBroad = 10;       // px; broader structures are removed
+  constexpr double kStandsOut = 0.2;  // least prominence, of the drop to the first minimum
+  constexpr double kRing = 0.12;      // relative half width of the ring that is searched for the peak
+  constexpr double kNearly = 0.6;     // of the largest prominence; gaps are less prominent than discs
   constexpr double kSmallest = 5.5, kLargest = 4 * kBroad;  // px
   const double largest = std::min(kLargest, static_cast<double>(std::min(grey.cols, grey.rows)));
   if (largest < 2 * kSmallest) return 0;
@@ -21,6 +21,7 @@ double lattice_constant(const cv::Mat& grey) {
   cv::Mat1f broad;
   cv::GaussianBlur(levels, broad, {0, 0}, kBroad);
   levels -= broad;
+  // Autocorrelation: by Fourier transform, with padding. The same for a picture of ones counts the pairs.
   const auto reach = static_cast<int>(std::ceil(1.5 * largest));
   const cv::Size size(cv::getOptimalDFTSize(levels.cols + reach), cv::getOptimalDFTSize(levels.rows + reach));
   const auto correlated = [&](const cv::Mat1f& picture) {
@@ -34,7 +35,7 @@ double lattice_constant(const cv::Mat& grey) {
     return out;
   };
   const cv::Mat1f products = correlated(levels), pairs = correlated(cv::Mat1f::ones(levels.size()));
-  const auto each = [&](auto&& use) {  // half the plane, the other is the same
+  const auto each = [&](auto&& use) {  // half of the plane; the other half is equal by symmetry
     for (int y = -reach; y <= reach; ++y)
       for (int x = 0; x <= reach; ++x) {
         if (x >= levels.cols || std::abs(y) >= levels.rows) continue;
@@ -42,6 +43,7 @@ double lattice_constant(const cv::Mat& grey) {
         use(std::hypot(x, y), static_cast<double>(products(at)), static_cast<double>(pairs(at)));
       }
   };
+  // Average over directions, by distance in whole pixels.
   std::vector<double> sum(static_cast<std::size_t>(reach) + 1), count(sum.size());
   each([&](double distance, double product, double pair) {
     const auto r = static_cast<std::size_t>(std::lround(distance));
@@ -49,8 +51,8 @@ double lattice_constant(const cv::Mat& grey) {
   });
   std::vector<double> mean;
   for (std::size_t r = 0; r < sum.size(); ++r) mean.push_back(sum[r] / std::max(count[r], 1.0));
-  std::vector<std::pair<double, double>> tops;  // distance, and by how much it stands out
-  std::size_t low = 0, first = 0;               // the minimum before, and of all
+  std::vector<std::pair<double, double>> tops;  // distance and prominence of each maximum
+  std::size_t low = 0, first = 0;               // last minimum, and first minimum of all
   for (std::size_t r = 1; r + 1 < mean.size() && static_cast<double>(r) <= largest; ++r) {
     if (mean[r] < mean[r - 1] && mean[r] <= mean[r + 1]) low = r, first = first > 0 ? first : r;
     if (low == 0 || mean[r] < mean[r - 1] || mean[r] <= mean[r + 1] || static_cast<double>(r) < kSmallest)
@@ -65,7 +67,7 @@ double lattice_constant(const cv::Mat& grey) {
   const double about = std::find_if(tops.begin(), tops.end(), [&](const auto& top) {
                          return top.second >= kNearly * most;
                        })->first;
-  // Where discs are nearest neighbours the average is broad; the spots it is made of are not.
+  // The maximum of the average over directions is broad; the single peaks of the autocorrelation are sharp.
   double highest = 0, constant = about;
   each([&](double distance, double product, double pair) {
     if (std::abs(distance / about - 1) > kRing || product <= highest * pair) return;

@@ -12,14 +12,14 @@ namespace twincell {
 
 namespace {
 
-// Offset of a parabola's top from its middle sample.
+// Offset of a parabola's maximum from its middle sample.
 double parabola_top(float left, float middle, float right) {
   const float curvature = left - 2 * middle + right;
   return curvature < 0 ? static_cast<double>(std::clamp(0.5f * (left - right) / curvature, -0.5f, 0.5f))
                        : 0.0;
 }
 
-/// The tops of the votes, best first.
+/// The peaks of the votes, best first.
 std::vector<Proposal> peaks(const Prepared& image, const VoteOptions& options, double full_circle,
                             double min_score) {
   std::vector<Proposal> found;
@@ -43,8 +43,8 @@ double square(double a) {
   return a * a;
 }
 
-/// Those of a list, best first, that are no nearer than `distance` to a better one that stays. In cells as
-/// wide as the distance, so that time is linear.
+/// Non-maximum suppression of a list, best first: a proposal nearer than `distance` to a better one that is
+/// kept is dropped. A grid of cells as wide as the distance makes the time linear.
 std::vector<Proposal> suppress_near(const std::vector<Proposal>& sorted, double distance, cv::Size size,
                                     int pad) {
   const auto cell_of = [&](double at) { return 1 + static_cast<int>((at + pad + 1) / distance); };
@@ -75,10 +75,11 @@ std::vector<Proposal> suppress_near(const std::vector<Proposal>& sorted, double 
 std::vector<Proposal> VoteFinder::find(const Prepared& image, const FindOptions& options) {
   const double r = options.radius_px;
   const int pad = static_cast<int>(std::ceil(r)) + 2;
-  // Wider, the votes for touching discs of 6 px ran into each other: their tops lay a pixel off, and kept the
-  // fit from seeking those discs where they are.
+  // With more smoothing, the votes for touching discs of 6 px merged: their peaks were off by a pixel, and
+  // the fit did not search for those discs at their true positions.
   const double smoothing = std::min(kVoteSmoothing, r / 3);
-  // 2 pi R pixels of edge, each of integral 1, meet in a spot of the smoothing plus about a pixel of scatter.
+  // Peak of a full circle: 2 pi R edge pixels, each with integral 1, meet in a spot with the variance of the
+  // smoothing plus about one px^2 of scatter.
   const double full_circle = 2 * std::numbers::pi * r / (2 * std::numbers::pi * (smoothing * smoothing + 1));
   return suppress_near(peaks(image, {r, smoothing, pad}, full_circle, options.min_score),
                        options.apart * 2 * r, image.darkness.size(), pad);

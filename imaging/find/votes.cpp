@@ -16,13 +16,12 @@
 #ifndef TWINCELL_VOTES_ONCE
 #define TWINCELL_VOTES_ONCE
 namespace twincell::votes {
-inline constexpr std::size_t kSpare = 16;  // floats behind the end of a row, for the last vector
-inline constexpr std::size_t kReach = 2;   // pixels to each side that make a gradient
-/// Where the votes of a row go: those for row v of the picture of votes to row v & mask, `stride` floats
-/// apart.
+inline constexpr std::size_t kSpare = 16;  // extra floats at the end of a row, for the last vector
+inline constexpr std::size_t kReach = 2;   // half width of the gradient operator, px
+/// Storage of the votes: row v of the vote picture is in row v & mask of a ring buffer with `stride` floats
+/// per row. `first` is the row of the vote picture at the height of the voting row.
 struct VoteRows {
-  std::int32_t first, mask,
-      stride;  // first: of the picture of votes, that at the height of the row that votes
+  std::int32_t first, mask, stride;
 };
 }  // namespace twincell::votes
 #endif
@@ -33,7 +32,7 @@ namespace twincell::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using votes::kReach, votes::VoteRows;
 
-// Noise at SNR 18 gives 0.02.
+// Smallest gradient that votes, darkness per pixel. Noise at SNR 18 gives 0.02.
 constexpr float kMinGradient = 0.05F;
 
 using Tag = hn::CappedTag<float, 8>;
@@ -42,7 +41,7 @@ HWY_INLINE V of(float a) {
   return hn::Set(Tag(), a);
 }
 
-/// Sums over the columns of five rows: 1 4 6 4 1, and -1 -2 0 2 1.
+/// The vertical parts of the Sobel operator over five rows: smoothing by 1 4 6 4 1, slope by -1 -2 0 2 1.
 void across_rows(const std::array<const float*, 5>& rows, std::size_t n, float* HWY_RESTRICT smooth,
                  float* HWY_RESTRICT slope) {
   const Tag tag;
@@ -55,13 +54,14 @@ void across_rows(const std::array<const float*, 5>& rows, std::size_t n, float* 
   }
 }
 
-/// One row's votes: the place of the pixel that each votes for, and how much.
+/// Votes of one row: for each voting pixel the index of the pixel it votes for, and the weight.
+/// \returns number of votes
 std::size_t votes_of_row(const float* HWY_RESTRICT smooth, const float* HWY_RESTRICT slope,
                          const std::uint8_t* ignore, std::size_t n, float radius, const VoteRows& rows,
                          std::int32_t* HWY_RESTRICT place, float* HWY_RESTRICT weight) {
   const Tag tag;
   const hn::RebindToSigned<Tag> whole;
-  constexpr float kUnit = 1.0F / 128;  // 16 by 8
+  constexpr float kUnit = 1.0F / 128;  // sums of the weights: 16 and 8
   std::size_t found = 0;
   for (std::size_t x = 0; x < n; x += hn::MaxLanes(tag)) {
     const float *s = smooth + x + kReach, *d = slope + x + kReach;
@@ -85,19 +85,19 @@ std::size_t votes_of_row(const float* HWY_RESTRICT smooth, const float* HWY_REST
     const auto row = hn::And(hn::Add(hn::NearestInt(hn::Mul(far, gy)), hn::Set(whole, rows.first)),
                              hn::Set(whole, rows.mask));
     const auto at = hn::Add(hn::NearestInt(column), hn::Mul(row, hn::Set(whole, rows.stride)));
-    const FrontLanes front(clear);
-    hn::StoreU(hn::BitCast(whole, front(hn::BitCast(tag, at))), whole, place + found);
-    hn::StoreU(front(g), tag, weight + found);
-    found += front.count();
+    const LaneCompaction compact(clear);
+    hn::StoreU(hn::BitCast(whole, compact(hn::BitCast(tag, at))), whole, place + found);
+    hn::StoreU(compact(g), tag, weight + found);
+    found += compact.count();
   }
   return found;
 }
 
-/// Weighted sums of nine numbers, symmetric about the middle one.
+/// Symmetric weighted sums of nine numbers.
 void blur_line(const std::array<const float*, 9>& from, const std::array<float, 5>& weights, std::size_t n,
                float* HWY_RESTRICT to) {
   const Tag tag;
-  // All of them named, to stay in registers.
+  // Named one by one, so that they stay in registers.
   const auto [a, b, c, d, e, f, g, h, i] = from;
   const V middle = of(weights[0]), first = of(weights[1]), second = of(weights[2]), third = of(weights[3]),
           last = of(weights[4]);
@@ -113,7 +113,8 @@ void blur_line(const std::array<const float*, 9>& from, const std::array<float, 
   }
 }
 
-/// The columns, of 1 .. n - 2, of a row's tops.
+/// Columns of the local maxima of a row, within 1 .. n - 2.
+/// \returns number of maxima
 std::size_t tops_of_row(const std::array<const float*, 3>& rows, std::size_t n, float least,
                         std::int32_t* HWY_RESTRICT columns) {
   const Tag tag;
@@ -125,15 +126,16 @@ std::size_t tops_of_row(const std::array<const float*, 3>& rows, std::size_t n, 
     auto top = hn::Ge(v, of(least));
     if (hn::AllFalse(tag, top)) continue;
     top = hn::And(top, hn::FirstN(tag, n - 1 - x));
-    // Larger than what was read before it, no smaller than what comes: of equal ones the first.
+    // Larger than the neighbours read before, and not smaller than the neighbours read after: of equal ones
+    // the first counts.
     for (const float* before : {above + x - 1, above + x, above + x + 1, middle + x - 1})
       top = hn::And(top, hn::Gt(v, hn::LoadU(tag, before)));
     for (const float* after : {middle + x + 1, below + x - 1, below + x, below + x + 1})
       top = hn::And(top, hn::Ge(v, hn::LoadU(tag, after)));
-    const FrontLanes front(top);
+    const LaneCompaction compact(top);
     const auto at = hn::Iota(whole, static_cast<std::int32_t>(x));
-    hn::StoreU(hn::BitCast(whole, front(hn::BitCast(tag, at))), whole, columns + found);
-    found += front.count();
+    hn::StoreU(hn::BitCast(whole, compact(hn::BitCast(tag, at))), whole, columns + found);
+    found += compact.count();
   }
   return found;
 }
@@ -153,7 +155,7 @@ namespace {
 
 using votes::kReach, votes::kSpare;
 
-/// Calls use(y, five rows around y) for each row of the frame; beyond its border it goes on as at the border.
+/// Calls use(y, five rows around y) for each row of the frame. Pixels of the border are repeated beyond it.
 template <class Use>
 void with_neighbour_rows(const cv::Mat1f& frame, Use&& use) {
   constexpr int kRows = 5, kMiddle = 2;
@@ -182,16 +184,17 @@ void with_neighbour_rows(const cv::Mat1f& frame, Use&& use) {
 
 void over_smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, const VoteOptions& options,
                          const std::function<void(int, const VoteLines&)>& use) {
-  constexpr int kTail = 4;  // pixels of the smoothing to each side
+  constexpr int kTail = 4;  // half width of the smoothing kernel, px
   const auto n = static_cast<std::size_t>(darkness.cols);
   const int border = options.pad + kTail, reach = static_cast<int>(std::ceil(options.radius_px)) + 1;
-  // Rows that may still be voted for, and those that the smoothing needs; each is used again for one further
-  // down, so that all of them stay in the cache.
+  // Ring buffer: the rows that can still receive votes and the rows that the smoothing needs. Each row is
+  // reused for one further down, so that the buffer stays in the cache.
   int kept = 1;
   while (kept < 2 * (reach + kTail + 1)) kept *= 2;
   cv::Mat1f votes = cv::Mat1f::zeros(kept, darkness.cols + 2 * border + int{kSpare});
   const auto votes_row = [&](int v) { return votes[v & (kept - 1)]; };
 
+  // Smoothing kernel: a normalised Gaussian.
   std::array<float, kTail + 1> weights{};
   double sum = 0;
   for (int k = 0; k <= kTail; ++k) {
@@ -200,6 +203,7 @@ void over_smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, con
     sum += k == 0 ? w : 2 * w;
   }
   for (float& w : weights) w /= static_cast<float>(sum);
+  // Smoothing: as soon as a row can receive no more votes, it is smoothed, reported and cleared.
   const auto columns = n + 2 * static_cast<std::size_t>(options.pad), wide = columns + std::size_t{2 * kTail};
   std::vector<float> column_sums(wide + kSpare);
   std::array<std::vector<float>, 3> smoothed;
@@ -218,6 +222,7 @@ void over_smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, con
     }
   };
 
+  // Voting: row by row of the frame.
   std::vector<float> smooth(n + 2 * kReach + kSpare), slope(smooth), weight(n + kSpare);
   std::vector<std::int32_t> place(n + kSpare);
   with_neighbour_rows(darkness, [&](int y, const std::array<const float*, 5>& rows) {

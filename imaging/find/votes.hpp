@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Votes of a frame's edges for the centres of discs of one radius: the loops over pixels on which finding
-/// spends its time, with vectors as wide as the processor has.
+/// Votes of a frame's edges for the centres of discs of one radius: the SIMD loops over pixels that take most
+/// of the time of finding.
 
 #include <array>
 #include <cstddef>
@@ -13,33 +13,34 @@
 
 namespace twincell {
 
-/// Standard deviation of the Gaussian by which votes are smoothed, px.
+/// Standard deviation of the Gaussian that smooths the votes, px.
 inline constexpr double kVoteSmoothing = 1.5;
 
-/// Who votes for what.
+/// Options of the votes.
 struct VoteOptions {
   double radius_px;                   ///< R
-  double smoothing = kVoteSmoothing;  ///< standard deviation of the Gaussian, px, no more than kVoteSmoothing
-  int pad = 0;  ///< the picture of votes reaches so far beyond the frame on every side, px, > R + 1
+  double smoothing = kVoteSmoothing;  ///< standard deviation of the Gaussian, px, at most kVoteSmoothing
+  int pad = 0;  ///< margin of the vote picture beyond the frame on every side, px, > R + 1
 };
 
-/// Three successive rows of a picture of votes. A vector may reach 16 floats past their ends.
+/// Three successive rows of a vote picture. A vector may extend 16 floats past their ends.
 using VoteLines = std::array<const float*, 3>;
 
-/// Each pixel whose gradient g (of darkness per pixel, Sobel's over 5 x 5 pixels) is longer than 0.05 votes
-/// with the weight |g| for the pixel nearest to its place + R g/|g|: one radius up the gradient, where a dark
-/// disc has its centre. A hundred pixels vote for each disc, so that spreading a vote over four pixels, as
-/// was tried, tells no more. The picture of votes is not kept: it would not fit into the cache.
-/// \param ignore  not empty: of the same size; its pixels other than 0 do not vote
-/// \param use     called with the number of each row of the smoothed picture of votes, from 0 (`pad` above
-/// the frame's
-///                first), and with the two rows before it and itself
+/// Computes the smoothed votes row by row. Each pixel with a gradient g (of darkness per pixel, Sobel
+/// operator over 5 x 5 pixels) longer than 0.05 votes with the weight |g| for the pixel nearest to its
+/// position + R g/|g|: one radius up the gradient, where a dark disc has its centre. About a hundred pixels
+/// vote for each disc, so spreading a vote over four pixels was tried and gives no gain. The vote picture is
+/// not stored, because it would not fit into the cache.
+/// \param ignore  empty, or of the same size; its nonzero pixels do not vote
+/// \param use     called with the index of each row of the smoothed vote picture, from 0 (`pad` rows above
+///   the first row of the frame), and with the two rows before it and the row itself
 void over_smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, const VoteOptions& options,
                          const std::function<void(int, const VoteLines&)>& use);
 
-/// The columns in which the middle one of three rows of `n` votes, the first and the last column aside, has
-/// at least so many and more than the eight around; of equal ones the first that is read, row by row. \param
-/// room  where they are put
+/// Local maxima in the middle of three rows of `n` votes: the columns, except the first and the last, with at
+/// least `least` votes and more than the eight neighbours. Of equal neighbours the first one read, row by
+/// row, counts.
+/// \param room  storage of the result
 std::span<const std::int32_t> tops_of_votes(const VoteLines& lines, std::size_t n, float least,
                                             std::vector<std::int32_t>& room);
 

@@ -10,7 +10,7 @@ Lens::Lens(cv::Size size, double rotation_deg, double distortion)
       middle_y_(0.5 * (size.height - 1)),
       unit_(0.5 * std::hypot(size.width, size.height)),
       k1_(distortion) {
-  // Quarter turns exactly, so that they give the same numbers.
+  // Quarter turns use exact values, so that they do not change any digit.
   const double quarters = rotation_deg / 90;
   if (quarters == std::round(quarters)) {
     const int n = ((static_cast<int>(quarters) % 4) + 4) % 4;
@@ -23,7 +23,7 @@ Lens::Lens(cv::Size size, double rotation_deg, double distortion)
 }
 
 PixelPoint Lens::picture_from_ideal(PixelPoint p) const {
-  const double x = p.x_px - middle_x_, y = p.y_px - middle_y_;  // y down: counter-clockwise to the eye
+  const double x = p.x_px - middle_x_, y = p.y_px - middle_y_;  // y points down: counter-clockwise as seen
   const double u = cos_ * x + sin_ * y, v = cos_ * y - sin_ * x;
   const double stretch = 1 + k1_ * (u * u + v * v) / (unit_ * unit_);
   return {middle_x_ + stretch * u, middle_y_ + stretch * v};

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Turn and radial distortion: where a point of the ideal picture is seen.
+/// Rotation and radial distortion: the map from the ideal picture to the recorded picture.
 ///
-/// With v the place relative to the middle of the picture, in half diagonals, turned by the camera's angle:
-/// v' = v (1 + k1 |v|^2).
+/// With v the position relative to the centre of the picture, in half diagonals, rotated by the camera's
+/// angle: v' = v (1 + k1 |v|^2).
 
 #include <opencv2/core.hpp>
 
@@ -11,14 +11,16 @@
 
 namespace twincell {
 
+/// The map of one camera. The rotation is counter-clockwise.
 class Lens {
  public:
   Lens(cv::Size size, double rotation_deg, double distortion);
   [[nodiscard]] bool identity() const { return cos_ == 1 && k1_ == 0; }
   [[nodiscard]] PixelPoint picture_from_ideal(PixelPoint p) const;
-  /// The inverse, to 1e-12 of the picture's size.
+  /// The inverse map, to 1e-12 of the picture's size.
   [[nodiscard]] PixelPoint ideal_from_picture(PixelPoint p) const;
-  /// Lengths in the picture over ideal ones at an ideal place: square root of the change of area.
+  /// Ratio of a length in the recorded picture to the ideal length, at a point of the ideal picture: the
+  /// square root of the ratio of areas.
   [[nodiscard]] double magnification(PixelPoint ideal) const;
 
  private:

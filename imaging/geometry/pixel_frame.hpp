@@ -11,12 +11,12 @@
 
 namespace twincell {
 
-/// Map between picture and cell (x right, z up, lengths in sigma): the camera stands still in the laboratory
-/// and looks along +y. A similarity, behind a lens if the picture is turned or distorted; inverse of each
-/// other to rounding.
+/// Map between picture and cell (x right, z up, lengths in sigma). The camera is at rest in the laboratory
+/// and looks along +y. The map is a similarity, followed by a lens if the picture is rotated or distorted.
+/// The two functions are inverse to each other up to rounding.
 struct PixelFrame {
   double pixels_per_sigma = 15;  ///< > 0
-  PixelPoint origin;  ///< where the cell's (x, z) = (0, 0) lies in the ideal picture: lower-left inside
+  PixelPoint origin;  ///< position of the cell's (x, z) = (0, 0) in the ideal picture: lower-left inside
                       ///< corner, plate at its mean
   std::optional<Lens> lens = std::nullopt;  ///< absent: the picture is the ideal one
 

@@ -12,7 +12,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
-/// Columns 0 .. m-1 are real; column m + i is row i's own, "alone", at cost 0.
+/// Solver by shortest augmenting paths. Columns 0 .. m-1 are real; column m + i is row i's private column
+/// "alone", at cost 0.
 class Solver {
  public:
   Solver(std::size_t rows, std::size_t columns, std::span<const Edge> edges, std::size_t work)
@@ -86,7 +87,7 @@ class Solver {
     visited_ += first_[row + 1] - first_[row] + 1;
   }
 
-  // Dijkstra from a row to the nearest column that is free or is `target`.
+  // Dijkstra's algorithm from a row to the nearest column that is free or equals `target`.
   std::uint32_t nearest_free(std::uint32_t row, std::uint32_t target, std::uint32_t forbidden) {
     heap_ = {};
     touched_.clear();
@@ -133,7 +134,7 @@ class Solver {
     row_of_[column_of(row)] = row;
   }
 
-  // The cheapest way to give the row something else: its own column counts as free again.
+  // Cheapest augmenting path that gives the row another column, while its present column counts as free.
   double margin(std::uint32_t row) {
     const std::uint32_t own = column_of(row);
     const double here = cost_of(row) - price_[own];

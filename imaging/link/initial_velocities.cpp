@@ -8,15 +8,15 @@ namespace twincell {
 
 namespace {
 
-constexpr std::size_t kMost = 40;  // frames that are looked through for a calm one
+constexpr std::size_t kMaxSearched = 40;  // frames searched for a calm one
 
-FrameAhead ahead_of(const FrameOfBeads& frame, const FrameMoment& moment) {
-  return {frame.places, moment, frame.tracers};
+FrameAhead ahead_of(const FrameOfBeads& frame, const FrameTime& time) {
+  return {frame.places, time, frame.tracers};
 }
 
-/// How unlike free flight beads go on the tracks that they were given: sum of log(1 + r^2/u^2), r by how much
-/// a step differs from the one before with its fall. A track that begins counts like two differences of a
-/// diameter. Of simulated beds that convect the true tracks have less than those that a linker gives them.
+/// Deviation of the tracks from free flight: sum of log(1 + r^2/u^2), where r is the difference between a
+/// step and the previous step plus its fall. A track that begins counts like two differences of one diameter.
+/// In simulated convecting beds the true tracks have a smaller sum than the tracks of a linker.
 double roughness(const LinkOptions& options, const std::vector<FrameOfBeads>& frames,
                  const std::vector<std::vector<std::int64_t>>& tracks) {
   constexpr double kUnit = 0.02;  // diameters
@@ -29,7 +29,7 @@ double roughness(const LinkOptions& options, const std::vector<FrameOfBeads>& fr
   double sum = 0;
   const double unit = kUnit * options.diameter_px;
   for (std::size_t f = 0; f < tracks.size(); ++f) {
-    const double interval = frames[f].moment.interval;
+    const double interval = frames[f].time.interval;
     for (std::size_t k = 0; k < tracks[f].size(); ++k) {
       const PixelPoint p = frames[f].places[k];
       const auto at = lasts.find(tracks[f][k]);
@@ -60,36 +60,37 @@ std::vector<PixelPoint> initial_velocities(const LinkOptions& options, int phase
   Linker linker(options, phases_per_cycle);
   std::vector<FrameOfBeads> seen;
   seen.push_back(read(0));
-  std::vector<std::vector<std::int64_t>> there;  // tracks by frame and place
+  // Forward: link on trial until a frame is calm.
+  std::vector<std::vector<std::int64_t>> forward;  // track by frame and detection
   bool calm = false;
-  for (std::size_t f = 0; !calm && f < frames && f <= kMost; ++f) {
+  for (std::size_t f = 0; !calm && f < frames && f <= kMaxSearched; ++f) {
     const bool more = f + 1 < frames;
     if (more) seen.push_back(read(f + 1));
     const FrameOfBeads& frame = seen[f];
-    const FrameAhead ahead = more ? ahead_of(seen[f + 1], seen[f + 1].moment) : FrameAhead{};
-    there.push_back(linker.next(frame.places, frame.moment, frame.tracers, more ? &ahead : nullptr));
+    const FrameAhead ahead = more ? ahead_of(seen[f + 1], seen[f + 1].time) : FrameAhead{};
+    forward.push_back(linker.next(frame.places, frame.time, frame.tracers, more ? &ahead : nullptr));
     const LinkReport& last = linker.last();
     calm = f > 0 && last.rematched == 0 && last.ambiguous == 0 && last.births == 0;
     if (calm && f == 1) return {};
   }
   seen.resize(static_cast<std::size_t>(linker.total().frames));
-  const double interval = seen[1].moment.interval;
+  const double interval = seen[1].time.interval;
   if (interval <= 0) return {};  // the first frame, taken twice
-  // Back, each frame as long after the one before as it lay ahead of it.
-  const auto moment_back = [&](std::size_t f) {
-    return FrameMoment{.interval = seen[f + 1].moment.interval,
-                       .phase = seen[f].moment.phase,
-                       .cycle = -seen[f].moment.cycle};
+  // Backward: the time between two frames stays the same, the order of cycles is reversed.
+  const auto time_back = [&](std::size_t f) {
+    return FrameTime{
+        .interval = seen[f + 1].time.interval, .phase = seen[f].time.phase, .cycle = -seen[f].time.cycle};
   };
-  Linker back = linker.turned();
-  std::vector<std::vector<std::int64_t>> again = there;
+  Linker back = linker.reversed();
+  std::vector<std::vector<std::int64_t>> backward = forward;
   for (std::size_t f = seen.size() - 1; f-- > 0;) {
-    const FrameAhead ahead = f > 0 ? ahead_of(seen[f - 1], moment_back(f - 1)) : FrameAhead{};
-    again[f] = back.next(seen[f].places, moment_back(f), seen[f].tracers, f > 0 ? &ahead : nullptr);
+    const FrameAhead ahead = f > 0 ? ahead_of(seen[f - 1], time_back(f - 1)) : FrameAhead{};
+    backward[f] = back.next(seen[f].places, time_back(f), seen[f].tracers, f > 0 ? &ahead : nullptr);
   }
-  const auto& before = again[1];
-  const auto& ids = again[0];
-  if (roughness(options, seen, again) >= roughness(options, seen, there)) return {};
+  // Steps: only if the tracks found backwards are smoother than the trial tracks.
+  const auto& before = backward[1];
+  const auto& ids = backward[0];
+  if (roughness(options, seen, backward) >= roughness(options, seen, forward)) return {};
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   std::vector<PixelPoint> steps(seen[0].places.size(), {kNaN, kNaN});
   std::unordered_map<std::int64_t, PixelPoint> second;

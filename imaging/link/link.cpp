@@ -18,50 +18,63 @@ namespace twincell {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFar = 1e9;  // px; no camera reaches there
+constexpr double kFar = 1e9;  // px, beyond any camera
 
-// All in diameters.
-constexpr double kSafe = 0.25;       // discs do not overlap: a bead this near has no rival
-constexpr double kLook = 0.5;        // how far one look reaches
-constexpr double kRival = 2;         // a second this many times farther is no rival
-constexpr double kNeighbours = 2.1;  // whose steps a bead's step is compared with
-constexpr double kWell = 0.95;       // fit above which no other rule is tried
-constexpr double kRough = 0.03;      // share of tracks left open above which settled ones are looked at again
-constexpr double kAlike = 0.3;       // between neighbours' steps that agree
-constexpr double kSame = 0.1;        // between predictions that say the same
-constexpr double kSlack = 0.05;      // by which a detection must be nearer to be the better one
-constexpr double kThrough = 0.6;   // between centres on their way: nearer, one disc passed through the other
-constexpr double kBeside = 0.8;    // farther, it did not
-constexpr double kPassing = 8;     // dearest exchange for the sake of not passing through
-constexpr double kLikely = 0.5;    // how near the centre of mass leads to the common way
-constexpr double kWidth = 0.12;    // of the core of the density of misses, see `cost`
-constexpr double kTouching = 1.3;  // whose steps are compared
-constexpr double kPart = 0.8;      // between neighbours' steps: beyond, something is amiss
-constexpr double kAnywhere =
-    1.9;  // how far from where it may be expected a bead is sought when all are matched
-constexpr double kFarthest = 8;   // how far the last beads and detections left over may lie apart
-constexpr double kFlight = 0.02;  // width of the density of misses in free flight, and its exponent
-constexpr double kFlightTail = 2.5;
-// Width of the density of misses of a way with a collision on it, and its exponent: fitted to links of
-// simulated cells that convect, by their odds against the other choices. At the fitted price, -2, fewer wrong
-// links go than at this one.
-constexpr double kWay = 0.02;
-constexpr double kWayTail = 1.25;
-constexpr double kOfWay = -4;
-// Prices, logarithms of odds:
-constexpr double kOfFlight = 2;           // to be in free flight,
-constexpr double kOfAnything = 6;         // to be anywhere within reach,
-constexpr double kOfNowhere = 16;         // to be nowhere,
-constexpr double kOfStranger = 0;         // the same for what was seen once,
-constexpr double kOfLeaving = 0;          // and for what flies out of an open picture or is missing in it,
-constexpr double kOfKind = 3;             // to change from tracer to bead
-constexpr std::size_t kSample = 200;      // tracks on which the rules are tried
-constexpr std::size_t kMostChoices = 40;  // the same where all are matched
-constexpr std::size_t kMostOnAverage = 25;
-constexpr std::size_t kMostEdges = 16;  // detections that one track may choose from
-constexpr double kOutward = 0.1;        // step of a bead that leaves
-constexpr double kCome = 1;             // from the border: where beads come into sight
-constexpr int kRounds = 12;             // of learning from neighbours
+/// The numbers of the linker. d: bead diameter. Costs are log-odds, natural logarithm. Where no source is
+/// given, none is recorded.
+struct LinkCosts {
+  // Lookup and prediction.
+  double settle_reach = 0.25;    ///< d; a detection this close has no rival, because discs do not overlap
+  double lookup_reach = 0.5;     ///< d; reach of the lookup
+  double rival_ratio = 2;        ///< a second candidate this many times farther away is no rival
+  double neighbour_reach = 2.1;  ///< d; distance of neighbours whose steps are compared
+  double good_fit = 0.95;        ///< fit, 0 .. 1, above which no further rule is tried
+  double open_fraction = 0.03;   ///< of all tracks; with more open ones, the settled ones are checked again
+  double agreeing_steps = 0.3;   ///< d; difference between neighbours' steps that agree
+  double agreeing_predictions = 0.1;  ///< d; difference between predictions that agree
+  double preference_margin = 0.05;    ///< d; a detection must be closer by this much to be preferred
+  double common_shift_sigma =
+      0.5;  ///< d; standard deviation of the common shift about that of the centre of mass
+  std::size_t sample_tracks = 200;  ///< tracks on which the rules are tried
+  int neighbour_rounds = 12;        ///< rounds of following neighbours
+
+  // Assignment: exchange of two crossing links, by the closest approach of the centres.
+  double passing_through = 0.6;    ///< d; below, one disc passes through the other
+  double passing_clear = 0.8;      ///< d; above, it does not
+  double exchange_cost_limit = 8;  ///< log-odds; most expensive exchange that is made to avoid it
+  std::size_t max_edges = 16;      ///< choices of one track in the assignment
+
+  // Collective matching: when, and among which choices.
+  double touching_reach = 1.3;  ///< d; distance of touching neighbours
+  double separation =
+      0.8;  ///< d; difference of touching neighbours' steps beyond which the frame is rematched
+  double matching_reach = 1.9;        ///< d; reach about an expected position
+  std::size_t max_choices = 40;       ///< choices of one track
+  std::size_t max_mean_choices = 25;  ///< mean choices of a track; with more, the matching is not attempted
+  double least_outward_step = 0.1;    ///< d; smallest step of a bead that leaves an open picture
+  double entry_margin = 1;            ///< d; distance from the border within which beads come into sight
+  double left_over_reach = 8;  ///< d; largest distance between the last tracks and the detections left over
+
+  // Densities of prediction errors.
+  double prediction_width = 0.12;   ///< d; core width for the expected position, see `cost`
+  double ballistic_width = 0.02;    ///< d; core width for free flight
+  double ballistic_exponent = 2.5;  ///< its exponent
+  // For a path with one collision. Width and exponent were fitted to the links of simulated convecting cells,
+  // by their odds against the other choices. With the fitted cost, -2, fewer wrong links are removed than
+  // with this one.
+  double collision_width = 0.02;     ///< d; core width
+  double collision_exponent = 1.25;  ///< its exponent
+  double collision_cost = -4;        ///< log-odds; of a path with one collision
+
+  // Costs of the explanations of a detection, and of having none.
+  double ballistic_cost = 2;             ///< log-odds; being in free flight
+  double any_position_cost = 6;          ///< log-odds; being anywhere within reach
+  double type_change_cost = 3;           ///< log-odds; changing from tracer to bead or back
+  double no_match_cost = 16;             ///< log-odds; having no detection
+  double unconfirmed_no_match_cost = 0;  ///< log-odds; the same for a track seen in one frame only
+  double leaving_cost = 0;  ///< log-odds; the same for a bead that leaves an open picture or is missing in it
+};
+constexpr LinkCosts kCosts;
 
 PixelPoint operator+(PixelPoint a, PixelPoint b) {
   return {a.x_px + b.x_px, a.y_px + b.y_px};
@@ -76,7 +89,7 @@ double square(PixelPoint a) {
   return a.x_px * a.x_px + a.y_px * a.y_px;
 }
 
-/// Median by coordinate; reorders. 0 of nothing.
+/// Median of each coordinate; reorders the points. 0 if there are no points.
 PixelPoint median(std::vector<PixelPoint>& points) {
   if (points.empty()) return {};
   const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
@@ -88,17 +101,17 @@ PixelPoint median(std::vector<PixelPoint>& points) {
   return {x, middle->y_px};
 }
 
-/// The misses of a prediction have a narrow core and, from collisions between two frames, a long tail: a
-/// density (1 + r^2/w^2)^(-3/2) / w^2 in the plane. Its negative logarithm is the cost of a link, so that
-/// differences of costs are logarithms of odds. With squared distances, the usual cost, one far miss
-/// outweighs many near ones.
+/// Cost of a link with squared prediction error r2. The errors have a narrow core and, from collisions
+/// between two frames, a long tail: a density (1 + r^2/w^2)^(-3/2) / w^2 in the plane. The cost is its
+/// negative logarithm, so that differences of costs are log-odds. With squared distances, the usual cost, one
+/// large error would outweigh many small ones.
 double cost(double r2, double width) {
   return 1.5 * std::log1p(r2 / (width * width)) + 2 * std::log(width);
 }
 
 }  // namespace
 
-/// Points ordered by square cells, for the questions "who is nearest" and "who is within reach".
+/// Points sorted into square cells, for the search of points within a given distance.
 class Linker::Grid {
  public:
   Grid(std::span<const PixelPoint> points, double cell) : size_(cell) {
@@ -114,7 +127,7 @@ class Linker::Grid {
       y0_ = std::min(y0_, p.y_px);
       y1 = std::max(y1, p.y_px);
     }
-    // A few strays far away must not cost memory.
+    // A few distant outliers must not cost memory.
     const double most = 4.0 * static_cast<double>(n) + 1024;
     while (((x1 - x0_) / size_ + 1) * ((y1 - y0_) / size_ + 1) > most) size_ *= 1.5;
     inverse_ = 1 / size_;
@@ -157,7 +170,7 @@ class Linker::Grid {
   }
 
  private:
-  // Clamped, so that looking outside finds the rim.
+  // Clamped, so that a search outside the grid uses the cells at its rim.
   [[nodiscard]] int column(double x) const {
     return static_cast<int>(std::clamp((x - x0_) * inverse_, 0.0, static_cast<double>(nx_ - 1)));
   }
@@ -196,19 +209,19 @@ Linker::Linker(const LinkOptions& options, int phases_per_cycle)
   cycle_of_phase_.assign(static_cast<std::size_t>(phases_), -2);
 }
 
-PixelPoint Linker::predict(std::size_t t, Rule rule, const FrameMoment& moment) const {
+PixelPoint Linker::predict(std::size_t t, PredictionRule rule, const FrameTime& time) const {
   const Track& track = tracks_[t];
   switch (rule) {
-    case Rule::still:
+    case PredictionRule::still:
       break;
-    case Rule::step:
-      return track.place + moment.interval * track.step;
-    case Rule::cycle: {
+    case PredictionRule::step:
+      return track.place + time.interval * track.step;
+    case PredictionRule::cycle: {
       const PixelPoint p =
-          cycle_places_[t * static_cast<std::size_t>(phases_) + static_cast<std::size_t>(moment.phase)];
+          cycle_places_[t * static_cast<std::size_t>(phases_) + static_cast<std::size_t>(time.phase)];
       const PixelPoint there = p + track.drift;
       if (std::isfinite(there.x_px)) return there;
-      return track.place + moment.interval * track.step;
+      return track.place + time.interval * track.step;
     }
   }
   return track.place;
@@ -216,12 +229,12 @@ PixelPoint Linker::predict(std::size_t t, Rule rule, const FrameMoment& moment) 
 
 namespace {
 
-/// How well predictions moved by a shift meet the detections: mean over the tracks of 1 - (r / 0.25 d)^2, 0
-/// beyond.
+/// Quality of fit between shifted predictions and detections: mean over the tracks of 1 - (r / 0.25 d)^2,
+/// with 0 for r > 0.25 d.
 template <class Grid>
 double fit(const std::vector<PixelPoint>& expected, PixelPoint shift, const Grid& grid, double d) {
   if (expected.empty()) return 0;
-  const double reach = kSafe * d;
+  const double reach = kCosts.settle_reach * d;
   double sum = 0;
   for (const PixelPoint p : expected) {
     double least = reach * reach;
@@ -231,42 +244,43 @@ double fit(const std::vector<PixelPoint>& expected, PixelPoint shift, const Grid
   return sum / static_cast<double>(expected.size());
 }
 
-/// Median way from the predictions to the detections nearest to them, twice: about them, then about where the
-/// first has led.
+/// Median displacement from the predictions to the nearest detections. It is repeated `times` times; each
+/// repetition searches about the predictions shifted by the previous result.
 template <class Grid>
-PixelPoint median_way(const std::vector<PixelPoint>& expected, const Grid& grid, double d, PixelPoint shift,
-                      int times) {
-  std::vector<PixelPoint> ways;
+PixelPoint median_displacement(const std::vector<PixelPoint>& expected, const Grid& grid, double d,
+                               PixelPoint shift, int times) {
+  std::vector<PixelPoint> displacements;
   for (; times > 0; --times) {
-    ways.clear();
+    displacements.clear();
     for (const PixelPoint p : expected) {
       double least = std::numeric_limits<double>::infinity();
       std::size_t nearest = 0;
-      grid.within(p + shift, kLook * d, [&](std::size_t k, double r2) {
+      grid.within(p + shift, kCosts.lookup_reach * d, [&](std::size_t k, double r2) {
         if (r2 < least) {
           least = r2;
           nearest = k;
         }
       });
-      if (std::isfinite(least)) ways.push_back(grid[nearest] - p);
+      if (std::isfinite(least)) displacements.push_back(grid[nearest] - p);
     }
-    if (ways.empty()) return shift;
-    shift = median(ways);
+    if (displacements.empty()) return shift;
+    shift = median(displacements);
   }
   return shift;
 }
 
 struct Shift {
   PixelPoint px;
-  bool unclear = false;  // another one is nearly as good
+  bool unclear = false;  // another shift fits nearly as well
 };
 
-/// Peak of the histogram of all ways from predictions to detections within reach, counted in cells of d/8 and
-/// over 3 x 3 of them. A crystal looks the same a lattice vector on, but for its rim: of peaks nearly as high
-/// the one nearest to `likely` is taken.
+/// Most common displacement: the peak of the histogram of all displacements from predictions to detections
+/// within reach, in cells of d/8 summed over 3 x 3 cells. Except at its rim, a crystal looks the same after a
+/// shift by a lattice vector. Among peaks of nearly equal height, the weight therefore favours the one
+/// nearest to `likely`.
 template <class Grid>
-Shift commonest_way(const std::vector<PixelPoint>& expected, const Grid& grid, double d, double reach,
-                    PixelPoint likely) {
+Shift most_common_displacement(const std::vector<PixelPoint>& expected, const Grid& grid, double d,
+                               double reach, PixelPoint likely) {
   const double cell = d / 8;
   const int half = static_cast<int>(std::ceil(reach / cell)) + 1;
   const auto n = static_cast<std::size_t>(2 * half + 1);
@@ -277,8 +291,8 @@ Shift commonest_way(const std::vector<PixelPoint>& expected, const Grid& grid, d
   auto cell_of = [&](double v) { return static_cast<int>(std::lround(v / cell)); };
   for (const PixelPoint p : expected)
     grid.within(p, reach, [&](std::size_t k, double) {
-      const PixelPoint way = grid[k] - p;
-      ++count[at(cell_of(way.x_px), cell_of(way.y_px))];
+      const PixelPoint displacement = grid[k] - p;
+      ++count[at(cell_of(displacement.x_px), cell_of(displacement.y_px))];
     });
   std::vector<double> sums(n * n);
   double best = 0;
@@ -288,7 +302,8 @@ Shift commonest_way(const std::vector<PixelPoint>& expected, const Grid& grid, d
       double sum = 0;
       for (int b = -1; b <= 1; ++b)
         for (int a = -1; a <= 1; ++a) sum += count[at(i + a, j + b)];
-      sum *= std::exp(-0.5 * square(PixelPoint{i * cell, j * cell} - likely) / (kLikely * kLikely * d * d));
+      sum *= std::exp(-0.5 * square(PixelPoint{i * cell, j * cell} - likely) /
+                      (kCosts.common_shift_sigma * kCosts.common_shift_sigma * d * d));
       sums[at(i, j)] = sum;
       if (sum > best) {
         best = sum;
@@ -301,43 +316,44 @@ Shift commonest_way(const std::vector<PixelPoint>& expected, const Grid& grid, d
   for (int j = 1 - half; j < half; ++j)
     for (int i = 1 - half; i < half; ++i)
       if (std::max(std::abs(i - best_i), std::abs(j - best_j)) > 4) rival = std::max(rival, sums[at(i, j)]);
-  return {median_way(expected, grid, d, {best_i * cell, best_j * cell}, 1), rival > 0.98 * best};
+  return {median_displacement(expected, grid, d, {best_i * cell, best_j * cell}, 1), rival > 0.98 * best};
 }
 
 }  // namespace
 
-// The rule that fits best, and with it the common departure from it.
-void Linker::predict_all(const Grid& grid, const FrameMoment& moment) {
+// Chooses the rule that fits best and estimates the common shift of all beads from it.
+void Linker::predict_all(const Grid& grid, const FrameTime& time) {
   const double d = options_.diameter_px;
   std::vector<std::size_t> alive;
   for (std::size_t t = 0; t < tracks_.size(); ++t)
     if (tracks_[t].missed == 0) alive.push_back(t);
-  const std::size_t stride = std::max<std::size_t>(1, alive.size() / kSample);
-  std::vector<Rule> rules = {Rule::still, Rule::step};
-  const bool remembers = moment.phase >= 0 && moment.phase < phases_ && moment.cycle > 0 &&
-                         cycle_of_phase_[static_cast<std::size_t>(moment.phase)] == moment.cycle - 1;
-  if (remembers) rules.push_back(Rule::cycle);
+  const std::size_t stride = std::max<std::size_t>(1, alive.size() / kCosts.sample_tracks);
+  std::vector<PredictionRule> rules = {PredictionRule::still, PredictionRule::step};
+  const bool remembers = time.phase >= 0 && time.phase < phases_ && time.cycle > 0 &&
+                         cycle_of_phase_[static_cast<std::size_t>(time.phase)] == time.cycle - 1;
+  if (remembers) rules.push_back(PredictionRule::cycle);
   PixelPoint centre;
   for (std::size_t k = 0; k < grid.size(); ++k) centre = centre + grid[k];
   const bool moves = options_.max_shift_diameters > 0 && !alive.empty() && grid.size() > 0;
   if (moves) centre = (1.0 / static_cast<double>(grid.size())) * centre;
-  Rule best_rule = Rule::step;
+  // Rules: the first is kept unless a later one fits clearly better.
+  PredictionRule best_rule = PredictionRule::step;
   PixelPoint best_shift;
   double best_fit = -1;
-  for (const Rule rule : rules) {
+  for (const PredictionRule rule : rules) {
     std::vector<PixelPoint> sample;
     PixelPoint mean;
     for (std::size_t a = 0; a < alive.size(); ++a) {
-      const PixelPoint p = predict(alive[a], rule, moment);
+      const PixelPoint p = predict(alive[a], rule, time);
       mean = mean + p;
       if (a % stride == 0) sample.push_back(p);
     }
     PixelPoint shift;
     if (moves) {
-      // The centre of mass knows no lattice: it moves with the whole, whatever looks alike.
+      // Start from the centre of mass, which moves with the bed and has no lattice ambiguity.
       shift = centre - (1.0 / static_cast<double>(alive.size())) * mean;
       if (square(shift) > options_.max_shift_diameters * options_.max_shift_diameters * d * d) shift = {};
-      shift = median_way(sample, grid, d, shift, 2);
+      shift = median_displacement(sample, grid, d, shift, 2);
     }
     const double f = fit(sample, shift, grid, d);
     if (f > best_fit + 0.03) {
@@ -345,61 +361,62 @@ void Linker::predict_all(const Grid& grid, const FrameMoment& moment) {
       best_rule = rule;
       best_shift = shift;
     }
-    if (best_fit > kWell) break;
+    if (best_fit > kCosts.good_fit) break;
   }
+  // Poor fit: search all common shifts within reach.
   if (moves && best_fit < 0.5) {
     std::vector<PixelPoint> expected;
     PixelPoint mean;
     for (const std::size_t t : alive) {
-      expected.push_back(predict(t, best_rule, moment));
+      expected.push_back(predict(t, best_rule, time));
       mean = mean + expected.back();
     }
     mean = centre - (1.0 / static_cast<double>(alive.size())) * mean;
-    const Shift other = commonest_way(expected, grid, d, options_.max_shift_diameters * d, mean);
+    const Shift other = most_common_displacement(expected, grid, d, options_.max_shift_diameters * d, mean);
     if (fit(expected, other.px, grid, d) > fit(expected, best_shift, grid, d)) best_shift = other.px;
     last_.unclear_shifts += other.unclear ? 1 : 0;
   }
-  // Nothing is lower than what lies lowest: a bed that lands is stopped by the plate, and its lowest row
-  // leads the others.
+  // Floor: no bead is expected below the lowest detection. The plate stops a landing bed, and its lowest row
+  // lands first.
   double floor = -kFar;
   for (std::size_t k = 0; k < grid.size(); ++k) floor = std::max(floor, grid[k].y_px);
   auto above_floor = [&](PixelPoint p) { return PixelPoint{p.x_px, std::min(p.y_px, floor)}; };
-  flying_.resize(tracks_.size());
+  ballistic_.resize(tracks_.size());
   expected_.resize(tracks_.size());
-  falling_.resize(tracks_.size());
+  expected_no_floor_.resize(tracks_.size());
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    flying_[t] = above_floor(in_flight(t, moment));
+    ballistic_[t] = above_floor(in_flight(t, time));
     const PixelPoint p =
-        tracks_[t].missed == 0 ? predict(t, best_rule, moment) : tracks_[t].place + moment.interval * step_;
-    falling_[t] = p + best_shift;
-    expected_[t] = above_floor(falling_[t]);
+        tracks_[t].missed == 0 ? predict(t, best_rule, time) : tracks_[t].place + time.interval * step_;
+    expected_no_floor_[t] = p + best_shift;
+    expected_[t] = above_floor(expected_no_floor_[t]);
   }
 }
 
-// In free flight a step repeats itself, and grows by the fall.
-PixelPoint Linker::in_flight(std::size_t t, const FrameMoment& moment) const {
-  return tracks_[t].place + moment.interval * tracks_[t].step +
-         PixelPoint{0, options_.fall_px * moment.interval * moment.interval};
+// Position in free flight: the step repeats itself and grows by the fall.
+PixelPoint Linker::in_flight(std::size_t t, const FrameTime& time) const {
+  return tracks_[t].place + time.interval * tracks_[t].step +
+         PixelPoint{0, options_.fall_px * time.interval * time.interval};
 }
 
-// Detections within 0.25 d of the track that expects them there, neither having a rival. A bead that would be
-// met better somewhere else if it were in free flight is left to the assignment.
+// Links detections within 0.25 d of the expected position of a track if neither has a rival. If the position
+// in free flight fits another detection better, the track is left to the assignment.
 void Linker::settle(const Grid& grid, std::span<const std::uint8_t> tracers) {
   const double d = options_.diameter_px, infinity = std::numeric_limits<double>::infinity();
-  struct Suitor {
+  struct Candidate {
     double r2 = std::numeric_limits<double>::infinity(), second = std::numeric_limits<double>::infinity();
     std::int32_t track = -1;
   };
-  std::vector<Suitor> suitors(grid.size());
+  std::vector<Candidate> candidates(grid.size());
   struct Choice {
     double r2, second;
     std::int32_t detection;
   };
   std::vector<Choice> choices(tracks_.size());
-  disputed_.assign(tracks_.size(), infinity);
+  rival_distance_.assign(tracks_.size(), infinity);
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     Choice c{infinity, infinity, -1};
-    grid.within(expected_[t], kLook * d, [&](std::size_t k, double r2) {
+    grid.within(expected_[t], kCosts.lookup_reach * d, [&](std::size_t k, double r2) {
       if (r2 < c.r2) {
         c.second = c.r2;
         c.r2 = r2;
@@ -410,7 +427,7 @@ void Linker::settle(const Grid& grid, std::span<const std::uint8_t> tracers) {
     });
     choices[t] = c;
     if (c.detection < 0 || tracks_[t].missed > 0) continue;
-    Suitor& s = suitors[static_cast<std::size_t>(c.detection)];
+    Candidate& s = candidates[static_cast<std::size_t>(c.detection)];
     if (c.r2 < s.r2) {
       s.second = s.r2;
       s.r2 = c.r2;
@@ -418,20 +435,24 @@ void Linker::settle(const Grid& grid, std::span<const std::uint8_t> tracers) {
     } else {
       s.second = std::min(s.second, c.r2);
     }
-    if (square(flying_[t] - expected_[t]) < kSame * kSame * d * d) continue;
-    const double reach = std::min(std::sqrt(c.r2) + kSlack * d, kSafe * d);
-    grid.within(flying_[t], reach, [&](std::size_t k, double r2) {
-      if (static_cast<std::int32_t>(k) != c.detection) disputed_[t] = std::min(disputed_[t], std::sqrt(r2));
+    if (square(ballistic_[t] - expected_[t]) <
+        kCosts.agreeing_predictions * kCosts.agreeing_predictions * d * d)
+      continue;
+    const double reach = std::min(std::sqrt(c.r2) + kCosts.preference_margin * d, kCosts.settle_reach * d);
+    grid.within(ballistic_[t], reach, [&](std::size_t k, double r2) {
+      if (static_cast<std::int32_t>(k) != c.detection)
+        rival_distance_[t] = std::min(rival_distance_[t], std::sqrt(r2));
     });
   }
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const Choice& c = choices[t];
-    if (c.detection < 0 || c.r2 > kSafe * kSafe * d * d || tracks_[t].missed > 0 || disputed_[t] < infinity)
+    if (c.detection < 0 || c.r2 > kCosts.settle_reach * kCosts.settle_reach * d * d ||
+        tracks_[t].missed > 0 || rival_distance_[t] < infinity)
       continue;
     const auto k = static_cast<std::size_t>(c.detection);
-    const Suitor& s = suitors[k];
+    const Candidate& s = candidates[k];
     if (s.track != static_cast<std::int32_t>(t)) continue;
-    if (kRival * kRival * c.r2 >= std::min(c.second, s.second)) continue;
+    if (kCosts.rival_ratio * kCosts.rival_ratio * c.r2 >= std::min(c.second, s.second)) continue;
     if (!tracers.empty() && tracers[grid.original(k)] != tracks_[t].tracer) continue;
     detection_of_[t] = c.detection;
     track_of_[k] = static_cast<std::int32_t>(t);
@@ -439,13 +460,13 @@ void Linker::settle(const Grid& grid, std::span<const std::uint8_t> tracers) {
   }
 }
 
-// What settled neighbours had in common, the others may have too; and who has nothing in common with them was
-// settled by chance. Pushing predictions apart where discs would overlap, from the plate upwards, was tried
-// instead: fewer links went wrong in beds that convect (by 7 in 100), more in beds that bounce, a quarter
-// slower.
+// Predicts open tracks from their settled neighbours, and reopens settled tracks that do not agree with their
+// neighbours and were settled by chance. An alternative was tried: pushing predictions apart where discs
+// would overlap, from the plate upwards. Fewer links were wrong in convecting beds (by 7 in 100), more in
+// bouncing beds, and it was a quarter slower.
 void Linker::follow_neighbours(const Grid& grid) {
   const double d = options_.diameter_px;
-  local_.assign(tracks_.size(), {kNaN, kNaN});
+  neighbour_correction_.assign(tracks_.size(), {kNaN, kNaN});
   std::vector<std::int32_t> open;
   for (std::size_t t = 0; t < tracks_.size(); ++t)
     if (detection_of_[t] < 0) open.push_back(static_cast<std::int32_t>(t));
@@ -453,24 +474,28 @@ void Linker::follow_neighbours(const Grid& grid) {
   std::vector<PixelPoint> places;
   for (const Track& t : tracks_) places.push_back(t.place);
   const Grid neighbours(places, 1.1 * d);
-  std::vector<PixelPoint> ways;
+  std::vector<PixelPoint> displacements;
   auto gather = [&](std::size_t t) {
-    ways.clear();
-    neighbours.within(tracks_[t].place, kNeighbours * d, [&](std::size_t k, double) {
+    displacements.clear();
+    neighbours.within(tracks_[t].place, kCosts.neighbour_reach * d, [&](std::size_t k, double) {
       const std::size_t other = neighbours.original(k);
       if (const std::int32_t with = detection_of_[other]; with >= 0 && other != t)
-        ways.push_back(grid[static_cast<std::size_t>(with)] - falling_[other]);
+        displacements.push_back(grid[static_cast<std::size_t>(with)] - expected_no_floor_[other]);
     });
   };
-  if (static_cast<double>(open.size()) > kRough * static_cast<double>(tracks_.size())) {
+  // Check: reopen settled tracks whose correction differs from that of most neighbours.
+  if (static_cast<double>(open.size()) > kCosts.open_fraction * static_cast<double>(tracks_.size())) {
     std::vector<std::int32_t> odd;
     for (std::size_t t = 0; t < tracks_.size(); ++t) {
       if (detection_of_[t] < 0) continue;
       gather(t);
-      const PixelPoint way = grid[static_cast<std::size_t>(detection_of_[t])] - falling_[t];
+      const PixelPoint displacement =
+          grid[static_cast<std::size_t>(detection_of_[t])] - expected_no_floor_[t];
       std::size_t alike = 0;
-      for (const PixelPoint w : ways) alike += square(w - way) < kAlike * kAlike * d * d ? 1 : 0;
-      if (ways.size() >= 3 && 3 * alike < 1 * ways.size()) odd.push_back(static_cast<std::int32_t>(t));
+      for (const PixelPoint w : displacements)
+        alike += square(w - displacement) < kCosts.agreeing_steps * kCosts.agreeing_steps * d * d ? 1 : 0;
+      if (displacements.size() >= 3 && 3 * alike < 1 * displacements.size())
+        odd.push_back(static_cast<std::int32_t>(t));
     }
     for (const std::int32_t t : odd) {
       std::int32_t& k = detection_of_[static_cast<std::size_t>(t)];
@@ -480,17 +505,19 @@ void Linker::follow_neighbours(const Grid& grid) {
       --last_.settled;
     }
   }
-  std::vector<std::pair<double, std::int32_t>> suitor(grid.size());
-  for (int round = 0; round < kRounds && !open.empty(); ++round) {
-    std::vector<std::pair<std::int32_t, std::int32_t>> wishes;
-    std::fill(suitor.begin(), suitor.end(), std::pair{std::numeric_limits<double>::infinity(), -1});
+  // Rounds: link open tracks next to settled ones, so that links spread through the bed.
+  std::vector<std::pair<double, std::int32_t>> candidate(grid.size());
+  for (int round = 0; round < kCosts.neighbour_rounds && !open.empty(); ++round) {
+    std::vector<std::pair<std::int32_t, std::int32_t>> proposals;
+    std::fill(candidate.begin(), candidate.end(), std::pair{std::numeric_limits<double>::infinity(), -1});
     for (const std::int32_t open_track : open) {
       const auto t = static_cast<std::size_t>(open_track);
       gather(t);
-      if (ways.size() < 3) continue;
-      local_[t] = median(ways);
-      const PixelPoint p = falling_[t] + local_[t];
-      const double reach = std::min(kSafe * d, disputed_[t] - kSlack * d);
+      if (displacements.size() < 3) continue;
+      neighbour_correction_[t] = median(displacements);
+      const PixelPoint p = expected_no_floor_[t] + neighbour_correction_[t];
+      const double reach =
+          std::min(kCosts.settle_reach * d, rival_distance_[t] - kCosts.preference_margin * d);
       if (reach <= 0) continue;
       double least = reach * reach;
       std::int32_t nearest = -1;
@@ -500,13 +527,13 @@ void Linker::follow_neighbours(const Grid& grid) {
         nearest = static_cast<std::int32_t>(k);
       });
       if (nearest < 0) continue;
-      wishes.emplace_back(open_track, nearest);
-      auto& s = suitor[static_cast<std::size_t>(nearest)];
+      proposals.emplace_back(open_track, nearest);
+      auto& s = candidate[static_cast<std::size_t>(nearest)];
       s = std::min(s, std::pair{least, open_track});
     }
     bool any = false;
-    for (const auto& [t, k] : wishes) {
-      if (suitor[static_cast<std::size_t>(k)].second != t) continue;
+    for (const auto& [t, k] : proposals) {
+      if (candidate[static_cast<std::size_t>(k)].second != t) continue;
       detection_of_[static_cast<std::size_t>(t)] = k;
       track_of_[static_cast<std::size_t>(k)] = t;
       any = true;
@@ -518,17 +545,19 @@ void Linker::follow_neighbours(const Grid& grid) {
 
 namespace {
 
-/// Least distance of two beads that move straight and evenly.
+/// Closest approach of two beads that move along straight lines at constant velocity.
 double closest(PixelPoint from_a, PixelPoint to_a, PixelPoint from_b, PixelPoint to_b) {
   const PixelPoint before = from_a - from_b, change = to_a - to_b - before;
   const double c2 = square(change), dot = before.x_px * change.x_px + before.y_px * change.y_px;
   return std::sqrt(square(before + (c2 > 0 ? std::clamp(-dot / c2, 0.0, 1.0) : 0) * change));
 }
 
-/// Discs of one layer cannot pass through each other, which a sum of costs does not know. Two links that
-/// would need it are exchanged, if that is allowed and not too dear.
-void exchange_passers(Assignment& best, const std::vector<Edge>& edges, const std::vector<PixelPoint>& from,
-                      const std::vector<PixelPoint>& to, double d) {
+/// Exchanges two links on which one disc would pass through the other, if the exchanged links are allowed and
+/// not too expensive. Discs of one layer cannot pass through each other, but a sum of single costs does not
+/// express that.
+void exchange_crossing_links(Assignment& best, const std::vector<Edge>& edges,
+                             const std::vector<PixelPoint>& from, const std::vector<PixelPoint>& to,
+                             double d) {
   auto edges_of = [&](std::size_t row) {
     return std::equal_range(edges.begin(), edges.end(), Edge{static_cast<std::uint32_t>(row), 0, 0},
                             [](const Edge& a, const Edge& b) { return a.row < b.row; });
@@ -551,9 +580,11 @@ void exchange_passers(Assignment& best, const std::vector<Edge>& edges, const st
       const auto j = static_cast<std::size_t>(row_of[e->column]);
       std::int64_t& theirs = best.column_of_row[j];
       const PixelPoint a = to[static_cast<std::size_t>(mine)], b = to[static_cast<std::size_t>(theirs)];
-      if (closest(from[i], a, from[j], b) > kThrough * d || closest(from[i], b, from[j], a) < kBeside * d)
+      if (closest(from[i], a, from[j], b) > kCosts.passing_through * d ||
+          closest(from[i], b, from[j], a) < kCosts.passing_clear * d)
         continue;
-      if (e->cost + cost_of(j, mine) - cost_of(i, mine) - cost_of(j, theirs) > kPassing) continue;
+      if (e->cost + cost_of(j, mine) - cost_of(i, mine) - cost_of(j, theirs) > kCosts.exchange_cost_limit)
+        continue;
       std::swap(mine, theirs);
       std::swap(row_of[static_cast<std::size_t>(mine)], row_of[static_cast<std::size_t>(theirs)]);
       break;
@@ -563,47 +594,50 @@ void exchange_passers(Assignment& best, const std::vector<Edge>& edges, const st
 
 }  // namespace
 
-void Linker::say_ambiguous(std::size_t detection) {
+void Linker::mark_ambiguous(std::size_t detection) {
   if (std::exchange(ambiguous_[detection], std::uint8_t{1}) == 0) ++last_.ambiguous;
 }
 
-void Linker::assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment) {
+// Assigns the remaining tracks to the remaining detections at minimum total cost.
+void Linker::assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameTime& time) {
   const double d = options_.diameter_px;
-  const double alone = cost(options_.range_diameters * options_.range_diameters, kWidth);
+  // Edges: for each open track, the free detections that are cheaper than staying alone.
+  const double alone = cost(options_.range_diameters * options_.range_diameters, kCosts.prediction_width);
   std::vector<std::int32_t> rows;
   std::vector<Edge> edges, own;
   std::vector<std::int32_t> column_of(grid.size(), -1), columns;
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     if (detection_of_[t] >= 0) continue;
     const Track& track = tracks_[t];
-    const double width = kWidth * (1 + track.missed);
+    const double width = kCosts.prediction_width * (1 + track.missed);
     const double range = options_.range_diameters * (1 + 0.5 * track.missed) * d;
-    // Where it may be, and the price of having to believe so.
+    // Possible positions, each with the cost of assuming it.
     std::vector<std::pair<PixelPoint, double>> guesses = {{expected_[t], 0}};
-    if (std::isfinite(local_[t].x_px)) {
+    if (std::isfinite(neighbour_correction_[t].x_px)) {
       guesses.front().second = 0.7;
-      guesses.emplace_back(falling_[t] + local_[t], 0);
+      guesses.emplace_back(expected_no_floor_[t] + neighbour_correction_[t], 0);
     }
     if (track.missed == 0) {
-      guesses.emplace_back(track.place + moment.interval * step_, 0.7);
-      guesses.emplace_back(flying_[t], 0);
+      guesses.emplace_back(track.place + time.interval * step_, 0.7);
+      guesses.emplace_back(ballistic_[t], 0);
     }
     own.clear();
     grid.within(expected_[t], range, [&](std::size_t k, double) {
       if (track_of_[k] >= 0) return;
       double least = std::numeric_limits<double>::infinity();
-      for (const auto& [guess, price] : guesses)
-        least = std::min(least, cost(square(grid[k] - guess) / (d * d), width) + price);
-      if (!tracers.empty() && tracers[grid.original(k)] != track.tracer) least += kOfKind;
+      for (const auto& [guess, extra] : guesses)
+        least = std::min(least, cost(square(grid[k] - guess) / (d * d), width) + extra);
+      if (!tracers.empty() && tracers[grid.original(k)] != track.tracer) least += kCosts.type_change_cost;
       if (least >= alone) return;
       own.push_back({static_cast<std::uint32_t>(rows.size()), static_cast<std::uint32_t>(k), least - alone});
     });
     if (own.empty()) continue;
-    if (own.size() > kMostEdges) {
-      std::nth_element(own.begin(), own.begin() + kMostEdges, own.end(), [](const Edge& a, const Edge& b) {
-        return a.cost < b.cost || (a.cost == b.cost && a.column < b.column);
-      });
-      own.resize(kMostEdges);
+    if (own.size() > kCosts.max_edges) {
+      std::nth_element(own.begin(), own.begin() + kCosts.max_edges, own.end(),
+                       [](const Edge& a, const Edge& b) {
+                         return a.cost < b.cost || (a.cost == b.cost && a.column < b.column);
+                       });
+      own.resize(kCosts.max_edges);
     }
     for (Edge& e : own) {
       std::int32_t& column = column_of[e.column];
@@ -617,6 +651,7 @@ void Linker::assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers
     rows.push_back(static_cast<std::int32_t>(t));
   }
   if (rows.empty()) return;
+  // Assignment, then the exchange of links on crossing paths.
   Assignment best = assign(rows.size(), columns.size(), edges);
   last_.networks = static_cast<std::int64_t>(best.networks);
   last_.largest_network = static_cast<std::int64_t>(best.largest_network);
@@ -625,20 +660,20 @@ void Linker::assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers
   std::vector<PixelPoint> from, to;
   for (const std::int32_t t : rows) from.push_back(tracks_[static_cast<std::size_t>(t)].place);
   for (const std::int32_t k : columns) to.push_back(grid[static_cast<std::size_t>(k)]);
-  exchange_passers(best, edges, from, to, d);
+  exchange_crossing_links(best, edges, from, to, d);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (best.column_of_row[i] < 0) continue;
     const std::int32_t k = columns[static_cast<std::size_t>(best.column_of_row[i])];
     detection_of_[static_cast<std::size_t>(rows[i])] = k;
     track_of_[static_cast<std::size_t>(k)] = rows[i];
     if (best.margin[i] >= least_margin) continue;
-    say_ambiguous(grid.original(static_cast<std::size_t>(k)));
+    mark_ambiguous(grid.original(static_cast<std::size_t>(k)));
   }
 }
 
-// Where touching neighbours stay together, and nobody is lost while a place is left over, the frame is
-// understood.
-bool Linker::neighbours_part(const Grid& grid) const {
+// Whether the links are implausible: touching neighbours separate, or a track has no detection although one
+// is left over.
+bool Linker::neighbours_separate(const Grid& grid) const {
   const double d = options_.diameter_px;
   std::vector<PixelPoint> places;
   for (const Track& t : tracks_) places.push_back(t.place);
@@ -651,122 +686,130 @@ bool Linker::neighbours_part(const Grid& grid) const {
       continue;
     }
     const PixelPoint step = grid[static_cast<std::size_t>(detection_of_[t])] - tracks_[t].place;
-    bool parts = false;
-    neighbours.within(tracks_[t].place, kTouching * d, [&](std::size_t k, double) {
+    bool separates = false;
+    neighbours.within(tracks_[t].place, kCosts.touching_reach * d, [&](std::size_t k, double) {
       const std::size_t other = neighbours.original(k);
       if (tracks_[other].missed > 0 || detection_of_[other] < 0) return;
       const PixelPoint theirs = grid[static_cast<std::size_t>(detection_of_[other])] - tracks_[other].place;
-      parts = parts || square(theirs - step) > kPart * kPart * d * d;
+      separates = separates || square(theirs - step) > kCosts.separation * kCosts.separation * d * d;
     });
-    if (parts) return true;
+    if (separates) return true;
   }
   return false;
 }
 
-// What came one frame ago may be no bead: a speck of dust, there for one frame, must not take a bead's place.
-bool Linker::stranger(const Track& track) const {
+// Whether a track is unconfirmed. A track that began one frame ago may be no bead: a speck of dust visible in
+// one frame must not take the detection of a bead.
+bool Linker::is_unconfirmed(const Track& track) const {
   return track.seen == 1 && total_.frames > 1;
 }
 
-// As many detections as tracks, none of which was missing or came just now.
-bool Linker::all_there(const Grid& grid) const {
+// Whether there are as many detections as tracks and no track is missing or unconfirmed.
+bool Linker::is_complete(const Grid& grid) const {
   return grid.size() == tracks_.size() && std::all_of(tracks_.begin(), tracks_.end(), [&](const Track& t) {
-           return t.missed == 0 && !stranger(t);
+           return t.missed == 0 && !is_unconfirmed(t);
          });
 }
 
-// A bead in sight does not vanish, unless it flies out of an open picture: beyond all that was ever seen.
-double Linker::price_of_nowhere(std::size_t t) const {
-  if (stranger(tracks_[t])) return kOfStranger;
-  if (options_.closed) return kOfNowhere;
-  if (tracks_[t].missed > 0) return kOfLeaving;
+// Cost of having no detection. A visible bead does not vanish, unless it leaves an open picture, that is,
+// crosses the bounding box of all detections so far.
+double Linker::cost_of_no_match(std::size_t t) const {
+  if (is_unconfirmed(tracks_[t])) return kCosts.unconfirmed_no_match_cost;
+  if (options_.closed) return kCosts.no_match_cost;
+  if (tracks_[t].missed > 0) return kCosts.leaving_cost;
   const PixelPoint from = tracks_[t].place, to = from + tracks_[t].step;
-  const double least = kOutward * options_.diameter_px;
+  const double least = kCosts.least_outward_step * options_.diameter_px;
   const auto leaves = [&](double x, double was, double low, double high) {
     return (x < low && was - x > least) || (x > high && x - was > least);
   };
   return leaves(to.x_px, from.x_px, low_.x_px, high_.x_px) ||
                  leaves(to.y_px, from.y_px, low_.y_px, high_.y_px)
-             ? kOfLeaving
-             : kOfNowhere;
+             ? kCosts.leaving_cost
+             : kCosts.no_match_cost;
 }
 
-// By detection in the order of the grid, whether it may be a bead that came into an open picture: near the
-// border of all that was ever seen, where no track leads.
+// For each detection, in the order of the grid: whether it may be a bead that came into an open picture. Such
+// a detection is near the border of the bounding box of all detections so far, and no track is expected
+// there.
 std::vector<std::uint8_t> Linker::newcomers(const Grid& grid) const {
   std::vector<std::uint8_t> new_there(grid.size(), 0);
   if (options_.closed) return new_there;
-  const double d = options_.diameter_px, margin = kCome * d;
+  const double d = options_.diameter_px, margin = kCosts.entry_margin * d;
   for (std::size_t k = 0; k < grid.size(); ++k) {
     const PixelPoint p = grid[k];
     new_there[k] = p.x_px < low_.x_px + margin || p.y_px < low_.y_px + margin ||
                    p.x_px > high_.x_px - margin || p.y_px > high_.y_px - margin;
   }
   for (std::size_t t = 0; t < tracks_.size(); ++t)
-    for (const PixelPoint p : {expected_[t], flying_[t]})
-      grid.within(p, kLook * d, [&](std::size_t k, double) { new_there[k] = 0; });
+    for (const PixelPoint p : {expected_[t], ballistic_[t]})
+      grid.within(p, kCosts.lookup_reach * d, [&](std::size_t k, double) { new_there[k] = 0; });
   return new_there;
 }
 
-// By detection in the order of the grid, the step that would have led there in free flight, to go on as the
-// bead there does; NaN where it is not known. A copy of the linker goes ahead by the links found so far.
+// For each detection, in the order of the grid: the step that would have led there in free flight if the bead
+// continues to the frame ahead in free flight; NaN if unknown. A copy of the linker advances with the present
+// links.
 std::vector<PixelPoint> Linker::steps_back(const Grid& grid, std::span<const PixelPoint> detections,
-                                           const FrameMoment& moment, std::span<const std::uint8_t> tracers,
+                                           const FrameTime& time, std::span<const std::uint8_t> tracers,
                                            const FrameAhead& ahead) const {
   std::vector<PixelPoint> steps(grid.size(), {kNaN, kNaN});
-  if (ahead.moment.interval <= 0) return steps;
-  Linker scout = *this;
-  for (std::int32_t& k : scout.detection_of_)
+  if (ahead.time.interval <= 0) return steps;
+  Linker lookahead = *this;
+  for (std::int32_t& k : lookahead.detection_of_)
     if (k >= 0) k = static_cast<std::int32_t>(grid.original(static_cast<std::size_t>(k)));
   std::vector<std::int64_t> ids(detections.size(), -1);
-  scout.update(detections, tracers, moment, ids);
-  scout.last_ = {.frames = 1};
-  scout.link(ahead.detections, ahead.moment, ahead.tracers, nullptr);
+  lookahead.update(detections, tracers, time, ids);
+  lookahead.last_ = {.frames = 1};
+  lookahead.link(ahead.detections, ahead.time, ahead.tracers, nullptr);
   std::vector<PixelPoint> onward(detections.size(), {kNaN, kNaN});
-  for (std::size_t t = 0; t < scout.tracks_.size(); ++t) {
-    const Track& track = scout.tracks_[t];
-    if (track.missed > 0 || scout.detection_of_[t] < 0) continue;
-    const PixelPoint there = ahead.detections[static_cast<std::size_t>(scout.detection_of_[t])];
+  for (std::size_t t = 0; t < lookahead.tracks_.size(); ++t) {
+    const Track& track = lookahead.tracks_[t];
+    if (track.missed > 0 || lookahead.detection_of_[t] < 0) continue;
+    const PixelPoint there = ahead.detections[static_cast<std::size_t>(lookahead.detection_of_[t])];
     onward[static_cast<std::size_t>(track.detection)] =
-        (moment.interval / ahead.moment.interval) * (there - track.place) -
-        PixelPoint{0, options_.fall_px * moment.interval * moment.interval};
+        (time.interval / ahead.time.interval) * (there - track.place) -
+        PixelPoint{0, options_.fall_px * time.interval * time.interval};
   }
   for (std::size_t k = 0; k < grid.size(); ++k) steps[k] = onward[grid.original(k)];
   return steps;
 }
 
-// A bead that is hit once between two frames goes on as before until then, and as after from then on:
-// whenever that was, its step ends on the straight line between the step that free flight repeats and the
-// step that free flight goes on from. So it does with the fall, whose terms are linear in the moment of the
-// hit.
-Linker::Way Linker::way(std::size_t track, PixelPoint to, PixelPoint step_back) const {
+// Distance of a detection from the line of all one-collision paths. A bead that is hit once between two
+// frames has its old velocity before the hit and its new velocity after it. Its step therefore ends on the
+// straight line between the end of the step that repeats the previous free flight and the end of the step
+// from which the following free flight continues. Gravity does not change this, because its terms are linear
+// in the time of the hit.
+Linker::CollisionPath Linker::collision_path(std::size_t track, PixelPoint to, PixelPoint step_back) const {
   const double d = options_.diameter_px;
-  const PixelPoint from_flight = to - flying_[track],
-                   line = tracks_[track].place + step_back - flying_[track];
+  const PixelPoint from_flight = to - ballistic_[track],
+                   line = tracks_[track].place + step_back - ballistic_[track];
   const double l2 = square(line), dot = from_flight.x_px * line.x_px + from_flight.y_px * line.y_px;
   const double part = l2 > 0 ? std::clamp(dot / l2, 0.0, 1.0) : 0;
   return {square(from_flight - part * line) / (d * d), std::sqrt(l2) / d};
 }
 
-// Whether beads go on as they went: else, as in tables that hop, what comes next tells nothing of a link. Of
-// those that are not where they are expected, one in three must lie twice as near to such a way.
-bool Linker::flies_on(const Grid& grid, const std::vector<PixelPoint>& steps_back) const {
+// Whether beads follow ballistic paths. Otherwise, as in tables of hopping points, the next frame is no
+// evidence for a link. Of the beads that are not at their expected position, more than one in three must be
+// closer to a one-collision path by a factor of two.
+bool Linker::follows_ballistic(const Grid& grid, const std::vector<PixelPoint>& steps_back) const {
   const double d = options_.diameter_px;
-  std::size_t unexpected = 0, told = 0;
+  std::size_t unexpected = 0, explained = 0;
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     if (detection_of_[t] < 0 || tracks_[t].missed > 0) continue;
     const auto k = static_cast<std::size_t>(detection_of_[t]);
     const double miss2 = square(grid[k] - expected_[t]) / (d * d);
-    if (!std::isfinite(steps_back[k].x_px) || miss2 <= kSafe * kSafe) continue;
+    if (!std::isfinite(steps_back[k].x_px) || miss2 <= kCosts.settle_reach * kCosts.settle_reach) continue;
     ++unexpected;
-    told += 4 * way(t, grid[k], steps_back[k]).miss2 < miss2 ? 1 : 0;
+    explained += 4 * collision_path(t, grid[k], steps_back[k]).miss2 < miss2 ? 1 : 0;
   }
-  return 3 * told > unexpected;
+  return 3 * explained > unexpected;
 }
 
-void Linker::match_all(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment,
+// Matches all tracks and detections collectively and replaces the links.
+void Linker::match_all(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameTime& time,
                        const std::vector<PixelPoint>& steps_back) {
   const double d = options_.diameter_px;
+  // Choices: for each detection within reach of a track, the cost of the cheapest explanation.
   std::vector<PixelPoint> places, detections;
   for (std::size_t k = 0; k < grid.size(); ++k) detections.push_back(grid[k]);
   std::vector<Edge> choices, own;
@@ -774,45 +817,53 @@ void Linker::match_all(const Grid& grid, std::span<const std::uint8_t> tracers, 
     const Track& track = tracks_[t];
     places.push_back(track.place);
     own.clear();
-    const double nowhere = price_of_nowhere(t);
-    const double reach = std::min(kAnywhere, options_.range_diameters) * d;
+    const double no_match = cost_of_no_match(t);
+    const double reach = std::min(kCosts.matching_reach, options_.range_diameters) * d;
     auto look = [&](PixelPoint about) {
       grid.within(about, reach, [&](std::size_t k, double) {
         if (std::any_of(own.begin(), own.end(), [&](const Edge& e) { return e.column == k; })) return;
-        double price = kOfAnything;
-        price = std::min(price, cost(square(grid[k] - expected_[t]) / (d * d), kWidth * (1 + track.missed)));
+        double least = kCosts.any_position_cost;
+        least = std::min(least, cost(square(grid[k] - expected_[t]) / (d * d),
+                                     kCosts.prediction_width * (1 + track.missed)));
         if (track.missed == 0)
-          price = std::min(
-              price, kFlightTail * std::log1p(square(grid[k] - flying_[t]) / (kFlight * kFlight * d * d)) +
-                         2 * std::log(kFlight) + kOfFlight);
+          least =
+              std::min(least, kCosts.ballistic_exponent *
+                                      std::log1p(square(grid[k] - ballistic_[t]) /
+                                                 (kCosts.ballistic_width * kCosts.ballistic_width * d * d)) +
+                                  2 * std::log(kCosts.ballistic_width) + kCosts.ballistic_cost);
         if (track.missed == 0 && !steps_back.empty() && std::isfinite(steps_back[k].x_px)) {
-          const Way w = way(t, grid[k], steps_back[k]);
-          price = std::min(price, kWayTail * std::log1p(w.miss2 / (kWay * kWay)) +
-                                      std::log(kWay * (kWay + w.length)) + kOfWay);
+          const CollisionPath w = collision_path(t, grid[k], steps_back[k]);
+          least = std::min(least, kCosts.collision_exponent * std::log1p(w.miss2 / (kCosts.collision_width *
+                                                                                    kCosts.collision_width)) +
+                                      std::log(kCosts.collision_width * (kCosts.collision_width + w.length)) +
+                                      kCosts.collision_cost);
         }
-        if (!tracers.empty() && tracers[grid.original(k)] != track.tracer) price += kOfKind;
-        own.push_back({static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(k), price - nowhere});
+        if (!tracers.empty() && tracers[grid.original(k)] != track.tracer) least += kCosts.type_change_cost;
+        own.push_back({static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(k), least - no_match});
       });
     };
     look(expected_[t]);
     if (track.missed == 0) {
-      look(flying_[t]);
-      look(track.place + moment.interval * step_);
+      look(ballistic_[t]);
+      look(track.place + time.interval * step_);
       look(track.place);
     }
-    if (own.size() > kMostChoices) {
-      std::nth_element(own.begin(), own.begin() + kMostChoices, own.end(), [](const Edge& a, const Edge& b) {
-        return a.cost < b.cost || (a.cost == b.cost && a.column < b.column);
-      });
-      own.resize(kMostChoices);
+    if (own.size() > kCosts.max_choices) {
+      std::nth_element(own.begin(), own.begin() + kCosts.max_choices, own.end(),
+                       [](const Edge& a, const Edge& b) {
+                         return a.cost < b.cost || (a.cost == b.cost && a.column < b.column);
+                       });
+      own.resize(kCosts.max_choices);
     }
     choices.insert(choices.end(), own.begin(), own.end());
   }
-  // Discs of one layer leave each bead a dozen choices; what leaves many more is no such layer, and endless.
-  if (choices.size() > kMostOnAverage * std::min(tracks_.size(), grid.size())) return;
+  // In one layer of discs each bead has about a dozen choices. With many more, the points are no such layer
+  // and the matching would take too long.
+  if (choices.size() > kCosts.max_mean_choices * std::min(tracks_.size(), grid.size())) return;
   const std::vector<std::uint8_t> new_there = newcomers(grid);
   const CollectiveMatching match = match_collectively(
-      places, detections, choices, d, {detection_of_, options_.closed && all_there(grid), new_there});
+      places, detections, choices, d, {detection_of_, options_.closed && is_complete(grid), new_there});
+  // Links: the matching replaces all earlier ones.
   std::fill(detection_of_.begin(), detection_of_.end(), -1);
   std::fill(ambiguous_.begin(), ambiguous_.end(), std::uint8_t{0});
   last_.settled = last_.ambiguous = 0;
@@ -822,16 +873,17 @@ void Linker::match_all(const Grid& grid, std::span<const std::uint8_t> tracers, 
     if (k < 0) continue;
     detection_of_[t] = static_cast<std::int32_t>(k);
     if (match.margin[t] >= std::log(options_.ambiguous_odds)) continue;
-    say_ambiguous(grid.original(static_cast<std::size_t>(k)));
+    mark_ambiguous(grid.original(static_cast<std::size_t>(k)));
   }
 }
 
-// A bead that is hit hard may go farther than is looked. Where all are there, the detections that are left
-// over are the beads that are; nothing foretold it, so it is said to be ambiguous. (To look farther for all
-// beads instead gives as many of them a wrong place as it gives a right one.)
+// Links the last tracks to the detections left over. A bead that is hit hard may move farther than the search
+// reaches. If all beads are present, the detections left over belong to the tracks left over. No prediction
+// supports such a link, so it is marked ambiguous. (A longer reach for all beads was tried: it gives as many
+// beads a wrong detection as a right one.)
 void Linker::link_left_over(const Grid& grid) {
-  if (!options_.closed || !all_there(grid)) return;
-  const double farthest = kFarthest * options_.diameter_px;
+  if (!options_.closed || !is_complete(grid)) return;
+  const double farthest = kCosts.left_over_reach * options_.diameter_px;
   std::vector<std::size_t> tracks, left;
   std::vector<std::uint8_t> taken(grid.size(), 0);
   for (std::size_t t = 0; t < tracks_.size(); ++t)
@@ -847,8 +899,8 @@ void Linker::link_left_over(const Grid& grid) {
       const std::size_t t = tracks[i];
       const PixelPoint p = grid[left[j]];
       const double r2 =
-          std::min({square(p - expected_[t]), square(p - flying_[t]), square(p - tracks_[t].place)});
-      if (r2 < farthest * farthest)  // as many as can be
+          std::min({square(p - expected_[t]), square(p - ballistic_[t]), square(p - tracks_[t].place)});
+      if (r2 < farthest * farthest)  // all costs are negative, so as many as possible are assigned
         edges.push_back(
             {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), std::sqrt(r2) - 2 * farthest});
     }
@@ -857,23 +909,24 @@ void Linker::link_left_over(const Grid& grid) {
     if (best.column_of_row[i] < 0) continue;
     const std::size_t k = left[static_cast<std::size_t>(best.column_of_row[i])];
     detection_of_[tracks[i]] = static_cast<std::int32_t>(k);
-    say_ambiguous(grid.original(k));
+    mark_ambiguous(grid.original(k));
   }
 }
 
-// Survivors, the missing within memory, and the newly born.
+// Updates the tracks from the links: linked tracks, missing tracks within memory, new tracks.
 void Linker::update(std::span<const PixelPoint> detections, std::span<const std::uint8_t> tracers,
-                    const FrameMoment& moment, std::vector<std::int64_t>& ids) {
+                    const FrameTime& time, std::vector<std::int64_t>& ids) {
   const auto phases = static_cast<std::size_t>(phases_);
-  const bool in_cycle = phases > 0 && moment.phase >= 0 && moment.phase < phases_;
-  const auto phase = static_cast<std::size_t>(in_cycle ? moment.phase : 0);
-  const bool remembers = in_cycle && cycle_of_phase_[phase] == moment.cycle - 1;
+  const bool in_cycle = phases > 0 && time.phase >= 0 && time.phase < phases_;
+  const auto phase = static_cast<std::size_t>(in_cycle ? time.phase : 0);
+  const bool remembers = in_cycle && cycle_of_phase_[phase] == time.cycle - 1;
 
+  // Common step: mean and median over the linked beads.
   std::vector<PixelPoint> steps;
   for (std::size_t t = 0; t < tracks_.size(); ++t)
     if (detection_of_[t] >= 0 && tracks_[t].missed == 0)
       steps.push_back(detections[static_cast<std::size_t>(detection_of_[t])] - tracks_[t].place);
-  const double per_interval = moment.interval > 0 ? 1 / moment.interval : 0;
+  const double per_interval = time.interval > 0 ? 1 / time.interval : 0;
   const bool first = total_.frames == 0;
   if (first)
     std::copy_if(first_steps_.begin(), first_steps_.end(), std::back_inserter(steps),
@@ -881,15 +934,16 @@ void Linker::update(std::span<const PixelPoint> detections, std::span<const std:
   mean_step_ = {};
   for (const PixelPoint step : steps) mean_step_ = mean_step_ + step;
   if (!steps.empty()) mean_step_ = (1.0 / static_cast<double>(steps.size())) * mean_step_;
-  const std::size_t stride = std::max<std::size_t>(1, steps.size() / (2 * kSample));
+  const std::size_t stride = std::max<std::size_t>(1, steps.size() / (2 * kCosts.sample_tracks));
   for (std::size_t i = 1; i * stride < steps.size(); ++i) steps[i] = steps[i * stride];
   steps.resize((steps.size() + stride - 1) / stride);
   const PixelPoint moved = median(steps);  // in this frame
   if (first)
     step_ = moved;  // which is per interval
-  else if (moment.interval > 0)
+  else if (time.interval > 0)
     step_ = per_interval * moved;
 
+  // Tracks: linked ones take the new position, missing ones move with the common step.
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     Track& track = tracks_[t];
     PixelPoint* ring = phases > 0 ? &cycle_places_[t * phases] : nullptr;
@@ -906,7 +960,7 @@ void Linker::update(std::span<const PixelPoint> detections, std::span<const std:
     last_.bridged += track.missed > 0 ? 1 : 0;
     if (track.missed > 0)
       track.step = (1.0 / (track.missed + 1)) * (p - track.place - moved) + step_;
-    else if (moment.interval > 0)
+    else if (time.interval > 0)
       track.step = per_interval * (p - track.place);
     track.place = p;
     track.missed = 0;
@@ -921,7 +975,7 @@ void Linker::update(std::span<const PixelPoint> detections, std::span<const std:
     }
   }
 
-  // The dead make room for the last.
+  // Losses: the last track takes the slot of a track that ends.
   for (std::size_t t = 0; t < tracks_.size();) {
     if (tracks_[t].missed <= options_.memory) {
       ++t;
@@ -937,6 +991,7 @@ void Linker::update(std::span<const PixelPoint> detections, std::span<const std:
     tracks_.pop_back();
     cycle_places_.resize(tracks_.size() * phases);
   }
+  // Births: a detection without a track begins one.
   for (std::size_t k = 0; k < detections.size(); ++k) {
     if (ids[k] >= 0) continue;
     ids[k] = n_tracks_++;
@@ -956,12 +1011,12 @@ void Linker::update(std::span<const PixelPoint> detections, std::span<const std:
     low_ = {std::min(low_.x_px, p.x_px), std::min(low_.y_px, p.y_px)};
     high_ = {std::max(high_.x_px, p.x_px), std::max(high_.y_px, p.y_px)};
   }
-  if (in_cycle) cycle_of_phase_[phase] = moment.cycle;
+  if (in_cycle) cycle_of_phase_[phase] = time.cycle;
   first_steps_.clear();
 }
 
-// A step back of free flight is the step that led here, with the fall that it lacked.
-Linker Linker::turned() const {
+// In reversed time the next step of free flight is the negative of the last step plus the fall.
+Linker Linker::reversed() const {
   Linker back = *this;
   const PixelPoint fall{0, options_.fall_px};
   for (Track& track : back.tracks_) {
@@ -976,32 +1031,32 @@ Linker Linker::turned() const {
   return back;
 }
 
-// Leaves the links in detection_of_ and what they are in ambiguous_ and last_.
-void Linker::link(std::span<const PixelPoint> detections, const FrameMoment& moment,
+// Links one frame. The links are left in detection_of_, their quality in ambiguous_ and last_.
+void Linker::link(std::span<const PixelPoint> detections, const FrameTime& time,
                   std::span<const std::uint8_t> tracers, const FrameAhead* ahead) {
   ambiguous_.assign(detections.size(), 0);
   const Grid grid(detections, 1.1 * options_.diameter_px);
   detection_of_.assign(tracks_.size(), -1);
   track_of_.assign(detections.size(), -1);
-  predict_all(grid, moment);
+  predict_all(grid, time);
   settle(grid, tracers);
   const std::int64_t open = static_cast<std::int64_t>(tracks_.size()) - last_.settled;
   follow_neighbours(grid);
-  assign_rest(grid, tracers, moment);
-  const bool rough = static_cast<double>(open) > kRough * static_cast<double>(tracks_.size());
-  // One ambiguous link among beads that are all there is worth a second look; where some are missing there is
-  // one in nearly every frame, and it is mostly right.
-  if ((last_.ambiguous > 0 && (rough || all_there(grid))) || (rough && neighbours_part(grid)))
-    match_all(grid, tracers, moment, {});
+  assign_rest(grid, tracers, time);
+  const bool rough = static_cast<double>(open) > kCosts.open_fraction * static_cast<double>(tracks_.size());
+  // If all beads are present, a single ambiguous link justifies the collective matching. If some are missing,
+  // nearly every frame has an ambiguous link, and it is mostly right.
+  if ((last_.ambiguous > 0 && (rough || is_complete(grid))) || (rough && neighbours_separate(grid)))
+    match_all(grid, tracers, time, {});
   if (last_.rematched > 0 && ahead != nullptr) {
-    const std::vector<PixelPoint> back = steps_back(grid, detections, moment, tracers, *ahead);
-    if (flies_on(grid, back)) {
+    const std::vector<PixelPoint> back = steps_back(grid, detections, time, tracers, *ahead);
+    if (follows_ballistic(grid, back)) {
       const std::vector<std::int32_t> first = detection_of_;
-      match_all(grid, tracers, moment, back);
-      // What the frame ahead has changed is said to be ambiguous, whatever the odds are now.
+      match_all(grid, tracers, time, back);
+      // A link that the frame ahead has changed is ambiguous, whatever its odds are now.
       for (std::size_t t = 0; t < tracks_.size(); ++t) {
         if (detection_of_[t] < 0 || detection_of_[t] == first[t]) continue;
-        say_ambiguous(grid.original(static_cast<std::size_t>(detection_of_[t])));
+        mark_ambiguous(grid.original(static_cast<std::size_t>(detection_of_[t])));
       }
     }
   }
@@ -1015,20 +1070,20 @@ namespace {
 void require_places(std::span<const PixelPoint> detections, std::int64_t frame) {
   for (std::size_t k = 0; k < detections.size(); ++k)
     if (!(std::abs(detections[k].x_px) < kFar && std::abs(detections[k].y_px) < kFar))
-      throw RunError(fmt::format("frame {}, detection {}: ({}, {}) is no place in a picture.", frame, k,
+      throw RunError(fmt::format("frame {}, detection {}: ({}, {}) is not a position in a picture.", frame, k,
                                  detections[k].x_px, detections[k].y_px));
 }
 
 }  // namespace
 
-std::vector<std::int64_t> Linker::next(std::span<const PixelPoint> detections, const FrameMoment& moment,
+std::vector<std::int64_t> Linker::next(std::span<const PixelPoint> detections, const FrameTime& time,
                                        std::span<const std::uint8_t> tracers, const FrameAhead* ahead) {
   require_places(detections, total_.frames);
   if (ahead != nullptr) require_places(ahead->detections, total_.frames + 1);
   last_ = {.frames = 1};
-  link(detections, moment, tracers, ahead);
+  link(detections, time, tracers, ahead);
   std::vector<std::int64_t> ids(detections.size(), -1);
-  update(detections, tracers, moment, ids);
+  update(detections, tracers, time, ids);
   total_.add(last_);
   return ids;
 }

@@ -1,21 +1,23 @@
 #pragma once
 /// \file
-/// Identities through the frames of a shaken cell.
+/// Tracking: bead identities across the frames of a shaken cell.
 ///
-/// Each track says where its bead should be now. Three rules are tried on every frame: where the bead was;
-/// there plus its last step; where it was a cycle ago plus what it has drifted since. The first, which
-/// remembers no error, is taken unless another fits the frame better. What the prediction lacks is learnt
-/// from the frame itself, first for all beads together (a bed that flies or rides on the plate moves as one),
-/// then from neighbours that are already settled (a bed that lands is stopped from below). A detection within
-/// 0.25 d of where it is expected has no rival, since discs do not overlap; most beads are settled by this
-/// one look. The rest is assigned so that the summed cost is least (assignment.hpp), and the cost by which
-/// the next best assignment is more expensive says which links are ambiguous.
+/// Each track predicts the present position of its bead. Three rules are tried on every frame: the bead's
+/// last position; that position plus its last step; its position one cycle ago plus its drift since then. The
+/// first rule, which accumulates no error, is used unless another fits the frame better. The remaining
+/// displacement is estimated from the frame itself: first for all beads together (a bed that is airborne or
+/// rides on the plate moves as one), then from neighbours that are already linked (a bed that lands is
+/// stopped from below). A detection within 0.25 d of its expected position has no rival, since discs do not
+/// overlap; this single lookup settles most beads. The remaining tracks are assigned at minimum total cost
+/// (assignment.hpp). The cost margin to the second-best assignment determines which links are ambiguous.
 ///
-/// Frames in which neighbours part are matched anew, all beads at once (collective_matching.hpp), and once
-/// more with what the frame ahead tells: a bead that is hit once between two frames has gone part of the step
-/// that free flight repeats and the rest of the step back from where it goes next.
+/// A frame in which neighbours separate is matched again, all beads at once (collective_matching.hpp), and
+/// then a second time with the next frame as evidence: a bead that is hit once between two frames covers a
+/// fraction of the step that free flight would repeat, and the remaining fraction of the step implied by its
+/// motion to the next frame.
 ///
-/// Pictures have gravity downwards: y grows in a fall, and nothing is expected below the lowest detection.
+/// In the picture gravity points down: y increases in a fall, and no bead is expected below the lowest
+/// detection.
 
 #include <cstdint>
 #include <span>
@@ -26,147 +28,153 @@
 
 namespace twincell {
 
-/// How identities are kept.
+/// Options of the linker.
 struct LinkOptions {
   double diameter_px = 0;            ///< bead diameter, > 0
-  double range_diameters = 2;        ///< longest step from the predicted place, diameters, > 0, <= 10
+  double range_diameters = 2;        ///< longest step from the predicted position, diameters, > 0, <= 10
   int memory = 3;                    ///< frames for which a bead may be missing, 0 .. 1000
-  double max_shift_diameters = 1.5;  ///< largest common departure from the prediction sought, diameters,
-                                     ///< 0 .. 10; 0: none
-  double fall_px = 0;  ///< by which a step downwards grows per frame interval in free flight: g dt^2; >= 0
+  double max_shift_diameters = 1.5;  ///< largest common shift from the prediction that is searched for,
+                                     ///< diameters, 0 .. 10; 0: no search
+  double fall_px = 0;  ///< increase of the downward step per frame interval in free flight: g dt^2, px, >= 0
   bool closed =
-      false;  ///< no bead comes or goes: as many detections as tracks, none missing, are all of them
-  double ambiguous_odds = 20;  ///< a link is ambiguous below these odds against the next best, >= 1
+      false;  ///< no bead enters or leaves: with as many detections as tracks and none missing, all are seen
+  double ambiguous_odds = 20;  ///< a link is ambiguous if its odds against the second-best are lower, >= 1
 };
 
-/// What is known of a frame besides its beads.
-struct FrameMoment {
-  double interval = 1;      ///< frame intervals since the frame before; 2: one was dropped, 0: taken twice
+/// Time of a frame relative to the previous frame and to the drive.
+struct FrameTime {
+  double interval = 1;      ///< frame intervals since the previous frame; 2: one was dropped, 0: taken twice
   std::int32_t phase = -1;  ///< phase of the drive, -1: not phase-locked
   std::int64_t cycle = -1;  ///< cycle of the drive
 };
 
-/// The frame after the one that is linked.
+/// The frame after the one being linked.
 struct FrameAhead {
   std::span<const PixelPoint> detections;
-  FrameMoment moment;
+  FrameTime time;
   std::span<const std::uint8_t> tracers;  ///< as for `Linker::next`
 };
 
-/// What the linker did, in one frame or summed over frames.
+/// Counts of the linker's actions, in one frame or summed over frames.
 struct LinkReport {
   std::int64_t frames = 0;
-  std::int64_t links = 0;            ///< detections that continue a track
-  std::int64_t settled = 0;          ///< of them, those settled by one look
-  std::int64_t bridged = 0;          ///< of them, those whose track was missing in between
-  std::int64_t ambiguous = 0;        ///< of them, those whose odds against the next best are below the bound
-  std::int64_t births = 0;           ///< detections that begin a track
-  std::int64_t losses = 0;           ///< tracks given up
-  std::int64_t networks = 0;         ///< sub-networks assigned
+  std::int64_t links = 0;      ///< detections that continue a track
+  std::int64_t settled = 0;    ///< of them, those settled by the single lookup
+  std::int64_t bridged = 0;    ///< of them, those whose track was missing in between
+  std::int64_t ambiguous = 0;  ///< of them, those whose odds against the second-best are below the bound
+  std::int64_t births = 0;     ///< detections that start a track
+  std::int64_t losses = 0;     ///< tracks that ended
+  std::int64_t networks = 0;   ///< sub-networks assigned
   std::int64_t largest_network = 0;  ///< tracks in the largest
-  std::int64_t unsolved = 0;         ///< tracks left to the fallback because a frame was too crowded
-  std::int64_t rematched = 0;        ///< frames matched anew because neighbours parted
-  std::int64_t unclear_shifts = 0;   ///< frames whose common shift had a rival nearly as good
+  std::int64_t unsolved = 0;   ///< tracks left to the fallback because the assignment exceeded its work bound
+  std::int64_t rematched = 0;  ///< frames matched again, all beads at once
+  std::int64_t unclear_shifts = 0;  ///< frames in which a second common shift fits nearly as well
   void add(const LinkReport& frame);
 };
 
-/// Links frame after frame; memory is one entry per living track (and 16 bytes per phase of the cycle).
+/// Links frame after frame. Memory: one entry per active track, and 16 bytes per track and phase of the
+/// cycle.
 class Linker {
  public:
-  /// Cycles of more phases are not remembered.
+  /// The rule "one cycle ago" is disabled for cycles with more phases.
   static constexpr int kMostPhases = 512;
   /// \throws ConfigError if an option is out of range
   explicit Linker(const LinkOptions& options, int phases_per_cycle = 0);
-  /// Gives each detection of the next frame its track: old numbers go on, new ones are counted from 0.
+  /// Returns the track of each detection in the next frame. Existing tracks keep their numbers; new ones are
+  /// numbered consecutively from 0.
   /// \param tracers 1 for a tracer bead, or empty; a track prefers detections of its own kind
-  /// \param ahead the frame after, where it is known: in a frame that is matched anew, a link is also judged
-  ///     by how its bead goes on. Beads that collide between two frames are told by nothing else
-  /// \throws RunError if a place is not finite or lies 10^9 px away
-  std::vector<std::int64_t> next(std::span<const PixelPoint> detections, const FrameMoment& moment = {},
+  /// \param ahead the frame after the next one, if available: if the frame is matched collectively, each link
+  ///     is also judged by the bead's motion after it. This is the only evidence for a collision between two
+  ///     frames
+  /// \throws RunError if a coordinate is not finite or is 10^9 px or more
+  std::vector<std::int64_t> next(std::span<const PixelPoint> detections, const FrameTime& time = {},
                                  std::span<const std::uint8_t> tracers = {},
                                  const FrameAhead* ahead = nullptr);
-  /// Steps, px per frame interval, with which the beads of the first frame come into it, in its order; NaN
-  /// where it is not known. To be said before that frame (initial_velocities.hpp finds them).
+  /// Sets the steps, px per frame interval, with which the beads of the first frame arrive there, in the
+  /// order of its detections; NaN where unknown. Call it before that frame (initial_velocities.hpp computes
+  /// the steps).
   void begin(std::vector<PixelPoint> steps) { first_steps_ = std::move(steps); }
-  /// The same tracks on their way back, to link the frames before the last one in falling order; what they
-  /// were a cycle ago is forgotten.
-  [[nodiscard]] Linker turned() const;
-  /// Of the last frame, per detection: 1 if its link is ambiguous.
+  /// Returns a linker with the same tracks in reversed time, to link the frames before the last one in
+  /// descending order. Positions of the previous cycle are discarded.
+  [[nodiscard]] Linker reversed() const;
+  /// For each detection of the last frame: 1 if its link is ambiguous.
   [[nodiscard]] const std::vector<std::uint8_t>& ambiguous() const { return ambiguous_; }
-  /// Tracks so far.
+  /// Number of tracks so far.
   [[nodiscard]] std::int64_t n_tracks() const { return n_tracks_; }
   /// Median step of the beads linked in the last frame, px.
   [[nodiscard]] PixelPoint common_step() const { return step_; }
   /// Mean step of the beads linked in the last frame, px.
   [[nodiscard]] PixelPoint mean_step() const { return mean_step_; }
-  /// Of the last frame, and of all.
+  /// Counts of the last frame, and of all frames.
   [[nodiscard]] const LinkReport& last() const { return last_; }
   [[nodiscard]] const LinkReport& total() const { return total_; }
 
  private:
   struct Track {
     std::int64_t id = 0;
-    PixelPoint place;  // last seen; moved along with the common step while missing
+    PixelPoint place;  // last detected position; moves with the common step while the bead is missing
     PixelPoint step;   // per frame interval
-    PixelPoint drift;  // against the same phase of the cycle before; 0 where that is unknown
+    PixelPoint drift;  // since the same phase of the previous cycle; 0 if unknown
     std::int32_t missed = 0;
-    std::int32_t seen = 1;        // frames
-    std::int32_t detection = -1;  // in the frame last seen
+    std::int32_t seen = 1;        // number of frames in which it was detected
+    std::int32_t detection = -1;  // index in the frame in which it was last detected
     std::uint8_t tracer = 0;
   };
-  struct Way {
-    double miss2;   // squared distance from it, diameters squared
-    double length;  // diameters
+  struct CollisionPath {
+    double miss2;   // squared distance of the detection from the one-collision line, diameters squared
+    double length;  // of that line, diameters
   };
-  enum class Rule { still, step, cycle };
+  enum class PredictionRule { still, step, cycle };
   class Grid;
 
-  [[nodiscard]] PixelPoint predict(std::size_t track, Rule rule, const FrameMoment& moment) const;
-  [[nodiscard]] PixelPoint in_flight(std::size_t track, const FrameMoment& moment) const;
-  void predict_all(const Grid& grid, const FrameMoment& moment);
+  [[nodiscard]] PixelPoint predict(std::size_t track, PredictionRule rule, const FrameTime& time) const;
+  [[nodiscard]] PixelPoint in_flight(std::size_t track, const FrameTime& time) const;
+  void predict_all(const Grid& grid, const FrameTime& time);
   void settle(const Grid& grid, std::span<const std::uint8_t> tracers);
   void follow_neighbours(const Grid& grid);
-  void link(std::span<const PixelPoint> detections, const FrameMoment& moment,
+  void link(std::span<const PixelPoint> detections, const FrameTime& time,
             std::span<const std::uint8_t> tracers, const FrameAhead* ahead);
-  [[nodiscard]] bool neighbours_part(const Grid& grid) const;
-  [[nodiscard]] bool stranger(const Track& track) const;
-  [[nodiscard]] double price_of_nowhere(std::size_t track) const;
+  [[nodiscard]] bool neighbours_separate(const Grid& grid) const;
+  [[nodiscard]] bool is_unconfirmed(const Track& track) const;
+  [[nodiscard]] double cost_of_no_match(std::size_t track) const;
   [[nodiscard]] std::vector<std::uint8_t> newcomers(const Grid& grid) const;
-  [[nodiscard]] bool all_there(const Grid& grid) const;
+  [[nodiscard]] bool is_complete(const Grid& grid) const;
   [[nodiscard]] std::vector<PixelPoint> steps_back(const Grid& grid, std::span<const PixelPoint> detections,
-                                                   const FrameMoment& moment,
+                                                   const FrameTime& time,
                                                    std::span<const std::uint8_t> tracers,
                                                    const FrameAhead& ahead) const;
-  [[nodiscard]] Way way(std::size_t track, PixelPoint to, PixelPoint step_back) const;
-  [[nodiscard]] bool flies_on(const Grid& grid, const std::vector<PixelPoint>& steps_back) const;
-  void match_all(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment,
+  [[nodiscard]] CollisionPath collision_path(std::size_t track, PixelPoint to, PixelPoint step_back) const;
+  [[nodiscard]] bool follows_ballistic(const Grid& grid, const std::vector<PixelPoint>& steps_back) const;
+  void match_all(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameTime& time,
                  const std::vector<PixelPoint>& steps_back);
   void link_left_over(const Grid& grid);
-  void say_ambiguous(std::size_t detection);
-  void assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameMoment& moment);
+  void mark_ambiguous(std::size_t detection);
+  void assign_rest(const Grid& grid, std::span<const std::uint8_t> tracers, const FrameTime& time);
   void update(std::span<const PixelPoint> detections, std::span<const std::uint8_t> tracers,
-              const FrameMoment& moment, std::vector<std::int64_t>& ids);
+              const FrameTime& time, std::vector<std::int64_t>& ids);
 
   LinkOptions options_;
   int phases_;
   std::vector<Track> tracks_;
-  std::vector<PixelPoint> cycle_places_;      // [track][phase]: place at that phase, last time
-  std::vector<std::int64_t> cycle_of_phase_;  // when that was
+  std::vector<PixelPoint> cycle_places_;      // [track][phase]: last position at that phase
+  std::vector<std::int64_t> cycle_of_phase_;  // cycle in which that was
   std::int64_t n_tracks_ = 0;
   PixelPoint step_, mean_step_;
-  PixelPoint low_{1e9, 1e9}, high_{-1e9, -1e9};  // corners of where detections have been
-  std::vector<PixelPoint> first_steps_;          // of the detections of the first frame; empty: not known
+  PixelPoint low_{1e9, 1e9}, high_{-1e9, -1e9};  // corners of the bounding box of all detections so far
+  std::vector<PixelPoint> first_steps_;          // of the detections of the first frame; empty: unknown
   std::vector<std::uint8_t> ambiguous_;
   LinkReport last_, total_;
 
-  // Of the frame at hand.
-  std::vector<PixelPoint> expected_;        // per track
-  std::vector<PixelPoint> falling_;         // per track, the same as if there were no floor
-  std::vector<PixelPoint> flying_;          // per track, where free flight leads
-  std::vector<double> disputed_;            // per track, px from where free flight leads to another detection
-  std::vector<PixelPoint> local_;           // per track, the correction learnt from settled neighbours
-  std::vector<std::int32_t> detection_of_;  // per track, -1: none yet
-  std::vector<std::int32_t> track_of_;      // per detection, -1: none yet
+  // State of the current frame.
+  std::vector<PixelPoint> expected_;           // per track
+  std::vector<PixelPoint> expected_no_floor_;  // per track, the same without the floor
+  std::vector<PixelPoint> ballistic_;          // per track, the position in free flight
+  std::vector<double>
+      rival_distance_;  // per track, distance of a rival detection from the position in free flight, px
+  std::vector<PixelPoint>
+      neighbour_correction_;                // per track, the correction estimated from linked neighbours
+  std::vector<std::int32_t> detection_of_;  // per track, -1: not yet linked
+  std::vector<std::int32_t> track_of_;      // per detection, -1: not yet linked
 };
 
 }  // namespace twincell

@@ -6,10 +6,10 @@
 namespace twincell {
 
 namespace {
-constexpr double kNothing = 1e-9;  // rounding must not keep a path alive
+constexpr double kNothing = 1e-9;  // smaller residual capacities are rounding errors and count as 0
 }
 
-// Behind the nodes: the source, on whose side nodes stay, and the sink.
+// Node n is the source and node n + 1 the sink. Nodes on the side of the source stay.
 MinCut::MinCut(std::size_t nodes) : nodes_(nodes), first_(nodes + 2, -1) {}
 
 void MinCut::add(std::size_t from, std::size_t to, double capacity) {

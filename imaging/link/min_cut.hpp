@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// Least cut between a source and a sink, and with it the best choice of many twofold choices at once.
+/// Minimum cut between a source and a sink; it finds the jointly optimal choice for many binary variables.
 ///
-/// A sum of terms that cost something if one node stays and another moves, and of terms of single nodes, is
-/// the cost of a cut; the least is found by shortest augmenting paths in layers (Dinic, Soviet Math. Doklady
-/// 11, 1277 (1970)).
+/// A sum of single-node terms and of pair terms that cost something if one node stays and the other moves
+/// equals the capacity of a cut. The minimum is found by maximum flow with shortest augmenting paths in
+/// layers (Dinic, Soviet Math. Doklady 11, 1277 (1970)).
 
 #include <cstddef>
 #include <cstdint>
@@ -12,15 +12,17 @@
 
 namespace twincell {
 
-/// Nodes that stay or move.
+/// Binary choice for each node: stay or move.
 class MinCut {
  public:
   explicit MinCut(std::size_t nodes);
-  /// Moving costs `cost` more than staying; below 0: less.
+  /// Adds a term by which moving costs `cost` more than staying; below 0: less.
   void move(std::size_t node, double cost);
-  /// \param cost >= 0, of one staying while the other moves
+  /// Adds a term that applies if node `stays` stays while node `moves` moves.
+  /// \param cost >= 0
   void stay_and_move(std::size_t stays, std::size_t moves, double cost);
-  /// Who moves in the cheapest choice; of equals the one in which most move. Call once.
+  /// Returns 1 for each node that moves in the cheapest choice. Among equal choices it returns the one in
+  /// which most nodes move. Call once.
   std::vector<std::uint8_t> solve();
 
  private:

@@ -19,7 +19,7 @@ namespace twincell {
 
 namespace {
 
-/// By y, then x.
+/// Sorts by y, then x.
 void sort_by_place(std::vector<Detection>& detections) {
   std::vector<std::pair<std::pair<double, double>, std::size_t>> order;
   order.reserve(detections.size());
@@ -32,8 +32,8 @@ void sort_by_place(std::vector<Detection>& detections) {
   detections = std::move(sorted);
 }
 
-/// Gradients do not point at the centre of a large disc well enough for their votes to meet within a pixel:
-/// it is sought on a smaller picture.
+/// Gradients do not point at the centre of a large disc accurately enough for their votes to meet within a
+/// pixel, so large discs are searched on a reduced picture.
 std::vector<Proposal> propose_at_scale(const std::string& finder, const Prepared& image,
                                        const FindOptions& wanted) {
   constexpr double kLarge = 25, kGoal = 16;  // px
@@ -43,7 +43,8 @@ std::vector<Proposal> propose_at_scale(const std::string& finder, const Prepared
     return found;
   }
   const double shrink = wanted.radius_px / kGoal;
-  if (std::min(image.darkness.cols, image.darkness.rows) < shrink) return {};  // nothing would be left of it
+  if (std::min(image.darkness.cols, image.darkness.rows) < shrink)
+    return {};  // the reduced picture would be empty
   Prepared small;
   small.light = image.light;
   cv::resize(image.darkness, small.darkness, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);
@@ -86,7 +87,7 @@ void LocatorOptions::check() const {
   for (const double other : other_diameters_px) range("diameter", other, 3, 400);
   if (!other_diameters_px.empty() && model_of(refine) == DiscModel::shared_profile)
     throw ConfigError(Where{.file = {}, .key = "diameter"},
-                      "has several values; discs of several sizes have no profile in common.");
+                      "has several values; discs of several sizes have no common profile.");
   (void)refiner_named(refine.method);
   range("contrast", preprocess.contrast, 0.01, 2);
   range("sweeps", refine.sweeps, 1, 100);
@@ -102,12 +103,12 @@ void LocatorOptions::check() const {
 
 namespace {
 
-/// Discs of every size asked for; those of several sizes each say which.
+/// Proposals for discs of all requested sizes, each with the radius it was found with.
 std::vector<Proposal> propose_all(const Prepared& image, const LocatorOptions& options) {
-  // Circles through edges stand each for itself: which of them overlap is for the judge to say.
+  // Discs of the circle model are fitted independently, so the judge chooses among overlapping ones.
   const bool choose = !options.other_diameters_px.empty() && model_of(options.refine) != DiscModel::circle;
   FindOptions wanted = options.find;
-  // One that is of the wrong size must not drive out its neighbours.
+  // A proposal of the wrong size must not suppress its neighbours.
   constexpr double kApart = 0.2;
   if (choose) wanted.apart = kApart;
   wanted.radius_px = options.diameter_px / 2;
@@ -149,7 +150,7 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   if (refiner.model == DiscModel::shared_profile ||
       (refiner.model == DiscModel::circle && options.preprocess.contrast != 1))
     judged.tracer_below = 0;
-  // A disc may look like anything inside if all do.
+  // With a shared profile the interior of a disc may have any darkness.
   if (refiner.model == DiscModel::shared_profile) judged.min_interior = -HUGE_VAL;
   judged.other_radii_px = refined.other_radii_px;
   result.judged = judge(result.refined.beads, radius, grey.cols, grey.rows, judged);
@@ -158,16 +159,16 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
 }
 
 Located locate(const cv::Mat& picture, const LocatorOptions& options) {
-  const PictureOrientation way = canonical_picture_orientation(picture);
-  LocatorStages stages = locate_stages(way.turned(picture), options);
+  const PictureOrientation orientation = canonical_picture_orientation(picture);
+  LocatorStages stages = locate_stages(orientation.turned(picture), options);
   Located result;
   result.blur_px = stages.refined.blur_px;
-  result.path_px = way.back(stages.refined.path_px);
+  result.path_px = orientation.back(stages.refined.path_px);
   result.beads = std::move(stages.judged.beads);
   result.dropped = std::move(stages.refined.dropped);
   result.dropped.insert(result.dropped.end(), stages.judged.dropped.begin(), stages.judged.dropped.end());
   for (std::vector<Detection>* list : {&result.beads, &result.dropped}) {
-    for (Detection& d : *list) d = way.back(d, picture.size());
+    for (Detection& d : *list) d = orientation.back(d, picture.size());
     sort_by_place(*list);
   }
   result.stages = std::move(stages.reports);

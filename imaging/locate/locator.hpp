@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// Beads in one frame: find -> refine -> judge.
+/// Location of the beads in one frame: find -> refine -> judge.
 ///
 /// find (vote_finder.hpp, hough_finder.hpp) proposes circle centres; refine (picture_fit.hpp) fits the
-/// picture itself; judge (judge.hpp) drops what cannot be an opaque disc. Each is a pure function with its
-/// options.
+/// picture itself; judge (judge.hpp) rejects candidates that cannot be opaque discs. Each stage is a pure
+/// function with its own options.
 
 #include <array>
 #include <opencv2/core.hpp>
@@ -19,38 +19,38 @@
 
 namespace twincell {
 
-/// How beads are located.
+/// Options of the locator.
 struct LocatorOptions {
   std::string finder = "vote";  ///< one of finder_names()
-  double diameter_px = 0;       ///< bead diameter, 3 .. 400; 0: found from the first frame
+  double diameter_px = 0;       ///< bead diameter, 3 .. 400; 0: determined from the first frame
   std::vector<double>
-      other_diameters_px;      ///< further sizes, each likewise; not with DiscModel::shared_profile
-  bool polarity_known = true;  ///< preprocess.bright was said, not to be found from the first frame
+      other_diameters_px;      ///< further diameters, 3 .. 400; not with DiscModel::shared_profile
+  bool polarity_known = true;  ///< preprocess.bright is given; false: determined from the first frame
   PreprocessOptions preprocess;
-  FindOptions find;      ///< its radius is set from the diameter
-  RefineOptions refine;  ///< its other radii likewise
+  FindOptions find;      ///< its radius is set from the diameters
+  RefineOptions refine;  ///< its other radii are set from the diameters
   JudgeOptions judge;
   /// \throws ConfigError naming the option and its bound
   void check() const;
 };
 
-/// Time and count of one stage.
+/// Time and number of beads of one stage.
 struct StageReport {
   std::string stage;      ///< "prepare", "find", "refine", "judge"
   double seconds = 0;     ///< wall time of the calling thread
   std::size_t beads = 0;  ///< proposals or beads after the stage
 };
 
-/// One frame located.
+/// Result of one frame.
 struct Located {
   std::vector<Detection> beads;        ///< ordered by y, then x
-  std::vector<Detection> dropped;      ///< candidates that are none, each with its verdict
-  double blur_px = 0;                  ///< standard deviation of the edge found by the fit
-  std::array<double, 2> path_px = {};  ///< by which the bed moved during the exposure, x >= 0; 0: not seen to
+  std::vector<Detection> dropped;      ///< rejected candidates, each with its verdict
+  double blur_px = 0;                  ///< standard deviation of the edge blur, from the fit
+  std::array<double, 2> path_px = {};  ///< displacement of the bed in the exposure, x >= 0; 0: not detected
   std::vector<StageReport> stages;
 };
 
-/// What each stage made of a frame, as it is held.
+/// Intermediate results of all stages.
 struct LocatorStages {
   Prepared image;
   std::vector<Proposal> proposals;
@@ -58,9 +58,12 @@ struct LocatorStages {
   Judged judged;
   std::vector<StageReport> reports;
 };
+/// Runs all stages on a grey frame in the orientation in which it is stored.
+/// \throws ConfigError as `check`
 LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options);
 
-/// Locates the beads in one grey frame, turned as picture_orientation.hpp says. Pure; needs diameter_px > 0.
+/// Locates the beads in one grey frame, in its canonical orientation (picture_orientation.hpp). Pure.
+/// \pre diameter_px > 0
 /// \throws ConfigError as `check`
 Located locate(const cv::Mat& grey, const LocatorOptions& options);
 

@@ -10,14 +10,15 @@ namespace twincell {
 
 namespace {
 
-struct Moments {
-  double x, y;  // sum over pixels of value times the distance from the middle
+struct FirstMoments {
+  double x, y;  // sum over pixels of value times twice the distance from the centre
 };
 
-/// Exact for whole numbers, and so the same however the picture is held; for others as good as doubles are.
+/// First moments of the brightness. For integer pixels they are exact, and so independent of the orientation;
+/// for other pixels they have double precision.
 template <class T>
-Moments moments_of(const cv::Mat& picture) {
-  // 65536 rows of 16 bits fill 32.
+FirstMoments first_moments(const cv::Mat& picture) {
+  // 32 bits are enough for the sum of 65536 pixels of 16 bits.
   using Line = std::conditional_t<std::is_integral_v<T>, std::uint32_t, double>;
   using Sum = std::conditional_t<std::is_integral_v<T>, std::int64_t, double>;
   std::vector<Line> columns(static_cast<std::size_t>(picture.cols), 0);
@@ -40,7 +41,7 @@ Moments moments_of(const cv::Mat& picture) {
 
 cv::Mat PictureOrientation::turned(const cv::Mat& picture) const {
   cv::Mat stood, result;
-  // Into a picture of its own: OpenCV would transpose a square one in place.
+  // Into a separate picture, because OpenCV would transpose a square one in place.
   if (transpose)
     cv::transpose(picture, stood);
   else
@@ -61,18 +62,18 @@ Detection PictureOrientation::back(Detection d, cv::Size size) const {
   return d;
 }
 
-std::array<double, 2> PictureOrientation::back(std::array<double, 2> way) const {
-  if (flip_x != flip_y) way[1] = -way[1];
-  if (transpose) std::swap(way[0], way[1]);
-  return way[0] < 0 ? std::array{-way[0], -way[1]} : way;
+std::array<double, 2> PictureOrientation::back(std::array<double, 2> displacement) const {
+  if (flip_x != flip_y) displacement[1] = -displacement[1];
+  if (transpose) std::swap(displacement[0], displacement[1]);
+  return displacement[0] < 0 ? std::array{-displacement[0], -displacement[1]} : displacement;
 }
 
 PictureOrientation canonical_picture_orientation(const cv::Mat& picture) {
-  const Moments m = picture.depth() == CV_8U    ? moments_of<std::uint8_t>(picture)
-                    : picture.depth() == CV_16U ? moments_of<std::uint16_t>(picture)
-                                                : moments_of<float>(picture);
+  const FirstMoments m = picture.depth() == CV_8U    ? first_moments<std::uint8_t>(picture)
+                         : picture.depth() == CV_16U ? first_moments<std::uint16_t>(picture)
+                                                     : first_moments<float>(picture);
   PictureOrientation o;
-  // Only a square can be told from its transpose by nothing but its content.
+  // The shape of a picture decides its transposition; for a square, the content must decide.
   o.transpose = picture.cols != picture.rows ? picture.cols > picture.rows : std::abs(m.x) > std::abs(m.y);
   o.flip_x = (o.transpose ? m.y : m.x) > 0;
   o.flip_y = (o.transpose ? m.x : m.y) > 0;

@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// The eight ways to hold a picture: flips, quarter turns and their products.
+/// Canonical orientation of a picture among eight: flips, quarter turns and their products.
 ///
-/// Sums in floating point depend on their order, so that a locator would find a bead of a flipped picture a
-/// millionth of a pixel from where it should. Every picture is therefore turned into one of its eight ways
-/// that only its content decides, located there, and the beads turned back: flipping or turning a picture
-/// flips or turns the result, to the bit up to the rounding of n - 1 - x.
+/// Floating-point sums depend on their order, so a locator would find a bead of a flipped picture a millionth
+/// of a pixel from its flipped position. Every picture is therefore brought into one of its eight
+/// orientations, which depends on the picture alone; the beads are located there and transformed back.
+/// Flipping or turning a picture flips or turns the result, exact to the bit up to the rounding of n - 1 - x.
 
 #include <array>
 #include <opencv2/core.hpp>
@@ -14,19 +14,21 @@
 
 namespace twincell {
 
-/// First transposed, then flipped.
+/// An orientation: the picture is first transposed, then flipped.
 struct PictureOrientation {
   bool transpose = false, flip_x = false, flip_y = false;
 
+  /// The picture in this orientation.
   [[nodiscard]] cv::Mat turned(const cv::Mat& picture) const;
-  /// A detection in the turned picture, in the original. \param size of the original
+  /// Transforms a detection from the turned picture to the original. \param size size of the original
   [[nodiscard]] Detection back(Detection d, cv::Size size) const;
-  /// Likewise a way whose sense does not matter; x >= 0.
-  [[nodiscard]] std::array<double, 2> back(std::array<double, 2> way) const;
+  /// Likewise for a displacement whose sign is arbitrary; the result has x >= 0.
+  [[nodiscard]] std::array<double, 2> back(std::array<double, 2> displacement) const;
 };
 
-/// The way in which a picture's upper left is its brighter side, and the way down the more uneven one. A
-/// picture that is its own mirror image is left as it is.
+/// The orientation in which the upper and the left half of a picture are the brighter ones, and its longer
+/// side is vertical (in a square picture: the direction with the larger brightness difference). A picture
+/// that is its own mirror image is not flipped.
 /// \param picture CV_8U, CV_16U or CV_32F, one channel
 PictureOrientation canonical_picture_orientation(const cv::Mat& picture);
 

@@ -16,17 +16,17 @@ namespace twincell {
 namespace {
 
 constexpr std::size_t kMostLags = 2000;
-constexpr std::size_t kMostFrames = 20000;  // for the period; its phases are found for all
-constexpr double kDip = 0.2;                // of the normalised difference, below which a lag is a period
-constexpr double kDipOfMedian = 0.03;       // likewise of its median, which is small sooner
-constexpr double kDipGiven = 0.8;           // the same where the period was given
-constexpr double kPrice = 12;               // of a dropped or doubled frame, natural logarithm of odds
-constexpr double kPriceOfMore = 2;          // of each frame more that was dropped there
-constexpr std::size_t kMostDropped = 20;    // in a row
-constexpr double kSure = 40;                // more than any picture tells: such odds count as certain
+constexpr std::size_t kMostFrames = 20000;   // used for the period; the phases are estimated for all frames
+constexpr double kPeriodDip = 0.2;           // largest normalised difference at a period
+constexpr double kPeriodDipOfMedian = 0.03;  // the same for its median, which falls sooner
+constexpr double kGivenPeriodDip = 0.8;      // the same for a given period
+constexpr double kSlipCost = 12;             // of a dropped or doubled frame, natural log-odds
+constexpr double kFurtherDropCost = 2;       // of each further frame dropped there
+constexpr std::size_t kMostDropped = 20;     // in a row
+constexpr double kCertain = 40;              // odds beyond the evidence of any picture, treated as certainty
 
-/// By how much the bed rose into each frame; of the first frame 0. Errors of steps are their own, those of
-/// heights add up; and steps know no drift.
+/// Rise of the bed since the previous frame, for each frame; 0 for the first. Steps are used because their
+/// errors are independent and free of drift, whereas the errors of heights accumulate.
 using Steps = std::vector<double>;
 
 Steps steps_of(std::span<const double> heights) {
@@ -35,15 +35,16 @@ Steps steps_of(std::span<const double> heights) {
   return steps;
 }
 
-/// About each frame `width` of them, at the ends the last so many.
+/// Window of `width` values about frame f; at the ends of the series it is shifted inwards.
 std::span<const double> around(std::span<const double> values, std::size_t f, std::size_t width) {
   const std::size_t whole = std::min(width, values.size());
   const std::size_t first = f >= width / 2 ? f - width / 2 : 0;
   return values.subspan(std::min(first, values.size() - whole), whole);
 }
 
-/// Less what they differ by from the wave form, its median over a cycle about each frame: no gap, and no
-/// frames that are in the wrong place, move it, and a step is one between two frames.
+/// Heights without their drift. The drift is the running median, over one cycle about each frame, of the
+/// difference between heights and wave form. Gaps and misplaced frames do not change the median, and a jump
+/// stays between two frames.
 std::vector<double> without_drift(std::span<const double> h, std::span<const double> wave,
                                   std::span<const std::int64_t> ticks) {
   std::vector<double> off(h.begin(), h.end()), out(off);
@@ -55,7 +56,7 @@ std::vector<double> without_drift(std::span<const double> h, std::span<const dou
   return out;
 }
 
-/// Squared difference at each lag, its mean or its median, over its mean at all smaller lags.
+/// Mean or median squared difference at each lag, divided by its mean over all lags up to this one.
 std::vector<double> normalised_difference(std::span<const double> v, std::size_t lags, bool of_median) {
   std::vector<double> out(lags + 1, 1), squares;
   double sum = 0;
@@ -71,57 +72,57 @@ std::vector<double> normalised_difference(std::span<const double> v, std::size_t
   return out;
 }
 
-/// The lag of the first minimum that is so deep; 0: none.
+/// Lag of the first minimum below `deep`; 0: no such minimum.
 std::size_t first_dip(std::span<const double> dip, double deep) {
   for (std::size_t lag = 2; lag + 1 < dip.size(); ++lag)
     if (dip[lag] < deep && dip[lag] <= dip[lag + 1] && dip[lag] <= dip[lag - 1]) return lag;
   return 0;
 }
 
-/// What the period may be.
+/// Candidates for the period, in frames.
 std::vector<std::size_t> likely_periods(const Steps& steps, int given) {
   auto refuse = [](const std::string& why) {
     throw InputError(Where{.file = {}, .key = "phase-lock"},
                      why + "; give --phase-lock N or a list of triggers instead.");
   };
   constexpr std::size_t kFewest = 3;
-  const std::string too_few = "fewer than three frames show a cycle";
+  const std::string too_few = "a cycle has fewer than three frames";
   if (given > 0 && static_cast<std::size_t>(given) < kFewest) refuse(too_few);
   const std::size_t n = std::min(steps.size(), kMostFrames);
   if (n < 9 || (given > 0 && n < 3 * static_cast<std::size_t>(given)))
-    refuse(fmt::format("{} frames are too few to find three cycles in", steps.size()));
+    refuse(fmt::format("{} frames are too few to contain three cycles", steps.size()));
   const std::span<const double> v = std::span(steps).subspan(1, n - 1);
   const std::size_t lags = std::min(kMostLags, v.size() / 2);
   const std::vector<double> mean = normalised_difference(v, lags, false),
                             median = normalised_difference(v, lags, true);
   if (given > 0) {
     const auto period = static_cast<std::size_t>(given);
-    if (period >= lags || std::min(mean[period], median[period]) > kDipGiven)
+    if (period >= lags || std::min(mean[period], median[period]) > kGivenPeriodDip)
       refuse(fmt::format("the bed's motion does not repeat itself after {} frames", given));
     return {period};
   }
   std::vector<std::size_t> periods;
-  const std::size_t of_mean = first_dip(mean, kDip), of_median = first_dip(median, kDipOfMedian);
+  const std::size_t of_mean = first_dip(mean, kPeriodDip), of_median = first_dip(median, kPeriodDipOfMedian);
   if (of_mean >= kFewest) periods.push_back(of_mean);
   if (of_median >= kFewest && of_median != of_mean) periods.push_back(of_median);
   if (periods.empty()) refuse(of_mean + of_median > 0 ? too_few : "the bed's motion does not repeat itself");
   return periods;
 }
 
-/// What it costs to advance by so many phases to phase k, on the way of frame f.
-class SlipPrices {
+/// Cost of advancing by `steps` phases to phase k in frame f.
+class SlipCosts {
  public:
-  /// \param repeats  as of BedMotion; \param usual  the same of each phase, its median over the cycles
-  SlipPrices(std::span<const double> repeats, std::span<const double> usual)
+  /// \param repeats as BedMotion::repeats
+  /// \param usual the median of the same over the cycles, for each phase
+  SlipCosts(std::span<const double> repeats, std::span<const double> usual)
       : repeats_(repeats), usual_(usual) {}
   [[nodiscard]] double operator()(std::size_t f, std::size_t k, std::size_t steps) const {
     const double repeats = repeats_.empty() ? 0 : repeats_[f];
-    // Observer staying the other way is to go on: if that looks like repeating in every cycle, nothing is
-    // told.
-    const bool tells = repeats < 0 || usual_[steps == 0 ? (k + 1) % usual_.size() : k] < 0;
-    if (steps == 0) return std::max(0.0, kPrice - (tells ? repeats : 0));
-    const double moved = tells ? std::max(0.0, repeats) : 0;
-    return moved + (steps > 1 ? kPrice + kPriceOfMore * static_cast<double>(steps - 2) : 0);
+    // If the alternative move looks like a repetition in every cycle, a repetition is no evidence.
+    const bool is_evidence = repeats < 0 || usual_[steps == 0 ? (k + 1) % usual_.size() : k] < 0;
+    if (steps == 0) return std::max(0.0, kSlipCost - (is_evidence ? repeats : 0));
+    const double moved = is_evidence ? std::max(0.0, repeats) : 0;
+    return moved + (steps > 1 ? kSlipCost + kFurtherDropCost * static_cast<double>(steps - 2) : 0);
   }
 
  private:
@@ -129,15 +130,18 @@ class SlipPrices {
 };
 
 struct Path {
-  std::vector<std::int64_t> ticks;  // phases counted on through all cycles
-  double cost;                      // negative logarithm of its likelihood
+  std::vector<std::int64_t> ticks;  // phases, counted continuously through all cycles
+  double cost;                      // negative log-likelihood
 };
 
-/// \param wave  the usual step into each phase; \param scatter  of each about it, and \param sigma of all
+/// Viterbi search for the most likely path.
+/// \param wave usual step into each phase
+/// \param scatter scatter of the steps into each phase
+/// \param sigma scatter common to all steps
 Path likeliest_path(const Steps& steps, std::span<const double> wave, std::span<const double> scatter,
-                    double sigma, const SlipPrices& price) {
-  // What a bed does otherwise in one cycle than in another it does for several frames.
-  constexpr double kIndependent = 20;  // of the frames of a cycle
+                    double sigma, const SlipCosts& slip_cost) {
+  // Weights: deviations of one cycle from another last for several frames, so frames are not independent.
+  constexpr double kIndependent = 20;  // independent frames in a cycle
   const std::size_t n = wave.size(), most = std::min(kMostDropped + 1, n - 1);
   const double independent = std::min(1.0, kIndependent / static_cast<double>(n));
   std::vector<double> weight(n), constant(n);
@@ -146,7 +150,7 @@ Path likeliest_path(const Steps& steps, std::span<const double> wave, std::span<
     weight[k] = independent * 0.5 / variance;
     constant[k] = independent * 0.5 * std::log(variance / (sigma * sigma));
   }
-  std::vector<double> expected(n * (most + 1), 0.0);  // of so many phases at once
+  std::vector<double> expected(n * (most + 1), 0.0);  // step over so many phases at once
   for (std::size_t k = 0; k < n; ++k)
     for (std::size_t s = 1; s <= most; ++s)
       expected[k * (most + 1) + s] = expected[k * (most + 1) + s - 1] + wave[(k + n - (s - 1)) % n];
@@ -157,9 +161,9 @@ Path likeliest_path(const Steps& steps, std::span<const double> wave, std::span<
       double least = std::numeric_limits<double>::infinity();
       for (std::size_t s = 0; s <= most; ++s) {
         const double miss = steps[f] - expected[k * (most + 1) + s];
-        // One wild frame must not buy a slip.
-        const double c = cost[(k + n - s) % n] + price(f, k, s) + constant[k] +
-                         std::min(weight[k] * miss * miss, 0.8 * kPrice);
+        // The cost of a deviation is capped, so that one outlier frame cannot cause a slip.
+        const double c = cost[(k + n - s) % n] + slip_cost(f, k, s) + constant[k] +
+                         std::min(weight[k] * miss * miss, 0.8 * kSlipCost);
         if (c >= least) continue;
         least = c;
         passed[f * n + k] = static_cast<std::uint8_t>(s);
@@ -168,20 +172,22 @@ Path likeliest_path(const Steps& steps, std::span<const double> wave, std::span<
     }
     std::swap(cost, next);
   }
+  // Backtracking from the cheapest last phase.
   auto k = static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
   Path path{std::vector<std::int64_t>(steps.size()), cost[k]};
-  std::vector<std::uint8_t> way(steps.size(), 0);
+  std::vector<std::uint8_t> advance(steps.size(), 0);
   for (std::size_t f = steps.size() - 1; f > 0; --f) {
-    way[f] = passed[f * n + k];
-    k = (k + n - way[f]) % n;
+    advance[f] = passed[f * n + k];
+    k = (k + n - advance[f]) % n;
   }
   path.ticks[0] = static_cast<std::int64_t>(k);
-  for (std::size_t f = 1; f < steps.size(); ++f) path.ticks[f] = path.ticks[f - 1] + way[f];
+  for (std::size_t f = 1; f < steps.size(); ++f) path.ticks[f] = path.ticks[f - 1] + advance[f];
   return path;
 }
 
-/// Median at each phase, so that a damaged cycle among three does no harm; a phase that was never seen keeps
-/// what it had. \param counts  which frames do
+/// Sets `wave` to the median at each phase, so that one damaged cycle among three does no harm. A phase
+/// without frames keeps its value.
+/// \param counts predicate: which frames are used
 template <class Counts>
 void learn(std::span<const double> values, std::span<const std::int64_t> ticks, std::vector<double>& wave,
            Counts&& counts) {
@@ -211,13 +217,14 @@ double correlation(std::span<const double> wave, std::span<const double> model, 
   return ww > 0 && mm > 0 ? wm / std::sqrt(ww * mm) : 0;
 }
 
-/// The frames' places in a cycle of so many phases.
+/// Fit of the frames to a cycle with a given number of phases.
 struct Fit {
-  std::vector<double> step_wave, step_scatter, usual_repeats;  // of each phase
+  std::vector<double> step_wave, step_scatter, usual_repeats;  // for each phase
   std::vector<std::int64_t> ticks;
-  double sigma = 0;  // of the steps
+  double sigma = 0;  // scatter of the steps
 
-  /// Negative logarithm of the likelihood if steps scatter by so much, and what so many phases cost.
+  /// Negative log-likelihood for steps with scatter `of_all`, plus the cost of the number of phases
+  /// (Schwarz).
   [[nodiscard]] double cost(const Steps& steps, const BedMotion& motion, double of_all) const {
     return likeliest_path(steps, step_wave, step_scatter, of_all, {motion.repeats, usual_repeats}).cost +
            0.5 * static_cast<double>(step_wave.size()) * std::log(static_cast<double>(steps.size()));
@@ -229,7 +236,7 @@ double range_of(const std::vector<double>& wave) {
   return *highest - *lowest;
 }
 
-/// Where the two cycles begin that are most alike: no frame is missing there.
+/// First frame of the two consecutive cycles that are most alike, where no frame is missing.
 std::size_t most_alike(const Steps& steps, std::size_t n) {
   double squares = 0, least = std::numeric_limits<double>::infinity();
   std::size_t begin = 1;
@@ -245,6 +252,7 @@ std::size_t most_alike(const Steps& steps, std::size_t n) {
   return begin;
 }
 
+/// Fits the phases for a period of n frames: path and wave form are refined in turn.
 Fit fit_period(const Steps& steps, const BedMotion& motion, std::size_t n) {
   Fit fit{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n, -1.0),
           std::vector<std::int64_t>(steps.size()), 0};
@@ -262,8 +270,8 @@ Fit fit_period(const Steps& steps, const BedMotion& motion, std::size_t n) {
     learn(steps, fit.ticks, fit.step_wave, is_next);
     if (!motion.repeats.empty())
       learn(motion.repeats, fit.ticks, fit.usual_repeats, [](std::size_t f) { return f > 0; });
-    // Frames that are in the wrong place shall not hide that they are.
-    constexpr double kWild = 0.2, kLeast = 0.02;  // of the wave form's height
+    // Scatter: deviations are capped, so that misplaced frames do not increase the scatter and stay hidden.
+    constexpr double kWild = 0.2, kLeast = 0.02;  // fractions of the wave form's height
     constexpr double kFromMedian = 1.48;
     const double range = range_of(fit.step_wave);
     std::vector<double> misses(steps.size());
@@ -275,16 +283,16 @@ Fit fit_period(const Steps& steps, const BedMotion& motion, std::size_t n) {
       count += 1;
     }
     fit.sigma = std::max({std::sqrt(squares / count), kLeast * range, 1e-9});
-    // A bed never lands at the same moment twice: what is seen then says little.
+    // A bed never lands at the same instant twice, so frames at the landing have little weight.
     learn(misses, fit.ticks, fit.step_scatter, is_next);
     for (double& scatter : fit.step_scatter) scatter *= kFromMedian;
   }
   return fit;
 }
 
-/// Heights on a wave form.
+/// Heights relative to a wave form.
 struct Heights {
-  std::vector<double> wave, of_frames;  // without drift
+  std::vector<double> wave, of_frames;  // both without drift
 };
 
 Heights heights_of(const Fit& fit, std::span<const double> heights) {
@@ -300,7 +308,7 @@ Heights heights_of(const Fit& fit, std::span<const double> heights) {
   return h;
 }
 
-/// By how many phases the wave form's beginning lies after phase 0.
+/// Number of phases by which the start of the wave form is after phase 0.
 std::size_t place_zero(std::span<const double> wave, std::optional<double> gamma, PhaseTable& table) {
   const std::size_t n = wave.size();
   if (gamma && *gamma > 0) {
@@ -324,9 +332,9 @@ std::size_t place_zero(std::span<const double> wave, std::optional<double> gamma
   return static_cast<std::size_t>(std::lround((turn - std::floor(turn)) * static_cast<double>(n))) % n;
 }
 
-/// Period and jitter. A frame taken late by delta misses the wave form by delta times its slope. Cycle by
-/// cycle that gives the lateness, whose drift is the difference between the period and N_k frames. Without
-/// it, the part of the squared misses that grows with the squared slope is jitter.
+/// Measures period and jitter. A frame taken late by delta differs from the wave form by delta times its
+/// slope. For each cycle this gives the lateness; its drift is the difference between the period and N_k
+/// frames. The jitter is the part of the squared differences that grows with the squared slope.
 void measure_clock(const Heights& heights, std::span<const std::int64_t> ticks, PhaseTable& table) {
   const std::vector<double>&h = heights.of_frames, &wave = heights.wave;
   const std::size_t n = wave.size();
@@ -398,10 +406,11 @@ double log_odds_of_repeat(std::span<const double> steps) {
   double still = 0, moved = 0;
   for (const double step : steps)
     if (std::isfinite(step)) (step < kStill ? still : moved) += 1;
-  return std::clamp(kOfBead * (still - kMovedOutweighs * moved), -kSure, kSure);
+  return std::clamp(kOfBead * (still - kMovedOutweighs * moved), -kCertain, kCertain);
 }
 
 PhaseTable estimate_phases(const BedMotion& motion, const PhaseEstimationOptions& options) {
+  // Period: of the candidates the one with the smallest cost at a common scatter.
   const Steps steps = steps_of(motion.heights);
   std::optional<Fit> best;
   for (const std::size_t n : likely_periods(steps, options.frames_per_cycle)) {
@@ -412,7 +421,7 @@ PhaseTable estimate_phases(const BedMotion& motion, const PhaseEstimationOptions
   const auto period = static_cast<std::int64_t>(best->step_wave.size());
   const Heights heights = heights_of(*best, motion.heights);
   PhaseTable table;
-  table.way = "found";
+  table.method = "found";
   table.frames_per_cycle = static_cast<int>(period);
   measure_clock(heights, best->ticks, table);
 

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Which phase of the drive a frame shows.
+/// Phase lock: which phase of the drive a frame shows.
 ///
-/// Three ways lead to it, one file each: a whole number of frames per cycle (here), a list of triggers
-/// (trigger_list.hpp), and the bed's own periodic motion (phase_estimation.hpp). All give a PhaseTable.
+/// Three methods determine it, one file each: a whole number of frames per cycle (here), a list of triggers
+/// (trigger_list.hpp), and the bed's own periodic motion (phase_estimation.hpp). All return a PhaseTable.
 
 #include <cstdint>
 #include <optional>
@@ -15,12 +15,12 @@
 namespace twincell {
 
 /// Frame f shows phase k = (f + k_0) mod N_k of cycle j = (f + k_0) div N_k, i.e. the fraction k/N_k of a
-/// period; phase 0 is the plate at its mean height moving up (drive.hpp). No frame may be missing from the
+/// period. Phase 0 is the plate at its mean height moving up (drive.hpp). No frame may be missing from the
 /// stack.
 struct PhaseLock {
   int frames_per_cycle = 0;  ///< N_k; 0: not phase-locked
   int first_phase = 0;       ///< k_0, the phase of frame 0, in 0 .. N_k - 1
-  double offset = 0;         ///< frame intervals by which every frame was taken later than its phase says
+  double offset = 0;         ///< frame intervals by which every frame was taken later than its phase
 
   [[nodiscard]] bool locked() const { return frames_per_cycle > 0; }
   [[nodiscard]] std::int32_t phase(std::int64_t frame) const {
@@ -29,7 +29,7 @@ struct PhaseLock {
   [[nodiscard]] std::int64_t cycle(std::int64_t frame) const {
     return locked() ? (frame + first_phase) / frames_per_cycle : -1;
   }
-  /// Fraction of a period at which the frame was taken. Only when locked.
+  /// Fraction of a period at which the frame was taken. Valid only if locked.
   [[nodiscard]] double fraction(std::int64_t frame) const {
     return static_cast<double>(phase(frame)) / static_cast<double>(frames_per_cycle);
   }
@@ -41,34 +41,35 @@ struct PhaseLock {
   }
 };
 
-/// When one frame was taken.
+/// Phase and cycle at which one frame was taken.
 struct FramePhase {
   std::int32_t phase = -1;  ///< k in 0 .. N_k - 1; -1: not locked
   std::int64_t cycle = -1;  ///< j
-  double interval = 1;      ///< frame intervals since the frame before: 0 if it shows the same moment again,
-                            ///< 1 + n if n frames were dropped in between
+  double interval = 1;      ///< frame intervals since the previous frame: 0 if it shows the same instant
+                            ///< again, 1 + n if n frames were dropped in between
 };
 
-/// A stack's phases, and what is wrong with them.
+/// The phases of a stack, with their quality measures and defects.
 struct PhaseTable {
-  std::string way = "none";             ///< "none", "fixed", "triggers" or "found"
+  std::string method = "none";          ///< "none", "fixed", "triggers" or "found"
   int frames_per_cycle = 0;             ///< N_k; 0: not locked
   int first_phase = 0;                  ///< of frame 0
   std::optional<double> period_frames;  ///< the period as measured, frames
-  std::optional<double> jitter;     ///< rms distance of the frames from their phases, frame intervals; of a
-                                    ///< found phase an upper bound, since the bed varies too
-  std::optional<double> agreement;  ///< of a found phase: correlation of the motion with that of a bed of
-                                    ///< this drive, by which phase 0 was placed; absent: phase 0 is where
-                                    ///< the bed's fundamental passes its mean upwards
+  std::optional<double> jitter;     ///< rms distance of the frames from their phases, frame intervals; for an
+                                    ///< estimated phase an upper bound, since the bed varies too
+  std::optional<double> agreement;  ///< for an estimated phase: correlation of the motion with that of a
+                                    ///< model bed on this drive, which places phase 0; absent: phase 0 is
+                                    ///< where the bed's fundamental passes its mean upwards
   std::int64_t dropped = 0;         ///< frames that are missing
-  std::int64_t doubled = 0;         ///< frames that show a moment already shown
+  std::int64_t doubled = 0;         ///< frames that repeat the previous instant
   std::vector<FramePhase> frames;   ///< empty: frame f follows PhaseLock{frames_per_cycle, first_phase}
 
   [[nodiscard]] bool locked() const { return frames_per_cycle > 0; }
   [[nodiscard]] FramePhase at(std::int64_t frame) const;
 };
 
-/// The phases of a PhaseLock; nothing is measured, so nothing is said of jitter and dropped frames.
+/// The phases of a PhaseLock. Nothing is measured, so jitter and period are absent and no frame counts as
+/// dropped.
 PhaseTable fixed_phases(const PhaseLock& lock);
 
 }  // namespace twincell

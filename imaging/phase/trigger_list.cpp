@@ -30,7 +30,7 @@ std::vector<std::string> split(const std::string& line) {
   return cells;
 }
 
-/// Cycles elapsed at each frame.
+/// Reads the list and returns the cycles elapsed at each frame.
 std::vector<double> read_cycles(const std::filesystem::path& file, std::optional<double> drive_hz) {
   std::istringstream lines(read_table_text(file));
   std::string line;
@@ -52,15 +52,17 @@ std::vector<double> read_cycles(const std::filesystem::path& file, std::optional
   const auto n = static_cast<std::ptrdiff_t>(names.size());
   const std::ptrdiff_t frame = column("frame"), time = column("time_s"), cycle = column("cycles");
   if (time == n && cycle == n) refuse("", "a column time_s or cycles is needed.");
-  if (time < n && cycle < n) refuse("time_s", "and cycles say the same quantity; leave one of them out.");
+  if (time < n && cycle < n)
+    refuse("time_s", "and cycles are the same quantity; remove one of the two columns.");
   if (cycle == n && !drive_hz)
     throw ConfigError(Where{.file = {}, .key = "drive-hz"},
                       "the list of triggers is in seconds, so the frequency of the drive is needed.");
+  // Lines: one frame each, in the order of the stack.
   std::vector<double> cycles;
   while (next_line()) {
     const std::vector<std::string> cells = split(line);
     if (cells.size() != names.size())
-      refuse("", fmt::format("{} fields; the line of names has {}.", cells.size(), names.size()));
+      refuse("", fmt::format("{} fields; the header line has {}.", cells.size(), names.size()));
     auto value = [&](std::ptrdiff_t at) {
       double v = 0;
       const std::string& cell = cells[static_cast<std::size_t>(at)];
@@ -73,17 +75,16 @@ std::vector<double> read_cycles(const std::filesystem::path& file, std::optional
       refuse("frame", fmt::format("{} where {} was expected; every frame of the stack needs its line.",
                                   cells[static_cast<std::size_t>(frame)], cycles.size()));
     const double now = cycle < n ? value(cycle) : value(time) * *drive_hz;
-    if (std::abs(now) > kMostCycles)
-      refuse(cycle < n ? "cycles" : "time_s", "the time is beyond all bounds.");
+    if (std::abs(now) > kMostCycles) refuse(cycle < n ? "cycles" : "time_s", "the time exceeds 1e15 cycles.");
     if (!cycles.empty() && now < cycles.back())
       refuse(cycle < n ? "cycles" : "time_s",
-             "the time falls; frames must be in the order in which they were taken.");
+             "the time decreases; frames must be in the order in which they were taken.");
     cycles.push_back(now);
   }
-  if (cycles.empty()) refuse("", "the list of triggers names no frame.");
+  if (cycles.empty()) refuse("", "the list of triggers contains no frame.");
   if (cycles.size() > 1 && cycles.back() == cycles.front())
     refuse(cycle < n ? "cycles" : "time_s",
-           fmt::format("is {:g} in all {} frames; a list of triggers says when each was taken.",
+           fmt::format("is {:g} in all {} frames; a list of triggers must give the time of each frame.",
                        cycle < n ? cycles.front() : cycles.front() / *drive_hz, cycles.size()));
   return cycles;
 }
@@ -94,7 +95,7 @@ PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double
                          int frames_per_cycle) {
   const std::vector<double> cycles = read_cycles(file, drive_hz);
   PhaseTable table;
-  table.way = "triggers";
+  table.method = "triggers";
   std::vector<double> steps;
   for (std::size_t f = 1; f < cycles.size(); ++f) steps.push_back(cycles[f] - cycles[f - 1]);
   const double step = steps.empty() ? 0 : upper_median(std::move(steps));
@@ -102,7 +103,7 @@ PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double
     if (!(step > 0) || 1 / step > kMostPhases)
       throw InputError(
           Where{.file = file.string(), .key = {}},
-          "the frames per cycle do not follow from the list; give them with --frames-per-cycle.");
+          "the number of frames per cycle cannot be found from the list; give it with --frames-per-cycle.");
     frames_per_cycle = std::max(1, static_cast<int>(std::lround(1 / step)));
   }
   table.frames_per_cycle = frames_per_cycle;

@@ -6,9 +6,9 @@
 ///     0,0.0000                     0,0.000
 ///     1,0.0025                     1,0.050
 ///
-/// `time_s` is the time of the exposure since the plate last passed its mean height upwards, in seconds, and
-/// needs the frequency of the drive; `cycles` is the same in cycles of the drive. `frame` may be absent if
-/// the lines are in order and none is missing.
+/// `time_s` is the time of the exposure in seconds, counted from an instant at which the plate passes its
+/// mean height upwards; it requires the frequency of the drive. `cycles` is the same in cycles of the drive.
+/// Both count on through all cycles. `frame` may be absent if the lines are in order and none is missing.
 
 #include <filesystem>
 #include <optional>
@@ -17,14 +17,13 @@
 
 namespace twincell {
 
-/// Reads a list and rounds each frame to the nearest of N_k phases. Two frames of one phase of one cycle: the
-/// second is doubled; phases passed over: dropped.
-/// \param drive_hz frequency of the drive, needed by `time_s`
-/// \param frames_per_cycle N_k; 0: one over the median step, rounded
-/// \throws InputError naming file and line if the list cannot be read, times fall or are all the same, a
-/// value
-///     is no number, or both time_s and cycles are there; as check_column_names; ConfigError if the frequency
-///     is needed and absent
+/// Reads a list and rounds each frame to the nearest of N_k phases. If two frames have the same phase of the
+/// same cycle, the second counts as doubled. Skipped phases count as dropped frames.
+/// \param drive_hz frequency of the drive, required by `time_s`
+/// \param frames_per_cycle N_k; 0: one over the median step in cycles, rounded
+/// \throws InputError naming file and line if the list cannot be read, if times decrease or are all the same,
+///     if a value is not a number, or if both time_s and cycles are present; as check_column_names
+/// \throws ConfigError if the frequency is required but absent
 PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double> drive_hz,
                          int frames_per_cycle = 0);
 

@@ -14,20 +14,20 @@ namespace twincell {
 
 namespace {
 
-/// What each pixel has of the frame's own smooth light.
+/// Light of each pixel relative to the frame's own smooth light.
 cv::Mat1f share_of_light(const cv::Mat& frame) {
-  constexpr double kRadius = 10;  // px, of discs that are no walls, which are not asked for here
+  constexpr double kRadius = 10;  // px; affects only the search for walls, which is not used here
   return 1 - prepare(frame, {}, kRadius).darkness;
 }
 
-/// The least of all within so many pixels.
+/// Minimum within a square of half width `reach`, px.
 cv::Mat1f least_within(const cv::Mat1f& values, int reach) {
   cv::Mat1f least;
   cv::erode(values, least, cv::getStructuringElement(cv::MORPH_RECT, {2 * reach + 1, 2 * reach + 1}));
   return least;
 }
 
-/// Noise of single pixels shall not say how bright a place is.
+/// Mean over 3 x 3 pixels, so that the noise of single pixels does not decide how bright a pixel is.
 cv::Mat1f smoothed(const cv::Mat1f& values) {
   cv::Mat1f smooth;
   cv::blur(values, smooth, {3, 3});
@@ -46,9 +46,9 @@ class Flattened : public FrameSource {
     cv::Mat raw;
     if (!frames_->next(raw)) return false;
     if (raw.size() != flat_.size())
-      refuse(*frames_, fmt::format("is of {} x {} px, the flat field of {} x {} px.", raw.cols, raw.rows,
+      refuse(*frames_, fmt::format("is {} x {} px, but the flat field is {} x {} px.", raw.cols, raw.rows,
                                    flat_.cols, flat_.rows));
-    // A new one: the caller may keep the last.
+    // A new matrix, because the caller may keep the previous one.
     frame = cv::Mat();
     cv::divide(raw, flat_, frame, 1, CV_32F);
     return true;
@@ -74,12 +74,12 @@ cv::Mat1f flat_of_blank(FrameSource& blank) {
     frame.convertTo(levels, CV_64F);
     sum = sum.empty() ? levels : cv::Mat1d(sum + levels);
   }
-  if (frames == 0) refuse(blank, "holds no frame.");
+  if (frames == 0) refuse(blank, "contains no frames.");
   std::vector<double> sorted(sum.begin(), sum.end());
   const auto at = static_cast<std::ptrdiff_t>(kTypical * static_cast<double>(sorted.size() - 1));
   std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
   const double typical = sorted[static_cast<std::size_t>(at)];
-  if (!(typical > 0)) refuse(blank, "shows no light: no flat field can be made of it.");
+  if (!(typical > 0)) refuse(blank, "contains no light; no flat field can be computed from it.");
   cv::Mat1f flat;
   sum.convertTo(flat, CV_32F, 1 / typical);
   flat.setTo(1, flat < kWall);
@@ -89,12 +89,14 @@ cv::Mat1f flat_of_blank(FrameSource& blank) {
 cv::Mat1f flat_of_stack(FrameSource& first, FrameSource& second) {
   constexpr double kAsBright = 0.9, kLeast = 0.5, kDrawn = 2;
   constexpr int kAround = 1, kClear = 3;  // px
+  // First reading: the largest brightness of each pixel, smoothed against noise.
   cv::Mat1f brightest;
   for (cv::Mat frame; first.next(frame);) {
     const cv::Mat1f light = smoothed(share_of_light(frame));
     brightest = brightest.empty() ? light : cv::Mat1f(cv::max(brightest, light));
   }
-  if (brightest.empty()) refuse(first, "holds no frame.");
+  if (brightest.empty()) refuse(first, "contains no frames.");
+  // Second reading: the mean of each pixel over the frames in which no bead darkens it or its neighbours.
   const cv::Mat1f enough = kAsBright * brightest;
   cv::Mat1f sum = cv::Mat1f::zeros(brightest.size()), count = sum.clone();
   for (cv::Mat frame; second.next(frame);) {

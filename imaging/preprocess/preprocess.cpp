@@ -27,7 +27,7 @@ float quantile(std::vector<float> values, double q) {
   return values[static_cast<std::size_t>(at)];
 }
 
-/// Rows of a frame as the beads' darkness wants them: in floats, dark beads on light.
+/// Rows of a frame as floats, inverted if necessary, so that beads are dark on a light background.
 class Rows {
  public:
   Rows(const cv::Mat& grey, bool bright) : grey_(grey), bright_(bright) {
@@ -59,9 +59,9 @@ class Rows {
   float top_ = 0;
 };
 
-// The light is seen only through the gaps. Starting from a bright quantile, a quadratic is fitted again and
-// again to the pixels that come near it; pixels above count three times as much as those below, which are
-// often gap edges.
+// The light is visible only through the gaps. Starting from a bright quantile, a quadratic surface is fitted
+// repeatedly to the pixels close to it or brighter. Pixels above the surface count three times as much as
+// pixels below it, which are often at the edges of gaps.
 Surface bright_envelope(const Rows& image) {
   constexpr double kSamples = 5000;
   const cv::Size size = image.size();
@@ -78,7 +78,8 @@ Surface bright_envelope(const Rows& image) {
   Surface c = Surface::Zero();
   c[0] = static_cast<double>(quantile(values, 0.99));
   for (const double near : {0.7, 0.8, 0.85, 0.9, 0.9, 0.9}) {
-    // Sums of w u^p v^q, p + q <= 4, and of w value u^p v^q, p + q <= 2; those over u row by row.
+    // Normal equations: sums of w u^p v^q, p + q <= 4, and of w value u^p v^q, p + q <= 2. The sums over u
+    // are made row by row.
     std::array<std::array<double, 5>, 5> moment{};
     std::array<std::array<double, 3>, 3> of_value{};
     int used = 0;
@@ -102,9 +103,9 @@ Surface bright_envelope(const Rows& image) {
         for (std::size_t p = 0; p + q < 3; ++p) of_value[p][q] += power * value_sums[p];
       }
     }
-    if (used < 60) break;  // too little light to see a slope: the level stands
+    if (used < 60) break;  // too few bright pixels to fit a slope: the level is kept
     constexpr std::array<std::array<std::size_t, 2>, 6> kPowers = {
-        {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};  // as surface_basis has them
+        {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};  // as in surface_basis
     Eigen::Matrix<double, 6, 6> a;
     Surface rhs;
     for (std::size_t m = 0; m < kPowers.size(); ++m) {
@@ -120,21 +121,22 @@ Surface bright_envelope(const Rows& image) {
   return c;
 }
 
-// Morphological opening of the dark region by a disc, through two distance maps, at a fraction of the
-// resolution: the opening reaches a few pixels too far or not far enough, but only over what is dark itself.
-// The frame is continued beyond its border, so that a thin strip of plate at the bottom of a frame is as
-// thick as the plate is. Empty if there is nothing.
+// Morphological opening of the dark region by a disc, through two distance maps, at reduced resolution. The
+// opening is a few pixels too large or too small, but only within the dark region. The frame is continued
+// beyond its border, so that a thin strip of plate at the bottom of a frame counts as thick. Empty if there
+// is no such region.
 cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double disc_radius_px) {
-  constexpr double kCoarse = 6;  // pixels of the coarse picture across the disc's radius
+  constexpr double kCoarse = 6;  // radius of the disc in the coarse picture, px
   const int shrink = std::max(1, static_cast<int>(disc_radius_px / kCoarse));
   const cv::Size size((darkness.cols + shrink - 1) / shrink, (darkness.rows + shrink - 1) / shrink);
   const double reach = disc_radius_px / shrink;
-  // A block is dark if all of it is: the gaps between beads are narrow.
+  // Coarse picture: a block is dark only if all of its pixels are, because the gaps between beads are narrow.
   const cv::Mat1b dark_pixels = darkness > limit;
   cv::Mat1b dark = dark_pixels;
   if (shrink > 1) {
     dark = cv::Mat1b(size, uchar{255});
-    // Copies, or the compiler thinks that what is written might be the number itself, and makes no vectors.
+    // Local copies: otherwise the compiler assumes that the stores change these numbers and does not
+    // vectorise.
     const int columns = darkness.cols, blocks = size.width;
     std::vector<uchar> dark_down(static_cast<std::size_t>(blocks * shrink));
     for (int block = 0; block < size.height; ++block) {
@@ -150,7 +152,8 @@ cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double dis
   }
   const int pad = cvCeil(2 * reach);
   cv::copyMakeBorder(dark, dark, pad, pad, pad, pad, cv::BORDER_REPLICATE);
-  // In a corner it goes on only where a wall leads there, dark along one of the borders: not a bead.
+  // Corners: the continuation stays dark only if a wall leads into the corner, dark along one of the borders.
+  // A bead in the corner must not grow.
   for (const bool right : {false, true})
     for (const bool low : {false, true}) {
       const int x = right ? pad + size.width - 1 : pad, y = low ? pad + size.height - 1 : pad;
@@ -164,13 +167,14 @@ cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double dis
       dark(cv::Rect(right ? x + 1 : 0, low ? y + 1 : 0, pad, pad)).setTo(0);
     }
   if (cv::countNonZero(dark) == static_cast<int>(dark.total())) return {};
-  // A square that lies in the disc, whichever way its distances are rounded, is sought much faster: most
-  // frames have not even that.
+  // Quick test: a square inside the disc, however distances are rounded, is much faster to search for, and
+  // most frames do not even contain the square.
   constexpr double kSquare = 0.65;
   const int side = 2 * static_cast<int>(kSquare * reach) + 1;
   cv::Mat1b squares;
   cv::erode(dark, squares, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
   if (cv::countNonZero(squares) == 0) return {};
+  // Opening: erosion and dilation by thresholds on distance maps.
   cv::Mat1f inside;
   cv::distanceTransform(dark, inside, cv::DIST_L2, cv::DIST_MASK_5);
   const cv::Mat1b core = inside > reach;
@@ -182,17 +186,20 @@ cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double dis
   cv::Mat1b regions;
   cv::resize(coarse, regions, cv::Size(), shrink, shrink, cv::INTER_NEAREST);
   regions = regions(cv::Rect(0, 0, darkness.cols, darkness.rows)) & dark_pixels;
-  cv::dilate(regions, regions, cv::Mat(), cv::Point(-1, -1), 2);  // their blurred edge
+  cv::dilate(regions, regions, cv::Mat(), cv::Point(-1, -1), 2);  // includes their blurred edge
   return regions;
 }
 
-// Out of focus, a wall's edge darkens what lies beside it, the gaps of a crystal are nearly as dark as its
-// discs, and a wall is only a little darker than both.
+// Out of focus, the edge of a wall darkens its surroundings, the gaps of a crystal are nearly as dark as its
+// discs, and a wall is only a little darker than both. A second search with a higher threshold on a smoothed
+// picture then replaces the first.
 cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double radius_px, double in_radii) {
   constexpr float kDark = 0.75F, kOfDarkest = 0.94F;
-  constexpr double kSharp = 1.3, kSmooth = 1;                          // px
-  constexpr double kOutOfFocus = 0.22;                                 // of the radius
-  constexpr double kTail = 1.5, kFromDark = 0.7, kFromDarkest = 1.55;  // blurs, to either side of an edge
+  constexpr double kSharp = 1.3, kSmooth = 1;  // px
+  constexpr double kOutOfFocus = 0.22;         // of the radius
+
+  // Distances from an edge to either side, in units of the blur.
+  constexpr double kTail = 1.5, kFromDark = 0.7, kFromDarkest = 1.55;
   cv::Mat1b regions = regions_darker_than(kDark, darkness, in_radii * radius_px);
   const double blur = regions.empty() ? 0 : blur_of(darkness);
   if (blur < kSharp) return regions;
@@ -222,8 +229,8 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double radius_px, double
 double contrast_of(const cv::Mat1f& darkness) {
   constexpr double kSamples = 40000, kLow = -0.5, kHigh = 1.5;
   constexpr std::size_t kBins = 200;
-  constexpr double kEnough = 0.6;  // discs as dark as that are well served as they are
-  constexpr double kClear = 6;     // so many times the noise
+  constexpr double kEnough = 0.6;  // darker discs need no scaling
+  constexpr double kClear = 6;     // smallest difference of the classes, standard deviations of the noise
   const int stride =
       std::max(1, static_cast<int>(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
   std::array<double, kBins> share{};
@@ -267,7 +274,8 @@ Noise noise_of(const cv::Mat1f& darkness) {
     }
   }
   const auto variance = [&](std::vector<float>& v) {
-    constexpr double kFromMedian = 1 / (0.6745 * 0.6745 * 6);  // of 1, -2, 1 times the noise
+    constexpr double kFromMedian =
+        1 / (0.6745 * 0.6745 * 6);  // from the median of |second difference| to the noise
     const auto middle = static_cast<double>(quantile(std::move(v), 0.5));
     return middle * middle * kFromMedian;
   };
@@ -300,15 +308,15 @@ double blur_of(const cv::Mat1f& darkness) {
   constexpr float kEdge = 0.05F;                       // darkness per pixel
   constexpr double kSteepest = 0.01, kDarkest = 0.05;  // shares of the pixels
   constexpr double kLeast = 0.5, kMost = 5;            // px
-  constexpr double kKernel = 0.5;     // px^2, by which the kernel itself blurs an edge, more or less
-  constexpr double kSamples = 20000;  // pixels that are looked at
+  constexpr double kKernel = 0.5;     // px^2; approximate blur of an edge by the kernel itself
+  constexpr double kSamples = 20000;  // number of pixels that are sampled
   const int stride = std::max(1, cvRound(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
   std::vector<float> steep, seen;
   for (int y = 1; y + 1 < darkness.rows; y += stride) {
     const float *above = darkness[y - 1], *row = darkness[y], *below = darkness[y + 1];
     for (int x = 1; x + 1 < darkness.cols; x += stride) {
       seen.push_back(row[x]);
-      // Scharr's kernel, which sums to 32 over a step of two pixels.
+      // Scharr's kernel; its weights give 32 times the slope per pixel.
       const float left = 3 * (above[x - 1] + below[x - 1]) + 10 * row[x - 1],
                   right = 3 * (above[x + 1] + below[x + 1]) + 10 * row[x + 1],
                   up = 3 * (above[x - 1] + above[x + 1]) + 10 * above[x],

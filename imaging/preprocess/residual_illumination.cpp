@@ -13,7 +13,7 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// Energy of a bent plate: squared second differences, summed.
+/// Energy of a bent plate: the sum of the squared second differences, as a matrix.
 Sparse bending(cv::Size size) {
   std::vector<Eigen::Triplet<double>> terms;
   int row = 0;
@@ -36,10 +36,10 @@ Sparse bending(cv::Size size) {
   return d.transpose() * d;
 }
 
-/// The plate through the tiles of which weight is not 0.
+/// The plate fitted to the tiles with nonzero weight.
 Eigen::VectorXd plate(const Sparse& bend, const Eigen::VectorXd& mean, const Eigen::VectorXd& weight) {
   Sparse a = bend;
-  constexpr double kHeld = 1e-9;  // what no tile holds
+  constexpr double kHeld = 1e-9;  // keeps the matrix regular where no tile has weight
   for (Eigen::Index k = 0; k < weight.size(); ++k) a.coeffRef(k, k) += weight[k] + kHeld;
   const Eigen::SimplicialLDLT<Sparse> solver(a);
   return solver.solve(weight.cwiseProduct(mean));
@@ -72,6 +72,7 @@ cv::Mat1f smooth_ripple(const cv::Mat1d& mean, const cv::Mat1d& variance) {
   Eigen::VectorXd weight = v.cwiseInverse();
   weight /= weight.mean();
   const Sparse bend = bending(size);
+  // Stiffness: cross-validation on a checkerboard, each colour predicted from the other.
   double stiffness = 0, least = HUGE_VAL;
   for (const double stiff : kStiff) {
     double missed = 0;
@@ -85,7 +86,7 @@ cv::Mat1f smooth_ripple(const cv::Mat1d& mean, const cv::Mat1d& variance) {
     }
     if (missed < least) least = missed, stiffness = stiff;
   }
-  // Far from what is seen the plate may go anywhere.
+  // Far from tiles with data the plate is unconstrained, so it is limited to the range of the means.
   const Eigen::VectorXd s = plate(stiffness * bend, m, weight).cwiseMax(m.minCoeff()).cwiseMin(m.maxCoeff());
   cv::Mat1f map(size);
   for (Eigen::Index k = 0; k < n; ++k)

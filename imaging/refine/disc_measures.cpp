@@ -13,7 +13,7 @@ namespace twincell {
 
 namespace {
 
-/// Calls use(row, first, last) for the pixels of the frame nearer than `reach` to the centre.
+/// Calls use(y, first, last) for each row of pixels of the frame within `reach` of the centre.
 template <class Use>
 void over_disc(cv::Size size, const Detection& b, double reach, Use&& use) {
   const int last_row = std::min(size.height - 1, cvFloor(b.y + reach));
@@ -29,7 +29,7 @@ double interior(const Prepared& image, const Detection& b) {
   std::array<float, kFew> few{};
   std::vector<float> many;
   std::size_t n = 0;
-  // Of larger discs every other pixel, as on a chessboard, tells as much.
+  // For larger discs every other pixel, in a chessboard pattern, suffices for the median.
   constexpr double kLarge = 3;
   const double reach = std::max(0.5 * b.radius, 1.0);
   const int stride = reach > kLarge ? 2 : 1;
@@ -44,11 +44,12 @@ double interior(const Prepared& image, const Detection& b) {
       many.push_back(row[x]);
     }
   });
-  if (n == 0) return b.darkness;  // centre outside the frame: the rim speaks for it
+  if (n == 0) return b.darkness;  // centre outside the frame: use the fit of the rim
   return static_cast<double>(n > kFew ? upper_median(std::move(many)) : upper_median_of_few(few, n));
 }
 
-/// Sum of v B: B is a quadratic surface, so that its values around the centre and the moments say it exactly.
+/// Sum of v B. B is a quadratic surface, so its Taylor coefficients at the centre and the moments of the disc
+/// give the sum exactly.
 double light_taken(const Surface& light, cv::Size size, const Detection& b, const DiscMoments& m) {
   const Surface at = surface_basis(b.x, b.y, size);
   const double u = at[1], v = at[2];

@@ -1,21 +1,21 @@
 #pragma once
 /// \file
-/// What can be read off a disc's own pixels once its place is known.
+/// Measures of a disc from its own pixels, once its position is known.
 
 #include "imaging/disc/detection.hpp"
 #include "imaging/preprocess/preprocess.hpp"
 
 namespace twincell {
 
-/// Sets interior (median darkness inside R/2), and over the whole disc mass, raw_mass, signal, size and ecc:
-/// brightness and shape as trackpy's users know them.
+/// Sets interior (median darkness inside R/2) and, over the whole disc, mass, raw_mass, signal, size and ecc:
+/// the brightness and shape measures of trackpy.
 void measure_disc(const Prepared& image, Detection& disc);
 
-/// Median of nine pixels inside R/2: enough to tell a disc from a gap. Outside the frame 1: the rim will
-/// speak.
+/// Median of nine pixels inside R/2, which is enough to distinguish a disc from a gap. 1 if all of them are
+/// outside the frame; the fit of the rim then decides.
 double rough_interior(const Prepared& image, const Detection& disc);
 
-/// Whether its centre lies in a dark region too large for a bead.
+/// Whether the centre of the disc is in a dark region that is too large for a bead.
 bool in_wall(const Prepared& image, const Detection& disc);
 
 }  // namespace twincell

@@ -9,7 +9,7 @@ namespace twincell {
 
 namespace {
 
-constexpr double kRim = 0.2;  // of the largest level: a ring that is the rim has more
+constexpr double kRim = 0.2;  // smallest level of the rim, as a fraction of the largest level
 
 }  // namespace
 
@@ -29,11 +29,11 @@ double DiscProfile::at(double r) const {
 double DiscProfile::rim() const {
   const auto high = static_cast<float>(kRim * largest());
   if (high == 0) return 0;
-  // From outside to the first top that is high enough, from there out to its half.
+  // From outside inwards to the first extremum that is high enough.
   std::size_t top = levels.size() - 1;
   while (top > 0 && !(std::abs(levels[top]) > high && std::abs(levels[top]) >= std::abs(levels[top - 1])))
     --top;
-  // The steepest place out from there, as the top of a parabola.
+  // From there outwards, the steepest descent, refined with a parabola.
   std::vector<float> fall;
   for (std::size_t k = top; k + 1 < levels.size(); ++k)
     fall.push_back((levels[k] - levels[k + 1]) * (levels[top] < 0 ? -1.0F : 1.0F));

@@ -12,24 +12,23 @@ namespace twincell {
 
 namespace {
 
-// Half width of the ring, px, and for large discs of their radius, round by round: a proposal of a large disc
-// is coarse.
+// Half width of the ring in each round: at least kLeastRing px, and for large discs the given fractions of
+// their radius, because the proposal of a large disc is coarse.
 constexpr double kLeastRing = 2.5;
 constexpr std::array<double, 5> kRings = {0.08, 0.06, 0.05, 0.05, 0.05};
-// From such a radius on an edge is long enough to ask that much of it be seen.
+// From this radius on (px) the edge is long enough to require that kMinSeen of it is visible.
 constexpr double kLarge = 25;
 constexpr double kMinSeen = 0.4;
 constexpr std::size_t kSectors = 36;
-constexpr double kMinInterior = 0.3;  // as the opaque fit asks of a proposal
-constexpr double kMinSlope = 0.05;    // darkness per pixel, as the vote asks of a pixel
+constexpr double kMinInterior = 0.3;  // as the opaque fit requires of a proposal
+constexpr double kMinSlope = 0.05;    // darkness per pixel, as the vote requires of a pixel
 
 struct EdgeSums {
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   double weight = 0, squares = 0;
   int pixels = 0;
-  std::array<double, kSectors> slopes{},
-      offs{};  // of each part of the circle: sums of slope, slope times off
+  std::array<double, kSectors> slopes{}, offs{};  // sums of slope and of slope times off in each sector
 };
 
 EdgeSums edge_of(const cv::Mat1f& darkness, const Detection& b, double ring) {
@@ -62,9 +61,9 @@ EdgeSums edge_of(const cv::Mat1f& darkness, const Detection& b, double ring) {
   return sums;
 }
 
-/// Share of the circle where an edge lies on it, of what the frame shows of the circle.
+/// Fraction of the visible part of the circle on which an edge is found.
 double seen(const EdgeSums& sums, const Detection& b, double ring, cv::Size size) {
-  // An edge that falls to the least slope asked for, over two pixels of each pixel of the arc.
+  // Smallest sum of slopes in a sector: an edge with the smallest slope, two pixels wide along the arc.
   const double enough = 2 * kMinSlope * 2 * std::numbers::pi * b.radius / kSectors;
   int inside = 0, on = 0;
   for (std::size_t k = 0; k < kSectors; ++k) {
@@ -84,6 +83,7 @@ Refined refine_by_edges(const Prepared& image, const std::vector<Proposal>& prop
   Refined result;
   result.sweeps = static_cast<int>(kRings.size());
   for (const Proposal& p : proposals) {
+    // Check: proposals in walls or on bright areas are dropped at once.
     Detection b;
     const double radius = p.radius > 0 ? p.radius : radius_px;
     b.x = p.x, b.y = p.y, b.radius = radius, b.darkness = 1;
@@ -99,14 +99,15 @@ Refined refine_by_edges(const Prepared& image, const std::vector<Proposal>& prop
       drop(Verdict::bright_inside);
       continue;
     }
+    // Fit: rounds with narrower rings.
     EdgeSums sums;
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
     double ring = kLeastRing;
     for (const double wide : kRings) {
       ring = std::max(kLeastRing, wide * radius);
       sums = edge_of(image.darkness, b, ring);
-      // As if a twentieth of a whole edge already lay where the proposal has it: an arc alone does not say
-      // where a circle ends.
+      // Prior: a twentieth of a whole edge at the proposed circle. A short arc alone does not determine the
+      // circle.
       sums.a.diagonal().array() += 0.05 * 2 * std::numbers::pi * radius;
       step = sums.a.llt().solve(sums.right);
       const double most = std::max(1.0, 0.5 * ring);
@@ -115,6 +116,7 @@ Refined refine_by_edges(const Prepared& image, const std::vector<Proposal>& prop
       b.radius =
           std::clamp(b.radius + std::clamp(step[2], -0.5 * most, 0.5 * most), 0.6 * radius, 1.4 * radius);
     }
+    // Result: visibility, uncertainties from the spread of the edge, score.
     if (sums.weight < 0.02 * 2 * std::numbers::pi * radius) {
       drop(Verdict::unseen);
       continue;
@@ -130,7 +132,7 @@ Refined refine_by_edges(const Prepared& image, const std::vector<Proposal>& prop
     b.sigma_y = std::sqrt(covariance(1, 1));
     b.sigma_radius = std::sqrt(covariance(2, 2));
     b.score = std::clamp(1 - spread / (ring * ring / 3), 0.0, 1.0);
-    if (radius > kLarge) b.score = b.ring_share;  // fringes inside and out scatter what is not the rim
+    if (radius > kLarge) b.score = b.ring_share;  // fringes inside and outside would lower it
     measure_disc(image, b);
     b.darkness = b.interior;
     result.beads.push_back(b);

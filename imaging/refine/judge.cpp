@@ -23,7 +23,7 @@ Verdict verdict_on(const Detection& b, double radius_px, int width, int height, 
   return Verdict::bead;
 }
 
-// Two opaque discs cannot overlap: of a pair that does, the better explained one stays.
+// Two opaque discs cannot overlap: of an overlapping pair, the better explained one is kept.
 void forbid_overlaps(std::vector<Detection>& beads, double max_overlap) {
   std::vector<Disc> discs;
   discs.reserve(beads.size());
@@ -40,7 +40,7 @@ void forbid_overlaps(std::vector<Detection>& beads, double max_overlap) {
     if (b.score > a.score) std::swap(better, lesser);
     clashes.push_back({better, lesser});
   }
-  // The best first: what has been dropped itself drops nobody.
+  // Best first, so that a dropped disc does not drop others.
   std::sort(clashes.begin(), clashes.end(), [&](const Clash& a, const Clash& b) {
     return std::pair(-beads[a.better].score, a.lesser) < std::pair(-beads[b.better].score, b.lesser);
   });

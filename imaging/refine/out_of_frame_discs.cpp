@@ -8,24 +8,24 @@ namespace twincell {
 
 namespace {
 
-constexpr int kRows = 4;            // so many from the border say nearly all of it
-constexpr int kDepthsPerPixel = 2;  // at which centres are tried
-constexpr double kWitness = 0.1;    // mean residual of five pixels at the border, for a closer look
-constexpr double kDarkness = 0.35;  // of a disc that is one, though its neighbours took part of it
-constexpr double kClear = 6;        // likewise, in its own uncertainties
+constexpr int kRows = 4;            // rows from the border that carry nearly all the information
+constexpr int kDepthsPerPixel = 2;  // trial depths of centres per pixel
+constexpr double kWitness = 0.1;    // mean residual of five border pixels that starts a closer search
+constexpr double kDarkness = 0.35;  // smallest darkness of a disc, part of which its neighbours absorbed
+constexpr double kClear = 6;        // smallest darkness in standard deviations
 
-/// What is left along a border of the frame, by row from there.
+/// Residuals and weights along a border of the frame, by row from the border.
 struct Border {
   using Line = std::vector<double>;
   std::array<Line, kRows> left, weight;
 };
 
-/// A border, seen from outside.
+/// One of the four borders, with coordinates along it and inwards from it.
 struct Side {
-  bool upright, far;  // left or right, not top or bottom; right or bottom
+  bool upright, far;  // upright: left or right border; far: right or bottom border
   int length, deep;
 
-  /// The pixel `along` the border and so many rows inside.
+  /// The pixel at position `along` the border, `inside` rows inwards.
   [[nodiscard]] cv::Point2d at(double along, double inside) const {
     const double across = far ? deep - 1 - inside : inside;
     return upright ? cv::Point2d(across, along) : cv::Point2d(along, across);
@@ -48,7 +48,7 @@ Border border_of(const RingArgs& args, const Side& side) {
   return border;
 }
 
-/// P of a disc in the rows and columns near it, `depth` pixels beyond the first row.
+/// P of a disc whose centre is `depth` pixels outside the first row, in the rows and columns near it.
 std::array<Border::Line, kRows> shape_of(double depth, double radius, double blur, int half) {
   std::array<Border::Line, kRows> shape;
   for (int row = 0; row < kRows; ++row)

@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// Discs that lie beyond the frame and yet darken its border.
+/// Discs whose centres are outside the frame and which darken its border.
 ///
-/// One whose centre is nearly a radius outside shows a sliver, too thin to be proposed. The fit takes it for
-/// the neighbours' own and pushes them outwards, by up to 0.3 px where three beads touch it. Along each
-/// border the residual picture r = d - T is compared with P, the picture of a disc, for centres from the
-/// border out to where a disc is next to nothing: of darkness a = sum w r P / sum w P^2, known to 1/sqrt(sum
-/// w P^2).
+/// A disc whose centre is nearly a radius outside shows only a sliver, which is too thin to be proposed. The
+/// fit attributes the sliver to the neighbours and pushes them outwards, by up to 0.3 px where three beads
+/// touch it. To find such discs, the residual picture r = d - T along each border is compared with P, the
+/// picture of a disc, for centres from the border out to where a disc is nearly invisible. The fitted
+/// darkness is a = sum w r P / sum w P^2, with standard deviation 1/sqrt(sum w P^2).
 
 #include <vector>
 
@@ -15,11 +15,12 @@
 
 namespace twincell {
 
-/// Places beyond the frame to which the residual picture bears witness, clearest first; many of one disc.
-/// Pure.
-/// \param args as for the sums over rings
-/// \param radius_px of the discs
-/// \param deepest_px centres further beyond are not tried: their discs would be all blur
+/// Proposes centres outside the frame for which the residual picture gives evidence, strongest evidence
+/// first. One disc may give many proposals. Pure.
+/// \param args as for the ring sums (ring_normal_equations.hpp)
+/// \param radius_px radius of the discs
+/// \param deepest_px largest distance of a centre from the border. Of a disc farther out only the blur would
+///     be seen
 std::vector<Proposal> out_of_frame_discs(const RingArgs& args, double radius_px, double deepest_px);
 
 }  // namespace twincell

@@ -24,26 +24,26 @@ namespace {
 enum Fitted : std::uint8_t { kX, kY, kR, kA };
 
 constexpr double kMinInterior = 0.3;  // median darkness inside R/2 that a proposal must show
-constexpr double kMinDarkness = 0.4;  // a fitted disc paler than that is none
-// Mean residual of a disc that nobody proposed; half that of the palest tracer.
+constexpr double kMinDarkness = 0.4;  // a fitted disc paler than that is rejected
+// Smallest mean residual of a disc that was not proposed; half that of the palest tracer.
 constexpr double kMissedDarkness = 0.35;
-// Of a size so much of the radius must be filled by what is missed, on average.
-// A disc whose radius is so far from all sizes, relative, is several that were taken for one.
-constexpr double kOfNoSize = 0.2;
+// A disc whose radius differs from all sizes by this much, relative, is several discs fitted as one.
+constexpr double kSizeTolerance = 0.2;
+// A missed disc has a given size if the residual inside kInner R averages kFilled of the usual darkness.
 constexpr double kInner = 0.85, kFilled = 0.7;
-// After so many sweeps some few may wander on: they are no beads.
-constexpr int kPatient = 12;
-// So many sweeps learn how much R and a differ from disc to disc.
-constexpr int kLearning = 8;
-// So far a disc may wander, px or darkness, before what couples it to its neighbours is found anew.
-constexpr double kRestless = 0.1;
-// Likewise the blur, as a share of s^2.
-constexpr double kBlurry = 0.05;
-// Of the first step so much is left to go, in a packing: edges are not straight lines in place and blur.
+// After so many sweeps the 2 % of the discs that move most are ignored: they are not beads.
+constexpr int kSweepsBeforeTrimming = 12;
+// Number of sweeps that estimate the scatter of R and a from disc to disc.
+constexpr int kPriorSweeps = 8;
+// A disc may move this far, px or darkness, before its couplings to its neighbours are recomputed.
+constexpr double kCouplingMove = 0.1;
+// The same for the blur, as a fraction of s^2.
+constexpr double kCouplingBlurChange = 0.05;
+// Fraction of the first step that remains after it, in a packing: edges are not linear in position and blur.
 constexpr double kLeftByFirst = 0.08;
-// The first sweep reads one row in so many: half the pixels do while the places are rough.
+// The first sweep reads every kFirstRows-th row: half the pixels suffice while the positions are rough.
 constexpr int kFirstRows = 2;
-// Added to the diagonal, relative: more only while steps make the fit worse.
+// Relative addition to the diagonal; it is increased only while steps make the fit worse.
 constexpr double kDamping = 0.002;
 
 Normal normal_of(const RingSums& s) {
@@ -59,9 +59,9 @@ Step right_side(const RingSums& s) {
   return g;
 }
 
-/// What is believed of R or a before the ring is looked at: a Gaussian with wide shoulders, so that a bead
-/// that clearly differs is free to.
-struct Belief {
+/// Prior of R or a: a Gaussian with wide shoulders, so that a bead that clearly differs is not pulled to the
+/// mean.
+struct Prior {
   double mean, spread;
   [[nodiscard]] double precision(double value) const {
     const double off = (value - mean) / (4 * spread);
@@ -69,35 +69,37 @@ struct Belief {
   }
 };
 
-/// A quantity of many beads, and the variances of some that their fit alone would have.
+/// Values of a quantity for many beads, and the variances due to the fit alone for some of them.
 struct Scatter {
   std::vector<double> values, variances;
-  /// Middle and spread of the beads themselves; as it was if there are too few.
-  /// \param rows of which one was read by the fit that they come from
-  void learn(Belief& belief, double least, int rows) {
+  /// Sets the prior to the median and the true spread of the beads; unchanged if there are too few.
+  /// \param least lower bound of the spread
+  /// \param rows row step of the fit that gave the values
+  void learn(Prior& prior, double least, int rows) {
     constexpr std::size_t kEnough = 20;
     if (values.size() < kEnough) return;
     const double middle = upper_median(values);
     for (double& v : values) v = std::abs(v - middle);
     const double scatter = 1.4826 * upper_median(values);
     const double own = scatter * scatter - rows * upper_median(variances);
-    belief = {middle, std::max(least, std::sqrt(std::max(0.0, own)))};
+    prior = {middle, std::max(least, std::sqrt(std::max(0.0, own)))};
   }
 };
 
+/// The fit of one frame: discs, blur, light, and the model picture.
 class PictureFit {
  public:
   PictureFit(const Prepared& image, double radius, const RefineOptions& options)
       : image_(image), options_(options), size_(image.darkness.size()), noise_(noise_of(image.darkness)) {
-    sizes_.push_back({radius, options.radius_spread * radius});
+    size_priors_.push_back({radius, options.radius_spread * radius});
     for (const double other : options.other_radii_px)
-      sizes_.push_back({other, options.radius_spread * other});
-    for (const Belief& s : sizes_) given_.push_back(s.mean);
-    constexpr double kLens = 0.8, kPixel = 1.0 / 12;  // a sharp lens, px; a pixel's own width, px^2
+      size_priors_.push_back({other, options.radius_spread * other});
+    for (const Prior& s : size_priors_) nominal_radii_.push_back(s.mean);
+    constexpr double kLens = 0.8, kPixel = 1.0 / 12;  // a sharp lens, px; the width of a pixel, px^2
     blur_.variance = options.blur_px > 0 ? options.blur_px * options.blur_px : kLens * kLens + kPixel;
-    // A picture out of focus would be fitted with sharp rims first, and its light and sizes found from what
-    // those leave. From the whole blur at once, places that are a third of a radius off do not find their way
-    // back.
+    // Out of focus: with a small starting blur the fit would first use sharp rims and estimate light and
+    // sizes from their residuals. With the whole measured blur, centres that are a third of a radius off
+    // would not converge.
     constexpr double kOutOfFocus = 1.3, kOfRadius = 0.2;  // px
     if (const double seen = blur_of(image.darkness); options.blur_px <= 0 && seen > kOutOfFocus) {
       const double begin = std::min(seen, kOfRadius * smallest());
@@ -114,10 +116,10 @@ class PictureFit {
     Detection b;
     b.x = p.x;
     b.y = p.y;
-    b.radius = sizes_[size_of(p.radius)].mean;
-    b.darkness = darkness_.mean;
-    // A proposal that is bright inside is a void or a clear bead, one with its centre in a wall is the wall's
-    // edge; fitted along, they would spoil their neighbours.
+    b.radius = size_priors_[size_of(p.radius)].mean;
+    b.darkness = darkness_prior_.mean;
+    // A proposal that is bright inside is a void or a clear bead; one with its centre in a wall is the edge
+    // of the wall. Neither is fitted, because it would spoil the fit of its neighbours.
     const double inside = rough_interior(image_, b);
     if (in_wall(image_, b)) {
       drop(b, Verdict::in_wall);
@@ -129,22 +131,22 @@ class PictureFit {
     }
   }
 
-  /// Before the first sweep: most beads are as dark as the insides of those proposed.
+  /// Before the first sweep: sets the darkness of all beads to the median interior of the proposals.
   void expect_as_dark_as_seen() {
     if (interiors_.empty()) return;
-    darkness_.mean = upper_median(std::move(interiors_));
-    for (Detection& b : beads_) b.darkness = darkness_.mean;
+    darkness_prior_.mean = upper_median(std::move(interiors_));
+    for (Detection& b : beads_) b.darkness = darkness_prior_.mean;
   }
 
   struct Moved {
-    double most, rms, sigma;  ///< px; sigma: what a typical bead's place is uncertain by
-    bool short_step;          ///< says nothing of how far there is to go
-    bool pruned;              ///< beads were dropped before it
-    double blur = 0;          ///< share by which s^2, or 0.7 px^2, changed
+    double most, rms, sigma;  ///< px; sigma: uncertainty of a typical bead's position
+    bool damped;              ///< so its length is no measure of convergence
+    bool pruned;              ///< beads were dropped before this step
+    double blur = 0;          ///< change of s^2 relative to s^2, or to 0.7 px^2 if s^2 is larger
   };
 
-  /// One Gauss-Newton step of all discs, and of the blur. The order of the beads does not matter. A step that
-  /// made the fit worse is taken back, and taken again shorter.
+  /// One Gauss-Newton step of all discs and of the blur. The order of the beads does not matter. If the
+  /// previous step made the fit worse, it is undone and repeated with more damping.
   Moved sweep(BlurFit fit) {
     RingArgs args = ring_args();
     if (sweeps_ == 0) args.row_step = kFirstRows;
@@ -168,37 +170,39 @@ class PictureFit {
       damping_ = std::max(kDamping, damping_ / 4);
       if (sweeps_ >= 1) pruned = prune();
     }
-    if (sweeps_ >= 1 && sweeps_ <= kLearning) learn_beliefs(sweeps_ == 1 ? kFirstRows : 1);
+    if (sweeps_ >= 1 && sweeps_ <= kPriorSweeps) learn_priors(sweeps_ == 1 ? kFirstRows : 1);
     ++sweeps_;
     Moved moved = step(args, fit);
     moved.pruned = pruned;
     return moved;
   }
 
-  /// After a first sweep by which every disc stands alone: most of a size are alike.
+  /// After the first sweep, in which every disc has a wide prior: narrows the priors, because most discs of a
+  /// size are alike.
   void expect_alike() {
     if (beads_.empty()) return;
-    std::vector<std::vector<double>> radii(sizes_.size());
+    std::vector<std::vector<double>> radii(size_priors_.size());
     std::vector<double> darkness;
     for (const Detection& b : beads_)
       radii[size_of(b.radius)].push_back(b.radius), darkness.push_back(b.darkness);
-    for (std::size_t k = 0; k < sizes_.size(); ++k)
+    for (std::size_t k = 0; k < size_priors_.size(); ++k)
       if (!radii[k].empty())
-        sizes_[k] = {upper_median(std::move(radii[k])), options_.radius_spread / 3 * given_[k]};
-    darkness_ = {upper_median(std::move(darkness)), 0.02};
+        size_priors_[k] = {upper_median(std::move(radii[k])), options_.radius_spread / 3 * nominal_radii_[k]};
+    darkness_prior_ = {upper_median(std::move(darkness)), 0.02};
   }
 
-  /// Divides the light by a quadratic surface, so that what is left in the gaps between the discs vanishes.
+  /// Divides the light by a quadratic surface, so that the residual in the gaps between the discs vanishes.
   void level() {
     if (stale_) render();
     const std::optional<Surface> q = quadratic_left();
-    // What is far below the noise moves no bead.
+    // A correction far below the noise displaces no bead.
     constexpr double kOfNoise = 0.02;
     if (q && q->cwiseAbs().sum() >= kOfNoise * std::sqrt(noise_.dark + noise_.light)) divide_light(*q, {});
   }
-  /// Likewise by a smooth surface, if what a quadratic leaves shows a ripple. For discs in place: edges that
-  /// are not yet blurred as they should be look like one. The last step may be missing in the model: it was
-  /// small. \returns whether there was one
+  /// Divides the light also by a smooth surface if the quadratic one leaves a ripple. Requires discs in
+  /// place, because edges with a wrong blur look like a ripple. The model may lack the last step, which was
+  /// small.
+  /// \returns whether there was a ripple
   bool level_ripple() {
     const std::optional<Surface> q = quadratic_left();
     if (!q) return false;
@@ -207,10 +211,11 @@ class PictureFit {
     return !ripple.empty();
   }
 
-  /// A disc that nobody proposed leaves a dark disc in the residual picture: blocks of pixels, three by three
-  /// of them about as wide as a disc, are looked through for it.
+  /// Adds discs that were not proposed. Such a disc leaves a dark disc in the residual picture. The search
+  /// uses blocks of pixels; 3 x 3 blocks are about as wide as a disc.
   void add_missed() {
     if (stale_) render();
+    // Blocks: sums of the residual picture, then means over 3 x 3 blocks.
     const int side = std::max(1, cvRound(0.4 * smallest()));
     cv::Mat1f blocks = cv::Mat1f::zeros(size_.height / side, size_.width / side);
     std::vector<float> columns(static_cast<std::size_t>(size_.width));
@@ -235,12 +240,13 @@ class PictureFit {
     std::stable_sort(missed.begin(), missed.end(),
                      [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
     const std::size_t before = beads_.size();
-    // Opaque discs do not overlap: a centre within R and 0.3 of the least R of a known one is that one's own
-    // misfit. A map of what is known, for in noise there are ten thousands of either.
+    // Known discs: opaque discs do not overlap, so a centre within R plus 0.3 of the smallest R of a known
+    // disc is a misfit of that disc. They are marked on a map, because in noise there are tens of thousands
+    // of candidates and of discs.
     cv::Mat1b known = cv::Mat1b::zeros(blocks.size());
     const auto block_of = [&](double at) { return (at + 0.5) / side - 0.5; };
     const auto mark = [&](const Detection& b) {
-      const double reach = given_[size_of(b.radius)] + 0.3 * smallest();
+      const double reach = nominal_radii_[size_of(b.radius)] + 0.3 * smallest();
       const int last_y = std::min(known.rows - 1, cvFloor(block_of(b.y + reach))),
                 last_x = std::min(known.cols - 1, cvFloor(block_of(b.x + reach)));
       for (int y = std::max(0, cvCeil(block_of(b.y - reach))); y <= last_y; ++y)
@@ -260,15 +266,15 @@ class PictureFit {
     if (beads_.size() > before) stale_ = true, before_.reset(), couplings_.clear();
   }
 
-  /// Adds discs beyond the frame that pull at those inside it. While the blur is not known, a rim that is
-  /// more blurred than thought looks like one of which no more than the blur is seen.
+  /// Adds discs outside the frame that disturb those inside. While the blur is unknown, a rim with more blur
+  /// than assumed looks like such a disc of which only the blur is visible.
   void add_beyond(bool blur_known) {
     if (stale_) render();
-    // Nearer to a known one it is that one's own misfit.
+    // A candidate too close to a known disc is a misfit of that disc.
     const double blur = std::sqrt(blur_.variance);
     const std::size_t before = beads_.size();
     std::vector<Proposal> beyond;
-    for (const Belief& s : sizes_)
+    for (const Prior& s : size_priors_)
       for (Proposal p : out_of_frame_discs(ring_args(), s.mean, blur_known ? s.mean + blur : s.mean - blur)) {
         p.radius = s.mean;
         beyond.push_back(p);
@@ -277,27 +283,28 @@ class PictureFit {
                      [](const Proposal& a, const Proposal& b) { return a.score > b.score; });
     for (const Proposal& p : beyond)
       if (std::none_of(beads_.begin(), beads_.end(), [&](const Detection& b) {
-            const double reach = given_[size_of(b.radius)] + 0.5 * smallest();
+            const double reach = nominal_radii_[size_of(b.radius)] + 0.5 * smallest();
             return (b.x - p.x) * (b.x - p.x) + (b.y - p.y) * (b.y - p.y) < reach * reach;
           }))
         add(p);
     if (beads_.size() > before) stale_ = true, before_.reset(), couplings_.clear();
   }
 
-  /// One, but two where votes are poor: those of the smallest discs run into each other, those out of focus
-  /// do not meet in a point. A second one fits what the first has found to be missed.
+  /// Number of sweeps of "fast": one, but two where the votes are poor. The votes of the smallest discs
+  /// merge, and those of discs out of focus do not meet in a point. The second sweep fits the discs that were
+  /// found missing after the first.
   [[nodiscard]] int sweeps_of_fast() const {
     constexpr double kSmall = 4.5;    // px
     constexpr double kBlurred = 1.7;  // px^2
     return smallest() < kSmall || blur_.variance > kBlurred ? 2 : 1;
   }
 
-  /// The fit ends here, though another step would move each bead by this share of its last.
+  /// Ends the fit, although another step would move each bead by this fraction of its last step.
   void leave(double share) {
     for (double& u : unsettled_) u *= share;
   }
 
-  /// The beads, with what is known of each. To be called once, last.
+  /// The beads with their uncertainties and measures. Call it once, at the end.
   Refined result() {
     unsettled_.resize(beads_.size());
     const std::vector<Normal> covariance = covariances();
@@ -306,14 +313,14 @@ class PictureFit {
     return {std::move(beads_), std::move(dropped_), std::sqrt(blur_.variance), blur_.path, sweeps_};
   }
 
-  /// Whether the blur was found to differ between directions; absent while that could not be told.
+  /// Whether the blur depends on direction; absent while undecided.
   [[nodiscard]] std::optional<bool> moves() const { return moves_; }
 
  private:
-  /// Calls use(x, y, light, left, weight) for about so many pixels, those in the gaps between the discs: the
-  /// share of the light that the model leaves them, and what it leaves of the picture. A rim that is not yet
-  /// in its place leaves something too: taken for light, it moved touching beads by 0.004 px, so pixels count
-  /// by the sixteenth power of the light.
+  /// Calls use(x, y, light, left, weight) for about `samples` pixels in the gaps between the discs: the
+  /// fraction of the light that the model leaves to the pixel, and its residual. A rim that is not yet in
+  /// place also leaves a residual. When it counted as light, it displaced touching beads by 0.004 px; pixels
+  /// are therefore weighted by the sixteenth power of the light.
   template <class Use>
   void over_gaps(double samples, Use&& use) const {
     const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(size_.area()) / samples)));
@@ -327,7 +334,7 @@ class PictureFit {
       }
   }
 
-  /// The quadratic surface through what is left in the gaps.
+  /// Fits a quadratic surface to the residual in the gaps.
   [[nodiscard]] std::optional<Surface> quadratic_left() const {
     constexpr double kSamples = 10000;
     constexpr int kEnough = 200;
@@ -346,7 +353,8 @@ class PictureFit {
     a.diagonal().tail<5>().array() += 1e-3 * weights;
     return a.ldlt().solve(right);
   }
-  /// \param ripple  beside the quadratic surface, pixel by pixel; empty: none
+  /// Divides the light of the picture by 1 - q - ripple.
+  /// \param ripple correction in addition to the quadratic surface, for each pixel; empty: no ripple
   void divide_light(const Surface& q, const cv::Mat1f& ripple) {
     cv::Mat1f to = picture_;
     if (!owned_) {
@@ -358,7 +366,7 @@ class PictureFit {
       const float* from = picture_[y];
       float *d = to[y], *level = levelled.data();
       const SurfaceRow row = surface_row(q, y, size_);
-      // In steps, for the compiler makes vectors of neither a division nor a choice where both are one.
+      // Separate loops: the compiler does not vectorise a division and a selection in one loop.
       for (int x = 0; x < size_.width; ++x) level[x] = 1 - row.at(x);
       if (!ripple.empty())
         for (int x = 0; x < size_.width; ++x) level[x] -= ripple(y, x);
@@ -370,8 +378,8 @@ class PictureFit {
     before_.reset();
   }
 
-  /// What a quadratic surface leaves of the light, tile by tile. One more all round tells nothing: between
-  /// them and their neighbours lies the frame's border.
+  /// Residual light after a quadratic surface, tile by tile. One extra row of tiles on each side carries no
+  /// data: the border of the frame is between them and their neighbours.
   struct Tiles {
     cv::Mat1d mean, variance;
   };
@@ -394,9 +402,9 @@ class PictureFit {
         }
     return tiles;
   }
-  /// The light's ripple beside a quadratic surface, pixel by pixel; empty where none is seen.
+  /// Ripple of the light after a quadratic surface, pixel by pixel; empty if no ripple is detected.
   [[nodiscard]] cv::Mat1f ripple_beside(const Surface& q) const {
-    constexpr double kSeen = 10000, kFound = 400000;  // samples that tell of one, and what it is
+    constexpr double kSeen = 10000, kFound = 400000;  // samples to detect a ripple, and to measure it
     constexpr int kMost = 32;                         // tiles
     const int side = std::max(cvCeil(6 * largest()), std::max(size_.width, size_.height) / kMost);
     if (const Tiles seen = tiles_beside(q, side, kSeen); !has_ripple(seen.mean, seen.variance)) return {};
@@ -407,9 +415,9 @@ class PictureFit {
     return wide(cv::Rect({side, side}, size_));
   }
 
-  /// What all discs' equations share with those of the blur: one unknown (s^2) or three.
+  /// Equations of the blur, with one unknown (s^2) or three, and their coupling to those of the discs.
   struct BlurEquations {
-    std::vector<std::vector<Step>> shared;  // for each unknown, of each disc
+    std::vector<std::vector<Step>> shared;  // coupling of each unknown to each disc
     Eigen::MatrixXd normal;
     Eigen::VectorXd right;
   };
@@ -430,7 +438,7 @@ class PictureFit {
     }
     return e;
   }
-  /// Those of a round blur, which is Q_xx = Q_yy.
+  /// The equations of a round blur, Q_xx = Q_yy.
   static BlurEquations rounded(const BlurEquations& e) {
     BlurEquations r{{e.shared[0]}, Eigen::MatrixXd::Zero(1, 1), Eigen::VectorXd::Zero(1)};
     for (std::size_t k = 0; k < r.shared[0].size(); ++k) r.shared[0][k] += e.shared[2][k];
@@ -439,8 +447,8 @@ class PictureFit {
     return r;
   }
 
-  /// The step of the blur, bounded, with what the discs' steps change by through it: disc and blur together,
-  /// for a blur that were to follow one sweep behind would take twice as many of them.
+  /// Bounded step of the blur; also corrects the steps of the discs for it. Discs and blur are solved
+  /// together, because a blur that followed one sweep behind would take twice as many sweeps.
   Eigen::VectorXd blur_step(const BlurEquations& e, const std::vector<Normal>& blocks,
                             const std::vector<Coupling>& couplings, std::vector<Step>& steps) const {
     const auto n = static_cast<Eigen::Index>(e.shared.size());
@@ -466,7 +474,8 @@ class PictureFit {
     return step;
   }
 
-  /// A blur that is not round: of a mean variance, and of so much more along one direction than across it.
+  /// A blur that is not round: mean variance, and the excess of variance along one direction over that across
+  /// it.
   struct Uneven {
     double mean, more, angle;
     explicit Uneven(const Eigen::VectorXd& q)
@@ -475,9 +484,9 @@ class PictureFit {
           angle(0.5 * std::atan2(2 * q[1], q[0] - q[2])) {}
   };
 
-  /// Fits the blur along with the discs. If it is seen to differ clearly between directions, the bed moved,
-  /// and a path is fitted that begins with that of the variance found. \returns by what share of s^2 it
-  /// changed
+  /// Fits the blur together with the discs. If the blur clearly depends on direction, the bed moved, and a
+  /// path is fitted, starting from the path that corresponds to the measured variance.
+  /// \returns the relative change of s^2
   double fit_blur(BlurFit fit, const std::vector<Normal>& blocks, std::vector<Step>& steps) {
     constexpr double kClear = 0.04, kNear = 0.1;              // of s^2
     constexpr double kLeast = 0.09, kMost = 36, kWide = 0.7;  // px^2
@@ -486,7 +495,7 @@ class PictureFit {
     if (fit == BlurFit::uneven) {
       std::vector<Step> alone = steps;
       const Uneven seen(blur_step(equations, blocks, {}, alone));
-      // A blur that is still far off all round seems to differ too.
+      // A mean blur that is still wrong also appears to depend on direction.
       const bool moved = seen.more > std::max(kClear * blur_.variance, std::abs(seen.mean));
       if (moved || std::abs(seen.mean) < kNear * blur_.variance) moves_ = moved;
       if (!moved) equations = rounded(equations);
@@ -501,7 +510,7 @@ class PictureFit {
       blur_.variance = old + step[0];
     } else if (step.size() > 1) {
       const Uneven seen(step);
-      // Of an even density over L the variance is L^2/12.
+      // A uniform density over a length L has the variance L^2/12.
       put_path(std::sqrt(12 * seen.more) * Eigen::Vector2d(std::cos(seen.angle), std::sin(seen.angle)));
       blur_.variance = old + seen.mean - seen.more / 2;
       widened = std::abs(seen.mean) + seen.more / 2;
@@ -509,21 +518,21 @@ class PictureFit {
       blur_.variance = old + step[0];
     }
     blur_.variance = std::clamp(blur_.variance, kLeast, kMost);
-    // Of a wide blur the same share moves the discs further.
+    // For a wide blur the same relative change moves the discs farther.
     return widened / std::min(old, kWide);
   }
   void put_path(const Eigen::Vector2d& path) {
-    // One longer than that leaves nothing of a disc that is dark throughout.
+    // With a longer path no point of a disc would stay dark throughout the exposure.
     const double most = smallest(), length = path.norm();
     const Eigen::Vector2d bounded = length > most ? Eigen::Vector2d(most / length * path) : path;
     blur_.path = {bounded.x(), bounded.y()};
   }
 
-  /// How much R and a differ from bead to bead, from the beads themselves: the scatter less what the fit
-  /// alone would scatter. \param rows of which one was read by the fit that they come from
-  void learn_beliefs(int rows) {
+  /// Estimates the scatter of R and a from bead to bead: the observed scatter less that of the fit alone.
+  /// \param rows row step of the fit that gave the values
+  void learn_priors(int rows) {
     constexpr double kLeastRadius = 0.002, kLeastDarkness = 0.003;
-    std::vector<Scatter> radii(sizes_.size());
+    std::vector<Scatter> radii(size_priors_.size());
     Scatter darkness;
     for (std::size_t k = 0; k < beads_.size(); ++k) {
       const Detection& b = beads_[k];
@@ -536,21 +545,24 @@ class PictureFit {
       radius.variances.push_back(covariance(kR, kR));
       darkness.variances.push_back(covariance(kA, kA));
     }
-    for (std::size_t k = 0; k < sizes_.size(); ++k) radii[k].learn(sizes_[k], kLeastRadius * given_[k], rows);
-    darkness.learn(darkness_, kLeastDarkness, rows);
+    for (std::size_t k = 0; k < size_priors_.size(); ++k)
+      radii[k].learn(size_priors_[k], kLeastRadius * nominal_radii_[k], rows);
+    darkness.learn(darkness_prior_, kLeastDarkness, rows);
   }
 
-  /// Drops what has turned out to be no disc, or to lie outside. Left in, it would spoil its neighbours.
-  /// \returns whether there was any
+  /// Drops candidates that are not discs or are outside the frame. Left in, they would spoil the fit of their
+  /// neighbours.
+  /// \returns whether any was dropped
   bool prune() {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < beads_.size(); ++k) {
       const Detection& b = beads_[k];
-      const double out = given_[size_of(b.radius)] + std::sqrt(blur_.variance);
-      const double size = given_[size_of(b.radius)];
+      const double out = nominal_radii_[size_of(b.radius)] + std::sqrt(blur_.variance);
+      const double size = nominal_radii_[size_of(b.radius)];
       if (b.darkness < kMinDarkness) {
         drop(b, Verdict::pale);
-      } else if (given_.size() > 1 && sweeps_ >= 3 && std::abs(b.radius - size) > kOfNoSize * size) {
+      } else if (nominal_radii_.size() > 1 && sweeps_ >= 3 &&
+                 std::abs(b.radius - size) > kSizeTolerance * size) {
         drop(b, Verdict::wrong_radius);
       } else if (b.x < -out || b.y < -out || b.x > size_.width - 1 + out || b.y > size_.height - 1 + out) {
         drop(b, Verdict::outside);
@@ -576,8 +588,8 @@ class PictureFit {
     for (const Detection& b : beads_) all.push_back(disc_of(b));
     return all;
   }
-  /// The sums of each disc and those that couple it to its neighbours, in one pass: their pixels are then in
-  /// the cache. What couples two discs stays what it was until one of them has moved.
+  /// Computes the sums of each disc and of its couplings in one pass, while its pixels are in the cache. A
+  /// coupling is recomputed only when one of its two discs has moved.
   void evaluate(const RingArgs& args, BlurFit fit) {
     if (stale_) render(args.row_step);
     sums_.resize(beads_.size());
@@ -587,46 +599,48 @@ class PictureFit {
     for (std::size_t k = 0; k < all.size(); ++k) {
       sums_[k] = ring_sums(args, all[k], fit);
       for (; c != couplings_.end() && static_cast<std::size_t>(c->i) == k; ++c)
-        if (std::max(wandered_[k], wandered_[static_cast<std::size_t>(c->j)]) > kRestless)
+        if (std::max(moved_since_coupling_[k], moved_since_coupling_[static_cast<std::size_t>(c->j)]) >
+            kCouplingMove)
           renew(*c, args, all);
     }
-    for (double& w : wandered_) w = w > kRestless ? 0 : w;
+    for (double& w : moved_since_coupling_) w = w > kCouplingMove ? 0 : w;
   }
   void begin_couplings(const RingArgs& args, const std::vector<Disc>& all) {
     couplings_ = couplings_of(args, all);
-    wandered_.assign(all.size(), HUGE_VAL);
+    moved_since_coupling_.assign(all.size(), HUGE_VAL);
   }
 
   Moved step(const RingArgs& args, BlurFit fit) {
     const std::size_t n = beads_.size();
+    // Normal equations: sums over pixels, priors, damping.
     std::vector<Normal> blocks(n);
     std::vector<Step> right(n);
     for (std::size_t k = 0; k < n; ++k) {
       blocks[k] = normal_of(sums_[k]);
       right[k] = right_side(sums_[k]);
-      believe(beads_[k], blocks[k], right[k]);
+      add_priors(beads_[k], blocks[k], right[k]);
       blocks[k].diagonal() *= 1 + damping_;
     }
-    if (couplings_.empty()) {  // the last step was taken back, or beads were dropped
+    if (couplings_.empty()) {  // the last step was undone, or beads were dropped
       const std::vector<Disc> all = discs();
       begin_couplings(args, all);
       for (Coupling& c : couplings_) renew(c, args, all);
-      wandered_.assign(n, 0.0);
+      moved_since_coupling_.assign(n, 0.0);
     }
     std::vector<Step> steps = gauss_newton_step(blocks, couplings_, right);
     if (sweeps_ == 1) couplings_.clear();
     std::vector<double> far(n), sigma(n);
     Moved moved{0, 0, 0, damping_ > 0.1, false};
     moved.blur = fit_blur(fit, blocks, steps);
-    if (moved.blur > kBlurry) couplings_.clear();
+    if (moved.blur > kCouplingBlurChange) couplings_.clear();
     for (std::size_t k = 0; k < n; ++k) {
       far[k] = apply(beads_[k], steps[k]);
-      if (sweeps_ > 1) wandered_[k] += far[k] + std::abs(steps[k][kA]);
+      if (sweeps_ > 1) moved_since_coupling_[k] += far[k] + std::abs(steps[k][kA]);
       sigma[k] = std::sqrt(excess(sums_[k]) / blocks[k](kX, kX));
     }
     unsettled_ = far;
     if (n > 0) {
-      const std::size_t most = sweeps_ > kPatient ? n - 1 - n / 50 : n - 1;
+      const std::size_t most = sweeps_ > kSweepsBeforeTrimming ? n - 1 - n / 50 : n - 1;
       std::nth_element(far.begin(), far.begin() + static_cast<std::ptrdiff_t>(most), far.end());
       for (std::size_t k = 0; k <= most; ++k) moved.rms += far[k] * far[k];
       moved.most = far[most];
@@ -639,14 +653,15 @@ class PictureFit {
     return moved;
   }
 
-  /// Of each disc's x, y, R, a by the noise, with what its neighbours' uncertainty adds: of the inverse of
-  /// blocks A and couplings C, the first terms A^-1 + sum_j A^-1 C_ij A_j^-1 C_ji A^-1.
+  /// Covariance of each disc's x, y, R, a due to noise, including the uncertainty of its neighbours. It uses
+  /// the first terms of the inverse of the matrix with blocks A and couplings C:
+  /// A^-1 + sum_j A^-1 C_ij A_j^-1 C_ji A^-1.
   [[nodiscard]] std::vector<Normal> covariances() const {
     std::vector<Normal> alone;
     for (std::size_t k = 0; k < beads_.size(); ++k) {
       Normal a = normal_of(sums_[k]);
       Step g = Step::Zero();
-      believe(beads_[k], a, g);
+      add_priors(beads_[k], a, g);
       alone.emplace_back(a.inverse());
     }
     std::vector<Normal> all = alone;
@@ -666,29 +681,33 @@ class PictureFit {
   static void put(Detection& b, const Disc& d) {
     b.x = d.x, b.y = d.y, b.radius = d.radius, b.darkness = d.darkness;
   }
-  /// Half width of the ring: out to where the edge says nothing more of the place.
+  /// Half width of the ring: out to where the edge carries no more information on the position.
   [[nodiscard]] double ring() const {
     constexpr double kFar = 3, kLeast = 2.5, kMost = 6;
     if (options_.ring_px > 0) return options_.ring_px;
     return std::clamp(blur_.reach(kFar), kLeast, std::max(kMost, smallest()));
   }
   [[nodiscard]] double full_ring(const Detection& b) const {
-    return 4 * std::numbers::pi * given_[size_of(b.radius)] * ring();
+    return 4 * std::numbers::pi * nominal_radii_[size_of(b.radius)] * ring();
   }
-  /// Which of the sizes a disc is nearest to.
+  /// Index of the size closest to a radius, by the logarithm of their ratio.
   [[nodiscard]] std::size_t size_of(double radius) const {
     const auto off = [&](double size) { return std::abs(std::log(radius / size)); };
     std::size_t nearest = 0;
-    for (std::size_t k = 1; k < given_.size(); ++k)
-      if (off(given_[k]) < off(given_[nearest])) nearest = k;
+    for (std::size_t k = 1; k < nominal_radii_.size(); ++k)
+      if (off(nominal_radii_[k]) < off(nominal_radii_[nearest])) nearest = k;
     return nearest;
   }
-  [[nodiscard]] double smallest() const { return *std::min_element(given_.begin(), given_.end()); }
-  [[nodiscard]] double largest() const { return *std::max_element(given_.begin(), given_.end()); }
-  /// The largest size of which the residual picture is dark there; the smallest if it is of none.
+  [[nodiscard]] double smallest() const {
+    return *std::min_element(nominal_radii_.begin(), nominal_radii_.end());
+  }
+  [[nodiscard]] double largest() const {
+    return *std::max_element(nominal_radii_.begin(), nominal_radii_.end());
+  }
+  /// The largest size for which the residual picture is dark at that position; otherwise the smallest size.
   [[nodiscard]] double missed_radius(const Proposal& p) const {
     double radius = smallest();
-    for (const double size : given_) {
+    for (const double size : nominal_radii_) {
       if (size <= radius) continue;
       const int reach = cvFloor(kInner * size);
       double left = 0, pixels = 0;
@@ -698,11 +717,11 @@ class PictureFit {
              ++x)
           if (std::hypot(x - p.x, y - p.y) < kInner * size && picture_(y, x) < kUnseen)
             left += static_cast<double>(picture_(y, x) - model_(y, x)), ++pixels;
-      if (left > kFilled * darkness_.mean * pixels) radius = size;
+      if (left > kFilled * darkness_prior_.mean * pixels) radius = size;
     }
     return radius;
   }
-  /// The picture is the frame's own until it is to be changed.
+  /// Copies the picture before its first change; until then it is shared with the frame.
   void own_picture() {
     if (!owned_) picture_ = picture_.clone();
     owned_ = true;
@@ -721,43 +740,43 @@ class PictureFit {
     args.ring = ring();
     args.dark_variance = noise_.dark;
     args.light_variance = noise_.light;
-    // The noise of a usable frame is below, rims of clear beads are above.
+    // Huber's bound is above the noise of a usable frame and below the rims of clear beads.
     args.huber = std::max(0.1, 4 * std::sqrt(noise_.dark + noise_.light));
     return args;
   }
-  /// Adds what is believed to the normal equations of a bead.
-  void believe(const Detection& b, Normal& a, Step& g) const {
-    const auto add = [&](int at, const Belief& belief, double value) {
-      const double p = belief.precision(value);
+  /// Adds the priors to the normal equations of a bead.
+  void add_priors(const Detection& b, Normal& a, Step& g) const {
+    const auto add = [&](int at, const Prior& prior, double value) {
+      const double p = prior.precision(value);
       a(at, at) += p;
-      g[at] += p * (belief.mean - value);
+      g[at] += p * (prior.mean - value);
     };
-    add(kR, sizes_[size_of(b.radius)], b.radius);
-    add(kA, darkness_, b.darkness);
-    a(kX, kX) += 0.25, a(kY, kY) += 0.25;  // a proposal is good to 2 px
+    add(kR, size_priors_[size_of(b.radius)], b.radius);
+    add(kA, darkness_prior_, b.darkness);
+    a(kX, kX) += 0.25, a(kY, kY) += 0.25;  // a proposal is accurate to 2 px
   }
-  /// \returns how far the centre moved, px; of several sizes also the rim: one of the wrong size finds its
-  /// place last
+  /// Applies a bounded step to a bead.
+  /// \returns the displacement of the centre, px; with several sizes the larger of it and the change of R,
+  ///     because a disc with the wrong size converges last
   double apply(Detection& b, const Step& step) const {
     const double dx = std::clamp(step[kX], -1.0, 1.0), dy = std::clamp(step[kY], -1.0, 1.0);
     b.x += dx;
     b.y += dy;
     const double radius =
         std::clamp(b.radius + std::clamp(step[kR], -0.5, 0.5), 0.6 * smallest(), 1.4 * largest());
-    const double wider = given_.size() > 1 ? std::abs(radius - b.radius) : 0;
+    const double wider = nominal_radii_.size() > 1 ? std::abs(radius - b.radius) : 0;
     b.radius = radius;
     b.darkness = std::clamp(b.darkness + step[kA], 0.0, 1.5);
     return std::max(std::sqrt(dx * dx + dy * dy), wider);
   }
 
-  /// Where the fit leaves more than the noise, the scatter is larger by as much: variance over that of the
-  /// noise.
+  /// Residual variance relative to that of the noise, at least 1: uncertainties are enlarged by it.
   [[nodiscard]] static double excess(const RingSums& s) {
     return s.pixels > kFitted ? std::max(1.0, s.squares / (s.pixels - kFitted)) : HUGE_VAL;
   }
 
   /// Uncertainty, score, interior and moments of a bead.
-  /// \param unsettled  by which either coordinate may be off beside the noise, px
+  /// \param unsettled error of either coordinate from incomplete convergence, px
   void measure(Detection& b, const RingSums& s, const Normal& by_noise, double unsettled) const {
     const double n = s.pixels;
     const Normal covariance = excess(s) * by_noise;
@@ -776,12 +795,12 @@ class PictureFit {
   cv::Size size_;
   Noise noise_;
   EdgeBlur blur_;
-  std::vector<double> given_;  // radii
-  std::vector<Belief> sizes_;  // what the discs of each have
-  Belief darkness_{1, 0.3};
-  cv::Mat1f picture_, model_;  // with spare columns; darkness, sum of all a P
-  bool owned_ = false;         // the picture is no longer the frame's
-  bool stale_ = true;          // the model is not that of the beads
+  std::vector<double> nominal_radii_;  // radii of the sizes
+  std::vector<Prior> size_priors_;     // prior of R for each size
+  Prior darkness_prior_{1, 0.3};
+  cv::Mat1f picture_, model_;  // darkness, and the sum of all a P; both with spare columns
+  bool owned_ = false;         // the picture is a copy, not shared with the frame
+  bool stale_ = true;          // the model does not match the beads
   std::vector<Detection> beads_, dropped_;
   std::vector<double> interiors_;      // of the proposals
   std::vector<RingSums> sums_;         // of the last sweep
@@ -789,19 +808,21 @@ class PictureFit {
   struct State {
     std::vector<Disc> discs;
     EdgeBlur blur;
-    double misfit;  // mean square of what is left, darkness^2
+    double misfit;  // mean square of the residuals, darkness^2
   };
-  std::optional<State> before_;  // the last step; none after the picture or the set of beads was changed
+  std::optional<State>
+      before_;  // before the last step; empty after a change of the picture or the set of beads
   double damping_ = kDamping;
   int sweeps_ = 0;
-  std::vector<double> unsettled_;    // of each bead, px, by which it may be off beside the noise
-  std::vector<Coupling> couplings_;  // empty after the set of beads was changed
-  std::optional<bool> moves_;        // whether the blur differs between directions
-  std::vector<double> wandered_;     // of each bead since its couplings were found, px and darkness
+  std::vector<double> unsettled_;    // error of each bead from incomplete convergence, px
+  std::vector<Coupling> couplings_;  // empty after a change of the set of beads
+  std::optional<bool> moves_;        // whether the blur depends on direction
+  std::vector<double>
+      moved_since_coupling_;  // motion of each bead since its couplings were computed, px and darkness
 };
 
-/// In bands as high as a disc, each from left to right: a disc's pixels are then in the cache from its
-/// neighbours. By score, as they come, half of the time went into waiting for memory.
+/// Sorts proposals into bands as high as a disc, each from left to right, so that a disc's pixels are in the
+/// cache from its neighbours. In the order of score, half of the time was spent waiting for memory.
 std::vector<Proposal> by_place(const std::vector<Proposal>& proposals, double band) {
   std::vector<std::tuple<double, double, double, std::size_t>> order;
   order.reserve(proposals.size());
@@ -820,6 +841,8 @@ std::vector<Proposal> by_place(const std::vector<Proposal>& proposals, double ba
 
 namespace {
 
+/// The schedule of the fit: sweeps until convergence, with corrections of the light and searches for missed
+/// discs between them.
 Refined fit_picture(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
                     const RefineOptions& options, bool fast) {
   PictureFit fit(image, radius_px, options);
@@ -827,31 +850,31 @@ Refined fit_picture(const Prepared& image, const std::vector<Proposal>& proposal
   for (const Proposal& p : by_place(proposals, 2 * radius_px)) fit.add(p);
   fit.expect_as_dark_as_seen();
   constexpr int kLeast = 2;
-  constexpr double kEnough = 0.5;        // of what a place is uncertain by
-  constexpr double kWorst = 3;           // likewise, of the one that moves most
-  constexpr double kBlurSettled = 0.03;  // of s^2: moves no touching bead by more than its error
-  // Whether the bed moved during the exposure shows once the discs are in place.
+  constexpr double kEnough = 0.5;        // rms step at convergence, in uncertainties of a position
+  constexpr double kWorst = 3;           // the same for the largest step
+  constexpr double kBlurSettled = 0.03;  // of s^2: displaces no touching bead by more than its error
+  // A motion of the bed during the exposure is visible only when the discs are in place.
   BlurFit blur = options.blur_px > 0 ? BlurFit::none : BlurFit::uneven;
-  constexpr int kMostRipples = 2;                  // of the light, one beside the other
+  constexpr int kMostRipples = 2;                  // ripple corrections of the light
   constexpr double kUnknown = 0.2, kKnown = 0.05;  // change of s^2
   int sweeps = 0, ripples = 0, owed = 0;
   bool blurred = false;
   double before = HUGE_VAL;
   while (sweeps < most_sweeps) {
     throw_if_cancelled();
-    // Places that are far off look like blur: the first sweep has none.
+    // Wrong positions look like blur, so the first sweep does not fit the blur.
     const auto moved = fit.sweep(blurred || sweeps == 0 ? BlurFit::none : blur);
     ++sweeps;
-    blurred = blurred || (sweeps > kLeast + 1 && !moved.short_step && moved.blur < kBlurSettled);
+    blurred = blurred || (sweeps > kLeast + 1 && !moved.damped && moved.blur < kBlurSettled);
     if (blur == BlurFit::uneven && fit.moves()) blur = *fit.moves() ? BlurFit::path : BlurFit::round;
     if (sweeps == 1) fit.expect_alike();
-    // By as much as a place is uncertain the second sweep moves it because it reads all rows.
+    // The second sweep reads all rows, which alone moves each bead by about its uncertainty.
     const double noise = sweeps == 2 ? std::sqrt(kFirstRows - 1.0) * moved.sigma : 0;
     const double left = std::sqrt(std::max(0.0, moved.rms * moved.rms - noise * noise));
     const double shrinks = left < before ? left / before : 1;
     before = moved.rms;
-    // The next step would be smaller than this one by about as much as this is smaller than the last.
-    if (sweeps >= kLeast && !moved.short_step && !moved.pruned && moved.blur < kBlurSettled &&
+    // Convergence: the ratio of the next step to this one is about that of this step to the last.
+    if (sweeps >= kLeast && !moved.damped && !moved.pruned && moved.blur < kBlurSettled &&
         shrinks * left < kEnough * moved.sigma &&
         shrinks * moved.most < std::max(options.tolerance_px, kWorst * moved.sigma)) {
       if (ripples < kMostRipples && sweeps < most_sweeps && fit.level_ripple()) {
@@ -865,16 +888,17 @@ Refined fit_picture(const Prepared& image, const std::vector<Proposal>& proposal
       if (sweeps > 1) fit.leave(shrinks);
       break;
     }
-    // What rims leave whose blur is not yet known looks like light: that is mended later.
+    // Light: residuals of rims with a wrong blur look like light. The correction is therefore repeated once
+    // the blur is known.
     if (sweeps <= 3 && moved.blur > kUnknown) ++owed;
     const bool mend = sweeps > 3 && owed > 0 && moved.blur < kKnown;
     if (mend) --owed;
     if (sweeps <= 3 || mend) fit.level();
-    // Those found now need a sweep of their own. Beyond the frame first: a block of pixels at the border
-    // would place such a disc inside it.
+    // Missed discs: they need a further sweep. Discs outside the frame come first, because a block of pixels
+    // at the border would place such a disc inside.
     if (sweeps <= 3) fit.add_beyond(sweeps > 1 && moved.blur < kBlurSettled);
-    // Where one of the wrong size was dropped, one of another may be.
-    if (sweeps <= 2 || (moved.pruned && !options.other_radii_px.empty() && sweeps <= kPatient))
+    // Where a disc of the wrong size was dropped, there may be one of another size.
+    if (sweeps <= 2 || (moved.pruned && !options.other_radii_px.empty() && sweeps <= kSweepsBeforeTrimming))
       fit.add_missed();
   }
   return fit.result();

@@ -16,19 +16,20 @@ namespace twincell {
 
 namespace {
 
-constexpr double kReach = 3;            // px beyond the radius: where the outer rim has ended
-constexpr int kLessons = 2;             // of learning and looking for what is alike
-constexpr int kRounds = 3;              // of fitting and learning
-constexpr int kSweeps = 4;              // of a round
-constexpr double kSettled = 2e-3;       // px
-constexpr double kMinScore = 0.5;       // as the judge asks
-constexpr double kMinLevel = 0.4;       // of a, as the opaque fit asks
-constexpr double kRadiusSpread = 0.04;  // prior of R_k, of R
-constexpr double kLevelSpread = 0.1;    // prior of a_k
-constexpr double kDoubled = 0.5;        // of R: centres nearer than that are of one disc
-constexpr double kLike = 0.4;           // correlation of what may be a disc with the profile
-constexpr double kApart = 1.6;          // of R: no disc is looked for nearer to another, as in the vote
+constexpr double kReach = 3;            // px outside the radius at which the outer rim has ended
+constexpr int kLessons = 2;             // rounds of learning the profile and searching for similar discs
+constexpr int kRounds = 3;              // rounds of fitting and learning
+constexpr int kSweeps = 4;              // sweeps in a round
+constexpr double kSettled = 2e-3;       // displacement at which a round ends, px
+constexpr double kMinScore = 0.5;       // as the judge requires
+constexpr double kMinLevel = 0.4;       // smallest a, as the opaque fit requires
+constexpr double kRadiusSpread = 0.04;  // prior scatter of R_k, as a fraction of R
+constexpr double kLevelSpread = 0.1;    // prior scatter of a_k
+constexpr double kDoubled = 0.5;        // in R: centres closer than that belong to one disc
+constexpr double kLike = 0.4;           // smallest correlation of a proposed disc with the profile
+constexpr double kApart = 1.6;          // in R: no disc is proposed closer to another, as in the vote
 
+/// The fit of one frame: discs, profile and model picture.
 class ProfileFit {
  public:
   ProfileFit(const Prepared& image, double radius)
@@ -55,12 +56,13 @@ class ProfileFit {
     }
   }
 
-  /// f and g from the discs whose score is no less than `least`; the model follows.
+  /// Learns f and g from the discs with a score of at least `least` and renders the model.
   void learn(double least) {
-    const auto n = static_cast<Eigen::Index>(shared_.levels.size());  // the last is g
+    const auto n = static_cast<Eigen::Index>(shared_.levels.size());  // unknowns; the last is g
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-    // What each pixel sees of each level, of all discs that reach it; first as it comes, then by pixel.
+    // Terms: the coefficient of each level in each pixel, over all discs that reach it. They are collected
+    // disc by disc, then sorted by pixel.
     struct Term {
       std::size_t row;
       int level;
@@ -92,6 +94,7 @@ class ProfileFit {
     std::vector<Term> terms(seen.size());
     std::vector<std::size_t> at(first.begin(), first.end());
     for (const Term& t : seen) terms[at[t.row]++] = t;
+    // Normal equations, with Huber weights once a profile is known.
     std::vector<Term> of_one;
     for (std::size_t row = 0; row < pixels.size(); ++row) {
       of_one.assign(terms.begin() + static_cast<std::ptrdiff_t>(first[row]),
@@ -112,7 +115,7 @@ class ProfileFit {
         for (const Term& u : of_one) a(t.level, u.level) += weight * t.share * u.share;
       }
     }
-    // Levels that few pixels see, as at the centre, go on like their neighbours.
+    // Regularisation: levels in few pixels, as at the centre, follow their neighbours.
     const double smooth = 0.02 * static_cast<double>(pixels.size()) / static_cast<double>(n);
     for (Eigen::Index k = 1; k + 2 < n; ++k) {
       a(k - 1, k - 1) += smooth, a(k, k) += smooth;
@@ -129,8 +132,8 @@ class ProfileFit {
     render();
   }
 
-  /// One step of each disc, all others as they stand. \returns how far the farthest of all but the worst
-  /// fiftieth moved, px
+  /// One step of each disc, with all others fixed.
+  /// \returns the largest displacement, px, without the worst 2 % of the discs
   double sweep() {
     throw_if_cancelled();
     std::vector<double> far;
@@ -143,7 +146,7 @@ class ProfileFit {
     return far[static_cast<std::size_t>(most)];
   }
 
-  /// Drops what the profile does not explain, and of two centres in one disc the lesser.
+  /// Drops discs that the profile does not explain and, of two centres in one disc, the worse one.
   void prune() {
     std::vector<Disc> discs;
     std::vector<bool> stays(beads_.size(), true);
@@ -173,10 +176,10 @@ class ProfileFit {
     render();
   }
 
-  /// Replaces the discs by the places that look like the profile. In a packing votes lie a pixel or two off,
-  /// from where no step leads home, and miss discs of which little more than the rims of their neighbours is
-  /// beside them; of these places all of a disc's pixels speak. A disc stays where nothing looks like one, as
-  /// beyond the frame, but teaches nothing.
+  /// Replaces the discs by the positions that resemble the profile. In a packing, votes are off by a pixel or
+  /// two, which no step corrects, and they miss discs that are surrounded by the rims of their neighbours.
+  /// The correlation with the profile uses all pixels of a disc instead. A voted disc without a similar
+  /// position nearby, for example outside the frame, is kept but not used for learning.
   void propose_alike() {
     std::vector<Detection> voted;
     std::swap(voted, beads_);
@@ -190,7 +193,7 @@ class ProfileFit {
     render();
   }
 
-  /// Adds the places where what is left of the picture looks like the profile.
+  /// Adds the positions where the residual picture resembles the profile.
   void add_missed() {
     taken_.setTo(0);
     for (const Detection& b : beads_) take(b);
@@ -220,7 +223,7 @@ class ProfileFit {
   [[nodiscard]] bool empty() const { return beads_.empty(); }
 
  private:
-  /// Pixels to each side of a disc's centre that show it.
+  /// Number of pixels to each side of a disc's centre that show the disc.
   [[nodiscard]] int reach() const { return cvCeil(radius_) + 1; }
   [[nodiscard]] cv::Point pixel_of(const Detection& b) const {
     return {std::clamp(cvRound(b.x) + reach(), 0, taken_.cols - 1),
@@ -231,7 +234,7 @@ class ProfileFit {
     cv::circle(taken_, pixel_of(b), cvRound(kApart * radius_), 255, cv::FILLED);
   }
 
-  /// Adds discs where the picture looks like the profile, the most like first, where there is room.
+  /// Adds discs where the picture resembles the profile and there is room, in the order of correlation.
   void add_alike(const cv::Mat1f& picture) {
     const cv::Mat1f like = likeness(picture);
     std::vector<Detection> tops;
@@ -256,9 +259,9 @@ class ProfileFit {
     }
   }
 
-  /// Correlation of the picture around each pixel with the profile, over r < R: what is outside belongs to
-  /// neighbours as well. 0 where the profile fits best with a level that no disc has. Beyond its border the
-  /// picture goes on as at the border.
+  /// Correlation of the picture around each pixel with the profile, over r < R, because pixels outside also
+  /// belong to neighbours. 0 where the best-fitting level is lower than that of any disc. Outside the frame
+  /// the picture continues with the values of its border.
   [[nodiscard]] cv::Mat1f likeness(const cv::Mat1f& picture) const {
     const int side = 2 * reach() + 1;
     cv::Mat1f disc = cv::Mat1f::zeros(side, side), profile = disc.clone();
@@ -344,7 +347,7 @@ class ProfileFit {
     return std::hypot(dx, dy);
   }
 
-  /// Share of the variance of its own pixels that a disc explains, neighbours subtracted.
+  /// Fraction of the variance of its own pixels that a disc explains, with neighbours subtracted.
   [[nodiscard]] double explained(const Detection& b) const {
     double n = 0, sum = 0, squares = 0, left_squares = 0;
     const double bound = 3 * huber_;
@@ -368,7 +371,7 @@ class ProfileFit {
   DiscProfile shared_;
   bool learnt_ = false;
   cv::Mat1f model_;
-  cv::Mat1b taken_;  // by the discs that there are: no other has its centre there
+  cv::Mat1b taken_;  // pixels too close to a known disc for another centre
   std::vector<Detection> beads_, dropped_;
   std::vector<Normal> covariance_;
 };
@@ -377,14 +380,16 @@ class ProfileFit {
 
 Refined refine_by_profile(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
                           const RefineOptions& options) {
+  // Learning: from the better half of the proposals, then from similar discs.
   const int most_sweeps = options.sweeps;
   ProfileFit fit(image, radius_px);
   fit.start(proposals);
-  fit.learn(fit.typical_score());  // from the better half of the proposals
+  fit.learn(fit.typical_score());
   for (int k = 0; k < kLessons && !fit.empty(); ++k) {
     fit.propose_alike();
     fit.learn(kLike);
   }
+  // Fitting and learning in turn.
   int sweeps = 0;
   for (int round = 0; round < kRounds && !fit.empty(); ++round) {
     const int most = round + 1 == kRounds ? most_sweeps : std::min(kSweeps, most_sweeps);

@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// What fits discs to the picture, from proposed centres to centres with uncertainties, and the list of those
-/// that do.
+/// Refiners: they fit discs to the picture, from proposed centres to centres with uncertainties. Also the
+/// list of all refiners.
 ///
-/// To add a refiner: its function and a constant of type Refiner in a header of its own, its .cpp, and one
-/// word in the list in refiners.cpp.
+/// To add a refiner, write its function and a constant of type Refiner in a header of its own, its .cpp, and
+/// one entry in the list in refiners.cpp.
 
 #include <array>
 #include <string>
@@ -17,33 +17,33 @@
 
 namespace twincell {
 
-/// How the fit is done.
+/// Options of the fit.
 struct RefineOptions {
   std::string method = "exact";  ///< one of refiner_names()
-  int sweeps = 30;               ///< at most, 1 .. 1000
-  double tolerance_px = 2e-3;    ///< a sweep that moves no bead further is the last, > 0
+  int sweeps = 30;               ///< largest number of sweeps, 1 .. 1000
+  double tolerance_px = 2e-3;    ///< the fit stops when no bead moves farther in a sweep, > 0
   double ring_px =
-      0;  ///< half width of the ring, 1 .. 50; 0: three times the blur, from 2.5 to 6, or R if that is more
+      0;  ///< half width of the ring, 1 .. 50; 0: three times the blur, at least 2.5, at most max(6, R)
   double blur_px = 0;                  ///< edge blur s; 0: fitted
   double radius_spread = 0.06;         ///< prior: relative scatter of the radii about the given one, > 0
-  std::vector<double> other_radii_px;  ///< of discs of further sizes, each likewise
+  std::vector<double> other_radii_px;  ///< radii of discs of further sizes, with the same scatter
 };
 
 /// Result of a refinement.
 struct Refined {
-  std::vector<Detection> beads;    ///< what may be beads
-  std::vector<Detection> dropped;  ///< what turned out to be none, with its verdict
+  std::vector<Detection> beads;    ///< candidates for beads
+  std::vector<Detection> dropped;  ///< rejected candidates, each with its verdict
   double blur_px = 0;
-  std::array<double, 2> path_px = {};  ///< by which the bed moved during the exposure, either way round
+  std::array<double, 2> path_px = {};  ///< path of the bed during the exposure; its sign is arbitrary
   int sweeps = 0;
-  DiscProfile profile;  ///< of DiscModel::shared_profile
+  DiscProfile profile;  ///< set by DiscModel::shared_profile
 };
 
-/// What a refiner takes a disc for.
+/// The model of a disc that a refiner uses.
 enum class DiscModel {
-  plain,           ///< one darkness inside a blurred rim; discs of several sizes
-  circle,          ///< a rim; the inside may be anything, and each disc is fitted by itself
-  shared_profile,  ///< one radial profile for all; discs of one size
+  plain,           ///< uniform darkness inside a blurred rim; discs of several sizes
+  circle,          ///< a rim with an arbitrary inside; each disc is fitted separately
+  shared_profile,  ///< one radial profile for all discs; discs of one size
 };
 
 /// A refiner. Pure.
@@ -55,11 +55,11 @@ struct Refiner {
                  const RefineOptions& options);
 };
 
-/// The words of all refiners; the default is the first.
+/// The names of all refiners; the first is the default.
 std::vector<std::string> refiner_names();
-/// "exact: fit of the picture; fast: ...".
+/// Help text: "exact: fit of the picture; fast: ...".
 std::string refiners_help();
-/// \throws ConfigError naming the option and the words if there is none of that name
+/// \throws ConfigError naming the option and the known names if no refiner has that name
 const Refiner& refiner_named(const std::string& word);
 /// The model of the refiner of that name.
 inline DiscModel model_of(const RefineOptions& options) {

@@ -15,16 +15,16 @@ namespace twincell {
 
 namespace {
 
-/// P by distance from the rim, for one blur.
+/// Table of P by distance from the rim, for one blur.
 class Rim {
  public:
   explicit Rim(double blur_px) : reach_(kSigmas * blur_px), per_px_(kSteps / (2 * reach_)) {
     for (int k = 0; k <= kSteps; ++k)
       shape_.push_back(0.5 * std::erfc((k / per_px_ - reach_) / (std::numbers::sqrt2 * blur_px)));
   }
-  /// How far beyond the rim there is anything.
+  /// Largest distance outside the rim at which P is not negligible, px.
   [[nodiscard]] double reach() const { return reach_; }
-  /// \param out  px beyond the rim, < reach()
+  /// \param out distance outside the rim, px, < reach()
   [[nodiscard]] double at(double out) const {
     return out < -reach_ ? 1 : shape_[static_cast<std::size_t>((out + reach_) * per_px_ + 0.5)];
   }
@@ -48,7 +48,7 @@ double missing_share(const Prepared& image, const Proposal& p, double blur_px, d
   for (int y = std::max(0, y0 - reach); y <= std::min(image.darkness.rows - 1, y0 + reach); ++y)
     for (int x = std::max(0, x0 - reach); x <= std::min(image.darkness.cols - 1, x0 + reach); ++x) {
       const double r2 = (x - p.x) * (x - p.x) + (y - p.y) * (y - p.y);
-      // One pixel of two tells as much.
+      // Every other pixel, in a chessboard pattern, is sufficient.
       if ((x + y) % 2 != 0 || r2 < near * near || r2 >= far * far) continue;
       const double out = std::sqrt(r2) - p.radius;
       const float d = image.darkness(y, x);
@@ -68,7 +68,7 @@ double missing_share(const Prepared& image, const Proposal& p, double blur_px, d
 
 std::vector<Proposal> assign_sizes(const Prepared& image, const std::vector<Proposal>& proposals) {
   constexpr double kApart = 0.8;     // of R_i + R_j
-  constexpr double kMissing = 0.01;  // of a disc that is none
+  constexpr double kMissing = 0.01;  // missing share at which a disc has no evidence
   const double blur = blur_of(image.darkness);
   const Noise noise = noise_of(image.darkness);
   std::vector<Disc> discs;
@@ -78,7 +78,8 @@ std::vector<Proposal> assign_sizes(const Prepared& image, const std::vector<Prop
     excluded[static_cast<std::size_t>(i)].push_back(static_cast<std::size_t>(j));
     excluded[static_cast<std::size_t>(j)].push_back(static_cast<std::size_t>(i));
   }
-  // By evidence, or by what it would be if nothing were missing: most are excluded before they are looked at.
+  // Ordered by evidence, or by its upper bound (nothing missing) until the picture is examined. Most
+  // proposals are excluded before they are examined.
   struct Candidate {
     double evidence;
     std::size_t k;

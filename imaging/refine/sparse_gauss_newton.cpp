@@ -16,7 +16,7 @@ constexpr double kRelative = 1e-2;
 std::vector<std::array<std::int32_t, 2>> near_pairs(const std::vector<Disc>& discs, double reach) {
   std::vector<std::array<std::int32_t, 2>> pairs;
   if (discs.empty()) return pairs;
-  pairs.reserve(3 * discs.size());  // as many as a crystal of equal discs has that touch
+  pairs.reserve(3 * discs.size());  // the number of contacts in a crystal of equal discs
   double largest = 0, left = HUGE_VAL, right = -HUGE_VAL, top = HUGE_VAL, bottom = -HUGE_VAL;
   for (const Disc& d : discs) {
     largest = std::max(largest, d.radius);
@@ -34,7 +34,7 @@ std::vector<std::array<std::int32_t, 2>> near_pairs(const std::vector<Disc>& dis
   for (std::size_t i = 0; i < discs.size(); ++i) {
     const Disc& d = discs[i];
     const int column = static_cast<int>((d.x - left) / cell), row = static_cast<int>((d.y - top) / cell);
-    // Those put into the cells before are this one's candidates: each pair comes once.
+    // The candidates are the discs already sorted into cells, so each pair occurs once.
     for (int y = std::max(0, row - 1); y <= std::min(ny - 1, row + 1); ++y)
       for (int x = std::max(0, column - 1); x <= std::min(nx - 1, column + 1); ++x)
         for (std::int32_t j = first[place(x, y)]; j >= 0; j = next[static_cast<std::size_t>(j)]) {
@@ -50,8 +50,8 @@ std::vector<std::array<std::int32_t, 2>> near_pairs(const std::vector<Disc>& dis
 }
 
 void renew(Coupling& c, const RingArgs& args, const std::vector<Disc>& discs) {
-  // Where one of the two edges is further away than this, its slope is nothing; leaving out of a coupling
-  // what pixels say there leaves the whole as positive as it was, since they still count in both blocks.
+  // Farther than this from one of the two edges, its slope is negligible. Omitting these pixels from the
+  // coupling keeps the matrix positive definite, because they still count in both diagonal blocks.
   constexpr double kFar = 3;
   RingArgs narrow = args;
   narrow.ring = std::min(args.ring, args.blur.reach(kFar));
@@ -61,7 +61,7 @@ void renew(Coupling& c, const RingArgs& args, const std::vector<Disc>& discs) {
 }
 
 std::vector<Coupling> couplings_of(const RingArgs& args, const std::vector<Disc>& discs) {
-  constexpr double kFar = 3;  // edges so many widths of blur apart share next to nothing
+  constexpr double kFar = 3;  // edges farther apart, in widths of the blur, share almost no pixels
   const auto pairs = near_pairs(discs, std::min(2 * args.ring, args.blur.reach(kFar)));
   std::vector<Coupling> couplings;
   couplings.reserve(pairs.size());
@@ -72,6 +72,7 @@ std::vector<Coupling> couplings_of(const RingArgs& args, const std::vector<Disc>
 std::vector<Step> gauss_newton_step(const std::vector<Normal>& blocks, const std::vector<Coupling>& couplings,
                                     const std::vector<Step>& right) {
   const std::size_t n = blocks.size();
+  // Preconditioner: the inverse of each diagonal block.
   std::vector<Normal> alone;
   alone.reserve(n);
   for (const Normal& a : blocks) alone.emplace_back(a.inverse());
@@ -92,7 +93,7 @@ std::vector<Step> gauss_newton_step(const std::vector<Normal>& blocks, const std
     }
     double pap = 0;
     for (std::size_t k = 0; k < n; ++k) pap += p[k].dot(ap[k]);
-    if (!(pap > 0)) break;  // rounding; what is reached is a step
+    if (!(pap > 0)) break;  // rounding error; the present x is still a usable step
     const double alpha = rz / pap;
     double rz_new = 0;
     for (std::size_t k = 0; k < n; ++k) {

@@ -22,14 +22,14 @@ namespace twincell {
 
 namespace {
 
-constexpr int kSide = 600;        // px, of the part of a frame that is looked at
-constexpr double kClearly = 1.2;  // so much more must pale discs explain
+constexpr int kSide = 600;        // side of the region of a frame that is examined, px
+constexpr double kClearly = 1.2;  // factor by which pale discs must explain more
 
-/// Radii (px) at which votes meet more sharply than at those beside them, sharpest first.
+/// Radii (px) at which the sharpness of the votes has a maximum, sharpest first.
 std::vector<double> sharp_radii(const cv::Mat1f& darkness, double smallest, double largest) {
   constexpr double kRatio = 1.03;
   constexpr std::size_t kMost = 3;
-  constexpr double kLeast = 0.1;  // of the sharpest
+  constexpr double kLeast = 0.1;  // smallest sharpness, as a fraction of the largest
   std::vector<double> sharpness;
   const int steps = static_cast<int>(std::log(largest / smallest) / std::log(kRatio));
   for (int k = 0; k <= steps; ++k) {
@@ -37,13 +37,13 @@ std::vector<double> sharp_radii(const cv::Mat1f& darkness, double smallest, doub
     sharpness.push_back(vote_sharpness(darkness, smallest * std::pow(kRatio, k)));
   }
   std::vector<std::pair<double, double>> tops;
-  // A rise that goes on to the last one is no top.
+  // A rise that continues to the last radius is no maximum.
   for (std::size_t k = 0; k + 1 < sharpness.size(); ++k) {
     const double before = k > 0 ? sharpness[k - 1] : 0, here = sharpness[k], after = sharpness[k + 1];
     if (here <= 0 || here < before || here <= after) continue;
-    // What is sharpest at the smallest radius of all may be texture: only if nothing else is.
+    // A maximum at the smallest radius may be texture. It counts only if no other radius is sharper.
     if (k == 0 && here < *std::max_element(sharpness.begin(), sharpness.end())) continue;
-    // The top of the parabola through it and its neighbours.
+    // The vertex of the parabola through this point and its neighbours.
     double at = static_cast<double>(k);
     const double curvature = before - 2 * here + after;
     if (k > 0 && curvature < 0) at += 0.5 * (before - after) / curvature;
@@ -83,16 +83,18 @@ double find_contrast(const cv::Mat& grey, const LocatorOptions& options) {
 std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given) {
   constexpr double kLeast = 80, kMost = 400, kRatio = 1.04;  // px
   constexpr double kShrink = 4;
-  constexpr double kApart = 1.15, kComparable = 0.7;  // of a second size: ratio to the first; sharpness
-  constexpr double kCovered = 0.2;                    // share of the frame
-  constexpr double kNoise = 0.035;  // of a disc's contrast: makes no edges where there are none
-  constexpr double kSeen = 0.7;     // mean share of the rims
+  constexpr double kApart = 1.15,
+                   kComparable = 0.7;  // second size: least ratio to the first; relative sharpness
+  constexpr double kCovered = 0.2;     // fraction of the frame that the discs must cover
+  constexpr double kNoise = 0.035;     // largest noise, relative to a disc's contrast, that creates no edges
+  constexpr double kSeen = 0.7;        // mean fraction of the rims that must be visible
   constexpr std::ptrdiff_t kEnough = 3;
   const double largest = std::min(kMost, 0.5 * std::min(grey.cols, grey.rows));
   std::optional<FoundSettings> best;
   for (const bool bright : {false, true}) {
     if (largest < kLeast || (given.polarity_known && bright != given.preprocess.bright)) continue;
     LocatorOptions options = given;
+    // Sizes: the sharpest votes on the reduced picture.
     options.refine.method = kEdgeRefiner.word;
     options.preprocess.bright = bright;
     options.diameter_px = kLeast;
@@ -118,7 +120,7 @@ std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOp
           std::max(d / tops[0].second, tops[0].second / d) > kApart)
         options.other_diameters_px = {d};
     std::vector<Detection> beads = locate(grey, options).beads;
-    // Each size as the median of its discs; a size of which there are hardly any is none.
+    // Refinement: each size becomes the median of its discs; a size with fewer than kEnough discs is dropped.
     const auto settle = [&](double d) {
       std::vector<double> radii;
       for (const Detection& b : beads)
@@ -133,6 +135,7 @@ std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOp
       options.other_diameters_px.clear();
       if (second > 0) options.other_diameters_px.push_back(second);
     }
+    // Acceptance: the discs must cover enough of the frame and show enough of their rims.
     beads = locate(grey, options).beads;
     double covered = 0, explained = 0, rims = 0;
     for (const Detection& b : beads) {
@@ -152,9 +155,9 @@ std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOp
 
 namespace {
 
-/// Sizes that the votes of one or both polarities propose, and the lattice constant; the given one where one
-/// was given.
-/// \param pale  instead those of pale discs, if there may be some, which would not vote
+/// Sizes proposed by the votes of one or both polarities, and the lattice constant; the given size if one is
+/// given.
+/// \param pale instead those of pale discs, whose gradients are too weak to vote, if there may be any
 std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& given, double lattice,
                                    bool pale = false) {
   constexpr double kNoisy = 0.04, kSmooth = 1;  // darkness; px
@@ -174,7 +177,7 @@ std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& gi
       continue;
     }
     darkness /= contrast;
-    // The gradients of noise alone would vote, and meet most sharply at the smallest radius.
+    // Without smoothing the gradients of the noise would vote, with the sharpest peak at the smallest radius.
     const Noise noise = noise_of(darkness);
     if (noise.dark + noise.light > kNoisy * kNoisy)
       cv::GaussianBlur(darkness.clone(), darkness, {0, 0}, kSmooth);
@@ -185,8 +188,9 @@ std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& gi
   return all;
 }
 
-/// Pale plain discs, if they explain clearly more than the best so far. With grey discs a dark rim does
-/// little harm: where a common profile is the best, it must have the shape of a plain disc's.
+/// Pale plain discs, if they explain clearly more than the best settings so far. With grey discs a dark rim
+/// does little harm, so if a common profile is the best model, it must have the shape of a plain disc's
+/// profile.
 std::optional<FoundSettings> find_pale(const cv::Mat& grey, const LocatorOptions& given, double lattice,
                                        const std::optional<FoundSettings>& best) {
   if (model_of(given.refine) != DiscModel::plain) return std::nullopt;
@@ -211,13 +215,14 @@ std::optional<FoundSettings> find_pale(const cv::Mat& grey, const LocatorOptions
 }  // namespace
 
 std::optional<FoundSettings> find_settings(const cv::Mat& picture, const LocatorOptions& given) {
-  // As `locate` does, so that a turned picture has the same settings.
-  // A frame on which no disc of the smallest radius fits says nothing of a size.
+  // A frame too small for a disc of the smallest radius contains no information on the size.
   if (given.diameter_px <= 0 && std::min(picture.cols, picture.rows) < 2 * kSmallestRadius)
     return std::nullopt;
+  // Orientation: canonical, as in `locate`, so that a rotated picture has the same settings.
   const cv::Mat frame = canonical_picture_orientation(picture).turned(picture);
   std::optional<FoundSettings> patterned;
   if (given.diameter_px <= 0) patterned = find_patterned(frame, given);
+  // Plain discs of all hypotheses.
   constexpr double kShrink = 4;
   const cv::Mat grey = busiest(frame, kSide);
   const double lattice = lattice_constant(grey);
@@ -232,16 +237,17 @@ std::optional<FoundSettings> find_settings(const cv::Mat& picture, const Locator
   };
   try_all(all);
   if (given.diameter_px <= 0 && (!best || best->explained <= 0)) {
-    // A few large discs, up to 320 px.
+    // Nothing found: a few large discs, up to 320 px.
     cv::Mat small;
     cv::resize(grey, small, {}, 1 / kShrink, 1 / kShrink, cv::INTER_AREA);
     std::vector<Hypothesis> larger = hypotheses(small, given, 0);
     for (Hypothesis& h : larger) h.diameter_px *= kShrink;
     try_all(larger);
   }
-  // Rims of large circles are seen in a packing of small discs, too, but explain less of it.
+  // Patterned discs: rims of large circles also appear in a packing of small discs, but explain less of it.
   const double part = static_cast<double>(grey.total()) / static_cast<double>(frame.total());
   if (patterned && (!best || part * patterned->explained > best->explained)) return patterned;
+  // Other models: common profile, pale discs, several sizes.
   if (best && given.refine.method == kExactRefiner.word)
     if (auto alike = select_profile_model(frame, given, all, *best, lattice)) best = alike;
   if (auto pale = find_pale(grey, given, lattice, best)) best = pale;

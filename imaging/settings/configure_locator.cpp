@@ -10,7 +10,7 @@ namespace twincell {
 
 namespace {
 
-/// Options as given, with what was found.
+/// The given options, completed with the settings found.
 LocatorOptions with(const FoundSettings& found, LocatorOptions options) {
   options.diameter_px = found.diameter_px;
   options.preprocess.bright = found.bright;
@@ -21,11 +21,11 @@ LocatorOptions with(const FoundSettings& found, LocatorOptions options) {
   return options;
 }
 
-/// Looks at frames 0, 1, 2, 4, ... since each look takes as long as locating many frames, until one shows a
-/// bead with the settings found in it.
+/// Examines frames 0, 1, 2, 4, ... until one shows a bead with the settings found in it. The frames are few,
+/// because the search in one frame takes as long as locating many frames.
 LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
   constexpr std::size_t kLast = 32;
-  std::optional<LocatorOptions> first;  // found where no bead was seen
+  std::optional<LocatorOptions> first;  // first settings found, even if they locate no bead
   for (std::size_t k = 0; k <= kLast; k = std::max<std::size_t>(2 * k, k + 1)) {
     const cv::Mat* frame = frames.look(k);
     if (frame == nullptr) break;
@@ -50,7 +50,7 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
 }  // namespace
 
 LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions& given) {
-  cv::setNumThreads(1);  // one pool only: ours
+  cv::setNumThreads(1);  // the only thread pool is that of this program
   const cv::Mat* first = frames.look(0);
   if (first == nullptr) return {given, 0};
   if (given.diameter_px <= 0 || !given.polarity_known) return search(frames, given);

@@ -16,9 +16,9 @@ double gained(const Detection& b) {
 
 namespace {
 
-/// Whether most discs lie too near to another one for discs of one layer, were all wider by a factor.
+/// Whether most discs are too close to another one for discs of one layer, if all were wider by a factor.
 bool overlap(const std::vector<Detection>& beads, double wider = 1) {
-  constexpr double kOverlap = 0.85;  // of R_i + R_j between centres
+  constexpr double kOverlap = 0.85;  // smallest distance of centres, in R_i + R_j
   std::vector<double> nearest;
   for (const Detection& b : beads) {
     double least = HUGE_VAL;
@@ -32,11 +32,11 @@ bool overlap(const std::vector<Detection>& beads, double wider = 1) {
   return !nearest.empty() && upper_median(std::move(nearest)) < kOverlap * wider;
 }
 
-/// What plain discs of a size explain, and the median of their diameters, 0 if there are too few. Areas times
-/// scores did not do for the sum: discs put into the gaps between dark ones explain nineteen twentieths of
-/// their own rings.
+/// The measure for plain discs of one size, and the median of their diameters; 0 if there are too few. A sum
+/// of areas times scores was tried and failed: discs placed in the gaps between dark ones explain nineteen
+/// twentieths of their own rings.
 Trial try_plain(const cv::Mat& grey, const LocatorOptions& options) {
-  constexpr double kGood = 0.8;  // score of a bead that tells of its size
+  constexpr double kGood = 0.8;  // smallest score of a bead whose size is used
   constexpr std::size_t kEnough = 3;
   Trial trial;
   std::vector<double> radii;
@@ -54,9 +54,9 @@ Trial try_plain(const cv::Mat& grey, const LocatorOptions& options) {
 }  // namespace
 
 Trial settle_plain(const cv::Mat& grey, const LocatorOptions& given, const Hypothesis& h) {
-  constexpr int kTrialSweeps = 3;  // tell discs from what is none; a wrong hypothesis never settles
+  constexpr int kTrialSweeps = 3;  // enough to recognise discs; a wrong hypothesis never converges
   constexpr int kRounds = 4;
-  constexpr double kClose = 0.01;  // relative change of the diameter at which it stands
+  constexpr double kClose = 0.01;  // relative change of the diameter at convergence
   LocatorOptions options = given;
   options.refine.sweeps = std::min(options.refine.sweeps, kTrialSweeps);
   options.preprocess.bright = h.bright;
@@ -90,23 +90,22 @@ ProfileTrial try_profile(const cv::Mat& grey, LocatorOptions options, const Hypo
 }
 
 bool ProfileTrial::has_plain_shape() const {
-  constexpr double kUnlike = 0.012;  // of a plain disc's profile
+  constexpr double kUnlike = 0.012;  // largest DiscProfile::unlike_plain of a plain disc
   return explained > 0 && profile.unlike_plain() < kUnlike;
 }
 
 bool ProfileTrial::looks_plain() const {
-  constexpr double kDark = 0.5;  // paler discs the plain fit calls none
+  constexpr double kDark = 0.5;  // the plain fit rejects paler discs
   return has_plain_shape() && profile.largest() > kDark;
 }
 
-/// The part of a frame, at most `side` px wide and high, whose grey levels change most from pixel to pixel.
 cv::Mat busiest(const cv::Mat& grey, int side) {
   constexpr int kBlock = 16;
   const cv::Size size(std::min(grey.cols, side), std::min(grey.rows, side));
   if (size == grey.size()) return grey;
   cv::Mat1f levels;
   grey.convertTo(levels, CV_32F);
-  // A strip thinner than a block is one block thick.
+  // A strip thinner than a block is extended to one block.
   cv::copyMakeBorder(levels, levels, 0, std::max(0, kBlock - grey.rows), 0, std::max(0, kBlock - grey.cols),
                      cv::BORDER_REPLICATE);
   cv::Mat1f across, down, blocks;

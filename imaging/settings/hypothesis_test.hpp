@@ -1,10 +1,11 @@
 #pragma once
 /// \file
-/// What is explained of a picture by discs of a size and polarity: what auto_configuration.hpp compares.
+/// Hypothesis test: how much of a picture discs of a given size and polarity explain. auto_configuration.hpp
+/// compares these values.
 ///
-/// Explained is the sum of -R^2 ln(1 - share explained) over the discs found, the logarithm of the likelihood
-/// gained. Discs most of which overlap explain nothing: they are none of that size, though each may explain
-/// much with its share of its neighbours.
+/// The measure is the sum of -R^2 ln(1 - share explained) over the discs found, the gain in log-likelihood.
+/// It is 0 if most discs overlap: the size is then wrong, although each disc may explain much together with
+/// its share of its neighbours.
 
 #include <opencv2/core.hpp>
 
@@ -13,43 +14,43 @@
 
 namespace twincell {
 
-/// Darkness below which discs may be too pale to be taken for some.
+/// Darkness below which discs may be too pale to be recognised.
 inline constexpr double kPale = 0.45;
-/// The radii that are sought, px.
+/// The range of radii that is searched, px.
 inline constexpr double kSmallestRadius = 3, kLargestRadius = 40;
 
-/// What one disc explains, px^2.
+/// Contribution of one disc to the measure: -R^2 ln(1 - score), px^2.
 double gained(const Detection& b);
 
-/// What the discs may be.
+/// A hypothesis about the discs of a frame.
 struct Hypothesis {
   bool bright = false;
   double diameter_px = 0;
   double contrast = 1;  ///< PreprocessOptions::contrast
 };
 
-/// Plain discs.
+/// Result of a trial with plain discs.
 struct Trial {
-  double explained = 0;
-  double diameter_px = 0;  ///< that was settled on
+  double explained = 0;    ///< the measure above, px^2
+  double diameter_px = 0;  ///< after convergence
 };
-/// Plain discs of that size, then of the size that those found have, and so on until it stands; a given one
-/// stays.
+/// Fits plain discs of the hypothesis's size, then of the median size found, and so on until the size
+/// converges. A diameter in `given` is kept.
 Trial settle_plain(const cv::Mat& grey, const LocatorOptions& given, const Hypothesis& h);
 
-/// Discs with a common profile.
+/// Result of a trial with discs that have a common profile.
 struct ProfileTrial {
   double explained = 0;
-  bool overlaps = false;  ///< and nothing is explained
+  bool overlaps = false;  ///< most discs overlap; `explained` is then 0
   DiscProfile profile;
-  /// Whether plain discs, however pale, would have that profile.
+  /// Whether the profile is that of plain discs, however pale.
   [[nodiscard]] bool has_plain_shape() const;
-  /// The same of discs dark enough for their fit.
+  /// Whether, in addition, the discs are dark enough for the plain-disc fit.
   [[nodiscard]] bool looks_plain() const;
 };
 ProfileTrial try_profile(const cv::Mat& grey, LocatorOptions options, const Hypothesis& h);
 
-/// The part of a frame, at most `side` px wide and high, whose grey levels change most from pixel to pixel.
+/// The region of a frame, at most `side` px wide and high, whose grey levels change most from pixel to pixel.
 cv::Mat busiest(const cv::Mat& grey, int side);
 
 }  // namespace twincell

@@ -11,15 +11,15 @@ namespace twincell {
 
 namespace {
 
-constexpr double kApart = 1.12, kFar = 2.5;  // ratio of two sizes, at least and at most
+constexpr double kApart = 1.12, kFar = 2.5;  // smallest and largest ratio of two sizes
 constexpr double kLargestDiameter = 400;     // px
-constexpr double kGood = 0.8;                // score of a disc that tells of its size
+constexpr double kGood = 0.8;                // smallest score of a disc whose size is used
 
-/// What discs of some sizes explain, and what they say of their sizes.
+/// Result of a trial with discs of several sizes.
 struct Mix {
   double explained = 0;
   std::vector<double> diameters;
-  double least_share = 0;  // of the discs, that the rarest size has
+  double least_share = 0;  // fraction of the discs that have the rarest size
   double score = 0;        // median
   std::size_t beads = 0, left_out = 0;
   std::vector<double> of_wrong_radius;  // diameters, of good discs
@@ -27,7 +27,7 @@ struct Mix {
 
 Mix try_sizes(const cv::Mat& grey, const LocatorOptions& given, bool bright, double contrast,
               const std::vector<double>& diameters) {
-  constexpr int kTrialSweeps = 4;  // tell discs from what is none
+  constexpr int kTrialSweeps = 4;  // enough to recognise discs
   LocatorOptions options = given;
   options.refine.sweeps = std::min(options.refine.sweeps, kTrialSweeps);
   options.preprocess.bright = bright;
@@ -64,7 +64,7 @@ Mix try_sizes(const cv::Mat& grey, const LocatorOptions& given, bool bright, dou
   return mix;
 }
 
-/// The same at the sizes that the discs found have, until they stand.
+/// Repeats the trial with the median sizes of the discs found, until the sizes converge.
 Mix settle(const cv::Mat& grey, const LocatorOptions& given, bool bright, double contrast,
            std::vector<double> diameters) {
   constexpr int kRounds = 3;
@@ -81,6 +81,7 @@ Mix settle(const cv::Mat& grey, const LocatorOptions& given, bool bright, double
   return best;
 }
 
+/// Whether a further size differs enough, but not too much, from all known ones.
 bool apart(const std::vector<double>& diameters, double other) {
   return std::all_of(diameters.begin(), diameters.end(), [&](double d) {
     const double ratio = std::max(d / other, other / d);
@@ -100,14 +101,16 @@ std::optional<FoundSettings> find_polydisperse(const cv::Mat& grey, const Locato
     known.explained =
         std::max(known.explained, try_profile(grey, given, {one.bright, one.diameter_px}).explained);
   while (known.diameters.size() < kMost) {
+    // Candidates for a further size.
     std::vector<double> candidates;
     for (const Hypothesis& h : all)
       if (h.bright == one.bright) candidates.push_back(h.diameter_px);
     if (known.of_wrong_radius.size() >= kFew) candidates.push_back(upper_median(known.of_wrong_radius));
-    // Rims of two sizes may vote more sharply for a third one.
+    // Fixed ratios, because the rims of two sizes may vote more sharply for a third one.
     if (static_cast<double>(known.left_out) > kShare * static_cast<double>(known.beads))
       for (const double ratio : {0.5, 0.62, 0.76, 1.32, 1.6, 2.0})
         candidates.push_back(ratio * one.diameter_px);
+    // Best candidate that explains clearly more.
     std::optional<Mix> better;
     for (const double d : candidates) {
       if (d < 2 * kSmallestRadius || d > kLargestDiameter || !apart(known.diameters, d)) continue;

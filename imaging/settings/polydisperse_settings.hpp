@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Whether plain discs of a frame are of several sizes.
+/// Polydisperse settings: whether the plain discs of a frame have several sizes.
 
 #include <opencv2/core.hpp>
 #include <optional>
@@ -11,11 +11,12 @@
 
 namespace twincell {
 
-/// Sizes that stand beside each other, up to three, on a part of the frame: to the one known, of plain discs
-/// or discs with a common profile, further ones are added while one explains a fiftieth more of the picture,
-/// by discs that are well explained and of which a fiftieth at least have the rarest size. Candidates are the
-/// sizes at which votes meet (`all`), that of discs left out as of wrong radius, and, where more than a
-/// fiftieth of the candidates was left out, fixed ratios from 0.5 to 2. None if one size does.
+/// Finds up to three sizes of plain discs in a region of the frame. The search starts from the known size (of
+/// plain discs or of discs with a common profile). It adds a size as long as the enlarged set explains 2 %
+/// more of the picture, its discs are well explained, and at least 2 % of them have the rarest size. The
+/// candidates are the sizes at which the votes are sharp (`all`), the size of discs rejected for a wrong
+/// radius and, if the number of rejected candidates exceeds 2 % of the number of beads, fixed ratios from 0.5
+/// to 2. Empty if one size suffices.
 std::optional<FoundSettings> find_polydisperse(const cv::Mat& grey, const LocatorOptions& given,
                                                const std::vector<Hypothesis>& all, const FoundSettings& one);
 

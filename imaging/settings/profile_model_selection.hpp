@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Settings by discs that look alike, where those for plain discs explain less of a frame
-/// (auto_configuration.hpp).
+/// Profile model selection: settings for discs with a common profile, used where plain discs explain less of
+/// a frame (auto_configuration.hpp).
 
 #include <opencv2/core.hpp>
 #include <optional>
@@ -12,10 +12,11 @@
 
 namespace twincell {
 
-/// The best of the hypotheses by a common profile, each led out to the rim that its profile shows; or plain
-/// discs as wide as a profile shows them, which the votes did not propose. None if that is by what plain
-/// discs were found. \param plain    the best of the same hypotheses by plain discs \param lattice  the
-/// lattice constant, px; 0: none
+/// The best of the hypotheses with a common profile, each first extended to the rim that its profile shows;
+/// or plain discs of the width that a profile shows, if the votes did not propose that width. Empty if the
+/// result agrees with the settings in `plain`.
+/// \param plain the best of the same hypotheses with plain discs
+/// \param lattice the lattice constant, px; 0: none
 std::optional<FoundSettings> select_profile_model(const cv::Mat& frame, const LocatorOptions& given,
                                                   const std::vector<Hypothesis>& all,
                                                   const FoundSettings& plain, double lattice);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A stack of which some frames may be looked at before they are read.
+/// Look-ahead in a stack of frames.
 
 #include <cstddef>
 #include <deque>
@@ -10,8 +10,8 @@
 
 namespace twincell {
 
-/// Reads a stack in order. Frames that were looked at are kept until they are read: memory grows with how far
-/// ahead one looks.
+/// Reads a stack in order and gives access to later frames. Frames that were looked at are kept until they
+/// are read, so that memory use grows with the look-ahead.
 class FramesAhead {
  public:
   explicit FramesAhead(FrameSource& frames) : frames_(frames) {}

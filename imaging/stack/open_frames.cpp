@@ -15,7 +15,7 @@ struct Named {
   std::string inside;  ///< dataset within the file
 };
 
-// "file.h5:/path", unless there is a file or folder of that whole name.
+// Splits "file.h5:/path", unless a file or folder with the whole name exists.
 Named split(const fs::path& stack) {
   std::error_code error;
   const std::string name = stack.string();
@@ -38,7 +38,7 @@ std::unique_ptr<FrameSource> open_frames(const fs::path& stack) {
   const frames::Head head = frames::head_of(file);
   const frames::Reader& reader = frames::reader_of(head);
   if (!inside.empty() && reader.extensions != ".h5 .hdf5")
-    frames::refuse(file, "is no HDF5 file, and so has no dataset " + inside + ".");
+    frames::refuse(file, "is not an HDF5 file, and so has no dataset " + inside + ".");
   return reader.open(file, inside);
 }
 

@@ -11,11 +11,12 @@ namespace twincell {
 
 /// Opens a stack: a folder (its PNG, TIFF, JPEG, BMP and PGM files in natural order, all pages of each), one
 /// such file, a camera file (.cine; .mraw, .cih or .cihx; .seq; .mrf), a 3-D dataset of an HDF5 file
-/// ("file.h5:/path", or the only one), or a video. A file's content decides, not its name. docs/frames.md
-/// has the table. \throws InputError if there is nothing to read
+/// ("file.h5:/path", or the only one), or a video. The format is recognised by the content of the file; only
+/// .mraw, .cih and .cihx files are recognised by name. docs/frames.md has the table.
+/// \throws InputError if there is nothing to read
 std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& stack);
 
-/// The file or folder on the disk behind a stack: "file.h5" of "file.h5:/path".
+/// File or folder on disk that contains a stack: "file.h5" for "file.h5:/path".
 std::filesystem::path file_of_stack(const std::filesystem::path& stack);
 
 }  // namespace twincell

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What OpenCV, and FFmpeg in it, say of themselves becomes our sentences: on stderr, and in exceptions.
+/// Errors of OpenCV and of the FFmpeg in it: silences their stderr output and finds the reason of exceptions.
 
 #include <exception>
 #include <optional>
@@ -8,16 +8,17 @@
 
 namespace twincell {
 
-/// Silences both. Call before the first picture or film is opened: FFmpeg's level is read once.
+/// Silences OpenCV and its FFmpeg on stderr. Call before the first picture or film is opened, since the log
+/// level of FFmpeg is read only once.
 void quiet_opencv();
 
-/// What went wrong in OpenCV, without its file and line.
+/// Reason of an OpenCV error, without source file and line.
 struct OpencvError {
   std::string what;
   bool out_of_memory = false;
 };
 
-/// Absent if the exception is none of OpenCV's.
+/// The OpenCV error that `e` reports; absent if `e` is not an exception of OpenCV.
 std::optional<OpencvError> opencv_error(const std::exception& e);
 
 }  // namespace twincell

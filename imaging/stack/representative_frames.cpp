@@ -9,7 +9,7 @@
 namespace twincell {
 namespace {
 
-/// The picture as it would be without turn and distortion.
+/// The picture with rotation and distortion removed.
 cv::Mat without_lens(const cv::Mat& picture, double rotation_deg, double distortion) {
   const Lens lens(picture.size(), rotation_deg, distortion);
   cv::Mat2f from(picture.size());

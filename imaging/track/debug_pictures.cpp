@@ -18,8 +18,8 @@ namespace twincell {
 
 namespace {
 
-/// Darkness that is shown black and white: 0 and 1, or what all but the farthest 200th to either side have,
-/// as discs with rings lighter than what lies behind them have less than 0.
+/// Darkness values shown as black and white: 0 and 1, extended to the range of all but the most extreme 200th
+/// at either end. Discs with rings brighter than the background have negative darkness.
 std::pair<double, double> shades_of(const cv::Mat1f& darkness) {
   std::vector<float> levels(darkness.begin(), darkness.end());
   if (levels.empty()) return {0, 1};
@@ -30,7 +30,7 @@ std::pair<double, double> shades_of(const cv::Mat1f& darkness) {
   return {std::min(0.0, low), std::max(1.0, static_cast<double>(*(levels.end() - 1 - far)))};
 }
 
-/// Values as grey, the first of the shades black, the second white.
+/// Values as grey levels; the first of the shades is black, the second white.
 cv::Mat3b grey_of(const cv::Mat1f& values, std::pair<double, double> shades = {0, 1}) {
   const double steps = 255 / (shades.second - shades.first);
   cv::Mat1b byte;
@@ -40,7 +40,7 @@ cv::Mat3b grey_of(const cv::Mat1f& values, std::pair<double, double> shades = {0
   return picture;
 }
 
-/// Discs with the profile that they share, on its ground.
+/// Model picture of discs with a common profile, on its ground.
 cv::Mat1f model_of(const DiscProfile& profile, const std::vector<Detection>& beads, cv::Size size) {
   cv::Mat1f model(size, static_cast<float>(profile.ground));
   const double behind = static_cast<double>(profile.levels.size()) / DiscProfile::kPerPixel;

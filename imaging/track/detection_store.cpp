@@ -27,7 +27,7 @@ DetectionStore::DetectionStore(const std::filesystem::path& folder)
   const int descriptor = ::mkstemp(name.data());
   if (descriptor < 0)
     throw RunError(
-        fmt::format("{}: no temporary file can be made here: {}.", folder_.string(), std::strerror(errno)));
+        fmt::format("{}: cannot create a temporary file here: {}.", folder_.string(), std::strerror(errno)));
   ::unlink(name.c_str());
   file_.reset(new int(descriptor));
 }

@@ -18,7 +18,8 @@ PixelPoint place_of(const TrackedBead& b) {
   return {b.x_px, b.y_px};
 }
 
-// The bed's motion without knowing phases: steps common to all beads, added up, and whether there were any.
+// Motion of the bed without known phases: the sum of the mean steps, and the log-odds that a frame repeats
+// the previous one.
 BedMotion bed_motion(const DetectionStore& located, const LinkOptions& link, double unit_px) {
   Linker linker(link);
   BedMotion motion;
@@ -54,20 +55,19 @@ BedMotion bed_motion(const DetectionStore& located, const LinkOptions& link, dou
   return motion;
 }
 
-PhaseTable learn_phases(const DetectionStore& located, const LinkOptions& link, const CellDescription& cell,
-                        const PhaseWay& way) {
-  if (way.triggers) {
-    PhaseTable table = read_triggers(*way.triggers, way.drive_hz, cell.phase_lock.frames_per_cycle);
+PhaseTable determine_phases(const DetectionStore& located, const LinkOptions& link,
+                            const CellDescription& cell, const PhaseSource& source) {
+  if (source.triggers) {
+    PhaseTable table = read_triggers(*source.triggers, source.drive_hz, cell.phase_lock.frames_per_cycle);
     if (table.frames.size() != located.size())
-      throw InputError(Where{.file = way.triggers->string(), .key = {}},
+      throw InputError(Where{.file = source.triggers->string(), .key = {}},
                        "has " + std::to_string(table.frames.size()) + " lines for " +
                            std::to_string(located.size()) +
                            " frames; every frame of the stack needs its line.");
     return table;
   }
-  if (!way.find) return fixed_phases(cell.phase_lock);
-  PhaseEstimationOptions options{
-      .frames_per_cycle = cell.phase_lock.frames_per_cycle, .gamma = {}, .amplitude = {}};
+  if (!source.find) return fixed_phases(cell.phase_lock);
+  PhaseEstimationOptions options{.frames_per_cycle = cell.phase_lock.frames_per_cycle, .gamma = {}};
   if (const auto drive = cell.drive()) options.gamma = drive->gamma();
   return estimate_phases(bed_motion(located, link, cell.pixels_per_sigma.value_or(link.diameter_px)),
                          options);
@@ -85,16 +85,16 @@ std::vector<std::int64_t> LinkedDetections::broken_tracers() const {
 }
 
 LinkedDetections link_detections(const DetectionStore& located, LinkOptions link, const CellDescription& cell,
-                                 const PhaseWay& way, const std::filesystem::path& folder,
+                                 const PhaseSource& source, const std::filesystem::path& folder,
                                  Progress& progress) {
   LinkedDetections stack{.frames = DetectionStore(folder), .tracks = {}, .phases = {}, .links = {}};
-  stack.phases = learn_phases(located, link, cell, way);
+  stack.phases = determine_phases(located, link, cell, source);
   if (const auto drive = cell.drive(); drive && stack.phases.locked() && cell.pixels_per_sigma) {
     const double dt = drive->period() / stack.phases.frames_per_cycle;
     link.fall_px = dt * dt * *cell.pixels_per_sigma;
   }
   Linker linker(link, stack.phases.frames_per_cycle);
-  // A frame and the one after it, by which its links are judged too.
+  // One frame is read ahead, because it is also evidence for the links of the frame before it.
   struct Seen : FrameOfBeads {
     std::vector<TrackedBead> beads;
   };
@@ -107,7 +107,7 @@ LinkedDetections link_detections(const DetectionStore& located, LinkOptions link
       frame.tracers.push_back(b.tracer ? 1 : 0);
     }
     const FramePhase at = stack.phases.at(static_cast<std::int64_t>(f));
-    frame.moment = {.interval = at.interval, .phase = at.phase, .cycle = at.cycle};
+    frame.time = {.interval = at.interval, .phase = at.phase, .cycle = at.cycle};
     return frame;
   };
   linker.begin(initial_velocities(link, stack.phases.frames_per_cycle, located.size(), read));
@@ -115,9 +115,9 @@ LinkedDetections link_detections(const DetectionStore& located, LinkOptions link
   for (std::size_t f = 0; f < located.size(); ++f) {
     Seen frame = std::exchange(next, read(f + 1));
     std::vector<TrackedBead>& beads = frame.beads;
-    const FrameAhead ahead{next.places, next.moment, next.tracers};
+    const FrameAhead ahead{next.places, next.time, next.tracers};
     const std::vector<std::int64_t> ids =
-        linker.next(frame.places, frame.moment, frame.tracers, f + 1 < located.size() ? &ahead : nullptr);
+        linker.next(frame.places, frame.time, frame.tracers, f + 1 < located.size() ? &ahead : nullptr);
     stack.tracks.resize(static_cast<std::size_t>(linker.n_tracks()));
     for (std::size_t k = 0; k < beads.size(); ++k) {
       beads[k].track = ids[k];

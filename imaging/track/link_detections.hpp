@@ -15,24 +15,24 @@
 
 namespace twincell {
 
-/// How a stack's phases are learnt. With neither: from the cell's frames per cycle.
-struct PhaseWay {
+/// Source of a stack's phases. With neither `find` nor `triggers`: the cell's frames per cycle.
+struct PhaseSource {
   bool find = false;                              ///< from the bed's own motion (phase_estimation.hpp)
   std::optional<std::filesystem::path> triggers;  ///< from a list (trigger_list.hpp)
   std::optional<double> drive_hz;                 ///< frequency of the drive, for a list in seconds
 };
 
-/// What is known of a track when the stack ends.
+/// Summary of a track at the end of the stack.
 struct TrackSummary {
   std::int64_t first = 0, last = 0;  ///< frames in which it was seen
   std::int64_t seen = 0;             ///< number of frames
   std::int64_t tracer = 0;           ///< of them, those in which the bead looked like a tracer
-  std::int64_t ambiguous = 0;        ///< of its links, those that are
-  double radius_px = 0;              ///< mean
+  std::int64_t ambiguous = 0;        ///< of its links, those that are ambiguous
+  double radius_px = 0;              ///< mean radius
   [[nodiscard]] bool is_tracer() const { return 2 * tracer > seen; }
 };
 
-/// The beads of a stack with their tracks. They are on disk; in memory are about 50 bytes per track and 24
+/// The beads of a stack with their tracks. The beads are on disk; memory is about 50 bytes per track and 24
 /// per frame.
 struct LinkedDetections {
   DetectionStore frames;  ///< frames[f]: the beads of frame f
@@ -41,17 +41,18 @@ struct LinkedDetections {
   PhaseTable phases;
   LinkReport links;
 
-  /// Tracers (by majority) that are not seen from the first frame to the last: their identity was lost, or
-  /// they came or went.
+  /// Tracks of tracers (by majority of frames) that do not span the first frame to the last: the tracer's
+  /// identity was lost, or the tracer entered or left.
   [[nodiscard]] std::vector<std::int64_t> broken_tracers() const;
 };
 
-/// Finds the phase of each frame, then links. Frames taken twice are linked without a step.
-/// \param cell drive, frames per cycle and scale tell the linker how fast beads fall
-/// \param folder where the beads wait on disk, about 64 bytes per bead and frame; empty: the folder for
-/// temporary files
+/// Determines the phase of each frame, then links. A frame taken twice is linked with interval 0.
+/// \param cell drive, frames per cycle and scale give the linker the fall of a bead per frame interval
+/// \param folder folder for the beads on disk, about 64 bytes per bead and frame; empty: the folder for
+///     temporary files
+/// \throws InputError if a list of triggers does not have a line for each frame
 LinkedDetections link_detections(const DetectionStore& located, LinkOptions link, const CellDescription& cell,
-                                 const PhaseWay& way, const std::filesystem::path& folder,
+                                 const PhaseSource& source, const std::filesystem::path& folder,
                                  Progress& progress = Progress::none());
 
 }  // namespace twincell

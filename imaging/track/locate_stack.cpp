@@ -10,7 +10,7 @@ namespace twincell {
 
 namespace {
 
-// Each frame is a unit of work of its own, so that results do not depend on who computes them.
+// Each frame is an independent unit of work, so the results do not depend on the thread that computes them.
 std::vector<Located> locate_batch(const std::vector<cv::Mat>& batch, const LocatorOptions& options,
                                   int threads) {
   std::vector<Located> results(batch.size());
@@ -22,7 +22,7 @@ std::vector<Located> locate_batch(const std::vector<cv::Mat>& batch, const Locat
 
 std::int64_t locate_stack(FramesAhead& frames, const LocatorOptions& options, int threads,
                           const LocatedSink& sink, Progress& progress) {
-  cv::setNumThreads(1);  // one pool only: ours
+  cv::setNumThreads(1);  // the only thread pool is that of this program
   const FrameSource& source = frames.source();
   std::int64_t count = 0;
   const std::size_t batch_size = 2 * static_cast<std::size_t>(std::max(threads, 1));

@@ -13,7 +13,7 @@
 namespace twincell {
 
 cv::Mat3b draw_overlay(const cv::Mat& grey, const std::vector<Detection>& beads, int enlarge) {
-  // The upper end of the grey scale is the frame's own, so that 10- and 12-bit frames are not drawn black.
+  // The largest grey level of the frame is drawn white, so that 10- and 12-bit frames are not black.
   double top = 0;
   cv::minMaxLoc(grey, nullptr, &top);
   cv::Mat1b byte;
@@ -38,11 +38,11 @@ namespace {
 
 constexpr std::streamsize kEndOfPngHeader = 33;
 
-/// The chunk "Software: twincell" of a PNG (ISO/IEC 15948, 11.3.4.3), by which an earlier picture of ours is
-/// known.
+/// The chunk "Software: twincell" of a PNG (ISO/IEC 15948, 11.3.4.3). It identifies earlier pictures written
+/// by this program.
 std::string software_chunk() {
   const std::string body("tEXtSoftware\0twincell", 21);
-  std::uint32_t crc = 0xffffffffU;  // ISO 3309, as PNG's annex D has it
+  std::uint32_t crc = 0xffffffffU;  // ISO 3309, as in annex D of PNG
   for (const char c : body) {
     crc ^= static_cast<unsigned char>(c);
     for (int bit = 0; bit < 8; ++bit) crc = (crc & 1U) != 0 ? 0xedb88320U ^ (crc >> 1) : crc >> 1;

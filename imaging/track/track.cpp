@@ -17,12 +17,12 @@ bool outside(const CellDescription& cell, cv::Size picture, const Detection& b) 
   return (cell.width && (r.x() < 0 || r.x() > *cell.width)) || (cell.height && r.z() > *cell.height + 0.5);
 }
 
-/// The beads of all frames that lie in the cell, and what was left out.
+/// The beads of all frames that are inside the cell, and the counts of excluded ones.
 struct Detections {
   DetectionStore frames;
   cv::Size picture;
   std::size_t outside_cell = 0, wrong_radius = 0;
-  bool cut_by_frame = false;  ///< some bead is
+  bool cut_by_frame = false;  ///< at least one bead is cut by the frame
 };
 
 Detections detect(FramesAhead& frames, const LocatorOptions& locator, const CellDescription& cell,
@@ -56,7 +56,7 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
   return all;
 }
 
-/// No two beads are nearer to each other than the smallest are.
+/// The smallest of the diameters, which is the smallest distance of two beads.
 double smallest_diameter(const LocatorOptions& locator) {
   double smallest = locator.diameter_px;
   for (const double other : locator.other_diameters_px) smallest = std::min(smallest, other);
@@ -65,18 +65,19 @@ double smallest_diameter(const LocatorOptions& locator) {
 
 }  // namespace
 
-TrackedStack track_stack(FrameSource& source, const LocatorOptions& given, LinkOptions link,
-                         const CellDescription& cell, int threads, Progress& progress, const PhaseWay& way,
-                         const std::filesystem::path& folder) {
-  // A list that cannot be read is refused before the work, not after.
-  if (way.triggers) (void)read_triggers(*way.triggers, way.drive_hz, cell.phase_lock.frames_per_cycle);
-  FramesAhead frames(source);
+TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOptions link,
+                         const CellDescription& cell, int threads, Progress& progress,
+                         const PhaseSource& source, const std::filesystem::path& folder) {
+  // An unreadable list of triggers is rejected before the work, not after it.
+  if (source.triggers)
+    (void)read_triggers(*source.triggers, source.drive_hz, cell.phase_lock.frames_per_cycle);
+  FramesAhead frames(stack);
   const LocatorOptions locator = configure_locator(frames, given).locator;
   const Detections detected = detect(frames, locator, cell, threads, progress, folder);
-  // Where a bead is cut by the frame, others come and go.
+  // If the frame cuts beads, others enter and leave.
   link.closed = cell.sides == Boundary::wall && !detected.cut_by_frame;
   link.diameter_px = smallest_diameter(locator);
-  return {link_detections(detected.frames, link, cell, way, folder),
+  return {link_detections(detected.frames, link, cell, source, folder),
           locator,
           detected.picture.width,
           detected.picture.height,

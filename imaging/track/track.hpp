@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Stack -> tracks: configure, locate, link.
+/// Tracks a stack: configure the locator, locate the beads, link them.
 
 #include <cstdint>
 #include <filesystem>
@@ -14,24 +14,24 @@
 
 namespace twincell {
 
-/// A stack located and linked.
+/// A located and linked stack.
 struct TrackedStack : LinkedDetections {
-  LocatorOptions locator;  ///< by which the beads were located
+  LocatorOptions locator;  ///< complete options with which the beads were located
   int width_px = 0, height_px = 0;
-  std::size_t outside_cell = 0;  ///< detections left out because the cell does not reach there
-  std::size_t wrong_radius = 0;  ///< candidates left out as discs of another size
+  std::size_t outside_cell = 0;  ///< detections excluded because they are outside the cell
+  std::size_t wrong_radius = 0;  ///< candidates excluded as discs of another size
 };
 
-/// Locates, finds phases, links; the stack is read once.
-/// \param locator what it leaves open is found from the first frames (configure_locator.hpp)
-/// \param cell detections more than half a bead outside its walls are counted and left out, which needs
-///     origin, scale and size, otherwise all stay; drive, frames per cycle and scale tell the linker how fast
-///     beads fall
-/// \param folder where the beads wait on disk, about 64 bytes per bead and frame; empty: the folder for
-/// temporary files
+/// Locates the beads, determines the phases and links. The stack is read once.
+/// \param locator options; settings left open are found from the first frames (configure_locator.hpp)
+/// \param cell origin, scale and size: if all are known, detections more than half a bead outside the walls
+///     are counted and excluded; otherwise all are kept. Drive, frames per cycle and scale give the linker
+///     the fall of a bead per frame interval
+/// \param folder folder for the beads on disk, about 64 bytes per bead and frame; empty: the folder for
+///     temporary files
 /// \throws InputError if a list of triggers does not have a line for each frame
 TrackedStack track_stack(FrameSource& frames, const LocatorOptions& locator, LinkOptions link,
                          const CellDescription& cell, int threads, Progress& progress = Progress::none(),
-                         const PhaseWay& way = {}, const std::filesystem::path& folder = {});
+                         const PhaseSource& source = {}, const std::filesystem::path& folder = {});
 
 }  // namespace twincell

@@ -10,7 +10,7 @@ namespace twincell {
 
 namespace {
 
-constexpr std::size_t kMostNamed = 1000;  // dropped or doubled frames that are listed one by one
+constexpr std::size_t kMostNamed = 1000;  // largest number of dropped or doubled frames listed individually
 
 }  // namespace
 
@@ -49,8 +49,9 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
 }
 
 std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell) {
+  // Phases: only the measured quantities are present.
   const PhaseTable& phases = stack.phases;
-  nlohmann::json lock = {{"way", phases.way}};
+  nlohmann::json lock = {{"way", phases.method}};
   if (phases.locked()) lock["frames_per_cycle"] = phases.frames_per_cycle;
   if (phases.locked()) lock["first_phase"] = phases.first_phase;
   if (phases.period_frames) lock["period_frames"] = *phases.period_frames;
@@ -65,6 +66,7 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
       if (interval == 0 && lock["doubled_frames"].size() < kMostNamed) lock["doubled_frames"].push_back(f);
     }
   }
+  // Tracers: tracks too short for a slot are omitted.
   const LinkReport& l = stack.links;
   nlohmann::json tracers = {
       {"count", 0}, {"broken", nlohmann::json::array()}, {"uncertain", nlohmann::json::array()}};
@@ -82,6 +84,7 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
                                    {"first", stack.tracks[static_cast<std::size_t>(t)].first},
                                    {"last", stack.tracks[static_cast<std::size_t>(t)].last}});
   if (cell.phase_lock.offset != 0) lock["offset_frames"] = cell.phase_lock.offset;
+  // Document: the camera is the map by which pixels became lengths.
   nlohmann::json document = {{"phase_lock", lock},
                              {"links",
                               {{"made", l.links},

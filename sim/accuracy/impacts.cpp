@@ -20,10 +20,10 @@ namespace twincell::sim {
 
 namespace {
 
-constexpr double kApart = 4;  // of places where something collides, sigma
-constexpr double kRunUp = 5;  // steps before first touch, and a share of one
+constexpr double kApart = 4;  // distance between separate impacts, sigma
+constexpr double kRunUp = 5;  // whole steps before first touch; a fraction of a step is added
 
-/// Two beads, or one and the plate, as the kernel and the exact solution see them.
+/// Two beads, or a bead and the plate, as used by the solver and by the exact solution.
 struct Bodies {
   double radius, mass, inertia;
   bool wall;
@@ -43,11 +43,11 @@ struct Bodies {
             .turn = turn(),
             .wall = wall ? std::optional(Vec3(Vec3::UnitZ())) : std::nullopt};
   }
-  /// At first touch the normal points up; seen along it the tangent (-n_z, n_x) is -x.
+  /// At first touch the normal points up, so the tangent (-n_z, n_x) is -x.
   [[nodiscard]] RelativeMotion at_touch(const Impact& i) const {
     return {Vec3(0, 0, wall ? radius : 2 * radius), Vec3(-i.v_t, 0, -i.v_n), Vec3(0, -i.rim, 0)};
   }
-  /// \param r from j to i, or from the plate
+  /// \param r from j to i; at the plate, from the plate
   [[nodiscard]] Outcome outcome(const Vec3& r, const Vec3& u, double rim) const {
     const Vec3 n = wall ? Vec3(Vec3::UnitZ()) : Vec3(r.normalized());
     return {u.dot(n), -n.z() * u.x() + n.x() * u.z(), rim / (wall ? radius : 2 * radius), 0};
@@ -76,7 +76,7 @@ Scene impact_scene(const std::string& contact, int dimension) {
 
 namespace {
 
-/// \param reading none: the laws' own
+/// \param reading if empty, the reading of the laws
 std::vector<Outcome> solve(const std::vector<Impact>& impacts, const Scene& scene,
                            std::optional<SlipReading> reading) {
   constexpr double kPatience = 20, kTolerance = 1e-12;
@@ -87,7 +87,7 @@ std::vector<Outcome> solve(const std::vector<Impact>& impacts, const Scene& scen
     const CollisionSetting setting = bodies.setting(plan);
     const bool history = remembers(*setting.laws);
     if (!history && (reading || !integrable_alone(*setting.laws)))
-      throw RunError("the outcome of impacts between these laws is not known exactly.");
+      throw RunError("the exact outcome of impacts is not available for these laws.");
     const double patience = kPatience * collision_time(setting, impact.v_n);
     const RelativeMotion touch = bodies.at_touch(impact);
     const CollisionEnd end =
@@ -122,8 +122,10 @@ std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& i
   scene.stepping = Stepping::steps;
   const Plan plan = make_plan(scene);
   System system = make_system(scene, plan);
-  // The plan rounds the step so that frames fall on whole ones; here the step itself is studied.
+  // The plan rounds the step so that frames are at whole steps; here the exact step is studied.
   system.dt = plan.shortest().time / setting.n;
+  // Placement: one impact per place, so many steps before first touch that no pair is in contact at the
+  // start.
   double longest = 0;
   for (int k = 0; k < total; ++k) {
     const Impact& impact = impacts[static_cast<std::size_t>(k / phases)];
@@ -150,6 +152,7 @@ std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& i
   }
   const auto kernel = make_solver(plan, {});
   kernel->advance(system, static_cast<std::int64_t>(std::ceil(kRunUp + 1.2 * longest / system.dt)) + 8);
+  // Outcomes after all impacts have ended.
   std::vector<std::vector<Outcome>> all(impacts.size());
   std::size_t b = 0;
   for (int k = 0; k < total; ++k) {
@@ -166,7 +169,7 @@ std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& i
     if (bodies.wall ? r.z() < bodies.radius : r.norm() < 2 * bodies.radius)
       throw RunError("the bodies of an impact have not parted.");
     if (!bodies.wall) {
-      // The normal is that of the parting, not of the steps after it.
+      // The normal at parting, not after the following steps.
       const double along = r.dot(u), beyond = r.squaredNorm() - 4 * bodies.radius * bodies.radius;
       r -= beyond / (along + std::sqrt(std::max(0.0, along * along - u.squaredNorm() * beyond))) * u;
     }
@@ -203,12 +206,13 @@ EqualImpacts equal_impacts(const std::vector<Impact>& impacts, const Scene& scen
   constexpr double kFewest = 6.37, kMost = 1e5, kRung = 1.02;
   const std::vector<Outcome> exact = exact_outcomes(impacts, scene);
   const auto errors = [&](const StepSetting& s) { return impact_errors(impacts, exact, scene, s, phases); };
-  // Errors fall with n but for some scatter: doubled until they pass, then halves of a factor.
+  // Errors decrease with n apart from scatter: n is doubled until it passes, then bisected by geometric
+  // means.
   const auto fewest = [&](const std::string& integrator, const auto& passes) {
     StepSetting setting{.integrator = integrator, .n = kFewest};
     while (!passes(errors(setting))) {
       setting.n *= 2;
-      if (setting.n > kMost) throw RunError(integrator + " does not come to the accuracy that is asked for.");
+      if (setting.n > kMost) throw RunError(integrator + " does not reach the required accuracy.");
     }
     double low = setting.n / 2;
     while (setting.n > kFewest && setting.n / low > kRung) {
@@ -231,7 +235,8 @@ EqualImpacts equal_impacts(const std::vector<Impact>& impacts, const Scene& scen
 
 std::vector<Impact> impacts_of_a_bed(double gamma, int count) {
   constexpr double kSlowest = 0.01, kSteps = 20.37;
-  constexpr std::int64_t kLook = 8;  // steps: less than half a contact, so that none is missed
+  // Steps between checks: less than half a contact, so that no contact is missed.
+  constexpr std::int64_t kLook = 8;
   Scene scene = read_scene_text(
       fmt::format("preset = \"fortini-huang-2015\"\n[beads]\ncount = 400\n[drive]\ngamma = {}\n", gamma),
       "bed of impacts");
@@ -242,6 +247,7 @@ std::vector<Impact> impacts_of_a_bed(double gamma, int count) {
   System system = make_system(scene, plan);
   system.beads = make_start(scene).beads;
   for (Bead& b : system.beads) b.vz = scene.drive.peak_velocity();
+  // Two periods of transient; the third is observed. New pairs among the contacts are impacts.
   const auto kernel = make_solver(plan, {});
   kernel->advance(system, 2 * plan.steps_per_period);
   std::vector<Impact> all;
@@ -276,6 +282,7 @@ std::vector<Impact> impacts_of_a_bed(double gamma, int count) {
     kernel->advance(system, kLook);
   }
   if (all.empty()) throw RunError("the bed has no impacts.");
+  // The fixed seed gives the same impacts in every call.
   std::mt19937_64 random(1);
   std::vector<Impact> drawn;
   for (int k = 0; k < count; ++k) drawn.push_back(all[random() % all.size()]);

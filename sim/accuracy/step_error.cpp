@@ -12,7 +12,7 @@ namespace twincell::sim {
 
 namespace {
 
-/// The beads and laws of a scene, with nothing around them.
+/// The beads and laws of a scene, without walls, gravity and drive.
 Scene in_empty_space(Scene s, const Plan& plan) {
   s.radius = plan.usual_radius, s.mass = plan.usual_mass;
   s.gravity = Vec3::Zero();
@@ -24,14 +24,14 @@ Scene in_empty_space(Scene s, const Plan& plan) {
   s.spread = SizeSpread::none;
   s.intruder.reset();
   s.start = StartKind::crystal_a;
-  s.stepping = Stepping::steps;  // without gravity beads would fly, and no step would err
+  s.stepping = Stepping::steps;  // without gravity "auto" is event-driven, which has no step error
   return s;
 }
 
-/// How fast beads of the scene meet, as far as it can be told beforehand.
+/// Typical impact speed of the scene, estimated before a run.
 double meeting_speed(const Scene& s, const Plan& plan) {
   const double fast = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
-  // Beads of the linear law overlap by v t_c/pi at most.
+  // With the linear law the overlap is at most v t_c/pi.
   const double gentle = std::numbers::pi * plan.overlap_bound / (2 * s.steps_per_contact * plan.dt);
   return std::min({fast, gentle, plan.travel_bound / (2 * plan.dt)});
 }
@@ -46,7 +46,7 @@ std::vector<double> restitutions(const Scene& space, double dt, double v, int ph
   const int side = static_cast<int>(std::ceil(std::sqrt(phases)));
   for (int k = 0; k < phases; ++k) {
     const int column = k % side, row = k / side;
-    // Never in contact at the start, never the same fraction of a step.
+    // Initial gap: no contact at the start, and a different fraction of a step for each pair.
     const double half = (reach + (5 + (k + 0.5) / phases) * v * dt) / 2;
     for (const int i : {-1, 1})
       system.beads.push_back({.x = 4 * reach * column + i * half,
@@ -69,7 +69,7 @@ std::vector<double> restitutions(const Scene& space, double dt, double v, int ph
     if (waited > kPatience) return {};
     kernel->advance(system, static_cast<std::int64_t>(std::ceil(contact)) + 6);
   }
-  kernel->advance(system, 2);  // half of what a force does falls into the next step
+  kernel->advance(system, 2);  // half of the effect of a force comes in the next step
   std::vector<double> e;
   for (std::size_t k = 0; k < system.beads.size(); k += 2)
     e.push_back((system.beads[k + 1].vx - system.beads[k].vx) / v);
@@ -77,18 +77,18 @@ std::vector<double> restitutions(const Scene& space, double dt, double v, int ph
 }
 
 std::optional<ImpactErrors> friction_error(const Scene& space, const Plan& plan, double speed) {
-  constexpr int kOblique = 16;  // entry phases of each
+  constexpr int kOblique = 16;  // entry phases per angle
   if (!plan.rotation || !(remembers(plan.bead) || integrable_alone(plan.bead))) return std::nullopt;
   std::vector<Impact> impacts;
   for (const double degrees : {15.0, 30.0, 45.0, 60.0, 75.0})
     impacts.push_back(Impact::at(degrees, false, speed));
-  // n that gives the plan's step where nothing is left but two beads: walls, drive and gravity have set it,
-  // too.
+  // The n that gives the step of the plan for two isolated beads: the plan's own n also depends on walls,
+  // drive and gravity.
   const double n = make_plan(space).shortest().time / plan.dt;
   try {
     return impact_errors(impacts, space, {.integrator = space.integrator, .n = n}, kOblique);
   } catch (const RunError&) {
-    return std::nullopt;  // they do not part
+    return std::nullopt;  // the beads do not part
   }
 }
 
@@ -112,7 +112,7 @@ namespace {
 
 std::string sentence(const StepError& error) {
   std::string s = fmt::format(
-      ": e of two beads that meet at v = {:.3g} is {:.4g} and errs by up to {:.2g}, by {:.2g} in the mean "
+      ": e of two beads that meet at v = {:.3g} is {:.4g} and errs by up to {:.2g}, by {:.2g} on average "
       "over collisions",
       error.speed, error.restitution, error.error.largest, error.error.mean);
   if (error.friction)
@@ -129,7 +129,7 @@ void state_step_error(const Scene& scene, Plan& plan) {
   const auto error = step_error(scene, plan);
   for (Effect& effect : plan.effects)
     if (effect.name == kTimeIntegration)
-      effect.reason += error ? sentence(*error) : ": beads that meet do not part";
+      effect.reason += error ? sentence(*error) : ": colliding beads do not part";
 }
 
 }  // namespace twincell::sim

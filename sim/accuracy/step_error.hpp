@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a scene's own law, integrator and step make of one collision.
+/// Error of a single collision with the law, integrator and time step of a scene.
 
 #include <optional>
 
@@ -10,26 +10,26 @@
 
 namespace twincell::sim {
 
-/// A head-on collision of two beads and what is wrong with it.
+/// A head-on collision of two beads and its errors.
 struct StepError {
-  double speed = 0;        ///< at which they meet, sqrt(g sigma)
-  double restitution = 0;  ///< e, of the same law in steps so short that they do not matter
-  PhaseSpread error;       ///< of e, over the share of a step at which the contact begins
-  /// Of oblique impacts at the same speed, sliding and sticking: 15, 30, 45, 60 and 75 degrees from the
-  /// normal. None without friction, or where their exact outcome is not known (resistance to rolling, laws
-  /// whose normal force remembers).
+  double speed = 0;        ///< of approach, sqrt(g sigma)
+  double restitution = 0;  ///< e of the same law, with steps so short that their error is negligible
+  PhaseSpread error;       ///< of e, over the entry phases
+  /// Errors of oblique impacts at the same speed, sliding and sticking: 15, 30, 45, 60 and 75 degrees from
+  /// the normal. Absent without friction, or if their exact outcome is not available (rolling resistance,
+  /// laws whose normal force has history), or if the beads do not part.
   std::optional<ImpactErrors> friction = {};
 };
 
-/// Lets two usual beads of the scene meet without gravity at each of `phases` entry phases, in the plan's
-/// step. They meet at twice the plate's largest speed, but at least at that of a fall by sigma, and slowly
-/// enough that they overlap by half of what the guard admits. The reference is split at entry and exit and
-/// takes eight times as many steps, at least 2000 a contact: its own error is some 1e-8 at e = 0.9.
-/// Oblique impacts are held against their exact outcome (exact_outcomes).
-/// \return nothing if they do not part: damped critically or more
+/// Simulates a collision of two usual beads of the scene, without gravity, at each of `phases` entry phases,
+/// with the time step of the plan. They meet at twice the largest speed of the plate, or at the speed of a
+/// fall by sigma if that is larger, but never so fast that they overlap, or travel in a step, by more than
+/// half of the guard's bounds. The reference uses "split" and eight times as many steps, at least 2000 per
+/// contact; its own error is about 1e-8 at e = 0.9. Oblique impacts are compared with their exact outcome
+/// (exact_outcomes). \return nothing if the beads do not part, that is, with critical damping or more
 std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int phases = 32);
 
-/// Says in the plan's list of effects what step_error() finds.
+/// Adds the result of step_error() to the list of effects of the plan.
 void state_step_error(const Scene& scene, Plan& plan);
 
 }  // namespace twincell::sim

@@ -29,14 +29,14 @@ Scene make_scene(const StepSetting& setting, const std::string& text) {
   return scene;
 }
 
-/// Table I of the first paper at another stiffness.
+/// Table I of the first paper, scaled to another stiffness.
 std::string scaled_contact(double k_n) {
   const double gamma = 100 * std::sqrt(k_n / 1e6);
   return fmt::format("[contact]\nk_n = {}\nk_t = {}\ngamma_n = {}\ngamma_t = {}\n", k_n, k_n / 100, gamma,
                      gamma);
 }
 
-/// A scene whose beads are placed and whose steps are counted by hand.
+/// A scene whose beads and steps the caller controls.
 struct Run {
   Scene scene;
   Plan plan;
@@ -77,9 +77,9 @@ ImpactSpread compare(const std::vector<double>& e, const std::vector<double>& st
 }
 
 constexpr double kImpactSpeed = 1e-3;
-constexpr double kApart = 4;  ///< distance of places where something collides, sigma
+constexpr double kApart = 4;  ///< distance between separate impacts, sigma
 
-/// A cell without gravity in which beads that nothing holds may stick to what they touch.
+/// A cell without gravity, for impacts of free beads without slip (mu = 1e9).
 std::string impact_cell(double width, double height, double k_n) {
   return kPaperOne +
          fmt::format(
@@ -88,11 +88,12 @@ std::string impact_cell(double width, double height, double k_n) {
          "[beads]\ncount = 1\n" + scaled_contact(k_n) + "mu = 1e9\n";
 }
 
-/// Steps in which every impact ends that began within `gap` steps; contact at the plate lasts sqrt(2) t_c.
+/// Number of steps after which every impact that began within `gap` steps is over; a contact at the plate
+/// lasts sqrt(2) t_c.
 std::int64_t impact_steps(double gap, double n) {
   return static_cast<std::int64_t>(std::ceil(gap + 1.6 * n)) + 8;
 }
-/// Gap at start in steps; never in contact, never the same fraction of a step.
+/// Initial gap in steps: no contact at the start, and a different fraction of a step for each k.
 double entry_gap(int k, int phases) {
   return 5 + (k + 0.5) / phases;
 }
@@ -135,7 +136,7 @@ ImpactSpread wall_impacts(const StepSetting& setting, int phases) {
 
 constexpr double kSettling = 2250;  ///< contact times
 
-/// Of two beads.
+/// Contact time of two beads.
 double contact_time(const Plan& plan) {
   return std::get<LinearSpringDashpot>(plan.bead.normal)
       .oscillator({.m_eff = 0.5, .r_eff = 0, .inv_m_t = 0})
@@ -160,7 +161,7 @@ class VerticalTemperature : public TrajectorySink {
   std::vector<double> periods_;
 };
 
-/// The driven bed on which steps are timed, as it enters each window.
+/// The driven bed on which steps are timed, with its state at the start of each window.
 struct TimedBed {
   double k_n;
   std::vector<std::vector<Bead>> entered;  ///< [window] beads
@@ -197,7 +198,7 @@ struct TimedSetting {
       : bed(std::move(given)), run(timed_scene(setting)) {}
   /// Seconds per simulated time.
   double measure() {
-    // Short windows are run several times over, for the clock's sake.
+    // Short windows are repeated, because of the resolution of the clock.
     constexpr double kLeastSteps = 4000;
     const std::int64_t period = run.system.steps_per_period;
     const auto steps = static_cast<std::int64_t>(std::ceil(kWindow * static_cast<double>(period)));
@@ -207,8 +208,7 @@ struct TimedSetting {
       for (int w = 0; w < kWindows; ++w) {
         run.system.beads = bed.entered[static_cast<std::size_t>(w)];
         run.system.forces_known = false;
-        run.kernel =
-            make_solver(run.plan, {});  // what contacts of the last window remember is not this one's
+        run.kernel = make_solver(run.plan, {});  // without the contact memories of the last window
         run.system.step = w * period / kWindows;
         run.kernel->advance(run.system, steps / 2);
         const double begun = cpu_seconds();
@@ -260,7 +260,7 @@ BedErrors bed_errors(const StepSetting& setting) {
   errors.kinetic_energy = kinetic_energy_per_bead(bed.system);
   for (int k = 0; k < 10 * setting.n; ++k) {
     bed.kernel->advance(bed.system, 1);
-    // Contact forces between beads cancel; what remains of the sum is the floor's.
+    // Contact forces between beads cancel; the remaining sum is the force of the floor.
     double force = 0, weight = 0;
     for (std::size_t b = 0; b < bed.system.beads.size(); ++b) {
       force += bed.system.forces[b].z;
@@ -352,7 +352,7 @@ std::vector<StepCost> step_costs(const std::vector<StepSetting>& settings, int r
 
 std::vector<WorkPrecision> work_precision(const std::vector<StepSetting>& settings, int rounds,
                                           Progress& progress) {
-  // Progress counts units of about the same time: a setting's errors as one, each of its rounds as one.
+  // Progress counts units of similar duration: one for the errors of a setting, one for each of its rounds.
   const auto count = static_cast<std::int64_t>(settings.size()), total = count * (rounds + 1);
   std::vector<WorkPrecision> all;
   const std::vector<Impact> impacts = bed_impacts();
@@ -393,7 +393,7 @@ std::vector<WorkPrecision> front(const std::vector<WorkPrecision>& all, double k
 
 namespace {
 
-/// The cheapest setting of stiffness k_n that passes, and with it every larger n of its integrator.
+/// The cheapest setting of stiffness k_n that passes, together with every larger n of its integrator.
 template <class Kernels>
 const WorkPrecision* cheapest_that(const std::vector<WorkPrecision>& all, double k_n, const Kernels& passes) {
   const WorkPrecision* best = nullptr;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What a time step is worth and what it costs: errors of the integrators against closed forms, and processor
-/// time on a driven bed. The contacts are those of Fortini & Huang 2015 (Table I), scaled to a stiffness.
+/// Accuracy and cost of time steps: errors of the integrators against closed forms, and processor time on a
+/// driven bed. The contacts are those of Fortini & Huang 2015 (Table I), scaled to a stiffness.
 
 #include <optional>
 #include <string>
@@ -14,38 +14,38 @@
 
 namespace twincell::sim {
 
-/// Errors of one collision: of e (Fortini & Huang 2015, eq. A5) and of v_t'/v_t without slip.
+/// Errors of one collision: of e (Fortini & Huang 2015, eq. A5), and of v_t'/v_t without slip.
 struct CollisionErrors {
   PhaseSpread restitution_pair, restitution_wall;
   PhaseSpread sticking_pair, sticking_wall;  ///< two beads; a bead and the plate
 
-  [[nodiscard]] double restitution() const;  ///< the larger of the two largest
+  [[nodiscard]] double restitution() const;  ///< larger of the `largest` of pair and wall
   [[nodiscard]] double sticking() const;
 };
-/// Oblique impacts at 45 degrees, one for each of `phases` entry phases, evenly spread. A pair turns while in
-/// contact, by v t_c, which the closed form does not know: v is 1e-3 sqrt(g sigma).
+/// Simulates oblique impacts at 45 degrees, one for each of `phases` evenly spaced entry phases. A pair
+/// rotates by v t_c while in contact, which the closed form neglects; v is therefore 1e-3 sqrt(g sigma).
 CollisionErrors collision_errors(const StepSetting& setting, int phases = 128);
 
-/// Errors of beads at rest, 2250 contact times after their release (5 t0 for the paper's k_n; the column,
-/// whose slowest mode takes longer, four times that).
+/// Errors of beads at rest, 2250 contact times after their release (5 t0 for the k_n of the paper). The
+/// column is given four times as long, because its slowest mode decays more slowly.
 struct BedErrors {
   double kinetic_energy = 0;  ///< per bead, m g sigma, of a crystal of 40 beads displaced by up to 1e-4 sigma
-  double floor_force = 0;     ///< its largest |F/(N m g) - 1| over ten contact times
-  double overlap = 0;         ///< largest |delta k_n/(i m g) - 1| in a column of five beads
+  double floor_force = 0;     ///< of the same bed, largest |F/(N m g) - 1| over ten contact times
+  double overlap = 0;         ///< largest |delta k_n/(i m g) - 1| in a column of five; i: beads carried
 };
 BedErrors bed_errors(const StepSetting& setting);
 
 /// A gas of the second paper.
 struct GasCase {
-  std::string system = "smooth-2d";  ///< of the presets bhateja-2016-...
+  std::string system = "smooth-2d";  ///< one of the presets bhateja-2016-...
   double w = 20;
-  bool event_driven =
-      false;  ///< beads fly from contact to contact; the setting then acts where three bodies meet
+  /// Event-driven motion; the setting then applies only where three bodies meet.
+  bool event_driven = false;
   bool operator==(const GasCase&) const = default;
 };
 
-/// T_z/(m V_p^2), m <(v_z - v_z,cm)^2>, of a gas (Bhateja et al. 2016), and the standard error that the
-/// length of the run leaves it, from ten blocks. The start is forgotten for 50 periods.
+/// Vertical granular temperature of a gas (Bhateja et al. 2016), m <(v_z - v_z,cm)^2>/(m V_p^2), and its
+/// standard error for this length of the run, from ten blocks. The first 50 periods are discarded.
 struct GasTemperature {
   StepSetting setting;
   GasCase gas;
@@ -53,7 +53,7 @@ struct GasTemperature {
   int periods = 0;
   double seconds = 0;  ///< of processor time, for `periods`
 
-  /// Processor time after which the statistical error is the share `relative` of the value.
+  /// Processor time after which the statistical error is the fraction `relative` of the value.
   [[nodiscard]] double seconds_to(double relative) const;
 };
 GasTemperature gas_temperature(const StepSetting& setting, const GasCase& gas, int periods,
@@ -61,49 +61,55 @@ GasTemperature gas_temperature(const StepSetting& setting, const GasCase& gas, i
 
 /// Processor time of one step.
 struct StepCost {
-  double seconds_per_time = 0;  ///< s/t0, of one bead
+  double seconds_per_time = 0;  ///< per bead, s/t0
   double dt = 0;                ///< t0
-  double contact_time = 0;      ///< t0, of two beads
+  double contact_time = 0;      ///< of two beads, t0
 };
 /// Cost of settings on one driven bed: 400 beads of the first paper at Gamma = 2, five windows of a hundredth
-/// of a period at five phases of the third period, each entered from the same state and run half as long
-/// again before the clock starts. Settings take turns within a round, so that what else the machine does hits
-/// all alike; the median over rounds counts. One thread.
+/// of a period each, at five phases of the third period. Every setting enters a window from the same state
+/// and first runs half a window without timing. The settings take turns within a round, so that other load on
+/// the machine affects all of them equally; the result is the median over rounds. One thread.
 std::vector<StepCost> step_costs(const std::vector<StepSetting>& settings, int rounds,
                                  Progress& progress = Progress::none());
 
-/// What a setting is worth and what it costs.
+/// Accuracy and cost of a setting.
 struct WorkPrecision {
   StepSetting setting;
   CollisionErrors collision;
   BedErrors bed;
   StepCost cost;
-  ImpactErrors impacts = {};  ///< of bed_impacts()
+  ImpactErrors impacts = {};  ///< for bed_impacts()
 };
-/// What the first paper's bed has of impacts that slide or stick: a hundred each at Gamma = 2 and 3
-/// (impacts_of_a_bed), each at kBedPhases entry phases.
+/// Impacts in the bed of the first paper, sliding and sticking: a hundred each at Gamma = 2 and 3
+/// (impacts_of_a_bed), each used at kBedPhases entry phases.
 std::vector<Impact> bed_impacts();
 inline constexpr int kBedPhases = 8;
-/// The first paper's contact at another stiffness, for impacts.
+/// Scene for impacts with the contact of the first paper, scaled to another stiffness.
 Scene scaled_impact_scene(double k_n);
 
-/// All of it, for each setting.
+/// Accuracy and cost of each setting.
 std::vector<WorkPrecision> work_precision(const std::vector<StepSetting>& settings, int rounds,
                                           Progress& progress = Progress::none());
 
-/// Settings that no other of the same k_n beats in both largest error of e and time, cheapest first.
+/// Pareto front: settings for which no other of the same k_n is better in both the largest error of e and the
+/// time, cheapest first.
 std::vector<WorkPrecision> front(const std::vector<WorkPrecision>& all, double k_n);
 
-/// The cheapest setting of stiffness k_n whose largest error of e is at most `accuracy`, for it and for every
-/// larger n of its integrator, so that no lucky phase counts. Absent if there is none.
+/// The cheapest setting of stiffness k_n whose largest error of e is at most `accuracy`. Every larger n of
+/// its integrator must pass too, so that a fortunate phase does not count. Absent if no setting passes.
 std::optional<WorkPrecision> cheapest(const std::vector<WorkPrecision>& all, double k_n, double accuracy);
 
-/// The cheapest setting that is no less accurate than `reference` is: largest and rms error of e and of
-/// v_t'/v_t without slip, for two beads and for a bead and the plate each, of e, v_t' and w' of a bed's
-/// impacts, and beads at rest no worse or within 1e-12 m g
-/// sigma, 1e-8 N m g and 1e-5 of each overlap. It and every larger n of its integrator pass; `reference`
-/// itself does. \param mean also the mean errors are no larger: what an average over very many collisions
-/// sees
+/// The cheapest setting that is at least as accurate as `reference`. It must not exceed the reference in the
+/// following errors:
+///
+/// - largest and rms error of e and of v_t'/v_t without slip, for two beads and for a bead and the plate
+/// - largest and rms error of e, v_t' and w' for the impacts of a bed
+/// - errors of beads at rest, where values within 1e-12 m g sigma, 1e-8 N m g and 1e-5 of each overlap always
+///  pass
+///
+/// Every larger n of its integrator must pass too. `reference` itself always passes.
+/// \param mean require also that the mean errors are no larger; they matter for averages over very many
+/// collisions
 WorkPrecision equal_accuracy(const std::vector<WorkPrecision>& all, const WorkPrecision& reference,
                              bool mean = false);
 

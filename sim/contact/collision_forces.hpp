@@ -1,20 +1,23 @@
 #pragma once
 /// \file
-/// The forces of an collision (binary_collision.hpp) in one of their regimes, at one moment or at several in
-/// the lanes of vectors: written once, for any type of number of laws/real.hpp.
+/// Forces of a binary collision (binary_collision.hpp) within one regime of friction, at one instant or at
+/// several instants in the lanes of a SIMD vector. The code is written once for every number type of
+/// laws/real.hpp.
 
 #include "sim/laws/concepts.hpp"
 #include "sim/laws/isolated.hpp"
 
 namespace twincell::sim {
 
-/// Forces on i, and what they depend on, in D dimensions.
+/// Forces on bead i and the contact kinematics on which they depend, in D dimensions. Call look() or
+/// look_again(), then approach(), friction() and slopes(). The relative motion r, u, s is that of
+/// RelativeMotion (event_driven/collision.hpp).
 template <class V, class N, class T, int D>
 struct CollisionForces {
   static constexpr int kTurn = D == 2 ? 1 : 3;
 
   V n[D], f_t[D], per_distance, overlap, v_n, f_n;
-  Tangent<V, kTurn> v_t, turning;  ///< tangential velocity; n x F_t, in the plane F_t
+  Tangent<V, kTurn> v_t, turning;  ///< tangential velocity; n x F_t (in 2D F_t)
 
   static V dot(const V* a, const V* b) {
     V sum = a[D - 1] * b[D - 1];
@@ -22,7 +25,7 @@ struct CollisionForces {
     return sum;
   }
 
-  /// Direction and overlap. \param wall its normal; null between beads
+  /// Computes the normal and the overlap. \param wall normal of the wall; null between beads
   [[gnu::always_inline]] void look(V reach, const V* wall, const V* r) {
     if (wall != nullptr) {
       for (int k = 0; k < D; ++k) n[k] = wall[k];
@@ -34,8 +37,8 @@ struct CollisionForces {
       overlap = reach - apart;
     }
   }
-  /// The same if r has changed a little since: a step of Newton's for 1/|r|, whose error is of second order
-  /// in the change, instead of a root and a division.
+  /// Like look(), for an r that has changed little since the last call: one Newton step for 1/|r|, whose
+  /// error is of second order in the change, replaces a square root and a division.
   [[gnu::always_inline]] void look_again(V reach, const V* wall, const V* r) {
     if (wall != nullptr) {
       overlap = reach - dot(wall, r);
@@ -46,7 +49,8 @@ struct CollisionForces {
       overlap = nfma(square, per_distance, reach);
     }
   }
-  /// Normal force and velocities, after one of these.
+  /// Computes the normal velocity, the normal force and the tangential velocity; call after look() or
+  /// look_again().
   [[gnu::always_inline]] void approach(const V* c_n, const V* u, const V* s) {
     v_n = dot(n, u);
     f_n = N::template force<V>(c_n, overlap, v_n, nullptr);
@@ -59,9 +63,10 @@ struct CollisionForces {
       }
     }
   }
-  /// Friction, after approach(). \param pressed, slides the regime: F_n > 0, and the Coulomb limit binds. It
-  /// is continued beyond where it holds: |F_n| as F_n or -F_n
-  [[gnu::always_inline]] void rub(const V* c_t, bool pressed, bool slides) {
+  /// Computes the friction; call after approach(). \param pressed regime F_n > 0 \param slides regime in
+  /// which the Coulomb limit binds. The formula of a regime is also evaluated outside its range: |F_n| is F_n
+  /// or -F_n as `pressed` states, whatever the sign of F_n.
+  [[gnu::always_inline]] void friction(const V* c_t, bool pressed, bool slides) {
     if constexpr (T::kActs) {
       const V pressure = pressed ? f_n : -f_n;
       const V sign = select(pressure < V(0.0), V(-1.0), V(1.0));
@@ -78,12 +83,13 @@ struct CollisionForces {
       }
     }
   }
-  /// How far the Coulomb limit is from binding, after approach(); continued as rub() is.
+  /// Distance to the Coulomb limit; call after approach(). It is extended outside its range as in friction().
   [[nodiscard]] [[gnu::always_inline]] V slack(const V* c_t, bool pressed) const {
     const V slack = T::slack(c_t, norm(v_t), f_n);
     return select((pressed ? f_n : -f_n) < V(0.0), slack - V(2.0) * T::slack(c_t, V(0.0), f_n), slack);
   }
-  /// Slopes of u and s, after these. \param push other accelerations; null: none
+  /// Computes the time derivatives of u and s from the forces. \param push additional accelerations; null if
+  /// there are none
   [[gnu::always_inline]] void slopes(V inv_mass, V turn, const V* push, V* to) const {
     for (int k = 0; k < D; ++k) {
       V force = f_n * n[k];

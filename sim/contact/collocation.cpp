@@ -8,25 +8,25 @@ namespace twincell::sim {
 namespace {
 
 using Number = long double;
-constexpr int kCount = static_cast<int>(kMoments);
+constexpr int kCount = static_cast<int>(kStages);
 using Matrix = Eigen::Matrix<Number, kCount, kCount>;
 
-/// P_0 .. P_8 of 2 x - 1.
-std::array<Number, kMoments + 1> legendre(Number x) {
-  std::array<Number, kMoments + 1> p{1, 2 * x - 1};
-  for (std::size_t k = 1; k < kMoments; ++k) {
+/// Legendre polynomials P_0 .. P_8 at 2 x - 1.
+std::array<Number, kStages + 1> legendre(Number x) {
+  std::array<Number, kStages + 1> p{1, 2 * x - 1};
+  for (std::size_t k = 1; k < kStages; ++k) {
     const auto n = static_cast<Number>(k);
     p[k + 1] = ((2 * n + 1) * (2 * x - 1) * p[k] - n * p[k - 1]) / (n + 1);
   }
   return p;
 }
-/// The zeros of P_8 - P_7 in (0, 1]; it changes its sign between any two of them.
-std::array<Number, kMoments> radau_points() {
-  const auto f = [](Number x) { return legendre(x)[kMoments] - legendre(x)[kMoments - 1]; };
-  std::array<Number, kMoments> c{};
+/// Radau points: the zeros of P_8 - P_7 in (0, 1], where it changes its sign.
+std::array<Number, kStages> radau_points() {
+  const auto f = [](Number x) { return legendre(x)[kStages] - legendre(x)[kStages - 1]; };
+  std::array<Number, kStages> c{};
   std::size_t found = 0;
   constexpr int kPieces = 1000;
-  for (int k = 0; k < kPieces && found + 1 < kMoments; ++k) {
+  for (int k = 0; k < kPieces && found + 1 < kStages; ++k) {
     Number low = static_cast<Number>(k) / kPieces, high = static_cast<Number>(k + 1) / kPieces;
     if ((f(low) > 0) == (f(high) > 0)) continue;
     const bool sign = f(high) > 0;
@@ -36,11 +36,11 @@ std::array<Number, kMoments> radau_points() {
     }
     c[found++] = high;
   }
-  c[kMoments - 1] = 1;
+  c[kStages - 1] = 1;
   return c;
 }
-MomentMap map_of(const Matrix& m) {
-  MomentMap map{};
+StageMap map_of(const Matrix& m) {
+  StageMap map{};
   for (int j = 0; j < kCount; ++j)
     for (int i = 0; i < kCount; ++i) map.column[j][i] = static_cast<double>(m(i, j));
   return map;
@@ -56,7 +56,7 @@ Collocation computed() {
     for (int k = 0; k < kCount; ++k) {
       const auto n = static_cast<std::size_t>(k);
       values(i, k) = p[n];
-      // The integral of P_n from 0, in x: (P_n+1 - P_n-1)/(2 (2 n + 1)).
+      // Integral of P_n from 0 to x: (P_n+1 - P_n-1)/(2 (2 n + 1)).
       integrals(i, k) = k == 0 ? x : (p[n + 1] - p[n - 1]) / (2 * (2 * static_cast<Number>(k) + 1));
     }
   }
@@ -64,11 +64,11 @@ Collocation computed() {
   c.once = map_of(once), c.twice = map_of(twice);
   for (int i = 0; i < kCount; ++i)
     for (int k = 0; k < 2; ++k) c.last[k][i] = static_cast<double>(coefficients(kCount - 2 + k, i));
-  for (std::size_t k = 0; k <= kMoments; ++k) {
+  for (std::size_t k = 0; k <= kStages; ++k) {
     const auto place = [&](std::size_t j) { return j == 0 ? Number{0} : at[j - 1]; };
     c.place[k] = static_cast<double>(place(k));
     Number product = 1;
-    for (std::size_t j = 0; j <= kMoments; ++j)
+    for (std::size_t j = 0; j <= kStages; ++j)
       if (j != k) product *= 2 * (place(k) - place(j));
     c.weight[k] = static_cast<double>(1 / product);
   }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The text of the steps of collocation.hpp, compiled for each kind of vector unit.
+/// Implementation of the collocation steps of collocation.hpp, compiled once per instruction set.
 
 #include <algorithm>
 
@@ -10,11 +10,11 @@
 
 namespace twincell::sim {
 
-/// The values at all moments, in as many vectors as that takes: a number of laws/real.hpp.
+/// The values at all eight stages, in as many SIMD vectors as they need; a number type of laws/real.hpp.
 template <class Lanes>
 struct Octet {
   using Part = typename Lanes::V;
-  static constexpr int kParts = static_cast<int>(kMoments) / Lanes::kWidth;
+  static constexpr int kParts = static_cast<int>(kStages) / Lanes::kWidth;
   Part part[kParts];
   struct Mask {
     decltype(Part() > Part()) part[kParts];
@@ -91,7 +91,7 @@ struct Octet {
   }
 };
 
-/// The step for the laws N and T in D dimensions.
+/// One collocation step for the laws N and T in D dimensions.
 template <class Lanes, class N, class T, int D>
 struct CollocationOf {
   using V = Octet<Lanes>;
@@ -99,38 +99,41 @@ struct CollocationOf {
   static constexpr int kTurn = D == 2 ? 1 : 3;
   static constexpr int kSlopes = D + (T::kActs ? kTurn : 0);
   static constexpr int kMostPasses = 40;
-  // A force that is continued far beyond its kink may have no smooth motion.
+  // From pass kPatience on, the iteration stops if a pass does not reduce the change by kProgress: outside
+  // the range of its regime, a force may have no smooth solution.
   static constexpr int kPatience = 3;
   static constexpr double kProgress = 0.4;
-  // What a pass leaves of a change, at best: after a good guess the first ones say little.
+  // Smallest ratio of successive changes that the error estimate assumes: after a good initial guess the
+  // first ratios are unreliable.
   static constexpr double kBest = 0.01;
 
-  /// Of K rows of values: map of each.
+  /// Applies one linear map to each of K rows of stage values.
   template <int K>
-  static void map(const MomentMap& by, const double (*rows)[kMoments], V* to) {
+  static void map(const StageMap& by, const double (*rows)[kStages], V* to) {
     for (int k = 0; k < K; ++k) to[k] = V(rows[k][0]) * V::load(by.column[0]);
-    for (std::size_t j = 1; j < kMoments; ++j) {
+    for (std::size_t j = 1; j < kStages; ++j) {
       const V column = V::load(by.column[j]);
       for (int k = 0; k < K; ++k) to[k] = fma(V(rows[k][j]), column, to[k]);
     }
   }
-  /// The sum of one map of one row and of another of another: two short chains.
-  static V map_two(const MomentMap& by, const double* row, const MomentMap& other_by, const double* other) {
+  /// Applies one map to `row` and another to `other` and returns the sum. Two accumulators shorten the
+  /// dependency chain.
+  static V map_two(const StageMap& by, const double* row, const StageMap& other_by, const double* other) {
     V sum = V(row[0]) * V::load(by.column[0]), rest = V(other[0]) * V::load(other_by.column[0]);
-    for (std::size_t j = 1; j < kMoments; ++j) {
+    for (std::size_t j = 1; j < kStages; ++j) {
       sum = fma(V(row[j]), V::load(by.column[j]), sum);
       rest = fma(V(other[j]), V::load(other_by.column[j]), rest);
     }
     return sum + rest;
   }
 
-  /// A first guess: the motion of an oscillator along n_0, and across it what a rate of relaxation leaves.
+  /// Initial guess: along n_0 the motion of an oscillator, across it exponential relaxation.
   [[gnu::always_inline]] static void guess(const CollocationStart& a, V time, const V* r0, const V* u0,
                                            const V* n0, V* r, V* u) {
     V a0[kSlopes];
     for (int k = 0; k < kSlopes; ++k) a0[k] = V(a.slopes[k]);
     const V u_n = Forces::dot(n0, u0), a_n = Forces::dot(n0, a0), square = time * time;
-    // cos and sin of omega t, and exp of -lambda t, by their first terms.
+    // cos and sin of omega t, and exp of -lambda t, by the first terms of their series.
     const V q = V(a.frequency * a.frequency) * square, x = V(a.relaxation) * time;
     const V cosine = q * fma(q, fma(q, V(-1.0 / 720), V(1.0 / 24)), V(-0.5));             // cos - 1
     const V sine = time * q * fma(q, fma(q, V(-1.0 / 5040), V(1.0 / 120)), V(-1.0 / 6));  // sin/omega - t
@@ -144,6 +147,7 @@ struct CollocationOf {
     for (int k = 0; k < D; ++k) u[k] = fma(more_u, n0[k], u[k]);
   }
   static void step(const CollocationStart& a, CollocationMotion& m) {
+    // Setup: constants as SIMD vectors, free motion r0, u0 at all stages, initial guess.
     const Collocation& numbers = *a.method;
     V r0[D], u0[kSlopes], r[D], u[kSlopes], slope[kSlopes], n0[D], wall[D], push[D];
     V c_n[N::kConstants], c_t[T::kConstants > 0 ? T::kConstants : 1];
@@ -156,7 +160,7 @@ struct CollocationOf {
       r0[k] = fma(time, V(a.numbers[D + k]), V(a.numbers[k]));
       n0[k] = V(a.normal[k]);
       if (a.wall != nullptr) wall[k] = V(a.wall[k]);
-      if (a.push != nullptr) push[k] = V::load(a.push + k * kMoments);
+      if (a.push != nullptr) push[k] = V::load(a.push + k * kStages);
     }
     for (int k = 0; k < kSlopes; ++k) u0[k] = V(a.numbers[D + k]);
     guess(a, time, r0, u0, n0, r, u);
@@ -164,17 +168,19 @@ struct CollocationOf {
     V r_n = Forces::dot(n0, r0), u_n = Forces::dot(n0, u0);
     const V* along_wall = a.wall != nullptr ? wall : nullptr;
     Forces f;
+    // Iteration: evaluate the forces at all stages, integrate them, repeat until the velocities converge.
     double before = 0;
     for (int pass = 0; pass < kMostPasses; ++pass) {
       pass == 0 ? f.look(reach, along_wall, r) : f.look_again(reach, along_wall, r);
       f.approach(c_n, u, u + D);
-      f.rub(c_t, a.pressed, a.slides);
+      f.friction(c_t, a.pressed, a.slides);
       f.slopes(inv_mass, turn, a.push != nullptr ? push : nullptr, slope);
-      // With these accelerations the motion would be another, and the normal force too: where the spring and
-      // the dashpot `lack` something of it with r and u as they are, that of the motion to come is
-      // R (lack + now) - eta h R A now, along n_0, instead of `now`.
+      // The new accelerations change the motion, and the changed motion changes the normal force. `now`
+      // contains the acceleration -`lack` that the linear spring and dashpot exert at the present r and u.
+      // With their response to the new motion instead, the acceleration along n_0 is
+      // R (lack + now) - eta h R A now.
       V now(0.0);
-      alignas(64) double along[2][kMoments];
+      alignas(64) double along[2][kStages];
       if (a.response != nullptr) {
         now = Forces::dot(n0, slope);
         const V lack = stiffness * (Forces::dot(n0, r) - r_n) + damping * (Forces::dot(n0, u) - u_n);
@@ -183,6 +189,7 @@ struct CollocationOf {
         for (int k = 0; k < D; ++k) slope[k] = nfma(now, n0[k], slope[k]);
       }
       for (int k = 0; k < kSlopes; ++k) slope[k].store(m.slopes[k]);
+      // Integrate the accelerations to velocities and positions at the stages.
       V next[kSlopes];
       map<D>(numbers.twice, m.slopes, r);
       map<kSlopes>(numbers.once, m.slopes, next);
@@ -197,6 +204,7 @@ struct CollocationOf {
       V change = abs(next[0] - u[0]);
       for (int k = 1; k < kSlopes; ++k) change = max(change, abs(next[k] - u[k]));
       for (int k = 0; k < kSlopes; ++k) u[k] = next[k];
+      // Convergence: the ratio of the last two changes predicts the next change.
       const double most = change.largest();
       m.change = pass > 0 && most < before ? most * std::max(most / before, kBest) : most;
       const bool hopeless = pass >= kPatience && !(most < kProgress * before);
@@ -215,8 +223,8 @@ struct CollocationOf {
   }
 };
 
-/// The steps by laws (their places in the lists of laws/axes.hpp) and dimension; null for laws whose
-/// collisions are not smooth.
+/// Table of the steps by laws (their indices in the lists of laws/axes.hpp) and dimension; null for laws
+/// whose collisions are not smooth.
 template <class Lanes>
 struct CollocationTable {
   static constexpr std::size_t kTangentials = std::variant_size_v<TangentialAxis>;

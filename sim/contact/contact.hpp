@@ -1,21 +1,21 @@
 #pragma once
 /// \file
-/// One contact, from relative motion to force: the same text for the all-pairs oracle, the scalar kernel and
-/// the vector kernels, for 2D and 3D, for a partner and for a wall.
+/// Evaluation of one contact, from relative motion to force. The all-pairs oracle, the scalar kernel and the
+/// SIMD kernels share this code, for 2D and 3D, for bead-bead and bead-wall contacts.
 
 #include "sim/laws/axes.hpp"
 
 namespace twincell::sim {
 
-/// Components of spin and of the tangent plane.
+/// Number of components of the spin and of the tangent plane.
 template <int D>
 inline constexpr int kTurns = D == 2 ? 1 : 3;
 
-/// Constants of a contact, one set per kind of pair: its geometry, then those of its laws in the order of the
-/// axes.
+/// Indices of the constants of a contact. There is one set per kind of pair: the geometry first, then the
+/// constants of its laws in the order of the axes.
 namespace constant {
 inline constexpr int kReach = 0;            ///< R_i + R_j; R at a wall
-inline constexpr int kEdge = 1;             ///< kReach^2, and a little: nearer pairs are looked at
+inline constexpr int kEdge = 1;             ///< kReach^2, slightly enlarged; closer pairs are evaluated
 inline constexpr int kInvReach = 2;         ///< 1/kReach
 inline constexpr int kInvReachSquared = 3;  ///< 1/kReach^2
 inline constexpr int kInvRadiusI = 4;       ///< 1/R_i, for rolling
@@ -24,7 +24,7 @@ inline constexpr int kInvMass = 6;          ///< 1/m_eff
 inline constexpr int kLaws = 7;
 }  // namespace constant
 
-/// Where the laws of a set find their constants.
+/// Offsets of the constants of each law of a set.
 template <class Laws>
 struct Layout {
   static constexpr int kNormal = constant::kLaws;
@@ -38,29 +38,30 @@ template <class V, int D>
 struct ContactKinematics {
   V n[D];
   V overlap;       ///< > 0 in contact
-  V v[D];          ///< v_i - v_j, in the middle of the step that ends here, as s and w
-  V s[kTurns<D>];  ///< R_i w_i + R_j w_j; in 2D of the counter-clockwise spins
+  V v[D];          ///< v_i - v_j; like s and w, in the middle of the step that ends now
+  V s[kTurns<D>];  ///< R_i w_i + R_j w_j; in 2D w is counter-clockwise
   V w[kTurns<D>];  ///< w_i - w_j, for rolling
 };
 
-/// What the contact does to i (f, q) and to j (-f, q). Components of Force in force.hpp's order.
+/// Contact load: force and torque on i (f, q) and on j (-f, q). The components are in the order of the force
+/// record in kernels.hpp.
 template <class V, int D>
 struct ContactLoad {
   V f[D];
   V q[kTurns<D>];
-  V q_i[kTurns<D>];  ///< rolling torque per radius, i
-  V q_j[kTurns<D>];  ///< the same, j
+  V q_i[kTurns<D>];  ///< rolling torque on i per radius
+  V q_j[kTurns<D>];  ///< rolling torque on j per radius
 };
 
-/// Which velocity the laws see at the end of a step, where leapfrog knows the positions, but velocities only
-/// in the middle of steps.
+/// Velocity that the laws use at the end of a step. Leapfrog gives positions there, but velocities only in
+/// the middle of steps.
 enum class Velocity {
-  half_step,  ///< that of the middle of the step: dashpots lag by dt/2, first order in dt
-  full_step,  ///< that of its end, from the last two middles: second order while a contact lasts
+  half_step,  ///< velocity in the middle of the step: dashpots lag by dt/2, first order in dt
+  full_step,  ///< velocity at the end, from the last two middles: second order during a contact
 };
 
-/// Numbers that a contact remembers: those of its laws; with Velocity::full_step also the normal, tangential
-/// and rolling velocity in the middle of the step before, 0 where there was no contact.
+/// Number of values that a contact remembers: those of its laws; with Velocity::full_step also the normal,
+/// tangential and rolling velocity in the middle of the previous step, 0 where there was no contact.
 template <class Laws, Velocity kVelocity, int D>
 inline constexpr int kRemembered = Laws::template kMemory<D> +
                                    (kVelocity == Velocity::half_step
@@ -68,7 +69,7 @@ inline constexpr int kRemembered = Laws::template kMemory<D> +
                                         : 1 + (Laws::Tangential::kActs ? kTurns<D> : 0) +
                                               (Laws::Rolling::kActs ? kTurns<D> : 0));
 
-/// v_t = v - (v . n) n - s x n; in the plane the scalar along t = (-n_z, n_x).
+/// Tangential velocity v_t = v - (v . n) n - s x n; in the plane the scalar along t = (-n_z, n_x).
 template <class V, int D>
 [[gnu::always_inline]] inline Tangent<V, kTurns<D>> tangential_velocity(const ContactKinematics<V, D>& a,
                                                                         V v_n) {
@@ -83,7 +84,7 @@ template <class V, int D>
   return t;
 }
 
-/// A vector without its part along n (2D: nothing to do).
+/// Removes the component along n from a vector (2D: no operation).
 template <class V, int D>
 [[gnu::always_inline]] inline void flatten(const V* n, Tangent<V, kTurns<D>>& t) {
   if constexpr (D == 3) {
@@ -92,7 +93,7 @@ template <class V, int D>
   }
 }
 
-/// Turns a remembered vector into the present tangent plane, keeping its length (2D: nothing to do).
+/// Rotates a remembered vector into the present tangent plane and keeps its length (2D: no operation).
 template <class V, int D>
 [[gnu::always_inline]] inline void into_tangent_plane(const V* n, Tangent<V, kTurns<D>>& xi) {
   if constexpr (D == 3) {
@@ -104,59 +105,67 @@ template <class V, int D>
   }
 }
 
-/// f rounded to the grain of `magic`. Multiples of one grain add up without rounding, so the sum of a bead's
-/// contact forces is the same bits in whatever order they come: any list, any packing, any number of threads
-/// (Demmel & Nguyen 2013). The grain is some 1e-11 of the largest force, below what the rounding of positions
-/// does to a contact.
+/// Rounds f to the rounding quantum of `quantum`. Multiples of one quantum add without rounding error, so the
+/// sum of a bead's contact forces has the same bits for every order of summation: any list, any packing, any
+/// number of threads (Demmel & Nguyen 2013). The quantum is about 1e-15 of the force at the overlap bound,
+/// below the effect of the rounding of positions on a contact.
 template <class V>
-[[gnu::always_inline]] inline V rounded(V f, V magic) {
-  return (f + magic) - magic;
+[[gnu::always_inline]] inline V rounded(V f, V quantum) {
+  return (f + quantum) - quantum;
 }
 
-/// What of a step a contact lasted, and the normal force that the Coulomb limit knows.
+/// Contact interval: the fraction of a step during which the contact exists, and the normal force at its
+/// ends, which sets the Coulomb limit.
 template <class V>
-struct Passage {
-  decltype(V() > V()) entering, leaving;  ///< first touch, or last, was within the step
-  V fraction;    ///< of the step that lies after first touch, or before the last; 1 elsewhere
-  V ended;       ///< F_n at the end of what acts: now, or at the last touch
-  V begun{0.0};  ///< F_n where it begins: at first touch, or at the position before
-  V overlap_begun{0.0}, overlap_ended{0.0};  ///< overlaps at the same two instants
-  /// F_n > 0 vanishes on the way; else 1: the share of what acts that lies before.
+struct ContactInterval {
+  decltype(V() > V()) entering, leaving;  ///< first or last touch occurs within the step
+  V fraction;                             ///< of the step after first touch, or before last touch; else 1
+  V ended;                                ///< F_n at the end of the interval: now, or at last touch
+  V begun{0.0};                           ///< F_n at its start: at first touch, or at the previous position
+  V overlap_begun{0.0}, overlap_ended{0.0};  ///< overlaps at these two instants
+  /// Fraction of the interval before a positive F_n vanishes; 1 if it does not vanish.
   V pressed{1.0};
-  bool any = false;  ///< one of these contacts enters, leaves, or ceases to press
+  bool any = false;  ///< in some lane a contact begins, ends, or F_n vanishes
 };
 
-/// The force that makes up for the jump where a contact begins or ends. At a position F acts for dt: a half
-/// for the step that ends there, a half for the next. Entering, only a fraction of the first half counts,
-/// with the `mean` of the force since first touch; leaving, the half given at the last position was too much
-/// by what lies beyond the end. \param mean twice that of the force while it acts \param begun, ended the
-/// force at first touch, or at the position before, and now, or at the last touch
+/// Force whose impulse is correct although the force jumps where a contact begins or ends. The force at a
+/// position acts for dt: dt/2 in the step that ends there and dt/2 in the next. If the contact begins in the
+/// step, only the fraction since first touch counts, with the `mean` force over it. If the contact ends, the
+/// mean force over the fraction before last touch counts, and the dt/2 that the previous position has already
+/// contributed is subtracted.
+/// \param mean twice the mean force over the interval \param begun force at first touch or at the previous
+/// position
+/// \param ended force now or at last touch \param held force elsewhere
 template <class V, class F>
-[[gnu::always_inline]] inline F over_jump(const Passage<V>& p, const F& mean, const F& begun, const F& ended,
-                                          const F& held) {
+[[gnu::always_inline]] inline F over_jump(const ContactInterval<V>& p, const F& mean, const F& begun,
+                                          const F& ended, const F& held) {
   const F acted = (V(0.5) * p.fraction) * mean;
   return select(p.entering, fma(V(0.5), ended, acted), select(p.leaving, fma(V(-0.5), begun, acted), held));
 }
 
-/// x at the end of a step from its value in the middle of it and of the step before.
+/// Value of x at the end of a step, extrapolated from its values in the middle of this step and of the
+/// previous one. Without a contact in the previous step, the middle value.
 template <class M, class V, class X>
 [[gnu::always_inline]] inline X at_end(const M& was, V half, const X& middle, const X& before) {
   return select(was, fma(half, middle - before, middle), middle);
 }
 
-/// How far F_n may be from 0, of its change within the step, and still count as 0: friction without a limit
-/// (mu = 1e9, say) is not cut in the moment in which F_n vanishes.
+/// Value of |F_n|, relative to the change of F_n within the step, that sets the Coulomb limit at the instant
+/// at which F_n vanishes. Friction without an effective limit (mu = 1e9, for example) is therefore not
+/// truncated at that instant.
 inline constexpr double kMoment = 1e-6;
 
-/// Friction or rolling: `force(v, f_n, dt, x, overlap)` is the law's, x its lasting displacement.
+/// Friction or rolling over one step: `force(v, f_n, dt, x, overlap)` is the formula of the law, x its
+/// remembered displacement.
 ///
-/// The Coulomb limit jumps where a contact begins, from nothing to mu |F_n(0+)|, and has a kink where F_n
-/// vanishes. A spring that is cut there keeps that length for long after, so the cut is made at that instant,
-/// and the spring then goes on for what is left of the step. (Cut at the end of the step instead, the
-/// friction of a whole impact was that of its first position: first order in dt, wrong by a fifth at n = 50.)
-/// \param v in the middle of the step \param seen at its end
+/// The Coulomb limit jumps where a contact begins, from 0 to mu |F_n(0+)|, and has a kink where F_n vanishes.
+/// A spring truncated there keeps its length for a long time, so it is truncated at that very instant and
+/// then integrated over the rest of the step. (Truncation at the end of the step was tried and dropped: the
+/// first position then set the friction of the whole impact, with an error of first order in dt, a fifth at
+/// n = 50.)
+/// \param v velocity in the middle of the step \param seen velocity at its end
 template <Velocity kVelocity, class V, class T, class X, class Force>
-[[gnu::always_inline]] inline T lasting(const T& v, const T& seen, V dt, const Passage<V>& p, X& x,
+[[gnu::always_inline]] inline T lasting(const T& v, const T& seen, V dt, const ContactInterval<V>& p, X& x,
                                         Force force) {
   if constexpr (kVelocity == Velocity::half_step) {
     return force(v, p.ended, dt, x, p.overlap_ended);
@@ -181,12 +190,14 @@ template <Velocity kVelocity, class V, class T, class X, class Force>
   }
 }
 
-/// Force and turning moment of one contact. Remembered numbers are updated; where bodies are apart they
-/// become 0. \param c constants, Layout<Laws>::kCount \param locate with Velocity::full_step: the moments of
-/// entry and exit are located within their step and the impulse counted from there, which makes every
-/// collision second order; without, the force acts from the first step that finds an overlap to the last
-/// \param memory kRemembered numbers, of double precision: in single, steps of a slow creep would be lost in
-/// the grain of a spring's length
+/// Force and torque of one contact. Remembered numbers are updated, and set to 0 where the bodies do not
+/// touch.
+/// \param c constants, Layout<Laws>::kCount
+/// \param locate with Velocity::full_step: the instants of entry and exit are located within their step and
+/// the impulse is counted from there, which makes every collision second order. Otherwise the force acts from
+/// the first step that finds an overlap to the last
+/// \param memory kRemembered numbers in double precision; in single precision, the increments of slow creep
+/// would be lost to the rounding of the spring's length
 template <class Laws, Velocity kVelocity, class V, int D>
 [[gnu::always_inline]] inline ContactLoad<V, D> act(const ContactKinematics<V, D>& a, const V* c, V dt,
                                                     [[maybe_unused]] bool locate, V* memory) {
@@ -199,68 +210,73 @@ template <class Laws, Velocity kVelocity, class V, int D>
   const V zero(0.0), half(0.5);
   const V forgotten(0.0);
   const V* c_n = c + Layout<Laws>::kNormal;
-  V own[Normal::kMemory + 1];  // what the normal law remembers
+  V own[Normal::kMemory + 1];  // remembered by the normal law
   for (int k = 0; k < Normal::kMemory; ++k) own[k] = V(memory[k]);
 
+  // Contact interval: with located entry and exit, find the fraction of the step in which the contact exists.
   V v_n = a.v[D - 1] * a.n[D - 1];
   for (int k = D - 2; k >= 0; --k) v_n = fma(a.v[k], a.n[k], v_n);
 
   const auto now = a.overlap > zero;
   auto acting = now, was = now;
   V overlap = a.overlap, seen = v_n;
-  Passage<V> passage{now, now, V(1.0), V(0.0)};
+  ContactInterval<V> interval{now, now, V(1.0), V(0.0)};
   V* middle = memory + Laws::template kMemory<D>;
   if constexpr (kFull) {
-    // A pair whose v_n was exactly 0 reads as new, and gets the same force.
+    // A pair whose previous v_n was exactly 0 is treated as new; its force is the same.
     const V before = V(middle[0]);
     was = abs(before) > zero;
     seen = at_end(was, half, v_n, before);
-    passage.entering = both(now, before == zero);
-    passage.leaving = both(was, a.overlap <= zero);
-    const auto passes = either(passage.entering, passage.leaving);
-    passage.any = locate && any(passes);
-    if (passage.any) {
+    interval.entering = both(now, before == zero);
+    interval.leaving = both(was, a.overlap <= zero);
+    const auto passes = either(interval.entering, interval.leaving);
+    interval.any = locate && any(passes);
+    if (interval.any) {
       acting = either(now, was);
-      overlap = select(passage.leaving, max(fma(v_n, dt, a.overlap), zero), a.overlap);
-      passage.fraction = select(passes, min(overlap / max(abs(v_n) * dt, V(kTiny)), V(1.0)), V(1.0));
+      overlap = select(interval.leaving, max(fma(v_n, dt, a.overlap), zero), a.overlap);
+      interval.fraction = select(passes, min(overlap / max(abs(v_n) * dt, V(kTiny)), V(1.0)), V(1.0));
     }
   }
 
+  // Normal force: with full-step velocities, corrected for the change of the force within the step.
   V f_n = Normal::force(c_n, overlap, seen, own);
-  passage.overlap_ended = overlap;
-  passage.ended = f_n;  // the Coulomb limit knows the force of the moment, not its mean over a step
+  interval.overlap_ended = overlap;
+  interval.ended = f_n;  // the Coulomb limit uses the instantaneous force, not its mean over a step
   if constexpr (kFull) {
-    // So far the acceleration of the position before. What this contact's force has gained since is known.
+    // `seen` is based on the acceleration at the previous position. The change of this contact's force since
+    // then is known and corrects the velocity.
     const V gain = f_n - Normal::force(c_n, fma(seen, dt, overlap), seen, own);
     const V corrected = fma(half * dt * c[constant::kInvMass], select(was, gain, zero), seen);
     const V held = Normal::force(c_n, overlap, corrected, own);
-    if (passage.any) {
+    if (interval.any) {
       const V edge = Normal::force(c_n, zero, seen, own);
-      const V first = select(passage.leaving, f_n, edge), last = select(passage.leaving, edge, f_n);
-      passage.begun = first;
+      const V first = select(interval.leaving, f_n, edge), last = select(interval.leaving, edge, f_n);
+      interval.begun = first;
       if constexpr (ReadsOverlap<Tangential>) {
-        passage.overlap_begun = select(passage.leaving, overlap, zero);
-        passage.overlap_ended = select(passage.leaving, zero, overlap);
+        interval.overlap_begun = select(interval.leaving, overlap, zero);
+        interval.overlap_ended = select(interval.leaving, zero, overlap);
       }
-      passage.ended = select(passage.entering, f_n, select(passage.leaving, edge, held));
-      f_n = over_jump(passage, first + last, first, last, held);
+      interval.ended = select(interval.entering, f_n, select(interval.leaving, edge, held));
+      f_n = over_jump(interval, first + last, first, last, held);
     } else {
-      passage.ended = f_n = held;
+      interval.ended = f_n = held;
     }
     if constexpr (kLimited) {
-      // Near its end a contact pulls.
-      const auto pulls = both(acting, passage.ended < zero);
+      // Zero of F_n: near its end a contact pulls, so find the fraction of the interval with F_n > 0.
+      const auto pulls = both(acting, interval.ended < zero);
       if (locate && any(pulls)) {
         const V start = half * (v_n + V(middle[0]));
         const V held_before = Normal::force(c_n, fma(v_n, dt, a.overlap), start, own);
-        // Only where it matters: what else is in the packet must not show.
+        // Change only the lanes in which F_n vanishes: a contact's force must not depend on the other
+        // contacts of its packet.
         const auto vanishes = both(both(pulls, was), held_before > zero);
-        passage.begun = select(vanishes, held_before, passage.begun);
+        interval.begun = select(vanishes, held_before, interval.begun);
         if constexpr (ReadsOverlap<Tangential>)
-          passage.overlap_begun = select(vanishes, max(fma(v_n, dt, a.overlap), zero), passage.overlap_begun);
-        passage.pressed =
-            select(vanishes, passage.begun / max(passage.begun - passage.ended, V(kTiny)), V(1.0));
-        passage.any = true;
+          interval.overlap_begun =
+              select(vanishes, max(fma(v_n, dt, a.overlap), zero), interval.overlap_begun);
+        interval.pressed =
+            select(vanishes, interval.begun / max(interval.begun - interval.ended, V(kTiny)), V(1.0));
+        interval.any = true;
       }
     }
   }
@@ -268,6 +284,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
   ContactLoad<V, D> out;
   for (int k = 0; k < D; ++k) out.f[k] = f_n * a.n[k];
   for (int k = 0; k < K; ++k) out.q[k] = out.q_i[k] = out.q_j[k] = zero;
+  // Friction: rotate the spring into the present tangent plane, apply the law, add its force and torque.
   if constexpr (Tangential::kActs) {
     Tangent<V, K> xi{};
     V* kept = memory + Normal::kMemory;
@@ -287,7 +304,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
       for (int k = 0; k < K; ++k) middle[1 + k] = select(now, v_t.c[k], forgotten);
     }
     const Tangent<V, K> f_t =
-        lasting<kVelocity>(v_t, seen_t, dt, passage, xi, [&](const auto& v, V limit, V step, auto& x, V at) {
+        lasting<kVelocity>(v_t, seen_t, dt, interval, xi, [&](const auto& v, V limit, V step, auto& x, V at) {
           return tangential_force<Tangential>(c + Layout<Laws>::kTangential, v, limit, step, x, at);
         });
     if constexpr (Tangential::kHistory)
@@ -304,6 +321,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
       }
     }
   }
+  // Rolling resistance: apply the law to the relative angular velocity.
   if constexpr (Rolling::kActs) {
     Tangent<V, K> theta;
     Tangent<V, K> w, seen_w;
@@ -319,16 +337,17 @@ template <class Laws, Velocity kVelocity, class V, int D>
       for (int k = 0; k < K; ++k) middle[1 + K + k] = select(now, w.c[k], forgotten);
     }
     const Tangent<V, K> m = lasting<kVelocity>(
-        w, seen_w, dt, passage, theta, [&](const auto& v, V limit, V step, auto& x, V /*overlap*/) {
+        w, seen_w, dt, interval, theta, [&](const auto& v, V limit, V step, auto& x, V /*overlap*/) {
           return Rolling::torque(c + Layout<Laws>::kRolling, v, limit, step, x);
         });
     for (int k = 0; k < K; ++k) {
       kept[k] = select(now, theta.c[k], forgotten);
-      // q turns a bead by -R q.
+      // The sign follows the definition of q: I dw/dt = -R q.
       out.q_i[k] = select(acting, -(m.c[k] * c[constant::kInvRadiusI]), zero);
       out.q_j[k] = select(acting, m.c[k] * c[constant::kInvRadiusJ], zero);
     }
   }
+  // Memory and output: contacts that have ended forget their numbers and exert no force.
   if constexpr (kFull) middle[0] = select(now, v_n, forgotten);
   for (int k = 0; k < Normal::kMemory; ++k) memory[k] = select(now, own[k], forgotten);
   for (int k = 0; k < D; ++k) out.f[k] = select(acting, out.f[k], zero);

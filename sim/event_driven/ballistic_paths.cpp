@@ -11,18 +11,18 @@
 #ifndef TWINCELL_FLIGHT_LINES_ONCE
 #define TWINCELL_FLIGHT_LINES_ONCE
 namespace twincell::sim::flight {
-inline constexpr std::size_t kSpare = 8;  // doubles behind the end, for the last vector
+inline constexpr std::size_t kSpare = 8;  // padding after the end, for the last vector load
 
-/// What the loops read.
+/// Data that the SIMD loops read.
 struct View {
   std::size_t n;
   int dimension;
   const double *a[3], *b[3], *radius, *from;
   double period[3], per[3];  ///< per: 1/period
 };
-/// A body on a line, between two times.
+/// A body on a ballistic path, between two times.
 struct Body {
-  const double *a, *b;  // of the line, three numbers each
+  const double *a, *b;  // of the path, three components each
   double radius, begin, end;
 };
 }  // namespace twincell::sim::flight
@@ -35,7 +35,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using flight::Body;
 using flight::View;
 
-// No fused products: every instruction set gives the same bits.
+// No fused multiply-add, so that every instruction set gives the same bits.
 using Tag = hn::CappedTag<double, flight::kSpare>;
 using V = hn::Vec<Tag>;
 using M = hn::Mask<Tag>;
@@ -43,9 +43,9 @@ using M = hn::Mask<Tag>;
 HWY_INLINE V set(double x) {
   return hn::Set(Tag(), x);
 }
-/// x less the nearest multiple of a period. \param per 1/period
+/// x minus the nearest multiple of a period. \param per 1/period
 HWY_INLINE V nearest(V x, double period, double per) {
-  const V magic = set(6755399441055744.0);  // 1.5 2^52: adding it rounds
+  const V magic = set(6755399441055744.0);  // 1.5 2^52: its addition rounds to an integer
   return hn::Sub(x, hn::Mul(hn::Sub(hn::Add(hn::Mul(x, set(per)), magic), magic), set(period)));
 }
 HWY_INLINE V places(std::size_t first) {
@@ -62,6 +62,7 @@ BallisticPaths::Hit first_hit(const View& f, std::size_t i, double now) {
     const V place = places(j);
     const M counts =
         hn::And(hn::Lt(place, set(static_cast<double>(f.n))), hn::Ne(place, set(static_cast<double>(i))));
+    // Relative motion: bead i against a vector of beads j, from the time at which both paths are valid.
     const V reach = hn::Add(own_radius, hn::LoadU(tag, f.radius + j));
     const V from = hn::Max(start, hn::LoadU(tag, f.from + j));
     V square = zero, closing = zero, speed = zero;
@@ -77,16 +78,16 @@ BallisticPaths::Hit first_hit(const View& f, std::size_t i, double now) {
       closing = hn::Add(closing, hn::Mul(d, w));
       speed = hn::Add(speed, hn::Mul(w, w));
     }
-    // Along directions without images, two are within reach of each other from `enter` to `leave`, after
-    // `from`; their next images do not matter before or beyond.
+    // In directions without periodic images, the two beads can touch only between `enter` and `leave`,
+    // counted from `from`. Outside this interval further images do not matter.
     V enter = zero, leave = infinite, image = infinite;
-    // One division for three: the product of the other two speeds over that of all.
+    // One division instead of three: 1/speed is the product of the other two speeds over the product of all.
     const V all = hn::Div(set(1), hn::Mul(hn::Mul(fast[0], fast[1]), fast[2]));
     for (int k = 0; k < 3; ++k) {
       if (k == 1 && f.dimension == 2) continue;
       const V slowness = hn::Mul(hn::Mul(fast[(k + 1) % 3], fast[(k + 2) % 3]), all);
       if (f.period[k] > 0) {
-        // The next image is a period away, and touches at `reach`.
+        // The next image is one period away and touches at the distance `reach`.
         image = hn::Min(image, hn::Mul(hn::Sub(hn::Sub(set(f.period[k]), reach), along[k]), slowness));
       } else {
         enter = hn::Max(enter, hn::Mul(hn::Neg(hn::Add(along[k], reach)), slowness));
@@ -96,8 +97,9 @@ BallisticPaths::Hit first_hit(const View& f, std::size_t i, double now) {
     const M matters = hn::And(counts, hn::Lt(image, leave));
     until = hn::Min(until, hn::IfThenElse(matters, hn::Add(from, hn::Max(image, enter)), infinite));
     const V c = hn::Sub(square, hn::Mul(reach, reach));
+    // Root of the quadratic: first touch if the beads approach and the discriminant is positive.
     const V inside = hn::Sub(hn::Mul(closing, closing), hn::Mul(speed, c));
-    // Beads that have just parted lie at `reach` but for rounding.
+    // Beads that have just parted are at the distance `reach` up to rounding.
     overlap = hn::Or(overlap, hn::And(counts, hn::Lt(c, hn::Mul(set(-1e-12), hn::Mul(reach, reach)))));
     const M hits = hn::And(counts, hn::And(hn::Lt(closing, zero), hn::Gt(inside, zero)));
     if (hn::AllFalse(tag, hits)) continue;
@@ -107,6 +109,8 @@ BallisticPaths::Hit first_hit(const View& f, std::size_t i, double now) {
     best = hn::IfThenElse(sooner, time, best);
     partner = hn::IfThenElse(sooner, place, partner);
   }
+  // Reduction over the lanes. Of equal times the lowest index is taken, so the result does not depend on the
+  // vector width.
   BallisticPaths::Hit hit{HUGE_VAL, -1, HUGE_VAL, !hn::AllFalse(tag, overlap)};
   alignas(64) double times[flight::kSpare], partners[flight::kSpare], untils[flight::kSpare];
   hn::Store(best, tag, times);
@@ -138,7 +142,7 @@ void find_near(const View& f, const Body& body, std::vector<std::int32_t>& found
       closing = hn::Add(closing, hn::Mul(d, w));
       speed = hn::Add(speed, hn::Mul(w, w));
     }
-    // Near at the beginning, or at the end, or in between.
+    // In touch at the beginning, at the end, or in between.
     const V c = hn::Sub(square, hn::Mul(reach, reach)), change = hn::Mul(speed, span);
     const M at_end = hn::Lt(hn::Add(hn::Mul(hn::Add(hn::Add(closing, closing), change), span), c), zero);
     const M between = hn::And(hn::And(hn::Lt(closing, zero), hn::Gt(hn::Add(closing, change), zero)),

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Free flight of many beads. In a frame that falls with them all beads fly straight, so which two touch
-/// first is a quadratic equation for each pair, vectors of them at a time.
+/// Free flight of many beads. In a freely falling frame all beads move on straight lines, so the first touch
+/// of a pair is a root of a quadratic equation. SIMD solves it for several pairs at a time.
 
 #include <array>
 #include <cstddef>
@@ -13,27 +13,27 @@
 
 namespace twincell::sim {
 
-/// r(t) = a + b t + g t^2/2.
+/// Free flight of one bead: r(t) = a + b t + g t^2/2. The gravity g is an argument of the functions.
 struct BallisticPath {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();
 
   [[nodiscard]] Vec3 position(double t, const Vec3& gravity) const { return a + t * (b + 0.5 * t * gravity); }
   [[nodiscard]] Vec3 velocity(double t, const Vec3& gravity) const { return b + t * gravity; }
-  /// Through r at v at time t.
+  /// The path that passes through r with velocity v at time t.
   static BallisticPath through(const Vec3& r, const Vec3& v, double t, const Vec3& gravity) {
     const Vec3 b = v - t * gravity;
     return {r - t * (b + 0.5 * t * gravity), b};
   }
-  /// The same flight with a clock that shows `by` less.
+  /// The same flight with the origin of time moved to t = `by`.
   [[nodiscard]] BallisticPath later(double by, const Vec3& gravity) const {
     return {position(by, gravity), velocity(by, gravity)};
   }
 };
 
-/// Lines of all beads, laid out for vectors.
+/// Paths of all beads, stored component by component for SIMD.
 class BallisticPaths {
  public:
-  /// \param period of x, y, z; 0: not periodic, else at least twice the sum of any two radii
+  /// \param period of x, y, z; 0: not periodic, otherwise at least twice the sum of any two radii
   BallisticPaths(const std::vector<double>& radii, int dimension, const std::array<double, 3>& period);
 
   [[nodiscard]] std::size_t size() const { return n_; }
@@ -48,22 +48,23 @@ class BallisticPaths {
       a_[k][i] = line.a[static_cast<Eigen::Index>(k)], b_[k][i] = line.b[static_cast<Eigen::Index>(k)];
   }
   [[nodiscard]] double radius(std::size_t i) const { return radius_[i]; }
-  /// From when on a bead's line holds: the end of a contact that goes on now.
+  /// Time from which the path of a bead is valid: the first whole step after its present contact or cluster.
   double& valid_from(std::size_t i) { return from_[i]; }
   [[nodiscard]] double valid_from(std::size_t i) const { return from_[i]; }
-  /// From r to the nearest of its images.
+  /// Shift from r to its periodic image nearest the origin.
   [[nodiscard]] Vec3 shift(const Vec3& r) const { return nearest_shift(r, period_); }
 
-  /// The first touch of bead i with another, if all fly on.
+  /// The first touch of bead i with another bead if no path changes.
   struct Hit {
-    double time;           ///< infinite if there is none
-    std::int32_t partner;  ///< -1 if there is none
-    double until;          ///< beyond, other periodic images may come first: look again
-    bool overlap;          ///< another bead already overlaps: no flight
+    double time;           ///< infinite if there is no touch
+    std::int32_t partner;  ///< -1 if there is no touch
+    double until;          ///< later, another periodic image may touch first: search again then
+    bool overlap;          ///< another bead already overlaps, so free flight is impossible
   };
   [[nodiscard]] Hit first_hit(std::size_t i, double now) const;
-  /// Appends to `found` the beads with whose lines a body of this radius on this line comes into touch
-  /// between two times, whose difference is short. Its own bead, if it is one of these, is found too.
+  /// Appends to `found` the beads that touch a body of this radius on this path between two times, if they
+  /// follow their own paths. The interval must be short. If the body is itself one of the beads, that bead is
+  /// found too.
   void find_near(const BallisticPath& line, double radius, double begin, double end,
                  std::vector<std::int32_t>& found) const;
 

@@ -19,8 +19,10 @@ namespace twincell::sim {
 
 namespace {
 
-constexpr double kBeyond = 0.01;  // of the contact time: it ends a little after that, but for the spring
-/// Of the contact time: two steps are a contact, and a bead is not to part and come back in one.
+// Fraction of the contact time by which a step extends beyond the nominal end, to include the parting.
+constexpr double kBeyond = 0.01;
+/// Longest step in contact times. Two steps cover a contact, and a bead cannot part and return within one
+/// step.
 constexpr double kLongestStep = 0.5 * (1 + kBeyond);
 constexpr double kShortestStep = 1e-9;
 
@@ -28,7 +30,7 @@ template <class N, class T, int D>
 class BinaryCollision {
  public:
   static constexpr int kTurn = kTurns<D>;
-  static constexpr int kSlopes = D + (T::kActs ? kTurn : 0);  // of u, and of s
+  static constexpr int kSlopes = D + (T::kActs ? kTurn : 0);  // time derivatives of u and s
   static constexpr int kNumbers = D + kSlopes;                // r, u, and s
   using Numbers = std::array<double, kNumbers>;
   using Forces = CollisionForces<double, N, T, D>;
@@ -59,19 +61,22 @@ class BinaryCollision {
     double longest = kLongestStep * scale, shorter = 1, t = time;
     Regime regime = step.begin(t, y);
     while (t < last) {
+      // Step length: at most to the nominal end of the contact and to the predicted end of sliding.
       double h = longest;
       if (const double left = time + (1 + kBeyond) * scale - t; left > 0) h = std::min(h, left);
-      // A step far beyond a kink may have to be taken again, and in more passes.
+      // A step that extends far beyond a kink may have to be repeated, and needs more iterations.
       if (const double slides = step.sliding_time(); slides < kSoon * scale)
         h = std::min(h, kAmple * slides + kLeast * scale);
       h = std::min(shorter * h, last - t);
       const double error = step.take(h);
       if (!(error <= 1) && h > kShortestStep * scale) {
-        // Where the force has no smooth continuation so far beyond a kink the next step need not be short.
+        // If the iteration diverges because the force has no smooth continuation so far beyond a kink, only
+        // this step is shortened, not the next ones.
         (error < HUGE_VAL ? longest : shorter) *= error < HUGE_VAL ? 0.5 : step.to_first_event();
         continue;
       }
       shorter = 1;
+      // The step is cut at its first event, and the regime changes there.
       const auto [x, what] = step.first_event();
       y = step.at(x);
       t += x * h;
@@ -80,7 +85,7 @@ class BinaryCollision {
         end.parted = true;
         t += part(t, regime, y);
       } else if (what == Event::turn) {
-        // There F_n vanishes, and so does the Coulomb limit.
+        // F_n vanishes here, and with it the Coulomb limit.
         regime = {!regime.pressed, step.surfaces_slide()};
       } else if (what == Event::limit) {
         regime.slides = !regime.slides;
@@ -99,7 +104,7 @@ class BinaryCollision {
   [[nodiscard]] CollisionForce force(const RelativeMotion& m) const {
     Forces f = approach(numbers(m));
     const Regime regime = regime_of(f);
-    f.rub(c_t_.data(), regime.pressed, regime.slides);
+    f.friction(c_t_.data(), regime.pressed, regime.slides);
     const Vec3 n = vector(f.n);
     if constexpr (T::kActs) {
       const Vec3 f_t = vector(f.f_t);
@@ -110,13 +115,14 @@ class BinaryCollision {
   }
 
  private:
-  /// Of the force, between its kinks.
+  /// Regime of the force between two kinks.
   struct Regime {
     bool pressed, slides;  ///< F_n > 0; the Coulomb limit binds
   };
-  enum class Event { none, turn, limit, parting };  ///< turn: F_n changes its sign
-  static constexpr double kEasy = 1e-4;             ///< error of a step that could have been twice as long
-  // Of contact times: sliding that ends so soon is foreseen so well.
+  enum class Event { none, turn, limit, parting };  ///< turn: F_n changes sign
+  static constexpr double kEasy = 1e-4;             ///< error below which the step is doubled
+  // In contact times. If sliding is predicted to end within kSoon, the step ends after kAmple times that time
+  // plus kLeast.
   static constexpr double kSoon = 0.25, kAmple = 1.15, kLeast = 0.01;
 
   static void put(const Vec3& v, double* to) {
@@ -161,7 +167,7 @@ class BinaryCollision {
     if constexpr (T::kActs) regime.slides = f.slack(c_t_.data(), regime.pressed) < 0;
     return regime;
   }
-  /// Accelerations other than the contact's.
+  /// Accelerations other than that of the contact.
   void push_at(double t, std::array<double, D>& push) const {
     const double swing = set_.omega > 0 ? std::sin(set_.omega * t) : 0;
     for (int k = 0; k < D; ++k) push[k] = pull_[k] + swing_[k] * swing;
@@ -174,7 +180,7 @@ class BinaryCollision {
     return to;
   }
 
-  /// A step in one regime of the force.
+  /// One step in one regime of the force.
   class Step {
    public:
     Step(const BinaryCollision& law, double speed, double scale, double tolerance)
@@ -183,7 +189,7 @@ class BinaryCollision {
           tolerance_(tolerance),
           speed_(speed),
           near_(0.1 * std::sqrt(tolerance)) {
-      // The spring and the dashpot that the normal force is like.
+      // Spring and dashpot that approximate the normal force.
       const double deep = speed * scale / 3;
       const auto f_n = [&](double overlap, double v_n) {
         return N::template force<double>(law.c_n_.data(), overlap, v_n, nullptr);
@@ -197,7 +203,7 @@ class BinaryCollision {
       start_.method = &numbers_;
       start_.enough = 0.5 * tolerance * speed;
     }
-    /// From here steps are taken. \returns the regime of the force
+    /// Sets the start of the next step. \returns the regime of the force
     Regime begin(double t, const Numbers& y) {
       forces_ = law_.approach(y);
       return begin_in(law_.regime_of(forces_), t, y);
@@ -207,13 +213,13 @@ class BinaryCollision {
       begin_in(regime, t, y);
     }
     [[nodiscard]] double overlap() const { return forces_.overlap; }
-    /// Surfaces at rest against each other stay so while nothing else acts along them.
+    /// Surfaces at rest relative to each other remain so as long as no other force acts along them.
     [[nodiscard]] bool surfaces_slide() const {
       if constexpr (T::kActs) return norm(forces_.v_t) > 0;
       return false;
     }
-    /// About how long surfaces that slide will: the Coulomb limit grows as F_n does, and friction slows them.
-    /// Infinite if that says nothing.
+    /// Estimated time until sliding ends, from the growth of the Coulomb limit with F_n and the deceleration
+    /// by friction. Infinite if the surfaces stick, F_n < 0, or the estimate gives no end.
     [[nodiscard]] double sliding_time() const {
       if constexpr (T::kActs) {
         if (!regime_.slides || !regime_.pressed) return HUGE_VAL;
@@ -226,10 +232,11 @@ class BinaryCollision {
       }
       return HUGE_VAL;
     }
-    /// \returns the error over what is allowed
+    /// Takes a step. \returns the error relative to the tolerance; infinite if the iteration does not
+    /// converge
     double take(double h) {
       if (law_.wall_)
-        for (std::size_t k = 0; k < kMoments; ++k) {
+        for (std::size_t k = 0; k < kStages; ++k) {
           std::array<double, D> push;
           law_.push_at(t_ + numbers_.moment[k] * h, push);
           for (std::size_t q = 0; q < D; ++q) push_[q][k] = push[q];
@@ -248,12 +255,12 @@ class BinaryCollision {
       return kOfLast * h * most / (tolerance_ * speed_);
     }
     [[nodiscard]] double deepest() const { return motion_.deepest; }
-    /// What happens first, and at which fraction of the step.
+    /// The first event, and the fraction of the step at which it happens.
     [[nodiscard]] std::pair<double, Event> first_event() const {
       std::pair<double, Event> first{1, Event::none};
       const auto look = [&](Event what, double begins, const double* values, bool positive) {
-        unsigned others = 0;  // moments where the sign is another
-        for (unsigned k = 0; k < kMoments; ++k) others |= ((values[k] > 0) != positive ? 1U : 0U) << k;
+        unsigned others = 0;  // bits of the stages at which the sign differs
+        for (unsigned k = 0; k < kStages; ++k) others |= ((values[k] > 0) != positive ? 1U : 0U) << k;
         if (others == 0) return;
         const double x = vanishing(begins, values, static_cast<std::size_t>(std::countr_zero(others)), near_);
         if (x < first.first || first.second == Event::none) first = {x, what};
@@ -265,9 +272,10 @@ class BinaryCollision {
       look(Event::parting, forces_.overlap, motion_.overlap, true);
       return first;
     }
-    /// Which part of a step that failed goes not far beyond the first kink, as far as it is seen.
+    /// Fraction to which a failed step is shortened, so that it ends not far beyond the first kink, as far as
+    /// the stages show it.
     [[nodiscard]] double to_first_event() const {
-      for (std::size_t k = 0; k + 2 < kMoments; ++k)
+      for (std::size_t k = 0; k + 2 < kStages; ++k)
         if ((motion_.slack[k] > 0) != !regime_.slides || (motion_.f_n[k] > 0) != regime_.pressed)
           return std::min(0.7, numbers_.moment[k + 1]);
       return 0.5;
@@ -276,7 +284,7 @@ class BinaryCollision {
     [[nodiscard]] Numbers at(double x) const {
       Numbers y;
       if (x >= 1) {
-        for (std::size_t q = 0; q < kNumbers; ++q) y[q] = motion_.numbers[q][kMoments - 1];
+        for (std::size_t q = 0; q < kNumbers; ++q) y[q] = motion_.numbers[q][kStages - 1];
         return y;
       }
       const StagePolynomials motion(numbers_, x);
@@ -287,7 +295,7 @@ class BinaryCollision {
    private:
     const Regime& begin_in(const Regime& regime, double t, const Numbers& y) {
       y_ = y, t_ = t, regime_ = regime;
-      forces_.rub(law_.c_t_.data(), regime.pressed, regime.slides);
+      forces_.friction(law_.c_t_.data(), regime.pressed, regime.slides);
       slopes_ = law_.slopes(forces_, t);
       start_.pressed = regime.pressed, start_.slides = regime.slides;
       start_.numbers = y_.data(), start_.slopes = slopes_.data(), start_.normal = forces_.n;
@@ -297,20 +305,21 @@ class BinaryCollision {
       }
       return regime_;
     }
-    /// What a tangential force acts on.
+    /// Inverse effective mass for a tangential force.
     [[nodiscard]] double turning_mass() const { return law_.inv_mass_ + law_.set_.turn; }
 
-    static constexpr double kOfLast = 3e-3;  ///< error over the change that the last coefficient makes
-    static constexpr double kNarrow = 4;     ///< the spring hardly counts
+    static constexpr double kOfLast = 3e-3;  ///< error relative to the contribution of the last coefficients
+    static constexpr double kNarrow = 4;     ///< below this width the response of the spring is negligible
 
-    /// Where the polynomial vanishes between moment k, where its sign is another, and the one before: by
-    /// Newton's method, or halves where it would leave. \param near how near, of the larger of the two
-    /// values: the force has no jump there, so that the error of what follows is of second order in it
+    /// Position of a root of the polynomial between stage k, the first at which the sign differs, and the
+    /// node before it: Newton's method, or bisection if a Newton step would leave the interval.
+    /// \param near tolerance relative to the larger of the two values. The force does not jump at an event,
+    /// so the error of the subsequent motion is of second order in it.
     [[nodiscard]] double vanishing(double begins, const double* values, std::size_t k, double near) const {
       double low = numbers_.place[k], high = numbers_.place[k + 1];
       const double g_low = k == 0 ? begins : values[k - 1], g_high = values[k];
       const bool sign = g_high > 0;
-      // Rounding, or how near the kink before was found.
+      // Caused by rounding or by the finite accuracy of the preceding kink.
       if ((g_low > 0) == sign) return std::min(high, kShortestStep);
       const double large = std::max(std::abs(g_low), std::abs(g_high));
       const double enough = near * large, nearly = 0.5 * std::sqrt(near) * large;
@@ -323,7 +332,7 @@ class BinaryCollision {
         const double next = x - g / at_x.slope(begins, values, g);
         const bool within = next > low && next < high;
         x = within ? next : 0.5 * (low + high);
-        // The next error is of second order in this one.
+        // Newton's method: the next error is of second order in this one.
         if (within && std::abs(g) <= nearly) break;
       }
       return x;
@@ -332,7 +341,7 @@ class BinaryCollision {
     const BinaryCollision& law_;
     const Collocation& numbers_;
     double tolerance_, speed_, near_;
-    // At the start.
+    // State at the start of the step.
     Numbers y_;
     Forces forces_;
     std::array<double, kSlopes> slopes_;
@@ -340,13 +349,13 @@ class BinaryCollision {
     double t_, slack_ = 0;
     CollocationStart start_{};
     CollocationMotion motion_;
-    alignas(64) std::array<std::array<double, kMoments>, D> push_;
+    alignas(64) std::array<std::array<double, kStages>, D> push_;
   };
 
-  /// From close to the moment of parting to it, by tiny straight steps. \returns how long they took
+  /// From close to parting to the instant of parting, by tiny straight steps. \returns their duration
   double part(double t, const Regime& regime, Numbers& y) const {
     Forces f = approach(y);
-    f.rub(c_t_.data(), regime.pressed, regime.slides);
+    f.friction(c_t_.data(), regime.pressed, regime.slides);
     const auto change = slopes(f, t);
     double passed = 0, deep = f.overlap;
     for (int k = 0; k < 6 && std::abs(deep) > 4e-15 * set_.reach; ++k) {
@@ -368,13 +377,13 @@ class BinaryCollision {
   std::array<double, D> n_{}, pull_{}, swing_{};
 };
 
-/// The plane of r and u, in which two beads stay between which only F_n acts: two numbers for each instead of
-/// three.
+/// The plane of r and u. If only F_n acts, two beads stay in it, so r and u need two components each instead
+/// of three.
 class OrbitPlane {
  public:
   explicit OrbitPlane(const RelativeMotion& m) : along_(m.r.normalized()) {
     const Vec3 rest = m.u - m.u.dot(along_) * along_;
-    // Head on, any direction will do.
+    // For a head-on collision any direction is suitable.
     across_ = rest.norm() > 1e-300 ? Vec3(rest.normalized()) : along_.unitOrthogonal();
   }
   [[nodiscard]] RelativeMotion into(const RelativeMotion& m) const { return {flat(m.r), flat(m.u), m.s}; }
@@ -389,7 +398,7 @@ class OrbitPlane {
   Vec3 along_, across_;
 };
 
-/// Calls visit(normal, tangential) if both can meet alone.
+/// Calls visit(normal, tangential) if a contact with these laws can be integrated separately.
 template <class Visit>
 bool visit_laws(const ContactLaws& laws, Visit visit) {
   if (laws.rolling.index() != 0) return false;
@@ -407,7 +416,8 @@ bool visit_laws(const ContactLaws& laws, Visit visit) {
       laws.normal, laws.tangential);
 }
 
-// Steps per contact time of laws that remember: errors below 1e-11 and, of events, 1e-8.
+// Steps per contact time for laws with history. The error is below 1e-11 with the fine number, and below 1e-8
+// with the coarse number, which event-driven motion uses.
 constexpr double kFineTolerance = 1e-9;
 constexpr int kFineSteps = 200, kCoarseSteps = 24;
 

@@ -67,7 +67,7 @@ std::optional<System> disperse(Cluster& cluster, std::int64_t contact, std::int6
   const auto moving = kernel();
   moving->restore(cluster.memories);
   cluster.stray.assign(s.beads.size(), 0);
-  std::vector<double> fastest(s.beads.size(), 0);  // beside free flight
+  std::vector<double> fastest(s.beads.size(), 0);  // largest speed relative to free flight
   try {
     for (cluster.steps = every; cluster.steps <= most; cluster.steps += every) {
       moving->advance(s, every);
@@ -81,7 +81,8 @@ std::optional<System> disperse(Cluster& cluster, std::int64_t contact, std::int6
       }
       if (apart(s)) return s;
     }
-  } catch (const RunError&) {  // too deep: let the whole say so
+  } catch (const RunError&) {
+    // Overlap too deep: the caller then advances all beads by steps, which report the error.
   }
   return std::nullopt;
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A few beads of a dilute gas that meet in threes: moved by time steps, by themselves, until all have
-/// parted.
+/// Clusters: a few beads of a dilute gas of which at least three are in contact. A cluster is advanced
+/// separately, by time steps, until all its beads have parted.
 
 #include <cstdint>
 #include <functional>
@@ -13,20 +13,20 @@
 
 namespace twincell::sim {
 
-/// Beads taken out of a System at a whole step.
+/// Beads extracted from a System at a whole step.
 struct Cluster {
-  std::vector<std::int32_t> members;    ///< their places in the whole, rising
-  System start;                         ///< they alone; forces and
-  std::vector<ContactMemory> memories;  ///< memories of the contacts among them, by place in `start`
-  std::int64_t steps = 0;               ///< after which all have parted
-  std::vector<double> stray;            ///< how far each gets from free flight until then, sigma
+  std::vector<std::int32_t> members;    ///< indices in the whole system, increasing
+  System start;                         ///< a system of the members only, with their forces
+  std::vector<ContactMemory> memories;  ///< contacts among members, indexed as in `start`
+  std::int64_t steps = 0;               ///< number of steps after which all have parted
+  std::vector<double> stray;            ///< largest deviation of each from free flight until then, sigma
 };
 
-/// Takes members, which no other bead touches, out of `whole`.
+/// Extracts `members` from `whole`. No other bead may touch them.
 Cluster take_out(const System& whole, const std::vector<ContactMemory>& memories,
                  std::vector<std::int32_t> members);
 
-/// A cluster some steps after its start, and what its contacts remember.
+/// State of a cluster some steps after its start, with its contact memories.
 struct ClusterState {
   System system;
   std::vector<ContactMemory> memories;
@@ -34,9 +34,11 @@ struct ClusterState {
 ClusterState after(const Cluster& cluster, std::int64_t steps,
                    const std::function<std::unique_ptr<Solver>()>& kernel);
 
-/// Moves a cluster until none of it touches another or a wall; sets steps and stray. They are looked at every
-/// few steps, an eighth of `contact`. \param contact steps of the shortest contact \param most steps
-/// \returns the state then; none if they have not parted, or overlap too much
+/// Advances a cluster until no member touches another or a wall; sets `steps` and `stray`. The state is
+/// checked at intervals of an eighth of `contact` steps.
+/// \param contact number of steps of the shortest contact
+/// \param most largest number of steps
+/// \returns the final state; nothing if the beads have not parted after `most` steps or overlap too deeply
 std::optional<System> disperse(Cluster& cluster, std::int64_t contact, std::int64_t most,
                                const std::function<std::unique_ptr<Solver>()>& kernel);
 

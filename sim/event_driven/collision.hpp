@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One isolated collision, of two beads or of a bead and a wall: what it depends on and how it ends.
+/// One isolated collision of two beads, or of a bead and a wall: its initial data and its result.
 
 #include <optional>
 
@@ -11,42 +11,42 @@ namespace twincell::sim {
 
 /// Relative motion of two bodies in contact.
 struct RelativeMotion {
-  Vec3 r;  ///< from j to i; or from a point of the wall's surface to the bead
-  Vec3 u;  ///< v_i - v_j, or against the wall
-  Vec3 s;  ///< R_i w_i + R_j w_j; R w at a wall
+  Vec3 r;  ///< from j to i; at a wall, from a point of its surface to the bead
+  Vec3 u;  ///< v_i - v_j; at a wall, relative to the wall
+  Vec3 s;  ///< R_i w_i + R_j w_j; at a wall, R w
 };
 
-/// What an collision's course depends on.
+/// Bodies, laws and external accelerations of a collision.
 struct CollisionSetting {
   int dimension = 2;
   const ContactLaws* laws = nullptr;
   PairScale pair{};
-  double reach = 1;  ///< R_i + R_j, or R
-  double turn = 0;   ///< R_i^2/I_i + R_j^2/I_j
-  /// A wall's inward normal; none between beads, whose normal turns as they go round each other.
+  double reach = 1;  ///< R_i + R_j; at a wall, R
+  double turn = 0;   ///< R_i^2/I_i + R_j^2/I_j; at a wall, R^2/I
+  /// Inward normal of the wall. Empty for two beads, whose normal rotates during the contact.
   std::optional<Vec3> wall;
-  /// What acts on the relative motion besides the contact, at a wall: gravity, and the wall's own
-  /// acceleration -A omega^2 sin(omega t) taken the other way.
+  /// At a wall, accelerations of the relative motion other than that of the contact: gravity, and minus the
+  /// acceleration -A omega^2 sin(omega t) of the wall.
   Vec3 pull = Vec3::Zero(), swing = Vec3::Zero();  ///< pull + swing sin(omega t)
   double omega = 0;
 };
 
-/// How an collision went.
+/// Result of a collision.
 struct CollisionEnd {
-  bool parted = false;  ///< false: still in contact when the time was over
+  bool parted = false;  ///< false: still in contact at the end of the interval
   double time = 0;
   RelativeMotion motion;
-  double deepest = 0;  ///< overlap, sigma, at the moments that its steps look at
-  /// About half way: where the deepest of its steps ended.
+  double deepest = 0;  ///< largest overlap at any evaluated instant, sigma
+  /// Time, at about half the contact, at which the deepest of the steps ends.
   double middle = 0;
   RelativeMotion at_middle;
-  Vec3 xi = Vec3::Zero();  ///< the tangential spring at the end, of laws that remember
+  Vec3 xi = Vec3::Zero();  ///< the tangential spring at the end, for laws with history
 };
 
-/// Shortest time in which the contact force changes (t_c, for a linear law).
+/// Shortest time scale of the contact force (t_c for a linear law).
 double collision_time(const CollisionSetting& setting, double speed);
 
-/// Contact force on i now, its turning moment n x F_t, and n.
+/// Contact force on i, n x F_t (which gives the torque), and n.
 struct CollisionForce {
   Vec3 force, moment, normal;
 };

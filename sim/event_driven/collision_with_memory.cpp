@@ -15,7 +15,7 @@ namespace twincell::sim {
 
 namespace {
 
-/// The course of one collision. The plane is a space whose y nobody uses.
+/// One collision. Positions and velocities have three components; in 2D, y is unused.
 template <class N>
 class CollisionWithMemory {
  public:
@@ -39,8 +39,8 @@ class CollisionWithMemory {
     while (t < last) {
       double first = std::min(longest, last - t);
       State whole = step(t, y, first);
-      // What happens first within the step. F_n vanishes before the limit is looked at, which is 0 there: the
-      // force cannot slip through beneath it.
+      // The first event within the step. F_n = 0 is tested before the Coulomb limit, which is 0 there:
+      // otherwise a force that jumps over the limit would be missed.
       Event what = Event::none;
       for (const Event e : {Event::parting, Event::turn, Event::hold, Event::limit}) {
         const double before = signal(e, t, y), after = signal(e, t + first, whole);
@@ -56,11 +56,12 @@ class CollisionWithMemory {
         note(y, t, end);
         break;
       }
+      // Mode after the event.
       if (what == Event::turn) mode_ = after_turn(t, y);
       if (what == Event::hold) mode_ = slide_along(-k_t_ * part(y, 3), y);
       if (what == Event::limit) mode_ = after_limit(t, y);
       if (what != Event::none && first < shortest) {
-        // Away from the event, in the regime after it.
+        // Leave the event with a small step in the new regime.
         y = step(t, y, shortest);
         t += shortest;
       }
@@ -82,26 +83,26 @@ class CollisionWithMemory {
     const Moment m = look(0, y);
     constexpr double kAtLimit = 1 - 1e-9;
     const bool held =
-        reading_ == SlipReading::spring_only && k_t_ * xi.norm() >= kAtLimit * limit(m) && limit(m) > 0;
+        reading_ == SlipReading::spring_limited && k_t_ * xi.norm() >= kAtLimit * limit(m) && limit(m) > 0;
     const Vec3 f_t = cut(held ? Vec3(-k_t_ * xi) : sticking_force(m), limit(m));
     return {m.f_n * m.n + f_t, m.n.cross(f_t), m.n};
   }
 
  private:
-  /// r, u, s; then xi, or while the surfaces slide the force's direction.
+  /// r, u, s; then xi or, while the surfaces slide, the direction of the force.
   using State = std::array<double, 12>;
   enum class Mode {
-    stick,  ///< the limit does not bind
-    slide,  ///< it does, and holds the spring
-    clip,   ///< it does, and the spring goes on
-    loose,  ///< a force that may not pull is zero
+    stick,  ///< the Coulomb limit does not bind
+    slide,  ///< the limit binds and also limits the spring
+    clip,   ///< the limit binds and the spring continues to stretch
+    loose,  ///< the force is zero, because the law allows no tension
   };
   enum class Event {
     none,
     parting,
     turn,   ///< F_n vanishes
-    hold,   ///< the spring alone reaches the limit, where that is what is held
-    limit,  ///< the force reaches the limit, or leaves it
+    hold,   ///< the spring alone reaches the limit (reading spring_limited)
+    limit,  ///< the force reaches or leaves the limit
   };
 
   static Vec3 part(const State& y, std::size_t k) { return {y[3 * k], y[3 * k + 1], y[3 * k + 2]}; }
@@ -115,7 +116,7 @@ class CollisionWithMemory {
   }
   static RelativeMotion motion(const State& y) { return {part(y, 0), part(y, 1), part(y, 2)}; }
 
-  /// Everything at one moment that does not depend on the mode.
+  /// All quantities at one instant that do not depend on the mode.
   struct Moment {
     Vec3 r, u, s, x;
     Vec3 n, turning;  ///< normal and its rate
@@ -139,8 +140,8 @@ class CollisionWithMemory {
     return m;
   }
   [[nodiscard]] double limit(const Moment& m) const { return mu_ * std::abs(m.f_n); }
-  /// Forces below this are as good as none; friction without a limit, mu = 1e9, say, is not cut in the moment
-  /// in which F_n vanishes.
+  /// Forces below this count as zero. Friction without a limit (mu = 1e9, for example) is then not cut at the
+  /// instant at which F_n vanishes.
   [[nodiscard]] double least() const { return kLeast * mu_ * largest_; }
   [[nodiscard]] Vec3 sticking_force(const Moment& m) const { return -k_t_ * m.x - eta_t_ * m.v_t; }
   static Vec3 cut(const Vec3& f, double most) {
@@ -166,17 +167,18 @@ class CollisionWithMemory {
   [[nodiscard]] Slopes slopes(const Moment& m, const Vec3& f_t) const {
     return {(m.f_n * m.n + f_t) / set_.pair.m_eff + m.push, -set_.turn * m.n.cross(f_t)};
   }
-  /// Rate of the tangential velocity, in the tangent plane.
+  /// Time derivative of the tangential velocity, in the tangent plane.
   [[nodiscard]] static Vec3 surface_rate(const Moment& m, const Slopes& d) {
     const Vec3 rate = d.u - m.v_n * m.turning - d.s.cross(m.n) - m.s.cross(m.turning);
     return rate - rate.dot(m.n) * m.n;
   }
-  /// How the force would change if the spring only stretched.
+  /// Rate at which the force would change if the spring only stretched.
   [[nodiscard]] Vec3 free_rate(const Moment& m, const Slopes& d) const {
-    if (reading_ == SlipReading::spring_only) return -k_t_ * m.v_t;
+    if (reading_ == SlipReading::spring_limited) return -k_t_ * m.v_t;
     return -k_t_ * m.v_t - eta_t_ * surface_rate(m, d);
   }
-  /// Rate of F_n. Laws are formulas: differences of them, at lengths far above rounding, tell their slopes.
+  /// Time derivative of F_n. The derivatives of the law are finite differences, with increments far above
+  /// rounding.
   [[nodiscard]] double normal_rate(const Moment& m, const Slopes& d) const {
     const double v_dot = d.u.dot(m.n) + m.u.dot(m.turning);
     const double dx = 1e-6 * std::max(m.overlap, 1e-9), dv = 1e-6 * std::max(std::abs(m.v_n), 1e-6);
@@ -194,17 +196,17 @@ class CollisionWithMemory {
     put(m.u, 0, dy), put(d.u, 1, dy), put(d.s, 2, dy);
     Vec3 x = Vec3::Zero();
     if (mode_ == Mode::slide) {
-      // The spring follows the limit; across the force it only stretches, which turns the force.
-      // In the plane nothing turns. Along the normal there is nothing to turn to: what rounding leaves there
-      // would be blown up where F_n, and with it the limit, is small. There the direction becomes that of the
-      // rate, which may take a step, since a faster turn is more than the steps can follow.
+      // The spring follows the limit; the component of the rate across the force rotates the force. In 2D
+      // nothing rotates. The component along the normal is dropped: it is rounding, and would be amplified
+      // where F_n, and with it the limit, is small. There the direction relaxes to that of the rate within
+      // one step, because the steps cannot resolve a faster rotation.
       const Vec3 direction = m.x.normalized(), rate = free_rate(m, d), across = m.n.cross(direction);
       const double size = std::max(limit(m), quickest_ * rate.norm());
       if (set_.dimension == 3 && size > 0) x = rate.dot(across) / size * across;
     } else if (mode_ != Mode::loose) {
       x = m.v_t;
     }
-    put(x - m.turning.dot(m.x) * m.n, 3, dy);  // what is tangential remains so, and keeps its length
+    put(x - m.turning.dot(m.x) * m.n, 3, dy);  // a tangential vector remains tangential and keeps its length
   }
   State step(double t, const State& y, double h) const {
     State to{};
@@ -224,7 +226,7 @@ class CollisionWithMemory {
         if (mode_ == Mode::loose) return m.f_n > 0 ? -m.f_n : 1;
         return (pressed_ == (m.f_n > 0) ? 1 : -1) * std::max(std::abs(m.f_n), 1e-300);
       case Event::hold:
-        if (reading_ != SlipReading::spring_only || mode_ == Mode::slide || mode_ == Mode::loose) return 1;
+        if (reading_ != SlipReading::spring_limited || mode_ == Mode::slide || mode_ == Mode::loose) return 1;
         return std::max(limit(m), least()) - k_t_ * m.x.norm();
       case Event::limit:
         break;
@@ -253,13 +255,14 @@ class CollisionWithMemory {
     return near.second;
   }
 
-  // --- what begins at an event; y's last three numbers are made those of the mode ---
+  // --- the mode after an event; the last three components of y are set for that mode ---
 
   Mode slide_along(const Vec3& force, State& y) {
     put(force.normalized(), 3, y);
     return Mode::slide;
   }
-  /// From the limit, which the force has reached: on along it, or off it?
+  /// Mode after the force has reached the limit: sliding, or sticking if the limit grows faster than the
+  /// force.
   Mode settle(double t, const Vec3& force, const Vec3& spring, State& y) {
     const Moment m = look(t, y);
     const Slopes d = slopes(m, force);
@@ -270,10 +273,10 @@ class CollisionWithMemory {
     put(spring, 3, y);
     return Mode::stick;
   }
-  /// The spring that makes the sum `force`.
+  /// The spring that gives a total tangential force `force`.
   [[nodiscard]] Vec3 spring_for(const Moment& m, const Vec3& force) const {
     if (k_t_ == 0) return Vec3::Zero();
-    return -(force + (reading_ == SlipReading::spring_only ? 0.0 : eta_t_) * m.v_t) / k_t_;
+    return -(force + (reading_ == SlipReading::spring_limited ? 0.0 : eta_t_) * m.v_t) / k_t_;
   }
   Mode entered(double t, State& y) {
     put(Vec3::Zero(), 3, y);
@@ -283,7 +286,7 @@ class CollisionWithMemory {
     const bool beyond = force.norm() > limit(m);
     if (reading_ == SlipReading::clip) return beyond ? Mode::clip : Mode::stick;
     if (!beyond) return Mode::stick;
-    if (reading_ == SlipReading::spring_only) return Mode::clip;
+    if (reading_ == SlipReading::spring_limited) return Mode::clip;
     const Vec3 cut_to = cut(force, limit(m));
     return settle(t, cut_to, spring_for(m, cut_to), y);
   }
@@ -294,11 +297,11 @@ class CollisionWithMemory {
     if (mode_ == Mode::slide) {
       put(spring_for(m, friction(m)), 3, y);
       m = look(t, y);
-      if (reading_ == SlipReading::spring_only && sticking_force(m).norm() > limit(m)) return Mode::clip;
+      if (reading_ == SlipReading::spring_limited && sticking_force(m).norm() > limit(m)) return Mode::clip;
     }
     return Mode::stick;
   }
-  /// F_n vanishes, and with it the limit.
+  /// Mode after F_n vanishes, and with it the Coulomb limit.
   Mode after_turn(double t, State& y) {
     pressed_ = !pressed_;
     const Moment m = look(t, y);
@@ -310,7 +313,7 @@ class CollisionWithMemory {
       return Mode::loose;
     }
     const Mode mode = settle(t, Vec3::Zero(), spring_for(m, Vec3::Zero()), y);
-    return mode == Mode::stick && reading_ == SlipReading::spring_only ? Mode::clip : mode;
+    return mode == Mode::stick && reading_ == SlipReading::spring_limited ? Mode::clip : mode;
   }
 
   void note(const State& y, double t, CollisionEnd& end) {
@@ -328,7 +331,7 @@ class CollisionWithMemory {
   Mode mode_ = Mode::stick;
   bool pressed_ = true;
   double largest_ = 0;   ///< |F_n| so far
-  double quickest_ = 0;  ///< t0, in which a sliding force turns at the least
+  double quickest_ = 0;  ///< t0, shortest time in which a sliding force rotates
   State middle_{};
 };
 
@@ -352,7 +355,7 @@ bool visit_history(const ContactLaws& laws, Visit visit) {
 }  // namespace
 
 SlipReading reading_of(const ContactLaws& laws) {
-  return std::holds_alternative<SpringOnlySlider>(laws.tangential)     ? SlipReading::spring_only
+  return std::holds_alternative<SpringLimitedSlider>(laws.tangential)  ? SlipReading::spring_limited
          : std::holds_alternative<ForceClippedSlider>(laws.tangential) ? SlipReading::clip
                                                                        : SlipReading::rescale;
 }

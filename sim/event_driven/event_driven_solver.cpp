@@ -17,37 +17,40 @@ namespace twincell::sim {
 
 namespace {
 
-constexpr double kTolerance = 1e-7;  // of an collision
-constexpr double kLongest = 20;      // contact times: what lasts longer rests, and is left to steps
-// Contact times, at first, between attempts to fly, doubled when they fail: three bodies stay together for
-// one or two, and an attempt costs as much as a hundred steps.
+constexpr double kTolerance = 1e-7;  // of a collision
+constexpr double kLongest = 20;  // contact times: a longer contact is a resting one and is left to time steps
+// Initial interval, in contact times, between attempts to start event-driven motion. It doubles when an
+// attempt fails: three bodies stay together for one or two contact times, and an attempt costs as much as a
+// hundred steps.
 constexpr double kLookAfter = 2;
 constexpr std::int64_t kLookSeldom = 1024;  // steps
-constexpr std::size_t kMostInCrowd = 8;     // more, and all beads go by steps
+constexpr std::size_t kMostInCrowd = 8;     // with more members, all beads are advanced by steps
 
-/// A contact of two bodies that goes on, or has just ended. Its beads' lines are those after it.
+/// A contact of two bodies that is in progress or has just ended. The paths of its beads are those after the
+/// contact.
 struct Contact {
   std::int32_t i, j;          ///< i < j; or j = -1 - w for wall w
   double begin, middle, end;  ///< of the contact
-  double from, until;         ///< the whole steps about it: nothing else may touch its beads in between
-  /// How far its beads get from `before` until the middle, and are from their lines after it since, sigma.
+  double from, until;         ///< the enclosing whole steps: no other body may touch its beads in between
+  /// Largest deviation of each bead from its path in `before` until `middle`, and from its path after the
+  /// contact from then on, sigma.
   std::array<double, 2> early, late;
-  /// Radius of a ball that holds both, and flies like the first before, from `from` to `until`.
+  /// Radius of a ball that contains both beads from `from` to `until` and moves along before[0].
   double about;
   RelativeMotion motion;  ///< at `begin`
   Vec3 shift = Vec3::Zero();
   std::array<BallisticPath, 2> before;
-  std::array<Vec3, 2> rim;  ///< R w before
+  std::array<Vec3, 2> rim;  ///< R w before the contact
 };
 
-/// Beads that meet in threes, until they have parted. Their lines are those after it.
+/// A cluster of beads until they have parted. Their paths are those after the cluster.
 struct ClusterRun {
   Cluster cluster;
-  double from, until;                 ///< whole steps: nothing else may touch them in between
-  std::vector<BallisticPath> before;  ///< of each, as if nothing had met it
+  double from, until;                 ///< whole steps: no other body may touch them in between
+  std::vector<BallisticPath> before;  ///< path of each at `from`, without the contacts
 };
 
-/// A bead as it is at a moment.
+/// State of a bead at one instant.
 struct Instant {
   Vec3 r, v, rim;
 };
@@ -68,10 +71,11 @@ class EventDrivenSolver : public Solver {
       return;
     }
     if (flying() && !is_as_left(s)) {
-      end_flights();  // somebody else moved a bead, the clock or the plate
+      end_flights();  // the caller changed a bead, the clock or the plate
       steps_ = make_steps_.all();
     }
-    if (!flying() && s.step < next_look_ - kLookSeldom) next_look_ = 0;  // the clock was set back
+    if (!flying() && s.step < next_look_ - kLookSeldom)
+      next_look_ = 0;  // the step count was reset to an earlier value
     const std::int64_t last = s.step + steps;
     while (s.step < last) flying() ? fly(s, last) : step(s, last);
     if (flying()) {
@@ -112,11 +116,11 @@ class EventDrivenSolver : public Solver {
     pass(*this, in);
   }
   [[nodiscard]] std::string description() const override {
-    return "flights between contacts; where three bodies meet " + make_steps_.few()->description();
+    return "free flight between contacts; where three bodies meet: " + make_steps_.few()->description();
   }
   [[nodiscard]] Footprint footprint() const override {
     if (steps_) return steps_->footprint();
-    constexpr std::size_t kNumbers = 6 + 2 + 3 + 2;  // line, radius and valid_from, rim, mass and turn
+    constexpr std::size_t kNumbers = 6 + 2 + 3 + 2;  // path, radius and valid_from, rim, mass and turn
     return {mass_.size() * (kNumbers * sizeof(double) + sizeof(Event)), open_.size() * sizeof(Contact),
             open_.size()};
   }
@@ -136,7 +140,7 @@ class EventDrivenSolver : public Solver {
 
   // --- checkpoints ---
 
-  /// Numbers, one after the other, out ...
+  /// Writes numbers in sequence ...
   struct Writer {
     static constexpr bool kReads = false;
     std::vector<double> numbers;
@@ -148,7 +152,7 @@ class EventDrivenSolver : public Solver {
     requires std::is_arithmetic_v<T> || std::is_enum_v<T>
     void operator()(T x) { numbers.push_back(static_cast<double>(x)); }
   };
-  /// ... and in.
+  /// ... and reads them.
   struct Reader {
     static constexpr bool kReads = true;
     const std::vector<double>& numbers;
@@ -161,15 +165,15 @@ class EventDrivenSolver : public Solver {
     requires std::is_arithmetic_v<T> || std::is_enum_v<T>
     void operator()(T& x) { x = static_cast<T>(at < numbers.size() ? numbers[at++] : 0.0); }
   };
-  /// How many a list has; one that is read gets as many.
+  /// Passes the size of a list; a list that is read is resized.
   template <class List, class Archive>
   static void pass_size(List& list, Archive& a) {
     std::size_t n = list.size();
     a(n);
     if constexpr (Archive::kReads) list.resize(n);
   }
-  /// Everything that a flight, or the wait for one, depends on beyond the beads: written and read in the same
-  /// order. \param k a kernel, const if it is written
+  /// Passes everything, beyond the beads, that event-driven motion or the wait for it depends on. Writing and
+  /// reading use the same order. \param k a solver, const for writing
   template <class Self, class Archive>
   static void pass(Self& k, Archive& a) {
     double in_flight = k.flying() ? 1 : 0;
@@ -192,8 +196,8 @@ class EventDrivenSolver : public Solver {
       a(c.motion.r), a(c.motion.u), a(c.motion.s), a(c.shift), a(c.about);
       for (std::size_t q = 0; q < 2; ++q) a(c.early[q]), a(c.late[q]), a(c.before[q]), a(c.rim[q]);
     }
-    pass_size(k.crowds_, a);
-    for (auto& c : k.crowds_) pass(k, c, a);
+    pass_size(k.clusters_, a);
+    for (auto& c : k.clusters_) pass(k, c, a);
   }
 
   template <class Self, class Meeting, class Archive>
@@ -230,7 +234,7 @@ class EventDrivenSolver : public Solver {
     }
   }
 
-  // --- steps ---
+  // --- time steps, and the change to event-driven motion ---
 
   void step(System& s, std::int64_t last) {
     if (next_look_ <= s.step) {
@@ -238,7 +242,7 @@ class EventDrivenSolver : public Solver {
         wait_ = look_every_;
         return;
       }
-      // At multiples of the wait: the same steps however the run is cut.
+      // At multiples of the wait, so that the steps are the same however the run is divided into calls.
       wait_ = next_look_ == 0 ? look_every_ : std::min(kLookSeldom, 2 * wait_);
       next_look_ = (s.step / wait_ + 1) * wait_;
     }
@@ -246,7 +250,8 @@ class EventDrivenSolver : public Solver {
     steps_->advance(s, n);
   }
 
-  /// From steps to flights. \returns false, with nothing changed, if three bodies meet
+  /// Changes from time steps to event-driven motion. \returns false, with nothing changed, if three bodies
+  /// meet
   bool take(const System& s) {
     const std::size_t n = s.beads.size();
     std::vector<std::int32_t> touching(n, 0);
@@ -269,7 +274,7 @@ class EventDrivenSolver : public Solver {
     };
     for_each_near_pair(s.beads, s.dimension, s.period, 0,
                        [&](std::int32_t i, std::int32_t j, double, const Vec3&) { touch(i, j); });
-    // A contact that goes on has a spring; collisions begin without.
+    // A contact in progress has a stretched spring, but collisions are integrated from an unstretched one.
     if (crowded || (plan_.history && !pairs.empty())) return false;
     begin_flights(s);
     for (const auto& [i, j] : pairs)
@@ -288,7 +293,7 @@ class EventDrivenSolver : public Solver {
   void end_flights() {
     lines_.reset();
     open_.clear();
-    crowds_.clear();
+    clusters_.clear();
   }
   void begin_flights(const System& s) {
     const std::size_t n = s.beads.size();
@@ -305,7 +310,7 @@ class EventDrivenSolver : public Solver {
     mass_.resize(n), turn_.resize(n), rim_.resize(n);
     events_.clear(n);
     open_.clear();
-    crowds_.clear();
+    clusters_.clear();
     frame_ = s;
     frame_.beads.clear(), frame_.forces.clear(), frame_.rim_speeds.clear();
     for (std::size_t i = 0; i < n; ++i) {
@@ -319,7 +324,7 @@ class EventDrivenSolver : public Solver {
   [[nodiscard]] BallisticPath line_through(const Bead& b, double t) const {
     return BallisticPath::through(centre_of(b), Vec3(b.vx, b.vy, b.vz), t, gravity_);
   }
-  /// From t on bead i flies as bead k of `s` is.
+  /// From t on, bead i moves on the path of bead k of `s`.
   void fly_on(std::size_t i, const System& s, std::size_t k, double t) {
     const Bead& b = s.beads[k];
     rim_[i] = s.rim_speeds.size() == s.beads.size()
@@ -329,7 +334,7 @@ class EventDrivenSolver : public Solver {
     lines_->valid_from(i) = t;
   }
 
-  // --- flights ---
+  // --- event-driven motion ---
 
   void fly(System& s, std::int64_t last) {
     const std::int64_t stop = std::min(last, base_ + per_period_);
@@ -342,7 +347,7 @@ class EventDrivenSolver : public Solver {
       if (!happen(i, next)) {
         s.step = std::max(s.step, base_ + step_before(now_));
         if (disperse_crowd(s)) continue;
-        hand_over(s);
+        pass_to_steps(s);
         return;
       }
     }
@@ -350,13 +355,13 @@ class EventDrivenSolver : public Solver {
     s.step = stop;
     if (stop == base_ + per_period_) begin_period();
   }
-  /// Clocks go back by a period.
+  /// Moves the origin of time by one period and removes completed contacts and clusters.
   void begin_period() {
     const double period = static_cast<double>(per_period_) * dt_;
     base_ += per_period_;
     now_ -= period;
     std::erase_if(open_, [&](const Contact& c) { return c.until <= now_ + period; });
-    std::erase_if(crowds_, [&](const ClusterRun& c) { return c.until <= now_ + period; });
+    std::erase_if(clusters_, [&](const ClusterRun& c) { return c.until <= now_ + period; });
     events_.set_back(period);
     for (std::size_t i = 0; i < lines_->size(); ++i) {
       lines_->put(i, (*lines_)[i].later(period, gravity_));
@@ -366,13 +371,13 @@ class EventDrivenSolver : public Solver {
       c.begin -= period, c.middle -= period, c.end -= period, c.from -= period, c.until -= period;
       for (BallisticPath& line : c.before) line = line.later(period, gravity_);
     }
-    for (ClusterRun& c : crowds_) {
+    for (ClusterRun& c : clusters_) {
       c.from -= period, c.until -= period;
       for (BallisticPath& line : c.before) line = line.later(period, gravity_);
     }
   }
 
-  /// \returns false if three bodies meet, of which `crowd_` names some
+  /// Handles an event. \returns false if three bodies meet; `cluster_` then contains some of them
   bool happen(std::size_t i, Event event) {
     switch (event.kind) {
       case Event::Kind::look_again:
@@ -390,7 +395,7 @@ class EventDrivenSolver : public Solver {
     }
     return true;
   }
-  /// Looks ahead for two beads with new lines.
+  /// Finds the next events of two beads with new paths.
   bool foresee_anew(std::size_t i, std::size_t j) {
     events_.put(i, {}), events_.put(j, {});
     if (!foresee(i) || (j != i && !foresee(j))) return false;
@@ -398,13 +403,13 @@ class EventDrivenSolver : public Solver {
     return true;
   }
 
-  /// Finds what happens next to bead i, on its present line. \returns false if three bodies meet
+  /// Finds the next event of bead i on its present path. \returns false if three bodies meet
   bool foresee(std::size_t i) {
     const BallisticPaths::Hit hit = lines_->first_hit(i, now_);
     const double from = std::max(now_, lines_->valid_from(i));
     if (hit.overlap) {
-      crowd_ = {static_cast<std::int32_t>(i)};
-      const Passage here{crowd_.front(), (*lines_)[i], lines_->radius(i), from, from};
+      cluster_ = {static_cast<std::int32_t>(i)};
+      const Passage here{cluster_.front(), (*lines_)[i], lines_->radius(i), from, from};
       add_near({&here, 1});
       return false;
     }
@@ -413,14 +418,14 @@ class EventDrivenSolver : public Solver {
     if (hit.until < event.time) event = {hit.until, Event::Kind::look_again, -1};
     for (std::size_t w = 0; w < walls_.size(); ++w) {
       if (in_wall(i, walls_[w], from)) {
-        crowd_ = {static_cast<std::int32_t>(i)};
+        cluster_ = {static_cast<std::int32_t>(i)};
         return false;
       }
       if (const double t = wall_touch(i, walls_[w], from, event.time); t < event.time)
         event = {t, Event::Kind::wall, -1 - static_cast<std::int32_t>(w)};
     }
-    crowd_ = {static_cast<std::int32_t>(i)};
-    const Passage own{crowd_.front(), (*lines_)[i], lines_->radius(i), now_, HUGE_VAL};
+    cluster_ = {static_cast<std::int32_t>(i)};
+    const Passage own{cluster_.front(), (*lines_)[i], lines_->radius(i), now_, HUGE_VAL};
     if (near_others_meeting(own, {&own, 1})) return false;
     events_.put(i, event);
     if (event.kind == Event::Kind::touch) {
@@ -430,14 +435,14 @@ class EventDrivenSolver : public Solver {
     }
     return true;
   }
-  /// A bead near a line, between two times.
+  /// A bead on or near a path between two times.
   struct Passage {
     std::int32_t bead;
     BallisticPath line;
-    double radius;  ///< its own, and how far it may be from the line
+    double radius;  ///< radius of the bead plus its largest deviation from the path
     double begin, end;
   };
-  /// Calls visit(bead) for those that take part in a meeting.
+  /// Calls visit(bead) for each member of a contact or cluster.
   template <class Visit>
   static void visit_members(const Contact& c, Visit visit) {
     visit(c.i);
@@ -447,7 +452,8 @@ class EventDrivenSolver : public Solver {
   static void visit_members(const ClusterRun& c, Visit visit) {
     for (const std::int32_t k : c.cluster.members) visit(k);
   }
-  /// Calls visit(passage) for these, until they are on their lines after it.
+  /// Calls visit(passage) for the passages of these beads, until they are on their paths after the contact or
+  /// cluster.
   template <class Visit>
   void visit_passages(const Contact& c, const std::array<BallisticPath, 2>& after, Visit visit) const {
     for (std::size_t q = 0; q < (c.j < 0 ? 1u : 2u); ++q) {
@@ -470,26 +476,27 @@ class EventDrivenSolver : public Solver {
       visit(Passage{bead, c.before[k], radius + c.cluster.stray[k], c.from, c.until});
     }
   }
-  /// Calls visit(meeting) for contacts and clusters that go on.
+  /// Calls visit(meeting) for contacts and clusters in progress.
   template <class Visit>
   void visit_meetings(Visit visit) const {
     for (const Contact& c : open_)
       if (c.until > now_) visit(c);
-    for (const ClusterRun& c : crowds_)
+    for (const ClusterRun& c : clusters_)
       if (c.until > now_) visit(c);
   }
   [[nodiscard]] bool in_crowd(std::int32_t bead) const {
-    return std::find(crowd_.begin(), crowd_.end(), bead) != crowd_.end();
+    return std::find(cluster_.begin(), cluster_.end(), bead) != cluster_.end();
   }
-  /// Where a meeting is, from its begin to its end.
+  /// A passage that encloses a contact or cluster from its beginning to its end.
   static Passage whole(const Contact& c) { return {c.i, c.before[0], c.about, c.from, c.until}; }
   static Passage whole(const ClusterRun& c) {
     return {c.cluster.members.front(), c.before.front(), HUGE_VAL, c.from, c.until};
   }
-  /// Adds to `crowd_` who of a meeting that none of it takes part in may come near passages, from now on.
-  /// \param all about all of them \returns whether there is one
+  /// For each contact or cluster without members in `cluster_`, adds one of its beads to `cluster_` if that
+  /// bead may touch one of the passages from now on. \param all a passage that encloses all passages \returns
+  /// whether a bead was added
   bool near_others_meeting(const Passage& all, std::span<const Passage> passages) {
-    const std::size_t before = crowd_.size();
+    const std::size_t before = cluster_.size();
     const auto near = [&](const Passage& p, const Passage& q) {
       const double begin = std::max({now_, p.begin, q.begin}), end = std::min(p.end, q.end);
       return begin <= end && come_near(p, q, begin, end);
@@ -504,9 +511,9 @@ class EventDrivenSolver : public Solver {
         if (std::any_of(passages.begin(), passages.end(), [&](const Passage& p) { return near(p, other); }))
           found = other.bead;
       });
-      if (found >= 0) crowd_.push_back(found);
+      if (found >= 0) cluster_.push_back(found);
     });
-    return crowd_.size() > before;
+    return cluster_.size() > before;
   }
   [[nodiscard]] double apart_at(const Passage& p, const Passage& q, double t) const {
     const Vec3 d = p.line.a - q.line.a + t * (p.line.b - q.line.b);
@@ -520,10 +527,11 @@ class EventDrivenSolver : public Solver {
     const double reach = p.radius + q.radius;
     return (d + t * w).squaredNorm() < reach * reach;
   }
-  /// Adds to `crowd_` the beads whose lines come near passages, those of one bead one after the other.
-  /// \returns whether there is one
+  /// Adds to `cluster_` the beads whose paths may touch one of the passages. The passages of one bead must be
+  /// consecutive.
+  /// \returns whether a bead was added
   bool add_near(std::span<const Passage> passages) {
-    const std::size_t before = crowd_.size();
+    const std::size_t before = cluster_.size();
     while (!passages.empty()) {
       const Passage& first = passages.front();
       std::size_t own = 1;
@@ -531,10 +539,11 @@ class EventDrivenSolver : public Solver {
       add_near_one(passages.first(own));
       passages = passages.subspan(own);
     }
-    return crowd_.size() > before;
+    return cluster_.size() > before;
   }
   void add_near_one(std::span<const Passage> passages) {
-    // First, by vectors, those that may: within a ball about all passages, which flies like the first.
+    // First a SIMD search for candidates: beads within a ball that contains all passages and moves along the
+    // first path.
     const Passage &first = passages.front(), &last = passages.back();
     double reach = first.radius;
     for (const Passage& p : passages.subspan(1))
@@ -547,7 +556,7 @@ class EventDrivenSolver : public Solver {
       const Passage other{k, (*lines_)[i], lines_->radius(i), 0, 0};
       if (std::any_of(passages.begin(), passages.end(),
                       [&](const Passage& p) { return come_near(p, other, p.begin, p.end); }))
-        crowd_.push_back(k);
+        cluster_.push_back(k);
     }
   }
 
@@ -557,10 +566,10 @@ class EventDrivenSolver : public Solver {
     if (!wall.moves || above > std::abs(amplitude_)) return above < 0;
     return above < wall.n.dot(plate(t));
   }
-  /// When a bead on its line first touches a wall, from a time on; never, or not before `needed`: infinite.
-  /// What lies between them is a parabola less a sine, h(t); since its curvature is bounded below by -m, h +
-  /// h' x - m x^2/2 = 0 gives a step x that never goes beyond the first root, and that converges on it as
-  /// Newton's do.
+  /// Time at which a bead on its path first touches a wall, from a time on. Infinite if it never does, or not
+  /// before `needed`. The gap h(t) is a parabola minus a sine, and its curvature is bounded below by -m. The
+  /// root x of h + h' x - m x^2/2 = 0 is therefore a step that never passes the first root of h, and the
+  /// steps converge to it as fast as Newton's.
   [[nodiscard]] double wall_touch(std::size_t i, const Wall& wall, double from, double needed) const {
     const BallisticPath line = (*lines_)[i];
     const double height = wall.n.dot(line.a) - wall.offset - lines_->radius(i), speed = wall.n.dot(line.b),
@@ -569,7 +578,7 @@ class EventDrivenSolver : public Solver {
     const double bend = std::max(0.0, most * omega_ * omega_ - fall);
     double t = from;
     for (int k = 0; k < 200; ++k) {
-      // Nothing happens until the parabola comes down to where the wall gets.
+      // No touch is possible until the parabola reaches the highest position of the wall.
       const double above = height + t * (speed + 0.5 * t * fall) - most, rise = speed + t * fall;
       if (above > 0) {
         const double down = first_zero(above, rise, fall);
@@ -589,7 +598,8 @@ class EventDrivenSolver : public Solver {
     }
     return t;
   }
-  /// The first x > 0 with c + b x + a x^2/2 = 0, for c > 0, or c = 0 and b > 0; infinite if there is none.
+  /// The first x > 0 with c + b x + a x^2/2 = 0, for c > 0, or for c = 0 and b > 0; infinite if there is no
+  /// such x.
   static double first_zero(double c, double b, double a) {
     const double inside = b * b - 2 * a * c;
     if (inside < 0) return HUGE_VAL;
@@ -598,7 +608,7 @@ class EventDrivenSolver : public Solver {
     return a < 0 ? (b + root) / -a : HUGE_VAL;
   }
 
-  // --- contacts ---
+  // --- binary collisions ---
 
   [[nodiscard]] CollisionSetting setting(std::int32_t i, std::int32_t j) const {
     const auto a = static_cast<std::size_t>(i);
@@ -624,7 +634,7 @@ class EventDrivenSolver : public Solver {
     }
     return e;
   }
-  /// Plate displacement, and velocity, at a time of this period.
+  /// Plate displacement at a time of this period; plate_velocity() likewise.
   [[nodiscard]] Vec3 plate(double t) const {
     Vec3 d = Vec3::Zero();
     d[axis_] = amplitude_ * std::sin(omega_ * t);
@@ -635,14 +645,14 @@ class EventDrivenSolver : public Solver {
     v[axis_] = amplitude_ * omega_ * std::cos(omega_ * t);
     return v;
   }
-  /// A point of the wall's surface, and how it moves.
+  /// A point of the surface of a wall, and its velocity.
   [[nodiscard]] std::pair<Vec3, Vec3> surface(const Wall& wall, double t) const {
     const Vec3 foot = wall.offset * wall.n;
     if (!wall.moves) return {foot, Vec3::Zero()};
     return {foot + plate(t), plate_velocity(t)};
   }
 
-  /// The motions of both beads of a contact (of one, at a wall) from their relative motion at t.
+  /// States of both beads of a contact (of one, at a wall) from their relative motion at t.
   [[nodiscard]] std::array<Instant, 2> apart(const Contact& c, const RelativeMotion& m, double t) const {
     const auto i = static_cast<std::size_t>(c.i);
     std::array<Instant, 2> both{};
@@ -664,12 +674,14 @@ class EventDrivenSolver : public Solver {
     return both;
   }
 
-  /// Two bodies touch, or are in contact, now: their collision is integrated to its end, and their lines are
-  /// those after it. \returns false if it rests or something else comes near
+  /// Integrates a contact of two bodies that touch, or are in contact, now, to its end, and sets their paths
+  /// after it.
+  /// \returns false if the contact does not end or another body may touch one of the beads
   bool meet_now(std::int32_t i, std::int32_t j) {
     Contact c{};
     c.i = i, c.j = j;
     c.begin = now_;
+    // Relative motion at the present time.
     const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(std::max(0, j));
     c.before = {(*lines_)[a], j < 0 ? BallisticPath{} : (*lines_)[b]};
     c.rim = {rim_[a], j < 0 ? Vec3::Zero().eval() : rim_[b]};
@@ -685,11 +697,14 @@ class EventDrivenSolver : public Solver {
       c.motion.u = v - c.before[1].velocity(now_, gravity_);
       c.motion.s = c.rim[0] + c.rim[1];
     }
+    // Integration. If the contact rests or is too deep, all beads are advanced by steps: `cluster_` stays
+    // empty.
     const double speed = c.motion.u.norm();
     const CollisionEnd end = integrate_collision(
         e, c.motion, now_, now_ + kLongest * collision_time(e, std::max(speed, 1e-3)), kTolerance);
-    crowd_.clear();  // what rests, or is too deep, is for the whole
+    cluster_.clear();
     if (!end.parted || end.deepest > limits_.overlap) return false;
+    // Paths after the contact, and the deviations from both paths.
     c.end = end.time;
     c.from = static_cast<double>(step_before(c.begin)) * dt_;
     c.until = static_cast<double>(step_before(c.end) + 1) * dt_;
@@ -698,14 +713,16 @@ class EventDrivenSolver : public Solver {
     std::array<BallisticPath, 2> lines{};
     for (std::size_t q = 0; q < (j < 0 ? 1u : 2u); ++q) {
       lines[q] = BallisticPath::through(after[q].r, after[q].v, c.end, gravity_);
-      // The force hardly turns, so that they get away ever farther.
+      // The direction of the force changes little, so a bead moves ever farther from the path; the deviation
+      // is largest at the middle.
       const auto off = [&](const BallisticPath& line) {
         return 1.05 * (halfway[q].r - line.position(c.middle, gravity_)).norm();
       };
       c.early[q] = off(c.before[q]), c.late[q] = off(lines[q]);
     }
-    crowd_ = {i};
-    if (j >= 0) crowd_.push_back(j);
+    // Third bodies: any bead, contact, cluster or wall that the beads may touch while they are in contact.
+    cluster_ = {i};
+    if (j >= 0) cluster_.push_back(j);
     passages_.clear();
     visit_passages(c, lines, [&](const Passage& p) {
       passages_.push_back(p);
@@ -716,12 +733,13 @@ class EventDrivenSolver : public Solver {
         c.about = std::max(c.about, p.radius + apart_at(p, passages_.front(), t));
     bool alone = !add_near(passages_);
     alone = !near_others_meeting(whole(c), passages_) && alone;
-    // A bead near a wall and in contact with another body is three bodies too.
+    // A bead in contact with another body and near a wall counts as three bodies too.
     for (std::size_t w = 0; w < walls_.size(); ++w)
       if (j != -1 - static_cast<std::int32_t>(w) && reaches(whole(c), walls_[w]))
         alone = alone && std::none_of(passages_.begin(), passages_.end(),
                                       [&](const Passage& p) { return reaches(p, walls_[w]); });
     if (!alone) return false;
+    // Accepted: the paths after the contact become the present ones.
     lines_->put(a, lines[0]);
     lines_->valid_from(a) = c.until;
     rim_[a] = after[0].rim;
@@ -734,7 +752,7 @@ class EventDrivenSolver : public Solver {
     open_.push_back(c);
     return true;
   }
-  /// Whether a body may come into touch with a wall in a short time.
+  /// Whether a body may touch a wall during a passage, which must be short.
   [[nodiscard]] bool reaches(const Passage& p, const Wall& wall) const {
     const double span = p.end - p.begin, swing = wall.moves ? std::abs(amplitude_) : 0;
     const double bend = gravity_.norm() + swing * omega_ * omega_, sag = 0.125 * bend * span * span;
@@ -747,27 +765,27 @@ class EventDrivenSolver : public Solver {
     return std::min(begin - rise(p.begin), end - rise(p.end)) < sag;
   }
 
-  // --- where three meet ---
+  // --- clusters ---
 
-  /// Takes the beads of `crowd_`, those that they are in contact with, and those that come near, out of the
-  /// whole at the system's step, and moves them by steps until they have parted. \returns false if they do
-  /// not, or are too many; then their contacts are as they were
+  /// Extracts a cluster at the present step of the system (the beads of `cluster_`, the beads in contact with
+  /// them, and the beads that may touch them) and advances it by time steps until its beads have parted.
+  /// \returns false if they do not part or are too many; the contacts are then unchanged
   bool disperse_crowd(System& s) {
-    if (crowd_.empty()) return false;
+    if (cluster_.empty()) return false;
     write(s);
     const double from = static_cast<double>(s.step - base_) * dt_;
     const auto contact = std::max<std::int64_t>(1, std::llround(plan_.shortest().time / dt_));
     std::vector<std::int32_t> members;
     for (;;) {
-      const std::vector<std::int32_t> more = crowd_;
-      crowd_ = members;
+      const std::vector<std::int32_t> more = cluster_;
+      cluster_ = members;
       for (const std::int32_t k : more)
-        if (!in_crowd(k)) crowd_.push_back(k);
+        if (!in_crowd(k)) cluster_.push_back(k);
       add_partners(from);
-      if (crowd_.size() == members.size() || crowd_.size() > kMostInCrowd) return false;
-      members = crowd_;
-      std::sort(crowd_.begin(), crowd_.end());
-      ClusterRun c{take_out(s, memories_, crowd_), from, 0, {}};
+      if (cluster_.size() == members.size() || cluster_.size() > kMostInCrowd) return false;
+      members = cluster_;
+      std::sort(cluster_.begin(), cluster_.end());
+      ClusterRun c{take_out(s, memories_, cluster_), from, 0, {}};
       const auto end =
           disperse(c.cluster, contact, static_cast<std::int64_t>(kLongest) * contact, make_steps_.few);
       if (!end) return false;
@@ -777,10 +795,10 @@ class EventDrivenSolver : public Solver {
       visit_passages(c, [&](const Passage& p) { passages_.push_back(p); });
       bool alone = !add_near(passages_);
       alone = !near_others_meeting(whole(c), passages_) && alone;
-      if (alone && send_off(std::move(c), *end)) return true;
+      if (alone && start_flight(std::move(c), *end)) return true;
     }
   }
-  /// Adds to `crowd_` every bead in contact, or in a cluster, with one of it.
+  /// Adds to `cluster_` every bead in contact, or in a cluster, with a bead of `cluster_`.
   void add_partners(double from) {
     for (bool grown = true; grown;) {
       grown = false;
@@ -789,20 +807,20 @@ class EventDrivenSolver : public Solver {
         visit_members(meeting, [&](std::int32_t k) { own = own || in_crowd(k); });
         if (!own || meeting.until <= from) return;
         visit_members(meeting, [&](std::int32_t k) {
-          if (!in_crowd(k)) crowd_.push_back(k), grown = true;
+          if (!in_crowd(k)) cluster_.push_back(k), grown = true;
         });
       };
       for (const Contact& c : open_) take_all(c);
-      for (const ClusterRun& c : crowds_) take_all(c);
+      for (const ClusterRun& c : clusters_) take_all(c);
     }
   }
-  /// Beads of a crowd fly on after it. \returns false if they then meet others at once, of whom `crowd_`
-  /// names some
-  bool send_off(ClusterRun crowd, const System& end) {
+  /// Sets the paths of the members after their cluster. \returns false if they then meet other bodies at
+  /// once; `cluster_` contains some of these
+  bool start_flight(ClusterRun crowd, const System& end) {
     const std::vector<std::int32_t> members = crowd.cluster.members;
     const auto within = [&](std::int32_t k) { return std::binary_search(members.begin(), members.end(), k); };
     std::erase_if(open_, [&](const Contact& c) { return c.until > crowd.from && within(c.i); });
-    std::erase_if(crowds_, [&](const ClusterRun& c) {
+    std::erase_if(clusters_, [&](const ClusterRun& c) {
       return c.until > crowd.from && within(c.cluster.members.front());
     });
     for (std::size_t k = 0; k < members.size(); ++k) {
@@ -810,23 +828,23 @@ class EventDrivenSolver : public Solver {
       fly_on(i, end, k, crowd.until);
       events_.put(i, {});
     }
-    crowds_.push_back(std::move(crowd));
+    clusters_.push_back(std::move(crowd));
     for (const std::int32_t k : members)
       if (!foresee(static_cast<std::size_t>(k))) return false;
     for (const std::int32_t k : members) events_.put_off(static_cast<std::size_t>(k));
     return true;
   }
 
-  // --- from flights to beads ---
+  // --- beads and forces at a step, and the change to time steps ---
 
-  /// The last whole step of this period at or before a time.
+  /// The last whole step, counted from the start of this period, at or before a time.
   [[nodiscard]] std::int64_t step_before(double t) const {
     auto k = static_cast<std::int64_t>(std::floor(t / dt_));
     if (static_cast<double>(k + 1) * dt_ <= t) ++k;
     if (static_cast<double>(k) * dt_ > t) --k;
     return k;
   }
-  /// Beads and contact forces at the system's step.
+  /// Writes beads and contact forces at the present step of the system.
   void write(System& s) {
     const double t = static_cast<double>(s.step - base_) * dt_;
     const auto put = [&](std::size_t i, const Instant& at) {
@@ -843,7 +861,7 @@ class EventDrivenSolver : public Solver {
     s.forces_known = true;
     memories_.clear();
     for (std::size_t i = 0; i < s.beads.size(); ++i) put(i, flown((*lines_)[i], rim_[i]));
-    // Lines are those after a contact: its beads are not there yet.
+    // The paths are those after a contact; beads still in contact need its integration.
     for (const Contact& c : open_) {
       if (t < c.from || t >= c.end) continue;
       std::array<Instant, 2> both{};
@@ -858,7 +876,7 @@ class EventDrivenSolver : public Solver {
       put(static_cast<std::size_t>(c.i), both[0]);
       if (c.j >= 0) put(static_cast<std::size_t>(c.j), both[1]);
     }
-    for (const ClusterRun& c : crowds_) {
+    for (const ClusterRun& c : clusters_) {
       if (s.step - c.cluster.start.step >= c.cluster.steps) continue;
       const ClusterState now = after(c.cluster, s.step - c.cluster.start.step, make_steps_.few);
       for (std::size_t k = 0; k < c.cluster.members.size(); ++k) {
@@ -887,7 +905,7 @@ class EventDrivenSolver : public Solver {
     add(c.i, 1);
     if (c.j >= 0) add(c.j, -1);
     ContactMemory memory{c.i, c.j, {}};
-    // A tangential vector; in the plane its length along (-n_z, n_x).
+    // A tangential vector; in 2D only its component along (-n_z, n_x).
     const auto remember = [&](const Vec3& along) {
       if (plan_.dimension == 2)
         memory.values.push_back(-along.x() * f.normal.z() + along.z() * f.normal.x());
@@ -899,7 +917,7 @@ class EventDrivenSolver : public Solver {
       if (plan_.history) memories_.push_back(std::move(memory));
       return;
     }
-    // What the step before would have left: the velocities in its middle.
+    // The contact memory that a preceding step would have left: the velocities in the middle of that step.
     const double half = 0.5 * dt_;
     RelativeMotion middle = m;
     Vec3 push = f.force / e.pair.m_eff + e.pull + e.swing * std::sin(e.omega * t);
@@ -910,8 +928,8 @@ class EventDrivenSolver : public Solver {
     if (plan_.rotation) remember(middle.u - v_n * f.normal - middle.s.cross(f.normal));
     memories_.push_back(std::move(memory));
   }
-  /// From flights to steps.
-  void hand_over(System& s) {
+  /// Changes from event-driven motion to time steps.
+  void pass_to_steps(System& s) {
     write(s);
     end_flights();
     steps_ = make_steps_.all();
@@ -924,29 +942,30 @@ class EventDrivenSolver : public Solver {
   GuardLimits limits_;
   std::int64_t look_every_;
   SteppingSolvers make_steps_;
-  std::unique_ptr<Solver> steps_;  ///< while not flying
+  std::unique_ptr<Solver> steps_;  ///< exists while time steps are used
   std::int64_t next_look_ = 0, wait_ = 1;
   Counters counted_;
   std::int64_t list_builds_ = 0;
 
-  std::optional<BallisticPaths> lines_;  ///< while flying; times from the beginning of the period
+  /// Exists during event-driven motion. Times count from the start of the period.
+  std::optional<BallisticPaths> lines_;
   EventQueue events_;
   std::vector<Contact> open_;
-  std::vector<ClusterRun> crowds_;
-  std::vector<std::int32_t> crowd_;  ///< beads that were just found to meet in threes
-  std::vector<std::int32_t> near_;   ///< used by add_near() alone
-  std::vector<Passage> passages_;    ///< of who has just met
-  System frame_;                     ///< without beads: walls, drive, period
-  std::vector<Vec3> rim_;            ///< R w, after a contact that goes on
-  std::vector<double> mass_, turn_;  ///< turn: R^2/I
+  std::vector<ClusterRun> clusters_;
+  std::vector<std::int32_t> cluster_;  ///< beads just found to form a cluster
+  std::vector<std::int32_t> near_;     ///< buffer of add_near_one()
+  std::vector<Passage> passages_;      ///< buffer: passages of the contact or cluster being added
+  System frame_;                       ///< without beads: walls, drive, period
+  std::vector<Vec3> rim_;              ///< R w, after the present contact
+  std::vector<double> mass_, turn_;    ///< turn: R^2/I
   std::vector<Wall> walls_;
   Vec3 gravity_ = Vec3::Zero();
   Eigen::Index axis_ = 2;
   double amplitude_ = 0, omega_ = 0, dt_ = 0, now_ = 0;
-  std::int64_t per_period_ = 1, base_ = 0;  ///< the step at which the period began
+  std::int64_t per_period_ = 1, base_ = 0;  ///< base_: step at which the period began
 
   std::vector<ContactMemory> memories_;
-  std::vector<Bead> left_;  ///< as this kernel left them
+  std::vector<Bead> left_;  ///< as at the end of the last call
   std::int64_t left_step_ = -1;
   double left_amplitude_ = 0;
 };

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The kernel of dilute gases: beads fly from contact to contact, and only contacts are integrated.
+/// Solver for dilute gases: beads fly freely from contact to contact, and only contacts are integrated.
 
 #include <functional>
 #include <memory>
@@ -10,20 +10,20 @@
 
 namespace twincell::sim {
 
-/// Makes kernels that move beads by steps, of the same plan, with the same bits.
+/// Factories of solvers that advance beads by time steps. Both use the same plan and give the same bits.
 struct SteppingSolvers {
-  std::function<std::unique_ptr<Solver>()> all, few;  ///< few: for those that meet in threes
+  std::function<std::unique_ptr<Solver>()> all, few;  ///< for all beads; for a cluster
 };
 
-/// Flights, and steps where beads meet in threes.
+/// Event-driven motion, with time steps where three or more bodies are in contact.
 ///
-/// Beads that touch nothing fly on parabolas, exactly; the moment of the next touch is the root of a
-/// quadratic (two beads, which fall alike) or of a parabola less a sine (bead and wall). A contact of two
-/// bodies is integrated to a relative 1e-7 (binary_collision.hpp), whatever the time step. When a third body
-/// comes near one that is in contact, they are moved by steps by themselves, from the whole step before until
-/// they have parted (cluster.hpp). Where more than eight meet, or some stay together, all beads are handed to
-/// steps, and taken back when each has at most one contact. So no contact is missed, none is simplified, and
-/// the time step acts only where three bodies meet.
+/// Beads without contact follow their parabolas exactly. The instant of the next touch is the root of a
+/// quadratic (two beads, which have the same acceleration) or of a parabola minus a sine (bead and wall). A
+/// contact of two bodies is integrated to a relative 1e-7 (binary_collision.hpp), whatever the time step. If
+/// a third body may touch a bead that is in contact, these beads form a cluster, which is advanced separately
+/// by time steps from the preceding whole step until its beads have parted (cluster.hpp). If a cluster has
+/// more than eight members or does not part, all beads are advanced by time steps until each has at most one
+/// contact. No contact is missed or simplified, and the time step matters only where three bodies meet.
 std::unique_ptr<Solver> make_event_driven_solver(const Plan& plan, const GuardLimits& limits,
                                                  SteppingSolvers steps);
 

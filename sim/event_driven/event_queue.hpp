@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What happens next to each bead that flies (event_driven_solver.hpp), and which of it comes first.
+/// Event queue of the event-driven solver (event_driven_solver.hpp): the next event of each bead, and the
+/// earliest of all.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -10,18 +11,19 @@
 
 namespace twincell::sim {
 
-/// What happens next to a bead.
+/// Next event of a bead: touch of another bead or a wall, a repeated search, or no event.
 struct Event {
   enum class Kind { touch, wall, look_again, none };
   double time = HUGE_VAL;
   Kind kind = Kind::none;
-  std::int32_t partner = -1;  ///< bead that is touched, or -1 - w for wall w
+  std::int32_t partner = -1;  ///< the other bead of a touch, or -1 - w for wall w
 };
 
-/// The next event of each bead: times and partners lie together, since all of them are looked through.
+/// The next event of each bead. Times and partners have arrays of their own, because each search scans all of
+/// them.
 class EventQueue {
  public:
-  /// Nothing happens to any of `beads`.
+  /// Sets the number of beads; no bead has an event.
   void clear(std::size_t beads) {
     times_.assign(beads, HUGE_VAL), kinds_.assign(beads, Event::Kind::none), partners_.assign(beads, -1);
   }
@@ -30,14 +32,15 @@ class EventQueue {
   void put(std::size_t i, const Event& e) {
     times_[i] = e.time, kinds_[i] = e.kind, partners_[i] = e.partner;
   }
-  /// The bead whose event comes first; of several the first.
+  /// The bead with the earliest event; of several simultaneous events, the bead with the lowest index.
   [[nodiscard]] std::size_t soonest() const {
     const double first =
         Eigen::Map<const Eigen::ArrayXd>(times_.data(), static_cast<Eigen::Index>(times_.size())).minCoeff();
     return static_cast<std::size_t>(std::find(times_.begin(), times_.end(), first) - times_.begin());
   }
-  /// Bead `changed` has a new line: those that were to touch it on the old one look again when they would
-  /// have; until then nothing happens to them that is not foreseen from the other side.
+  /// To be called when bead `changed` has a new path. Beads that were due to touch it on the old path search
+  /// again at the time of that touch. Until then, any other touch they may have is an event of the other
+  /// bead.
   void put_off(std::size_t changed) {
     const auto bead = static_cast<std::int32_t>(changed);
     for (std::size_t k = 0; k < partners_.size(); ++k) {
@@ -47,7 +50,7 @@ class EventQueue {
       kinds_[k] = Event::Kind::look_again, partners_[k] = -1;
     }
   }
-  /// The clock shows `by` less.
+  /// Moves the origin of time to t = `by`.
   void set_back(double by) {
     for (double& t : times_) t -= by;
   }

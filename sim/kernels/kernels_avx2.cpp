@@ -1,4 +1,4 @@
-// The passes with AVX2. CMake compiles this file, and no other, for processors that have it.
+// Kernels for AVX2. CMake enables AVX2 for this file only.
 
 #include "sim/contact/collocation_body.hpp"
 #include "sim/kernels/simd_highway.hpp"

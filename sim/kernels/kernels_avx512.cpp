@@ -1,4 +1,4 @@
-// The passes with AVX-512. CMake compiles this file, and no other, for processors that have it.
+// Kernels for AVX-512. CMake enables AVX-512 for this file only.
 
 #include "sim/contact/collocation_body.hpp"
 #include "sim/kernels/simd_highway.hpp"

@@ -1,4 +1,4 @@
-// The passes, one contact at a time, for any processor.
+// Kernels for any processor, one contact at a time.
 
 #include "sim/contact/collocation_body.hpp"
 #include "sim/kernels/simd_kernels.hpp"

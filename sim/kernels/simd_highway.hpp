@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// As many contacts at a time as the instruction set of this translation unit allows, by Highway: 4 with
-/// AVX2, 8 with AVX-512. Everything here is in a namespace of that instruction set.
+/// SIMD lanes by Highway: as many contacts at a time as the instruction set of this translation unit allows,
+/// 4 with AVX2, 8 with AVX-512. All code is in a namespace of that instruction set.
 
 #include <hwy/highway.h>
 
@@ -18,9 +18,9 @@ using Four = hn::FixedTag<double, 4>;
 using Two = hn::FixedTag<double, 2>;
 using One = hn::FixedTag<double, 1>;
 
-/// A vector of numbers with the operations of laws/real.hpp. Two vectors side by side, to fill the gaps in
-/// one contact's long chain of dependent operations, were tried and dropped: the arithmetic units are busy as
-/// it is, and the registers run out (a fifth slower).
+/// A SIMD vector of numbers with the operations of laws/real.hpp. Two vectors in parallel, to fill the gaps
+/// in one contact's long chain of dependent operations, were tried and dropped (a fifth slower): the
+/// arithmetic units are already busy, and there are too few registers.
 struct Pack {
   using Tag = All;
   using Raw = hn::Vec<Tag>;
@@ -31,7 +31,7 @@ struct Pack {
     HWY_INLINE friend bool any(Mask m) { return !hn::AllFalse(Tag(), m.raw); }
     HWY_INLINE friend Mask both(Mask a, Mask b) { return {hn::And(a.raw, b.raw)}; }
     HWY_INLINE friend Mask either(Mask a, Mask b) { return {hn::Or(a.raw, b.raw)}; }
-    /// A bit per lane.
+    /// Returns one bit per lane.
     friend unsigned mask_bits(Mask m) {
       std::uint8_t bits[8] = {};
       hn::StoreMaskBits(Tag(), m.raw, bits);
@@ -79,7 +79,7 @@ struct HighwayLanes {
   using Raw = hn::Vec<All>;
   using FourRaw = hn::Vec<Four>;
 
-  /// Four numbers of a record.
+  /// Four consecutive numbers of a record.
   struct Row {
     FourRaw raw;
     HWY_INLINE static Row all(double a) { return {hn::Set(Four(), a)}; }
@@ -109,15 +109,15 @@ struct HighwayLanes {
   static constexpr auto kLarger = [](Row x, Row y) HWY_ATTR { return max(x, y); };
   static constexpr auto kSmaller = [](Row x, Row y) HWY_ATTR { return min(x, y); };
 
-  /// Integrates whole blocks of 2D beads, as many records to a vector as fit. The same operations in the same
-  /// order as one bead at a time.
+  /// Integrates whole blocks of 2D beads, with as many records in a vector as fit. The operations and their
+  /// order are the same as for one bead at a time.
   static constexpr int kBlock = kLanes;
   static_assert(kGroup % kBlock == 0);
   template <int kKicks, bool kDrift>
   HWY_INLINE static Row integrate_blocks(const IntegrateArgs& p, Row h_row, Row dt_row, Row gravity_row,
                                          Row fallen_row) {
     const All d;
-    constexpr int kBeads = kLanes / 4;  // of a vector
+    constexpr int kBeads = kLanes / 4;  // per vector
     const Raw h = spread(h_row), dt = spread(dt_row), gravity = spread(gravity_row),
               fallen = twice(fallen_row);
     const Raw alike = spread(Row{hn::Load(Four(), p.inv_mass)}),
@@ -147,7 +147,7 @@ struct HighwayLanes {
           }
         }
         if (!p.spin) continue;
-        // The turning moments are the third numbers of the force rows.
+        // The torques are the third numbers of the force rows.
         Raw q;
         if constexpr (kLanes == 8)
           q = hn::ConcatOdd(d, hn::ConcatEven(d, f[3], f[2]), hn::ConcatEven(d, f[1], f[0]));
@@ -164,13 +164,13 @@ struct HighwayLanes {
         for (int n = 0; n < kKicks; ++n) s = hn::Add(s, kick);
         hn::StoreU(s, d, p.spins + b);
       }
-    const Row most_of_two = folded(most, kLarger);  // a velocity in each half
+    const Row most_of_two = folded(most, kLarger);  // one velocity in each half
     return max(most_of_two, most_of_two.swapped());
   }
   static std::int64_t end_of_blocks(const BeadRange& run) {
     return run.begin + (run.end - run.begin) / kBlock * kBlock;
   }
-  /// The steps of free_flight_kernel for a whole group of 2D beads.
+  /// Steps of free_flight_kernel for a whole group of 2D beads.
   HWY_INLINE static void fly_group(const FreeFlightArgs& p, Row h_row, Row dt_row, Row gravity_row,
                                    std::int64_t b) {
     const All d;
@@ -186,8 +186,8 @@ struct HighwayLanes {
       }
     for (int k = 0; k < kVectors; ++k) hn::StoreU(v[k], d, p.records + 4 * b + kLanes * k);
   }
-  /// The velocities of the records of two vectors fill one: those of the first in its even blocks, of the
-  /// second in its odd ones.
+  /// Velocity range over whole blocks. The velocities in two vectors of records fill one vector: those of the
+  /// first are in its even blocks, those of the second in its odd blocks.
   static std::int64_t range_blocks(const VelocityRangeArgs& p, Row& least_row, Row& most_row) {
     const All d;
     constexpr int kBeads = kLanes / 4;
@@ -209,9 +209,9 @@ struct HighwayLanes {
     most_row = max(most_row, max(high, high.swapped()));
     return b;
   }
-  /// The upper half of a row, in every half of every row of a vector.
+  /// Copies the upper half of a row to both halves of every row of a vector.
   HWY_INLINE static Raw twice(Row r) { return spread(Row{hn::ConcatUpperUpper(Four(), r.raw, r.raw)}); }
-  /// The rows of a vector made one.
+  /// Combines the rows of a vector into one with `op`.
   template <class R, class Op>
   HWY_INLINE static Row folded(const R& r, Op op) {
     if constexpr (kLanes == 8)
@@ -219,7 +219,7 @@ struct HighwayLanes {
     else
       return Row{r};
   }
-  /// A row in every row of a vector.
+  /// Copies a row to every row of a vector.
   HWY_INLINE static Raw spread(Row r) { return spread_raw(r.raw); }
   template <class R>
   HWY_INLINE static Raw spread_raw(R r) {
@@ -234,8 +234,8 @@ struct HighwayLanes {
   static double largest(V v) { return hn::GetLane(hn::MaxOfLanes(All(), v.raw)); }
   static unsigned bits(Pack::Mask m) { return mask_bits(m); }
 
-  /// Four vectors as the four columns they hold, by interleaving neighbours and exchanging 128-bit blocks: a
-  /// transposition of 4 x 4 numbers, of two at once with AVX-512. It is its own inverse.
+  /// Transposes 4 x 4 numbers (two such blocks at once with AVX-512): neighbours are interleaved and 128-bit
+  /// blocks exchanged. The operation is its own inverse.
   HWY_INLINE static void exchange(const Raw* r, Raw* column) {
     const All d;
     const auto l01 = hn::InterleaveLower(d, r[0], r[1]), u01 = hn::InterleaveUpper(d, r[0], r[1]);
@@ -314,7 +314,8 @@ struct HighwayLanes {
     else
       spins_of([=](int k) HWY_ATTR { return hn::Load(Four(), at(spin, i[k], 2)); }, s);
   }
-  /// Numbers that stand `part` times as dense as records do: the processor scales the index by 8/part.
+  /// Address of a number in an array that is `part` times as dense as the records. The processor scales the
+  /// index by 8/part.
   HWY_INLINE static const double* at(const double* numbers, std::int32_t i, int part) {
     return reinterpret_cast<const double*>(reinterpret_cast<const char*>(numbers) +
                                            std::ptrdiff_t{8 / part} * i);
@@ -344,7 +345,7 @@ struct HighwayLanes {
   HWY_INLINE static FourRaw upper(const R& row) {
     return hn::UpperHalf(Four(), row);
   }
-  /// Calls put(contact, row) for the rows that columns make.
+  /// Transposes the columns back to rows and calls put(contact, row) for each contact.
   template <class Put>
   HWY_INLINE static void rows(V a, V b, V c, Put put) {
     const Raw column[4] = {a.raw, b.raw, c.raw, hn::Zero(All())};
@@ -371,8 +372,8 @@ struct HighwayLanes {
       if constexpr (kSpin) rows(q[0], q[1], q[2], to(4));
     }
   }
-  /// The force on i, its opposite on j, the turning moments on both. Sums of rounded forces are exact, so the
-  /// signs may be put in by a fused product.
+  /// Adds the force to i, its opposite to j, and the torques to both. Sums of rounded forces are exact, so a
+  /// fused product may apply the signs.
   template <int D, bool kSpin, bool kRolling>
   HWY_INLINE static void add(double* forces, const std::int32_t* i, const std::int32_t* j, const V* f,
                              const V* q_i, const V* q_j) {

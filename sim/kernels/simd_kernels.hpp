@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The text of the passes, for any kind of lanes. Lanes (simd_scalar.hpp, simd_highway.hpp) bring a type
-/// V of so many numbers with the operations of laws/real.hpp, a Row of four numbers, and the moves between
-/// beads' records and V.
+/// Implementation of the kernels for any kind of lanes. A Lanes class (simd_scalar.hpp, simd_highway.hpp)
+/// provides a type V of several numbers with the operations of laws/real.hpp, a Row of four numbers, and the
+/// transfers between the records of beads and V.
 
 #include <array>
 #include <cmath>
@@ -13,16 +13,16 @@
 #include "sim/kernels/kernels.hpp"
 
 #ifndef TWINCELL_LANES
-#define TWINCELL_LANES  ///< what a lambda needs to be compiled for the lanes' instruction set
+#define TWINCELL_LANES  ///< attribute by which a lambda is compiled for the instruction set of the lanes
 #endif
 
 namespace twincell::sim {
 
-/// Contacts of listed pairs. What a contact does is one long chain of operations, each waiting for the one
-/// before; a processor hides that by working on the next contacts meanwhile, if these are within its view of
-/// some hundred instructions. So a few packets at a time go through three short stages: collect what is known
-/// of the two beads, compute the contact, deal out the force. (All in one loop is a third slower, two packets
-/// side by side in one loop still slower, for want of registers.)
+/// Contacts of listed pairs. A contact is one long chain of dependent operations. A processor hides the
+/// latency by starting the next contacts, if these are within its window of some hundred instructions. A few
+/// packets at a time therefore pass through three short stages: gather the relative motion of the two beads,
+/// compute the contacts, scatter the forces. (Tried and dropped: all in one loop, a third slower; two packets
+/// in parallel in one loop, slower still for lack of registers.)
 template <class Lanes, class Laws, int D, Velocity kVelocity>
 double pair_kernel(const PairArgs& args) {
   const PairArgs p = args;  // a copy that no store can alias
@@ -30,16 +30,17 @@ double pair_kernel(const PairArgs& args) {
   constexpr int K = kTurns<D>, kCount = Layout<Laws>::kCount, W = Lanes::kWidth;
   constexpr int kMemory = kRemembered<Laws, kVelocity, D>;
   constexpr bool kTurn = Laws::Tangential::kActs, kRoll = Laws::Rolling::kActs;
-  // Numbers of a contact between stages: approach, then action in its place.
+  // Numbers of a contact between the stages: its kinematics, then its load in the same place.
   constexpr int kRollAt = 2 * D, kKept = std::max(kRollAt + (kRoll ? K : 0), D + (kRoll ? 2 : 1) * K);
   constexpr int kStage = W == 1 ? 1 : 16;  // packets
   alignas(64) double stage[kStage * W * kKept];
   std::int64_t live[kStage];
-  const V dt(p.dt), magic(p.magic);
+  const V dt(p.dt), quantum(p.quantum);
   V largest(0.0);
   for (std::int64_t begin = 0; begin < p.packets; begin += kStage) {
     const std::int64_t end = begin + kStage < p.packets ? begin + kStage : p.packets;
     int n = 0;
+    // Gather: collect the relative motion and skip packets without a contact.
     for (std::int64_t k = begin; k < end; ++k) {
       const std::int32_t *i = p.i + W * k, *j = p.j + W * k;
       V d[D], v[D];
@@ -50,7 +51,7 @@ double pair_kernel(const PairArgs& args) {
       V r2 = d[0] * d[0];
       for (int c = 1; c < D; ++c) r2 = fma(d[c], d[c], r2);
       double* kept = p.memory + W * kMemory * k;
-      // A pair that parted within this step has yet to settle what it remembers.
+      // A pair that separated within this step still has to update its remembered numbers.
       auto of_interest = r2 < Lanes::load(constants + W * constant::kEdge);
       if constexpr (kVelocity == Velocity::full_step)
         of_interest = either(of_interest, abs(Lanes::load(kept + W * Laws::template kMemory<D>)) > V(0.0));
@@ -67,13 +68,14 @@ double pair_kernel(const PairArgs& args) {
         V s_i[K], s_j[K];
         Lanes::template spins<D>(p.spins, i, s_i);
         Lanes::template spins<D>(p.spins, j, s_j);
-        for (int m = 0; m < K; ++m)  // odd under i <-> j
+        for (int m = 0; m < K; ++m)  // antisymmetric under i <-> j
           Lanes::store(s_i[m] * Lanes::load(constants + W * constant::kInvRadiusI) -
                            s_j[m] * Lanes::load(constants + W * constant::kInvRadiusJ),
                        to + W * (kRollAt + m));
       }
       live[n++] = k;
     }
+    // Compute: evaluate the laws for the packets that may have a contact.
     for (int at = 0; at < n; ++at) {
       double* numbers = stage + W * kKept * at;
       const std::int64_t k = live[at];
@@ -90,7 +92,7 @@ double pair_kernel(const PairArgs& args) {
       for (int m = 1; m < D; ++m) r2 = fma(d[m], d[m], r2);
       const V inv_r = inverse_sqrt_near_one(r2 * c[constant::kInvReachSquared]) * c[constant::kInvReach];
       a.overlap = nfma(r2, inv_r, c[constant::kReach]);
-      largest = max(a.overlap, largest);  // of what is not a number and a number, the second
+      largest = max(a.overlap, largest);  // max(NaN, x) is x: dummies do not count
       for (int m = 0; m < D; ++m) a.n[m] = d[m] * inv_r;
       if constexpr (kTurn) Lanes::template spin_sums<D>(p.spins, p.i + W * k, p.j + W * k, a.s);
       if constexpr (kRoll)
@@ -108,10 +110,11 @@ double pair_kernel(const PairArgs& args) {
         }
       }
     }
+    // Scatter: add the rounded forces to the beads.
     for (int at = 0; at < n; ++at) {
       const std::int64_t k = live[at];
       const double* numbers = stage + W * kKept * at;
-      const auto share = [&](int m) TWINCELL_LANES { return rounded(Lanes::load(numbers + W * m), magic); };
+      const auto share = [&](int m) TWINCELL_LANES { return rounded(Lanes::load(numbers + W * m), quantum); };
       V f[D], q_i[K], q_j[K];
       for (int m = 0; m < D; ++m) f[m] = share(m);
       for (int m = 0; m < K; ++m) {
@@ -132,7 +135,7 @@ double wall_kernel(const WallArgs& args) {
   using V = typename Lanes::V;
   constexpr int K = kTurns<D>, kCount = Layout<Laws>::kCount, W = Lanes::kWidth;
   constexpr int kMemory = kRemembered<Laws, kVelocity, D>;
-  const V dt(p.dt), magic(p.magic), offset(p.offset);
+  const V dt(p.dt), quantum(p.quantum), offset(p.offset);
   V largest(0.0);
   for (std::int64_t k = 0; k < p.packets; ++k) {
     const std::int32_t* bead = p.bead + W * k;
@@ -165,15 +168,15 @@ double wall_kernel(const WallArgs& args) {
     for (int m = 0; m < kMemory; ++m) Lanes::store(memory[m], kept + W * m);
     if constexpr (Laws::Rolling::kActs)
       for (int m = 0; m < K; ++m) act_on.q[m] = act_on.q[m] + act_on.q_i[m];
-    for (V& f : act_on.f) f = rounded(f, magic);
-    for (V& q : act_on.q) q = rounded(q, magic);
+    for (V& f : act_on.f) f = rounded(f, quantum);
+    for (V& q : act_on.q) q = rounded(q, quantum);
     Lanes::template add_one<D, Laws::Tangential::kActs>(p.forces, bead, act_on.f, act_on.q);
   }
   return Lanes::largest(largest);
 }
 
-/// Velocity Verlet: half kicks v += (dt/2) a, drift r += dt v. Two half kicks in a row are kept apart, so
-/// that where a run is cut into pieces does not show.
+/// Velocity Verlet: half kicks v += (dt/2) a, drift r += dt v. Two successive half kicks are not merged, so
+/// the bits do not depend on how a run is divided into calls.
 template <class Lanes, int D, int kKicks, bool kDrift>
 Deviation integrate(const IntegrateArgs& args) {
   using Row = typename Lanes::Row;
@@ -190,7 +193,7 @@ Deviation integrate(const IntegrateArgs& args) {
     const Row inv_m = Row::load(p.inv_mass + p.inertia_step * 4 * b);
     const double turn = p.turn[p.inertia_step * b];
     if constexpr (D == 2) {
-      // Velocities are the upper half of a record, and so are accelerations.
+      // Velocities are the upper half of a record; accelerations are placed likewise.
       const Row a = fma(Row::load(force).swapped(), inv_m, gravity);
       const double spin_kick = -h * turn * force[2];
       Row v = Row::load(record);
@@ -228,7 +231,7 @@ Deviation integrate(const IntegrateArgs& args) {
   };
   if constexpr (D == 2 && Lanes::kBlock > 0) {
     most = max(most, Lanes::template integrate_blocks<kKicks, kDrift>(p, h_row, dt_row, gravity, fallen));
-    // What blocks leave over.
+    // Beads that do not fill a block.
     for (std::int64_t k = 0; k < p.n_runs; ++k)
       for (std::int64_t b = Lanes::end_of_blocks(p.runs[k]); b < p.runs[k].end; ++b) one(b);
   } else {
@@ -247,14 +250,14 @@ Deviation integrate_kernel(const IntegrateArgs& p) {
   return p.kicks == 2 ? integrate<Lanes, D, 2, true>(p) : integrate<Lanes, D, 1, true>(p);
 }
 
-/// The same for beads without forces: the operations of integrate() with 0 for what contacts add.
+/// Free flight: the operations of integrate() with contact forces of 0, for several steps.
 template <class Lanes, int D>
 void free_flight_kernel(const FreeFlightArgs& args) {
   using Row = typename Lanes::Row;
   const FreeFlightArgs p = args;
   const Row h = Row::all(p.dt / 2), dt = D == 2 ? Row::low(p.dt) : Row::all(p.dt);
   const Row gravity = D == 2 ? Row::high(p.gravity[0], p.gravity[1]) : Row::three(p.gravity);
-  // Some at a time, since each step of a bead waits for the one before.
+  // Several beads at a time, because each step of a bead depends on the one before.
   constexpr int kTogether = 4;
   const auto fly = [&](double* const* record, int n) TWINCELL_LANES {
     Row v[kTogether], r[kTogether];
@@ -300,7 +303,7 @@ VelocityRange velocity_range_kernel(const VelocityRangeArgs& args) {
   for (; b < p.beads.end; ++b) {
     const double* record = p.records + kRecord<D> * b;
     const Row v = Row::load(record + (D == 2 ? 0 : 4));
-    // Of what is not a number and a number, the second.
+    // min(NaN, x) and max(NaN, x) are x.
     least = min(v, least);
     most = max(v, most);
     if constexpr (D == 2) {
@@ -317,7 +320,7 @@ VelocityRange velocity_range_kernel(const VelocityRangeArgs& args) {
   return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
-/// Marks listed pairs that may come near.
+/// Marks the listed pairs that may come close within the horizon (NearPairArgs).
 template <class Lanes, int D>
 void near_pair_kernel(const NearPairArgs& p) {
   using V = typename Lanes::V;
@@ -339,7 +342,7 @@ void near_pair_kernel(const NearPairArgs& p) {
   }
 }
 
-/// The passes of every product of laws, in one table per dimension.
+/// Table of the kernels of every combination of laws, one table per dimension.
 template <class Lanes>
 struct KernelTable {
   static constexpr std::size_t kNormals = std::variant_size_v<NormalAxis>;
@@ -351,7 +354,7 @@ struct KernelTable {
     using N = std::variant_alternative_t<kIndex / (kTangentials * kRollings), NormalAxis>;
     using T = std::variant_alternative_t<kIndex / kRollings % kTangentials, TangentialAxis>;
     using R = std::variant_alternative_t<kIndex % kRollings, RollingAxis>;
-    // Beads that do not turn cannot resist rolling.
+    // Beads that do not rotate have no rolling resistance.
     using Laws = std::conditional_t<T::kActs, LawSet<N, T, R>, LawSet<N, T, NoRolling>>;
     return {&pair_kernel<Lanes, Laws, D, kVelocity>,
             &wall_kernel<Lanes, Laws, D, kVelocity>,

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// One contact at a time, in plain C++: for machines without the vector units, and as the text against which
-/// they are tested.
+/// Scalar lanes: one contact at a time, in plain C++. For machines without these vector units, and as the
+/// reference against which the SIMD kernels are tested.
 
 #include "sim/kernels/kernels.hpp"
 
@@ -10,9 +10,9 @@ namespace twincell::sim {
 struct ScalarLanes {
   using V = double;
   static constexpr int kWidth = 1;
-  static constexpr int kBlock = 0;  ///< beads that integrate_blocks() would take at a time
+  static constexpr int kBlock = 0;  ///< beads per block of integrate_blocks(); 0: no blocks
 
-  /// Four numbers of a record.
+  /// Four consecutive numbers of a record.
   struct Row {
     double c[4];
     static Row all(double a) { return {{a, a, a, a}}; }

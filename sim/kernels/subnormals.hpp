@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Numbers too small to be normal.
+/// Flushing of subnormal numbers to 0.
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
@@ -10,9 +10,9 @@
 
 namespace twincell::sim {
 
-/// While it lives, this thread takes subnormal numbers for 0. A velocity that drag or a dashpot lets decay
-/// passes through them on its way to 0, and with them many processors are slow. Every kernel holds one in
-/// each of its threads: the bits stay the same in all of them.
+/// While an object of this class exists, its thread treats subnormal numbers as 0. A velocity that decays by
+/// drag or a dashpot passes through the subnormal range, where many processors are slow. Every solver creates
+/// such an object in each of its threads, so all of them give the same bits.
 class FlushSubnormals {
  public:
   FlushSubnormals() : before_(get()) { set(before_ | kFlush); }

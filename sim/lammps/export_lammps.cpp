@@ -20,15 +20,15 @@ namespace twincell::sim {
 
 namespace {
 
-/// A kind of contact in the numbers of pair_style gran/hooke: dampings are rates, which LAMMPS multiplies by
-/// m_eff.
+/// Parameters of a contact for pair_style gran/hooke. The damping coefficients are rates, which LAMMPS
+/// multiplies by m_eff.
 struct Hooke {
   double k_n = 0, k_t = 0, gamma_n = 0, gamma_t = 0, mu = 0;
   bool history = false, friction = false, clipped = false;
   bool operator==(const Hooke&) const = default;
 };
 
-/// Flat walls across one axis, where they are when the plate is at its mean.
+/// Flat walls perpendicular to one axis, at their positions for the mean position of the plate.
 struct FlatWalls {
   std::string name;
   Axis axis;
@@ -43,11 +43,12 @@ struct DeckBead {
   bool tracer;
 };
 
-/// A scene as far as LAMMPS has words for it. Below `beads_at_start` nothing knows the simulator.
+/// The content of a scene that LAMMPS can represent. The functions after beads_at_start() use only this, not
+/// the simulator.
 struct Model {
   int dimension = 2;
-  std::array<std::string, 3> boundary;  ///< per axis of ours, LAMMPS's words
-  Vec3 lower, upper;                    ///< corners of LAMMPS's box, which grows where beads fly
+  std::array<std::string, 3> boundary;  ///< LAMMPS's words, for each of our axes
+  Vec3 lower, upper;                    ///< corners of LAMMPS's box, which grows where there are no walls
   Hooke bead;
   std::vector<FlatWalls> walls;
   Vec3 gravity;
@@ -72,11 +73,11 @@ Overloaded(F...) -> Overloaded<F...>;
   throw ConfigError(scene.where(key), why);
 }
 
-/// \param table the scene's table with what is special to this kind of contact
+/// Converts contact laws. \param table the table of the scene with the keys for this kind of contact
 Hooke hooke_of(const ContactLaws& laws, double m_eff, const Scene& scene, const std::string& table) {
   const auto no_word = [&](const char* axis, std::string_view law) {
     refuse(scene, std::string("contact.") + axis,
-           fmt::format("LAMMPS's gran/hooke styles do not know the law '{}'.", law));
+           fmt::format("LAMMPS's gran/hooke styles do not support the law '{}'.", law));
   };
   Hooke h;
   const auto spring_dashpot = [&](const LinearSpringDashpot& law) {
@@ -89,7 +90,7 @@ Hooke hooke_of(const ContactLaws& laws, double m_eff, const Scene& scene, const 
     h.friction = true;
   };
   std::visit(Overloaded{[&](const LinearSpringDashpot& law) { spring_dashpot(law); },
-                        [&](const ClippedSpringDashpot& law) {
+                        [&](const NoTensionSpringDashpot& law) {
                           spring_dashpot(law);
                           h.clipped = true;
                         },
@@ -103,7 +104,7 @@ Hooke hooke_of(const ContactLaws& laws, double m_eff, const Scene& scene, const 
                           if (law.k_t == 0)
                             refuse(
                                 scene, table + ".k_t",
-                                "LAMMPS's history style divides by it; 0 is for all contacts or for none.");
+                                "LAMMPS's history style divides by it; set 0 for all contacts or for none.");
                         },
                         [&](const auto& law) { no_word("tangential", law.kName); }},
              laws.tangential);
@@ -111,19 +112,19 @@ Hooke hooke_of(const ContactLaws& laws, double m_eff, const Scene& scene, const 
              laws.rolling);
   constexpr double kMostFriction = 1e4;  // LAMMPS stops at a larger xmu
   if (h.mu > kMostFriction)
-    refuse(scene, table + ".mu", fmt::format("{:g} is more than LAMMPS takes, {:g}.", h.mu, kMostFriction));
+    refuse(scene, table + ".mu", fmt::format("{:g} exceeds LAMMPS's limit, {:g}.", h.mu, kMostFriction));
   return h;
 }
 
-/// LAMMPS's dampings are rates, the same for all masses: constants and restitutions need equal ones.
+/// LAMMPS's damping coefficients are rates, the same for all masses; damping constants and restitutions
+/// require equal masses.
 void refuse_unlike_masses(const Scene& scene, const Plan& plan) {
   const auto check = [&](const auto& law) {
     if constexpr (requires { law.damping; })
       if (law.damping.constant != 0 || law.damping.root != 0)
-        refuse(
-            scene, "contact",
-            "beads of unlike masses need their dampings as rates, gamma_n and gamma_t: LAMMPS knows one rate "
-            "for all of them.");
+        refuse(scene, "contact",
+               "beads of unequal masses need their damping as rates, gamma_n and gamma_t: LAMMPS has one "
+               "rate for all of them.");
   };
   const auto check_laws = [&](const ContactLaws& laws) {
     std::visit(check, laws.normal);
@@ -133,7 +134,8 @@ void refuse_unlike_masses(const Scene& scene, const Plan& plan) {
   for (const ContactLaws& laws : plan.wall_laws) check_laws(laws);
 }
 
-/// The walls of a plan, opposite ones with the same law as one fix, which looks at each bead once.
+/// The walls of a plan. Opposite walls with the same law share one fix, which then visits each bead only
+/// once.
 std::vector<FlatWalls> flat_walls(const Scene& scene, const Plan& plan) {
   const std::map<std::string, std::string> table = {
       {"left", "sides"}, {"right", "sides"}, {"front", "plates"}, {"back", "plates"}};
@@ -143,13 +145,13 @@ std::vector<FlatWalls> flat_walls(const Scene& scene, const Plan& plan) {
     int axis = 0;
     wall.n.cwiseAbs().maxCoeff(&axis);
     if (std::abs(wall.n[axis]) != 1)
-      refuse(scene, "cell.side_tilt", "LAMMPS's fix wall/gran knows walls along the axes only.");
+      refuse(scene, "cell.side_tilt", "LAMMPS's fix wall/gran supports only walls along the axes.");
     const auto known = table.find(wall.name);
     const Hooke law = hooke_of(plan.wall_laws[w], scene.mass, scene,
                                "contact." + (known == table.end() ? wall.name : known->second));
     const double at = wall.n[axis] * wall.offset;
     const bool lower = wall.n[axis] > 0;
-    // A fix keeps one history per bead: in a narrow gap it would be carried from one wall to the other.
+    // A fix has one history per bead: in a narrow gap the history would pass from one wall to the other.
     const auto opposite = std::find_if(all.begin(), all.end(), [&](const FlatWalls& o) {
       return o.axis == static_cast<Axis>(axis) && o.move == wall.moves && o.law == law && !lower &&
              !o.upper && o.lower && at - *o.lower > 4 * scene.radius;
@@ -165,12 +167,13 @@ std::vector<FlatWalls> flat_walls(const Scene& scene, const Plan& plan) {
   return all;
 }
 
-/// Everything of a model but its beads.
+/// A model without its beads.
 Model model_of(const Scene& scene, const Plan& plan) {
+  // Features without an equivalent in LAMMPS.
   if (!integrator_named(scene.integrator).lammps)
     refuse(scene, "time.integrator",
            fmt::format("LAMMPS integrates as \"verlet\", not as \"{}\".", scene.integrator));
-  if (!scene.envelope.points.empty()) refuse(scene, "drive", "LAMMPS's walls know no ramp and no schedule.");
+  if (!scene.envelope.points.empty()) refuse(scene, "drive", "LAMMPS's walls have no ramp and no schedule.");
   if (scene.plate_drag > 0) refuse(scene, "cell.plate_drag", "LAMMPS has no drag against a moving cell.");
   if (scene.spread != SizeSpread::none || scene.intruder) refuse_unlike_masses(scene, plan);
   Model m;
@@ -190,8 +193,7 @@ Model model_of(const Scene& scene, const Plan& plan) {
   m.phases = scene.phases;
   m.resolved = scene.resolved;
 
-  // Where there are walls the box is fixed and reaches as far as they travel; elsewhere it grows with the
-  // bed.
+  // With walls the box is fixed and includes their stroke; elsewhere it grows with the bed.
   m.lower = Vec3(0, plan.dimension == 3 ? 0 : -scene.radius, 0);
   m.upper = Vec3(scene.width, plan.dimension == 3 ? scene.depth : scene.radius, scene.height.value_or(0));
   const std::array<double, 3> period = scene.period();
@@ -213,25 +215,25 @@ Model model_of(const Scene& scene, const Plan& plan) {
     }
   }
 
+  // Limits of LAMMPS: the quarter period of `wiggle`, and the number of steps of a run.
   if (m.drive.amplitude > 0 && m.steps_per_period % 4 != 0)
-    refuse(
-        scene, "time.phases",
-        fmt::format("the cycle's {} steps have no whole quarter, by which LAMMPS's cosine is shifted to our "
-                    "sine; make the phases, {}, a multiple of 4.",
-                    m.steps_per_period, m.phases));
+    refuse(scene, "time.phases",
+           fmt::format("the cycle's {} steps are not divisible by 4, as the shift of LAMMPS's cosine to our "
+                       "sine requires; make the phases, {}, a multiple of 4.",
+                       m.steps_per_period, m.phases));
   constexpr std::int64_t kLongestRun = 2'000'000'000;  // steps; LAMMPS counts those of a run in 32 bits
   if (m.steps_per_period > kLongestRun / (m.discard + m.cycles))
     refuse(scene, "time.cycles",
-           fmt::format("{} cycles of {} steps are more than the {:.0e} steps that LAMMPS does in a run.",
+           fmt::format("{} cycles of {} steps exceed the {:.0e} steps that LAMMPS can do in a run.",
                        m.discard + m.cycles, m.steps_per_period, static_cast<double>(kLongestRun)));
   return m;
 }
 
 std::vector<DeckBead> beads_of_frame(const Scene& scene, const TrajectoryInfo& info, const Frame& frame,
                                      bool rotation, const std::string& name) {
-  if (!info.columns.velocity) refuse(scene, "", name + " has no velocities, from which a run could go on.");
+  if (!info.columns.velocity) refuse(scene, "", name + " has no velocities, which a run needs to continue.");
   if (rotation && !info.columns.spin)
-    refuse(scene, "", name + " has no spins, but in this scene friction turns beads.");
+    refuse(scene, "", name + " has no spins, but in this scene friction rotates beads.");
   if (info.box.dimension != scene.dimension)
     refuse(scene, "cell.dimension",
            fmt::format("{}, but {} has {}.", scene.dimension, name, info.box.dimension));
@@ -252,11 +254,11 @@ std::vector<DeckBead> beads_of_frame(const Scene& scene, const TrajectoryInfo& i
   if (const std::size_t announced = scene.n_beads.value_or(0) + (scene.intruder ? 1 : 0);
       scene.n_beads && announced != beads.size())
     refuse(scene, "beads.count",
-           fmt::format("{} beads were announced, the frame of {} holds {}.", announced, name, beads.size()));
+           fmt::format("{} beads were specified, but {} contains {}.", announced, name, beads.size()));
   return beads;
 }
 
-/// The bed as the drive finds it.
+/// The bed at the start of the drive.
 std::vector<DeckBead> beads_at_start(const Simulation& settled) {
   System system = settled.system();
   begin_drive(settled.scene(), settled.plan(), system);
@@ -268,8 +270,8 @@ std::vector<DeckBead> beads_at_start(const Simulation& settled) {
   return beads;
 }
 
-/// Our axes in LAMMPS's: it wants the plane of a 2D system to be (x, y), so there our z is its y and our y
-/// its -z.
+/// Converts a vector to LAMMPS's axes. LAMMPS requires the plane of a 2D system to be (x, y), so our z is its
+/// y and our y is its -z.
 Vec3 to_lammps(const Model& m, const Vec3& v) {
   return m.dimension == 2 ? Vec3(v.x(), v.z(), -v.y()) : v;
 }
@@ -279,7 +281,7 @@ char axis_name(const Model& m, Axis axis) {
 }
 
 std::string triple(const Vec3& v) {
-  // + 0.0 makes -0 a plain 0.
+  // The addition of 0.0 converts -0 to 0.
   return fmt::format("{} {} {}", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
 }
 
@@ -313,8 +315,9 @@ std::string boundary_words(const Model& m) {
                           : fmt::format("{}", fmt::join(m.boundary, " "));
 }
 
-/// fix wall/gran of each pair of walls. `wiggle` displaces a wall by A - A cos(omega t) from where it is
-/// defined, so the mean of a wall that is driven along its normal lies A above that.
+/// fix wall/gran of each pair of walls. `wiggle` displaces a wall by A - A cos(omega t) from the position at
+/// which it is defined, so the mean position of a wall driven along its normal is A above the defined
+/// position.
 std::string wall_fixes(const Model& m) {
   std::string text;
   for (const FlatWalls& w : m.walls) {
@@ -353,10 +356,11 @@ std::string commented(const std::string& text) {
 std::string input_text(const Model& m) {
   const std::int64_t per_phase = m.steps_per_period / m.phases;
   std::string text = fmt::format(
-      "# {}: a scene for LAMMPS; docs/lammps.md says what is the same in both programs.\n"
+      "# {}: a scene for LAMMPS; docs/lammps.md lists the features that both programs share.\n"
       "# Reduced units: bead diameter, bead mass, gravity.{}\n"
       "# Then: {}\n\n",
       version_line(), m.dimension == 2 ? " The height is y." : "", import_command(m));
+  // Box and beads.
   text += fmt::format(
       "units           lj\n"
       "dimension       {}\n"
@@ -366,10 +370,11 @@ std::string input_text(const Model& m) {
       "comm_modify     vel yes\n"
       "read_data       {}\n",
       m.dimension, boundary_words(m), LammpsDeck::kDataName);
-  // Exactly, where it can be said in one line; densities give masses to rounding.
+  // The exact mass, if all masses are equal; densities give masses only to rounding.
   const double mass = m.beads.front().mass;
   if (std::all_of(m.beads.begin(), m.beads.end(), [&](const DeckBead& b) { return b.mass == mass; }))
     text += fmt::format("set             group all mass {}\n", mass);
+  // Contact law of the beads and time step.
   text += fmt::format(
       "\n# k_n k_t gamma_n gamma_t mu; LAMMPS multiplies the rates gamma by m_eff, which at a wall is the "
       "bead's mass.\n"
@@ -379,6 +384,7 @@ std::string input_text(const Model& m) {
       "neigh_modify    delay 0 every 1 check yes\n"
       "timestep        {}\n\n",
       m.bead.history ? "hooke/history" : "hooke", hooke_words(m.bead), m.skin, m.dt);
+  // Walls, gravity and integration. The step counter is set so that `wiggle` gives the phase of the drive.
   if (m.drive.amplitude > 0)
     text += fmt::format(
         "# wiggle moves a wall by A - A cos(w t), t from the step at which its fix is defined. Defined A "
@@ -394,7 +400,8 @@ std::string input_text(const Model& m) {
   text += fmt::format("fix             motion all {}\n\n", !m.rotation ? "nve"
                                                            : m.disc    ? "nve/sphere disc"
                                                                        : "nve/sphere");
-  // Unwrapped where there are periods, so that displacements are differences.
+  // Output and run. Unwrapped coordinates in periodic boxes, so that displacements are differences of
+  // positions.
   const bool periods =
       m.boundary[0] == "p" || (m.dimension == 3 && m.boundary[1] == "p") || m.boundary[2] == "p";
   text += fmt::format(
@@ -420,11 +427,11 @@ LammpsDeck deck_of(Model& m, const Scene& scene, const Plan& plan) {
 }  // namespace
 
 LammpsDeck lammps_deck(const Scene& scene, Progress& progress) {
-  static_cast<void>(
-      model_of(scene, make_plan(scene)));  // what has no words is refused before the bed settles
+  // Unsupported features are refused before the bed settles.
+  static_cast<void>(model_of(scene, make_plan(scene)));
   if (scene.in_motion)
     refuse(scene, "start.in_motion",
-           "is of a start that another file holds; export that file's frame (--frame).");
+           "refers to a start in another file; export the frame of that file (--frame).");
   const Simulation start(scene, progress);
   Model m = model_of(scene, start.plan());
   m.first_step = first_step(start.plan(), scene.phase.value_or(0));
@@ -437,14 +444,14 @@ LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, s
   Model m = model_of(scene, plan);
   const TrajectoryInfo& info = trajectory.info();
   if (index >= trajectory.n_frames())
-    refuse(
-        scene, "",
-        fmt::format("frame {} was asked for, {} has {}.", index, trajectory.name(), trajectory.n_frames()));
+    refuse(scene, "",
+           fmt::format("frame {} was requested, but {} has {} frames.", index, trajectory.name(),
+                       trajectory.n_frames()));
   Frame frame;
   trajectory.read(index, frame);
   const std::string name = fmt::format("frame {} of {}", index, trajectory.name());
   if (frame.phase < 0 || info.phases_per_cycle <= 0)
-    refuse(scene, "", name + " has no drive phase, so the plate's place in it is unknown.");
+    refuse(scene, "", name + " has no drive phase, so the position of its plate is unknown.");
   const std::int64_t steps = m.steps_per_period * frame.phase;
   if (steps % info.phases_per_cycle != 0)
     refuse(scene, "time.phases",
@@ -456,8 +463,8 @@ LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, s
       m.drive.displacement(static_cast<double>(m.first_step) / static_cast<double>(m.steps_per_period));
   if (!std::isnan(frame.plate_height) && std::abs(frame.plate_height - ours) > kSamePlate)
     refuse(scene, "drive",
-           fmt::format("the plate of {} is at {:g}, this drive puts it at {:g}.", name, frame.plate_height,
-                       ours));
+           fmt::format("the plate of {} is at {:g}, but this drive puts it at {:g}.", name,
+                       frame.plate_height, ours));
   m.beads = beads_of_frame(scene, info, frame, m.rotation, name);
   return deck_of(m, scene, plan);
 }

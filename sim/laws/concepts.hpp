@@ -1,15 +1,15 @@
 #pragma once
 /// \file
-/// What a contact law declares. A law is a small value type: the word by which a scene asks for it, its
-/// parameters and the keys it reads them from, the shortest time it makes the integrator resolve, the
-/// constants it needs per kind of pair, and one formula. `None` is a law too. The kernels know laws only by
-/// this.
+/// Concepts that define a contact law. A law is a small value type. It declares the word by which a scene
+/// selects it, its parameters and the keys from which it reads them, the shortest time that the integrator
+/// must resolve, its constants per kind of pair, and one formula. `None` is a law too. Kernels use laws only
+/// through these concepts.
 ///
-/// Convention (docs/conventions.md): n points from j to i, overlap delta = R_i + R_j - r > 0 in contact,
-/// v_n = v_ij . n < 0 while approaching; in the plane t = (-n_z, n_x) and v_t = v_ij . t - (R_i w_i + R_j
-/// w_j). Forces are those on i. Reduced units throughout. Formulas are templates on the type of number
-/// (real.hpp) and, for friction and rolling, on the tangent plane (tangent.hpp), so that one text serves one
-/// contact and eight, 2D and 3D.
+/// Convention (docs/conventions.md): n points from j to i; the overlap is delta = R_i + R_j - r > 0 in
+/// contact; v_n = v_ij . n < 0 during approach; in the plane t = (-n_z, n_x) and v_t = v_ij . t - (R_i w_i +
+/// R_j w_j). Forces act on i. All quantities are in reduced units. Formulas are templates on the number type
+/// (real.hpp) and, for friction and rolling, on the tangent plane (tangent.hpp), so one formula serves one
+/// contact or eight, in 2D and 3D.
 
 #include <concepts>
 #include <string>
@@ -20,7 +20,7 @@
 
 namespace twincell::sim {
 
-/// What every law has.
+/// Members that every law has.
 template <class Law>
 concept ContactLaw = requires(const Law law, const ContactTable& table, const PairScale& pair) {
   { Law::kWord } -> std::convertible_to<std::string_view>;
@@ -31,24 +31,25 @@ concept ContactLaw = requires(const Law law, const ContactTable& table, const Pa
   Law::kKeys;
 };
 
-/// Normal force along n from overlap and normal velocity; kMemory numbers live as long as the contact, 0 at
-/// first touch.
+/// Normal force along n from overlap and normal velocity. The contact remembers kMemory numbers, which are 0
+/// at first touch.
 template <class Law>
 concept NormalLaw = ContactLaw<Law> &&
     requires(const Law law, const PairScale& pair, const float* c, float x, float* m) {
   { Law::kMemory } -> std::convertible_to<int>;
   { Law::force(c, x, x, m) } -> std::same_as<float>;       // (constants, overlap, v_n, memory)
   { law.shortest_time(pair, x) } -> std::same_as<double>;  // (pair, impact speed), t0
-  { law.largest_force(x) } -> std::same_as<double>;        // at an overlap: sets the grain of summed forces
+  { law.largest_force(x) } -> std::same_as<double>;  // at an overlap; sets the rounding quantum of force sums
 };
 
-/// A tangential law whose force is also given the overlap, as its last argument: kReadsOverlap = true.
+/// A tangential law whose force also takes the overlap, as its last argument: kReadsOverlap = true.
 template <class Law>
 concept ReadsOverlap = requires {
   requires Law::kReadsOverlap;
 };
 
-/// A tangential law's force of (constants, v_t, F_n, dt, xi), and of the overlap where the law reads it.
+/// Evaluates a tangential law: force from (constants, v_t, F_n, dt, xi), and from the overlap if the law
+/// reads it.
 template <class Law, class V, class T, class X>
 [[gnu::always_inline]] inline T tangential_force(const V* c, const T& v_t, V f_n, V dt, X& xi,
                                                  [[maybe_unused]] V overlap) {
@@ -58,7 +59,7 @@ template <class Law, class V, class T, class X>
     return Law::force(c, v_t, f_n, dt, xi);
 }
 
-/// Tangential force. kActs: beads turn; kHistory: xi lives as long as the contact.
+/// Tangential force. kActs: beads rotate. kHistory: the contact remembers xi.
 template <class Law>
 concept TangentialLaw = ContactLaw<Law> && requires(const Law law, const PairScale& pair, const float* c,
                                                     float x, Tangent<float, 3> t, Tangent<float, 3> kept) {
@@ -68,7 +69,7 @@ concept TangentialLaw = ContactLaw<Law> && requires(const Law law, const PairSca
   { law.shortest_time(pair) } -> std::same_as<double>;  // t0
 };
 
-/// Torque against rolling on i (the opposite on j); its angle lives as long as the contact.
+/// Torque against rolling on i (the opposite torque acts on j). The contact remembers the rolled angle theta.
 template <class Law>
 concept RollingLaw = ContactLaw<Law> && requires(const Law law, const PairScale& pair, const float* c,
                                                  float x, Tangent<float, 3> t, Tangent<float, 3> kept) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The laws that a scene chose for one kind of contact.
+/// The contact laws that a scene selects for one kind of contact.
 
 #include "sim/laws/axes.hpp"
 
@@ -13,12 +13,12 @@ struct ContactLaws {
   RollingAxis rolling;
 };
 
-/// Whether these laws are a tangential spring with history, next to a normal force without memory and no
-/// resistance to rolling.
+/// Whether these laws are a tangential spring with history, combined with a normal force without memory and
+/// without rolling resistance.
 bool remembers(const ContactLaws& laws);
 
-/// Whether one isolated collision under these laws can be integrated by itself: the forces are smooth but for
-/// the Coulomb limit, and depend on the present only or on a tangential spring.
+/// Whether one isolated collision under these laws can be integrated separately: apart from the Coulomb limit
+/// the forces are smooth, and they depend only on the present motion or also on a tangential spring.
 bool integrable_alone(const ContactLaws& laws);
 
 }  // namespace twincell::sim

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Which laws let one isolated collision be integrated by itself.
+/// Conditions on contact laws for the separate integration of one isolated binary collision.
 
 #include <concepts>
 
@@ -8,27 +8,29 @@
 
 namespace twincell::sim {
 
-/// A normal force that attracts while surfaces touch: a contact may last for ever, and F_n may rise through
-/// 0.
+/// A normal force that attracts while the surfaces touch: a contact may last for ever, and F_n may rise
+/// through 0.
 template <class N>
 concept Attracts = requires {
   requires N::kAttracts;
 };
 
-/// One formula for all overlaps and velocities, without memory, which repels at first touch.
+/// A normal force given by one formula for all overlaps and velocities, without memory, and repulsive at
+/// first touch.
 template <class N>
 concept SmoothNormal = N::kMemory == 0 && !Attracts<N> && requires {
   N::kSmooth;
 };
 
-/// No history, and a Coulomb limit that says where it binds.
+/// A tangential law without history: either no force at all, or one that provides slack(), its distance to
+/// the Coulomb limit.
 template <class T>
 concept PresentTangential = !T::kActs || (!T::kHistory && requires(const double* c, double x) {
   { T::slack(c, x, x) } -> std::same_as<double>;
 });
 
-/// A normal force without memory that repels at first touch, next to a tangential spring of constant
-/// stiffness that has one.
+/// True for a normal force without memory that repels at first touch, combined with a tangential spring that
+/// has history and a stiffness independent of the overlap.
 template <class N, class T>
 inline constexpr bool kRemembers =
     N::kMemory == 0 && !Attracts<N> && T::kActs && T::kHistory && !ReadsOverlap<T>;

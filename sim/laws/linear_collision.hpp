@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What the linear laws share: damping in its three spellings, and the closed forms of one collision.
+/// Common code of the linear laws: the damping parameters in their three forms, and the closed-form solution
+/// of one collision.
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +11,14 @@
 
 namespace twincell::sim {
 
-/// What one head-on collision comes to.
+/// Result of one head-on collision.
 struct Collision {
-  double duration;       ///< t0; infinite if the spring never drives the beads apart
+  double duration;       ///< t0; infinite if the beads never separate
   double restitution;    ///< e_n
-  double damping_ratio;  ///< zeta; from 1 on overdamped
+  double damping_ratio;  ///< zeta; overdamped for zeta >= 1
 };
 
-/// The closed forms of one collision of the linear law (w0 = sqrt(k/m_eff), beta = eta/(2 m_eff)).
+/// Closed-form solution of one collision under the linear law (w0 = sqrt(k/m_eff), beta = eta/(2 m_eff)).
 struct LinearCollision {
   double w0, beta;
 
@@ -33,8 +34,8 @@ struct LinearCollision {
     return damping_ratio() < 1 ? std::exp(-beta * contact_time()) : 0;
   }
   [[nodiscard]] Collision with_pull() const { return {contact_time(), restitution(), damping_ratio()}; }
-  /// The same where the force never pulls: the contact ends when it is zero (Schwager & Poeschel 2007,
-  /// eqs. 20-22). Overdamped beads part too.
+  /// Duration, restitution and damping ratio if the force never pulls: the contact ends when the force is
+  /// zero (Schwager & Poeschel 2007, eqs. 20-22). Overdamped beads separate too.
   [[nodiscard]] Collision without_pull() const {
     const double square = w0 * w0 - beta * beta;
     const double w = std::sqrt(std::abs(square));
@@ -43,7 +44,7 @@ struct LinearCollision {
                                 : std::log((beta + w) / (beta - w)) / w;
     return {t, std::exp(-beta * t), damping_ratio()};
   }
-  /// What a step must resolve: t_c; where damping is strong the shorter of half an undamped period and the
+  /// Time that a step must resolve: t_c; with strong damping, the shorter of half an undamped period and the
   /// decay time of the dashpot.
   [[nodiscard]] double shortest_time() const {
     const double swing = damping_ratio() < 1 ? contact_time() : std::numbers::pi / w0;
@@ -51,9 +52,9 @@ struct LinearCollision {
   }
 };
 
-/// v_t'/v_t of the surfaces of an impact that lasts t_c and does not slip, with a tangential spring and
-/// dashpot: exp(-a t_c) (cos(O t_c) - (a/O) sin(O t_c)), a = eta_t/(2 m_t), O^2 = k_t/m_t - a^2 (the damped
-/// oscillator; O imaginary: cosh and sinh).
+/// Ratio v_t'/v_t of the tangential surface velocities after and before an impact of duration t_c without
+/// slip, under a tangential spring and dashpot: exp(-a t_c) (cos(O t_c) - (a/O) sin(O t_c)), a = eta_t/(2
+/// m_t), O^2 = k_t/m_t - a^2 (the damped oscillator; for imaginary O, cosh and sinh).
 inline double sticking_ratio(double k_t, double eta_t, double inv_m_t, double t_c) {
   const double a = eta_t * inv_m_t / 2, square = k_t * inv_m_t - a * a, root = std::sqrt(std::abs(square));
   const double even = square > 0 ? std::cos(root * t_c) : std::cosh(root * t_c);
@@ -61,15 +62,15 @@ inline double sticking_ratio(double k_t, double eta_t, double inv_m_t, double t_
   return std::exp(-a * t_c) * (even - a * odd);
 }
 
-/// -2 ln(e)/sqrt(pi^2 + ln^2 e): times sqrt(k m_eff) it is the eta that gives restitution e in (0, 1]
+/// -2 ln(e)/sqrt(pi^2 + ln^2 e); multiplied by sqrt(k m_eff) it is the eta that gives restitution e in (0, 1]
 /// (Bhateja et al. 2016, eq. A9, with the sign that dissipates).
 [[gnu::always_inline]] inline double damping_of_restitution(double e) {
   const double l = std::log(e);
   return -2 * l / std::sqrt(std::numbers::pi * std::numbers::pi + l * l);
 }
 
-/// eta(m_eff) of a dashpot given as a rate (gamma), a constant (c) or a restitution; usually one term is not
-/// zero.
+/// Damping coefficient eta(m_eff) of a dashpot given as a rate (gamma), a constant (c) or a restitution.
+/// Usually only one term is nonzero.
 struct ViscousDamping {
   double rate = 0;      ///< gamma, 1/t0: eta = gamma m_eff
   double constant = 0;  ///< c, m/t0: eta = c
@@ -78,8 +79,8 @@ struct ViscousDamping {
   [[nodiscard]] ViscousDamping times(double f) const { return {f * rate, f * constant, f * root}; }
 };
 
-/// Normal damping of a linear law: `gamma_n` (a rate, Fortini & Huang 2015), `c_n` (a constant) or
-/// `restitution` (Bhateja et al. 2016); none of them: undamped.
+/// Reads the normal damping of a linear law: `gamma_n` (a rate, Fortini & Huang 2015), `c_n` (a constant) or
+/// `restitution` (Bhateja et al. 2016). Without any of these keys the contact is undamped.
 inline ViscousDamping read_normal_damping(const ContactTable& t, double stiffness) {
   const std::string key = t.which_of(normal_damping_keys());
   if (key == "gamma_n") return {t.required(key, 0), 0, 0};
@@ -95,12 +96,12 @@ inline ViscousDamping read_normal_damping(const ContactTable& t, double stiffnes
   return {};
 }
 
-/// Stiffness `k_n`, m g/sigma, default 1e6 (Fortini & Huang 2015, Table I).
+/// Reads the stiffness `k_n`, m g/sigma, default 1e6 (Fortini & Huang 2015, Table I).
 inline double read_stiffness(const ContactTable& t) {
   return t.number("k_n", 0, 1e12, true).value_or(1e6);
 }
 
-/// Tangential damping: `gamma_t`, `c_t`, or `c_t_over_c_n` times the normal dashpot.
+/// Reads the tangential damping: `gamma_t`, `c_t`, or `c_t_over_c_n` times the normal dashpot.
 inline ViscousDamping read_tangential_damping(const ContactTable& t) {
   const std::string key = t.which_of(tangential_damping_keys());
   if (key == "gamma_t") return {t.required(key, 0), 0, 0};

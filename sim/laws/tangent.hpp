@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The tangent plane of a contact: a signed number in 2D, a vector in 3D. Laws of friction and of rolling are
-/// written for both.
+/// Vectors in the tangent plane of a contact: a signed number in 2D, a vector in 3D. Laws of friction and of
+/// rolling are written once for both.
 
 #include "sim/laws/real.hpp"
 
@@ -55,14 +55,14 @@ inline V norm(const Tangent<V, K>& t) {
   }
 }
 
-/// A vector no longer than a limit, and where it had to be cut.
+/// A vector truncated to a maximum length, and a mask of where it was truncated.
 template <class V, int K>
 struct Limited {
   Tangent<V, K> value;
   decltype(V() > V()) cut;
 };
 
-/// Cuts t to length `limit` >= 0, keeping its direction (or sign). A zero vector stays zero.
+/// Truncates t to length `limit` >= 0 and keeps its direction (or sign). A zero vector stays zero.
 template <class V, int K>
 inline Limited<V, K> limited(const Tangent<V, K>& t, V limit) {
   if constexpr (K == 1) {
@@ -71,7 +71,7 @@ inline Limited<V, K> limited(const Tangent<V, K>& t, V limit) {
   } else {
     const V length = norm(t);
     const auto cut = length > limit;
-    // Where it is cut, length > limit >= 0; elsewhere the quotient is not used, but must be finite.
+    // Where t is truncated, length > limit >= 0. Elsewhere the quotient is not used, but it must be finite.
     const V factor = select(cut, limit / max(length, V(kTiny)), V(1.0));
     return {factor * t, cut};
   }

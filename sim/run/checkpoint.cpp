@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kVersion = "checkpoint_version";
 
-/// Rows of doubles: beads, forces and vectors are nothing else.
+/// Beads, forces and vectors are stored as rows of doubles.
 template <class Row>
 constexpr hsize_t kColumns = sizeof(Row) / sizeof(double);
 template <class Row>
@@ -30,7 +30,7 @@ static_assert(sizeof(Bead) == 12 * sizeof(double) && kRowOfDoubles<Bead>);
 static_assert(sizeof(Force) == 6 * sizeof(double) && kRowOfDoubles<Force>);
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && kRowOfDoubles<Vec3>);
 
-/// Contacts as tables.
+/// Contact memories in table form.
 struct ContactTables {
   std::vector<int> pairs;  ///< i, j
   std::vector<double> values;
@@ -45,7 +45,7 @@ ContactTables tables_of(const std::vector<ContactMemory>& contacts) {
   return t;
 }
 
-/// What both directions share: the digest of everything that passes.
+/// Common base of Writer and Reader: the digest of all passed data.
 class Archive {
  public:
   explicit Archive(hid_t group) : group_(group) {}
@@ -116,12 +116,12 @@ class Reader : public Archive {
   }
 };
 
-/// Every field once, for both directions. `Numbers` of other types go through these.
+/// The fields of a checkpoint that need a conversion. pass() lists every field once, for both directions.
 struct Plain {
   std::int64_t driven = 0, quiet = 0, reached = 0;
   ContactTables contacts;
   std::vector<std::int64_t> segment_frames;
-  std::string segment_digests;    ///< one a line
+  std::string segment_digests;    ///< one per line
   std::vector<Vec3> temperature;  ///< all, coarse
 };
 
@@ -168,13 +168,13 @@ Plain plain_of(const Checkpoint& c) {
   return p;
 }
 
-/// Whether the lists speak of the same beads, contacts and segments, as the program writes them.
+/// Whether the lists agree in the numbers of beads, contacts and segments, as written by this program.
 bool agree(const Plain& p, const Checkpoint& c) {
   const std::size_t beads = c.state.beads.size(), contacts = p.contacts.pairs.size() / 2;
   const auto of_each = [&](std::size_t n) { return n == 0 || n == beads; };
   for (std::size_t k = 0; k < p.contacts.pairs.size(); ++k) {
     const int slot = p.contacts.pairs[k];
-    // The second of a pair is a wall where it is negative.
+    // The second index of a pair is negative for a wall.
     if (slot >= static_cast<int>(beads) || (k % 2 == 0 && slot < 0)) return false;
   }
   const bool frames =
@@ -223,7 +223,7 @@ std::map<std::string, std::string> keys_of(const std::string& toml) {
       key = (table + line.substr(0, equals));
       keys[key] = line.substr(equals + 3);
     } else {
-      keys[key] += line;  // a list over several lines
+      keys[key] += line;  // a list that spans several lines
     }
   }
   return keys;
@@ -269,9 +269,9 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
     if (digest.size() != 1 || digest[0] != reader.digest()) refuse("", damaged);
     if (!agree(plain, c)) refuse("", damaged);
     take(plain, c);
-  } catch (const RunError&) {  // HDF5 stumbled over the file
+  } catch (const RunError&) {  // HDF5 could not read the file
     refuse("", damaged);
-  } catch (const std::bad_alloc&) {  // over a size that cannot be
+  } catch (const std::bad_alloc&) {  // a size in the file is impossible
     refuse("", damaged);
   } catch (const std::length_error&) {
     refuse("", damaged);
@@ -281,7 +281,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
 
 void require_same_run(const Scene& scene, const Checkpoint& checkpoint,
                       const std::filesystem::path& checkpoint_name) {
-  const std::string remedy = fmt::format("remove {} to begin anew.", checkpoint_name.string());
+  const std::string remedy = fmt::format("remove {} to start again.", checkpoint_name.string());
   const auto now = keys_of(scene.resolved), then = keys_of(checkpoint.scene);
   const auto value = [](const auto& keys, const std::string& key) {
     const auto at = keys.find(key);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A run's state as one HDF5 file, whole or not at all.
+/// Checkpoint: the state of a run in one HDF5 file, written completely or not at all.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,33 +11,35 @@
 
 namespace twincell::sim {
 
-/// Version of the state file; another one is refused.
+/// Version of the state file; files of any other version are refused.
 inline constexpr int kCheckpointVersion = 3;
 
-/// A finished file of frames that the state counts on.
+/// A finished file of frames that belongs to the state.
 struct Segment {
   std::int64_t frames = 0;
   std::string sha256;
 };
 
-/// What a run can be taken up from.
+/// Everything that is needed to resume a run.
 struct Checkpoint {
   std::string scene;       ///< resolved, as TOML
-  std::string provenance;  ///< of the run that began, JSON
+  std::string provenance;  ///< of the original run, JSON
   std::string program;     ///< version_line() of the program that wrote it
   std::vector<Segment> segments;
   RunState state;
 };
 
-/// Written beside its name, brought to the disk, renamed. A SHA-256 over all numbers and texts goes with it.
+/// Writes a temporary file in the same folder, flushes it to disk and renames it. The file contains a SHA-256
+/// digest of all its numbers and texts.
 /// \throws RunError
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint);
 
+/// Reads a checkpoint and verifies its digest.
 /// \throws InputError if it is missing, damaged in any number, or of another version
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
-/// Whether a run of this scene by this program may go on from the checkpoint.
-/// \throws ConfigError naming the first key in which the scenes differ, or both programs
+/// Checks that a run of this scene with this program may continue from the checkpoint.
+/// \throws ConfigError naming the first key in which the scenes differ, or both program versions
 void require_same_run(const Scene& scene, const Checkpoint& checkpoint,
                       const std::filesystem::path& checkpoint_name);
 

@@ -40,8 +40,8 @@ CheckpointFolder::CheckpointFolder(fs::path folder, const Scene& scene,
   std::error_code ec;
   fs::create_directory(folder_, ec);
   if (ec || !fs::is_directory(folder_, ec) || ::access(folder_.c_str(), R_OK | W_OK | X_OK) != 0)
-    throw ConfigError(where, "the folder of checkpoints cannot be made or written to.");
-  // Held until the process ends, however it ends.
+    throw ConfigError(where, "the checkpoint folder cannot be created or written to.");
+  // The lock lasts until the process ends, normally or not.
   lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     throw ConfigError(where, "another process is running this scene into the same output.");
@@ -64,12 +64,12 @@ CheckpointFolder::CheckpointFolder(fs::path folder, const Scene& scene,
 CheckpointFolder::~CheckpointFolder() {
   writer_.reset();
   std::error_code ec;
-  if (!found_) fs::remove(folder_, ec);  // nothing was saved; what others put there stays
+  if (!found_) fs::remove(folder_, ec);  // nothing was saved; foreign files remain
   if (lock_ >= 0) ::close(lock_);
 }
 
 void CheckpointFolder::remove_strays() const {
-  // Segments that no state counts, and what a killed run left unfinished (temporary_files.hpp).
+  // Segments that do not belong to the state, and unfinished files of a killed run (temporary_files.hpp).
   static const std::regex ours(
       R"(segment-[0-9]{4,}\.h5|state\.h5|\.twincell-[0-9a-f]{16}(-[0-9a-v]{12}\.part\.h5|\.lock))");
   std::vector<fs::path> strays;
@@ -137,14 +137,14 @@ void CheckpointFolder::gather(TrajectorySink& out, const std::function<void()>& 
 }
 
 void CheckpointFolder::remove() {
-  // The state first: a folder without one is begun anew.
+  // The state first: a folder without a state is treated as new.
   fs::remove(folder_ / kState);
   checkpoint_.segments.clear();
   found_ = false;
   writer_.reset();
   remove_strays();
   std::error_code ec;
-  fs::remove(folder_, ec);  // stays if someone else's files are in it
+  fs::remove(folder_, ec);  // fails if foreign files are in it
 }
 
 }  // namespace twincell::sim

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What an unfinished run leaves on the disk: its state, and its frames so far as finished H5MD files.
+/// Files of an unfinished run: its state, and the frames so far as finished H5MD files.
 
 #include <filesystem>
 #include <functional>
@@ -14,48 +14,50 @@
 
 namespace twincell::sim {
 
-/// The disk did not take a checkpoint or its frames. Exit code 5 if there is an older one to go on from,
-/// otherwise 1.
+/// A checkpoint or its frames could not be written. Exit code 5 if an older checkpoint exists from which the
+/// run can be resumed, otherwise 1.
 class NotSaved : public Error {
  public:
   using Error::Error;
 };
 
-/// `state.h5`, and `segment-0001.h5` ... with the frames between one save and the next. A segment is on the
-/// disk under its name before the state that counts it, so the folder holds a whole run up to some step at
-/// every instant. What a killed run wrote beyond that is removed when the folder is taken up again.
+/// Folder with `state.h5` and with `segment-0001.h5` ..., which contain the frames between one save and the
+/// next. A segment is on disk under its final name before the state that refers to it, so at every instant
+/// the folder contains a complete run up to some step. Anything that a killed run wrote after that step is
+/// removed when the folder is opened again.
 class CheckpointFolder : public TrajectorySink {
  public:
-  /// The folder of an output: NAME.checkpoint.
+  /// Checkpoint folder of an output file: NAME.checkpoint.
   static std::filesystem::path of(const std::filesystem::path& output);
-  /// Whether a folder holds a state to go on from, whole or damaged.
+  /// Whether a folder contains a state to resume from, intact or damaged.
   static bool holds_a_run(const std::filesystem::path& folder);
 
-  /// Makes the folder, or takes up what it holds.
-  /// \param make_provenance of the run if it begins now; one taken up keeps that which it began with
-  /// \throws ConfigError if it cannot be made, belongs to another scene or program version, or another
-  /// process works in it; InputError if it is damaged
+  /// Creates the folder, or opens it and reads its contents.
+  /// \param make_provenance provenance of a new run; a resumed run keeps its original provenance
+  /// \throws ConfigError if the folder cannot be created, belongs to another scene or program version, or is
+  /// in use by another process; InputError if it is damaged
   CheckpointFolder(std::filesystem::path folder, const Scene& scene,
                    const std::function<std::string()>& make_provenance);
   ~CheckpointFolder() override;
   CheckpointFolder(const CheckpointFolder&) = delete;
   CheckpointFolder& operator=(const CheckpointFolder&) = delete;
 
-  /// Whether there is a state to go on from: then checkpoint().state.
+  /// Whether there is a state to resume from; it is then checkpoint().state.
   [[nodiscard]] bool found() const { return found_; }
   [[nodiscard]] const Checkpoint& checkpoint() const { return checkpoint_; }
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
-  /// What the frames to come are of; call before the first.
+  /// Metadata of the coming frames; call before the first append().
   void announce(TrajectoryInfo info) { info_ = std::move(info); }
   /// \throws NotSaved
   void append(const Frame& frame) override;
   /// Finishes the segment and writes the state. \throws NotSaved
   void save(RunState state);
-  /// Hands over all frames, those since the last save too, then lets them be finished, and goes.
-  /// \throws NotSaved; the folder then stays
+  /// Appends all frames to `out`, including those since the last save, calls `finish`, and removes the
+  /// folder.
+  /// \throws NotSaved; the folder is then kept
   void gather(TrajectorySink& out, const std::function<void()>& finish);
-  /// Removes what is ours, and the folder if nothing else is in it.
+  /// Removes the files of this class, and the folder if it is then empty.
   void remove();
 
  private:
@@ -71,7 +73,7 @@ class CheckpointFolder : public TrajectorySink {
   Checkpoint checkpoint_;
   TrajectoryInfo info_;
   std::unique_ptr<H5mdWriter> writer_;
-  std::int64_t frames_ = 0;  ///< in the writer
+  std::int64_t frames_ = 0;  ///< number of frames in the unfinished segment
 };
 
 }  // namespace twincell::sim

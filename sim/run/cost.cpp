@@ -11,7 +11,8 @@ namespace twincell::sim {
 
 namespace {
 
-/// Advances in small pieces until the time is up or `most` steps are done; returns the seconds it took.
+/// Advances in small pieces until `seconds` have passed or `most` steps are done; returns the elapsed
+/// seconds.
 double advance_for(double seconds, std::int64_t most, Solver& kernel, System& system, Progress& progress) {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a scene costs on this machine, found by running a little of it.
+/// Cost of a scene on this machine, measured on a short piece of the run.
 
 #include <cstdint>
 #include <string>
@@ -12,20 +12,21 @@
 namespace twincell::sim {
 
 struct Cost {
-  Plan plan;  ///< with the beads as they are
+  Plan plan;  ///< for the beads of the start
   std::size_t beads = 0;
   std::string kernel;         ///< Solver::description()
-  double bytes_per_bead = 0;  ///< memory held, beads
-  double bytes_per_pair = 0;  ///< memory held, per listed pair or wall contact; 0 if none was listed
-  double pairs_per_bead = 0;  ///< listed
+  double bytes_per_bead = 0;  ///< memory in use for beads
+  double bytes_per_pair = 0;  ///< memory in use, per listed pair or wall contact; 0 without listed contacts
+  double pairs_per_bead = 0;  ///< listed contacts per bead
   std::int64_t measured_steps = 0;
   double seconds_per_step = 0;
-  double settled_for = 0;  ///< t0 of settling before the measurement
-  std::string stopped;     ///< why the piece ended early; empty: it did not
+  double settled_for = 0;  ///< duration of settling before the measurement, t0
+  std::string stopped;     ///< reason if the piece ended early, otherwise empty
 };
 
-/// Places the beads, lets them settle for a tenth of a second of clock time, then drives them for `seconds`.
-/// \param threads as in make_solver \throws ConfigError, InputError, what `progress` throws
+/// Places the beads, lets them settle for at most 0.1 s of wall-clock time, then drives them for `seconds`.
+/// \param threads as in make_solver
+/// \throws ConfigError, InputError, exceptions of `progress`
 Cost measure_cost(const Scene& scene, double seconds, int threads, Progress& progress = Progress::none());
 
 }  // namespace twincell::sim

@@ -21,7 +21,7 @@ std::unique_ptr<Solver> make_solver(const Plan& plan, const GuardLimits& limits,
                                     int threads) {
   if (!available(kind))
     throw ConfigError({.file = {}, .key = "kernel"},
-                      "this processor lacks the instruction set that was asked for.");
+                      "this processor does not support the requested instruction set.");
   switch (kind) {
     case SolverKind::all_pairs:
       return make_all_pairs_solver(plan, limits, kScalar);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The kernel that a plan asks for.
+/// Selection of the solver for a plan.
 
 #include <memory>
 
@@ -9,19 +9,19 @@
 namespace twincell::sim {
 
 enum class SolverKind {
-  best,    ///< what the plan asks for, with the widest vectors that this processor has
+  best,    ///< as the plan requires, with the widest SIMD of this processor
   scalar,  ///< one contact at a time
-  avx2,    ///< \throws ConfigError where the processor lacks it
+  avx2,    ///< \throws ConfigError if the processor does not support it
   avx512,
-  all_pairs,  ///< the oracle: every pair at every step, nothing clever
+  all_pairs,  ///< the oracle: tests every pair at every step
 };
 
-/// The kernel of a plan.
-/// \param threads for one system; 0: as many as its size is worth
+/// Makes the solver of a plan.
+/// \param threads for one system; 0: chosen from the number of beads
 std::unique_ptr<Solver> make_solver(const Plan& plan, const GuardLimits& limits,
                                     SolverKind kind = SolverKind::best, int threads = 1);
 
-/// Whether this processor can run a kind.
+/// Whether this processor supports a kind.
 bool available(SolverKind kind);
 
 }  // namespace twincell::sim

@@ -15,7 +15,7 @@ namespace twincell::sim {
 
 namespace {
 
-/// Steps of about a tenth of a second at most, so that a signal is noticed.
+/// Number of steps that take at most about a tenth of a second, so that a signal is handled promptly.
 std::int64_t unnoticed_steps(const System& s) {
   return 1 + 2'000'000 / (1 + static_cast<std::int64_t>(s.beads.size()));
 }
@@ -44,18 +44,17 @@ std::int64_t beads_in_contact(const System& s, Progress& progress) {
   return std::count(touching.begin(), touching.end(), 1);
 }
 
-/// What contacts of a start in motion remember, if this plan can read it.
-/// \throws ConfigError if other laws or another integrator wrote it
+/// The contact memories of a start in motion, if this plan can read them.
+/// \throws ConfigError if other laws or another integrator wrote them
 std::vector<ContactMemory> readable(const Scene& scene, const Plan& plan,
                                     std::vector<ContactMemory> contacts) {
   const std::size_t wanted = remembered_numbers(plan);
   for (const ContactMemory& c : contacts) {
     if (c.values.size() != wanted)
-      throw ConfigError(
-          scene.where("start.in_motion"),
-          fmt::format("{}: its contacts remember {} numbers, those of this scene's laws and integrator "
-                      "(\"{}\") remember {}; name those that wrote the file.",
-                      scene.from.string(), c.values.size(), scene.integrator, wanted));
+      throw ConfigError(scene.where("start.in_motion"),
+                        fmt::format("{}: its contacts store {} values, but this scene's laws and integrator "
+                                    "(\"{}\") store {}; select those that wrote the file.",
+                                    scene.from.string(), c.values.size(), scene.integrator, wanted));
     if (-1 - c.j >= static_cast<std::int64_t>(plan.walls.size()))
       throw ConfigError(scene.where("start.in_motion"),
                         fmt::format("{}: bead {} touches wall {}, this cell has {} walls.",
@@ -64,7 +63,7 @@ std::vector<ContactMemory> readable(const Scene& scene, const Plan& plan,
   return contacts;
 }
 
-/// Largest speed at which a moving wall and a bead that touches it differ.
+/// Largest relative speed of a moving wall and a bead that touches it.
 double largest_kick(const System& s) {
   const Vec3 plate = s.plate_velocity() * Vec3::Unit(static_cast<int>(s.drive.axis));
   double kick = 0;
@@ -85,7 +84,7 @@ double kinetic_energy_per_bead(const System& s) {
 }
 
 RunState placed(const Scene& scene, Progress& progress) {
-  // What cannot run is refused before ten million beads are placed.
+  // An impossible run is refused before ten million beads are placed.
   const Plan plan = make_plan(scene);
   require_memory(scene, plan, scene.n_beads.value_or(0));
   Start start = make_start(scene, progress);
@@ -95,8 +94,8 @@ RunState placed(const Scene& scene, Progress& progress) {
                       : Vec3(Vec3::Zero());
   require_sound(start.beads, scene, 0.05, progress, plate);
   RunState state;
-  // High enough never to be reached: the bed, the plate's stroke, twice the ballistic height of the plate's
-  // speed, ten diameters.
+  // High enough never to be reached: top of the bed, stroke of the plate, twice the ballistic height at the
+  // peak plate velocity, ten diameters.
   const double v = scene.drive.peak_velocity(), g = scene.g();
   const double flight = g > 0 ? v * v / g : 0;
   state.height =
@@ -122,13 +121,13 @@ void begin_drive(const Scene& scene, const Plan& plan, System& system) {
   system.envelope = scene.envelope;
   system.step = first_step(plan, scene.phase.value_or(0));
   if (system.step > 0) {
-    // The bed stands on the plate, wherever that is.
+    // The bed rests on the plate at the position of this phase.
     const Vec3 shift = system.plate_displacement();
     for (Bead& b : system.beads) b.x += shift.x(), b.y += shift.y(), b.z += shift.z();
     system.forces_known = false;
   }
-  // At phase 0 the plate moves at A omega but does not accelerate: beads moving with it are in equilibrium.
-  // Beads at rest would be hit by a plate at full speed, which by itself breaks a crystal.
+  // At phase 0 the plate moves at A omega but does not accelerate: beads that move with it are in
+  // equilibrium. Beads at rest would be hit by a plate at full speed, which alone breaks a crystal.
   if (!scene.comoving) return;
   const double v = system.plate_velocity();
   for (Bead& b : system.beads) {
@@ -140,7 +139,7 @@ void begin_drive(const Scene& scene, const Plan& plan, System& system) {
 
 Simulation::Simulation(Scene scene, RunState state, SolverKind kind, int threads)
     : scene_(std::move(scene)),
-      plan_(make_plan(scene_, state.beads)),  // a file's beads may be lighter than the scene's
+      plan_(make_plan(scene_, state.beads)),  // beads of a file may be lighter than those of the scene
       system_(make_system(scene_, plan_)),
       tracer_(std::move(state.tracer)),
       height_(state.height),
@@ -151,15 +150,15 @@ Simulation::Simulation(Scene scene, RunState state, SolverKind kind, int threads
       touching_(state.touching),
       temperature_(state.temperature) {
   GuardLimits limits = guard_limits(plan_);
-  // A height that the scene names without a lid binds; the one we chose merely keeps the box of the file
-  // finite.
+  // A height that the scene sets without a lid is a limit; a height chosen by the program only keeps the box
+  // of the file finite.
   limits.ceiling = scene_.lid || scene_.bottom == Edge::periodic ? 0 : scene_.height.value_or(0);
   kernel_ = make_solver(plan_, limits, kind, threads);
   kernel_->restore(std::move(state.contacts));
   if (driven_)
     system_.envelope = scene_.envelope;
   else
-    system_.drive.amplitude = 0;  // the plate rests at its mean
+    system_.drive.amplitude = 0;  // the plate is at rest at its mean position
   system_.step = state.step;
   system_.beads = std::move(state.beads);
   for (const Bead& b : system_.beads) masses_.push_back(b.mass);
@@ -170,7 +169,7 @@ Simulation::Simulation(Scene scene, RunState state, SolverKind kind, int threads
   if (driven_ || system_.step > 0) return;
   try {
     check_motion(system_, limits);
-  } catch (const RunError& e) {  // before the first step it is the start that is wrong
+  } catch (const RunError& e) {  // before the first step only the start can be wrong
     throw ConfigError(scene_.where("start"), e.what());
   }
 }
@@ -182,7 +181,7 @@ Simulation::Simulation(const Scene& scene, Progress& progress, SolverKind kind, 
 
 void Simulation::settle(Progress& progress) try {
   if (driven_) return;
-  // Rest must last: the energy is looked at every ten contact times.
+  // Two consecutive checks must find the bed at rest; the energy is checked every ten contact times.
   constexpr int kLooks = 2;
   const auto block = static_cast<std::int64_t>(10 * scene_.steps_per_contact);
   const bool falls = !system_.beads.empty() && scene_.g() > 0;
@@ -207,13 +206,13 @@ std::vector<std::string> Simulation::warnings() const {
   if (!settled_.reached && !scene_.in_motion && scene_.g() > 0 && scene_.settle_limit > 0 &&
       !system_.beads.empty())
     all.push_back(
-        fmt::format("the bed still moved at {:.3g} m g sigma a bead when start.settle_limit = {:g} ended its "
-                    "settling.",
+        fmt::format("the bed still had a kinetic energy of {:.3g} m g sigma per bead when "
+                    "start.settle_limit = {:g} ended its settling.",
                     settled_.energy_per_bead, scene_.settle_limit));
   if (driven_ && scene_.in_motion && plan_.history && steps_done_ == 0 && kernel_->contacts().empty())
     all.push_back(
-        "the start in motion brings no springs of contacts (time.springs of the run that wrote it): friction "
-        "begins anew at every contact.");
+        "the start in motion contains no contact springs (time.springs of the run that wrote it), so the "
+        "spring of every contact starts unstretched.");
   if (driven_) return all;
   System at_start = system_;
   begin_drive(scene_, plan_, at_start);
@@ -347,14 +346,15 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
     if (into == 0 && cycle >= 0) {
       if (handed_over == most) return;
       ++handed_over;
-      const std::int64_t touching = beads_in_contact(system_, progress);  // may throw: nothing is done yet
+      // May throw, so it comes before any change of state.
+      const std::int64_t touching = beads_in_contact(system_, progress);
       sink.append(snapshot(cycle, static_cast<int>(frame % scene_.phases)));
       touching_ += touching;
       looked_at_ += static_cast<std::int64_t>(system_.beads.size());
     }
     if (into == 0) temperature_ = {};
     std::int64_t piece = std::min(per_phase - into, unnoticed_steps(system_));
-    // Samples of the time before a frame that will be handed over.
+    // Samples are taken only in the interval before a frame that is written.
     const bool sampling = samples > 0 && (frame + 1) / scene_.phases >= plan_.cycles_before;
     const std::int64_t next = sampling ? into * samples / per_phase + 1 : 0;
     if (sampling) piece = std::min(piece, sample_at(next) - into);

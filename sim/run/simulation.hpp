@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The run-time face of the simulator: a scene goes in, a trajectory comes out.
+/// Interface of the simulator: it takes a scene and produces a trajectory.
 
 #include <cstdint>
 #include <limits>
@@ -17,94 +17,96 @@
 
 namespace twincell::sim {
 
-/// How the bed came to rest before the drive began.
+/// Result of the settling of the bed before the drive starts.
 struct RelaxationResult {
-  double time = 0;             ///< t0 it took
-  double energy_per_bead = 0;  ///< kinetic energy left, m g sigma
-  bool reached = false;        ///< below scene.rest_energy; otherwise the time limit ended it
+  double time = 0;             ///< duration, t0
+  double energy_per_bead = 0;  ///< remaining kinetic energy, m g sigma
+  bool reached = false;        ///< energy fell below scene.rest_energy; otherwise the time limit applied
 };
 
-/// Of the samples taken since the last frame (Frame::time_mean), each weighted by the steps since the one
-/// before.
+/// Weighted sums of the temperature components over the samples since the last frame (Frame::time_mean).
+/// `all` includes every sample, `coarse` every second one. The weight of a sample is the number of steps
+/// since the preceding sample of the same sum.
 struct TemperatureSums {
   Vec3 all = Vec3::Zero(), coarse = Vec3::Zero();
-  std::int64_t steps = 0;  ///< that they stand for
+  std::int64_t steps = 0;  ///< total weight
 };
 
-/// All that the rest of a run depends on, besides its scene. A run taken up from it goes on bit for bit.
+/// Everything that the rest of a run depends on, apart from its scene. A run resumed from it continues bit
+/// for bit.
 struct RunState {
-  bool driven = false;    ///< false: still settling on the resting plate
-  std::int64_t step = 0;  ///< since settling began, or since phase 0 of the drive
-  int quiet = 0;          ///< looks in a row at which the settling bed was at rest
+  bool driven = false;    ///< false: still settling on the plate at rest
+  std::int64_t step = 0;  ///< since the start of settling, or since phase 0 of the drive
+  int quiet = 0;          ///< number of consecutive checks that found the settling bed at rest
   RelaxationResult settled;
-  double height = 0;  ///< of the trajectory's box, sigma
+  double height = 0;  ///< height of the box of the trajectory, sigma
   std::vector<Bead> beads;
   std::vector<Force> forces;     ///< at the present positions, or empty
   std::vector<Vec3> rim_speeds;  ///< as in System
   std::vector<ContactMemory> contacts;
   std::vector<double> kernel;                ///< Solver::memory()
-  std::vector<std::uint8_t> tracer;          ///< empty: not chosen yet
-  std::int64_t looked_at = 0, touching = 0;  ///< beads in frames so far, and those of them in contact
+  std::vector<std::uint8_t> tracer;          ///< empty if not chosen yet
+  std::int64_t looked_at = 0, touching = 0;  ///< bead records in frames so far, and those in contact
   TemperatureSums temperature;
 };
 
-/// The state in which a scene begins: beads placed, nothing moved.
-/// \throws ConfigError, InputError for a start that cannot be
+/// The initial state of a scene: beads placed, no step done.
+/// \throws ConfigError, InputError if the start is impossible
 RunState placed(const Scene& scene, Progress& progress = Progress::none());
 
-/// m v^2/2 + I omega^2/2, their mean over beads; 0 without beads.
+/// Mean of m v^2/2 + I omega^2/2 over the beads; 0 without beads.
 double kinetic_energy_per_bead(const System& s);
 
-/// The step of a cycle that is nearest to this phase of it, cycles.
+/// The step of a cycle that is nearest to `phase`, which is in cycles.
 std::int64_t first_step(const Plan& plan, double phase);
-/// Sets the plate of a settled system going, at the scene's phase: beads move along with the plate to where
-/// it is.
+/// Starts the drive of a settled system at the phase of the scene. The beads are shifted with the plate to
+/// its position at that phase and, if scene.comoving, take its velocity.
 void begin_drive(const Scene& scene, const Plan& plan, System& system);
 
-/// A scene made ready and run: the bed settles on the resting plate, then the plate drives it.
+/// A run of a scene: the bed settles on the plate at rest, then the plate drives it.
 class Simulation {
  public:
   /// Places the beads and lets them settle.
-  /// \throws ConfigError, InputError for a scene or start that cannot be; RunError if settling goes wrong
-  /// \param threads for this one system; 0: as many as its size is worth. The bits do not depend on it.
+  /// \throws ConfigError, InputError if the scene or start is impossible; RunError if settling fails
+  /// \param threads for this one system; 0: chosen from the number of beads. The bits do not depend on it.
   explicit Simulation(const Scene& scene, Progress& progress = Progress::none(),
                       SolverKind kind = SolverKind::best, int threads = 1);
-  /// Goes on from a state of the same scene, nothing moved yet.
+  /// Continues from a state of the same scene; does no step yet.
   Simulation(Scene scene, RunState state, SolverKind kind = SolverKind::best, int threads = 1);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const RelaxationResult& settled() const { return settled_; }
   [[nodiscard]] const System& system() const { return system_; }
-  /// What a user should know: those of the plan, a bed that did not come to rest, and before the drive an
+  /// Warnings for the user: those of the plan, a bed that did not come to rest and, before the drive, an
   /// abrupt start.
   [[nodiscard]] std::vector<std::string> warnings() const;
-  /// What the trajectory will hold, apart from provenance. Tracers are chosen when the bed has settled.
+  /// Metadata of the trajectory, apart from provenance. Tracers are chosen when the bed has settled.
   [[nodiscard]] TrajectoryInfo trajectory_info() const;
 
-  /// Settles what is left to settle.
-  /// \throws RunError, Interrupted
+  /// Completes the settling, if it is not complete.
   void settle(Progress& progress = Progress::none());
-  /// Runs discard + cycles periods and hands over the frames of the latter, `phases` a cycle, cycle 0 first.
-  /// \param most ends the call when so many frames have been handed over; the next call goes on from there
-  /// \throws RunError when the run goes wrong (frames up to there have been handed over), Interrupted
+  /// Runs discard + cycles periods and appends the frames of the latter to `sink`, `phases` per cycle, cycle
+  /// 0 first.
+  /// \param most ends the call after this number of frames; the next call continues from there
+  /// \throws RunError if the run fails (the frames up to there have been appended), Interrupted
   void run(TrajectorySink& sink, Progress& progress = Progress::none(),
            std::int64_t most = std::numeric_limits<std::int64_t>::max());
-  /// The state now. Whenever settle() and run() call progress.update it is whole: frames of all steps before
-  /// state().step have been handed over, and no others.
+  /// The present state. It is consistent whenever settle() and run() call progress.update: the frames of all
+  /// steps before state().step have been appended, and no others.
   [[nodiscard]] RunState state() const;
 
-  /// Steps of the drive done by this object.
+  /// Number of steps under drive done by this object.
   [[nodiscard]] std::int64_t steps_done() const { return steps_done_; }
   [[nodiscard]] std::int64_t list_builds() const { return kernel_->list_builds(); }
-  /// Share of beads and frames in which a bead touched another or a wall. In a dilute gas it is t_c times the
-  /// collision rate; theories of hard beads want it below 0.1.
+  /// Fraction of bead records in frames in which the bead touches another or a wall. In a dilute gas it
+  /// equals t_c times the collision rate; theories of hard beads require a value below 0.1.
   [[nodiscard]] std::optional<double> contact_fraction() const;
   [[nodiscard]] const Solver& kernel() const { return *kernel_; }
 
  private:
   [[nodiscard]] Frame snapshot(std::int64_t cycle, int phase) const;
-  /// Steps between frames, and samples taken in them: an even number, or none.
+  /// Steps between frames. samples_per_phase(): samples between frames, an even number or 0.
   [[nodiscard]] std::int64_t steps_per_phase() const { return plan_.steps_per_period / scene_.phases; }
   [[nodiscard]] std::int64_t samples_per_phase() const;
   /// Whole steps from a frame to sample j = 0 .. samples_per_phase() after it.
@@ -121,7 +123,7 @@ class Simulation {
   int quiet_ = 0;
   RelaxationResult settled_;
   std::int64_t steps_done_ = 0;
-  std::int64_t looked_at_ = 0, touching_ = 0;  ///< beads in frames, and those of them in contact
+  std::int64_t looked_at_ = 0, touching_ = 0;  ///< bead records in frames, and those in contact
   TemperatureSums temperature_;
   std::vector<double> masses_;
   Frame sampled_;  ///< velocities of a sample

@@ -24,18 +24,18 @@ double k_t_of(const ContactTable& t) {
   return t.number("k_t", 0, 1e12).value_or(1e4);
 }
 
-/// Whether the named tangential law takes its stiffness from k_t.
+/// Whether the named tangential law reads its stiffness from k_t.
 bool reads_k_t(const std::string& tangential) {
   const std::vector<std::string> readers = readers_of("k_t").laws;
   return std::find(readers.begin(), readers.end(), tangential) != readers.end();
 }
-/// "k_t = 10000", or that the stiffness follows the overlap.
+/// "k_t = 10000", or a note that the stiffness follows the overlap.
 std::string stiffness_text(const ContactChoice& contact) {
   return reads_k_t(contact.tangential) ? fmt::format("k_t = {:g}", k_t_of(contact.bead))
                                        : "stiffness from the overlap";
 }
 
-/// What the scene's words come to once physics has been asked what of them can act.
+/// The laws of the plan, by their words: those of the scene, reduced to what has an influence.
 struct Chosen {
   std::string normal, tangential, rolling;
   bool frictional = false;  ///< mu > 0 somewhere
@@ -51,8 +51,8 @@ Chosen choose(const Scene& s, const std::vector<Wall>& walls) {
     chosen.frictional = chosen.frictional || mu_of(*t) > 0;
     chosen.springy = chosen.springy || (mu_of(*t) > 0 && !(reads_k_t(c.tangential) && k_t_of(*t) == 0));
   }
-  // Friction of one kind of contact keeps the machinery for all; another's mu = 0 then gives exactly no
-  // force.
+  // All kinds of contact share the laws. If one has friction, friction is computed for all; where mu = 0 the
+  // force is exactly 0.
   if (!chosen.frictional) chosen.tangential = "none";
   if (has_history(chosen.tangential) && !chosen.springy) chosen.tangential = "dashpot";
   if (chosen.tangential == "none") chosen.rolling = "none";
@@ -64,7 +64,7 @@ ContactLaws read_laws(const Chosen& chosen, const ContactTable& table) {
           read_law<RollingAxis>(chosen.rolling, table)};
 }
 
-/// Of two equal beads, or a bead and a wall.
+/// PairScale of two equal beads, and of a bead and a wall.
 PairScale pair_of(double radius, double mass, double inertia_factor) {
   const double one = 1 / mass + 1 / (inertia_factor * mass);  // 1/m + R^2/I
   return {mass / 2, radius / 2, 2 * one};
@@ -79,9 +79,10 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
     plan.effects.push_back({name, state, reason});
   };
   const ContactChoice& asked = s.contact;
+  // Dimension and normal force.
   add("dimensions", State::on, s.dimension == 2 ? "2: plane (x, z), one axis of rotation" : "3");
   add("normal force", State::on, name_of(plan.bead.normal));
-  if (const auto* clipped = std::get_if<ClippedSpringDashpot>(&plan.bead.normal)) {
+  if (const auto* clipped = std::get_if<NoTensionSpringDashpot>(&plan.bead.normal)) {
     const PairScale pair = pair_of(s.radius, s.mass, s.inertia_factor);
     add("tension", State::off_by_scene,
         fmt::format("contact.normal = \"{}\": a contact ends where its force is zero; two beads part with "
@@ -89,6 +90,7 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
                     clipped->kWord, clipped->collision(pair).restitution,
                     clipped->oscillator(pair).with_pull().restitution));
   }
+  // Friction and the effects that depend on it: rotation, tangential history, rolling resistance.
   const bool friction = chosen.tangential != "none";
   const bool spring_asked = has_history(asked.tangential);
   if (asked.tangential == "none")
@@ -125,16 +127,19 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
   else
     add("rolling resistance", State::on, name_of(plan.bead.rolling));
 
+  // Sizes of beads: equal beads share one set of constants.
   if (s.spread != SizeSpread::none)
     add("unequal beads", State::on, fmt::format("radii spread by {:g} of {:g}", s.spread_width, s.radius));
   else if (s.intruder)
     add("unequal beads", State::on, fmt::format("an intruder of radius {:g}", s.intruder->radius));
   else if (s.start == StartKind::table || s.start == StartKind::trajectory)
-    add("unequal beads", State::on, "if the file says so; equal beads share one set of constants");
+    add("unequal beads", State::on,
+        "if the file contains unequal beads; equal beads share one set of constants");
   else
     add("unequal beads", State::off_by_scene,
         "equal beads: masses and radii are folded into one set of constants");
 
+  // Cell: gravity, walls, plates, lid.
   if (s.g() > 0)
     add("gravity", State::on,
         s.dimension == 2 ? fmt::format("({:g}, {:g})", s.gravity.x(), s.gravity.z())
@@ -170,15 +175,16 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
                     s.lid_moves ? "riding with the drive" : "at rest"));
   else
     add("lid", State::off_by_scene,
-        s.height ? "a run in which a bead reaches cell.height stops and says so"
-                 : "open top; the height beads reach is watched");
+        s.height ? "the run stops with an error if a bead reaches cell.height"
+                 : "open top; the height that beads reach is monitored");
+  // Drive, settling and time integration.
   if (s.drive.amplitude > 0)
     add("drive", State::on,
         fmt::format("A sin(omega t) along {}, Gamma = {:.6g}, {}", "xyz"[static_cast<int>(s.drive.axis)],
                     s.drive.gamma(s.g() > 0 ? s.g() : 1),
                     !s.envelope.points.empty()
-                        ? fmt::format("amplitude led over {:g} cycles", s.envelope.duration())
-                    : s.in_motion ? "from the phase that the start goes on from"
+                        ? fmt::format("amplitude schedule over {:g} cycles", s.envelope.duration())
+                    : s.in_motion ? "from the phase of the frame at which the start continues"
                     : s.phase.value_or(0) > 0
                         ? fmt::format("{} start at phase {:g}", s.comoving ? "co-moving" : "abrupt", *s.phase)
                     : s.comoving ? "co-moving start"
@@ -186,26 +192,28 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
   else
     add("drive", State::off_by_scene, "amplitude 0");
   if (s.g() == 0)
-    add("settling", State::off_by_proof, "without gravity there is no rest to come to");
+    add("settling", State::off_by_proof, "without gravity there is no state of rest");
   else if (s.in_motion)
-    add("settling", State::off_by_scene, "start.in_motion = true: the bed goes on as its file left it");
+    add("settling", State::off_by_scene,
+        "start.in_motion = true: the bed continues in the state of its file");
   else if (s.settle_limit > 0)
     add("settling", State::on,
         fmt::format("on the resting plate to {:g} m g sigma a bead, for {:g} t0 at most", s.rest_energy,
                     s.settle_limit));
   else
     add("settling", State::off_by_scene, "start.settle_limit = 0");
-  // What that does to a collision is measured where it is asked for (step_error.hpp).
+  // The resulting error of a collision is measured only on request (step_error.hpp).
   add(kTimeIntegration, State::approximated,
       fmt::format(
           "{:g} steps per contact, {}{}", s.steps_per_contact, integrator_named(s.integrator).explain,
           s.integrator_stated ? "" : " (the default; time.integrator = \"verlet\" steps as LAMMPS does)"));
 }
 
-/// Why the beads of a plan cannot move from event to event; empty if they can.
+/// Reason why a plan does not allow event-driven motion; empty if it does.
 std::string why_not_event_driven(const Scene& scene, const Plan& plan) {
   const std::string alone =
-      "lets no contact be integrated by itself: the normal force remembers, attracts or is not smooth, the "
+      "does not allow a contact to be integrated separately: the normal force has memory, attracts or is not "
+      "smooth, the "
       "tangential force reads the overlap, or beads resist rolling";
   if (!integrable_alone(plan.bead)) return "the contact law of beads " + alone;
   for (const ContactLaws& laws : plan.wall_laws)
@@ -215,16 +223,16 @@ std::string why_not_event_driven(const Scene& scene, const Plan& plan) {
   return "";
 }
 
-/// Whether beads fly from contact to contact: where that is exact, and asked for or likely to be faster,
-/// which it is in a dilute bed of not too many beads.
+/// Selects event-driven motion where it is exact, and requested or likely to be faster, as in a dilute bed
+/// with not too many beads.
 void choose_stepping(const Scene& s, std::size_t beads, Plan& plan) {
   using State = Effect::State;
-  // At W = 5.6 flights took as long as steps, at W = 50 with 400 beads twice as long: some three meet nearly
-  // always.
+  // At W = 5.6 event-driven motion took as long as time steps; at W = 50 with 400 beads it took twice as
+  // long, because some three beads are nearly always in contact.
   constexpr double kDilute = 10;
   constexpr std::size_t kMost = 200;
   const std::string hindrance = why_not_event_driven(s, plan);
-  // Without gravity nothing brings beads together to stay, shaken or not.
+  // Without gravity beads do not come to rest on each other, with or without a drive.
   const double w = s.g() > 0 ? s.drive.k_m(s.g()) : HUGE_VAL;
   if (s.stepping == Stepping::event_driven && !hindrance.empty())
     throw ConfigError(s.where("time.stepping"),
@@ -237,20 +245,21 @@ void choose_stepping(const Scene& s, std::size_t beads, Plan& plan) {
     plan.effects.push_back(
         {name, State::on,
          "beads fly from contact to contact, contacts of two bodies are integrated to 1e-7; "
-         "the time step acts only where three meet"});
+         "the time step acts only where three bodies meet"});
   else if (s.stepping == Stepping::steps)
     plan.effects.push_back({name, State::off_by_scene, "time.stepping = \"steps\""});
   else
     plan.effects.push_back(
         {name, State::off_by_proof,
          !hindrance.empty() ? hindrance
-         : plan.history     ? "a contact with a spring that remembers takes longer by itself than in steps; "
-                              "time.stepping = \"event-driven\" has it exact"
+         : plan.history
+             ? "a contact with a history spring is faster in time steps than integrated separately; "
+               "time.stepping = \"event-driven\" integrates it exactly"
          : w < kDilute ? fmt::format("W = {:.3g} is below {:g}: in a dense bed steps are faster", w, kDilute)
                        : fmt::format("{} beads are more than {}: steps are faster", beads, kMost)});
 }
 
-/// What acts may not be dropped.
+/// Refuses to omit an effect that has an influence.
 void refuse_to_drop(const Scene& s, const Plan& plan) {
   const double mu = mu_of(s.contact.bead);
   if (!s.rotation && plan.rotation)
@@ -258,20 +267,19 @@ void refuse_to_drop(const Scene& s, const Plan& plan) {
         s.where("effects.rotation"),
         fmt::format(
             "is false, but friction turns beads (contact.tangential = \"{}\", mu = {:g}); set mu = 0 at "
-            "all contacts or contact.tangential = \"none\" to be rid of both.",
+            "all contacts or contact.tangential = \"none\" to turn off both.",
             s.contact.tangential, mu));
   if (s.springs && remembered_numbers(plan) == 0)
-    throw ConfigError(s.where("time.springs"),
-                      "is true, but no law of this scene's contacts remembers anything.");
+    throw ConfigError(s.where("time.springs"), "is true, but no contact law of this scene has memory.");
   if (!s.history && plan.history)
     throw ConfigError(
         s.where("effects.history"),
-        fmt::format("is false, but contact.tangential = \"{}\" with {} is a spring that remembers; "
+        fmt::format("is false, but contact.tangential = \"{}\" with {} is a spring with history; "
                     "choose \"dashpot\" for a law without history.",
                     s.contact.tangential, stiffness_text(s.contact)));
 }
 
-/// Notes a limit, or keeps the shorter of two of one name.
+/// Adds a limit, or keeps the shorter of two limits with the same name.
 void keep_shorter(std::vector<TimeLimit>& limits, const TimeLimit& limit) {
   for (TimeLimit& known : limits)
     if (known.name == limit.name) {
@@ -297,7 +305,7 @@ struct BeadScale {
   double radius, mass;
 };
 
-/// The beads that there may be, as far as the scene says.
+/// The sizes of beads that the scene states, without those of a file.
 std::vector<BeadScale> announced(const Scene& s) {
   const double smallest = s.radius * (1 - largest_deviation(s.spread, s.spread_width));
   std::vector<BeadScale> all = {{smallest, s.mass_of(smallest)}};
@@ -305,8 +313,8 @@ std::vector<BeadScale> announced(const Scene& s) {
   return all;
 }
 
-/// Those of them that make the fastest contacts: the lightest, and where stiffness grows with the root of the
-/// radius, as Hertz's does, the one of least m^2/R.
+/// The sizes with the fastest contacts: the lightest bead, and, where the stiffness is proportional to the
+/// square root of the radius (Hertz), the bead of least m^2/R.
 std::vector<BeadScale> fastest(const std::vector<BeadScale>& all) {
   const auto least = [&](auto of) {
     return *std::min_element(all.begin(), all.end(),
@@ -334,7 +342,7 @@ void warn(const Scene& s, Plan& plan) {
   if (static_cast<double>(plan.steps_per_period) > kManySteps) {
     const TimeLimit& why = plan.shortest();
     plan.warnings.push_back(
-        fmt::format("a cycle takes {:.3g} steps, because of the {} ({:.3g} t0): this will take its time.",
+        fmt::format("a cycle takes {:.3g} steps, because of the {} ({:.3g} t0): the run will be slow.",
                     static_cast<double>(plan.steps_per_period), why.name, why.time));
   }
 }
@@ -374,6 +382,7 @@ std::string Plan::law_names() const {
 }
 
 Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
+  // Laws: what the scene selects, reduced to what has an influence.
   Plan plan;
   plan.dimension = s.dimension;
   plan.walls = s.walls();
@@ -388,7 +397,7 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
 
   refuse_to_drop(s, plan);
 
-  // Only a file's beads can differ from what the scene says.
+  // Sizes: only beads from a file can differ from those that the scene states.
   const bool from_file = s.start == StartKind::table || s.start == StartKind::trajectory;
   std::vector<BeadScale> sizes;
   if (from_file)
@@ -402,6 +411,7 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
     std::nth_element(sizes.begin(), middle, sizes.end(), smaller);
     plan.usual_radius = middle->radius, plan.usual_mass = middle->mass;
   }
+  // Bounds: displacement per step, overlap, and the force at the overlap bound.
   plan.travel_bound = kTravelBound * 2 * std::min_element(sizes.begin(), sizes.end(), smaller)->radius;
   plan.overlap_bound = s.overlap_bound * 2 * plan.usual_radius;
   const double speed = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
@@ -409,6 +419,7 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   plan.largest_force = std::visit(force, plan.bead.normal);
   for (const ContactLaws& laws : plan.wall_laws)
     plan.largest_force = std::max(plan.largest_force, std::visit(force, laws.normal));
+  // Time step: the shortest time of any contact sets the number of steps per period.
   for (const auto& [radius, mass] : fastest(sizes)) {
     add_limits("bead-bead", plan.bead, pair_of(radius, mass, s.inertia_factor), speed, plan.limits);
     for (std::size_t w = 0; w < plan.walls.size(); ++w)
@@ -424,7 +435,7 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
         fmt::format("a cycle of {:.3g} t0 takes {:.3g} steps of the shortest contact, the bound is {:g}.",
                     s.drive.period(), steps, kMostSteps));
   plan.steps_per_period = static_cast<std::int64_t>(std::ceil(steps));
-  // Phases divide the period into whole numbers of steps.
+  // Each phase must be a whole number of steps.
   const std::int64_t rest = plan.steps_per_period % s.phases;
   if (rest != 0) plan.steps_per_period += s.phases - rest;
   plan.dt = s.drive.period() / static_cast<double>(plan.steps_per_period);
@@ -432,14 +443,14 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
     throw ConfigError(s.where("drive"),
                       fmt::format("a cycle of {:.3g} t0 makes steps of {:.3g} t0, the bound is {:g}.",
                                   s.drive.period(), plan.dt, kShortestStep));
-  double strongest = 1;  // of the amplitude, in the course of a schedule
+  double strongest = 1;  // largest factor on the amplitude in the schedule
   for (const auto& [cycle, factor] : s.envelope.points) strongest = std::max(strongest, factor);
   if (const double travel = strongest * s.drive.peak_velocity() * plan.dt; !(travel <= plan.travel_bound))
     throw ConfigError(s.where("drive"),
                       fmt::format("the plate moves {:.3g} sigma in one step, the bound is {:g}; raise "
                                   "time.steps_per_contact or contact.k_n.",
                                   travel, plan.travel_bound));
-  // A schedule of amplitudes comes before the cycles that are discarded.
+  // Number of cycles: a schedule of the amplitude precedes the cycles that are discarded.
   plan.cycles_before = static_cast<std::int64_t>(std::ceil(s.envelope.duration())) + s.discard;
   plan.steps = (plan.cycles_before + s.cycles) * plan.steps_per_period;
   list_effects(s, chosen, plan);

@@ -4,8 +4,8 @@ namespace twincell::sim {
 
 const std::vector<std::pair<std::string, std::string>>& presets() {
   // Canonical cells of Bhateja et al., sec. II: four layers, A = d, periodic, open top; W = K_m sets omega.
-  // The paper names neither k_n nor c_t: 1e6 and c_t = c_n. A crystal would keep its mirror planes for ever,
-  // and beads never leave them: the start is random.
+  // The paper names neither k_n nor c_t; the presets use 1e6 and c_t = c_n. A crystal would keep its mirror
+  // planes for ever, and beads would never leave them, so the start is random.
   static const std::string plane_cell = R"(
 [cell]
 width = 10.0
@@ -45,8 +45,8 @@ restitution = 0.9
 tangential = "none"
 )";
   static const std::vector<std::pair<std::string, std::string>> all = {
-      // Table I and section II; omega = 1/t0, so that A = Gamma and K_m = Gamma^2. By default side walls ride
-      // with the plate and beads are discs, in a 3D slot spheres.
+      // Table I and section II; omega = 1/t0, so that A = Gamma and K_m = Gamma^2. By default side walls move
+      // with the plate, and beads are discs, or spheres in a 3D slot.
       {"fortini-huang-2015", R"(
 [cell]
 width = 20.0
@@ -65,9 +65,8 @@ omega = 1.0
       {"bhateja-2016-rough-2d", plane_cell + rough},
       {"bhateja-2016-smooth-3d", space_cell + smooth},
       {"bhateja-2016-rough-3d", space_cell + rough},
-      // Fig. 5: a channel, endless along y, whose end walls are driven along x; 3000 grains make two layers
-      // in a
-      // period of 35 d. Floor and lid at rest.
+      // Fig. 5: a channel, periodic along y, whose end walls are driven along x; 3000 grains make two layers
+      // in a period of 35 d. Floor and lid are at rest.
       {"bhateja-2016-horizontal", R"(
 [cell]
 dimension = 3
@@ -91,8 +90,8 @@ tangential = "none"
 axis = "x"
 amplitude = 10.0
 )"},
-      // Fig. 6: no gravity, a lid ten diameters above the floor that moves with it. Without g the only clock
-      // is d/V_p, so the drive is named by A and omega.
+      // Fig. 6: no gravity; the lid is ten diameters above the floor and moves with it. Without g the only
+      // time scale is d/V_p, so the drive is given by A and omega.
       {"bhateja-2016-zero-g", R"(
 [cell]
 dimension = 3

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Scenes of the papers, as TOML over which a user's file is laid.
+/// Presets: scenes of the papers as TOML, which the keys of a user's file override.
 
 #include <string>
 #include <utility>

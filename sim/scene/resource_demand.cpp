@@ -18,7 +18,7 @@ ResourceDemand resource_demand(const Scene& s, const Plan& plan, std::size_t bea
   const bool flat = s.dimension == 2;
   const bool unlike = s.spread != SizeSpread::none || s.intruder || s.start == StartKind::table ||
                       s.start == StartKind::trajectory;
-  // What velocities at whole steps take beside the spring: those of the step before.
+  // Velocities at whole steps need the contact velocities of the previous step in addition to the spring.
   const double before = plan.key.velocity == Velocity::full_step ? 8 * (flat ? 2 : 4) : 0;
   const double pairs = flat ? 3 : 6, bytes_of_pair = (flat ? 50 : 65) + before + (unlike ? 35 : 0);
   const double spins = !plan.rotation ? 0 : flat ? 1 : 3;
@@ -35,7 +35,7 @@ void require_memory(const Scene& s, const Plan& plan, std::size_t beads, double 
   const bool layers = s.source && s.source->has("beads.layers");
   throw ConfigError(
       s.where(layers ? "beads.layers" : "beads.count"),
-      fmt::format("asks for {} beads, which take about {} of memory; the machine has {} to give.", beads,
+      fmt::format("requests {} beads, which need about {} of memory; the machine has {} available.", beads,
                   bytes_text(demand.memory), bytes_text(available)));
 }
 

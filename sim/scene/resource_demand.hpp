@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a run asks of the machine, known before a bead is placed.
+/// Memory and disk that a run needs, estimated before any bead is placed.
 
 #include <cstddef>
 #include <filesystem>
@@ -10,30 +10,34 @@
 
 namespace twincell::sim {
 
+/// Estimated demand of a run.
 struct ResourceDemand {
-  double memory = 0;  ///< bytes at the peak, which is while the list of near pairs is built anew
-  double disk = 0;  ///< bytes of the frames, at the least: beads at rest take less, flying ones a fifth more
-  double frames = 0;  ///< that are recorded
+  double memory = 0;  ///< bytes at the peak, which is during a build of the pair list
+  double disk = 0;    ///< bytes of the frames; beads at rest need less, airborne beads a fifth more
+  double frames = 0;  ///< number of recorded frames
 };
 
-/// Of a run with so many beads.
+/// Demand of a run with this number of beads.
 ///
-/// memory = n (350 + 2 p b): what start and kernel hold of a bead, and lists, old and new, with p pairs of b
-/// bytes each; p = 3 in 2D, 6 in 3D; b = 50, 65, and 35 more where beads differ. Dense beds take between half
-/// of it and all of it (tests/hard/demand_test.cpp). disk = 0.85 * 8 bytes for each coordinate, velocity and
+/// memory = n (350 + 2 p b): data of start and solver per bead, and the old and the new list with p pairs of
+/// b bytes each; p = 3 in 2D, 6 in 3D; b = 50 in 2D, 65 in 3D, and 35 more if beads are unequal. Integrators
+/// with velocities at whole steps add 16 bytes per pair in 2D, 32 in 3D. Dense beds need between half of the
+/// result and all of it (tests/hard/demand_test.cpp). disk = 0.85 * 8 bytes for each coordinate, velocity and
 /// spin.
 ResourceDemand resource_demand(const Scene& scene, const Plan& plan, std::size_t beads);
 
-/// \param available bytes \throws ConfigError naming the key that asks for so many beads, the bytes, and what
-/// the machine has
+/// Checks that a run fits into memory. \param available bytes
+/// \throws ConfigError naming the key that sets the number of beads, the bytes needed, and the bytes
+/// available
 void require_memory(const Scene& scene, const Plan& plan, std::size_t beads,
                     double available = memory_available());
 
-/// Whether the frames fit on the disk of an output. \throws ConfigError likewise, naming time.cycles
+/// Checks that the frames fit on the disk of the output.
+/// \throws ConfigError likewise, naming time.cycles
 void require_disk(const Scene& scene, const Plan& plan, std::size_t beads,
                   const std::filesystem::path& output);
 
-/// "1.2 GB".
+/// Bytes with a decimal unit: "1.2 GB".
 std::string bytes_text(double bytes);
 
 }  // namespace twincell::sim

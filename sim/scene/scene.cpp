@@ -19,19 +19,19 @@ namespace {
 
 using Section = ConfigSection;
 
-/// Tables below [contact] and the walls that each speaks for.
+/// Tables below [contact], and the walls to which each applies.
 const std::vector<std::pair<std::string, std::vector<std::string>>> kWallTables = {
     {"bottom", {"bottom"}}, {"sides", {"left", "right"}}, {"plates", {"front", "back"}}, {"lid", {"lid"}}};
 
-/// Keys that nothing of a scene reads. One that the user wrote is refused; one that a preset or a calibration
-/// file brought gives way to what the user chose, and is kept to be told of.
+/// Collects keys that the scene does not use. A key that the user wrote is refused. A key from a preset or a
+/// calibration file gives way to the user's choice; it is removed and listed in Scene::void_keys.
 class Voids {
  public:
-  /// \param lower names of the preset and of the calibration file, as complaints have them
+  /// \param lower names of the preset and of the calibration file, as they appear in messages
   Voids(Config& config, std::vector<std::string> lower, std::vector<VoidKey>& told)
       : config_(config), lower_(std::move(lower)), told_(told) {}
 
-  /// Refuses keys that speak of something the scene does not have. \param complaint a sentence
+  /// Refuses keys of something that the scene does not have. \param complaint a sentence
   void refuse(const Section& s, const std::vector<std::string>& keys, const std::string& complaint) {
     std::optional<Where> first;
     for (const auto& key : keys) {
@@ -69,7 +69,7 @@ constexpr double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-/// Returns the magnitude of g as it was stated, from which Gamma and K_m take their meaning.
+/// Reads gravity and returns the magnitude of g as given, to which Gamma and K_m refer.
 double read_gravity(const Section& s, Scene& scene, Voids& voids) {
   const auto tilt = s.number_in("tilt", -45, 45);
   if (!s.is_list("gravity")) {
@@ -79,7 +79,8 @@ double read_gravity(const Section& s, Scene& scene, Voids& voids) {
     return g;
   }
   if (tilt)
-    throw ConfigError(s.where("tilt"), "cell.gravity already says the direction; a tilt turns a number.");
+    throw ConfigError(s.where("tilt"),
+                      "cell.gravity already gives a direction; a tilt is allowed only with a number.");
   if (scene.dimension == 2) {
     const std::vector<double> g = s.numbers("gravity", 2).value();
     scene.gravity = Vec3(g[0], 0, g[1]);
@@ -110,11 +111,11 @@ double read_cell(const Section& s, Scene& scene, Voids& voids) {
   scene.bottom = read_word(s, "bottom", {"wall", "periodic", "absent"}, scene.bottom);
   scene.lid = read_word(s, "lid", {"absent", "wall"}, scene.lid ? 1 : 0) == 1;
   if (scene.dimension == 2) {
-    voids.refuse(s, {"depth", "plates", "plates_motion"}, "a 2D cell has no depth; cell.dimension = 3 does.");
+    voids.refuse(s, {"depth", "plates", "plates_motion"}, "a 2D cell has no depth; set cell.dimension = 3.");
     scene.plate_drag = s.number_in("plate_drag", 0).value_or(scene.plate_drag);
   } else {
     voids.refuse(s, {"plate_drag"},
-                 "stands in for the front and back plates of a 2D cell; in 3D say cell.plates.");
+                 "stands in for the front and back plates of a 2D cell; in 3D use cell.plates.");
     const auto depth = s.number_in("depth", 0, 1e6, true);
     if (!depth) throw ConfigError(s.where("depth"), "a 3D cell needs its depth.");
     scene.depth = *depth;
@@ -128,8 +129,7 @@ double read_cell(const Section& s, Scene& scene, Voids& voids) {
   if (scene.bottom != Edge::wall) voids.refuse(s, {"bottom_motion"}, "the cell has no bottom wall.");
   if (scene.sides != Edge::wall) voids.refuse(s, {"side_walls", "side_tilt"}, "the cell has no side walls.");
   if (scene.plates != Edge::wall) voids.refuse(s, {"plates_motion"}, "the cell has no front and back walls.");
-  if (!scene.lid)
-    voids.refuse(s, {"lid_motion"}, "the cell has no lid that acts; cell.lid = \"wall\" gives it one.");
+  if (!scene.lid) voids.refuse(s, {"lid_motion"}, "the cell has no lid; set cell.lid = \"wall\".");
   return read_gravity(s, scene, voids);
 }
 
@@ -175,20 +175,20 @@ void read_beads(const Section& s, Scene& scene, Voids& voids) {
     throw ConfigError(s.where("spread_width"),
                       fmt::format("{} is out of range; the value must be less than 0.5.", *width));
   if (scene.spread == SizeSpread::none)
-    voids.refuse(s, {"spread_width"}, "says how far radii are spread, but beads.spread is \"none\".");
+    voids.refuse(s, {"spread_width"}, "is the width of a size distribution, but beads.spread is \"none\".");
   else if (!width)
     throw ConfigError(s.where("spread"), "needs beads.spread_width.");
   scene.spread_width = width.value_or(0);
   read_intruder(s.section("intruder"), scene, voids);
 }
 
-/// A word of versions before 0.2 is refused with the word of today.
+/// Refuses a word of versions before 0.2; the message names the present word.
 void refuse_former_word(const Section& s, const std::string& key, const std::string& former,
                         const std::string& now) {
   if (const auto word = s.text(key); word && *word == former)
     throw ConfigError(s.where(key), fmt::format("\"{}\" is now called \"{}\".", former, now));
 }
-/// So is a key of theirs. \param now what to write instead
+/// Refuses a key of versions before 0.2. \param now what to write instead
 void refuse_former_key(const Section& s, const std::string& key, const std::string& now) {
   if (s.has(key)) throw ConfigError(s.where(key), fmt::format("is a former key; write {}.", now));
 }
@@ -201,7 +201,7 @@ std::string any_of_words(const std::vector<std::string>& words) {
   return text;
 }
 
-/// Keys of laws that the chosen ones do not read: what they say would be lost.
+/// Refuses law keys that the chosen laws do not read, because their values would be ignored.
 void refuse_unread(const Section& table, const ContactChoice& laws, Voids& voids) {
   const std::vector<std::string> read = keys_of(laws.normal, laws.tangential, laws.rolling);
   for (const std::string& key : all_law_keys()) {
@@ -210,7 +210,7 @@ void refuse_unread(const Section& table, const ContactChoice& laws, Voids& voids
     const std::string& law = readers.axis == "normal"       ? laws.normal
                              : readers.axis == "tangential" ? laws.tangential
                                                             : laws.rolling;
-    // Smooth beads may be called so in both ways.
+    // Smooth beads may be given as tangential = "none", as mu = 0, or as both.
     if (key == "mu" && law == NoTangential::kWord && table.number(key) == 0.0) continue;
     voids.refuse(table, {key},
                  fmt::format("the law contact.{} = \"{}\" does not read it; {} would.", readers.axis, law,
@@ -235,8 +235,7 @@ void read_contact(const Section& s, Scene& scene, Voids& voids) {
     voids.refuse(
         table, {"normal", "tangential", "rolling"},
         "all contacts follow the same kinds of law, named in [contact]; their parameters may differ here "
-        "(mu = 0 "
-        "makes a smooth wall).");
+        "(mu = 0 makes a smooth wall).");
   };
   only_numbers(walls);
   if (c.tangential == NoTangential::kWord && c.rolling != NoRolling::kWord) {
@@ -268,7 +267,7 @@ void read_schedule(const Section& s, Envelope& envelope) {
     require_range(where, factor, 0, 1e6);
     if (k > 0 && !(cycle > (*points)[k - 1].first))
       throw ConfigError(
-          where, fmt::format("cycles must rise, but {:g} follows {:g}.", cycle, (*points)[k - 1].first));
+          where, fmt::format("cycles must increase, but {:g} follows {:g}.", cycle, (*points)[k - 1].first));
   }
   if (points->back().second != 1)
     throw ConfigError(where, fmt::format("the last factor is {:g}; it must be 1, the drive that is recorded.",
@@ -323,29 +322,29 @@ void read_start(const Section& s, const std::filesystem::path& folder, Scene& sc
         "keeps the motion of a file's beads, but start.kind is neither \"trajectory\" nor \"table\".");
   if (scene.in_motion) {
     voids.refuse(s, {"rest_energy", "settle_limit"},
-                 "is of a bed that settles, but start.in_motion keeps it moving.");
-    voids.refuse(s, {"relax"}, "moves beads, but start.in_motion goes on from where they are.");
+                 "applies to a bed that settles, but start.in_motion keeps it moving.");
+    voids.refuse(s, {"relax"}, "moves beads, but start.in_motion continues from their positions.");
   }
   if (!trajectory) voids.refuse(s, {"frame"}, "a frame is named, but start.kind is not \"trajectory\".");
   if (scene.start != StartKind::random)
-    voids.refuse(s, {"velocity_scale"}, "is a speed of random starts, but start.kind is not \"random\".");
+    voids.refuse(s, {"velocity_scale"},
+                 "sets the speeds of a random start, but start.kind is not \"random\".");
 }
 
-/// A table's beads have the sizes of its column, or all the same.
+/// Beads of a table have the sizes of its column, or all the same size.
 void refuse_void_spread(const Section& beads, const Scene& scene, Voids& voids) {
   if (scene.start == StartKind::table && scene.spread != SizeSpread::none)
     voids.refuse(beads, {"spread", "spread_width"},
-                 "radii are not drawn for the beads of a table; its column \"radius\" says them.");
+                 "radii are not drawn for the beads of a table; its column \"radius\" contains them.");
 }
 
-/// Versions before 0.2 had a choice of precision. Files that state "double" go on as before.
+/// Versions before 0.2 had a choice of precision. Files that state "double" remain valid.
 void refuse_single_precision(const Section& s) {
   if (const auto word = s.text("precision"); word && *word != "double")
-    throw ConfigError(
-        s.where("precision"),
-        fmt::format("\"{}\" is no precision of this version, which computes in \"double\" alone "
-                    "(single precision saved no time); remove the key.",
-                    *word));
+    throw ConfigError(s.where("precision"),
+                      fmt::format("\"{}\" is not supported; this version computes only in \"double\" "
+                                  "(single precision saved no time); remove the key.",
+                                  *word));
 }
 
 void read_time(const Section& s, Scene& scene) {
@@ -371,7 +370,8 @@ void read_time(const Section& s, Scene& scene) {
 void read_until(const Section& s, Scene& scene) {
   if (!s.has("quantity") && !s.has("relative_error") && !s.has("absolute_error")) return;
   const auto quantity = s.text("quantity");
-  if (!quantity) throw ConfigError(s.where("quantity"), "is missing: the mean that is to be known so well.");
+  if (!quantity)
+    throw ConfigError(s.where("quantity"), "is missing; it names the mean to which the error bound applies.");
   Precision until{.quantity = *quantity};
   until.relative = s.number_in("relative_error", 0, 1, true).value_or(until.relative);
   until.absolute = s.number_in("absolute_error", 0, 1e12).value_or(until.absolute);
@@ -388,7 +388,7 @@ void read_scale(const Section& s, Scene& scene) {
   scene.scale.gravity_m_s2 = s.number_in("gravity_m_s2", 0, std::nullopt, true);
 }
 
-/// Extents of the cell along x, y, z where something limits it; 0: open.
+/// Extents of the cell along x, y, z where a boundary limits it; 0: open.
 std::array<double, 3> limited_extent(const Scene& s) {
   const bool capped = s.lid || s.bottom == Edge::periodic;
   return {s.sides == Edge::absent ? 0 : s.width, s.dimension == 2 || s.plates == Edge::absent ? 0 : s.depth,
@@ -411,7 +411,7 @@ void check_sizes(const Scene& s, const Section& cell, const Section& beads) {
   const auto extent = limited_extent(s), period = s.period();
   for (std::size_t a = 0; a < 3; ++a) {
     if (extent[a] == 0) continue;
-    // A bed that just fits, whatever the rounding.
+    // The tolerance admits a bed that just fits, whatever the rounding.
     const double slack = 1e-9 * extent[a];
     if (2 * largest > extent[a] + slack)
       throw ConfigError(
@@ -443,7 +443,7 @@ void check_intruder(const Scene& s, const Section& beads) {
   const Section table = beads.section("intruder");
   if (s.start == StartKind::trajectory || s.start == StartKind::table)
     throw ConfigError(table.where(""),
-                      "a file names all beads, the intruder among them; leave the table out.");
+                      "a file contains all beads, including the intruder; remove this table.");
   const Vec3 r(s.intruder->x, s.intruder->y, s.intruder->z);
   for (const Wall& wall : s.walls()) {
     const double outside = s.intruder->radius - (wall.n.dot(r) - wall.offset);
@@ -466,12 +466,14 @@ void check_gravity(const Scene& s, const Section& cell) {
       throw ConfigError(where, fmt::format("without gravity beads leave the cell for ever: its {}.", open));
     return;
   }
-  // Along a periodic axis there is no wall; what gravity presses against another wall may slide along it.
+  // A periodic axis has no wall. Beads that gravity presses against another wall may then slide along that
+  // axis.
   const auto walls = s.walls();
   if (std::none_of(walls.begin(), walls.end(), [&](const Wall& w) { return w.n.dot(s.gravity) < 0; }))
-    throw ConfigError(where,
-                      fmt::format("no wall carries the beads, which ({:g}, {:g}, {:g}) accelerates for ever.",
-                                  s.gravity.x(), s.gravity.y(), s.gravity.z()));
+    throw ConfigError(
+        where,
+        fmt::format("no wall supports the beads, which gravity ({:g}, {:g}, {:g}) accelerates for ever.",
+                    s.gravity.x(), s.gravity.y(), s.gravity.z()));
 }
 
 void check_drive(const Scene& s, const Section& drive) {
@@ -493,13 +495,15 @@ void check_contact_tables(const Scene& s, const Section& contact) {
     throw ConfigError(contact.where("wall"), "the cell has no walls.");
 }
 
+/// Reads and checks the tables of a resolved scene.
 /// \param lower names of the preset and of the calibration file, whose keys give way
 Scene interpret(Config& config, const std::string& name, const std::filesystem::path& folder,
                 std::vector<std::string> lower) {
   Scene scene;
   scene.file = name;
-  std::erase(lower, name);  // a scene of that name is the user's
+  std::erase(lower, name);  // a scene with such a name is the user's own file
   Voids voids(config, std::move(lower), scene.void_keys);
+  // Reading: in this order, since later tables depend on the dimension, the cell and the start.
   const Section root = config.root(), cell = root.section("cell"), beads = root.section("beads"),
                 contact = root.section("contact"), drive = root.section("drive");
   scene.source = root;
@@ -514,7 +518,7 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   read_scale(root.section("scale"), scene);
   read_effects(root.section("effects"), scene);
   refuse_void_spread(beads, scene, voids);
-  // A misspelt key explains more than what is missing because of it.
+  // Unknown keys come first: a misspelt key is often the reason why another one is missing.
   config.refuse_unknown_keys();
   const ContactChoice& laws = scene.contact;
   check_laws(laws.normal, laws.tangential, laws.rolling, laws.bead);
@@ -523,14 +527,15 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   const bool from_file = scene.start == StartKind::trajectory || scene.start == StartKind::table;
   if (!scene.n_beads && !from_file)
     throw ConfigError(beads.where("count"), "the number of beads is missing.");
+  // Checks that involve several tables.
   check_height(scene, cell);
   check_sizes(scene, cell, beads);
   check_intruder(scene, beads);
   check_gravity(scene, cell);
   check_drive(scene, drive);
   check_contact_tables(scene, contact);
-  // A stored scene, a checkpoint and a point of a sweep are of their step, whatever later programs take for
-  // granted.
+  // Stored scenes, checkpoints and points of a sweep keep their integrator and n, even if later versions
+  // change the defaults.
   const Section time = root.section("time");
   if (!time.has("integrator")) config.assign(fmt::format("time.integrator={}", scene.integrator));
   if (!time.has("steps_per_contact"))
@@ -551,8 +556,8 @@ std::size_t count_drive_words(const Config& config) {
                                                 [&](const std::string& word) { return drive.has(word); }));
 }
 
-/// Removes from `lower` what `upper` says in other words: restitution displaces gamma_n, layers the count, f
-/// omega.
+/// Removes keys from `lower` that `upper` replaces by an equivalent key: restitution replaces gamma_n, layers
+/// the count, frequency omega.
 void displace(Config& lower, const Config& upper) {
   for (const char* section : {"contact", "contact.wall"})
     for (const auto& group : {normal_damping_keys(), tangential_damping_keys()})
@@ -561,8 +566,8 @@ void displace(Config& lower, const Config& upper) {
   lower.yield_to(upper, "drive", {"omega", "frequency"});
 }
 
-/// Lays assignments over a scene. K_m displaces a stated Gamma; two assignments that contradict each other
-/// still do.
+/// Applies assignments to a scene. An assigned K_m replaces a Gamma of the scene; two assignments that
+/// contradict each other are refused later.
 void assign(Config& config, const std::vector<std::string>& assignments) {
   Config upper = Config::from_text("", "--set");
   for (const auto& assignment : assignments) {
@@ -589,7 +594,7 @@ Scene resolve(Config config, const std::string& name, const std::vector<std::str
   lower.push_back("preset " + *preset);
   Config base = Config::from_text(chosen->second, lower.back());
   displace(base, config);
-  // Two measured numbers, or a stated and a measured one, are a whole drive.
+  // Two measured quantities, or a stated and a measured one, define the whole drive.
   if (std::any_of(included.taken.begin(), included.taken.end(),
                   [](const std::string& taken) { return taken.starts_with("drive."); }) &&
       count_drive_words(config) >= 2)

@@ -67,7 +67,7 @@ std::string describe_cell(const Scene& scene) {
 
 namespace {
 
-/// Of mean 0 and variance 1 (Box and Muller).
+/// Normal deviate of mean 0 and variance 1 (Box and Muller).
 double normal(std::mt19937_64& engine) {
   const double r = std::sqrt(-2 * std::log(1 - uniform(engine)));
   return r * std::cos(2 * std::numbers::pi * uniform(engine));
@@ -114,16 +114,15 @@ Start make_start(const Scene& scene, Progress& progress) {
   };
   Start start = place();
   if (scene.relax) {
-    // Centres in the same place have no direction to part in, and what is beyond a wall is another cell's.
+    // Coincident centres have no direction of separation, and a bead beyond a wall belongs to another cell.
     constexpr double kRefused = 0.99, kTolerated = 1e-6;
     require_sound(start.beads, scene, kRefused, progress);
     if (const double left = relax_overlaps(start.beads, scene, kTolerated, 50000, progress);
         left > kTolerated)
-      throw ConfigError(
-          scene.where("start.relax"),
-          fmt::format("the beads cannot be pushed apart, an overlap of {:.3g} sigma is left, the "
-                      "bound is {:g}; is there room for them?",
-                      left, kTolerated));
+      throw ConfigError(scene.where("start.relax"),
+                        fmt::format("the beads cannot be pushed apart, an overlap of {:.3g} sigma remains, "
+                                    "the bound is {:g}; is there room for them?",
+                                    left, kTolerated));
   }
   if (scene.perturbation == 0) return start;
   std::mt19937_64 engine = engine_of(scene, Stream::perturbation);

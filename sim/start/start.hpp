@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Where beads begin: lattices, random deposits, tables, any frame of any trajectory.
+/// Initial positions of the beads: lattices, random deposits, tables, or a frame of a trajectory.
 
 #include <cstdint>
 #include <vector>
@@ -12,74 +12,80 @@
 
 namespace twincell::sim {
 
-/// Beads before they settle; z = 0 is the plate. An intruder is the last of them.
+/// Beads before they settle; z = 0 is the plate. An intruder is the last bead.
 struct Start {
   std::vector<Bead> beads;
   std::vector<std::uint8_t> tracer;  ///< carried over from a trajectory; empty otherwise
-  // Of a trajectory start in motion whose frame holds them; empty otherwise.
+  // From the frame of a trajectory that starts in motion, if it contains them; otherwise empty.
   std::vector<ContactMemory> contacts = {};
   std::vector<Force> forces = {};
   std::vector<Vec3> rim_speeds = {};
-  std::optional<double> phase =
-      {};  ///< of the drive, cycles: that of the frame a start in motion goes on from
+  /// Drive phase of the frame from which a start in motion continues, in cycles.
+  std::optional<double> phase = {};
 };
 
-/// Radii of the scene's beads, drawn from its seed; all the same without a spread.
+/// Radii of the beads, drawn with the seed of the scene; without a size spread all are equal.
 std::vector<double> draw_radii(const Scene& scene, std::size_t n);
 
-/// Whether another start.seed makes another run: places of a random start, radii with a spread, perturbation.
-/// A table brings its own radii. True for a spread on a trajectory start, whose file may bring its own too.
+/// Whether another start.seed gives another run: random positions, radii with a spread, or a perturbation. A
+/// table sets its own radii. True for a spread with a trajectory start, although the file may set its own
+/// radii too.
 bool has_chance(const Scene& scene);
 
 /// Close-packed layers parallel to the plate, filled from below.
 ///
 /// 2D, and 3D cells too shallow for a second row (depth < d (1 + 1/sqrt 12)), in the middle of their gap:
-/// rows along x, alternately floor(width) and one fewer beads, touching, sqrt(3)/2 d apart; the last row
-/// fills from the left. 3D: hexagonal close packing, such layers sqrt(2/3) d apart, stacked ABAB. The lattice
-/// constant d is the largest bead's diameter. Sites inside an intruder, a wall or beyond the lid stay empty.
-/// \throws ConfigError if the cell holds fewer beads than the scene asks for
+/// rows along x of touching beads, alternately floor(width) and one fewer, sqrt(3)/2 d apart; the last row
+/// fills from the left. 3D: hexagonal close packing, layers of such rows sqrt(2/3) d apart, stacked ABAB. The
+/// lattice constant d is the diameter of the largest bead. Sites inside an intruder or a wall, or beyond the
+/// lid, stay empty.
+/// \throws ConfigError if the cell has room for fewer beads than the scene requires
 Start crystal_a(const Scene& scene, Progress& progress = Progress::none());
-/// The same lattices turned by 90 degrees: close-packed rows vertical. 2D: rows parallel to the side walls.
-/// 3D: the close-packed layers of the hexagonal stack are parallel to the side walls. Filled from below, then
-/// from the left.
+/// The same lattices rotated by 90 degrees: close-packed rows are vertical. 2D: rows parallel to the side
+/// walls. 3D: the close-packed layers of the hexagonal stack are parallel to the side walls. Filled from
+/// below, then from the left.
 Start crystal_b(const Scene& scene, Progress& progress = Progress::none());
-/// Beads at random places without overlap in a tall column, large ones first, with random velocities; they
-/// still have to fall. Without gravity they fill the cell. \throws ConfigError if they find no places
+/// Beads at random positions without overlap in a tall column, large ones placed first, with random
+/// velocities; they fall during settling. Without gravity they fill the cell.
+/// \throws ConfigError if too few free positions are found
 Start random_deposit(const Scene& scene, Progress& progress = Progress::none());
-/// Frame `scene.frame` of `scene.from`: positions against the plate, empty slots left out, velocities
-/// forgotten. With scene.in_motion everything is kept as it is: positions, velocities, spins, the phase of
-/// the drive, and what contacts remember if the frame holds it. Radii and masses are the file's if a
-/// simulation wrote it, otherwise the scene's: a camera's radii are measurements. A 2D trajectory in a 3D
-/// cell lies in the middle of its gap. What a camera's noise makes overlap by up to 0.2 of the smaller
-/// diameter is pushed apart until no overlap exceeds 1e-4. \throws InputError if the file cannot be read;
-/// ConfigError for a missing frame, beads outside the cell or deeper in each other than 0.2, overlaps beyond
-/// 0.05 that remain
+/// Frame `scene.frame` of `scene.from`: positions relative to the plate, without empty slots, velocities set
+/// to 0. With scene.in_motion everything is kept: positions, velocities, spins, the phase of the drive, and
+/// the contact memories if the frame contains them.
+///
+/// Radii and masses are those of the file if a simulation wrote it, otherwise those of the scene, because
+/// radii from a camera are measurements. A 2D trajectory in a 3D cell is placed in the middle of the gap.
+/// Camera noise can make beads overlap: overlaps of up to 0.2 of the smaller diameter are pushed apart until
+/// none exceeds 1e-4.
+/// \throws InputError if the file cannot be read; ConfigError for a missing frame, beads outside the cell,
+/// overlaps deeper than 0.2, or remaining overlaps above 0.05
 Start from_trajectory(const Scene& scene, Progress& progress = Progress::none());
-/// A CSV table: a line that names the columns (x, z; optional y, vx, vy, vz, spin, spin_x, spin_z, radius,
-/// mass), then one bead a line. A missing radius is the scene's, a missing mass that of the same material, a
-/// missing y the middle of the gap, anything else 0. \throws InputError naming file, line and column of a bad
-/// number; ConfigError if beads.count says otherwise
+/// A CSV table: a header line that names the columns (x, z; optional y, vx, vy, vz, spin, spin_x, spin_z,
+/// radius, mass), then one bead per line. Defaults for missing columns: the radius of the scene, the mass of
+/// a bead of the same material, for y the middle of the gap, otherwise 0.
+/// \throws InputError naming file, line and column of an invalid number; ConfigError if beads.count differs
 Start from_table(const Scene& scene, Progress& progress = Progress::none());
-/// Whichever the scene asks for, its overlaps pushed apart and perturbed as it asks. \throws ConfigError also
-/// for overlaps that cannot be pushed apart \param progress asked many times a second; it may throw
-/// Interrupted
+/// The start that the scene selects, with overlaps pushed apart and perturbed if the scene requires it.
+/// \throws ConfigError also for overlaps that cannot be pushed apart
+/// \param progress called many times per second; it may throw Interrupted
 Start make_start(const Scene& scene, Progress& progress = Progress::none());
 
-/// Pushes overlapping beads apart, and out of walls, by at most 0.01 sigma a contact and sweep until no
-/// overlap exceeds `tolerance`; the lighter bead gives way. Never by integrating the contact force, which
-/// would launch them. Returns the largest overlap left.
+/// Pushes overlapping beads apart, and out of walls, by at most 0.01 sigma per contact and sweep until no
+/// overlap exceeds `tolerance`. The displacements are in inverse proportion to the masses. The contact force
+/// is not integrated, because it would launch the beads.
+/// \returns the largest remaining overlap
 double relax_overlaps(std::vector<Bead>& beads, const Scene& scene, double tolerance, int max_sweeps,
                       Progress& progress = Progress::none());
 
-/// Refuses, naming beads: positions or velocities that are not finite, beads too large for a period, beads in
-/// each other or in walls deeper than `bound` of the smaller one's diameter. \param plate where the
-/// walls that ride with it are, against its mean
+/// Refuses a start, naming the beads, if positions or velocities are not finite, if beads are too large for a
+/// period, or if beads overlap each other or walls by more than `bound` times the smaller diameter.
+/// \param plate displacement of the walls that move with the plate, relative to their mean position
 void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bound,
                    Progress& progress = Progress::none(), const Vec3& plate = Vec3::Zero());
 
-/// Tracers at the middle of the resting bed (app. B: "at the centre, in a straight horizontal line"): of
-/// crystal A the lattice layer nearest to half height, otherwise the bead nearest to half height in every
-/// column one diameter wide (and, in 3D, deep). An intruder is none.
+/// Tracers in the middle of the resting bed (app. B: "at the centre, in a straight horizontal line"). In
+/// crystal A they are the lattice layer nearest to half height; otherwise they are the bead nearest to half
+/// height in every column one diameter wide (and, in 3D, deep). An intruder is never a tracer.
 std::vector<std::uint8_t> choose_tracers(const std::vector<Bead>& resting, const Scene& scene);
 
 }  // namespace twincell::sim

@@ -18,11 +18,11 @@ namespace {
 
 void require_count(const Scene& scene, std::size_t found, const std::string& source) {
   if (scene.n_beads && *scene.n_beads != found)
-    throw ConfigError(scene.where("beads.count"),
-                      fmt::format("{} beads were announced, {} holds {}.", *scene.n_beads, source, found));
+    throw ConfigError(scene.where("beads.count"), fmt::format("{} beads were specified, but {} contains {}.",
+                                                              *scene.n_beads, source, found));
 }
 
-/// A column of a file that must hold positive numbers, or is absent.
+/// Checks a column of a file, which must contain positive numbers or be absent.
 void require_positive(const Scene& scene, const std::vector<double>& column, const char* name) {
   for (std::size_t i = 0; i < column.size(); ++i)
     if (!(column[i] > 0 && std::isfinite(column[i])))
@@ -31,22 +31,23 @@ void require_positive(const Scene& scene, const std::vector<double>& column, con
           fmt::format("{} of bead {} is out of range; the value must be greater than 0.", column[i], i));
 }
 
-/// Goes on from a frame as it is.
+/// Start in motion: continues from a frame without changes.
 Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Frame& frame) {
   const std::string name = fmt::format("frame {} of {}", scene.frame, scene.from.string());
   const auto refuse = [&](const std::string& complaint) {
     throw ConfigError(scene.where("start.in_motion"), name + complaint);
   };
   if (info.source != "simulation")
-    refuse(" is of source \"" + info.source + "\"; only a simulation's frames hold a bed's whole motion.");
+    refuse(" has source \"" + info.source +
+           "\"; only frames of a simulation contain the complete motion of a bed.");
   if (!info.columns.velocity) refuse(" has no velocities.");
   if (info.box.dimension != scene.dimension)
     refuse(fmt::format(" has {} dimensions, the cell has {}.", info.box.dimension, scene.dimension));
   if (!scene.phase && (frame.phase < 0 || info.phases_per_cycle <= 0))
-    refuse(" has no drive phase; say drive.phase.");
+    refuse(" has no drive phase; set drive.phase.");
   const Vec3 corner(info.box.lower.x(), scene.dimension == 3 ? info.box.lower.y() : 0, 0);
   Start start;
-  std::vector<std::int32_t> slot(frame.position.size(), -1);  // of the frame's slots among the beads
+  std::vector<std::int32_t> slot(frame.position.size(), -1);  // bead index of each slot of the frame
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
     if (!frame.present(i)) continue;
     const double radius = info.radius.empty() ? scene.radius : info.radius[i];
@@ -60,6 +61,7 @@ Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Fram
     start.beads.push_back(b);
     if (!info.tracer.empty()) start.tracer.push_back(info.tracer[i]);
   }
+  // Contacts, forces and surface speeds: needed to continue bit for bit.
   for (ContactMemory c : frame.contacts) {
     c.i = slot[static_cast<std::size_t>(c.i)];
     if (c.j >= 0) c.j = slot[static_cast<std::size_t>(c.j)];
@@ -78,14 +80,15 @@ Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Fram
                               .q_x = frame.moment[i].x(),
                               .q_z = frame.moment[i].z()});
   if (all_known(frame.rim_speed)) start.rim_speeds = frame.rim_speed;
+  // The drive must put the plate where the frame has it.
   start.phase = scene.phase ? *scene.phase : static_cast<double>(frame.phase) / info.phases_per_cycle;
   constexpr double kSamePlate = 1e-9;
   if (const double plate = scene.drive.displacement(*start.phase);
       !std::isnan(frame.plate_height) && std::abs(plate - frame.plate_height) > kSamePlate)
-    refuse(fmt::format(
-        " has its plate at {:g} sigma, this drive puts it at {:g}; another amplitude can begin at a frame of "
-        "phase 0.",
-        frame.plate_height, plate));
+    refuse(
+        fmt::format(" has its plate at {:g} sigma, but this drive puts it at {:g}; to change the amplitude, "
+                    "start at a frame of phase 0.",
+                    frame.plate_height, plate));
   require_count(scene, start.beads.size(), name);
   return start;
 }
@@ -96,12 +99,12 @@ Start from_trajectory(const Scene& scene, Progress& progress) {
   const H5mdReader file(scene.from);
   const TrajectoryInfo& info = file.info();
   if (scene.frame >= file.n_frames())
-    throw ConfigError(
-        scene.where("start.frame"),
-        fmt::format("frame {} was asked for, {} has {}.", scene.frame, scene.from.string(), file.n_frames()));
+    throw ConfigError(scene.where("start.frame"),
+                      fmt::format("frame {} was requested, but {} has {} frames.", scene.frame,
+                                  scene.from.string(), file.n_frames()));
   if (info.box.dimension == 3 && scene.dimension == 2)
     throw ConfigError(scene.where("start.from"),
-                      fmt::format("{} is three-dimensional, the cell is not; say cell.dimension = 3.",
+                      fmt::format("{} is three-dimensional, the cell is not; set cell.dimension = 3.",
                                   scene.from.string()));
   const bool own_sizes = info.source == "simulation";
   if (own_sizes) {
@@ -112,7 +115,7 @@ Start from_trajectory(const Scene& scene, Progress& progress) {
   Frame frame;
   file.read(scene.frame, frame);
   if (scene.in_motion) return start_in_motion(scene, info, frame);
-  // Along the axis of the drive positions count from the plate, which will be at its mean.
+  // Along the drive axis, positions are relative to the plate, which starts at its mean position.
   Vec3 origin(info.box.lower.x(), info.box.lower.y(), 0);
   if (!std::isnan(frame.plate_height))
     origin += frame.plate_height * Vec3::Unit(static_cast<int>(info.drive ? info.drive->axis : Axis::z));
@@ -128,17 +131,16 @@ Start from_trajectory(const Scene& scene, Progress& progress) {
     if (!info.tracer.empty()) start.tracer.push_back(info.tracer[i]);
   }
   require_count(scene, start.beads.size(), fmt::format("frame {} of {}", scene.frame, scene.from.string()));
-  // A camera's noise is a few hundredths of a diameter; beyond 0.2 it is not this cell.
+  // Camera noise is a few hundredths of a diameter; an overlap beyond 0.2 means that the file belongs to
+  // another cell.
   constexpr double kRefused = 0.2, kTolerated = 1e-4, kLeft = 0.05;
   require_sound(start.beads, scene, kRefused, progress);
   const double left = relax_overlaps(start.beads, scene, kTolerated, 20000, progress);
   if (left > kLeft)
-    throw ConfigError(
-        scene.where("start.from"),
-        fmt::format(
-            "{}: the beads cannot be pushed apart, an overlap of {:.3g} sigma is left, the bound is {:g}; is "
-            "the width right?",
-            scene.from.string(), left, kLeft));
+    throw ConfigError(scene.where("start.from"),
+                      fmt::format("{}: the beads cannot be pushed apart, an overlap of {:.3g} sigma remains, "
+                                  "the bound is {:g}; is the width correct?",
+                                  scene.from.string(), left, kLeft));
   return start;
 }
 
@@ -147,7 +149,7 @@ namespace {
 struct Column {
   std::string_view name;
   double Bead::*member;
-  bool space_only = false;  ///< belongs to the third dimension
+  bool space_only = false;  ///< for 3D only
   bool positive = false;
 };
 constexpr Column kColumns[] = {{"x", &Bead::x},
@@ -162,7 +164,7 @@ constexpr Column kColumns[] = {{"x", &Bead::x},
                                {"radius", &Bead::radius, false, true},
                                {"mass", &Bead::mass, false, true}};
 
-/// A field of a CSV line and where it begins, from 1.
+/// A field of a CSV line and the column where it begins, counted from 1.
 struct Field {
   std::string_view text;
   long column;
@@ -195,7 +197,7 @@ class BeadTable {
             "there is no such column; a bead has x, y, z, vx, vy, vz, spin, spin_x, spin_z, radius, mass.");
       if (known->space_only && scene.dimension == 2)
         throw InputError(where, "beads of a 2D cell have no such column.");
-      if (has(known->name)) throw InputError(where, "the column is there twice.");
+      if (has(known->name)) throw InputError(where, "the column occurs twice.");
       columns_.push_back(known);
     }
     for (const char* needed : {"x", "z"})
@@ -205,7 +207,7 @@ class BeadTable {
   [[nodiscard]] Bead row(const std::vector<Field>& fields, long line) const {
     if (fields.size() != columns_.size())
       throw InputError({scene_.from.string(), line, 0, ""},
-                       fmt::format("{} columns are needed, here are {}.", columns_.size(), fields.size()));
+                       fmt::format("{} columns are needed, {} were found.", columns_.size(), fields.size()));
     Bead b = bead_at(scene_, scene_.radius, Vec3(0, scene_.dimension == 3 ? scene_.depth / 2 : 0, 0));
     for (std::size_t k = 0; k < fields.size(); ++k)
       b.*columns_[k]->member = number(fields[k], *columns_[k], line);

@@ -12,15 +12,15 @@ namespace twincell::sim {
 
 namespace {
 
-/// Puts beads on the sites of a lattice of constant `d` that `level(k, offer)` names, level by level, until
-/// offer(x, y, z) says that all are placed.
+/// Places beads on the sites of a lattice of constant `d`, level by level. `level(k, offer)` calls offer(x,
+/// y, z) for each site of level k until offer returns false, which means that all beads are placed.
 template <class Level>
 Start fill_lattice(const Scene& scene, const std::vector<double>& radii, double d, Progress& progress,
                    Level level) {
   Heed heed(progress);
   const auto walls = scene.walls();
   const auto period = scene.period();
-  // Twenty beads of diameter 1 fit into a width of 20 whatever the rounding.
+  // Twenty beads of diameter 1 must fit into a width of 20 despite rounding.
   const double ceiling = ceiling_of(scene), slack = 1e-9 * d;
   Start start;
   const auto free = [&](double radius, const Vec3& r) {
@@ -30,8 +30,8 @@ Start fill_lattice(const Scene& scene, const std::vector<double>& radii, double 
     return (apart + nearest_shift(apart, period)).norm() >= radius + scene.intruder->radius;
   };
   const double obstacle = scene.intruder ? 2 * scene.intruder->radius : 0;
-  const auto most_empty =
-      static_cast<std::size_t>(4 + 2 * obstacle / d);  // levels beside an intruder that fills the cell
+  // Largest number of successive levels without a free site: those next to an intruder that fills the cell.
+  const auto most_empty = static_cast<std::size_t>(4 + 2 * obstacle / d);
   for (std::size_t k = 0, empty = 0; start.beads.size() < radii.size(); ++k) {
     const std::size_t before = start.beads.size();
     level(k, [&](double x, double y, double z) {
@@ -50,13 +50,14 @@ Start fill_lattice(const Scene& scene, const std::vector<double>& radii, double 
   return start;
 }
 
-/// A number that rounding has brought a little below a whole one counts as that one.
+/// Integer part of q; a value that rounding has put slightly below an integer counts as that integer.
 std::size_t whole(double q) {
   return static_cast<std::size_t>(std::max(0.0, std::floor(q + 1e-9)));
 }
 
-/// How many lattice lines fit into `length`, the first half a diameter inside. Across a period the last is a
-/// diameter or more from the first one's image, unless an even number closes without a gap.
+/// Number of lattice lines that fit into `length`, the first half a diameter from the edge. In a periodic
+/// direction the last line is at least a diameter from the image of the first, unless an even number of lines
+/// closes without a gap.
 std::size_t lines(double length, double spacing, double d, bool periodic) {
   const std::size_t with_gap = whole((length - d) / spacing) + 1;
   return periodic ? std::max(with_gap, 2 * whole(length / (2 * spacing))) : with_gap;
@@ -74,7 +75,7 @@ Start crystal_a(const Scene& scene, Progress& progress) {
   const std::size_t full = std::max<std::size_t>(1, whole(scene.width / d));
   const std::size_t offset_row =
       scene.sides == Edge::periodic ? full : std::max<std::size_t>(1, whole((scene.width - d / 2) / d));
-  // Returns whether more beads are wanted.
+  // Returns false when all beads are placed.
   const auto row = [&](bool odd, double y, double z, auto offer) {
     const double first = odd ? d : d / 2;
     for (std::size_t i = 0; i < (odd ? offset_row : full); ++i)

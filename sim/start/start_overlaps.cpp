@@ -13,7 +13,7 @@ namespace twincell::sim {
 
 namespace {
 
-/// The pairs that relax_overlaps looks at, good until a bead has moved half the margin.
+/// Near pairs for relax_overlaps. The list is valid until a bead has moved by half the margin.
 class NearPairs {
  public:
   NearPairs(const std::vector<Bead>& beads, const Scene& scene)
@@ -22,7 +22,7 @@ class NearPairs {
     for (const Bead& b : beads) smallest = std::min(smallest, b.radius);
     margin_ = 0.5 * smallest;
   }
-  /// Sorted by (i, j), so that the order of pushing is the same however the pairs were found.
+  /// Sorted by (i, j), so that the order of the displacements does not depend on the search.
   const std::vector<std::pair<std::int32_t, std::int32_t>>& of(const std::vector<Bead>& beads) {
     if (!stale(beads)) return pairs_;
     pairs_.clear();
@@ -96,7 +96,7 @@ double relax_overlaps(std::vector<Bead>& beads, const Scene& scene, double toler
 
 namespace {
 
-/// H16: no bead may come near two images of another.
+/// H16: no bead may be near two images of another.
 void require_periods(const std::vector<Bead>& beads, const Scene& scene) {
   double first = 0, second = 0;  // the two largest radii
   for (const Bead& b : beads) {
@@ -119,11 +119,12 @@ void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bo
                    const Vec3& plate) {
   Heed heed(progress);
   const Where where = scene.where("start");
-  constexpr double kFar = 1e9;  // as high as a cell may be
+  constexpr double kFar = 1e9;  // largest permitted height of a cell
   auto walls = scene.walls();
   for (Wall& wall : walls)
     if (wall.moves) wall.offset += wall.n.dot(plate);
   for (std::size_t i = 0; i < beads.size(); ++i) {
+    // Each bead: finite numbers, position, walls.
     const Bead& b = beads[i];
     heed();
     if (!std::isfinite(b.x + b.y + b.z + b.vx + b.vy + b.vz + b.spin + b.spin_x + b.spin_z))
@@ -141,6 +142,7 @@ void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bo
                              bound * 2 * b.radius));
   }
   require_periods(beads, scene);
+  // Pairs: the deepest overlap is named, the others are counted.
   double deepest = 0;
   std::size_t how_many = 0;
   std::string worst;
@@ -161,7 +163,9 @@ void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bo
         if (deepest == a.radius + b.radius) worst = fmt::format("beads {} and {} have the same centre", i, j);
       });
   if (how_many > 0)
-    throw ConfigError(where, how_many == 1 ? worst + "." : fmt::format("{}; {} pairs do.", worst, how_many));
+    throw ConfigError(where, how_many == 1
+                                 ? worst + "."
+                                 : fmt::format("{}; {} pairs exceed their bounds.", worst, how_many));
 }
 
 }  // namespace twincell::sim

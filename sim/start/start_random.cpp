@@ -14,12 +14,12 @@ namespace twincell::sim {
 
 namespace {
 
-/// Height of a column in which the beads find random places quickly: random placement gets slow near its
-/// limit, 0.547 of the area in 2D, 0.38 of the volume in 3D.
+/// Height of a column in which random positions are found quickly: random placement becomes slow near its
+/// limit, 0.547 of the area in 2D and 0.38 of the volume in 3D.
 double column_height(const Scene& scene, const std::vector<double>& radii) {
   const bool flat = scene.dimension == 2;
   const double r = scene.radius, powers = flat ? 2 : 3;
-  double in_beads = 0;  // of radius r
+  double in_beads = 0;  // total size, in beads of radius r
   for (const double radius : radii) in_beads += std::pow(radius / r, powers);
   if (scene.intruder) in_beads += std::pow(scene.intruder->radius / r, powers);
   const double filled =
@@ -54,7 +54,7 @@ Start random_deposit(const Scene& scene, Progress& progress) {
   const auto along = [&](double extent, double radius, bool periodic) {
     return periodic ? extent * uniform(engine) : radius + (extent - 2 * radius) * uniform(engine);
   };
-  // Large beads first: they find no room between small ones.
+  // Large beads first, because they find no free position between small ones.
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -67,7 +67,7 @@ Start random_deposit(const Scene& scene, Progress& progress) {
       heed();
       if (--tries_left < 0)
         throw ConfigError(scene.where("beads.count"),
-                          fmt::format("{} beads find no random places in {}.", n, describe_cell(scene)));
+                          fmt::format("{} beads cannot be placed at random in {}.", n, describe_cell(scene)));
       Vec3 r = Vec3::Zero();
       r.x() = along(scene.width, radius, scene.sides == Edge::periodic);
       if (scene.dimension == 3) r.y() = along(scene.depth, radius, scene.plates == Edge::periodic);

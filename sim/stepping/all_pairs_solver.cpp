@@ -1,5 +1,6 @@
-// Every pair and every wall at every step, without lists. One contact at a time it is the oracle; as wide as
-// vectors are, the kernel for a few beads, whose lists would take longer than their contacts.
+// The all-pairs solver: every pair and every wall at every step, without lists. With one contact at a time it
+// is the oracle. With wide SIMD vectors it is the solver for a few beads, for which lists would take longer
+// than contacts.
 
 #include <fmt/format.h>
 
@@ -19,12 +20,12 @@ namespace {
 
 using Size = std::size_t;
 
-/// Contacts of one kind, in packets: of all pairs, or of all beads with one wall.
+/// Contacts of one kind in packets: all pairs, or all beads with one wall.
 struct Packets {
   Size count = 0;                                ///< contacts
   std::vector<std::int32_t> i, j;                ///< records, padded; no j at a wall
   std::vector<double> memory, constants, shift;  ///< [packet][number][lane]
-  bool remembers = false;                        ///< some number of `memory` may not be 0
+  bool remembers = false;                        ///< some number of `memory` may be nonzero
 };
 
 class AllPairsSolver : public Solver {
@@ -32,12 +33,12 @@ class AllPairsSolver : public Solver {
   AllPairsSolver(const Plan& plan, const GuardLimits& limits, const Target& target)
       : plan_(plan),
         limits_(limits),
-        passes_(target.find(plan.key)),
+        kernels_(target.find(plan.key)),
         width_(static_cast<Size>(target.width)),
-        memory_(static_cast<Size>(passes_.remembered)),
+        memory_(static_cast<Size>(kernels_.remembered)),
         dimension_(static_cast<Size>(plan.dimension)),
         beads_(plan_),
-        magic_(grain_of_sums(plan)) {}
+        quantum_(grain_of_sums(plan)) {}
 
   void advance(System& s, std::int64_t steps) override {
     if (s.beads.empty() || steps <= 0) {
@@ -53,11 +54,11 @@ class AllPairsSolver : public Solver {
     const bool known = s.forces_known;
     if (!arranged_ || !beads_.agrees(s, order_)) {
       keep_memories();
-      beads_.take(s, order_, 1);
+      beads_.load(s, order_, 1);
       arrange(s);
     }
     IntegrateArgs args = beads_.integrate_args(s);
-    // How far beads stray from free flight is of no interest here.
+    // The deviation from free flight is not used here, but the kernel needs a reference.
     reference_.resize(static_cast<Size>(record(1)) / 2 * s.beads.size());
     args.reference = reference_.data();
     const BeadRange all{0, static_cast<std::int64_t>(s.beads.size())};
@@ -66,17 +67,17 @@ class AllPairsSolver : public Solver {
     for (std::int64_t k = 0; k < steps; ++k) {
       args.kicks = k == 0 ? 1 : 2;
       args.drift = true;
-      passes_.integrate(args);
+      kernels_.integrate(args);
       ++s.step;
       if (!(forces(s) <= limits_.overlap)) {
-        beads_.give(s, order_);
+        beads_.store(s, order_);
         explain_overlap(s, limits_);
       }
     }
     args.kicks = 1;
     args.drift = false;
-    passes_.integrate(args);
-    beads_.give(s, order_);
+    kernels_.integrate(args);
+    beads_.store(s, order_);
     check_motion(s, limits_);
   }
   [[nodiscard]] std::int64_t list_builds() const override { return 0; }
@@ -100,7 +101,7 @@ class AllPairsSolver : public Solver {
   [[nodiscard]] std::int32_t record(Size place) const {
     return static_cast<std::int32_t>(place) * (plan_.dimension == 2 ? kRecord<2> : kRecord<3>);
   }
-  /// Where number m of `numbers` of contact k stands.
+  /// Index of number m (of `numbers`) of contact k.
   [[nodiscard]] Size place(Size k, Size m, Size numbers) const {
     return (k / width_ * numbers + m) * width_ + k % width_;
   }
@@ -148,7 +149,7 @@ class AllPairsSolver : public Solver {
     kept_.clear();
     arranged_ = true;
   }
-  /// What contacts remember that remember anything.
+  /// Remembered numbers of all contacts with nonzero memory.
   [[nodiscard]] Memories memories() const {
     Memories all = kept_;
     const auto add = [&](const Packets& p, Size k, std::int32_t i, std::int32_t j) {
@@ -171,7 +172,7 @@ class AllPairsSolver : public Solver {
     arranged_ = false;
   }
 
-  /// To the nearest images.
+  /// Sets the shifts to the nearest periodic images.
   void shift(const System& s) {
     const double* r = beads_.records();
     for (Size c = 0; c < dimension_; ++c) {
@@ -194,8 +195,8 @@ class AllPairsSolver : public Solver {
     p.shift = periodic ? pairs_.shift.data() : nullptr;
     p.constants = pairs_.constants.data(), p.constants_step = step_of(pairs_.constants, pairs_);
     p.memory = pairs_.memory.data();
-    p.packets = packets_of(pairs_), p.dt = s.dt, p.locate = plan_.locate, p.magic = magic_;
-    if (p.packets > 0) overlap = passes_.pairs(p);
+    p.packets = packets_of(pairs_), p.dt = s.dt, p.locate = plan_.locate, p.quantum = quantum_;
+    if (p.packets > 0) overlap = kernels_.pairs(p);
     const int axis = static_cast<int>(s.drive.axis);
     for (Size w = 0; w < s.walls.size(); ++w) {
       const Wall& wall = s.walls[w];
@@ -203,7 +204,7 @@ class AllPairsSolver : public Solver {
       const double plate = wall.moves ? s.plate_height() : 0;
       WallArgs g{};
       g.records = p.records, g.spins = p.spins, g.forces = p.forces, g.dt = s.dt, g.locate = plan_.locate,
-      g.magic = magic_;
+      g.quantum = quantum_;
       Vec3 v = Vec3::Zero();
       if (wall.moves) v[axis] = plate_velocity(s);
       g.n[0] = wall.n.x(), g.velocity[0] = v.x();
@@ -216,7 +217,7 @@ class AllPairsSolver : public Solver {
       g.bead = walls_[w].i.data(), g.packets = packets_of(walls_[w]);
       g.constants = walls_[w].constants.data(), g.constants_step = step_of(walls_[w].constants, walls_[w]);
       g.memory = walls_[w].memory.data();
-      overlap = std::max(overlap, passes_.walls(g));
+      overlap = std::max(overlap, kernels_.walls(g));
       walls_[w].remembers =
           std::any_of(walls_[w].memory.begin(), walls_[w].memory.end(), [](double m) { return m != 0; });
     }
@@ -230,7 +231,7 @@ class AllPairsSolver : public Solver {
     return plan_.key.velocity == Velocity::full_step ? (s.plate_height() - s.plate_height_before()) / s.dt
                                                      : s.plate_velocity();
   }
-  /// Whether no bead reaches a wall wherever the plate is.
+  /// Whether no bead can touch a wall, for any position of the plate.
   [[nodiscard]] bool is_far(const System& s, const Wall& wall) const {
     if (wall.moves && !s.envelope.points.empty()) return false;
     const double swing = wall.moves ? std::abs(s.drive.amplitude) : 0;
@@ -247,15 +248,15 @@ class AllPairsSolver : public Solver {
 
   Plan plan_;
   GuardLimits limits_;
-  Kernels passes_;
+  Kernels kernels_;
   Size width_, memory_, dimension_;
   PackedBeads beads_;
-  double magic_;
+  double quantum_;
   std::vector<std::int32_t> order_;
   Lines reference_;
   Packets pairs_;
   std::vector<Packets> walls_;
-  Memories kept_;  ///< from before the contacts were arranged
+  Memories kept_;  ///< memory from before the last arrange()
   bool arranged_ = false;
 };
 

@@ -21,15 +21,16 @@ double speed_of(const Bead& b) {
   return std::sqrt(b.vx * b.vx + b.vy * b.vy + b.vz * b.vz);
 }
 
-/// What a user can do about a run whose beads go too deep or too fast.
+/// Likely cause of overlaps that are too deep or beads that are too fast, with the remedy.
 std::string likely_cause(const System& s, const GuardLimits& limits) {
   return s.dt > limits.stable_step
              ? fmt::format(
-                   "unstable step: {:.3g} t0 is more than the {:.3g} that a bed of beads in contact "
-                   "bears, raise time.steps_per_contact",
+                   "unstable step: {:.3g} t0 exceeds {:.3g}, the stability limit of a bed of beads in "
+                   "contact; "
+                   "raise time.steps_per_contact",
                    s.dt, limits.stable_step)
              : "the beads are too fast or too heavy for their springs and the step: raise contact.k_n or "
-               "time.steps_per_contact, or calm the drive";
+               "time.steps_per_contact, or reduce the drive";
 }
 
 }  // namespace
@@ -38,8 +39,8 @@ GuardLimits guard_limits(const Plan& plan) {
   GuardLimits limits;
   limits.overlap = plan.overlap_bound;
   limits.travel_per_step = plan.travel_bound;
-  // Verlet is stable for w dt < 2. A pair has w = pi/t_c; a bead held by six others of the hexagonal bed
-  // sqrt(3) times that, of twelve in space twice.
+  // Verlet is stable for w dt < 2. A pair has w = pi/t_c. A bead held by six others in the hexagonal bed has
+  // sqrt(3) times that; a bead held by twelve others in 3D has twice that.
   double shortest = HUGE_VAL;
   for (const TimeLimit& limit : plan.limits) shortest = std::min(shortest, limit.time);
   limits.stable_step = 2 / std::numbers::pi / (plan.dimension == 2 ? std::numbers::sqrt3 : 2) * shortest;
@@ -47,7 +48,7 @@ GuardLimits guard_limits(const Plan& plan) {
 }
 
 void explain_overlap(const System& s, const GuardLimits& limits) {
-  check_motion(s, limits);  // a bead that is not finite explains more than its overlap
+  check_motion(s, limits);  // a non-finite bead is a better explanation than its overlap
   double deepest = 0;
   std::string who = "none found";
   for_each_near_pair(s.beads, s.dimension, s.period, 0,
@@ -79,7 +80,7 @@ void check_motion(const System& s, const GuardLimits& limits) {
     const double speed = speed_of(b);
     if (!std::isfinite(b.x + b.y + b.z + speed + b.spin + b.spin_x + b.spin_z))
       throw RunError(
-          fmt::format("{}: bead {} is no longer at a finite position or speed; unstable step, raise "
+          fmt::format("{}: bead {} has a non-finite position or speed; unstable step, raise "
                       "time.steps_per_contact.",
                       moment(s), i));
     if (speed * s.dt > limits.travel_per_step)

@@ -22,52 +22,52 @@ namespace {
 
 using Size = std::size_t;
 
-/// For how many steps the inner list is meant to last at most, and fewer than how many are a reason to be
-/// more generous.
+/// Largest number of steps for which an inner list is built (kLongHorizon if few pairs are near). If a list
+/// lasts fewer than kShort steps, the slack is increased.
 constexpr double kHorizon = 64, kLongHorizon = 256, kShort = 24;
 constexpr double kWallSteps = 256;
-/// Beads are taken in chunks of whole groups, with at least so many packets of pairs (if there are): the
-/// lanes of a packet are far enough apart in space that a bead seldom stands twice in it, and what a chunk
-/// needs is still in a near cache when its contact forces are done and its next step begins. With 32 packets
-/// the calls cost more than is gained.
+/// Beads are processed in chunks of whole groups, each with at least kChunkPackets packets of pairs (if there
+/// are so many). The lanes of a packet are then far enough apart in space that a packet seldom contains a
+/// bead twice. The data of a chunk are still in a near cache when its contact forces are complete and its
+/// next step begins. With 32 packets, the cost of the calls exceeds the gain.
 constexpr std::size_t kChunkBeads = 8 * kGroup, kChunkPackets = 128;
 
-/// A list of contacts in packets: what a pass reads.
+/// A list of contacts in packets: the input of a kernel.
 struct Packets {
   std::vector<std::int32_t> i, j, force_i, force_j;
   std::vector<double> memory, constants, shift;
-  std::vector<std::int32_t> source;  ///< [packet][lane] where it came from; -1: nothing
+  std::vector<std::int32_t> source;  ///< [packet][lane] pair of the outer list, or bead; -1: padding
   std::int64_t count = 0;            ///< packets
 };
 
-/// Up to which packet the pairs, and up to which place the beads, that are done together.
+/// Pairs and beads that are processed together, up to the given packet of pairs and place of a bead.
 struct Chunk {
-  Size packet_end, bead_end, awake_end;  ///< the last: in runs of awake beads
+  Size packet_end, bead_end, active_end;  ///< the last: index in runs of active beads
 };
 
-/// The beads of one thread, begin .. end, and every contact of theirs. A pair across two threads is computed
-/// by both, each adding to its own bead: no two threads write to one place, and the bits are those of one
-/// thread.
+/// The beads of one thread, begin .. end - 1, and all their contacts. A pair that crosses two threads is
+/// computed by both, and each adds the force to its own bead. No two threads therefore write to one place,
+/// and the bits are those of a single thread.
 struct Part {
   Size begin = 0, end = 0;
-  std::int32_t dummy = 0;  ///< a place behind the beads that touches nothing
+  std::int32_t dummy = 0;  ///< place of a record after the beads that touches nothing
   // Outer list, padded to whole packets.
   std::vector<std::int32_t> i, j;
   std::vector<double> shift, reach, constants, memory;
-  std::vector<std::int32_t> record_i, record_j;  ///< where their records begin
-  std::vector<Size> chunk_end;  ///< pairs of the outer list whose first bead is before the end of chunk k
+  std::vector<std::int32_t> record_i, record_j;  ///< first numbers of their records
+  std::vector<Size> chunk_end;                   ///< [chunk] end of its pairs in the outer list
   std::vector<std::uint16_t> near, touching;
   Size pairs = 0;
-  Packets active;
-  std::vector<std::int32_t> remembering;  ///< pairs of the outer list, since the last inner one
-  Size evaluated = 0;                     ///< pairs in active
-  std::vector<Chunk> chunks;  ///< of active; every pair of a bead is in its chunk or an earlier one
+  Packets inner;
+  std::vector<std::int32_t> remembering;  ///< pairs of the outer list with memory, since the last inner list
+  Size evaluated = 0;                     ///< pairs in inner
+  std::vector<Chunk> chunks;  ///< of inner; every pair of a bead is in its chunk or an earlier one
   std::array<std::vector<std::int32_t>, 2> dealt;
-  // Beads that something may touch, and those that fly freely as long as the list holds. The latter are moved
-  // when somebody wants to know where they are.
-  std::vector<BeadRange> awake, quiet;
-  std::vector<char> is_awake;
-  std::int64_t behind = 0;  ///< steps by which the quiet ones are late
+  // Active beads may have a contact. Inactive beads fly freely as long as the list is valid; they are
+  // advanced only when their positions are needed.
+  std::vector<BeadRange> active_runs, inactive_runs;
+  std::vector<char> is_active;
+  std::int64_t behind = 0;  ///< steps by which the inactive beads lag
   std::vector<Packets> walls;
   double overlap = 0;
   Deviation deviation{};
@@ -80,13 +80,13 @@ class ListSolver : public Solver {
       : plan_(plan),
         limits_(limits),
         target_(target),
-        passes_(target.find(plan.key)),
+        kernels_(target.find(plan.key)),
         threads_(threads),
         beads_(plan_) {
     width_ = static_cast<Size>(target.width);
     dimension_ = static_cast<Size>(plan.dimension);
-    memory_ = static_cast<Size>(passes_.remembered);
-    magic_ = grain_of_sums(plan);
+    memory_ = static_cast<Size>(kernels_.remembered);
+    quantum_ = grain_of_sums(plan);
   }
 
   void advance(System& s, std::int64_t steps) override;
@@ -127,7 +127,7 @@ class ListSolver : public Solver {
   }
   [[nodiscard]] double closing(const Vec3& n, const Vec3& way, double added) const;
   [[nodiscard]] std::vector<double> broadcast(const std::vector<double>& set) const;
-  /// Whether any of a contact's numbers, `stride` apart, is not 0.
+  /// Whether any of a contact's remembered numbers, `stride` apart, is nonzero.
   [[nodiscard]] bool remembers(const double* numbers, Size stride) const {
     for (Size m = 0; m < memory_; ++m)
       if (numbers[m * stride] != 0) return true;
@@ -146,30 +146,30 @@ class ListSolver : public Solver {
   Plan plan_;
   GuardLimits limits_;
   const Target& target_;
-  Kernels passes_;
+  Kernels kernels_;
   int threads_;
   Size width_ = 1, dimension_ = 2, memory_ = 0;
-  double magic_ = 0;
+  double quantum_ = 0;
 
   PackedBeads beads_;
   std::vector<std::int32_t> order_, rank_;  ///< place -> bead, bead -> place
   std::vector<Part> parts_;
-  std::vector<double> pair_constants_;               ///< of equal beads, broadcast over lanes
+  std::vector<double> pair_constants_;               ///< for equal beads, broadcast over the SIMD lanes
   std::vector<std::vector<double>> wall_constants_;  ///< the same for each wall
   std::vector<ContactMemory> restored_;
 
   double skin_ = 0, widest_skin_ = 0, usual_radius_ = 0;
-  std::int64_t looks_ = 0;  ///< inner lists made from this outer one
+  std::int64_t looks_ = 0;  ///< inner lists built from this outer list
   double since_built_ = 0,
-         last_margin_ = 0;   ///< approach since the outer list was made, at most; HUGE_VAL: unknown
-  std::vector<Vec3> built_;  ///< positions at the outer list's making
-  // Inner list: pairs that free flight brings nearer than 2 slack within the horizon. It holds until contacts
-  // have bent some bead's flight by slack, or the horizon is reached.
+         last_margin_ = 0;   ///< bound on the approach since the outer list was built; HUGE_VAL: unknown
+  std::vector<Vec3> built_;  ///< positions when the outer list was built
+  // Inner list: pairs that free flight brings closer than 2 slack within the horizon. It remains valid until
+  // contacts have deflected some bead from free flight by the slack, or until the horizon is reached.
   double slack_ = 1e-3, horizon_ = 0, margin_ = 0, deviated_ = 0;
   std::int64_t lasted_ = 0;
   Lines reference_;
   double least_[3] = {}, most_[3] = {}, fastest_ = 0,
-         speed_bound_ = 0;  ///< velocities at the last look, and since
+         speed_bound_ = 0;  ///< velocity range at the last inner list, and bound on speeds since
   std::vector<double> wall_margin_, wall_approach_;
   std::vector<char> wall_stale_;
   bool all_walls_ = true, wall_refresh_ = false, pair_refresh_ = false;
@@ -190,7 +190,7 @@ std::vector<double> ListSolver::broadcast(const std::vector<double>& set) const 
   return lanes;
 }
 
-/// Beads in the order of the cells they are in, so that neighbours in space are neighbours in memory.
+/// Sorts beads by the cells that contain them, so that neighbours in space are neighbours in memory.
 void ListSolver::sort_beads(const System& s) {
   order_.resize(s.beads.size());
   std::iota(order_.begin(), order_.end(), 0);
@@ -208,9 +208,9 @@ void ListSolver::sort_beads(const System& s) {
 }
 
 void ListSolver::prepare(const System& s) {
-  // Second neighbours of a hexagonal packing sit at 1.73 sigma: a skin of a quarter diameter adds no pairs
-  // there. The diameter is that of the usual bead: one a hundred times larger must not make the small ones'
-  // lists long.
+  // Second neighbours of a hexagonal packing are at 1.73 sigma, so a skin of a quarter diameter adds no pairs
+  // there. The diameter is the median: one bead a hundred times larger must not lengthen the lists of the
+  // small beads.
   std::vector<double> radii;
   for (const Bead& b : s.beads) radii.push_back(b.radius);
   const double largest = *std::max_element(radii.begin(), radii.end());
@@ -219,7 +219,7 @@ void ListSolver::prepare(const System& s) {
   usual_radius_ = *middle;
   const double base = kListReach * 2 * usual_radius_;
   widest_skin_ = 3 * 2 * usual_radius_;
-  for (const double period : s.period)  // never two images of a bead in reach
+  for (const double period : s.period)  // a bead must not reach two images of another
     if (period > 0) widest_skin_ = std::min(widest_skin_, 0.5 * period - 2 * largest);
   widest_skin_ = std::max(widest_skin_, base);
   if (skin_ == 0) skin_ = base;
@@ -235,7 +235,7 @@ void ListSolver::prepare(const System& s) {
     }
     built_.clear();
   }
-  if (!beads_.agrees(s, order_)) beads_.take(s, order_, parts_.size());
+  if (!beads_.agrees(s, order_)) beads_.load(s, order_, parts_.size());
   if (beads_.equal() && beads_.size() > 0 && pair_constants_.empty()) {
     const double r = beads_.radius(0);
     pair_constants_ = broadcast(contact_constants(plan_.bead, beads_.pair(0, 0), 2 * r, 1 / r, 1 / r));
@@ -258,13 +258,13 @@ std::vector<ContactMemory> ListSolver::contacts() const {
   };
   if (memory_ == 0) return all;
   for (const Part& part : parts_) {
-    for (Size r = 0; r < part.active.source.size(); ++r) {
-      if (part.active.source[r] < 0) continue;
-      const Size from = static_cast<Size>(part.active.source[r]);
+    for (Size r = 0; r < part.inner.source.size(); ++r) {
+      if (part.inner.source[r] < 0) continue;
+      const Size from = static_cast<Size>(part.inner.source[r]);
       const std::int32_t i = part.i[from], j = part.j[from];
-      // A pair across parts is known to both: the one that owns i says.
+      // Both threads store a pair that crosses them; only the owner of bead i reports it.
       if (static_cast<Size>(i) < part.begin || static_cast<Size>(i) >= part.end) continue;
-      keep(part.active, r, order_[static_cast<Size>(i)], order_[static_cast<Size>(j)]);
+      keep(part.inner, r, order_[static_cast<Size>(i)], order_[static_cast<Size>(j)]);
     }
     for (Size w = 0; w < part.walls.size(); ++w)
       for (Size r = 0; r < part.walls[w].source.size(); ++r)
@@ -288,7 +288,7 @@ Solver::Footprint ListSolver::footprint() const {
     f.listed += part.pairs;
     f.pairs += bytes(part.i, part.j, part.shift, part.reach, part.constants, part.memory, part.record_i,
                      part.record_j, part.near, part.touching, part.remembering, part.chunk_end, part.chunks) +
-               held(part.active);
+               held(part.inner);
     for (const Packets& wall : part.walls) {
       f.listed += wall.source.size();
       f.pairs += held(wall);
@@ -297,7 +297,8 @@ Solver::Footprint ListSolver::footprint() const {
   return f;
 }
 
-/// Beads have moved, against their mean, so far that an unlisted pair may be within the inner margin.
+/// Whether beads may have moved so far, relative to their mean displacement, that an unlisted pair is within
+/// the margin of the inner list.
 bool ListSolver::outer_is_stale() {
   if (built_.size() != beads_.size()) return true;
   Vec3 mean = Vec3::Zero();
@@ -313,13 +314,13 @@ bool ListSolver::outer_is_stale() {
       second = d;
     }
   }
-  // Negated, so that a position that is not a number makes the list stale and is found at the build.
+  // The comparison is negated so that a NaN position makes the list stale; the build then detects it.
   since_built_ = std::sqrt(first) + std::sqrt(second);
   return !(since_built_ + margin_ <= skin_);
 }
 
-/// Sorted by two keys, of which the first is below n: dealt to places by the first, the few of one place by
-/// the second.
+/// Sorts by two keys, of which the first is below n: a counting sort by the first key, then a comparison sort
+/// of the few elements with equal first key by the second.
 template <class T, class First, class Second>
 std::vector<T> in_order_of(std::vector<T> given, Size n, First first, Second second) {
   std::vector<Size> end(n + 1, 0);
@@ -334,9 +335,10 @@ std::vector<T> in_order_of(std::vector<T> given, Size n, First first, Second sec
   return sorted;
 }
 
-/// A wide skin makes outer lists rare and long. Best is where making them costs as much as going through
-/// them, which is some hundred times cheaper per pair than the search is per bead: a dense bed keeps to its
-/// first shell, a dilute gas looks far ahead.
+/// Adapts the skin. A wide skin makes builds of the outer list rare, but the list long. The cost is least
+/// where building the list costs as much as the passes through it. Per bead the search costs some hundred
+/// times as much as a pass costs per pair. A dense bed therefore keeps only its first shell, and a dilute gas
+/// has a wide skin.
 void ListSolver::adapt_skin() {
   constexpr double kSearch = 400;
   Size listed = 0;
@@ -352,8 +354,9 @@ void ListSolver::adapt_skin() {
 void ListSolver::make_outer(const System& given) {
   adapt_skin();
   looks_ = 0;
-  System s = given;  // the search wants positions by bead
-  beads_.give(s, order_);
+  // Search: collect all pairs within the skin.
+  System s = given;  // the search needs positions by bead
+  beads_.store(s, order_);
   check_motion(s, limits_);
   std::vector<ContactMemory> remembered = contacts();
   restored_.clear();
@@ -364,18 +367,19 @@ void ListSolver::make_outer(const System& given) {
   std::vector<Found> found;
   for_each_near_pair(s.beads, s.dimension, s.period, skin_,
                      [&](std::int32_t a, std::int32_t b, double, const Vec3& shift) {
-                       // The bead of the lower number is i, whatever the order in memory: a remembered vector
-                       // keeps its sign.
+                       // Bead i is the one with the lower number, whatever the order in memory, so that a
+                       // remembered vector keeps its sign.
                        found.push_back({rank_[static_cast<Size>(a)], rank_[static_cast<Size>(b)], shift});
                      });
   found = in_order_of(
       std::move(found), beads_.size(), [](const Found& f) { return std::min(f.i, f.j); },
       [](const Found& f) { return std::max(f.i, f.j); });
-  // Where the contacts of bead i begin among those remembered.
+  // Remembered contacts: index of the first one of each bead i.
   std::vector<std::size_t> first(s.beads.size() + 1, 0);
   for (const ContactMemory& m : remembered) ++first[static_cast<Size>(m.i) + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
   const bool periodic = s.period[0] > 0 || s.period[1] > 0 || s.period[2] > 0;
+  // Distribution: each thread gets the pairs of its beads, with shifts, constants and remembered numbers.
   for (Part& part : parts_) {
     const auto mine = [&](std::int32_t k) {
       return static_cast<Size>(k) >= part.begin && static_cast<Size>(k) < part.end;
@@ -432,8 +436,8 @@ void ListSolver::make_outer(const System& given) {
     part.record_i.resize(padded), part.record_j.resize(padded);
     for (Size p = 0; p < padded; ++p)
       part.record_i[p] = record(part.i[p]), part.record_j[p] = record(part.j[p]);
-    part.active = {};
-    // Wall contacts are carried over by make_walls; what was restored enters here.
+    part.inner = {};
+    // Walls: make_walls() carries wall contacts over from list to list; restored ones are added here.
     for (Size w = 0; w < part.walls.size(); ++w) {
       Packets kept;
       for (const ContactMemory& m : remembered)
@@ -453,6 +457,7 @@ void ListSolver::make_outer(const System& given) {
       part.walls[w] = std::move(kept);
     }
   }
+  // Bookkeeping: the positions of this build are the reference for the displacements.
   built_.resize(beads_.size());
   for (Size k = 0; k < beads_.size(); ++k) built_[k] = beads_.position(k);
   since_built_ = 0;
@@ -460,11 +465,11 @@ void ListSolver::make_outer(const System& given) {
   ++builds_;
 }
 
-/// The pairs of the outer list with a gap below margin_, dealt out so that the lanes of a packet are far
-/// apart in space: then one bead seldom stands twice in a packet.
+/// Builds the inner list: the pairs of the outer list that may touch soon. Pairs are distributed so that the
+/// lanes of a packet are far apart in space; a packet then seldom contains a bead twice.
 void ListSolver::make_inner(Part& part) {
-  Packets& a = part.active;
-  // What the old list remembers goes back to the pairs.
+  Packets& a = part.inner;
+  // Memory: numbers remembered in the old inner list return to the pairs of the outer list.
   for (Size packet = 0, at = 0; memory_ > 0 && packet < static_cast<Size>(a.count); ++packet)
     for (Size lane = 0; lane < width_; ++lane, ++at) {
       if (a.source[at] < 0) continue;
@@ -473,6 +478,7 @@ void ListSolver::make_inner(Part& part) {
       for (Size m = 0; m < memory_; ++m) part.memory[pair * memory_ + m] = from[m * width_];
       if (remembers(from, width_)) part.remembering.push_back(a.source[at]);
     }
+  // Scan: mark the pairs that touch or that free flight brings close.
   NearPairArgs scan{};
   scan.records = beads_.records();
   scan.i = part.record_i.data(), scan.j = part.record_j.data();
@@ -484,16 +490,16 @@ void ListSolver::make_inner(Part& part) {
   scan.horizon = horizon_;
   scan.near = part.near.data();
   scan.touching = part.touching.data();
-  passes_.scan(scan);
-  // A pair that has just parted may still have to settle or forget what it remembers.
+  kernels_.scan(scan);
+  // A pair that has just separated may still have to update or clear its remembered numbers.
   for (const std::int32_t pair : part.remembering) {
     const Size r = static_cast<Size>(pair);
     part.near[r / width_] = static_cast<std::uint16_t>(part.near[r / width_] | 1U << r % width_);
   }
   part.remembering.clear();
 
-  // Those in contact first: packets of pairs that are merely near are passed over after a look at their
-  // distances.
+  // Chunks: within each chunk, pairs in contact come first. Packets of pairs that are only near are skipped
+  // after a distance test.
   a.source.clear(), part.chunks.clear();
   part.evaluated = 0;
   const auto collect = [&](Size begin, Size end, std::vector<std::int32_t>& to, auto bits_of) {
@@ -529,6 +535,7 @@ void ListSolver::make_inner(Part& part) {
     part.evaluated += n;
     part.chunks.push_back({a.source.size() / width_, bead_end, 0});
   }
+  // Packing: copy indices, constants, shifts and memory in the order of the packets.
   const Size padded = a.source.size(), count = padded / width_;
   const bool many = parts_.size() > 1, shifted = !part.shift.empty();
   const Size constants = part.pairs == 0 ? 0 : part.constants.size() / part.pairs;
@@ -565,7 +572,7 @@ void ListSolver::make_inner(Part& part) {
     }
 }
 
-/// Beads near each wall.
+/// Lists the beads near each wall.
 void ListSolver::make_walls(const System& s, Part& part) {
   for (Size w = 0; w < part.walls.size(); ++w) {
     if (!wall_stale_[w]) continue;
@@ -619,7 +626,7 @@ void ListSolver::make_walls(const System& s, Part& part) {
   }
 }
 
-/// Of two velocities, at most the length of their difference, and the largest component.
+/// Bound on the difference of any two velocities, and largest magnitude of a component.
 double spread(const VelocityRange& range) {
   double s = 0;
   for (int k = 0; k < 3; ++k) s += (range.most[k] - range.least[k]) * (range.most[k] - range.least[k]);
@@ -636,10 +643,10 @@ double length(const double* v) {
 }
 
 void ListSolver::refresh_pairs(System& s) {
-  // Velocities from which free flight is computed.
+  // Velocities: store the reference for free flight and find their range.
   VelocityRange range{};
   for (Size p = 0; p < parts_.size(); ++p) {
-    const VelocityRange own = passes_.range({beads_.records(), reference_.data(), all_of(parts_[p])});
+    const VelocityRange own = kernels_.range({beads_.records(), reference_.data(), all_of(parts_[p])});
     for (int k = 0; k < 3; ++k) {
       range.least[k] = p == 0 ? own.least[k] : std::min(range.least[k], own.least[k]);
       range.most[k] = p == 0 ? own.most[k] : std::max(range.most[k], own.most[k]);
@@ -647,22 +654,23 @@ void ListSolver::refresh_pairs(System& s) {
   }
   fastest_ = fastest(range);
   for (int k = 0; k < 3; ++k) least_[k] = range.least[k], most_[k] = range.most[k];
-  // A list that did not last was too strict with what contacts do to free flight; one that lasted easily too
-  // generous.
+  // Slack: if the last list was short-lived, the slack was too small; if the deflection stayed well below it,
+  // too large.
   if (lasted_ < kShort)
     slack_ *= 2;
   else if (deviated_ < 0.25 * slack_)
     slack_ *= 0.5;
   slack_ = std::clamp(slack_, 1e-5 * skin_, 0.1 * skin_);
-  // A bed in flight has few pairs to look at: making the list is then the greater cost.
+  // Horizon: an airborne bed has few near pairs, so building the list costs more than passing through it, and
+  // the horizon is longer.
   Size active = 0, listed = 0;
   for (const Part& part : parts_) active += part.evaluated, listed += part.pairs;
   const double horizon_steps = 4 * active < listed ? kLongHorizon : kHorizon;
-  // Not so far ahead that beads could come in from beyond the outer list.
+  // The horizon is limited so that no bead can arrive from outside the outer list.
   horizon_ = std::min(horizon_steps * s.dt, 0.5 * skin_ / std::max(spread(range), 1e-300));
   margin_ = horizon_ * spread(range) + 2 * slack_;
-  // What any two beads may have approached since the outer list was made is at most what they may have in
-  // each stretch between looks; only when that no longer suffices are displacements measured.
+  // Outer list: the approach of any two beads since its build is at most the sum of the margins of the inner
+  // lists since. Displacements are measured only when this bound no longer suffices.
   since_built_ += last_margin_;
   last_margin_ = margin_;
   if (rebuild_every_ > 0 && calls_ % rebuild_every_ == 0) built_.clear(), since_built_ = HUGE_VAL;
@@ -673,8 +681,8 @@ void ListSolver::refresh_pairs(System& s) {
   ++counters_.near_refreshes;
 }
 
-/// How fast beads may close in on a wall that moves by `way` per time: those of the last look, what contacts
-/// and gravity have added since.
+/// Bound on the speed at which beads approach a wall that moves with velocity `way`: the velocities at the
+/// last inner list, plus `added`, the change by contacts and gravity since.
 double ListSolver::closing(const Vec3& n, const Vec3& way, double added) const {
   double c = added;
   for (int k = 0; k < static_cast<int>(dimension_); ++k) {
@@ -697,52 +705,52 @@ void ListSolver::refresh_walls(const System& s) {
   all_walls_ = false;
 }
 
-/// Which groups of beads are in a contact list.
+/// Determines which groups of beads are active: those with a bead in an inner or wall list.
 void ListSolver::activate(const System& s, Part& part) {
   const Size n = (part.end - part.begin + group() - 1) / group();
-  // Where most groups would be awake it does not pay to tell them apart; drag acts on all.
+  // If most groups are active, a distinction does not pay. Drag acts on all beads.
   const bool all = s.plate_drag > 0 || 2 * part.evaluated * group() > part.end - part.begin;
-  part.is_awake.assign(n, all ? 1 : 0);
+  part.is_active.assign(n, all ? 1 : 0);
   const auto wake = [&](std::int32_t place) {
     const Size k = static_cast<Size>(place);
-    if (k >= part.begin && k < part.end) part.is_awake[(k - part.begin) / group()] = 1;
+    if (k >= part.begin && k < part.end) part.is_active[(k - part.begin) / group()] = 1;
   };
-  for (const std::int32_t pair : part.active.source) {
+  for (const std::int32_t pair : part.inner.source) {
     if (pair < 0 || all) continue;
     wake(part.i[static_cast<Size>(pair)]);
     wake(part.j[static_cast<Size>(pair)]);
   }
   for (const Packets& wall : part.walls)
     for (const std::int32_t bead : wall.source) wake(bead);
-  part.awake.clear(), part.quiet.clear();
+  part.active_runs.clear(), part.inactive_runs.clear();
   Size g = 0;
   for (Chunk& chunk : part.chunks) {
-    const Size of_before = part.awake.size();  // runs of awake beads end with their chunk
+    const Size of_before = part.active_runs.size();  // runs of active beads end with their chunk
     for (Size begin = part.begin + g * group(); g < n && begin < chunk.bead_end; ++g, begin += group()) {
-      const bool awake = part.is_awake[g] != 0;
-      std::vector<BeadRange>& runs = awake ? part.awake : part.quiet;
+      const bool active = part.is_active[g] != 0;
+      std::vector<BeadRange>& runs = active ? part.active_runs : part.inactive_runs;
       const auto first = static_cast<std::int64_t>(begin),
                  end = static_cast<std::int64_t>(std::min(begin + group(), part.end));
-      if (runs.size() > (awake ? of_before : 0) && runs.back().end == first)
+      if (runs.size() > (active ? of_before : 0) && runs.back().end == first)
         runs.back().end = end;
       else
         runs.push_back({first, end});
     }
-    chunk.awake_end = part.awake.size();
+    chunk.active_end = part.active_runs.size();
   }
 }
 
-/// Moves quiet beads to the present step.
+/// Advances inactive beads to the present step.
 void ListSolver::advance_to_now(Part& part) {
-  if (part.behind > 0 && !part.quiet.empty()) {
+  if (part.behind > 0 && !part.inactive_runs.empty()) {
     FreeFlightArgs a{};
     a.records = beads_.records();
-    a.runs = part.quiet.data();
-    a.n_runs = static_cast<std::int64_t>(part.quiet.size());
+    a.runs = part.inactive_runs.data();
+    a.n_runs = static_cast<std::int64_t>(part.inactive_runs.size());
     a.steps = part.behind;
     a.dt = integrate_args_.dt;
     for (int k = 0; k < 3; ++k) a.gravity[k] = integrate_args_.gravity[k];
-    passes_.fly(a);
+    kernels_.fly(a);
   }
   part.behind = 0;
 }
@@ -756,11 +764,12 @@ void ListSolver::integrate(Part& part, const BeadRange* runs, Size n, int kicks,
   a.reference = reference_.data();
   const double t = static_cast<double>(lasted_ + (kicks == 2 ? 1 : 0)) * a.dt;
   for (int k = 0; k < 3; ++k) a.fallen[k] = t * a.gravity[k];
-  const Deviation own = passes_.integrate(a);
+  const Deviation own = kernels_.integrate(a);
   for (int k = 0; k < 3; ++k) part.deviation.most[k] = std::max(part.deviation.most[k], own.most[k]);
 }
 
-/// After a drift: what may have approached what, and whether the lists still hold.
+/// After a drift: updates the bounds on the approach of beads to each other and to walls, and decides which
+/// lists must be refreshed.
 void ListSolver::add_up_motion(const System& s) {
   double deviation[3] = {0, 0, 0};
   for (const Part& part : parts_)
@@ -769,12 +778,12 @@ void ListSolver::add_up_motion(const System& s) {
   deviated_ += s.dt * strayed;
   ++lasted_;
   const bool forced = rebuild_every_ > 0 && ++calls_ % rebuild_every_ == 0;
-  // Negated comparisons: what is not a number must not pass.
+  // The comparisons are negated so that NaN forces a refresh.
   pair_refresh_ = forced || !(deviated_ <= slack_ && static_cast<double>(lasted_) * s.dt < horizon_);
   wall_refresh_ = all_walls_ = forced;
   const double added = strayed + static_cast<double>(lasted_) * s.dt * s.gravity.norm();
   speed_bound_ = fastest_ + added;
-  // A wall's own way is counted as it went, not by its speed at one end of the step.
+  // The displacement of a wall is its actual one in this step, not its velocity at one end of the step.
   plate_before_ = plate_;
   plate_ = s.plate_height(), plate_velocity_ = s.plate_velocity();
   const Vec3 way = ((plate_ - plate_before_) / s.dt) * Vec3::Unit(static_cast<int>(s.drive.axis));
@@ -787,7 +796,7 @@ void ListSolver::add_up_motion(const System& s) {
 }
 
 void ListSolver::pair_forces(const System& s, Part& part, Size begin, Size end) {
-  Packets& a = part.active;
+  Packets& a = part.inner;
   const Size lane = begin * width_;
   PairArgs p{};
   p.records = beads_.records();
@@ -807,12 +816,12 @@ void ListSolver::pair_forces(const System& s, Part& part, Size begin, Size end) 
   p.packets = static_cast<std::int64_t>(end - begin);
   p.dt = s.dt;
   p.locate = plan_.locate;
-  p.magic = magic_;
-  part.overlap = std::max(part.overlap, passes_.pairs(p));
+  p.quantum = quantum_;
+  part.overlap = std::max(part.overlap, kernels_.pairs(p));
   part.visits += p.packets;
 }
 
-/// Contacts with walls, and drag.
+/// Forces of walls, and plate drag.
 void ListSolver::wall_forces(const System& s, Part& part) {
   part.overlap = 0;
   for (Size w = 0; w < part.walls.size(); ++w) {
@@ -839,8 +848,8 @@ void ListSolver::wall_forces(const System& s, Part& part) {
     g.offset = wall.moves ? wall.offset + wall.n[axis] * plate_ : wall.offset;
     g.dt = s.dt;
     g.locate = plan_.locate;
-    g.magic = magic_;
-    part.overlap = std::max(part.overlap, passes_.walls(g));
+    g.quantum = quantum_;
+    part.overlap = std::max(part.overlap, kernels_.walls(g));
     part.wall_visits += near.count;
   }
   if (s.plate_drag > 0) {
@@ -851,38 +860,41 @@ void ListSolver::wall_forces(const System& s, Part& part) {
 
 void ListSolver::forces(const System& s, Part& part) {
   wall_forces(s, part);
-  if (part.active.count > 0) pair_forces(s, part, 0, static_cast<Size>(part.active.count));
+  if (part.inner.count > 0) pair_forces(s, part, 0, static_cast<Size>(part.inner.count));
 }
 
-/// All forces, and behind them the next step of every bead whose contacts are done: its record, force and
-/// neighbours are still in the first-level cache.
+/// Computes all forces. The next step of a bead follows as soon as its contacts are complete, while its
+/// record, force and neighbours are still in the first-level cache.
 void ListSolver::forces_and_integrate(const System& s, Part& part) {
   wall_forces(s, part);
   part.deviation = {};
-  Size packet = 0, awake = 0;
+  Size packet = 0, active = 0;
   for (const Chunk& chunk : part.chunks) {
     if (chunk.packet_end > packet) pair_forces(s, part, packet, chunk.packet_end);
-    if (chunk.awake_end > awake) integrate(part, part.awake.data() + awake, chunk.awake_end - awake, 2, true);
-    packet = chunk.packet_end, awake = chunk.awake_end;
+    if (chunk.active_end > active)
+      integrate(part, part.active_runs.data() + active, chunk.active_end - active, 2, true);
+    packet = chunk.packet_end, active = chunk.active_end;
   }
   ++part.behind;
 }
 
-/// \param drifted beads have since moved on by a step
+/// Stops the run if an overlap exceeds the bound.
+/// \param drifted the beads have already moved one step further; the drift is undone
+/// for the report
 void ListSolver::check_overlap(System& s, bool drifted) {
   double overlap = 0;
   for (const Part& part : parts_) overlap = std::max(overlap, part.overlap);
   if (overlap <= limits_.overlap) return;
   for (Part& part : parts_) advance_to_now(part);
   if (drifted) beads_.drift(-s.dt);
-  beads_.give(s, order_);
+  beads_.store(s, order_);
   explain_overlap(s, limits_);
 }
 
 void ListSolver::check_speed(System& s) {
   if (speed_bound_ * s.dt <= limits_.travel_per_step) return;
   for (Part& part : parts_) advance_to_now(part);
-  beads_.give(s, order_);
+  beads_.store(s, order_);
   check_motion(s, limits_);
 }
 
@@ -912,10 +924,10 @@ void ListSolver::run_serial(System& s, std::int64_t steps) {
 }
 
 void ListSolver::run_parallel(System& s, std::int64_t steps) {
-  // Two meetings a step: positions are new; forces are complete. What one thread does for all happens in the
-  // meeting.
+  // Two barriers per step: after the first the positions are new, after the second the forces are complete.
+  // Work that one thread does for all is done in the completion function of the barrier.
   std::exception_ptr failure;
-  bool moved = true;  // otherwise: forces are complete
+  bool moved = true;  // false: the forces are complete
   bool stop = false;
   const auto meet = [&]() noexcept {
     try {
@@ -972,7 +984,7 @@ void ListSolver::advance(System& s, std::int64_t steps) {
   wall_stale_.resize(s.walls.size(), 1);
   all_walls_ = true;
   plate_ = s.plate_height(), plate_velocity_ = s.plate_velocity(), plate_before_ = s.plate_height_before();
-  // Lists are checked at every call: the plate and the beads may have been moved by other hands.
+  // Lists are refreshed at every call: the caller may have changed the plate and the beads.
   since_built_ = HUGE_VAL;
   reference_.resize(static_cast<Size>(record(1)) / 2 * s.beads.size());
   lasted_ = static_cast<std::int64_t>(kShort);
@@ -997,7 +1009,7 @@ void ListSolver::advance(System& s, std::int64_t steps) {
     counters_.wall_visits += part.wall_visits * static_cast<std::int64_t>(width_);
     part.visits = part.wall_visits = 0;
   }
-  beads_.give(s, order_);
+  beads_.store(s, order_);
   check_motion(s, limits_);
 }
 

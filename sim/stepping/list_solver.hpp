@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The fast kernel: a neighbour list, inside it a list of the pairs that can touch soon, and passes over
-/// packets of those.
+/// The list solver, which uses a neighbour list and, within it, a list of the pairs that can touch soon; and
+/// the all-pairs solver.
 
 #include <memory>
 
@@ -10,16 +10,21 @@
 
 namespace twincell::sim {
 
-/// Two lists, one in the other (dual pair list, after Pall & Hess 2013). The outer one holds every pair whose
-/// surfaces are closer than a skin; it lasts until beads may have crossed the skin, displacements taken
-/// against the mean motion, so that a bed riding on its plate keeps it for thousands of steps. The inner one
-/// holds the pairs of the outer one closer than a margin that beads at their present relative speed cannot
-/// cross in some dozens of steps; only these are evaluated, and it lasts until the sum over steps of the
-/// largest relative speed times dt exceeds the margin. Both bounds are strict: no contact is ever missed.
+/// Creates the list solver, which keeps a list within a list (dual pair list, after Pall & Hess 2013).
+///
+/// The outer list contains every pair whose surfaces are closer than a skin. It remains valid until beads may
+/// have crossed the skin. Displacements are measured relative to the mean motion, so a bed that rides on its
+/// plate keeps its list for thousands of steps.
+///
+/// The inner list contains the pairs of the outer list that free flight at their present velocities brings
+/// closer than twice a slack within some dozens of steps. Only these pairs are evaluated. The inner list
+/// remains valid until contacts have deflected some bead from free flight by the slack, or until these steps
+/// are over. Both bounds are strict: no contact is missed.
 std::unique_ptr<Solver> make_list_solver(const Plan& plan, const GuardLimits& limits, const Target& target,
                                          int threads);
 
-/// Every pair and every wall at every step: with kScalar the oracle, with wider ones for a few beads.
+/// Creates the all-pairs solver, which evaluates every pair and every wall at every step: with kScalar the
+/// oracle, with wider targets the solver for a few beads.
 std::unique_ptr<Solver> make_all_pairs_solver(const Plan& plan, const GuardLimits& limits,
                                               const Target& target);
 

@@ -8,7 +8,8 @@ namespace twincell::sim {
 
 namespace {
 
-/// R w of a bead; the one that the system remembers if it says the same.
+/// R w of a bead. If the rim speed stored in the system agrees with the spin, it is used, because R w
+/// computed from the spin may differ in the last bit.
 Vec3 rim_speed_of(const System& s, std::size_t bead) {
   const Bead& b = s.beads[bead];
   const Vec3 spin(b.spin_x, -b.spin, b.spin_z);
@@ -19,7 +20,7 @@ Vec3 rim_speed_of(const System& s, std::size_t bead) {
 
 }  // namespace
 
-void PackedBeads::take(const System& s, const std::vector<std::int32_t>& order, std::size_t dummies) {
+void PackedBeads::load(const System& s, const std::vector<std::int32_t>& order, std::size_t dummies) {
   const int d = plan_->dimension, stride = d == 2 ? kRecord<2> : kRecord<3>,
             force_stride = d == 2 ? kForceRecord<2> : kForceRecord<3>,
             spin_stride = d == 2 ? kSpinRecord<2> : kSpinRecord<3>;
@@ -89,7 +90,7 @@ Vec3 PackedBeads::rim_speed(std::size_t k) const {
   return {w[0], w[1], w[2]};
 }
 
-void PackedBeads::give(System& s, const std::vector<std::int32_t>& order) const {
+void PackedBeads::store(System& s, const std::vector<std::int32_t>& order) const {
   s.forces.resize(s.beads.size());
   s.rim_speeds.resize(plan_->rotation ? s.beads.size() : 0);
   for (std::size_t k = 0; k < n_; ++k) {
@@ -108,8 +109,7 @@ bool PackedBeads::agrees(const System& s, const std::vector<std::int32_t>& order
     held.radius = radius(k), held.mass = mass(k), held.inertia = inertia(k);
     Force force;
     give_one(k, held, force);
-    // Bits, not values: -0 is not 0. There is no padding between doubles.
-    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
+    // Compare bits, not values: -0 is not 0. There is no padding between doubles.
     if (std::memcmp(&held, &given, sizeof(Bead)) != 0 ||
         // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
         std::memcmp(&force, &s.forces[static_cast<std::size_t>(order[k])], sizeof(Force)) != 0)
@@ -174,8 +174,9 @@ void PackedBeads::add_plate_drag(const System& s, double velocity_x, double velo
 }
 
 double grain_of_sums(const Plan& plan) {
-  // Twice the force at the overlap bound, so that dashpots and several contacts fit too; a power of two, so
-  // that similar systems stay similar to the bit. Beyond it sums merely round to a coarser grain.
+  // Twice the force at the overlap bound, so that dashpots and several contacts fit too. A power of two, so
+  // that similar systems remain similar to the bit. For larger forces, sums are only rounded to a coarser
+  // quantum.
   const double top = std::exp2(std::ceil(std::log2(2 * plan.largest_force)));
   return 1.5 * top;
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A System in the form that the passes work on.
+/// The beads of a System in the memory layout that kernels use.
 
 #include <cstring>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace twincell::sim {
 
-/// Numbers on cache-line boundaries.
+/// An array of numbers aligned to cache lines.
 class Lines {
  public:
   void resize(std::size_t numbers) { lines_.resize((numbers + 7) / 8); }
@@ -24,22 +24,22 @@ class Lines {
   std::vector<Line> lines_;
 };
 
-/// Records of all beads, in the kernel's own order, and `dummies` records behind them that touch nothing:
-/// their positions are not numbers, so every comparison with them is false.
+/// Records of all beads in the solver's own order, followed by `dummies` records that touch nothing: their
+/// positions are NaN, so every comparison with them is false.
 class PackedBeads {
  public:
   explicit PackedBeads(const Plan& plan) : plan_(&plan) {}
 
-  /// Takes positions and velocities; `order[k]` is the bead in place k. The forces and rim speeds too if the
-  /// system knows them.
-  void take(const System& s, const std::vector<std::int32_t>& order, std::size_t dummies);
-  /// Gives them back.
-  void give(System& s, const std::vector<std::int32_t>& order) const;
-  /// Whether give() would change nothing: then what is here is what was given, and nothing need be taken.
+  /// Copies positions and velocities from the system; `order[k]` is the bead in place k. Also copies the
+  /// forces and rim speeds if the system has them.
+  void load(const System& s, const std::vector<std::int32_t>& order, std::size_t dummies);
+  /// Copies them back to the system.
+  void store(System& s, const std::vector<std::int32_t>& order) const;
+  /// Whether store() would change nothing. The packed data then equal the system, and load() is not needed.
   [[nodiscard]] bool agrees(const System& s, const std::vector<std::int32_t>& order) const;
 
   [[nodiscard]] std::size_t size() const { return n_; }
-  /// Memory held.
+  /// Bytes in use.
   [[nodiscard]] std::size_t bytes() const {
     return records_.bytes() + forces_.bytes() + spins_.bytes() + inv_mass_.bytes() +
            sizeof(double) * (radius_.capacity() + mass_.capacity() + inertia_.capacity() + turn_.capacity());
@@ -55,11 +55,11 @@ class PackedBeads {
   [[nodiscard]] double* records() { return records_.data(); }
   [[nodiscard]] double* spins() { return spins_.data(); }
   [[nodiscard]] double* forces() { return forces_.data(); }
-  /// Arguments of the integrate pass for all beads.
+  /// Arguments of the integration kernel for all beads.
   [[nodiscard]] IntegrateArgs integrate_args(const System& s);
-  /// Moves all beads as they fly, for a time that may be negative.
+  /// Moves all beads along their velocities for a time that may be negative.
   void drift(double time);
-  /// Adds the drag of front and back plates to the forces (2D).
+  /// Adds the drag of the front and back plates to the forces (2D).
   void add_plate_drag(const System& s, double velocity_x, double velocity_z, std::size_t begin,
                       std::size_t end);
 
@@ -74,7 +74,7 @@ class PackedBeads {
   std::vector<double> radius_, mass_, inertia_, turn_;
 };
 
-/// The constant that rounds forces to a grain at which sums are exact (contact.hpp).
+/// The constant that rounds forces to a quantum with which sums are exact (contact.hpp rounded()).
 double grain_of_sums(const Plan& plan);
 
 }  // namespace twincell::sim

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What moves a system: the interface of all kernels.
+/// Interface of the solvers, which advance a system in time.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,43 +14,46 @@
 
 namespace twincell::sim {
 
-/// Moves a System. One virtual call per block of steps, none inside.
+/// Advances a System in time. There is one virtual call per block of steps and none inside.
 ///
-/// The bits of a run depend on the scene and the start alone: not on how steps are cut into calls, when lists
-/// are built, how wide the vectors are, or how many threads share the work.
+/// The bits of a run depend only on the scene and the start. They do not depend on how the steps are divided
+/// into calls, when lists are built, how wide the SIMD vectors are, or how many threads share the work.
 class Solver {
  public:
   virtual ~Solver() = default;
-  /// \throws RunError from guard.hpp naming step, bead and likely cause
+  /// Advances the system by a number of steps.
+  /// \throws RunError from guard.hpp, naming step, bead and likely cause
   virtual void advance(System& system, std::int64_t steps) = 0;
-  /// How often the neighbour list was built.
+  /// Number of builds of the neighbour list.
   [[nodiscard]] virtual std::int64_t list_builds() const = 0;
-  /// For tests: rebuild the list at every n-th step as well.
+  /// For tests: also rebuild the list at every n-th step.
   virtual void rebuild_every(std::int64_t n) = 0;
-  /// All contacts that remember something, sorted by (i, j): what a checkpoint must hold besides the System.
+  /// All contacts with nonzero contact memory, sorted by (i, j): the data that a checkpoint needs in addition
+  /// to the System.
   [[nodiscard]] virtual std::vector<ContactMemory> contacts() const = 0;
-  /// Takes up contacts() of another kernel of the same plan; call before the first advance.
+  /// Accepts contacts() of another solver with the same plan; call before the first advance.
   virtual void restore(std::vector<ContactMemory> contacts) = 0;
-  /// What else the rest of a run depends on, for a checkpoint.
+  /// Further data that the continuation of a run depends on, for a checkpoint.
   [[nodiscard]] virtual std::vector<double> memory() const { return {}; }
-  /// Takes up memory() of another kernel of the same plan, after restore(), at the same step.
+  /// Accepts memory() of another solver with the same plan, at the same step; call after restore().
   virtual void recall(const System& /*system*/, const std::vector<double>& /*memory*/) {}
-  /// Instruction set, and what it costs: "AVX-512, 8 contacts at a time".
+  /// Instruction set and number of contacts at a time: "AVX-512, 8 contacts at a time".
   [[nodiscard]] virtual std::string description() const = 0;
-  /// Mean share of the listed pairs that were looked at per step, and lists of near pairs made.
+  /// Totals over all steps so far: steps, visited pairs and wall contacts (with padding), builds of the inner
+  /// list.
   struct Counters {
     std::int64_t steps = 0, pair_visits = 0, wall_visits = 0, near_refreshes = 0;
   };
   [[nodiscard]] virtual Counters counters() const { return {}; }
-  /// Bytes held now for beads and for listed pairs and wall contacts, and how many of the latter.
+  /// Bytes in use for beads and for listed pairs and wall contacts, and the number of the listed contacts.
   struct Footprint {
     std::size_t beads = 0, pairs = 0, listed = 0;
   };
   [[nodiscard]] virtual Footprint footprint() const { return {}; }
 };
 
-/// Threads worth using on so many beads: `asked`, but not more than beads; 0: as many as the processor has,
-/// each with enough beads to repay its waiting.
+/// Number of threads for this number of beads: `asked`, but at most one per bead. If `asked` is 0, the number
+/// of processors, limited so that each thread has enough beads to repay its synchronisation.
 int threads_for(std::size_t beads, int asked);
 
 }  // namespace twincell::sim

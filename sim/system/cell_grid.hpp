@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Which beads are near each other, in time and memory that grow with their number alone.
+/// Neighbour search: pairs of beads near each other, in time and memory proportional to the number of beads.
 
 #include <algorithm>
 #include <array>
@@ -17,14 +17,14 @@ inline Vec3 centre_of(const Bead& b) {
   return {b.x, b.y, b.z};
 }
 
-/// The nearest whole number, of two the even one. Of moderate numbers: adding 1.5 2^52 rounds, where
-/// std::round is a call.
+/// The nearest integer; a tie gives the even one. For moderate |x|: adding 1.5 2^52 rounds without the
+/// function call of std::round.
 inline double nearest_whole(double x) {
   constexpr double kRounds = 6755399441055744.0;
   return (x + kRounds) - kRounds;
 }
 
-/// From r to the nearest of its images: r + nearest_shift(r) is the shortest. Period 0: not periodic.
+/// Shift to the nearest periodic image: r + nearest_shift(r) is the shortest. Period 0: not periodic.
 inline Vec3 nearest_shift(const Vec3& r, const std::array<double, 3>& period) {
   Vec3 shift = Vec3::Zero();
   for (int a = 0; a < 3; ++a)
@@ -33,12 +33,12 @@ inline Vec3 nearest_shift(const Vec3& r, const std::array<double, 3>& period) {
   return shift;
 }
 
-/// Beads hashed by the cell they are in. Only occupied cells exist: a bead at z = 1e4 costs nothing. Every
-/// class of sizes (radii within a factor of two) has cells of its own size, so that small beads stay few in a
-/// cell beside one a hundred times larger.
+/// Hash table of beads by the cell that contains them. Only occupied cells exist, so a bead at z = 1e4 costs
+/// nothing. Each size class (radii within a factor of two) has its own cell size, so a cell contains few
+/// small beads even if other beads are a hundred times larger.
 class CellGrid {
  public:
-  /// \param radii of all beads that will be inserted or looked for
+  /// \param radii of all beads that will be inserted or used in a search
   /// \param margin gap between surfaces up to which around() finds beads
   /// \param dimension 2: y is ignored
   /// \param period of x, y, z; 0: not periodic
@@ -54,7 +54,7 @@ class CellGrid {
       double& of_class = reach[static_cast<std::size_t>(size_class(r))];
       of_class = std::max(of_class, 2 * r + margin);
     }
-    // Wider than the reach by more than rounding can move a bead across cells.
+    // Cells exceed the reach by more than rounding can move a bead across cells.
     constexpr double kSlack = 1 + 1e-6, kSmallest = 1e-12;
     for (std::size_t k = 0; k < kClasses; ++k)
       for (std::size_t a = 0; a < 3; ++a) {
@@ -66,7 +66,7 @@ class CellGrid {
       }
   }
 
-  /// 0 for radii in (largest/2, largest], 1 for the next half, and so on.
+  /// Size class of a radius: 0 for radii in (largest/2, largest], 1 for the next half, and so on.
   [[nodiscard]] int size_class(double radius) const {
     const double ratio = largest_ / radius;
     return ratio >= 1 && std::isfinite(ratio) ? std::min(std::ilogb(ratio), kClasses - 1)
@@ -74,7 +74,7 @@ class CellGrid {
                                               : kClasses - 1;
   }
 
-  /// Takes a bead in; one without a finite position is nowhere and is left out.
+  /// Inserts a bead. A bead without a finite position is left out.
   void insert(std::int32_t bead, const Vec3& r, double radius) {
     if (!r.allFinite()) return;
     const int k = size_class(radius);
@@ -87,8 +87,8 @@ class CellGrid {
     slot.first = bead;
   }
 
-  /// Calls visit(j) once for every bead inserted so far that is of the same size class as `radius` or a
-  /// larger one and may be within the margin of a bead at r; a few visited ones are farther.
+  /// Calls visit(j) once for every inserted bead of the size class of `radius` or a larger one that may be
+  /// within the margin of a bead at r. A few visited beads are farther away.
   template <class Visit>
   void around(const Vec3& r, double radius, Visit visit) const {
     if (!r.allFinite()) return;
@@ -96,7 +96,7 @@ class CellGrid {
       const Level& level = levels_[static_cast<std::size_t>(k)];
       if (level.beads == 0) continue;
       const Cell home = cell(level, r);
-      // With fewer than three periodic cells the neighbours on both sides are the same cell.
+      // With fewer than three periodic cells, the neighbours on both sides are the same cell.
       const auto first = [&](std::size_t a) {
         return (dimension_ == 2 && a == 1) || level.count[a] == 1 ? 0 : -1;
       };
@@ -114,19 +114,19 @@ class CellGrid {
   }
 
  private:
-  static constexpr int kClasses = 15;      ///< the sixteenth that a key could hold is the empty key's
-  static constexpr double kFar = 1 << 19;  ///< cells from the origin; beyond, they are merged into one
+  static constexpr int kClasses = 15;      ///< a key has room for 16; the last is reserved for the empty key
+  static constexpr double kFar = 1 << 19;  ///< cells from the origin; cells beyond are merged into one
   static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
   using Cell = std::array<std::int64_t, 3>;
 
   struct Level {
     std::array<double, 3> edge{};
-    std::array<std::int64_t, 3> count{};  ///< of cells across a period; 0: not periodic
+    std::array<std::int64_t, 3> count{};  ///< number of cells across a period; 0: not periodic
     std::size_t beads = 0;
   };
   struct Slot {
     std::uint64_t key = kEmpty;
-    std::int32_t first = -1;  ///< the others of the cell follow in next_
+    std::int32_t first = -1;  ///< first bead of the cell; the others follow in next_
   };
 
   [[nodiscard]] Cell cell(const Level& level, const Vec3& r) const {
@@ -150,11 +150,11 @@ class CellGrid {
   }
   static std::uint64_t key(int size_class, const Cell& c) {
     std::uint64_t k = static_cast<std::uint64_t>(size_class);
-    for (const std::int64_t x : c)  // beyond 20 bits opposite ends share a key, which costs a look
+    for (const std::int64_t x : c)  // beyond 20 bits opposite ends share a key: only a distance test more
       k = (k << 20) | (static_cast<std::uint64_t>(x + (std::int64_t{1} << 19)) & 0xFFFFF);
     return k;
   }
-  /// The slot of a key, or the empty one where it belongs.
+  /// Slot of a key, or the empty slot where it would be inserted.
   [[nodiscard]] std::size_t find(std::uint64_t k) const {
     std::uint64_t h = k * 0x9E3779B97F4A7C15u;
     h ^= h >> 32;
@@ -172,10 +172,10 @@ class CellGrid {
   std::vector<std::int32_t> next_;
 };
 
-/// Calls visit(i, j, gap, shift) once for every pair i < j whose surfaces are closer than `margin`, in no
-/// particular but always the same order. gap is negative where they overlap; r_i - r_j + shift is their
-/// separation across the nearest image. Periods must be at least twice R_i + R_j + margin of any pair, so
-/// that no other image counts.
+/// Calls visit(i, j, gap, shift) once for every pair i < j whose surfaces are closer than `margin`. The order
+/// is unspecified but reproducible. gap is negative for overlapping beads; r_i - r_j + shift is the
+/// separation of nearest images. Periods must be at least twice R_i + R_j + margin of every pair, so that no
+/// other image is in range.
 template <class Visit>
 void for_each_near_pair(const std::vector<Bead>& beads, int dimension, const std::array<double, 3>& period,
                         double margin, Visit visit) {
@@ -190,7 +190,7 @@ void for_each_near_pair(const std::vector<Bead>& beads, int dimension, const std
     const double gap = std::sqrt(square) - reach;
     if (gap < margin) visit(i, j, gap, shift);
   };
-  // Of a few every pair is sooner seen than a grid of cells filled.
+  // Few beads: testing every pair is faster than filling a grid of cells.
   constexpr std::size_t kFew = 150, kVeryFew = 12;
   if (beads.size() <= kFew) {
     const auto look_at_all_before = [&](std::size_t j) {
@@ -200,7 +200,7 @@ void for_each_near_pair(const std::vector<Bead>& beads, int dimension, const std
       for (std::size_t j = 1; j < beads.size(); ++j) look_at_all_before(j);
       return;
     }
-    // Most have nobody near: that is told by plain loops over numbers that lie together.
+    // Most beads have no near neighbour. A plain loop over contiguous arrays finds these fast.
     std::vector<double> at[3], radius;
     for (const Bead& b : beads) {
       at[0].push_back(b.x), at[1].push_back(b.y), at[2].push_back(b.z);
@@ -208,7 +208,7 @@ void for_each_near_pair(const std::vector<Bead>& beads, int dimension, const std
     }
     const double per[3] = {period[0] > 0 ? 1 / period[0] : 0, period[1] > 0 ? 1 / period[1] : 0,
                            period[2] > 0 ? 1 / period[2] : 0};
-    constexpr double kMore = 1 + 1e-9;  // look_at() decides, whose rounding is another
+    constexpr double kMore = 1 + 1e-9;  // look_at() decides; its rounding differs
     for (std::size_t j = 1; j < beads.size(); ++j) {
       const double x = at[0][j], y = at[1][j], z = at[2][j], reach = kMore * (radius[j] + margin);
       int near = 0;
@@ -228,7 +228,7 @@ void for_each_near_pair(const std::vector<Bead>& beads, int dimension, const std
   radii.reserve(beads.size());
   for (const Bead& b : beads) radii.push_back(b.radius);
   CellGrid grid(radii, margin, dimension, period);
-  // Large beads first: each then has only to look for its equals and its betters.
+  // Large beads first: each bead then only searches for beads of its own size class and larger ones.
   std::vector<std::pair<int, std::int32_t>> order;
   order.reserve(beads.size());
   for (const double r : radii)

@@ -3,7 +3,7 @@
 namespace twincell::sim {
 
 namespace {
-/// Index of the first point beyond `cycles`, at least 1, at most the last.
+/// Index of the first point beyond `cycles`; at least 1, at most the last index.
 std::size_t segment(const std::vector<std::pair<double, double>>& points, double cycles) {
   std::size_t k = 1;
   while (k + 1 < points.size() && points[k].first <= cycles) ++k;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What a kernel moves: beads, walls, plate, clock. Reduced units, plate mean at z = 0. A 2D system lies in
-/// the plane y = 0.
+/// The state that a solver advances: beads, walls, plate and clock. Reduced units; the mean height of the
+/// plate is z = 0. A 2D system is in the plane y = 0.
 
 #include <array>
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace twincell::sim {
 
-/// One bead. The angular velocity is (spin_x, -spin, spin_z): `spin` is counter-clockwise in the (x right, z
-/// up) drawing, the only component that a 2D system has.
+/// One bead. The angular velocity is (spin_x, -spin, spin_z): `spin` is counter-clockwise in a drawing with x
+/// to the right and z up, and is the only component in 2D.
 struct Bead {
   double x = 0, z = 0;
   double vx = 0, vz = 0;
@@ -22,12 +22,12 @@ struct Bead {
   double radius = 0.5;
   double mass = 1;
   double inertia = 0.125;
-  double y = 0, vy = 0;  ///< third dimension
+  double y = 0, vy = 0;  ///< 3D only
   double spin_x = 0, spin_z = 0;
 };
 
-/// Contact force on a bead, and its turning moment divided by the bead's radius: in 2D q = sum F_t, so that
-/// inertia dspin/dt = -radius q; in 3D (q_x, q_y, q_z) = sum n x F_t and inertia d(omega)/dt = -radius q.
+/// Contact force on a bead, and its torque divided by the bead's radius. In 2D q = sum F_t, so that inertia
+/// dspin/dt = -radius q. In 3D (q_x, q_y, q_z) = sum n x F_t and inertia d(omega)/dt = -radius q.
 struct Force {
   double x = 0, z = 0, q = 0;
   double y = 0, q_x = 0, q_z = 0;
@@ -36,28 +36,28 @@ struct Force {
 /// A flat wall: the half space n . r < offset is solid. n points into the cell.
 struct Wall {
   Vec3 n = Vec3::UnitZ();
-  double offset = 0;  ///< n . w for a point w of the wall when the plate is at its mean
-  bool moves = true;  ///< rides with the plate
+  double offset = 0;  ///< n . w for a point w of the wall when the plate is at its mean position
+  bool moves = true;  ///< moves with the plate
   std::string name;   ///< "bottom", "left", "right", "front", "back", "lid"
 };
 
-/// Factor f(t) on the drive's amplitude, straight between points (cycle, f), constant outside: a ramp, or a
-/// bed that is fluidised and calmed.
+/// Factor f(t) on the amplitude of the drive, linear between points (cycle, f) and constant outside: a ramp,
+/// or a schedule that fluidises a bed and then calms it.
 struct Envelope {
-  std::vector<std::pair<double, double>> points;  ///< cycles rising; empty: f = 1
+  std::vector<std::pair<double, double>> points;  ///< cycles increase; empty: f = 1
   [[nodiscard]] double at(double cycles) const;
   [[nodiscard]] double slope(double cycles) const;  ///< per cycle
-  /// Cycles until f stays the same.
+  /// Number of cycles after which f is constant.
   [[nodiscard]] double duration() const { return points.empty() ? 0 : points.back().first; }
 };
 
 /// Beads, cell, plate and clock.
 struct System {
   std::vector<Bead> beads;
-  std::vector<Force> forces;  ///< at the present positions; same length as beads, meaningful if forces_known
-  bool forces_known = false;  ///< a kernel computes them anew if not
-  /// Radius times angular velocity, as kernels hold it; empty, or as long as beads. A spin is this over the
-  /// radius, which loses its last bit: where the two agree this is what counts.
+  std::vector<Force> forces;  ///< at the present positions; as long as beads, valid if forces_known
+  bool forces_known = false;  ///< if false, the solver computes them
+  /// Radius times angular velocity, as kernels store it; empty, or as long as beads. The division by the
+  /// radius that gives the spin may lose the last bit, so this value is used if it agrees with the spin.
   std::vector<Vec3> rim_speeds;
   int dimension = 2;
   std::array<double, 3> period = {0, 0, 0};  ///< x, y, z; 0: not periodic
@@ -71,7 +71,7 @@ struct System {
   std::int64_t step = 0;  ///< whole steps since phase 0: time is step * dt, never a running sum
   double dt = 0;
 
-  /// Fraction of the period at the present step, the same bits in every period.
+  /// Fraction of the period at the present step, with the same bits in every period.
   [[nodiscard]] double phase() const { return phase_at(step); }
   [[nodiscard]] double cycles() const { return cycles_at(step); }
   [[nodiscard]] double time() const { return static_cast<double>(step) * dt; }
@@ -83,7 +83,7 @@ struct System {
     return envelope.at(cycles()) * v +
            envelope.slope(cycles()) / drive.period() * drive.displacement(phase());
   }
-  /// Displacement at the step before, the bits that it had then.
+  /// Displacement of the plate at the previous step, with the same bits as then.
   [[nodiscard]] double plate_height_before() const { return plate_height_at(step - 1); }
   [[nodiscard]] Vec3 plate_displacement() const {
     return plate_height() * Vec3::Unit(static_cast<int>(drive.axis));
@@ -105,7 +105,7 @@ struct System {
   }
 };
 
-/// n . w of a wall now.
+/// n . w of a wall at present.
 inline double offset_now(const System& s, const Wall& wall) {
   return wall.moves ? wall.offset + wall.n[static_cast<int>(s.drive.axis)] * s.plate_height() : wall.offset;
 }

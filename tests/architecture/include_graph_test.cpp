@@ -185,9 +185,9 @@ TEST(IncludeGraph, ACycleThroughASourceIsFound) {
 }
 
 // One observable must not depend on another: each sees the trajectory, the neighbours and the statistics
-// only. An observable is a module of analysis that defines a function make_NAME(const AnalysisContext&).
+// only. An observable is a module of analysis whose header declares NAME_observable.
 TEST(IncludeGraph, ObservablesDoNotKnowEachOther) {
-  const std::regex maker(R"(std::unique_ptr<Observable>\s+make_\w+\(const AnalysisContext&)");
+  const std::regex maker(R"(extern const ObservableEntry \w+_observable;)");
   std::set<std::string> observables;
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "analysis"))
     if (entry.path().extension() == ".hpp" && std::regex_search(text_of(entry.path()), maker))

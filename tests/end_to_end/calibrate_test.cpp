@@ -316,13 +316,13 @@ TEST(Calibrate, InfersFromACurveAFlightTimeAndAnOnset) {
 
   for (const auto& [more, said] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{film, "--observables", "onset"}, "--onset bouncing="},
-           {{film, "--observables", "phase"}, "is a word"},
+           {{film, "--observables", "phase"}, "is neither a number nor a curve"},
            {{film, "--observables", "nothing"}, "there is no result called"},
            {{film, "--observables", "s_k", "--set", "time.phases=10", "--runs", "6"},
             "20 elements in the film"},
            {{"--onset", "bouncing=1.2"}, "GAMMA+-ERROR"},
            {{"--onset", "still=1.2+-0.1"}, "neither bouncing nor convecting"},
-           {{}, "a trajectory of the experiment is needed"}}) {
+           {{}, "a trajectory of the experiment is required"}}) {
     std::vector<std::string> all = words(more);
     all.emplace_back("-q");
     const Ran ran = run_program(all);

@@ -239,7 +239,7 @@ TEST_F(Checkpoints, AFullDiskStopsTheRunWhichGoesOnWhenThereIsRoom) {
 
 TEST_F(Checkpoints, AFolderThatCannotBeIsRefusedAtOnce) {
   std::ofstream(place_) << "a file";
-  expect_refusal({"--checkpoint-every", "1"}, kUsage, {"o.h5.checkpoint", "cannot be made"});
+  expect_refusal({"--checkpoint-every", "1"}, kUsage, {"o.h5.checkpoint", "cannot be created"});
   fs::remove(place_);
   RunningProgram first(words({"--checkpoint-every", "0.02"}));
   for (int k = 0; k < 1000 && !fs::exists(place_ / "state.h5"); ++k)

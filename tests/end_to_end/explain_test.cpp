@@ -70,8 +70,8 @@ TEST_F(Explain, EachEffectStandsInItsList) {
   EXPECT_EQ(all["tangential history"], "off (proven)");
   const Ran text = run("explain", {});
   for (const char* heading :
-       {"On, because the scene says so", "Off, because the scene says so",
-        "Off, because it provably cannot act", "Approximated", "measured on this machine"})
+       {"On, set by the scene", "Off, set by the scene",
+        "Off, because the effect provably cannot act", "Approximated", "measured on this machine"})
     EXPECT_NE(text.out.find(heading), std::string::npos) << text.out;
 }
 

@@ -67,7 +67,7 @@ TEST(Fit, Refusals) {
   put_file(folder / "zeros.csv", "x,y\n1,0\n2,0\n3,0\n");
   refused({"fit", folder / "zeros.csv", "--law", "power", "-q"}, 3, "3 zero");
   refused({"fit", folder / "zeros.csv", "--law", "arrhenius", "--y", "x", "--trials", "x", "-q"}, 3,
-          "row 2 holds 2");
+          "row 2 contains 2");
   put_file(folder / "bad.csv", "x,y\n1,2\n3,four\n");
   refused({"fit", folder / "bad.csv", "--law", "line", "-q"}, 3, "bad.csv:3");
   put_file(folder / "short.csv", "x,y\n1,2\n3\n");
@@ -81,7 +81,7 @@ TEST(Fit, ErrorsThatAreNoneAreSaid) {
   put_file(folder / "flat.csv", "x,y,s\n1,2,0\n2,2,0\n4,2,0.1\n8,2,0\n16,2,0\n");
   const Ran line = run_program({"fit", folder / "flat.csv", "--law", "line", "--sigma", "s", "-q"});
   EXPECT_EQ(line.code, 0) << line.err;
-  EXPECT_NE(line.out.find("not weighted: the errors named are not above 0 at 4 of 5 points"),
+  EXPECT_NE(line.out.find("not weighted: the given errors are not above 0 at 4 of 5 points"),
             std::string::npos)
       << line.out;
   // Without scatter and without a decay: the plateau is known, how it decays is not, and has no error of 0.

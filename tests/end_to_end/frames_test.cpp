@@ -132,7 +132,7 @@ TEST_F(Frames, AreDividedByAFlatField) {
     EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
     EXPECT_FALSE(fs::exists(at("beads.csv")));
   };
-  refused({"--flat", at("small.png")}, 3, "the flat field of 160 x 60 px");
+  refused({"--flat", at("small.png")}, 3, "the flat field is 160 x 60 px");
   refused({"--flat", at("nosuch")}, 3, "does not exist");
   refused({"--flat", "stack", "--bright"}, 2, "give frames of the cell without beads");
   const Ran tracked =
@@ -164,7 +164,7 @@ TEST_F(Frames, InfoSaysWhatTheyHold) {
   EXPECT_NEAR(cine["time"]["second_s"], -0.001, 1e-9);
   EXPECT_EQ(cine["recorded_unix"], 1600000000);
   const Ran text = run_program({"info", at("a.cine")});
-  for (const char* words : {"Phantom cine", "160 x 120 px", "12 bits by the file's word", "1000 frames/s",
+  for (const char* words : {"Phantom cine", "160 x 120 px", "12 bits as stated by the file", "1000 frames/s",
                             "-0.002000000 s", "2020-09-13 12:26:40 UTC"})
     EXPECT_NE(text.out.find(words), std::string::npos) << words << "\n" << text.out;
 }
@@ -178,7 +178,7 @@ TEST_F(Frames, InfoNotesWhatTheValuesSuggest) {
     return all;
   };
   EXPECT_EQ(notes(16, [](int x, int y, int) { return static_cast<unsigned>(1000 + x + y); }), "");
-  EXPECT_NE(notes(8, [](int, int, int) { return 0U; }).find("every pixel of the first frame is 0"),
+  EXPECT_NE(notes(8, [](int, int, int) { return 0U; }).find("every pixel of the first frame has the value 0"),
             std::string::npos);
   // 36 of 1200 pixels at the full scale of twelve bits; a hundredth of them is the bound.
   const auto clipped = [](int wide) {
@@ -189,7 +189,7 @@ TEST_F(Frames, InfoNotesWhatTheValuesSuggest) {
       std::string::npos);
   EXPECT_EQ(notes(16, clipped(2)), "");
   EXPECT_NE(notes(16, [](int x, int y, int) { return static_cast<unsigned>(1000 + x + y) << 4; })
-                .find("multiple of 16: 12-bit values"),
+                .find("multiple of 16: these may be 12-bit values"),
             std::string::npos);
 }
 
@@ -221,7 +221,7 @@ TEST_F(Frames, WhatCannotBeReadIsRefusedInOneLine) {
                                                         {"cut.cine", "truncated"},
                                                         {"cut.tif", "truncated"},
                                                         {"a.h5:/none", "no dataset /none"},
-                                                        {"a.cine:/frames", "no HDF5 file"},
+                                                        {"a.cine:/frames", "not an HDF5 file"},
                                                         {"nowhere", "does not exist"}})
     for (const char* verb : {"info", "locate", "track"}) {
       std::vector<std::string> line{verb, at(name), "-q"};

@@ -318,12 +318,12 @@ TEST(LammpsDeck, WithoutAnIntegratorIsOfLammpssOwnAndSaysSo) {
   const auto deck_of = [&](const std::string& name, const std::string& said) {
     const Ran ran = run_program({"export", folder / (name + ".toml"), "--to", "lammps", "-o", folder / name});
     EXPECT_EQ(ran.code, 0) << ran.err;
-    EXPECT_EQ(ran.err.find("time.integrator is not stated") != std::string::npos, !said.empty()) << ran.err;
+    EXPECT_EQ(ran.err.find("time.integrator is not set") != std::string::npos, !said.empty()) << ran.err;
     EXPECT_NE(ran.err.find(said), std::string::npos) << ran.err;
     return read_text_file(folder / name / "in.twincell");
   };
   const std::string stated = deck_of("stated", ""),
-                    deck = deck_of("silent", "\"verlet\", LAMMPS's own, at 50 steps per contact");
+                    deck = deck_of("silent", "\"verlet\", LAMMPS's own integrator, at 50 steps per contact");
   const auto line = [](const std::string& text, const std::string& head) {
     const std::size_t at = text.find(head);
     return at == std::string::npos ? "no " + head : text.substr(at, text.find('\n', at) - at);

@@ -176,7 +176,7 @@ TEST_F(Sweeps, AFullDiskIsOneSentenceAndTheSweepGoesOn) {
     const Ran ran = run(grid_, at("f"));
     ::setrlimit(RLIMIT_FSIZE, &usual);
     EXPECT_EQ(ran.code, kPartial) << bytes;
-    EXPECT_NE(ran.err.find("the same command goes on"), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("the same command continues"), std::string::npos) << ran.err;
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
   }
   EXPECT_EQ(run(grid_, at("f")).code, kDone);

@@ -1,14 +1,15 @@
-// The readers whose headers we parse, on whatever bytes. A program per format: TWINCELL_FUZZ_READER is its
-// name. An input may be refused in a sentence; it must not crash, hang, or ask for memory that its size
-// cannot explain.
+// The readers of frame stacks, on whatever bytes. A program per format: TWINCELL_FUZZ_READER is its name. An
+// input may be refused in a sentence; it must not crash, hang, or ask for memory that its size cannot
+// explain.
 
-#include <unistd.h>
+#include <hdf5.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -16,54 +17,64 @@
 #include "imaging/stack/formats/reader.hpp"
 #include "tests/fuzz/input.hpp"
 
+// HDF5 1.10 itself loses some bytes when it refuses a damaged file.
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libhdf5";
+}
+
 namespace twincell::frames {
-extern const Reader cine_reader, seq_reader, mrf_reader, mraw_reader, tiff_reader;
+extern const Reader cine_reader, seq_reader, mrf_reader, mraw_reader, tiff_reader, picture_reader,
+    hdf5_reader;
 }
 
 namespace {
 
 namespace fs = std::filesystem;
-using twincell::frames::Reader;
+using namespace twincell;
+using Source = std::unique_ptr<FrameSource>;
 
 constexpr std::string_view kFormat = TWINCELL_FUZZ_READER;
 
-const Reader& reader() {
-  using namespace twincell::frames;
-  return kFormat == "cine"   ? cine_reader
-         : kFormat == "seq"  ? seq_reader
-         : kFormat == "mrf"  ? mrf_reader
-         : kFormat == "mraw" ? mraw_reader
-                             : tiff_reader;
+/// The reader of a format with one file.
+const frames::Reader& reader() {
+  using namespace frames;
+  return kFormat == "cine"      ? cine_reader
+         : kFormat == "seq"     ? seq_reader
+         : kFormat == "mrf"     ? mrf_reader
+         : kFormat == "mraw"    ? mraw_reader
+         : kFormat == "picture" ? picture_reader
+         : kFormat == "hdf5"    ? hdf5_reader
+                                : tiff_reader;
 }
 
 /// A .cih and its .mraw, for which the name matters: the input up to its first NUL, and the rest.
-class PhotronPair {
- public:
-  PhotronPair() {
-    std::string name = (fs::temp_directory_path() / "twincell-fuzz-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  PhotronPair(const PhotronPair&) = delete;
-  PhotronPair& operator=(const PhotronPair&) = delete;
-  ~PhotronPair() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  [[nodiscard]] fs::path write(const std::uint8_t* data, std::size_t n) const {
-    const std::string_view all(reinterpret_cast<const char*>(data), n);
-    const std::size_t cut = std::min(all.find('\0'), n);
-    std::ofstream(folder_ / "a.cih", std::ios::binary) << all.substr(0, cut);
-    std::ofstream(folder_ / "a.mraw", std::ios::binary) << all.substr(std::min(cut + 1, n));
-    return folder_ / "a.mraw";
-  }
+fs::path write_photron_pair(const fs::path& folder, std::string_view all) {
+  const std::size_t cut = std::min(all.find('\0'), all.size());
+  std::ofstream(folder / "a.cih", std::ios::binary) << all.substr(0, cut);
+  std::ofstream(folder / "a.mraw", std::ios::binary) << all.substr(std::min(cut + 1, all.size()));
+  return folder / "a.mraw";
+}
 
- private:
-  fs::path folder_;
-};
+/// Up to eight files. Each is a byte that selects its extension, two bytes of its length (low byte first),
+/// and its content.
+void write_folder(const fs::path& folder, std::string_view all) {
+  constexpr std::string_view kExtensions[] = {".png", ".tif", ".jpg",  ".bmp",
+                                              ".pgm", ".txt", ".cine", ".PNG"};
+  for (int k = 0; k < 8 && all.size() >= 3; ++k) {
+    const auto byte = [&](std::size_t i) {
+      return static_cast<std::size_t>(static_cast<unsigned char>(all[i]));
+    };
+    const std::string name = "frame_" + std::to_string(k) + std::string(kExtensions[byte(0) % 8]);
+    const std::size_t n = std::min(byte(1) + 256 * byte(2), all.size() - 3);
+    std::ofstream(folder / name, std::ios::binary) << all.substr(3, n);
+    all.remove_prefix(3 + n);
+  }
+}
 
-void read_stack(const fs::path& file) {
+void read_stack(const std::function<Source()>& open) {
   try {
-    const auto source = reader().open(file, "");
+    const Source source = open();
+    if (!source) return;
     (void)source->info();
     cv::Mat frame;
     // A small file may well hold millions of frames of one pixel.
@@ -72,20 +83,40 @@ void read_stack(const fs::path& file) {
       (void)source->time_s();
       (void)source->current();
     }
-  } catch (const twincell::InputError& e) {
+  } catch (const InputError& e) {
     // One sentence that names the file.
     if (std::string_view(e.what()).find('\n') != std::string_view::npos) std::abort();
   }
 }
 
+/// As `open_frames` does: a file that is not of the format is another reader's.
+Source open_owned(const fs::path& file) {
+  return reader().owns(frames::head_of(file)) ? reader().open(file, "") : nullptr;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (kFormat == "mraw") {
-    static const PhotronPair pair;
-    read_stack(pair.write(data, size));
+  const std::string_view all(reinterpret_cast<const char*>(data), size);
+  if (kFormat == "mraw" || kFormat == "folder") {
+    static const fuzz::DiskFolder folder;
+    const fs::path place = folder.empty();
+    if (kFormat == "folder") write_folder(place, all);
+    read_stack([&] {
+      return kFormat == "folder" ? frames::open_folder(place)
+                                 : reader().open(write_photron_pair(place, all), "");
+    });
+  } else if (kFormat == "hdf5") {
+    static const fuzz::DiskFile file;
+    const fs::path place = file.write(data, size);
+    read_stack([&] { return open_owned(place); });
+    if (H5Fget_obj_count(static_cast<hid_t>(H5F_OBJ_ALL), H5F_OBJ_ALL) != 0) std::abort();
+  } else if (kFormat == "picture") {
+    const fuzz::MemoryFile file(data, size);
+    read_stack([&] { return open_owned(file.path()); });
   } else {
-    read_stack(twincell::fuzz::MemoryFile(data, size).path());
+    const fuzz::MemoryFile file(data, size);
+    read_stack([&] { return reader().open(file.path(), ""); });
   }
   return 0;
 }

@@ -3,7 +3,6 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "tests/fuzz/input.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -16,19 +15,8 @@ extern "C" const char* __lsan_default_suppressions() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace twincell;
-  // HDF5 resolves links, and does not find the file behind /proc/self/fd.
-  struct File {
-    std::string name = "/dev/shm/twincell-fuzz-XXXXXX";
-    File() {
-      const int descriptor = mkstemp(name.data());
-      if (descriptor < 0 || close(descriptor) != 0) std::abort();
-    }
-    ~File() { unlink(name.c_str()); }
-  };
-  static const File file;
-  const std::filesystem::path path = file.name;
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  static const fuzz::DiskFile file;
+  const std::filesystem::path path = file.write(data, size);
   fuzz::accept_or_refuse([&] {
     const H5mdReader reader(path);
     Frame frame;

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -30,6 +31,51 @@ class MemoryFile {
 
  private:
   int descriptor_;
+};
+
+/// A file on disk, overwritten by each input: for HDF5, which resolves links and does not find the file
+/// behind /proc/self/fd.
+class DiskFile {
+ public:
+  DiskFile() {
+    const int descriptor = mkstemp(name_.data());
+    if (descriptor < 0 || close(descriptor) != 0) std::abort();
+  }
+  DiskFile(const DiskFile&) = delete;
+  DiskFile& operator=(const DiskFile&) = delete;
+  ~DiskFile() { unlink(name_.c_str()); }
+  [[nodiscard]] std::filesystem::path write(const std::uint8_t* data, std::size_t n) const {
+    std::ofstream(name_, std::ios::binary)
+        .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(n));
+    return name_;
+  }
+
+ private:
+  std::string name_ = "/dev/shm/twincell-fuzz-XXXXXX";
+};
+
+/// A folder that is emptied before each input.
+class DiskFolder {
+ public:
+  DiskFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "twincell-fuzz-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) std::abort();
+    path_ = name;
+  }
+  DiskFolder(const DiskFolder&) = delete;
+  DiskFolder& operator=(const DiskFolder&) = delete;
+  ~DiskFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  [[nodiscard]] const std::filesystem::path& empty() const {
+    for (const auto& entry : std::filesystem::directory_iterator(path_))
+      std::filesystem::remove(entry.path());
+    return path_;
+  }
+
+ private:
+  std::filesystem::path path_;
 };
 
 /// Calls `read`, which may refuse its input by an Error that says something. Any other exception ends the

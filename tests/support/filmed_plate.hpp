@@ -22,11 +22,11 @@ inline std::vector<cv::Mat> film(const MemoryTrajectory& bed, const CameraOption
   std::vector<cv::Mat> frames;
   for (std::size_t f = 0; f < bed.n_frames(); ++f) {
     const Frame& now = bed.frames()[f];
-    Moment moment{.now = &now};
-    if (f > 0) moment.before = &bed.frames()[f - 1];
-    if (f + 1 < bed.n_frames()) moment.after = &bed.frames()[f + 1];
-    moment.late = options.trigger_offset;
-    frames.push_back(camera.expose(moment));
+    Exposure exposure{.now = &now};
+    if (f > 0) exposure.before = &bed.frames()[f - 1];
+    if (f + 1 < bed.n_frames()) exposure.after = &bed.frames()[f + 1];
+    exposure.late = options.trigger_offset;
+    frames.push_back(camera.expose(exposure));
   }
   return frames;
 }

@@ -33,4 +33,22 @@ inline void validate(const Outside& outside, double measured) {
       << outside.number << ", error " << error << ", tolerance " << outside.tolerance;
 }
 
+/// A number of which the outside says between what it lies, and no more.
+struct OutsideBounds {
+  std::string id, what;
+  double least, most;
+  std::string source;
+};
+
+/// Expects least <= measured <= most, and prints the row of validate() with "least to most" for the number.
+inline void validate_bound(const OutsideBounds& outside, double measured) {
+  const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+  std::printf("VALIDATION|%s|%s.%s|%s|%.7g to %.7g|%.7g|–|bounds|%s\n", outside.id.c_str(),
+              test.test_suite_name(), test.name(), outside.what.c_str(), outside.least, outside.most,
+              measured, outside.source.c_str());
+  EXPECT_TRUE(measured >= outside.least && measured <= outside.most)
+      << outside.id << ", " << outside.what << ": measured " << measured << ", bounds " << outside.least
+      << " and " << outside.most;
+}
+
 }  // namespace twincell::test

@@ -8,6 +8,7 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
+#include "core/hdf5_self_contained.hpp"
 #include "twincell_version.hpp"
 
 namespace twincell {
@@ -33,7 +34,7 @@ const char* word_of(Boundary b) {
   return "open";
 }
 
-/// A time-dependent H5MD element other than position: shares step and time with it by hard links.
+/// Creates a time-dependent H5MD element that shares step and time with position by hard links.
 h5::Handle create_element(hid_t parent, const std::string& name, hid_t position) {
   h5::Handle group = h5::create_group(parent, name);
   for (const char* shared : {"step", "time"})
@@ -44,8 +45,7 @@ h5::Handle create_element(hid_t parent, const std::string& name, hid_t position)
 
 }  // namespace
 
-// --- writing
-// -------------------------------------------------------------------------------------------------------
+// --- Writing ---
 
 struct H5mdWriter::Impl {
   AtomicPath path;
@@ -69,7 +69,7 @@ struct H5mdWriter::Impl {
 void H5mdWriter::Impl::create() {
   h5::quiet();
   const h5::Handle access = h5::own(H5Pcreate(H5P_FILE_ACCESS), "making a property list");
-  // Readable by every HDF5 from 1.8 on.
+  // Readable by HDF5 1.8 and later.
   h5::check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V110), "choosing the file format");
   file = h5::own(H5Fcreate(path.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()),
                  path.final().string() + ": creating the file");
@@ -182,14 +182,14 @@ void H5mdWriter::Impl::create_parameters() {
   if (tilt[0] != 0 || tilt[1] != 0) h5::write_dataset(cell.get(), "side_tilt", tilt.data(), {2});
 }
 
-/// Frames have contacts of different number: all lie one after the other, with the number of each frame
-/// beside.
+/// The number of contacts differs between frames. The contacts of all frames are stored one after the other,
+/// and the number of contacts of each frame is stored separately.
 void H5mdWriter::Impl::append_contacts(const std::vector<ContactMemory>& contacts) {
   const auto n = static_cast<std::int64_t>(contacts.size());
   contact_count.append(h5::native<std::int64_t>(), &n);
   if (contacts.empty()) return;
   const std::size_t each = contacts.front().values.size();
-  if (!contact_values) {  // how much a contact remembers is known from the first
+  if (!contact_values) {  // the first contact determines the number of values
     const h5::Handle group =
         h5::own(H5Oopen(file.get(), "twincell/contacts", H5P_DEFAULT), "opening contacts");
     contact_values = h5::Series(group.get(), "values", H5T_IEEE_F64LE, {each}, 1024);
@@ -201,7 +201,7 @@ void H5mdWriter::Impl::append_contacts(const std::vector<ContactMemory>& contact
     values.insert(values.end(), c.values.begin(), c.values.end());
   }
   if (values.size() != each * contacts.size())
-    throw RunError(path.final().string() + ": contacts of one frame remember different numbers of values.");
+    throw RunError(path.final().string() + ": the contacts of one frame have different numbers of values.");
   contact_pairs.append(h5::native<std::int32_t>(), pairs.data(), contacts.size());
   contact_values.append(h5::native<double>(), values.data(), contacts.size());
 }
@@ -282,8 +282,7 @@ void H5mdWriter::finish_as(const fs::path& other_name) {
   impl_->path.commit_as(other_name);
 }
 
-// --- reading
-// -------------------------------------------------------------------------------------------------------
+// --- Reading ---
 
 struct H5mdReader::Impl {
   fs::path path;
@@ -296,7 +295,7 @@ struct H5mdReader::Impl {
     throw InputError({path.string(), 0, 0, key}, complaint);
   }
   h5::Series contact_pairs, contact_values, force, moment, rim_speed;
-  std::vector<std::int64_t> contact_count, contact_begin;  ///< of each frame, if there are contacts
+  std::vector<std::int64_t> contact_count, contact_begin;  ///< per frame; empty without contacts
 
   std::string particle_group() const;
   void open();
@@ -338,11 +337,12 @@ void H5mdReader::Impl::open() {
   h5::quiet();
   std::error_code ec;
   if (!fs::exists(path, ec)) refuse("", "the file does not exist.");
-  if (fs::is_directory(path, ec)) refuse("", "this is a folder, a trajectory file is needed.");
+  if (fs::is_directory(path, ec)) refuse("", "this is a folder; a trajectory file is needed.");
   file = h5::Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   if (!file)
     refuse("", H5Fis_hdf5(path.c_str()) > 0 ? "the HDF5 file is truncated or damaged."
                                             : "this is not an HDF5 file, or it is truncated.");
+  if (const std::string elsewhere = h5::data_elsewhere(file.get()); !elsewhere.empty()) refuse("", elsewhere);
   if (!h5::exists(file.get(), "h5md")) refuse("h5md", "the group is missing, so this is HDF5 but not H5MD.");
   const h5::Handle h5md = open_object(file.get(), "h5md");
   const auto version = h5::read_int_attribute(h5md.get(), "version");
@@ -355,7 +355,8 @@ void H5mdReader::Impl::open() {
   require_ranges();
 }
 
-/// What a bead cell can be. Whatever lies outside would overflow, index out of range or never end further on.
+/// Ranges that a bead cell can have. Values outside would later cause overflows, indices out of range or
+/// endless loops.
 void H5mdReader::Impl::require_ranges() const {
   constexpr double kFarthest = 1e7, kLargestRadius = 1e5;  // sigma
   constexpr int kMostPhases = 1'000'000;
@@ -364,8 +365,10 @@ void H5mdReader::Impl::require_ranges() const {
   for (int a = 0; a < 3; ++a) {
     const double low = info.box.lower[a], high = info.box.upper[a];
     if (!(std::abs(low) <= kFarthest) || !(std::abs(high) <= kFarthest) || low > high)
-      refuse("cell", fmt::format("its {} side goes from {:g} to {:g}; it must rise, within {:g}.", "xyz"[a],
-                                 low, high, kFarthest));
+      refuse(
+          "cell",
+          fmt::format("its {} side goes from {:g} to {:g}; the bounds must ascend and be within {:g} of 0.",
+                      "xyz"[a], low, high, kFarthest));
   }
   const auto each = [&](const std::vector<double>& values, const char* name, double most) {
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -407,6 +410,7 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
     refuse(group + "/position/step",
            fmt::format("{} steps for {} frames; explicit steps, one per frame, are needed.", step.size(),
                        position.size()));
+  // Per-bead columns: absent ones stay empty, others must match position.
   info.n_beads = position.record()[0];
   const hsize_t frames = position.size();
   auto column = [&](const char* name, const std::vector<hsize_t>& record) {
@@ -422,6 +426,7 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
   force = column("force", {info.n_beads, 3});
   moment = column("moment", {info.n_beads, 3});
   rim_speed = column("rim_speed", {info.n_beads, 3});
+  // Observables: one value or three values per frame.
   auto observable = [&](const char* name, const std::vector<hsize_t>& record = {}) {
     const std::string where = std::string("observables/") + name + "/value";
     if (!h5::exists(file.get(), where)) return h5::Series();
@@ -445,6 +450,7 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
 
   open_contacts();
 
+  // Constants: one entry per bead.
   auto per_bead = [&]<class T>(const char* name, std::vector<T>& out) {
     out = h5::read_dataset<T>(g.get(), name);
     if (!out.empty() && out.size() != info.n_beads)
@@ -468,15 +474,16 @@ void H5mdReader::Impl::open_contacts() {
   const auto all = static_cast<std::int64_t>(contact_pairs.size());
   for (const std::int64_t n : contact_count) {
     if (n < 0 || n > all - sum)
-      refuse(where + "/count", fmt::format("{} contacts are counted beyond the {} there are.", n, all));
+      refuse(where + "/count",
+             fmt::format("a count of {} contacts exceeds the {} contacts that are stored.", n, all));
     contact_begin.push_back(sum);
     sum += n;
   }
   if (all > 0 && (!contact_values || contact_values.record().size() != 1 ||
                   contact_values.size() != contact_pairs.size()))
-    refuse(where + "/values", "as many values for each contact are needed as for the others.");
+    refuse(where + "/values", "every contact must have the same number of values.");
   if (!force || !moment || !rim_speed)
-    refuse(where, "contacts stand beside the particles' force, moment and rim_speed, which are missing.");
+    refuse(where, "contacts require the particles' force, moment and rim_speed, which are missing.");
   info.columns.contacts = true;
 }
 
@@ -495,11 +502,11 @@ std::vector<ContactMemory> H5mdReader::Impl::contacts_of(std::size_t frame) cons
     const std::int32_t i = pairs[2 * k], j = pairs[2 * k + 1];
     const auto beads = static_cast<std::int64_t>(info.n_beads);
     if (i < 0 || i >= beads || j >= beads || j < -kMostWalls || (j >= 0 && j <= i))
-      refuse("twincell/contacts/pairs", fmt::format("({}, {}) is no contact of {} beads.", i, j, beads));
+      refuse("twincell/contacts/pairs", fmt::format("({}, {}) is not a contact of {} beads.", i, j, beads));
     contacts.push_back({i, j, {values.data() + k * each, values.data() + (k + 1) * each}});
     for (const double v : contacts.back().values)
       if (!std::isfinite(v))
-        refuse("twincell/contacts/values", fmt::format("that of ({}, {}) is not finite.", i, j));
+        refuse("twincell/contacts/values", fmt::format("a value of contact ({}, {}) is not finite.", i, j));
   }
   return contacts;
 }
@@ -524,7 +531,7 @@ void H5mdReader::Impl::read_box(const std::string& group) {
     info.box.side_tilt = {tilt[0], tilt[1]};
     return;
   }
-  // Someone else's file: the box is all there is, its corner at the origin.
+  // A file of another program has only the H5MD box. Its corner is at the origin.
   info.box.dimension = is_planar() ? 2 : 3;
   info.box.boundary = {Boundary::open, Boundary::open, Boundary::open};
   if (!h5::exists(file.get(), group + "/box")) return;
@@ -539,7 +546,7 @@ void H5mdReader::Impl::read_box(const std::string& group) {
   if (edges.size() >= 9) info.box.upper = Vec3(edges[0], edges[4], edges[8]);
 }
 
-/// Do all beads of the first frame lie at one y?
+/// Whether all beads of the first frame have the same y.
 bool H5mdReader::Impl::is_planar() const {
   if (position.size() == 0 || info.n_beads == 0) return false;
   std::vector<Vec3> first(info.n_beads);
@@ -578,7 +585,7 @@ void H5mdReader::Impl::read_parameters() {
     info.phases_per_cycle =
         value >= 0 && value <= 2e9 && value == std::floor(value) ? static_cast<int>(value) : -1;
   else if (info.columns.phase) {
-    // What a file does not state, its phases show.
+    // If the file does not state N_k, derive it from the largest phase.
     for (std::size_t f = 0; f < position.size(); ++f) {
       int k = -1;
       phase.read(f, h5::native<int>(), &k);
@@ -604,7 +611,7 @@ H5mdReader::H5mdReader(const fs::path& path) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
   try {
     impl_->open();
-  } catch (const RunError& e) {  // HDF5 stumbled over the file: that is the file's fault, not the run's
+  } catch (const RunError& e) {  // an HDF5 error here is a fault of the file, not of the run
     impl_->refuse("", e.what());
   }
 }
@@ -625,7 +632,8 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
   const Impl& r = *impl_;
   const std::size_t n = r.info.n_beads;
   if (index >= n_frames())
-    r.refuse("", fmt::format("frame {} was asked for, the file has {}.", index, n_frames()));
+    r.refuse("", fmt::format("frame {} was requested, but the number of frames in the file is {}.", index,
+                             n_frames()));
   try {
     r.step.read(index, h5::native<std::int64_t>(), &frame.step);
     if (r.time)
@@ -641,7 +649,7 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
     column(r.velocity, h5::native<double>(), frame.velocity);
     column(r.spin, h5::native<double>(), frame.spin);
     column(r.id, h5::native<std::int64_t>(), frame.id);
-    const h5::Series none;  // somebody else's forces are not what a run goes on from
+    const h5::Series none;  // a run cannot continue from forces without contact histories
     const bool restart = r.info.columns.contacts;
     column(restart ? r.force : none, h5::native<double>(), frame.force);
     column(restart ? r.moment : none, h5::native<double>(), frame.moment);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Trajectories as H5MD 1.1 files (layout and every name: docs/h5md.md). Streaming both ways.
+/// Writes and reads trajectories as H5MD 1.1 files, frame by frame. docs/h5md.md lists layout and names.
 
 #include <filesystem>
 #include <memory>
@@ -11,23 +11,23 @@
 
 namespace twincell {
 
-/// Version of our additions to H5MD, stored as /twincell@schema_version; readers refuse a newer one.
+/// Version of our additions to H5MD, stored as /twincell@schema_version; the reader rejects a newer one.
 inline constexpr int kSchemaVersion = 1;
 
 /// Writes a trajectory frame by frame under a temporary name.
 class H5mdWriter : public TrajectorySink {
  public:
-  /// \throws ConfigError if the place cannot be written to
+  /// \throws ConfigError if the output cannot be written (AtomicPath)
   H5mdWriter(const std::filesystem::path& path, TrajectoryInfo info);
-  ~H5mdWriter() override;  ///< without finish(): the file disappears
+  ~H5mdWriter() override;  ///< without finish() or finish_as(), deletes the file
   H5mdWriter(const H5mdWriter&) = delete;
   H5mdWriter& operator=(const H5mdWriter&) = delete;
 
   /// \throws RunError if `frame.step` does not increase, a column has the wrong length, or the disk is full
   void append(const Frame& frame) override;
-  /// Closes the file and gives it its name.
+  /// Closes the file and gives it its final name.
   void finish();
-  /// Closes the file and gives it another name in the same folder: what a run that went wrong leaves behind.
+  /// Closes the file and gives it another name in the same folder: the output of a run that failed.
   void finish_as(const std::filesystem::path& other_name);
 
  private:
@@ -35,8 +35,9 @@ class H5mdWriter : public TrajectorySink {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads an H5MD file; ours, or anyone's with explicit step and time and one particle group. What is missing
-/// is absent.
+/// Reads an H5MD file of this program, or of another one if it stores the step of each frame explicitly.
+/// Reads the particle group `trajectory`, or the first one by name if there is no such group. Missing
+/// elements are absent columns; a missing time is replaced by the step.
 class H5mdReader : public TrajectorySource {
  public:
   /// \throws InputError if the file is missing, truncated, not HDF5, or not H5MD
@@ -55,8 +56,9 @@ class H5mdReader : public TrajectorySource {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Checks a file against H5MD 1.1 and our additions. Returns one sentence per fault; empty means conforming.
-/// Every frame is read, so that a damaged chunk is found. \throws InputError if the file is not HDF5 at all
+/// Checks a file against H5MD 1.1 and our additions. Returns one sentence per fault; empty if the file
+/// conforms. Every frame is read, so that a damaged chunk is found.
+/// \throws InputError if the file is not HDF5 at all
 std::vector<std::string> validate_h5md(const std::filesystem::path& path);
 
 }  // namespace twincell

@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
+#include "core/hdf5_self_contained.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell {
@@ -104,6 +105,7 @@ void Checker::check_element(const std::string& element) {
 }
 
 void Checker::check_particles() {
+  // Group: readers take the first one by name, which must be `trajectory`.
   if (!h5::exists(file_, "particles")) return fault("particles", "the group is missing.");
   const auto groups = children("particles");
   if (groups.empty()) return fault("particles", "the group is empty.");
@@ -113,6 +115,7 @@ void Checker::check_particles() {
   } else if (groups.front() != "trajectory") {
     fault("particles/" + groups.front(), "sorts before 'trajectory'; readers take the first group.");
   }
+  // Position: its number of frames and beads is the reference for all other elements.
   const std::string position = particles_ + "/position";
   for (const char* name : {"step", "time", "value"})
     if (!h5::exists(file_, position + "/" + name))
@@ -129,6 +132,7 @@ void Checker::check_particles() {
       fault(position + "/step", fmt::format("does not increase at frame {}.", i));
       break;
     }
+  // Other elements: groups have one record per frame, datasets one entry per bead.
   for (const auto& name : children(particles_)) {
     const std::string element = particles_ + "/" + name;
     if (name == "position" || name == "box") continue;
@@ -144,6 +148,7 @@ void Checker::check_particles() {
         fault(element, "a time-independent element needs one entry per bead.");
     }
   }
+  // Box: H5MD requires dimension and boundary as attributes.
   const std::string box = particles_ + "/box";
   if (!h5::exists(file_, box)) return fault(box, "the group is missing.");
   const h5::Handle b = h5::own(H5Oopen(file_, box.c_str(), H5P_DEFAULT), "opening the box");
@@ -177,7 +182,8 @@ std::vector<std::string> validate_h5md(const std::filesystem::path& path) {
   {
     h5::quiet();
     const h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-    if (!file) H5mdReader give_the_reason(path);  // throws InputError
+    if (!file || !h5::data_elsewhere(file.get()).empty())
+      H5mdReader give_the_reason(path);  // throws InputError
     try {
       Checker checker(file.get());
       checker.check_root();
@@ -189,7 +195,8 @@ std::vector<std::string> validate_h5md(const std::filesystem::path& path) {
     }
   }
   if (!faults.empty()) return faults;
-  // The structure holds; now the content: every frame readable, empty slots empty, filled slots filled.
+  // The structure is valid. Check the content: every frame is readable, and a slot has a finite position
+  // exactly if it is filled.
   const H5mdReader reader(path);
   Frame frame;
   for (std::size_t f = 0; f < reader.n_frames(); ++f) {

@@ -21,11 +21,11 @@ namespace {
 
 constexpr int kAbsent = -1;
 
-/// Where one coordinate stands and how it is meant.
+/// Column and convention of one coordinate.
 struct Coordinate {
   int column = kAbsent;
   bool scaled = false, wrapped = false;
-  int image = kAbsent;  ///< ix, iy, iz
+  int image = kAbsent;  ///< column of ix, iy or iz
 };
 
 struct ColumnPlaces {
@@ -46,14 +46,14 @@ struct Atom {
 /// A frame in the dump's own units and axes.
 struct Snapshot {
   std::int64_t step = 0;
-  long line = 0;  ///< of its step
+  long line = 0;  ///< line of the step
   std::optional<double> time;
   std::array<bool, 3> periodic{};
   Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
-  std::vector<Atom> atoms;  ///< by id
+  std::vector<Atom> atoms;  ///< sorted by id
 };
 
-/// Splits at blanks.
+/// Splits a line at white space.
 void split(std::string_view line, std::vector<std::string_view>& words) {
   words.clear();
   for (std::size_t at = 0; at < line.size();) {
@@ -72,13 +72,13 @@ class DumpReader {
     std::error_code ec;
     if (!std::filesystem::exists(path, ec)) throw InputError({name_, 0, 0, ""}, "the file does not exist.");
     if (std::filesystem::is_directory(path, ec))
-      throw InputError({name_, 0, 0, ""}, "this is a folder, a file is needed.");
+      throw InputError({name_, 0, 0, ""}, "this is a folder; a file is needed.");
     size_ = static_cast<std::int64_t>(std::filesystem::file_size(path, ec));
     stream_.open(path, std::ios::binary);
     if (!stream_) throw InputError({name_, 0, 0, ""}, "the file cannot be read.");
   }
 
-  /// False at the end of the file.
+  /// Reads the next snapshot. Returns false at the end of the file.
   bool next(Snapshot& s) {
     bool begun = false;
     s.time.reset();
@@ -89,7 +89,7 @@ class DumpReader {
       begun = true;
       line_.erase(line_.find_last_not_of(" \t\r") + 1);
       if (line_.rfind("ITEM: ", 0) != 0)
-        fail(line_number_ == 1 ? "'ITEM: TIMESTEP' is missing; this is no text dump of LAMMPS."
+        fail(line_number_ == 1 ? "'ITEM: TIMESTEP' is missing; this is not a text dump of LAMMPS."
                                : fmt::format("'ITEM:' is missing, '{}' was found.", excerpt()));
       const std::string section = line_.substr(6);
       if (section == "UNITS") {
@@ -188,14 +188,14 @@ class DumpReader {
     std::map<std::string_view, int> at;
     for (const std::string_view word : words_)
       if (!at.emplace(word, static_cast<int>(at.size())).second)
-        fail(fmt::format("the column '{}' is there twice.", word));
+        fail(fmt::format("the column '{}' occurs twice.", word));
     const auto place = [&](const std::string& name) {
       const auto found = at.find(name);
       return found == at.end() ? kAbsent : found->second;
     };
     columns_.count = words_.size();
     columns_.id = place("id");
-    if (columns_.id == kAbsent) fail("there is no column 'id', without which beads cannot be told apart.");
+    if (columns_.id == kAbsent) fail("there is no column 'id', without which beads cannot be identified.");
     columns_.type = place("type");
     columns_.mass = place("mass");
     columns_.radius = place("radius");
@@ -207,7 +207,7 @@ class DumpReader {
       const std::string axis(1, "xyz"[k]);
       columns_.velocity[k] = place("v" + axis);
       columns_.spin[k] = place("omega" + axis);
-      // The first that is there: an unwrapped coordinate says more than a wrapped one.
+      // Use the first column that is present: unwrapped coordinates are preferred.
       for (const Coordinate c :
            {Coordinate{place(axis + "u"), false, false}, Coordinate{place(axis + "su"), true, false},
             Coordinate{place(axis), false, true}, Coordinate{place(axis + "s"), true, true}})
@@ -254,7 +254,7 @@ class DumpReader {
     const auto twice = std::adjacent_find(s.atoms.begin(), s.atoms.end(),
                                           [](const Atom& a, const Atom& b) { return a.id == b.id; });
     if (twice != s.atoms.end())
-      fail(fmt::format("the bead with id {} is there twice in a frame.", twice->id), std::next(twice)->line);
+      fail(fmt::format("the bead with id {} occurs twice in a frame.", twice->id), std::next(twice)->line);
   }
 
   std::string name_, line_, header_;
@@ -276,11 +276,12 @@ struct LammpsDump::Impl {
   LammpsDumpOptions o;
   TrajectoryInfo info;
   std::size_t n_frames = 0;
-  std::vector<std::int64_t> ids;  ///< of the slots, rising
+  std::vector<std::int64_t> ids;  ///< of the slots, ascending
   double t0 = 1;
   std::int64_t first_cycle = 0;
 
-  /// LAMMPS's axes in ours: the plane of its 2D systems is (x, y), with our z as its y and our y as its -z.
+  /// Converts a vector from LAMMPS axes to those of Box. The plane of 2D LAMMPS systems is (x, y); their y is
+  /// our z, their -z is our y.
   [[nodiscard]] Vec3 turned(const Vec3& v) const {
     return o.dimension == 2 ? Vec3(v.x(), -v.z() + 0.0, v.y()) : v;
   }
@@ -294,7 +295,7 @@ struct LammpsDump::Impl {
     if (o.timestep) positive("--timestep", *o.timestep);
     if (o.width) positive("--cell-width", *o.width);
     if (o.bead_mass) positive("--bead-mass", *o.bead_mass);
-    if (o.dimension == 2 && o.drive_axis == Axis::y) refuse("--drive-axis", "a plane system has no y.");
+    if (o.dimension == 2 && o.drive_axis == Axis::y) refuse("--drive-axis", "a 2D system has no y axis.");
     require_range({"", 0, 0, "--phase-of-step-zero"}, o.phase_of_step_zero, 0.0, 1.0);
     t0 = std::sqrt(o.sigma / o.gravity);
     const auto scaled = [](std::optional<double> value, double unit) {
@@ -312,9 +313,10 @@ struct LammpsDump::Impl {
       refuse("--frames-per-cycle", "has no meaning without the drive, whose period is then unknown.");
   }
 
+  /// First pass: checks a snapshot against the options and the first snapshot, and extends the box.
   void learn(const DumpReader& reader, const Snapshot& s, const Snapshot& first) {
     if (!o.timestep && !s.time)
-      refuse("--timestep", fmt::format("{} does not say how long a step is.", path.string()));
+      refuse("--timestep", fmt::format("{} does not state the length of a step.", path.string()));
     for (int k = 0; k < 3; ++k) {
       const auto a = static_cast<std::size_t>(k);
       if (s.periodic[a] != first.periodic[a] ||
@@ -333,16 +335,16 @@ struct LammpsDump::Impl {
     info.box.upper = n_frames == 0 ? upper : Vec3(info.box.upper.cwiseMax(upper));
   }
 
-  /// Phases from the beginning of the cycle in which step 0 lies; \throws InputError if it is between two.
+  /// Number of phases since the start of the cycle that contains step 0.
+  /// \throws InputError if the snapshot is between two phases
   [[nodiscard]] std::int64_t phase_count(const DumpReader& reader, const Snapshot& s) const {
     constexpr double kBetween = 0.05;
     const double phases = cycles(s) * o.phases_per_cycle, nearest = std::round(phases);
     if (std::abs(phases - nearest) > kBetween || std::abs(phases) > 1e15)
-      reader.fail(
-          fmt::format("step {} is {:.4f} cycles on, not at one of {} phases of a cycle; are time step, "
-                      "drive and frames per cycle those of this run?",
-                      s.step, cycles(s), o.phases_per_cycle),
-          s.line);
+      reader.fail(fmt::format("step {} is at {:.4f} cycles, not at one of {} phases of a cycle; check the "
+                              "time step, the drive and the frames per cycle.",
+                              s.step, cycles(s), o.phases_per_cycle),
+                  s.line);
     return static_cast<std::int64_t>(nearest);
   }
   [[nodiscard]] double time(const Snapshot& s) const {
@@ -352,6 +354,7 @@ struct LammpsDump::Impl {
     return time(s) / info.drive->period() + o.phase_of_step_zero;
   }
 
+  /// End of the first pass: sets columns, box and boundaries.
   void complete(const Snapshot& first, const ColumnPlaces& columns) {
     info.n_beads = ids.size();
     info.source = "simulation";
@@ -374,7 +377,7 @@ struct LammpsDump::Impl {
     if (!o.tracer_type) info.tracer.clear();
     if (o.tracer_type && columns.type == kAbsent) refuse("--tracer-type", "the dump has no column 'type'.");
     if (!(info.box.upper.minCoeff() > 0))
-      refuse("--origin", "the origin lies above or to the right of the dump's box.");
+      refuse("--origin", "the origin is above or to the right of the dump's box.");
   }
 
   [[nodiscard]] std::size_t slot_of(const DumpReader& reader, const Atom& a) const {
@@ -383,7 +386,7 @@ struct LammpsDump::Impl {
     return static_cast<std::size_t>(at - ids.begin());
   }
 
-  /// What the second pass adds to a snapshot: slots, periods crossed, our units.
+  /// Second pass: converts a snapshot to a frame with slots, unwrapped coordinates and reduced units.
   void fill(const DumpReader& reader, const Snapshot& s, std::vector<Vec3>& last, Frame& frame) const {
     frame.step = s.step;
     frame.time = time(s);

@@ -36,7 +36,7 @@ ByteFile::ByteFile(std::filesystem::path file) : file_(std::move(file)) {
   in_.open(file_, std::ios::binary);
   if (!in_) refuse("cannot be opened for reading.");
   size_ = std::filesystem::file_size(file_, error);
-  if (error) refuse("has no size that can be read: " + error.message() + ".");
+  if (error) refuse("has no readable size: " + error.message() + ".");
 }
 
 void ByteFile::require(std::uint64_t at, std::uint64_t n, const std::string& what) const {
@@ -51,11 +51,11 @@ void ByteFile::read(std::uint64_t at, std::uint64_t n, void* to, const std::stri
   in_.seekg(static_cast<std::streamoff>(at));
   in_.read(static_cast<char*>(to), static_cast<std::streamsize>(n));
   if (static_cast<std::uint64_t>(in_.gcount()) != n)
-    refuse(fmt::format("cannot be read where {} lies.", what));
+    refuse(fmt::format("cannot be read at the position of {}.", what));
 }
 
 std::vector<std::uint8_t> ByteFile::bytes(std::uint64_t at, std::uint64_t n, const std::string& what) const {
-  require(at, n, what);  // before memory is asked for
+  require(at, n, what);  // before memory is allocated
   std::vector<std::uint8_t> b(n);
   read(at, n, b.data(), what);
   return b;
@@ -76,14 +76,13 @@ void require_plausible_size(const std::filesystem::path& file, std::uint64_t wid
                             std::uint64_t bytes_per_pixel, std::uint64_t file_size) {
   constexpr std::uint64_t longest = 1U << 20, most = 1U << 28, always = 64U << 20, compressed = 2000;
   if (width == 0 || height == 0 || width > longest || height > longest || width * height > most)
-    refuse(file,
-           fmt::format("says that its frames are {} x {} pixels; sides of 1 to {} and at most {} pixels can "
-                       "be read.",
-                       width, height, longest, most));
+    refuse(file, fmt::format("states frames of {} x {} pixels; sides of 1 to {} and at most {} pixels can "
+                             "be read.",
+                             width, height, longest, most));
   const std::uint64_t needed = width * height * bytes_per_pixel;
   if (needed > always && needed / compressed > file_size)
-    refuse(file, fmt::format("says that its frames are {} x {} pixels, which {} bytes of file cannot hold.",
-                             width, height, file_size));
+    refuse(file, fmt::format("states frames of {} x {} pixels, which {} bytes of file cannot hold.", width,
+                             height, file_size));
 }
 
 }  // namespace twincell::frames

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A file of which no byte beyond its end is believed.
+/// Random access to a file. Offsets and sizes are validated against the file size before memory is allocated.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,20 +11,21 @@
 
 namespace twincell::frames {
 
-/// \throws InputError "FILE: complaint"
+/// \throws InputError always: "FILE: complaint"
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& complaint);
 
-/// Text out of a file as a sentence may quote it: its first 120 characters, whatever is no plain one as '?'.
+/// Text from a file in quotes, for a message: its first 120 characters, with '?' for characters that are not
+/// printable ASCII.
 std::string in_quotes(std::string_view text);
 
-/// Number in the first `n` <= 8 bytes at b.
+/// Unsigned integer in the `n` <= 8 bytes at `b`.
 std::uint64_t number_at(const std::uint8_t* b, std::size_t n, bool big_first);
 
-/// Random access for reading. Little-endian unless said otherwise. Every read names what it reads, so that a
-/// truncated file is refused in words: "is truncated: WHAT ends at byte A, the file at byte B."
+/// Random-access reader, little-endian by default. Every read names the item that it reads, so that the error
+/// for a truncated file is "is truncated: WHAT ends at byte A, the file at byte B."
 class ByteFile {
  public:
-  /// \throws InputError if it cannot be opened or is no regular file
+  /// \throws InputError if it cannot be opened or is not a regular file
   explicit ByteFile(std::filesystem::path file);
 
   [[nodiscard]] const std::filesystem::path& path() const { return file_; }
@@ -34,7 +35,7 @@ class ByteFile {
   void read(std::uint64_t at, std::uint64_t n, void* to, const std::string& what) const;
   [[nodiscard]] std::vector<std::uint8_t> bytes(std::uint64_t at, std::uint64_t n,
                                                 const std::string& what) const;
-  /// Number in n <= 8 bytes.
+  /// Unsigned integer in n <= 8 bytes.
   [[nodiscard]] std::uint64_t number(std::uint64_t at, std::size_t n, const std::string& what,
                                      bool big_first = false) const;
   [[nodiscard]] std::uint32_t u32(std::uint64_t at, const std::string& what) const {
@@ -52,9 +53,11 @@ class ByteFile {
   std::uint64_t size_ = 0;
 };
 
-/// Refuses a picture that no camera takes, or that needs more memory than its file can explain: sides
-/// 1 .. 2^20, at most 2^28 pixels, and at most 64 MiB or 2000 times the file (what a flat picture compresses
-/// to). \param bytes_per_pixel of the decoded frame
+/// Rejects a frame size that no camera produces, or whose memory is out of proportion to the file. Accepted
+/// are sides of 1 .. 2^20 pixels, at most 2^28 pixels, and at most 64 MiB or 2000 times the file size (the
+/// ratio to which a uniform picture compresses).
+/// \param bytes_per_pixel of the decoded frame
+/// \throws InputError
 void require_plausible_size(const std::filesystem::path& file, std::uint64_t width, std::uint64_t height,
                             std::uint64_t bytes_per_pixel, std::uint64_t file_size);
 

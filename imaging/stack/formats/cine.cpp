@@ -14,9 +14,9 @@ namespace twincell::frames {
 
 namespace {
 
-// Packed 10-bit values are companded by the camera. The maker's look-up table is the inverse of ITU-R
-// BT.709's transfer function (V < 0.081: V/4.5, else ((V + 0.099)/1.099)^(1/0.45)) between black, 64 of 1024
-// and of 4096, and white, 1014 of 1024 and 4064 of 4096; what lies above white is saturated.
+// The camera compands packed 10-bit values. The manufacturer's look-up table is the inverse of ITU-R BT.709's
+// transfer function (V < 0.081: V/4.5, else ((V + 0.099)/1.099)^(1/0.45)) between black (64 of 1024 and of
+// 4096) and white (1014 of 1024 and 4064 of 4096). Values above white are saturated.
 std::array<std::uint16_t, 1024> expansion() {
   std::array<std::uint16_t, 1024> table{};
   for (int code = 0; code < 1024; ++code) {
@@ -59,15 +59,15 @@ class Cine final : public RawStack {
     const std::uint64_t bits = in_.number(picture_at_ + 14, 2, "the picture header");
     const std::uint32_t packing = in_.u32(picture_at_ + 16, "the picture header");
     if (width < 1 || height == 0 || height == INT32_MIN)
-      in_.refuse(fmt::format("says that its images are {} x {} pixels.", width, height));
+      in_.refuse(fmt::format("states images of {} x {} pixels.", width, height));
     if (packing != 0 && packing != kPacked10 && packing != kPacked12)
-      in_.refuse(fmt::format("packs its pixels in way {}; 0, {} and {} can be read.", packing, kPacked10,
-                             kPacked12));
+      in_.refuse(
+          fmt::format("uses pixel packing {}; 0, {} and {} can be read.", packing, kPacked10, kPacked12));
     if (packing == 0 && bits != 8 && bits != 16 && bits != 24 && bits != 48)
       in_.refuse(
           fmt::format("has {} bits per pixel; 8, 16, 24 or 48 can be read, or packed 10 or 12.", bits));
-    // Either packing has been written under number 256; the size of an image tells them apart.
-    // As in any BMP, rows come from the bottom unless the height is negative; packed rows come from the top.
+    // Files of both packings use the number 256; the size of an image distinguishes them. As in any BMP, the
+    // bottom row comes first unless the height is negative; packed images begin with the top row.
     layout_.bottom_up = packing == 0 && height > 0;
     set_layout(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(std::abs(height)),
                packing == 0 ? static_cast<int>(bits) : 12);
@@ -78,7 +78,7 @@ class Cine final : public RawStack {
       in_.refuse(fmt::format("is damaged: the camera set-up at byte {} has no mark ST.", setup_at_));
     setup_bytes_ = in_.number(setup_at_ + 142, 2, "the camera set-up");
     in_.require(setup_at_, setup_bytes_, "the camera set-up");
-    // Older cameras end their set-up earlier.
+    // Older cameras write a shorter set-up; fields beyond its end read as 0.
     const auto field = [&](std::uint64_t at) -> std::uint32_t {
       return at + 4 <= setup_bytes_ ? in_.u32(setup_at_ + at, "the camera set-up") : 0;
     };
@@ -104,10 +104,10 @@ class Cine final : public RawStack {
     if (layout_.stored_bits == 10) {
       info_.bits = 12;
       info_.notes.emplace_back(
-          "packed 10-bit values are companded by the camera; they were made linear, 12 bit.");
+          "packed 10-bit values are companded by the camera; they are converted to linear 12-bit values.");
     }
   }
-  // Blocks {size, kind, whether more follow, data} between the set-up and the table of offsets.
+  // Reads the blocks {size, kind, whether more follow, data} between the set-up and the table of offsets.
   void read_tags() {
     std::uint64_t at = setup_at_ + setup_bytes_;
     for (int blocks = 0; blocks < 64 && at + 8 <= offsets_at_ && at + 8 <= in_.size(); ++blocks) {
@@ -132,7 +132,7 @@ class Cine final : public RawStack {
   [[nodiscard]] std::uint64_t offset(std::uint64_t i) const {
     return in_.number(offsets_at_ + i * offset_bytes_, offset_bytes_, "the table of images");
   }
-  // An image begins with an annotation, whose last four bytes are the size of the pixels behind it.
+  // An image begins with an annotation, whose last four bytes are the size of the pixel data that follow it.
   [[nodiscard]] std::uint64_t annotation_bytes(std::uint64_t i) const {
     const std::uint64_t n = in_.u32(offset(i), name(i));
     if (n < 8) in_.refuse(fmt::format("is damaged: the annotation of {} has {} bytes.", name(i), n));

@@ -18,7 +18,7 @@
 #include "imaging/stack/formats/byte_file.hpp"
 #include "imaging/stack/formats/raw_pixels.hpp"
 
-extern char** environ;  // NOLINT: POSIX declares it nowhere
+extern char** environ;  // NOLINT: no POSIX header declares it
 
 namespace twincell::frames {
 
@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A program whose output is read; it ends with us, not after us.
+/// A child process whose output is read. The destructor ends it.
 class Child {
  public:
   /// \param words program (looked up in PATH) and its arguments
@@ -39,7 +39,7 @@ class Child {
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
     posix_spawn_file_actions_adddup2(&actions, fileno(errors_), 2);
-    posix_spawn_file_actions_addclosefrom_np(&actions, 3);  // HDF5's files and stdio's are open, too
+    posix_spawn_file_actions_addclosefrom_np(&actions, 3);  // HDF5 and stdio have open files, too
     std::vector<char*> argv;
     argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());
@@ -57,7 +57,7 @@ class Child {
     if (errors_ != nullptr) std::fclose(errors_);
   }
 
-  /// Up to n bytes of its output; fewer only at its end.
+  /// Reads up to n bytes of its output; fewer only at the end of the output.
   std::size_t read(std::uint8_t* to, std::size_t n) const {
     std::size_t got = 0;
     while (got < n) {
@@ -71,7 +71,7 @@ class Child {
     }
     return got;
   }
-  /// True if it ran and ended well.
+  /// Waits for its end. True if it ran and exited with status 0.
   bool wait() {
     if (child_ <= 0) return ended_well_;
     int status = 0;
@@ -80,14 +80,14 @@ class Child {
     child_ = -1;
     return ended_well_ = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   }
-  /// The last line it complained in.
+  /// The last line of its error output.
   [[nodiscard]] std::string complaint() const {
     std::array<char, 400> line{};
     std::string last;
     std::rewind(errors_);
     while (std::fgets(line.data(), line.size(), errors_) != nullptr)
       if (line[0] != '\n') last = line.data();
-    // "[matroska,webm @ 0x55d0c0]": an address is nobody's business.
+    // Remove a prefix such as "[matroska,webm @ 0x55d0c0]": the address does not help the user.
     if (const std::size_t end = last.find("] "); last.starts_with('[') && end != std::string::npos)
       last.erase(0, end + 2);
     while (!last.empty() && (last.back() == '\n' || last.back() == '.')) last.pop_back();
@@ -126,7 +126,7 @@ int bits_of(const std::string& pixels, const std::string& raw_bits) {
 class Piped final : public FrameSource {
  public:
   Piped(const fs::path& file, const VideoFacts& facts) : file_(file) {
-    // A width that ffmpeg converts to without spreading the values.
+    // A bit depth to which ffmpeg converts without rescaling the values.
     const int bits = facts.bits <= 8    ? 8
                      : facts.bits <= 10 ? 10
                      : facts.bits <= 12 ? 12
@@ -160,7 +160,7 @@ class Piped final : public FrameSource {
     raw_.resize(layout_.bytes());
     const std::size_t got = child_->read(raw_.data(), raw_.size());
     if (got < raw_.size()) {
-      // It ends well even where a file ends before its frames do, but not without a word.
+      // ffmpeg exits with status 0 even if the file ends within a frame, but it prints an error.
       const bool well = child_->wait();
       if (const std::string said = child_->complaint(); !well || got > 0 || !said.empty())
         refuse(file_, fmt::format("cannot be read beyond frame {}; ffmpeg says {}.", read_, in_quotes(said)));

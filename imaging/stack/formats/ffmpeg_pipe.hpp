@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Videos through the program ffmpeg, which keeps more than 8 bits; where it is installed.
+/// Decodes videos with the program ffmpeg, if it is installed. Unlike OpenCV, it keeps more than 8 bits.
 
 #include <filesystem>
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace twincell::frames {
 
-/// What ffprobe says of the first video stream of a file.
+/// Properties of the first video stream of a file, as ffprobe reports them.
 struct VideoFacts {
   int width = 0, height = 0;
   std::string pixels;  ///< ffmpeg's name of the pixel format: "gray16le"
@@ -19,25 +19,25 @@ struct VideoFacts {
   double frame_rate_hz = 0;
 };
 
-/// Containers that ffmpeg may open: each is one file. Playlists (HLS, concat, DASH) and lists of pictures,
-/// which open other files, are none of them.
+/// Containers that ffmpeg may open; each is a single file. Playlists (HLS, concat, DASH) and lists of
+/// pictures are excluded, since they open other files.
 inline constexpr const char* kContainers = "avi,mov,matroska,yuv4mpegpipe,mpegts,mpeg,asf,flv,ogg";
 
-/// A file as ffmpeg is told it: "file:" keeps a name with a colon or a leading dash from being taken for a
-/// protocol or an option.
+/// Name of a file for ffmpeg's command line. The prefix "file:" prevents a name with a colon or a leading
+/// dash from being read as a protocol or an option.
 std::string ffmpeg_name(const std::filesystem::path& file);
 
 /// True if ffmpeg and ffprobe can be run.
 bool ffmpeg_is_installed();
 
-/// Absent if ffprobe finds no video in the file.
+/// Properties of a video; absent if ffprobe finds no video in the file.
 std::optional<VideoFacts> probe_video(const std::filesystem::path& file);
 
-/// Frames of the first video stream, counted through the whole file without decoding them: no header is
-/// believed. Absent if ffprobe cannot.
+/// Number of frames of the first video stream. ffprobe counts the packets of the whole file without decoding
+/// them, since the number in a header may be wrong. Absent if ffprobe fails.
 std::optional<std::size_t> count_frames(const std::filesystem::path& file);
 
-/// All frames, grey, at the depth of the file. A file that ffmpeg finds damaged is refused.
+/// Opens a video: all frames, grey, at the bit depth of the file. Rejects files that ffmpeg finds damaged.
 std::unique_ptr<FrameSource> open_ffmpeg(const std::filesystem::path& file, const VideoFacts& facts);
 
 }  // namespace twincell::frames

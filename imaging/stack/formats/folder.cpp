@@ -1,4 +1,4 @@
-// A folder of pictures, in the order in which a person would put their names.
+// A folder of pictures, in natural order of their names.
 
 #include <fmt/format.h>
 
@@ -24,12 +24,12 @@ bool is_listed(const std::string& extensions, const fs::path& file) {
   return !e.empty() && (extensions + " ").find(e + " ") != std::string::npos;
 }
 
-/// A picture or a TIFF stack by its content, whichever of the two its name says. Whatever else is named like
-/// a picture is damaged, and is not handed to the video decoder, which takes any bytes.
+/// Opens a picture or a TIFF stack. Its content decides which of the two it is, not its name. Any other file
+/// with the name of a picture is damaged and must not reach the video decoder, which accepts any bytes.
 std::unique_ptr<FrameSource> open_picture(const fs::path& file) {
   const Reader& reader = reader_of(head_of(file));
   if (&reader != &tiff_reader && &reader != &picture_reader)
-    refuse(file, "is not what its name says: its content is that of no picture.");
+    refuse(file, "is not what its name says: it contains no picture.");
   return reader.open(file, "");
 }
 
@@ -42,7 +42,7 @@ class Folder final : public FrameSource {
     info_.other_files = other_files;
     info_.frame_rate_hz.reset();
     announced_ = files_.size();
-    // Stacks of many pages, cut into files: then every file is asked how many it holds.
+    // A stack of many pages that is split into files: count the pages of every file.
     if (source_->announced() > 1) {
       announced_ = source_->announced();
       for (std::size_t i = 1; i < files_.size(); ++i) announced_ += open_picture(files_[i])->announced();

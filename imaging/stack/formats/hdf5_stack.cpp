@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
+#include "core/hdf5_self_contained.hpp"
 #include "imaging/stack/formats/byte_file.hpp"
 #include "imaging/stack/formats/reader.hpp"
 
@@ -60,7 +61,7 @@ class Hdf5Stack final : public FrameSource {
     try {
       open(inside);
     } catch (const RunError& e) {
-      // HDF5's own reason; the file is at fault, not the run.
+      // An HDF5 error here is a fault of the file, not of the run.
       refuse(file, fmt::format("cannot be read as HDF5: {}", e.what()));
     }
   }
@@ -68,7 +69,7 @@ class Hdf5Stack final : public FrameSource {
   bool next(cv::Mat& frame) override {
     if (read_ == shape_[0]) return false;
     cv::Mat fresh(static_cast<int>(shape_[1]), static_cast<int>(shape_[2]),
-                  mat_type_);  // others may hold the last
+                  mat_type_);  // callers may keep the previous frame
     const std::array<hsize_t, 3> start = {read_, 0, 0}, count = {1, shape_[1], shape_[2]};
     const h5::Handle in_file(H5Dget_space(dataset_.get()));
     const h5::Handle in_memory(H5Screate_simple(3, count.data(), nullptr));
@@ -89,6 +90,8 @@ class Hdf5Stack final : public FrameSource {
  private:
   void open(const std::string& inside) {
     const h5::Handle file = open_file(file_);
+    if (const std::string elsewhere = h5::data_elsewhere(file.get()); !elsewhere.empty())
+      refuse(file_, elsewhere);
     path_ = inside.empty() ? the_only_one(file.get()) : inside;
     if (!h5::exists(file.get(), path_)) refuse(file_, fmt::format("holds no dataset {}.", path_));
     const h5::Handle object = h5::own(H5Oopen(file.get(), path_.c_str(), H5P_DEFAULT), "opening " + path_);
@@ -101,12 +104,12 @@ class Hdf5Stack final : public FrameSource {
     if (!is_number(object.get())) refuse(file_, fmt::format("holds no numbers in {}.", path_));
     if (shape_[0] == 0) refuse(file_, fmt::format("holds no frames in {}.", path_));
     choose_type(object.get());
-    // What the dataset itself takes on the disk: other datasets of the file explain nothing of it. As for
-    // pictures, 8 bytes a pixel: so much at least is made of it.
+    // The frame size must be plausible for the bytes stored of this dataset, regardless of other datasets in
+    // the file. As for pictures, 8 bytes per pixel are assumed.
     const std::uint64_t stored = h5::stored_bytes(object.get());
     require_plausible_size(file_, shape_[2], shape_[1], 8, stored);
     require_plausible_chunks(object.get(), stored);
-    h5::require_stored(object.get(), path_);  // all frames of it
+    h5::require_stored(object.get(), path_);  // for all frames together
     dataset_ =
         h5::own(H5Dopen2(file.get(), path_.c_str(), cache_for(object.get()).get()), "opening " + path_);
     info_.width = static_cast<int>(shape_[2]);
@@ -124,7 +127,7 @@ class Hdf5Stack final : public FrameSource {
     refuse(file_, fmt::format("holds {} datasets of three dimensions, {}; name one, as in {}:{}.",
                               found.size(), list, file_.filename().string(), found[0].path));
   }
-  // Unsigned 8 and 16 bit as they are; all else as float.
+  // Unsigned integers of 8 and 16 bits are kept; all other types are read as float.
   void choose_type(hid_t dataset) {
     const h5::Handle type(H5Dget_type(dataset));
     const bool whole = H5Tget_class(type.get()) == H5T_INTEGER && H5Tget_sign(type.get()) == H5T_SGN_NONE;
@@ -140,7 +143,7 @@ class Hdf5Stack final : public FrameSource {
       info_.format = fmt::format("HDF5 stack {}, read as 32-bit real numbers", path_);
     }
   }
-  /// A compressed chunk is unpacked as a whole, before a pixel of it is read.
+  /// Rejects chunks that are too large, since a compressed chunk is unpacked as a whole.
   void require_plausible_chunks(hid_t dataset, std::uint64_t stored) const {
     constexpr double always = 64U << 20, compressed = 1100;  // deflate: 1032
     const h5::Handle layout = h5::own(H5Dget_create_plist(dataset), "reading the layout");
@@ -152,12 +155,12 @@ class Hdf5Stack final : public FrameSource {
                           static_cast<double>(chunk[2]) * static_cast<double>(H5Tget_size(type.get()));
     if (needed > always && needed / compressed > static_cast<double>(stored))
       refuse(file_,
-             fmt::format("says that the chunks of {} are {} x {} x {}, which the {} bytes stored of it "
+             fmt::format("states that the chunks of {} are {} x {} x {}, which the {} bytes stored of it "
                          "cannot hold.",
                          path_, chunk[0], chunk[1], chunk[2], stored));
   }
-  // Chunks may hold many frames; the cache then keeps those that one frame touches, or each would be read and
-  // unpacked once per frame.
+  // A chunk may contain many frames. The cache keeps all chunks that one frame touches; otherwise each chunk
+  // would be read and unpacked once per frame.
   [[nodiscard]] h5::Handle cache_for(hid_t dataset) const {
     h5::Handle access = h5::own(H5Pcreate(H5P_DATASET_ACCESS), "making a property list");
     const h5::Handle layout = h5::own(H5Dget_create_plist(dataset), "reading the layout");

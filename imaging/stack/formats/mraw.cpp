@@ -1,5 +1,5 @@
-// Photron .mraw: bare planes; what they are stands in a text beside them, .cih ("key : value") or .cihx
-// (XML). Layout: Photron, PFV manual; ladisk/pyMRAW pyMRAW.py.
+// Photron .mraw: frames without any header. A text file of the same name describes them: .cih ("key : value")
+// or .cihx (XML). Layout: Photron, PFV manual; ladisk/pyMRAW pyMRAW.py.
 
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ std::string_view trimmed(std::string_view text) {
   return first == std::string_view::npos ? "" : text.substr(first, text.find_last_not_of(blank) - first + 1);
 }
 
-/// What lies between <tag ...> and </tag>; empty if there is no such element.
+/// Text between <tag ...> and </tag>; empty if there is no such element.
 std::string_view element(std::string_view xml, const std::string& tag) {
   for (std::size_t at = xml.find("<" + tag); at != std::string_view::npos; at = xml.find("<" + tag, at + 1)) {
     const std::size_t after = at + 1 + tag.size();
@@ -43,18 +43,18 @@ std::string_view element(std::string_view xml, const std::string& tag) {
   return {};
 }
 
-/// The text beside the planes.
+/// The text file that describes the frames.
 class CameraText {
  public:
   explicit CameraText(const fs::path& file) : file_(file) {
     const ByteFile in(file);
     constexpr std::uint64_t most = 1U << 20;  // both kinds are a few kB long
-    if (in.size() > most) in.refuse(fmt::format("is no Photron header: it has {} bytes.", in.size()));
+    if (in.size() > most) in.refuse(fmt::format("is not a Photron header: it has {} bytes.", in.size()));
     const auto bytes = in.bytes(0, in.size(), "the header");
     text_.assign(bytes.begin(), bytes.end());
     xml_ = element(text_, "cih");
     if (xml_.empty() && text_.find(':') == std::string::npos)
-      in.refuse("is no Photron header: it holds neither lines \"key : value\" nor an element <cih>.");
+      in.refuse("is not a Photron header: it contains neither lines \"key : value\" nor an element <cih>.");
   }
 
   /// Value by its key in a .cih, or by its path of elements in a .cihx; empty if absent.
@@ -89,14 +89,14 @@ class CameraText {
     const auto below = plain(trimmed(std::string_view(value).substr(slash + 1)));
     return below && *below != 0 ? std::optional(*above / *below) : std::nullopt;
   }
-  /// \throws InputError naming the key if it is absent or no whole number in 0 .. 2^32 - 1
+  /// An integer. \throws InputError naming the key if it is absent or not an integer in 0 .. 2^32 - 1
   [[nodiscard]] std::uint64_t count(std::string_view key, const std::vector<std::string>& path) const {
     const auto value = number(key, path);
     if (!value)
-      refuse(file_, fmt::format("is no whole Photron header: \"{}\" is missing or no number.",
+      refuse(file_, fmt::format("is not a complete Photron header: \"{}\" is missing or not a number.",
                                 xml_.empty() ? std::string(key) : fmt::format("{}", fmt::join(path, "/"))));
     if (*value < 0 || *value > UINT32_MAX || *value != std::floor(*value))
-      refuse(file_, fmt::format("says {} = {}; a whole number from 0 is expected.", key, *value));
+      refuse(file_, fmt::format("states {} = {}; a non-negative whole number is expected.", key, *value));
     return static_cast<std::uint64_t>(*value);
   }
 
@@ -113,23 +113,21 @@ class Mraw final : public RawStack {
     const std::string kind = text.text("File Format", {"imageFileInfo", "fileFormat"});
     if (lower(kind) != "mraw")
       refuse(header,
-             fmt::format("says that its frames are of format {}, not MRaw; name the pictures themselves.",
+             fmt::format("states that its frames are of format {}, not MRaw; name the pictures themselves.",
                          in_quotes(kind)));
     if (const std::string colour = lower(text.text("Color Type", {"imageDataInfo", "colorInfo", "type"}));
         colour == "color" || colour == "bayer")
-      refuse(header, "says that its frames have colours; only grey .mraw files can be read.");
+      refuse(header, "states that its frames have colours; only grey .mraw files can be read.");
     const auto bits = text.count("Color Bit", {"imageDataInfo", "colorInfo", "bit"});
     const auto depth = text.count("EffectiveBit Depth", {"imageDataInfo", "effectiveBit", "depth"});
     const bool high =
         lower(text.text("EffectiveBit Side", {"imageDataInfo", "effectiveBit", "side"})) == "higher";
     if (bits != 8 && bits != 10 && bits != 12 && bits != 16)
-      refuse(header, fmt::format("says Color Bit = {}; 8, 10, 12 or 16 can be read.", bits));
+      refuse(header, fmt::format("states Color Bit = {}; 8, 10, 12 or 16 can be read.", bits));
     if (high && (bits == 10 || bits == 12))
-      refuse(header,
-             fmt::format(
-                 "says EffectiveBit Side = Higher for packed {}-bit values, a case on whose order of bits "
-                 "known readers disagree; save them as 16 bit.",
-                 bits));
+      refuse(header, fmt::format("states EffectiveBit Side = Higher for packed {}-bit values, on whose order "
+                                 "of bits known readers disagree; save them as 16 bit.",
+                                 bits));
     frames_ = text.count("Total Frame", {"frameInfo", "totalFrame"});
     set_layout(text.count("Image Width", {"imageDataInfo", "resolution", "width"}),
                text.count("Image Height", {"imageDataInfo", "resolution", "height"}), static_cast<int>(bits));
@@ -152,7 +150,7 @@ class Mraw final : public RawStack {
   [[nodiscard]] std::uint64_t place(std::uint64_t i) const override { return i * layout_.bytes(); }
 };
 
-/// The file beside `file` that has the same name and one of the extensions, in whatever case.
+/// The file in the same folder that has the name of `file` and one of the extensions, in upper or lower case.
 std::optional<fs::path> beside(const fs::path& file, const std::vector<std::string>& extensions) {
   std::error_code error;
   for (const std::string& wanted : extensions)
@@ -167,7 +165,7 @@ std::optional<fs::path> beside(const fs::path& file, const std::vector<std::stri
 extern const Reader mraw_reader;
 const Reader mraw_reader = {
     .extensions = ".mraw .cih .cihx",
-    // Bare planes have no mark: the name decides.
+    // The files have no signature: the name decides.
     .owns =
         [](const Head& head) {
           return head.extension == ".mraw" || head.extension == ".cih" || head.extension == ".cihx";
@@ -176,7 +174,7 @@ const Reader mraw_reader = {
       const bool planes = lower(file.extension().string()) == ".mraw";
       const auto other = planes ? beside(file, {".cihx", ".cih"}) : beside(file, {".mraw"});
       if (!other)
-        refuse(file, fmt::format("lacks the file {} beside it, which holds its {}.",
+        refuse(file, fmt::format("lacks the file {} in the same folder, which contains its {}.",
                                  file.stem().string() + (planes ? ".cih or .cihx" : ".mraw"),
                                  planes ? "width, height and depth" : "frames"));
       return std::make_unique<Mraw>(planes ? file : *other, planes ? *other : file);

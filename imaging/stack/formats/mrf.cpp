@@ -1,6 +1,6 @@
 // Redlake/IDT .mrf, "Multi-page Raw Format": "IDT-MRF", a header whose length the file states, then planes.
-// Layout: IDT camera manual, appendix; tlhedrick/dltdv DLTdv8a_internal/mrfInfo.m, which is used on files of
-// real cameras.
+// Layout: IDT camera manual, appendix; tlhedrick/dltdv DLTdv8a_internal/mrfInfo.m, which is used with files
+// of real cameras.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ class Mrf final : public RawStack {
  public:
   explicit Mrf(const std::filesystem::path& file) : RawStack(file) {
     const std::string header = "the header";
-    // The manual calls the structure 84 bytes long and prints one of 276; the field is right.
+    // The manual states 84 bytes for the structure but prints one of 276. The field in the file is right.
     first_ = 12 + std::uint64_t{in_.u32(12, header)};
     frames_ = in_.u32(16, header);
     const std::uint32_t width = in_.u32(20, header), height = in_.u32(24, header), bits = in_.u32(28, header);

@@ -1,6 +1,6 @@
-// Single pictures: PNG, JPEG, BMP, PGM. A decoder hands out the readable top of a damaged picture and stays
-// silent, so each is walked first: whole, of a size that its bytes can explain, and unspoilt where it carries
-// a sum.
+// Single pictures: PNG, JPEG, BMP, PGM. A decoder returns the readable top of a damaged picture without an
+// error. Each file is therefore checked first: it must be complete, its size in pixels must be plausible for
+// its size in bytes, and checksums must match where the format has them.
 
 #include <fmt/format.h>
 
@@ -72,13 +72,12 @@ void check_bmp(const fs::path& file, const Bytes& b) {
     refuse(file, fmt::format("is truncated: the BMP picture does not end within its {} bytes.", b.size()));
   const auto side = [&](std::size_t at) {
     const auto n = static_cast<std::int32_t>(number_at(&b[at], 4, false));
-    return static_cast<std::uint64_t>(n < 0 ? -std::int64_t{n}
-                                            : n);  // a negative height is counted from the top
+    return static_cast<std::uint64_t>(n < 0 ? -std::int64_t{n} : n);  // negative: top row first
   };
   require_size(file, b, side(18), side(22));
 }
 
-// "P5 width height largest" and the pixels, comments after '#'. \returns the largest value
+// Checks "P5 width height largest" and the pixels; comments begin with '#'. \returns the largest value
 std::uint64_t check_pgm(const fs::path& file, const Bytes& b) {
   std::size_t at = 2;
   const auto number = [&]() -> std::uint64_t {
@@ -106,7 +105,7 @@ constexpr std::array<Kind, 5> kKinds = {{{"PNG", "\x89PNG\r\n\x1a\n"},
                                          {"JPEG", "\xff\xd8\xff"},
                                          {"BMP", "BM"},
                                          {"PGM", "P5"},
-                                         {"PGM", "P2"}}};  // the second in digits
+                                         {"PGM", "P2"}}};  // P2: in decimal digits
 
 const Kind* kind_of(const Head& head) {
   for (const Kind& kind : kKinds)
@@ -127,7 +126,7 @@ class Picture final : public FrameSource {
     cv::Mat picture;
     try {
       picture = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-    } catch (const cv::Exception&) {  // becomes our sentence
+    } catch (const cv::Exception&) {  // reported below
     }
     if (picture.empty()) in.refuse(fmt::format("cannot be decoded as a {} picture.", kind));
     frame_ = grey(picture, file);

@@ -12,7 +12,7 @@ namespace twincell::frames {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "16-bit pixels are copied as they lie in the file");
+static_assert(std::endian::native == std::endian::little, "16-bit pixels are copied as stored in the file");
 
 void swap_bytes(cv::Mat& words) {
   for (int y = 0; y < words.rows; ++y) {

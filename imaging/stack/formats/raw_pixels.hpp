@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Pixels as cameras write them: 8 or 16 bits, packed bits, bottom row first.
+/// Unpacks pixels as cameras store them: 8 or 16 bits, packed bits, bottom row first.
 
 #include <cstdint>
 #include <filesystem>
@@ -8,13 +8,13 @@
 
 namespace twincell::frames {
 
-/// How one uncompressed frame lies in a file.
+/// Storage layout of one uncompressed frame.
 struct RawLayout {
   int width = 0, height = 0;
   int stored_bits = 8;  ///< 8; 16; 9 .. 15 (packed without gaps, most significant bit first); 24 or 48 (BGR)
-  int shift = 0;        ///< 16 bit: the value lies this many bits up
+  int shift = 0;        ///< 16 bit: the value is shifted up by this many bits
   bool big_first = false;  ///< 16 and 48 bit: most significant byte first
-  bool bottom_up = false;  ///< first row in the file is the lowest
+  bool bottom_up = false;  ///< first row in the file is the bottom row
   bool mirrored = false;   ///< first pixel of a row is the rightmost
 
   /// Bytes of one frame.
@@ -29,10 +29,12 @@ struct RawLayout {
 /// Frame of type CV_8U or CV_16U from layout.bytes() bytes.
 cv::Mat unpack(const std::uint8_t* raw, const RawLayout& layout);
 
-/// `n` values of `bits` <= 16 bits each, packed most significant bit first.
+/// Unpacks `n` values of `bits` <= 16 bits each, packed most significant bit first.
 void unpack_bits(const std::uint8_t* from, int bits, std::size_t n, std::uint16_t* to);
 
-/// One grey channel of type CV_8U, CV_16U or CV_32F, the depth kept; colour is taken as BGR (BT.601).
+/// Converts a picture to one grey channel of type CV_8U, CV_16U or CV_32F. These depths are kept, others
+/// become CV_32F. Colour is read as BGR (BT.601).
+/// \throws InputError naming `file` unless there are 1, 3 or 4 channels
 cv::Mat grey(const cv::Mat& picture, const std::filesystem::path& file);
 
 }  // namespace twincell::frames

@@ -35,7 +35,7 @@ void RawStack::set_layout(std::uint64_t width, std::uint64_t height, int stored_
 }
 
 void RawStack::require_frames() const {
-  if (frames_ == 0) in_.refuse("says that it holds no frames.");
+  if (frames_ == 0) in_.refuse("states that it contains no frames.");
 }
 
 void RawStack::require_last(std::uint64_t last) const {
@@ -46,7 +46,7 @@ void RawStack::set_stamped_rate(std::optional<double> first_s, std::optional<dou
   if (!first_s || !last_s || *last_s <= *first_s) return;
   info_.stamped_rate_hz = static_cast<double>(frames_ - 1) / (*last_s - *first_s);
   if (info_.frame_rate_hz && std::abs(*info_.stamped_rate_hz / *info_.frame_rate_hz - 1) > 0.01)
-    info_.notes.push_back(fmt::format("the header states {:g} frames/s, the time stamps say {:.6g}.",
+    info_.notes.push_back(fmt::format("the header states {:g} frames/s, but the time stamps give {:.6g}.",
                                       *info_.frame_rate_hz, *info_.stamped_rate_hz));
 }
 

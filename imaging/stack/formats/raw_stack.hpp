@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A file of uncompressed frames: what all camera files share once their headers are read.
+/// A file of uncompressed frames: the common base of the readers of camera files.
 
 #include <optional>
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace twincell::frames {
 
-/// A derived class reads its header in its constructor, sets frames_, layout_ and info_ there, and says where
-/// a frame lies.
+/// A derived class reads its header in its constructor, where it sets frames_, layout_ and info_, and
+/// implements place(), the position of a frame.
 class RawStack : public FrameSource {
  public:
   bool next(cv::Mat& frame) override;
@@ -25,22 +25,24 @@ class RawStack : public FrameSource {
  protected:
   explicit RawStack(const std::filesystem::path& file) : in_(file) {}
 
-  /// First byte of frame i, from 0. \throws InputError if the frame is not whole
+  /// Position in the file of the first byte of frame i, from 0. \throws InputError if the frame is incomplete
   [[nodiscard]] virtual std::uint64_t place(std::uint64_t i) const = 0;
-  /// Its time, s after info_.time_origin.
+  /// Time stamp of frame i, s after info_.time_origin.
   [[nodiscard]] virtual std::optional<double> stamp_s(std::uint64_t /*i*/) const { return {}; }
-  /// What is left to do to the unpacked values.
+  /// Further conversion of the unpacked values.
   virtual void finish(cv::Mat& /*frame*/) const {}
-  /// For messages: "frame 3".
+  /// Name of frame i for messages, counted from 1: "frame 3".
   [[nodiscard]] virtual std::string name(std::uint64_t i) const;
 
-  /// Sets layout_ and info_ from a header. \throws InputError if no file of this size holds such frames
+  /// Sets layout_ and info_ from a header.
+  /// \throws InputError if the frame size is not plausible for a file of this size
   void set_layout(std::uint64_t width, std::uint64_t height, int stored_bits);
-  /// What a constructor ends with, before any work is done. \throws InputError if there are no frames
+  /// To be called at the end of a constructor. \throws InputError if there are no frames
   void require_frames() const;
   /// \throws InputError if the file ends before its last frame, which begins at `last`
   void require_last(std::uint64_t last) const;
-  /// Sets the rate by the time stamps of the first and the last frame.
+  /// Sets info_.stamped_rate_hz from the time stamps of the first and the last frame. Adds a note if it
+  /// differs from the stated rate by more than 1 %.
   void set_stamped_rate(std::optional<double> first_s, std::optional<double> last_s);
 
   ByteFile in_;

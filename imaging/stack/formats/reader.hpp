@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// One reader per file format. A new one is NAME.cpp in this folder, which defines NAME_reader, its test, and
-/// its word in the list of readers.cpp.
+/// One reader per file format. To add a format, add NAME.cpp to this folder, which defines NAME_reader, add a
+/// test, and add NAME to the list in readers.cpp.
 
 #include <cstdint>
 #include <filesystem>
@@ -14,11 +14,11 @@
 
 namespace twincell::frames {
 
-/// What a reader sees before it says "mine".
+/// Start of a file, from which a reader decides whether the file has its format.
 struct Head {
   std::filesystem::path file;
   std::string extension;            ///< in lower case, with its dot
-  std::vector<std::uint8_t> bytes;  ///< the first ones, up to kHeadBytes; never none
+  std::vector<std::uint8_t> bytes;  ///< the first bytes, up to kHeadBytes; never empty
 
   [[nodiscard]] bool starts_with(std::string_view magic, std::size_t at = 0) const;
 };
@@ -30,19 +30,20 @@ Head head_of(const std::filesystem::path& file);
 /// A file format.
 struct Reader {
   std::string_view extensions;  ///< for messages: ".tif .tiff"
-  /// Whether the file is of this format: by its content where the format has a mark of its own.
+  /// Whether the file has this format, judged by its content if the format has a signature.
   bool (*owns)(const Head& head);
-  /// Opens a file of this format. \param inside dataset within the file; empty but for "file.h5:/path"
+  /// Opens a file of this format.
+  /// \param inside dataset within the file; empty unless the stack is "file.h5:/path"
   std::unique_ptr<FrameSource> (*open)(const std::filesystem::path& file, const std::string& inside);
 };
 
-/// All readers, in the order in which they are asked.
+/// All readers, in the order in which they are tried.
 const std::vector<const Reader*>& readers();
 
 /// The first reader that owns the file. \throws InputError if there is none
 const Reader& reader_of(const Head& head);
 
-/// A folder of pictures.
+/// Opens a folder of pictures as a stack.
 std::unique_ptr<FrameSource> open_folder(const std::filesystem::path& folder);
 
 }  // namespace twincell::frames

@@ -7,8 +7,8 @@
 #include "imaging/stack/formats/byte_file.hpp"
 #include "imaging/stack/formats/reader.hpp"
 
-// The list. Formats with a mark of their own come first; what is known by its name alone comes after them,
-// and the one that tries anything comes last.
+// The list of readers. Formats with a signature come first, then the format that only its name identifies
+// (mraw), and last the reader that tries any content (video).
 #define TWINCELL_READERS(EACH) \
   EACH(tiff) EACH(picture) EACH(cine) EACH(seq) EACH(mrf) EACH(hdf5) EACH(mraw) EACH(video)
 
@@ -50,10 +50,9 @@ const Reader& reader_of(const Head& head) {
   const bool named_so =
       !head.extension.empty() && (known + " ").find(head.extension + " ") != std::string::npos;
   if (named_so)
-    refuse(head.file,
-           fmt::format("is not what its name says: its content is that of no {} file, nor of any other "
-                       "stack that can be read.",
-                       head.extension));
+    refuse(head.file, fmt::format("is not what its name says: its content is neither that of a {} file nor "
+                                  "that of any other readable stack.",
+                                  head.extension));
   refuse(head.file,
          fmt::format(
              "is not a stack of frames: a folder of pictures is expected, or a file of one of the kinds {}.",

@@ -33,14 +33,14 @@ class Seq final : public RawStack {
                       format, bits, mono, bgr));
     set_layout(width, height, static_cast<int>(bits));
     if (image_bytes_ < layout_.bytes())
-      in_.refuse(fmt::format("says that an image has {} bytes; {} x {} pixels of {} bits need {}.",
+      in_.refuse(fmt::format("states that an image has {} bytes; {} x {} pixels of {} bits need {}.",
                              image_bytes_, width, height, bits, layout_.bytes()));
-    // Since version 5 (StreamPix 6) the header is longer and stamps have microseconds.
+    // Since version 5 (StreamPix 6) the header is longer and time stamps include microseconds.
     first_ = version >= 5 ? 8192 : 1024;
     stamp_bytes_ = version >= 5 ? 8 : 6;
     if (stride_ < image_bytes_ + stamp_bytes_)
-      in_.refuse(fmt::format("says that images lie {} bytes apart; one and its time stamp need {}.", stride_,
-                             image_bytes_ + stamp_bytes_));
+      in_.refuse(fmt::format("states that images are {} bytes apart; an image and its time stamp need {}.",
+                             stride_, image_bytes_ + stamp_bytes_));
     if (frames_ == 0 && in_.size() > first_) {
       frames_ = (in_.size() - first_) / stride_;
       info_.notes.push_back(fmt::format(
@@ -67,8 +67,8 @@ class Seq final : public RawStack {
   [[nodiscard]] std::optional<double> stamp_s(std::uint64_t i) const override {
     return 1e-6 * static_cast<double>(clock_us(i) - start_us_);
   }
-  // The camera's clock, microseconds since 1970: whole seconds, milliseconds and, since version 5,
-  // microseconds.
+  // Time stamp of image i by the camera's clock, microseconds since 1970. The file stores whole seconds,
+  // milliseconds and, since version 5, microseconds.
   [[nodiscard]] std::int64_t clock_us(std::uint64_t i) const {
     const std::uint64_t at = place(i) + image_bytes_;
     const auto part = [&](std::uint64_t from, std::size_t n) {

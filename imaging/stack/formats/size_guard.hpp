@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// All frames of a stack have one size.
+/// Checks that all frames of a stack have the same size.
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 
 namespace twincell::frames {
 
-/// Remembers the size of the first frame and refuses another one, naming both.
+/// Stores the size of the first frame and rejects a frame of another size. The message names both frames.
 class SizeGuard {
  public:
   void check(const cv::Mat& frame, const std::string& name) {

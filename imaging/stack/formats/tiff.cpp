@@ -1,5 +1,5 @@
-// TIFF and BigTIFF, one page at a time, by libtiff; and the stacks above 4 GB that ImageJ writes as one page
-// with bare planes behind it.
+// TIFF and BigTIFF, read page by page with libtiff. Also the stacks above 4 GB that ImageJ writes as one page
+// followed by planes without page headers.
 
 #include <fmt/format.h>
 #include <tiffio.h>
@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What our own walk along the pages finds, of the first page where not said otherwise.
+/// Result of the walk along the pages: their number, and properties of the first page.
 struct Walked {
   std::size_t pages = 0;
   bool big_first = false;
@@ -34,9 +34,9 @@ struct Walked {
   std::string description;
 };
 
-/// Walks the directories (one per page) without reading pixels: each page must lie inside the file and have a
-/// size that the file can explain. libtiff stops at the first link that points nowhere, so that a truncated
-/// stack looks like a shorter one, and believes sizes.
+/// Walks along the directories (one per page) without reading pixels. Each page must be inside the file, and
+/// its size must be plausible for the file size. libtiff does not check this: it stops at the first invalid
+/// link, so that a truncated stack looks like a shorter one, and it does not validate sizes.
 class Walk {
  public:
   explicit Walk(const ByteFile& in) : in_(in) {}
@@ -47,7 +47,7 @@ class Walk {
     wide_ = number_at(&head[2], 2, big_first_) == 43;
     std::uint64_t at = wide_ ? number(8, 8) : number(4, 4);
     for (; at != 0; ++found_.pages) {
-      // A chain longer than the file has room for goes round in circles.
+      // A chain of more pages than the file has room for is circular.
       if (found_.pages > in_.size() / 8) in_.refuse("is damaged: its chain of pages has no end.");
       at = page(at);
     }
@@ -56,8 +56,9 @@ class Walk {
   }
 
  private:
-  // Checks the page at `at`; returns where the next one is.
+  // Checks the page at `at`; returns the position of the next one.
   std::uint64_t page(std::uint64_t at) {
+    // Entries: read the tags that determine size and storage of the page.
     const std::uint64_t count_bytes = wide_ ? 8 : 2, entry_bytes = wide_ ? 20 : 12, word = wide_ ? 8 : 4;
     const std::uint64_t n = number(at, count_bytes);
     if (n > in_.size() / entry_bytes) in_.require(in_.size(), entry_bytes, kPage);
@@ -99,7 +100,7 @@ class Walk {
         case 273:
         case 324:
           offsets = values(entry);
-          break;  // of strips, of tiles
+          break;  // offsets of strips or tiles
         case 279:
         case 325:
           lengths = values(entry);
@@ -108,12 +109,13 @@ class Walk {
           break;
       }
     }
+    // Size: must be plausible before memory is allocated.
     if (page.samples == 0 || page.samples > 64 || page.bits == 0 || page.bits > 64)
-      in_.refuse(fmt::format("says that page {} has {} samples of {} bits per pixel.", found_.pages + 1,
+      in_.refuse(fmt::format("states that page {} has {} samples of {} bits per pixel.", found_.pages + 1,
                              page.samples, page.bits));
     require_plausible_size(in_.path(), page.width, page.height,
                            std::max<std::uint64_t>(4, page.samples * ((page.bits + 7) / 8)), in_.size());
-    // libtiff makes up what a page lacks.
+    // Pieces: all strips or tiles must be present, since libtiff fills in missing ones without an error.
     const auto pieces = [](std::uint64_t side, std::uint64_t piece) {
       return piece == 0 ? 1 : (side + piece - 1) / piece;
     };
@@ -122,6 +124,7 @@ class Walk {
       in_.refuse(fmt::format(
           "is truncated or damaged: page {} consists of {} pieces, of which {} have a place in the file.",
           found_.pages + 1, wanted, offsets.size()));
+    // Lengths: the pieces must be inside the file, and without compression they must contain all pixels.
     const std::uint64_t needed = (page.width * page.samples * page.bits + 7) / 8 * page.height;
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < std::min(offsets.size(), lengths.size()); ++i) {
@@ -158,7 +161,7 @@ class Walk {
         return 0;
     }
   }
-  // The bytes an entry stands for: in itself where they fit, elsewhere in the file where not.
+  // Data of an entry: in the entry itself if they fit, otherwise elsewhere in the file.
   [[nodiscard]] std::vector<std::uint8_t> data(const std::uint8_t* entry, std::uint64_t most) const {
     const std::uint64_t each = bytes_each(entry), word = wide_ ? 8 : 4;
     std::uint64_t n = number_at(entry + 4, word, big_first_);
@@ -222,16 +225,16 @@ StackInfo describe(const Walked& walked) {
   return info;
 }
 
-/// One page of which only the first plane is a TIFF page; the others lie bare behind it.
+/// An ImageJ stack of which only the first plane is a TIFF page. The others follow it without page headers.
 class BarePlanes final : public RawStack {
  public:
   BarePlanes(const fs::path& file, const Walked& walked, double planes) : RawStack(file) {
     if (walked.compression != 1 || walked.samples != 1 || (walked.bits != 8 && walked.bits != 16))
       in_.refuse(fmt::format(
-          "says that it holds {} ImageJ planes, but has one page, and its planes of {} x {} bits, "
-          "compression {}, cannot lie behind it: save it as a stack of pages or as single files.",
+          "states that it contains {} ImageJ planes but has one page, and its planes of {} x {} bits, "
+          "compression {}, cannot follow that page: save it as a stack of pages or as single files.",
           planes, walked.samples, walked.bits, walked.compression));
-    if (planes > UINT32_MAX) in_.refuse(fmt::format("says that it holds {} planes.", planes));
+    if (planes > UINT32_MAX) in_.refuse(fmt::format("states that it contains {} planes.", planes));
     frames_ = static_cast<std::uint64_t>(planes);
     first_ = walked.first_strip;
     info_ = describe(walked);
@@ -260,9 +263,9 @@ class Pages final : public FrameSource {
     TIFFOpenOptionsSetErrorHandlerExtR(options, keep_complaint, this);
     TIFFOpenOptionsSetWarningHandlerExtR(
         options, [](TIFF*, void*, const char*, const char*, va_list) -> int { return 1; }, nullptr);
-    tiff_.reset(TIFFOpenExt(file.c_str(), "rm", options));  // m: no mapping of a file that may shrink
+    tiff_.reset(TIFFOpenExt(file.c_str(), "rm", options));  // m: no memory mapping, since the file may shrink
     TIFFOpenOptionsFree(options);
-    if (!tiff_) damaged("is no TIFF file that can be read");
+    if (!tiff_) damaged("is not a readable TIFF file");
     read_bits();
   }
 
@@ -314,12 +317,12 @@ class Pages final : public FrameSource {
     if (field(TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_IEEEFP || field(TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_INT)
       return;
     info_.bits = static_cast<int>(field(TIFFTAG_BITSPERSAMPLE));
-    std::uint16_t largest = 0;  // only where the file has the tag
+    std::uint16_t largest = 0;  // set only if the file has the tag
     if (TIFFGetField(tiff_.get(), TIFFTAG_MAXSAMPLEVALUE, &largest) == 1 && largest > 0)
       info_.bits = std::min(*info_.bits, static_cast<int>(std::bit_width(std::uint32_t{largest})));
   }
 
-  /// Whether the values on the page are what the camera measured.
+  /// Whether the page stores the values that the camera measured, so that they can be read unchanged.
   [[nodiscard]] bool is_plain() const {
     const std::uint64_t bits = field(TIFFTAG_BITSPERSAMPLE), samples = field(TIFFTAG_SAMPLESPERPIXEL);
     const std::uint64_t format = field(TIFFTAG_SAMPLEFORMAT);
@@ -379,12 +382,12 @@ class Pages final : public FrameSource {
     }
     return upright(grey(picture, file_), photometric, bits);
   }
-  // In a picture whose zero is white, the largest value is black.
+  // Inverts a picture in which zero is white.
   static cv::Mat upright(const cv::Mat& picture, std::uint64_t photometric, std::uint64_t bits) {
     if (photometric != PHOTOMETRIC_MINISWHITE || picture.depth() == CV_32F) return picture;
     return cv::Scalar::all(static_cast<double>((1U << bits) - 1)) - picture;
   }
-  // Pixels as they are on the page, row by row, out of strips or tiles.
+  // Pixels as stored on the page, row by row, from strips or tiles.
   [[nodiscard]] std::vector<std::uint8_t> raw_rows(std::size_t height, std::size_t row_bytes,
                                                    std::size_t pixel_bits) const {
     TIFF* t = tiff_.get();
@@ -413,15 +416,15 @@ class Pages final : public FrameSource {
         const auto wanted = static_cast<tmsize_t>(tile.size());
         if (TIFFReadEncodedTile(t, static_cast<std::uint32_t>(i), tile.data(), wanted) != wanted)
           damaged(fmt::format("is damaged or truncated in page {}", read_));
-        // A tile is a multiple of 16 pixels wide, so that its rows begin at whole bytes for any number of
-        // bits.
+        // The width of a tile is a multiple of 16 pixels, so that its rows begin at whole bytes for any
+        // number of bits.
         const std::size_t n = std::min(tile_row, row_bytes - column * tile_row);
         for (std::size_t r = 0; r < tile_height && y + r < height; ++r)
           std::memcpy(&rows[(y + r) * row_bytes + column * tile_row], &tile[r * tile_row], n);
       }
     return rows;
   }
-  // Palettes, 1 to 7 bits, JPEG in TIFF, separate planes: libtiff's own rendering, 8 bit.
+  // Palettes, 1 to 7 bits, JPEG in TIFF, separate planes: libtiff renders them with 8 bits.
   [[nodiscard]] cv::Mat by_rgba(std::uint32_t width, std::uint32_t height) const {
     std::vector<std::uint32_t> pixels(static_cast<std::size_t>(width) * height);
     if (TIFFReadRGBAImageOriented(tiff_.get(), width, height, pixels.data(), ORIENTATION_TOPLEFT, 1) != 1)

@@ -1,5 +1,5 @@
-// Videos. OpenCV opens most of them, but hands out 8 bits whatever the file holds, and spreads the values of
-// grey ones; so a grey or deeper one goes through the program ffmpeg, where it is installed.
+// Videos. OpenCV opens most of them, but always returns 8 bits and rescales the values of grey videos. Grey
+// videos and videos of more than 8 bits are therefore read with the program ffmpeg, if it is installed.
 
 #include <fmt/format.h>
 
@@ -26,14 +26,14 @@ class Video final : public FrameSource {
  public:
   explicit Video(const fs::path& file) : file_(file) {
     quiet_opencv();
-    // OpenCV hands these to the same libraries that the program ffmpeg uses.
+    // OpenCV passes these options to the libraries that the program ffmpeg also uses.
     static const int limited =
         setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS",
                fmt::format("protocol_whitelist;file,pipe|format_whitelist;{}", kContainers).c_str(), 1);
     (void)limited;
     try {
       capture_.open(ffmpeg_name(file), cv::CAP_FFMPEG);
-    } catch (const cv::Exception&) {  // then it is not open
+    } catch (const cv::Exception&) {  // is_open() is then false
     }
     if (!capture_.isOpened()) return;
     info_.format = "video read by OpenCV";
@@ -44,9 +44,9 @@ class Video final : public FrameSource {
       info_.frame_rate_hz = rate;
     stated_ = static_cast<std::size_t>(std::max(0.0, capture_.get(cv::CAP_PROP_FRAME_COUNT)));
     info_.notes.push_back(fmt::format(
-        "a video is read with 8 bits, whatever it holds, and its grey values are not those the camera "
+        "a video is read with 8 bits whatever its bit depth, and its grey values are not those the camera "
         "measured{}",
-        ffmpeg_is_installed() ? "." : "; with ffmpeg installed, grey and deeper videos keep theirs."));
+        ffmpeg_is_installed() ? "." : "; with ffmpeg installed, grey and deeper videos keep their values."));
   }
   [[nodiscard]] bool is_open() const { return capture_.isOpened(); }
 
@@ -54,7 +54,7 @@ class Video final : public FrameSource {
     cv::Mat picture;
     if (!capture_.read(picture) || picture.empty()) {
       if (read_ == 0) refuse(file_, "holds no frame that can be decoded.");
-      // The number announced may be an estimate; a twentieth is no estimate any more.
+      // The stated number may be an estimate, but a deficit of more than 5 % means damage.
       if (static_cast<double>(read_) < 0.95 * static_cast<double>(stated_) - 2)
         refuse(file_, fmt::format("is truncated or damaged: it announces {} frames, of which {} can be read.",
                                   stated_, read_));
@@ -65,7 +65,8 @@ class Video final : public FrameSource {
     guard_.check(frame, current());
     return true;
   }
-  // Containers that were streamed state no number, others a guess from the duration: counted when asked for.
+  // Streamed containers state no number of frames, others an estimate from the duration. The frames are
+  // therefore counted, on the first call.
   [[nodiscard]] std::size_t announced() const override {
     if (!counted_) counted_ = ffmpeg_is_installed() ? count_frames(file_) : std::nullopt;
     if (!counted_) counted_ = grabbed();
@@ -77,7 +78,7 @@ class Video final : public FrameSource {
   [[nodiscard]] StackInfo info() const override { return info_; }
 
  private:
-  /// Frames that can be read, by reading them.
+  /// Number of frames that can be read, found by reading them.
   [[nodiscard]] std::size_t grabbed() const {
     std::size_t n = 0;
     cv::VideoCapture again(ffmpeg_name(file_), cv::CAP_FFMPEG);
@@ -99,12 +100,13 @@ std::unique_ptr<FrameSource> open_video(const fs::path& file, const std::string&
       return open_ffmpeg(file, *facts);
   if (auto video = std::make_unique<Video>(file); video->is_open()) return video;
   if (!ffmpeg_is_installed())
-    refuse(file, "cannot be decoded as a video by OpenCV; ffmpeg, which knows more kinds, is not installed.");
+    refuse(file,
+           "cannot be decoded as a video by OpenCV; ffmpeg, which reads more formats, is not installed.");
   if (const auto facts = probe_video(file)) return open_ffmpeg(file, *facts);
   refuse(file, "cannot be decoded as a video, neither by OpenCV nor by ffmpeg.");
 }
 
-// Text is no video, though ffmpeg would draw it as one.
+// Text is not a video, although ffmpeg would render it as one.
 bool is_text(const Head& head) {
   return std::all_of(head.bytes.begin(), head.bytes.end(),
                      [](std::uint8_t b) { return b >= 32 || (b >= 9 && b <= 13) || b == 27; });

@@ -1,21 +1,21 @@
 #pragma once
 /// \file
 /// Linear spring and dashpot with a constant attraction while the surfaces touch, F_n = k_n delta - eta v_n -
-/// F_c: the pull-off force of Derjaguin, Muller & Toporov (1975), without a force at a distance.
+/// F_c. F_c is the pull-off force of Derjaguin, Muller & Toporov (1975); there is no force at a distance.
 
 #include "sim/laws/normal/linear.hpp"
 
 namespace twincell::sim {
 
-/// Beads at rest overlap by F_c/k_n. The Coulomb limit of friction is mu |F_n| of the whole force. A contact
-/// holds until the surfaces part; slow beads stay together (captured), fast ones leave with a restitution
-/// that depends on the speed.
+/// Beads at rest overlap by F_c/k_n. The Coulomb limit of friction is mu |F_n| with the total F_n. A contact
+/// lasts until the surfaces separate: slow beads stay together (capture), fast beads separate with a
+/// restitution that depends on the speed.
 struct CohesiveSpringDashpot : LinearSpringDashpot {
   static constexpr std::string_view kWord = "cohesive",
                                     kName = "linear spring-dashpot, constant pull-off force";
   static constexpr const char* kKeys[] = {"k_n", "gamma_n", "c_n", "restitution", "pull_off_force"};
   static constexpr int kConstants = 3;
-  static constexpr bool kAttracts = true;  ///< so that no contact is integrated by itself (isolated.hpp)
+  static constexpr bool kAttracts = true;  ///< excludes separate integration of a contact (isolated.hpp)
 
   double pull_off_force = 0;  ///< F_c, m g
 

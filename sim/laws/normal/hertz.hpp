@@ -11,8 +11,8 @@
 
 namespace twincell::sim {
 
-/// Beads (and walls) of one material: Young's modulus Y, Poisson's ratio nu, and the time A of its viscosity.
-/// The restitution falls with the impact speed, 1 - e ~ v^(1/5).
+/// Beads and walls are of one material with Young's modulus Y, Poisson's ratio nu and viscous time A. The
+/// restitution decreases with the impact speed, 1 - e ~ v^(1/5).
 struct HertzViscoelastic {
   static constexpr std::string_view kWord = "hertz", kName = "Hertz, viscoelastic damping";
   static constexpr const char* kKeys[] = {"youngs_modulus", "poisson_ratio", "viscous_time"};
@@ -26,11 +26,12 @@ struct HertzViscoelastic {
     return {t.required("youngs_modulus", 0, 1e15, true), t.number("poisson_ratio", 0, 0.5).value_or(0.3),
             t.number("viscous_time", 0, 1).value_or(0)};
   }
-  /// rho of F = rho delta^(3/2).
+  /// The coefficient rho in F = rho delta^(3/2).
   [[nodiscard]] double stiffness(double r_eff) const {
     return 2 * youngs_modulus * std::sqrt(r_eff) / (3 * (1 - poisson_ratio * poisson_ratio));
   }
-  /// Duration of an elastic impact at `speed`, 3.2180 (m_eff/rho)^(2/5) v^(-1/5): shorter the faster.
+  /// Duration of an elastic impact at `speed`, t = 3.2180 (m_eff/rho)^(2/5) v^(-1/5): faster impacts are
+  /// shorter. With damping A, the shorter of t and t^2/(15 A).
   [[nodiscard]] double shortest_time(const PairScale& p, double speed) const {
     const double swing = 3.2180 * std::pow(p.m_eff / stiffness(p.r_eff), 0.4) * std::pow(speed, -0.2);
     return viscous_time > 0 ? std::min(swing, swing * swing / (15 * viscous_time)) : swing;

@@ -10,13 +10,14 @@
 
 namespace twincell::sim {
 
-/// Without a clip: near the end of a contact the dashpot outweighs the spring and pulls. Neither paper clips,
-/// and the closed forms of t_c and e_n hold only so.
+/// The force is not clipped: near the end of a contact the dashpot exceeds the spring and the contact pulls.
+/// Neither paper clips it, and the closed forms of t_c and e_n require this.
 struct LinearSpringDashpot {
   static constexpr std::string_view kWord = "linear", kName = "linear spring-dashpot";
   static constexpr const char* kKeys[] = {"k_n", "gamma_n", "c_n", "restitution"};
   static constexpr int kConstants = 2, kMemory = 0;
-  static constexpr bool kSmooth = true;  ///< one formula, also just beyond the contact (binary_collision.hpp)
+  static constexpr bool kSmooth =
+      true;  ///< one formula, also just outside the contact (binary_collision.hpp)
 
   double k_n = 1e6;  ///< m g/sigma
   ViscousDamping damping;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// No resistance to rolling.
+/// No rolling resistance.
 
 #include <cmath>
 #include <string_view>
@@ -9,7 +9,7 @@
 
 namespace twincell::sim {
 
-/// Both papers: beads roll freely.
+/// Beads roll freely, as in both papers (Fortini & Huang 2015; Bhateja et al. 2016).
 struct NoRolling {
   static constexpr std::string_view kWord = "none", kName = "none";
   static constexpr std::array<const char*, 0> kKeys = {};
@@ -22,7 +22,7 @@ struct NoRolling {
 
   template <class V, class T, class X>
   static T torque(const V*, const T& w, V, V, X&) {
-    return w;  // never asked for
+    return w;  // never called, because kActs is false
   }
 };
 

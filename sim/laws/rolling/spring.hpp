@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Rolling resistance by a torsional spring, dashpot and limit, M = -(k_r theta + c_r w), |M| <= mu_r R_eff
-/// |F_n|, theta the angle rolled since first touch, w the relative angular velocity (Ai et al., Powder
-/// Technol. 206, 269, 2011, model C).
+/// Rolling resistance by a torsional spring and dashpot with a limit, M = -(k_r theta + c_r w),
+/// M| <= mu_r R_eff |F_n|, where theta is the angle rolled since first touch and w the relative angular
+/// velocity (Ai et al., Powder Technol. 206, 269, 2011, model C).
 
 #include <cmath>
 #include <numbers>
@@ -13,7 +13,7 @@
 
 namespace twincell::sim {
 
-/// Beyond the limit the spring is shortened, as the tangential one is.
+/// If the torque exceeds the limit, the spring is shortened, as the tangential spring is (SpringSlider).
 struct RollingSpring {
   static constexpr std::string_view kWord = "spring", kName = "torsional spring, dashpot, limit";
   static constexpr const char* kKeys[] = {"k_r", "c_r", "mu_r"};
@@ -28,8 +28,8 @@ struct RollingSpring {
     return {t.required("k_r", 0, 1e12, true), t.number("c_r", 0, 1e12).value_or(0),
             t.required("mu_r", 0, 1e3)};
   }
-  /// Half a swing of two equal discs about their contact; a torsional spring softer than k_t r^2 never
-  /// decides.
+  /// Half an oscillation period of two equal discs about their contact; with damping, the decay time of the
+  /// dashpot if that is shorter. A torsional spring softer than k_t r^2 never sets the step.
   [[nodiscard]] double shortest_time(const PairScale& p) const {
     // 1/I of the pair is at most 4 inv_m_t/R^2 <= inv_m_t/r_eff^2 for discs and spheres.
     const double inv_inertia = p.inv_m_t / (p.r_eff * p.r_eff);

@@ -10,8 +10,8 @@
 
 namespace twincell::sim {
 
-/// No history, and so no static friction: a bead on an incline creeps at m g sin(theta)/c_t. F_n is the total
-/// normal force, dashpot included.
+/// The law has no history and therefore no static friction: a bead on an incline creeps at m g
+/// sin(theta)/c_t. F_n is the total normal force, including its dashpot.
 struct DashpotSlider {
   static constexpr std::string_view kWord = "dashpot", kName = "dashpot with Coulomb slider";
   static constexpr const char* kKeys[] = {"mu", "gamma_t", "c_t", "c_t_over_c_n"};
@@ -36,8 +36,8 @@ struct DashpotSlider {
   static T force(const V* c, const T& v_t, V f_n, V /*dt*/, X& /*xi*/) {
     return limited(c[0] * v_t, c[1] * abs(f_n)).value;
   }
-  // The same in its two regimes, each continued beyond where it holds: what an integrator needs that goes
-  // from one to the other only at the ends of its steps (binary_collision.hpp).
+  // The force in each of its two regimes, each also evaluated outside the range where it applies. An
+  // integrator that changes regime only at the ends of its steps needs this (binary_collision.hpp).
   template <class V, class T>
   static T sticking(const V* c, const T& v_t) {
     return c[0] * v_t;
@@ -46,7 +46,8 @@ struct DashpotSlider {
   static T sliding(const V* c, const T& v_t, V f_n) {
     return (-(c[1] * abs(f_n)) / max(norm(v_t), V(kTiny))) * v_t;
   }
-  /// How far the dashpot of surfaces that slide at |v_t| is from the limit; negative where it is cut.
+  /// Distance to the Coulomb limit at the tangential speed |v_t|, mu |F_n| - c_t |v_t|; negative where the
+  /// force is truncated.
   template <class V>
   static V slack(const V* c, V speed, V f_n) {
     return fma(c[0], speed, c[1] * abs(f_n));

@@ -1,13 +1,14 @@
 #pragma once
 /// \file
-/// The third reading of "truncate": the force is cut to the Coulomb limit, the spring goes on to stretch.
+/// Third reading of "truncate": only the force is truncated to the Coulomb limit, and the spring continues to
+/// stretch.
 
 #include "sim/laws/tangential/spring.hpp"
 
 namespace twincell::sim {
 
-/// Equal to SpringOnlySlider while surfaces slide one way; a contact whose surfaces turn back slides on until
-/// its spring has come back as far as it was stretched beyond the limit.
+/// Equal to SpringLimitedSlider while the surfaces slide in one direction. After a reversal the contact
+/// continues to slide until the spring has shortened by the amount that it was stretched beyond the limit.
 struct ForceClippedSlider : SpringSlider {
   static constexpr std::string_view kWord = "force-clipped",
                                     kName = "spring with history, dashpot, limit on the force alone";

@@ -12,10 +12,10 @@
 
 namespace twincell::sim {
 
-/// For Hertzian contacts ("hertz"), whose keys it shares. The stiffness depends on the present overlap alone,
-/// not on the history of the normal load: unloading at constant xi lowers the force without work, so a closed
-/// cycle of loading may gain energy. Beyond the limit mu |F_n| the spring is cut so that it gives exactly the
-/// limit. No dashpot.
+/// For Hertzian contacts ("hertz"), with which it shares its keys. The stiffness depends only on the present
+/// overlap, not on the history of the normal load: unloading at constant xi lowers the force without work, so
+/// a closed loading cycle may gain energy. If the force exceeds the limit mu |F_n|, the spring is shortened
+/// so that it gives exactly the limit. There is no dashpot.
 struct MindlinSlider {
   static constexpr std::string_view kWord = "mindlin", kName = "Mindlin spring with history, Coulomb limit";
   static constexpr const char* kKeys[] = {"mu", "youngs_modulus", "poisson_ratio"};
@@ -30,12 +30,12 @@ struct MindlinSlider {
     return {t.required("youngs_modulus", 0, 1e15, true), t.number("poisson_ratio", 0, 0.5).value_or(0.3),
             t.number("mu", 0, 1e12).value_or(0.6)};
   }
-  /// 8 G* sqrt(R_eff): times sqrt(delta) it is the stiffness.
+  /// 8 G* sqrt(R_eff); multiplied by sqrt(delta) it is the stiffness.
   [[nodiscard]] double stiffness(double r_eff) const {
     return 2 * youngs_modulus * std::sqrt(r_eff) / ((2 - poisson_ratio) * (1 + poisson_ratio));
   }
-  /// No limit of its own: the tangential period is longer than the duration of the impact that Hertz's law
-  /// resolves, since the stiffness stays below that of the normal force.
+  /// This law sets no limit on the step: its stiffness stays below that of the normal force, so the
+  /// tangential period is longer than the duration of the impact that Hertz's law resolves.
   [[nodiscard]] double shortest_time(const PairScale& /*p*/) const { return HUGE_VAL; }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
     return {-stiffness(p.r_eff), mu};
@@ -44,7 +44,7 @@ struct MindlinSlider {
   template <class V, class T, class X>
   static T force(const V* c, const T& v_t, V f_n, V dt, X& xi, V overlap) {
     xi = fma(dt, v_t, xi);
-    const V k = c[0] * sqrt(max(overlap, V(0.0)));  // negative, as the formula wants it
+    const V k = c[0] * sqrt(max(overlap, V(0.0)));  // negative, as in the formula
     const auto [force, slips] = limited(k * xi, c[1] * abs(f_n));
     const V back = V(1.0) / min(k, V(-kTiny));
     xi = select(slips, back * force, xi);

@@ -11,7 +11,7 @@
 
 namespace twincell::sim {
 
-/// Smooth beads: no tangential force, hence no torque, no rotation, no history. It reads no key.
+/// Smooth beads: no tangential force, hence no torque, no rotation and no history. This law reads no key.
 struct NoTangential {
   static constexpr std::string_view kWord = "none", kName = "none";
   static constexpr std::array<const char*, 0> kKeys = {};
@@ -24,7 +24,7 @@ struct NoTangential {
 
   template <class V, class T, class X>
   static T force(const V*, const T& v_t, V, V, X&) {
-    return v_t;  // never asked for
+    return v_t;  // never called, because kActs is false
   }
 };
 

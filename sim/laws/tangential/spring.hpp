@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Spring with history, dashpot and Coulomb limit, F_t = -(k_t xi + eta_t v_t), xi the tangential
-/// displacement since first touch (Fortini & Huang 2015, eq. A3; Silbert et al. 2001).
+/// Tangential spring with history, dashpot and Coulomb limit, F_t = -(k_t xi + eta_t v_t), where xi is the
+/// tangential displacement since first touch (Fortini & Huang 2015, eq. A3; Silbert et al. 2001).
 
 #include <cmath>
 #include <numbers>
@@ -12,8 +12,9 @@
 
 namespace twincell::sim {
 
-/// Beyond the limit mu |F_n| the force is cut to it and the spring shortened so that spring and dashpot
-/// together give exactly the limit. The paper says only "truncate"; this is the common reading.
+/// If |F_t| exceeds the limit mu |F_n|, the force is truncated to the limit and the spring is shortened so
+/// that spring and dashpot together give exactly the limit. The paper says only "truncate"; this is the
+/// common reading.
 struct SpringSlider {
   static constexpr std::string_view kWord = "spring", kName = "spring with history, dashpot, Coulomb limit";
   static constexpr const char* kKeys[] = {"mu", "k_t", "gamma_t", "c_t", "c_t_over_c_n"};
@@ -34,7 +35,7 @@ struct SpringSlider {
     return eta > 0 ? std::min(swing, 2 / (p.inv_m_t * eta)) : swing;
   }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
-    return {-k_t, -damping.eta(p.m_eff), mu, k_t > 0 ? -1 / k_t : 0};  // signs as the formula wants them
+    return {-k_t, -damping.eta(p.m_eff), mu, k_t > 0 ? -1 / k_t : 0};  // signs as in the formula
   }
 
   template <class V, class T, class X>

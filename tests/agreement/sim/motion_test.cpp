@@ -78,7 +78,7 @@ TEST(InMotion, AFrameWithItsSpringsGoesOnAsTheRunDid) {
     EXPECT_EQ(apart(whole, with, 18), 0) << integrator;  // bit for bit
     Simulation bare(rest("without.h5"));
     ASSERT_EQ(bare.warnings().size(), 1U);
-    EXPECT_NE(bare.warnings().front().find("no springs"), std::string::npos);
+    EXPECT_NE(bare.warnings().front().find("no contact springs"), std::string::npos);
     MemoryTrajectory without(bare.trajectory_info());
     bare.run(without);
     EXPECT_GE(apart(whole, without, 10), 1e-5) << integrator;
@@ -96,12 +96,12 @@ TEST(InMotion, WhatOtherLawsRememberIsRefused) {
   };
   begin({});
   expect_refusal<ConfigError>([&] { begin({"time.integrator=split"}); }, "start.in_motion",
-                              "its contacts remember 1 numbers", "name those that wrote the file");
+                              "its contacts store 1 values", "select those that wrote the file");
   expect_refusal<ConfigError>([&] { begin({"drive.gamma=1.5"}); }, "has its plate at 0.40",
                               "this drive puts it at 0.46");
   expect_refusal<ConfigError>([&] { begin({"drive.phase=0.5"}); }, "has its plate at 0.40");
   begin({"drive.gamma=1.5", "start.frame=40"});  // phase 0
-  expect_refusal<ConfigError>([&] { begin({"start.frame=60"}); }, "frame 60 was asked for");
+  expect_refusal<ConfigError>([&] { begin({"start.frame=60"}); }, "frame 60 was requested");
   expect_refusal<ConfigError>([&] { begin({"start.settle_limit=3"}); }, "start.settle_limit",
                               "keeps it moving");
 }

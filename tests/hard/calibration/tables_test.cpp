@@ -124,7 +124,7 @@ TEST(Tables, TriggersAreBelievedOnlyAsFarAsTheyAreOne) {
   };
   const Case cases[] = {
       {"frame,time_s\n0,0,0000\n1,0,0025\n", "t.csv:2: 3 fields"},
-      {"frame,time_s,cycles\n0,0,0\n1,0.1,1\n", "time_s: and cycles say the same quantity"},
+      {"frame,time_s,cycles\n0,0,0\n1,0.1,1\n", "time_s: and cycles are the same quantity"},
       {"frame,cycles\n0,1\n1,1\n2,1\n", "cycles: is 1 in all 3 frames"},
       {"frame,cycles\n0,1\n1,2\n1,3\n", "t.csv:4: frame: 1 where 2 was expected"},
       {"frame,cycles\n0,1\n1,\n", "'' is not a number"},

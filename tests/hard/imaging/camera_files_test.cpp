@@ -260,7 +260,7 @@ TEST(Cine, Spoilt) {
   expect_words(changed(48, 1000, 4), {"damaged", "1000 x 4", "8000"});
   expect_words(changed(52, 0x80000000, 4), {"-2147483648"});
   expect_words(changed(58, 32, 2), {"32 bits"});
-  expect_words(changed(60, 7, 4), {"way 7"});
+  expect_words(changed(60, 7, 4), {"packing 7"});
   expect_words(changed(84 + 140, 0, 2), {"no mark ST"});
   expect_words(changed(84 + 808, 3, 4), {"mosaic"});
   expect_words(changed(32, 0xFFFFFFF0, 4), {"truncated", "table"});
@@ -406,7 +406,7 @@ TEST(Mraw, Spoilt) {
   expect_words(with(cih_text(-8, 4, 3, 12, 12)), {"Image Width", "-8"});
   expect_words(with(cih_text(8, 4, 3, 14, 12)), {"Color Bit = 14"});
   expect_words(with(cih_text(8, 4, 3, 12, 12, "Higher")), {"Higher", "12-bit"});
-  expect_words(with("neither keys nor values"), {"a.cih", "no Photron header"});
+  expect_words(with("neither keys nor values"), {"a.cih", "not a Photron header"});
   expect_words(with(std::string(text).replace(text.find("MRaw"), 4, "TIFF")), {"'TIFF'"});
   expect_words(with(std::string(text).replace(text.find("Mono"), 4, "Color")), {"colours"});
   for (std::size_t n = 0; n < text.size(); n += 7) {

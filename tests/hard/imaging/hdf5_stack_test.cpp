@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <numeric>
 
 #include "core/hdf5.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "tests/support/frames.hpp"
+#include "tests/support/hdf5_elsewhere.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace twincell;
@@ -240,5 +242,32 @@ TEST(Hdf5Stack, DeflatedTwice) {
   write_deflated(1);
   EXPECT_EQ(refusal(path), "");
   write_deflated(2);
-  expect_words(refusal(path), {"a.h5", "/a", "compressed 2 times over"});
+  expect_words(refusal(path), {"a.h5", "/a", "compressed 2 times"});
+}
+
+// A file from a stranger could otherwise show the bytes of any file of the account as grey values, and HDF5
+// fills a virtual dataset whose files are missing with zeros.
+TEST(Hdf5Stack, DataInOtherFilesIsNotRead) {
+  const TemporaryFolder folder;
+  const std::string secret = folder / "secret";
+  std::ofstream(secret) << "twenty-four bytes of text";
+  for (const std::string kind : {"link", "virtual", "external"}) {
+    const std::string file = folder / (kind + ".h5");
+    {
+      const h5::Handle f = new_file(file);
+      add_dataset(f.get(), "frames", H5T_STD_U8LE, {2, 3, 4});
+      test::add_elsewhere(f.get(), kind, secret);
+    }
+    for (const std::string& stack : {file, file + ":/frames"}) {
+      try {
+        (void)open_frames(stack);
+        ADD_FAILURE() << stack << " was opened";
+      } catch (const InputError& e) {
+        EXPECT_NE(
+            std::string(e.what()).find(kind == "link" ? "/linked is a link to another file" : "/" + kind),
+            std::string::npos)
+            << e.what();
+      }
+    }
+  }
 }

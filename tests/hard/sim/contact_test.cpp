@@ -9,7 +9,7 @@
 #include "sim/laws/tangential/dashpot.hpp"
 #include "sim/laws/tangential/force_clipped.hpp"
 #include "sim/laws/tangential/spring.hpp"
-#include "sim/laws/tangential/spring_only.hpp"
+#include "sim/laws/tangential/spring_limited.hpp"
 #include "sim/run/make_solver.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/shaken_bed.hpp"
@@ -104,7 +104,7 @@ void expect_limits(const Law& law) {
 
 TEST(Contact, H3_CoulombLimitAtNoNormalForceAndInThePull) {
   expect_limits(SpringSlider{1e4, {100, 0, 0}, 0.6});
-  expect_limits(SpringOnlySlider{{1e4, {100, 0, 0}, 0.6}});
+  expect_limits(SpringLimitedSlider{{1e4, {100, 0, 0}, 0.6}});
   expect_limits(ForceClippedSlider{{1e4, {100, 0, 0}, 0.6}});
   expect_limits(DashpotSlider{{0, 50, 0}, 0.6});
   expect_limits(SpringSlider{0, {100, 0, 0}, 0.6});  // a spring of no stiffness

@@ -58,7 +58,7 @@ TEST(ResourceDemand, TheProgramRefusesWhatItsLimitDoesNotAllow) {
     EXPECT_EQ(WEXITSTATUS(status), 2) << verb;
     std::ifstream said(err);
     const std::string text(std::istreambuf_iterator<char>(said), {});
-    EXPECT_NE(text.find("beads.layers: asks for 9000000 beads"), std::string::npos) << text;
+    EXPECT_NE(text.find("beads.layers: requests 9000000 beads"), std::string::npos) << text;
   }
 }
 

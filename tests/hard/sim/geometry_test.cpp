@@ -39,8 +39,9 @@ TEST(Overlaps, H1_H5_AreRefusedAtTheStartByName) {
   };
   expect_refusal<ConfigError>(start("x,z\n5,3\n5,3\n"), "beads 0 and 1 have the same centre");
   expect_refusal<ConfigError>(start("x,z\n5,3\n5,3\n", {"start.relax=true"}), "have the same centre");
-  expect_refusal<ConfigError>(start("x,z\n5,3\n5.94,3\n9,3\n9.93,3\n"),
-                              "beads 2 and 3 overlap by 0.07 sigma, the bound is 0.05; 2 pairs do");
+  expect_refusal<ConfigError>(
+      start("x,z\n5,3\n5.94,3\n9,3\n9.93,3\n"),
+      "beads 2 and 3 overlap by 0.07 sigma, the bound is 0.05; 2 pairs exceed their bounds");
   expect_refusal<ConfigError>(start("x,z\n5,0.44\n"),
                               "bead 0 at (5, 0, 0.44) reaches 0.06 sigma into the wall");
   expect_refusal<ConfigError>(start("x,z\n25,3\n", {"start.relax=true"}), "into the wall \"right\"");

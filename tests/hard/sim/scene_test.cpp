@@ -116,8 +116,7 @@ TEST(Cell, WallsThatAreNotThereHaveNoProperties) {
                    "cell.side_walls: the cell has no side walls");
   expect_complaint(kGood + "[cell]\nsides = \"absent\"\nside_tilt = 1.0\n",
                    "cell.side_tilt: the cell has no side walls");
-  expect_complaint(kGood + "[cell]\nlid_motion = \"rest\"\n",
-                   "cell.lid_motion: the cell has no lid that acts");
+  expect_complaint(kGood + "[cell]\nlid_motion = \"rest\"\n", "cell.lid_motion: the cell has no lid");
   expect_complaint(kGood3d + "[cell]\nplates_motion = \"rest\"\n", "the cell has no front and back walls");
   expect_complaint(kGood + "[contact.lid]\nmu = 0.1\n",
                    "scene.toml:6:1: contact.lid: the cell has no such wall");
@@ -152,17 +151,17 @@ TEST(Cell, H16_PeriodsLeaveNoSecondImageInReach) {
 
 TEST(Cell, GravityNeedsAWallThatCarries) {
   expect_complaint(kGood + "[cell]\nbottom = \"absent\"\n",
-                   "cell.gravity: no wall carries the beads, which (0, 0, -1) accelerates");
+                   "cell.gravity: no wall supports the beads, which gravity (0, 0, -1) accelerates");
   expect_complaint(kGood + "[cell]\ngravity = [0.0, 1.0]\n",
-                   "no wall carries the beads, which (0, 0, 1) accelerates");
+                   "no wall supports the beads, which gravity (0, 0, 1) accelerates");
   expect_complaint(kGood + "[cell]\nsides = \"periodic\"\ngravity = [1.0, 0.0]\n",
-                   "no wall carries the beads");
+                   "no wall supports the beads");
   expect_complaint(kGood + "[cell]\nsides = \"periodic\"\nbottom = \"periodic\"\nheight = 20.0\n",
-                   "no wall carries the beads");
+                   "no wall supports the beads");
   EXPECT_EQ(complaint(kGood + "[cell]\nlid = \"wall\"\nheight = 60.0\ngravity = [0.0, 1.0]\n"), "accepted");
   EXPECT_EQ(complaint(kGood + "[cell]\nsides = \"periodic\"\ntilt = 20.0\n"), "accepted");  // an incline
   expect_complaint(kGood + "[cell]\ntilt = 2.0\ngravity = [0.0, -1.0]\n",
-                   "cell.tilt: cell.gravity already says the direction");
+                   "cell.tilt: cell.gravity already gives a direction");
 }
 
 TEST(Cell, H32_WithoutGravityNothingMayBeOpen) {
@@ -240,7 +239,7 @@ TEST(Beads, SpreadNeedsAWidth) {
   const std::string beads = "preset = \"fortini-huang-2015\"\n[drive]\ngamma = 1.5\n[beads]\ncount = 5\n";
   EXPECT_EQ(complaint(beads + "spread = \"normal\"\nspread_width = 0.01\n"), "accepted");
   expect_complaint(beads + "spread = \"normal\"\n", "beads.spread: needs beads.spread_width");
-  expect_complaint(beads + "spread_width = 0.1\n", "beads.spread_width: says how far radii are spread");
+  expect_complaint(beads + "spread_width = 0.1\n", "beads.spread_width: is the width of a size distribution");
   expect_complaint(beads + "spread = \"uniform\"\nspread_width = 0.5\n",
                    "beads.spread_width: 0.5 is out of range; the value must be less than 0.5");
 }
@@ -262,7 +261,7 @@ TEST(Beads, IntruderHasItsPlace) {
   expect_complaint(intruder + "radius = 2.0\nz = 6.0\nx = 19.0\n", "into the wall \"right\"");
   expect_complaint(intruder + "radius = 2.0\nz = 6.0\ny = 0.0\n", "beads.intruder.y: a 2D cell has no y");
   expect_complaint(intruder + "radius = 2.0\nz = 6.0\n[start]\nkind = \"table\"\nfrom = \"a.csv\"\n",
-                   "a file names all beads");
+                   "a file contains all beads");
 }
 
 TEST(Contact, KindsOfLawAreTheSameForAll) {
@@ -389,7 +388,7 @@ TEST(Contact, APresetsKeysGiveWayAndAreNamed) {
 
 TEST(Scene, KeysOfAnotherStartOrCellAreRefused) {
   expect_complaint(kGood + "[start]\nvelocity_scale = 2.0\n",
-                   "start.velocity_scale: is a speed of random starts, but start.kind is not");
+                   "start.velocity_scale: sets the speeds of a random start, but start.kind is not");
   expect_complaint(kGood + "[cell]\ngravity = 0.0\ntilt = 3.0\n", "cell.tilt: turns gravity");
   const std::string table = kGood + "[start]\nkind = \"table\"\nfrom = \"a.csv\"\n";
   EXPECT_EQ(complaint(table), "accepted");
@@ -469,7 +468,7 @@ TEST(DriveOfAScene, RampAndSchedule) {
   };
   EXPECT_NE(refused("[[0, 1], [5, 2]]").find("drive.schedule: the last factor is 2; it must be 1"),
             std::string::npos);
-  EXPECT_NE(refused("[[5, 2], [5, 1]]").find("cycles must rise, but 5 follows 5"), std::string::npos);
+  EXPECT_NE(refused("[[5, 2], [5, 1]]").find("cycles must increase, but 5 follows 5"), std::string::npos);
   EXPECT_NE(refused("[[0, -1], [5, 1]]").find("drive.schedule: -1 is out of range"), std::string::npos);
   EXPECT_NE(refused("[[-1, 2], [5, 1]]").find("drive.schedule: -1 is out of range"), std::string::npos);
   EXPECT_NE(refused("[]").find("a list of pairs of numbers is needed"), std::string::npos);

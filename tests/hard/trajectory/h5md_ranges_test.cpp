@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
+#include "tests/support/hdf5_elsewhere.hpp"
 #include "tests/support/program.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
@@ -109,6 +110,19 @@ TEST(H5mdRanges, ClaimsAreHeldAgainstWhatTheFileHolds) {
     ASSERT_GE(H5Dset_extent(steps, &many), 0);
   });
   expect_refused(file, "claims");
+}
+
+TEST(H5mdRanges, DataInOtherFilesIsNotRead) {
+  const TemporaryFolder folder;
+  for (const std::string kind : {"link", "virtual", "external"}) {
+    const std::string file = folder / (kind + ".h5");
+    write(file, sound());
+    {
+      const h5::Handle f = h5::own(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), file);
+      test::add_elsewhere(f.get(), kind, folder / "other");
+    }
+    expect_refused(file, "only data in the file itself is read");
+  }
 }
 
 }  // namespace

@@ -186,21 +186,21 @@ TEST_F(Dump, MalformedOnesAreRefusedByLine) {
     return text.replace(text.find(from), from.size(), to);
   };
   EXPECT_EQ(refusal(""), "d: the file holds no frame.");
-  EXPECT_EQ(refusal("\x89HDF\n"), "d:1: 'ITEM: TIMESTEP' is missing; this is no text dump of LAMMPS.");
+  EXPECT_EQ(refusal("\x89HDF\n"), "d:1: 'ITEM: TIMESTEP' is missing; this is not a text dump of LAMMPS.");
   EXPECT_EQ(refusal(with("2 2 1\n", "")), "d:10: the file ends where an atom should be.");
   EXPECT_EQ(refusal(good.substr(0, good.find("ITEM: BOX"))), "d:4: the file ends within a frame.");
   EXPECT_EQ(refusal(with("ATOMS id x y", "ATOMS ")),
-            "d:9: there is no column 'id', without which beads cannot be told apart.");
+            "d:9: there is no column 'id', without which beads cannot be identified.");
   EXPECT_EQ(refusal(with("2 2 1", "2 2")), "d:11: 3 columns are needed, 2 were found.");
   EXPECT_EQ(refusal(with("2 2 1", "2 two 1")), "d:11: 'two' is not a finite number.");
   EXPECT_EQ(refusal(with("2 2 1", "2 nan 1")), "d:11: 'nan' is not a finite number.");
-  EXPECT_EQ(refusal(with("2 2 1", "1 2 1")), "d:11: the bead with id 1 is there twice in a frame.");
+  EXPECT_EQ(refusal(with("2 2 1", "1 2 1")), "d:11: the bead with id 1 occurs twice in a frame.");
   EXPECT_EQ(refusal(with("2 2 1", "2.5 2 1")), "d:11: '2.5' is not a whole number.");
   EXPECT_EQ(refusal(with("ATOMS id", "ATOMS mol")),
-            "d:9: there is no column 'id', without which beads cannot be told apart.");
+            "d:9: there is no column 'id', without which beads cannot be identified.");
   EXPECT_EQ(refusal(with("id x y", "id x vy")),
             "d:9: there is no column for the positions along y (y, yu, ys or ysu).");
-  EXPECT_EQ(refusal(with("id x y", "id x x")), "d:9: the column 'x' is there twice.");
+  EXPECT_EQ(refusal(with("id x y", "id x x")), "d:9: the column 'x' occurs twice.");
   EXPECT_EQ(refusal(with("ff ff pp", "xy xz yz ff ff pp")),
             "d:5: the box is not a cuboid along the axes (triclinic boxes are not read).");
   EXPECT_EQ(refusal(with("0 8", "8 0")), "d:6: the box is empty: 8 is not below 0.");
@@ -229,23 +229,22 @@ TEST_F(Dump, OptionsThatDoNotFitAreRefused) {
             "options: --frames-per-cycle: has no meaning without the drive, whose period is then unknown.");
   options.drive = {.amplitude = 1.0, .omega = 2 * std::numbers::pi};
   EXPECT_EQ(refusal(text, options),
-            "d:12: step 77 is 0.7700 cycles on, not at one of 4 phases of a cycle; are time step, drive and "
-            "frames per "
-            "cycle those of this run?");
+            "d:12: step 77 is at 0.7700 cycles, not at one of 4 phases of a cycle; check the time step, the "
+            "drive and the frames per cycle.");
   options.phases_per_cycle = 100;
   EXPECT_EQ(refusal(text, options), "accepted");
   options.tracer_type = 1;
   EXPECT_EQ(refusal(text, options), "options: --tracer-type: the dump has no column 'type'.");
   options = reduced();
   options.drive_axis = Axis::y;
-  EXPECT_EQ(refusal(text, options), "options: --drive-axis: a plane system has no y.");
+  EXPECT_EQ(refusal(text, options), "options: --drive-axis: a 2D system has no y axis.");
   options = reduced();
   options.sigma = 0;
   EXPECT_EQ(refusal(text, options), "options: --sigma: 0 is out of range; the value must be greater than 0.");
   options = reduced();
   options.origin = Vec3(0, 11, 0);
   EXPECT_EQ(refusal(text, options),
-            "options: --origin: the origin lies above or to the right of the dump's box.");
+            "options: --origin: the origin is above or to the right of the dump's box.");
 }
 
 // Bytes changed, taken out and doubled anywhere: refused with a line, or read as numbers that are some.

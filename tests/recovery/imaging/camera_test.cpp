@@ -138,9 +138,9 @@ TEST(Camera, MassCentreAndWidthOfADiscAreExact) {
         const SyntheticCamera camera(o, empty_cell(8));
         const double x = place(generator);
         const Frame frame = frame_with({Vec3(x, 0, place(generator))});
-        const Moment moment{.now = &frame};
-        const Moments m = moments_of(camera.light(moment), o.backlight);
-        const TrueBead truth = camera.truth(moment).at(0);
+        const Exposure exposure{.now = &frame};
+        const Moments m = moments_of(camera.light(exposure), o.backlight);
+        const TrueBead truth = camera.truth(exposure).at(0);
         const double radius = size / 2;
         worst_mass = std::max(worst_mass, std::abs(m.mass / (std::numbers::pi * radius * radius) - 1));
         worst_centre = std::max({worst_centre, std::abs(m.x - truth.x), std::abs(m.y - truth.y)});
@@ -249,9 +249,9 @@ TEST(Camera, UnderDistortionTheCentreOfAPictureIsOffByItsClosedForm) {
                middle = 0.5 * (camera.size().width - 1);
   for (const Vec3& r : {Vec3(20, 0, 20), Vec3(30, 0, 25), Vec3(8, 0, 10)}) {
     const Frame frame = frame_with({r});
-    const Moment moment{.now = &frame};
-    const Moments m = moments_of(camera.light(moment), o.backlight);
-    const TrueBead truth = camera.truth(moment).at(0);
+    const Exposure exposure{.now = &frame};
+    const Moments m = moments_of(camera.light(exposure), o.backlight);
+    const TrueBead truth = camera.truth(exposure).at(0);
     const double off = 3 * o.distortion * 7.5 * 7.5 / (u * u);
     EXPECT_NEAR(m.x - truth.x, off * (truth.x - middle), 5e-4);
     EXPECT_NEAR(m.y - truth.y, off * (truth.y - middle), 5e-4);
@@ -269,9 +269,9 @@ TEST(Camera, MotionBlurFollowsTheVelocity) {
   Frame frame = frame_with({Vec3(4.03, 0, 3.98)});
   for (const double speed : {0.5, 2.0, 6.0}) {
     frame.velocity = {Vec3(0.6 * speed, 0, 0.8 * speed)};
-    const Moment moment{.now = &frame};
-    const Moments m = moments_of(camera.light(moment), o.backlight);
-    const TrueBead truth = camera.truth(moment).at(0);
+    const Exposure exposure{.now = &frame};
+    const Moments m = moments_of(camera.light(exposure), o.backlight);
+    const TrueBead truth = camera.truth(exposure).at(0);
     const double length = 0.1 * speed * 15, still = 7.5 * 7.5 / 4 + 0.8 * 0.8 + kPixelVariance;
     EXPECT_NEAR(m.x, truth.x, 1e-3);
     EXPECT_NEAR(m.y, truth.y, 1e-3);
@@ -286,9 +286,9 @@ TEST(Camera, PathsBetweenFramesAreExactInFreeFlight) {
     const MemoryTrajectory film = flight(velocities);
     const Shutter shutter(film.info());
     for (const double tau : {-0.1, -0.043, 0.0, 0.02, 0.07}) {
-      const Moment moment{&film.frames()[9], &film.frames()[10], &film.frames()[11]};
+      const Exposure exposure{&film.frames()[9], &film.frames()[10], &film.frames()[11]};
       const double t = 1 + tau;
-      const Vec3 r = shutter.position(moment, 0, tau);
+      const Vec3 r = shutter.position(exposure, 0, tau);
       EXPECT_NEAR(r.x(), 2 + 0.8 * t, 1e-12);
       EXPECT_NEAR(r.z(), 3 + 2.5 * t - 0.5 * t * t, 1e-12);
     }
@@ -330,13 +330,13 @@ TEST(Camera, DiscsHideEachOtherInThreeDimensionsOnly) {
   info.box.dimension = 3;
   const SyntheticCamera camera(plain(), info);
   const Frame frame = frame_with({Vec3(4, 0, 4), Vec3(4.5, 0.9, 4)});
-  const Moment moment{.now = &frame};
-  const Moments m = moments_of(camera.light(moment), plain().backlight);
+  const Exposure exposure{.now = &frame};
+  const Moments m = moments_of(camera.light(exposure), plain().backlight);
   // Area of the union of two circles of radius R at distance R.
   const double lens = 2 * std::acos(0.5) - 0.5 * std::sqrt(3.0);
   EXPECT_NEAR(m.mass / (7.5 * 7.5), 2 * std::numbers::pi - lens, 0.03);
   // A rim has a third of itself in the other disc: cos of half that angle is 1/2.
-  EXPECT_NEAR(camera.truth(moment).at(0).visible, 2.0 / 3, 0.04);
+  EXPECT_NEAR(camera.truth(exposure).at(0).visible, 2.0 / 3, 0.04);
 }
 
 TEST(Camera, GlareSitsWhereItIsSaid) {
@@ -476,7 +476,7 @@ TEST(Camera, LaboratoryUnitsGiveTheReducedOptions) {
                               "exposure-t0", "exposure-us");
   put_file(folder / "twice.toml", "exposure_t0 = 0.05\nexposure_us = 714\n");
   expect_refusal<ConfigError>([&] { (void)read_camera(folder / "twice.toml"); }, "twice.toml:", "exposure_t0",
-                              "say one of the two");
+                              "give only one of the two");
   put_file(folder / "low.toml", "exposure_us = -1\n");
   expect_refusal<ConfigError>([&] { (void)read_camera(folder / "low.toml"); }, "exposure_us", "at least 0");
 }

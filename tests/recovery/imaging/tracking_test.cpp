@@ -71,8 +71,8 @@ CellDescription cell() {
 }
 
 void track_to(const std::filesystem::path& path, const DetectionStore& store, const CellDescription& c,
-              const PhaseWay& way, const std::filesystem::path& folder) {
-  const TrackedStack stack{link_detections(store, {.diameter_px = 15}, c, way, folder), {}, 200, 640};
+              const PhaseSource& source, const std::filesystem::path& folder) {
+  const TrackedStack stack{link_detections(store, {.diameter_px = 15}, c, source, folder), {}, 200, 640};
   const TrackPlan plan = plan_trajectory(stack, c, 15, 1);
   H5mdWriter writer(path, plan.info);
   write_trajectory(stack, plan, c, writer);

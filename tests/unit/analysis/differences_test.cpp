@@ -52,7 +52,7 @@ TEST(Differences, CameraAndRemainderAddUp) {
   EXPECT_NEAR(d.statistics.value(), 0.05,
               1e-9);  // 3, 4, 5: the filmed error, larger than the simulation's own
   EXPECT_NEAR(d.in_errors().value(), 1, 1e-6);
-  EXPECT_NE(d.attribution().find("camera and tracking make 83 %"), std::string::npos) << d.attribution();
+  EXPECT_NE(d.attribution().find("camera and tracking cause 83 %"), std::string::npos) << d.attribution();
 }
 
 TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
@@ -61,7 +61,7 @@ TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
   const Difference d = only(runs);
   EXPECT_NEAR(d.seeds.value(), 0.2082, 1e-4);  // of 0.8, 1.2, 1.1
   EXPECT_FALSE(d.camera);
-  EXPECT_NE(d.attribution().find("most is seeds"), std::string::npos) << d.attribution();
+  EXPECT_NE(d.attribution().find("largest part is seeds"), std::string::npos) << d.attribution();
 }
 
 // Two runs 0.02 apart: s = 0.01414, and two of the errors built from it are the 95 % of Student's t with one

@@ -71,7 +71,7 @@ std::string repeated(const std::string& piece, int n) {
 // Beyond some thousands the parser would exhaust the stack.
 TEST(Config, DepthIsBounded) {
   constexpr int kMany = 50'000;
-  const std::string deep = "tables and lists lie more than 100 deep in each other.";
+  const std::string deep = "tables and lists are nested more than 100 levels deep.";
   for (const std::string& text :
        {repeated("a.", kMany) + "a = 1\n", "\n\n[" + repeated("a.", kMany) + "a]\n",
         "[[" + repeated("a.", kMany) + "a]]\n", "a = " + repeated("[", kMany) + repeated("]", kMany) + "\n",
@@ -113,7 +113,7 @@ TEST(Config, OnlyRegularFilesAreRead) {
   };
   for (const std::string& path : {pipe, std::string("/dev/zero"), std::string("/dev/null")})
     EXPECT_EQ(said(path), path + ": this is a device, a pipe or a socket; a regular file is needed.");
-  EXPECT_EQ(said("/"), "/: this is a folder, a file is needed.");
+  EXPECT_EQ(said("/"), "/: this is a folder; a file is needed.");
   EXPECT_EQ(said(absent), absent + ": the file does not exist.");
   std::ofstream(file) << "1234567";
   EXPECT_EQ(said(file), "read 1234567");

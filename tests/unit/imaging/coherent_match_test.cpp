@@ -123,7 +123,7 @@ TEST(CollectiveMatching, WhereNobodyIsLostARowSlidesByALatticeVector) {
   EXPECT_EQ(at_rest[0], Assignment::kAlone);
   EXPECT_EQ(at_rest[1], 0) << "where the first bead is now";
   const auto match =
-      match_collectively(places, detections, choices, kDiameter, {.guess = {}, .nobody_lost = true});
+      match_collectively(places, detections, choices, kDiameter, {.initial = {}, .all_present = true});
   EXPECT_EQ(wrong(match.column_of_row), 0U);
   EXPECT_EQ(match.margin[5], 0) << "nothing but the count says so";
 }
@@ -134,7 +134,7 @@ TEST(CollectiveMatching, NobodyIsFoundAPlaceAcrossTheBed) {
   auto detections = places;
   detections[29 * 30 + 15] = {places[15].x_px, -1.1 * kDiameter};
   const auto match = match_collectively(places, detections, all_within(places, detections, 1.9, -10),
-                                        kDiameter, {.guess = {}, .nobody_lost = true});
+                                        kDiameter, {.initial = {}, .all_present = true});
   EXPECT_EQ(match.column_of_row[29 * 30 + 15], Assignment::kAlone);
   EXPECT_EQ(wrong(match.column_of_row), 1U);
 }
@@ -150,8 +150,9 @@ TEST(CollectiveMatching, AGuessDoesNoHarm) {
       choices.push_back({t, k, k == t ? -10.0 : k == (t + 1) % 6 ? -12.0 : -1.0});
   const std::vector<std::int64_t> ring = {1, 2, 3, 4, 5, 0};
   const std::vector<std::int32_t> told = {1, 2, 3, 4, 5, 0}, nonsense = {3, 3, -1, 90, 0, 0};
-  EXPECT_EQ(match_collectively(places, places, choices, kDiameter, {.guess = told}).column_of_row, ring);
-  EXPECT_EQ(match_collectively(places, places, choices, kDiameter, {.guess = nonsense}).column_of_row, ring);
+  EXPECT_EQ(match_collectively(places, places, choices, kDiameter, {.initial = told}).column_of_row, ring);
+  EXPECT_EQ(match_collectively(places, places, choices, kDiameter, {.initial = nonsense}).column_of_row,
+            ring);
 }
 
 TEST(CollectiveMatching, WhatCannotBeToldHasNoMargin) {

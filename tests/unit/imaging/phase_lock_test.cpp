@@ -76,7 +76,7 @@ TEST(PhaseLock, FramesToPhasesAndCycles) {
   EXPECT_THROW((PhaseLock{20, 20}.check({})), ConfigError);
   EXPECT_THROW((PhaseLock{-1, 0}.check({})), ConfigError);
   const PhaseTable table = fixed_phases(lock);
-  EXPECT_EQ(table.way, "fixed");
+  EXPECT_EQ(table.method, "fixed");
   EXPECT_EQ(table.at(7).phase, 0);
   EXPECT_EQ(table.at(7).cycle, 1);
   EXPECT_FALSE(table.jitter.has_value()) << "nothing was measured";
@@ -140,8 +140,7 @@ TEST(FoundPhase, TheBedOnThePlateIsThatOfItsEquation) {
 
 TEST(FoundPhase, PhasesAndWhatIsWrongWithThem) {
   const Film clean = film(400, 7, 0.01, 0, {}, {});
-  const PhaseTable t =
-      estimate_phases({clean.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+  const PhaseTable t = estimate_phases({clean.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0});
   EXPECT_EQ(t.frames_per_cycle, kPhases);
   EXPECT_NEAR(t.period_frames.value(), kPhases, 0.005);
   EXPECT_EQ(t.dropped, 0);
@@ -152,8 +151,7 @@ TEST(FoundPhase, PhasesAndWhatIsWrongWithThem) {
     ASSERT_EQ(t.frames[f].phase, clean.ticks[f] % kPhases) << f;
 
   const Film bad = film(600, 7, 0.01, 0, {83, 210, 211, 415}, {140, 333});
-  const PhaseTable u =
-      estimate_phases({bad.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+  const PhaseTable u = estimate_phases({bad.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0});
   EXPECT_EQ(u.dropped, 4);
   EXPECT_EQ(u.doubled, 2);
   std::size_t wrong = 0;
@@ -172,7 +170,7 @@ TEST(FoundPhase, ThreeCyclesAreEnoughAndASlipThatIsSoonUndoneIsSeen) {
       motion.repeats.assign(60, -40.0);
       motion.repeats[35] = 40;
     }
-    const PhaseTable t = estimate_phases(motion, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+    const PhaseTable t = estimate_phases(motion, {.frames_per_cycle = 0, .gamma = 2.0});
     EXPECT_EQ(t.frames_per_cycle, kPhases);
     EXPECT_EQ(t.dropped, 1);
     EXPECT_EQ(t.doubled, 1);
@@ -184,8 +182,7 @@ TEST(FoundPhase, GapsInEverySecondCycleHideNoPeriod) {
     std::vector<int> dropped(static_cast<std::size_t>(more), 41);
     dropped.insert(dropped.end(), static_cast<std::size_t>(more), 82);
     const Film bad = film(114, 0, 0.01, 0, dropped, {});
-    const PhaseTable t =
-        estimate_phases({bad.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+    const PhaseTable t = estimate_phases({bad.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0});
     EXPECT_EQ(t.frames_per_cycle, kPhases);
     EXPECT_EQ(t.dropped, 2 * more);
     EXPECT_EQ(t.doubled, 0);
@@ -195,7 +192,7 @@ TEST(FoundPhase, GapsInEverySecondCycleHideNoPeriod) {
 TEST(FoundPhase, AGapOfHalfACycleIsSeen) {
   const Film bad = film(110, 3, 0.01, 0, std::vector<int>(10, 47), {});
   const PhaseTable t = estimate_phases({bad.heights, std::vector<double>(bad.heights.size(), -40.0)},
-                                       {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+                                       {.frames_per_cycle = 0, .gamma = 2.0});
   EXPECT_EQ(t.frames_per_cycle, kPhases);
   EXPECT_EQ(t.dropped, 10);
   EXPECT_EQ(t.doubled, 0);
@@ -207,7 +204,7 @@ TEST(FoundPhase, WhatTheBeadsSayOfRepeatsCounts) {
   // A jumpy bed, as it is above the onset of convection.
   const Film clean = film(240, 0, 0.05, 0, {}, {});
   BedMotion motion{clean.heights, std::vector<double>(clean.heights.size(), -40.0)};
-  const PhaseEstimationOptions options{.frames_per_cycle = kPhases, .gamma = 2.0, .amplitude = {}};
+  const PhaseEstimationOptions options{.frames_per_cycle = kPhases, .gamma = 2.0};
   EXPECT_EQ(estimate_phases(motion, options).doubled, 0);
   // Where the bed turns it repeats itself in every cycle: nobody took a frame twice.
   for (std::size_t f = 9; f < motion.repeats.size(); f += kPhases) motion.repeats[f] = 40;
@@ -238,16 +235,14 @@ TEST(FoundPhase, OddsOfARepeat) {
 TEST(FoundPhase, APeriodThatIsNoWholeNumberOfFramesIsMeasured) {
   std::vector<double> heights;
   for (int f = 0; f < 200; ++f) heights.push_back(bed_height(2.0, f / 20.03));
-  EXPECT_NEAR(estimate_phases({heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}})
-                  .period_frames.value(),
+  EXPECT_NEAR(estimate_phases({heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0}).period_frames.value(),
               20.03, 0.006);
 }
 
 TEST(FoundPhase, JitterIsMeasured) {
   for (const double jitter : {0.1, 0.25}) {
     const Film f = film(2000, 0, 0.005, jitter, {}, {});
-    const PhaseTable t =
-        estimate_phases({f.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0, .amplitude = {}});
+    const PhaseTable t = estimate_phases({f.heights, {}}, {.frames_per_cycle = 0, .gamma = 2.0});
     std::cout << "jitter " << jitter << ", found " << t.jitter.value() << '\n';
     EXPECT_EQ(t.dropped + t.doubled, 0);
     EXPECT_NEAR(t.jitter.value(), jitter, 0.25 * jitter);
@@ -272,8 +267,6 @@ TEST(FoundPhase, RefusesWhatDoesNotRepeat) {
   EXPECT_THROW(estimate_phases({std::vector<double>(500, 1.0), {}}, {}), InputError);
   EXPECT_THROW(estimate_phases({std::vector<double>(5, 1.0), {}}, {}), InputError);
   const Film f = film(400, 0, 0.01, 0, {}, {});
-  EXPECT_THROW(estimate_phases({f.heights, {}}, {.frames_per_cycle = 13, .gamma = {}, .amplitude = {}}),
-               InputError);
-  EXPECT_THROW(estimate_phases({f.heights, {}}, {.frames_per_cycle = 2, .gamma = {}, .amplitude = {}}),
-               InputError);
+  EXPECT_THROW(estimate_phases({f.heights, {}}, {.frames_per_cycle = 13, .gamma = {}}), InputError);
+  EXPECT_THROW(estimate_phases({f.heights, {}}, {.frames_per_cycle = 2, .gamma = {}}), InputError);
 }

@@ -17,18 +17,18 @@ namespace {
 
 constexpr std::size_t kNormal = 0, kSmooth = 0, kRough = 1;  // places in laws/axes.hpp
 
-double at_moment(const MomentMap& map, const double* values, std::size_t moment) {
+double at_moment(const StageMap& map, const double* values, std::size_t moment) {
   double sum = 0;
-  for (std::size_t j = 0; j < kMoments; ++j) sum += map.column[j][moment] * values[j];
+  for (std::size_t j = 0; j < kStages; ++j) sum += map.column[j][moment] * values[j];
   return sum;
 }
 
 TEST(Collocation, PowersAreIntegratedToTheMoments) {
   const Collocation& c = Collocation::numbers();
   for (int power = 0; power < 8; ++power) {
-    double values[kMoments];
-    for (std::size_t k = 0; k < kMoments; ++k) values[k] = std::pow(c.moment[k], power);
-    for (std::size_t k = 0; k < kMoments; ++k) {
+    double values[kStages];
+    for (std::size_t k = 0; k < kStages; ++k) values[k] = std::pow(c.moment[k], power);
+    for (std::size_t k = 0; k < kStages; ++k) {
       const double n = power, x = c.moment[k];
       EXPECT_NEAR(at_moment(c.once, values, k), std::pow(x, n + 1) / (n + 1), 1e-15);
       // The degree of the result, power + 2, is more than eight values can carry only at 7.
@@ -41,11 +41,11 @@ TEST(Collocation, PowersAreIntegratedToTheMoments) {
 
 TEST(Collocation, TheEndOfAStepIsOfOrderFifteen) {
   const Collocation& c = Collocation::numbers();
-  EXPECT_EQ(c.moment[kMoments - 1], 1);
+  EXPECT_EQ(c.moment[kStages - 1], 1);
   const auto integral = [&](int power) {
-    double values[kMoments];
-    for (std::size_t k = 0; k < kMoments; ++k) values[k] = std::pow(c.moment[k], power);
-    return at_moment(c.once, values, kMoments - 1);
+    double values[kStages];
+    for (std::size_t k = 0; k < kStages; ++k) values[k] = std::pow(c.moment[k], power);
+    return at_moment(c.once, values, kStages - 1);
   };
   for (int power = 8; power <= 14; ++power) EXPECT_NEAR(integral(power), 1.0 / (power + 1), 1e-15) << power;
   // Of x^15 the rule makes (7! 8!)^2/(15! 16!) too much: what P_7 is of x^7 on [0, 1], over the leading
@@ -56,12 +56,12 @@ TEST(Collocation, TheEndOfAStepIsOfOrderFifteen) {
 TEST(Collocation, TheLastCoefficientsAreThoseOfLegendre) {
   const Collocation& c = Collocation::numbers();
   // x^7 and x^6 on [0, 1] have the leading Legendre coefficients 7!^2/14! and 6!^2/12!.
-  double sevenths[kMoments], sixths[kMoments];
-  for (std::size_t k = 0; k < kMoments; ++k)
+  double sevenths[kStages], sixths[kStages];
+  for (std::size_t k = 0; k < kStages; ++k)
     sevenths[k] = std::pow(c.moment[k], 7), sixths[k] = std::pow(c.moment[k], 6);
   const auto sum = [&](const double* last, const double* values) {
     double all = 0;
-    for (std::size_t k = 0; k < kMoments; ++k) all += last[k] * values[k];
+    for (std::size_t k = 0; k < kStages; ++k) all += last[k] * values[k];
     return all;
   };
   EXPECT_NEAR(sum(c.last[1], sevenths), 1.0 / 3432, 1e-15);
@@ -73,8 +73,8 @@ TEST(Collocation, PolynomialsOfDegreeEightAreKnownEverywhere) {
   const Collocation& c = Collocation::numbers();
   const auto p = [](double x) { return 2 - x + 3 * std::pow(x, 5) - std::pow(x, 8); };
   const auto slope = [](double x) { return -1 + 15 * std::pow(x, 4) - 8 * std::pow(x, 7); };
-  double values[kMoments];
-  for (std::size_t k = 0; k < kMoments; ++k) values[k] = p(c.moment[k]);
+  double values[kStages];
+  for (std::size_t k = 0; k < kStages; ++k) values[k] = p(c.moment[k]);
   for (const double x : {0.001, 0.3, 0.77, 0.999}) {
     const StagePolynomials at(c, x);
     EXPECT_NEAR(at.value(p(0), values), p(x), 1e-14) << x;
@@ -134,10 +134,10 @@ TEST(Collocation, ADampedOscillatorIsFollowed) {
     for (const bool put_in : {false, true}) {
       const CollocationMotion m = HeadOn().stepped(kScalar, h, put_in);
       EXPECT_LE(m.change, 1e-15);
-      for (std::size_t k = 0; k < kMoments; ++k) {
+      for (std::size_t k = 0; k < kStages; ++k) {
         const auto [overlap, speed] = HeadOn::exact(h * Collocation::numbers().moment[k]);
         // Eight moments carry the motion to the eighth power of (omega h)/2 between the steps' ends.
-        const double off = k + 1 == kMoments ? 1e-13 : 1e-8;
+        const double off = k + 1 == kStages ? 1e-13 : 1e-8;
         EXPECT_NEAR(m.overlap[k], overlap, off);
         EXPECT_NEAR(-m.numbers[3][k], speed, off);
         EXPECT_NEAR(m.numbers[0][k], 0.2 + 0.1 * h * Collocation::numbers().moment[k], 1e-15);
@@ -149,7 +149,7 @@ TEST(Collocation, StepsHaveTheSameBitsOnEveryVectorUnit) {
   constexpr std::size_t kBytes = offsetof(CollocationMotion, change) + sizeof(double);
   const double normal_law[2] = {1e6, 400}, tangential_law[2] = {-300, 0.3};
   const double normal[3] = {0.6, 0, 0.8}, slopes[6] = {10, 3, -20, 0.5, -7, 2},
-               push[3 * kMoments] = {1, 2, -3, 0.5};
+               push[3 * kStages] = {1, 2, -3, 0.5};
   const double numbers[9] = {0.59, 0.001, 0.79, -1, 0.3, -2, 0.1, -0.2, 0.4};
   for (const bool wall : {false, true})
     for (const bool slides : {false, true})
@@ -163,7 +163,7 @@ TEST(Collocation, StepsHaveTheSameBitsOnEveryVectorUnit) {
         a.method = &Collocation::numbers(), a.response = &a.method->response[10];
         CollocationMotion scalar{};
         kScalar.find_step(kNormal, kRough, 3)(a, scalar);
-        EXPECT_TRUE(std::isfinite(scalar.numbers[8][kMoments - 1]));
+        EXPECT_TRUE(std::isfinite(scalar.numbers[8][kStages - 1]));
         for (const Target* target : {&kAvx2, &kAvx512}) {
           if (!target->available()) continue;
           CollocationMotion m{};

@@ -370,7 +370,7 @@ TEST(Sound, NamesTheBead) {  // H1, H5, H21
   expect_says(said([](auto& b) { b[1] = b[0]; }), "scene.toml: start: beads 0 and 1 have the same centre.");
   expect_says(said([](auto& b) { b[2].x -= 0.06; }), "beads 1 and 2 overlap by 0.06 sigma");
   expect_says(said([](auto& b) { b[2].x -= 0.14, b[1].x -= 0.08; }),
-              "beads 0 and 1 overlap by 0.08 sigma, the bound is 0.05; 2 pairs do");
+              "beads 0 and 1 overlap by 0.08 sigma, the bound is 0.05; 2 pairs exceed their bounds");
   EXPECT_EQ(said([](auto& b) { b[2].x -= 0.04; }), "accepted");
   expect_says(said([](auto& b) { b[1].vz = std::nan(""); }), "bead 1 has no finite position or velocity");
   expect_says(said([](auto& b) { b[1].spin_x = HUGE_VAL; }), "bead 1 has no finite position or velocity");
@@ -419,8 +419,8 @@ TEST(Trajectory, ImpossibleOnesAreRefused) {  // H1, H5
   expect_says(refusal({Vec3(2, 0, 0.5), Vec3(2, 0, 0.5)}), "beads 0 and 1 have the same centre");
   expect_says(refusal({Vec3(2, 0, 0.5), Vec3(2.5, 0, 0.5)}), "beads 0 and 1 overlap by 0.5 sigma");
   expect_says(refusal({Vec3(9, 0, 0.5)}), "into the wall \"right\"");
-  expect_says(refusal({Vec3(2, 0, 0.5)}, {"start.frame=1"}), "start.frame: frame 1 was asked for");
-  expect_says(refusal({Vec3(2, 0, 0.5)}, {"beads.count=2"}), "beads.count: 2 beads were announced");
+  expect_says(refusal({Vec3(2, 0, 0.5)}, {"start.frame=1"}), "start.frame: frame 1 was requested");
+  expect_says(refusal({Vec3(2, 0, 0.5)}, {"beads.count=2"}), "beads.count: 2 beads were specified");
   // Too many for the width: pushing ends in a jam.
   std::vector<Vec3> row;
   for (int i = 0; i < 9; ++i) row.emplace_back(0.5 + i * 0.875, 0, 0.5);
@@ -528,17 +528,17 @@ TEST(BeadTable, BadRowsAreNamed) {
   expect_refused("", ": the table is empty");
   expect_refused("x,vx\n1,2\n", ":1: z: the column is missing");
   expect_refused("x,z,colour\n1,2,3\n", ":1:5: colour: there is no such column");
-  expect_refused("x,z,x\n1,2,3\n", ":1:5: x: the column is there twice");
+  expect_refused("x,z,x\n1,2,3\n", ":1:5: x: the column occurs twice");
   expect_refused("x,y,z\n1,2,3\n", ":1:3: y: beads of a 2D cell have no such column");
-  expect_refused("x,z\n1,2\n1\n", ":3: 2 columns are needed, here are 1");
-  expect_refused("x,z\n1,2,3\n", ":2: 2 columns are needed, here are 3");
+  expect_refused("x,z\n1,2\n1\n", ":3: 2 columns are needed, 1 were found");
+  expect_refused("x,z\n1,2,3\n", ":2: 2 columns are needed, 3 were found");
   for (const char* bad : {"two", "", "nan", "inf", "1e999", "2 3", "0x10", "2;"})
     expect_refused("x,z\n1,2\n1, " + std::string(bad) + "\n",
                    std::string(":3:") + "4: z: a finite number is needed, not '" + bad + "'");
   expect_refused("x,z,radius\n1,2,0\n", ":2:5: radius: 0 is out of range; the value must be greater than 0");
   expect_refused("x,z,mass\n1,2,-1\n", ":2:5: mass: -1 is out of range");
   expect_says(complaint([&] { make_start(table.scene_of("x,z\n1,2\n", kFlat, {"beads.count=3"})); }),
-              "beads.count: 3 beads were announced");
+              "beads.count: 3 beads were specified");
   std::filesystem::remove(table.file);
   expect_says(complaint([&] {
                 make_start(scene(kFlat, {"start.kind=table", "start.from=" + table.file}));

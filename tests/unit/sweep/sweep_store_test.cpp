@@ -74,11 +74,11 @@ TEST(SweepMemory, PointsThatRunAtOnceMustFitTogether) {
   EXPECT_NO_THROW(require_memory_together(schedule, 16, "--threads", 7.8e6));
   expect_refusal<ConfigError>([&] { require_memory_together(schedule, 2, "--threads", 5.1e6); }, "plan.toml",
                               "beads.count", "4000 beads", "2 points that run at once", "5.2 MB",
-                              "has 5.1 MB to give", "with --threads 1");
+                              "has 5.1 MB available", "with --threads 1");
   expect_refusal<ConfigError>([&] { require_memory_together(schedule, 16, "--threads", 7.7e6); },
                               "4 points that run at once", "with --threads 3");
   expect_refusal<ConfigError>([&] { require_memory_together(schedule, 2, "--threads", 2.5e6); },
-                              "beads.count", "asks for 4000 beads in one point", "2.6 MB");
+                              "beads.count", "requires 4000 beads in one point", "2.6 MB");
   // Later rounds of a search go to the ends of its range.
   const Plan search = read_plan_text(scene +
                                          "drive.gamma = 1.5\n[search]\nkey = \"beads.layers\"\nverdict = "

@@ -81,11 +81,11 @@ TEST(Quantities, WhatCannotBeConvertedOrContradictsIsNamed) {
   expect_says(twice, "drive.amplitude_mm");
   expect_says(twice, "drive.amplitude_sigma");
   expect_says(complaint_of_cell("[scale]\nsigma_mm = 2.0\nsigma_m = 0.001\n"),
-              "scale.sigma_m says the same quantity");
+              "scale.sigma_m sets the same quantity");
   expect_says(complaint_of_cell("[drive]\nfrequency_hz = -8.0\n" + kScale), "CELL.toml:2:");
   // Also where the two agree: which one follows when the scale is corrected nobody can tell.
   expect_says(complaint_of_cell("[drive]\namplitude_mm = 3.2\namplitude_sigma = 1.6\n" + kScale),
-              "amplitude_sigma says the same quantity");
+              "amplitude_sigma sets the same quantity");
   // Three words of a drive must agree.
   EXPECT_NO_THROW(
       (void)cell_of("[drive]\namplitude_mm = 4\nomega_per_t0 = 1.0\ngamma = 2.0\n" + kScale).drive());
@@ -117,7 +117,7 @@ TEST(Quantities, ACellIsOverlaidInAnySpelling) {
       [&] {
         (void)width({"cell.width_mm=40", "cell.width_sigma=20"});
       },
-      "say one of the two");
+      "give only one of the two");
   EXPECT_EQ(read_cell("", {"camera.frame_rate_hz=1000"}).frame_rate_hz, 1000);
   expect_refusal<ConfigError>([&] { (void)read_cell("", {"camera.frame_rate_hz=0"}); },
                               "camera.frame_rate_hz", "greater than 0");
@@ -178,7 +178,7 @@ TEST(Quantities, ABareLengthOfASceneBesideItsScaleIsRefused) {
   // Of a diameter and a radius one is said.
   expect_refusal<ConfigError>(
       [&] { (void)sim::read_scene_text(kSlot + "[beads]\nradius_mm = 1\ndiameter_mm = 2\n", "s.toml"); },
-      "beads.diameter_mm", "beads.radius_mm", "say one of the two");
+      "beads.diameter_mm", "beads.radius_mm", "give only one of the two");
   expect_refusal<ConfigError>(
       [&] { (void)sim::read_scene_text(kBeads + "[drive]\ngamma = 2\n", "s.toml", {"cell.width_mm=40"}); },
       "cell.width_mm: is 40 in laboratory units", "scale.sigma_mm");

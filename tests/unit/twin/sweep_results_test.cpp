@@ -79,7 +79,15 @@ TEST(SweepResults, TheSceneMayStandBesideThePlan) {
 TEST(SweepResults, AnythingElseIsRefused) {
   const TemporaryFolder folder;
   Comparison c;
-  for (const char* text : {"", "[]", "{\"format\": \"else\"}", "{\"format\": \"twincell sweep 1\"}"}) {
+  for (const char* text :
+       {"", "[]", "{\"format\": \"else\"}", "{\"format\": \"twincell sweep 1\"}",
+        // A key of a point or an onset is missing, or of another type.
+        R"({"format": "twincell sweep 1", "plan": 3, "points": []})",
+        R"({"format": "twincell sweep 1", "plan": "[scene]\ndrive.gamma = 1.0"})",
+        R"({"format": "twincell sweep 1", "plan": "[scene]\ndrive.gamma = 1.0", "points":
+                               [{"results": {"phase": {"value": "bouncing"}}}]})",
+        R"({"format": "twincell sweep 1", "plan": "[scene]\ndrive.gamma = 1.0", "points": [],
+                               "onsets": [{"verdict": "bouncing", "key": "drive.gamma"}]})"}) {
     put_file(folder / "results.json", text);
     EXPECT_THROW(add_sweep(folder / "results.json", c), InputError) << text;
   }

@@ -187,7 +187,7 @@ TEST(GranularTemperature, IsOverTimeWhereTheFramesBringItAndSaysWhatTheyAlias) {
   const auto results = analyze(aliased(true));
   // Cycle 0 has no mean before its first frame: 59 cycles of 2, 3, 1, 2, 3, 1, …, 2, 3.
   EXPECT_NEAR(find_result(results, "T_g").value(), (19 * 6 + 5) / 59.0, 1e-12);
-  EXPECT_NE(find_result(results, "T_g").convention.find("time, 400 samples a cycle"), std::string::npos);
+  EXPECT_NE(find_result(results, "T_g").convention.find("time, 400 samples per cycle"), std::string::npos);
   EXPECT_NEAR(find_result(results, "T_z").value(), 2 * (19 * 6 + 5) / 59.0, 1e-12);
   EXPECT_NEAR(find_result(results, "T_g_aliasing").value(), 0.1, 1e-12);
   EXPECT_NEAR(find_result(results, "T_z_aliasing").value(), 0.1, 1e-12);
@@ -198,7 +198,7 @@ TEST(GranularTemperature, IsOverTimeWhereTheFramesBringItAndSaysWhatTheyAlias) {
 TEST(GranularTemperature, AliasingIsNotKnownWithoutMeansOverTime) {
   const auto results = analyze(aliased(false));
   EXPECT_NEAR(find_result(results, "T_g").value(), 2.2, 1e-12);
-  EXPECT_NE(find_result(results, "T_g").convention.find("what 4 phases a cycle alias is not known"),
+  EXPECT_NE(find_result(results, "T_g").convention.find("the aliasing of 4 phases per cycle is not known"),
             std::string::npos);
   for (const char* name : {"T_g_aliasing", "T_z_aliasing", "T_g_sampling"})
     EXPECT_NE(find_result(results, name).absent.find("not known"), std::string::npos) << name;

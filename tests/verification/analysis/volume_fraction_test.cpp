@@ -64,7 +64,7 @@ TEST(VolumeFraction, OfABedThatSinksWithThePlateIsAbsent) {
     bed.append(frame);
   }
   const auto results = analyze(bed, {.only = {"phi_top"}});
-  EXPECT_NE(find_result(results, "phi_top").absent.find("rides on the plate"), std::string::npos);
+  EXPECT_NE(find_result(results, "phi_top").absent.find("moves with the plate"), std::string::npos);
 }
 
 TEST(VolumeFraction, OfNoBeadsIsAbsent) {

@@ -148,7 +148,7 @@ TEST(Sliding, CutIntoFinerStepsTheExactSolutionIsTheSame) {
   const Plan plan = make_plan(scene);
   CollisionSetting setting;
   setting.laws = &plan.bead, setting.pair = {0.5, 0.25, 6}, setting.turn = 4;
-  for (const SlipReading reading : {SlipReading::rescale, SlipReading::spring_only, SlipReading::clip})
+  for (const SlipReading reading : {SlipReading::rescale, SlipReading::spring_limited, SlipReading::clip})
     for (const double v_t : {-3.0, -0.7, 0.2, 0.9, 1.5, 4.0}) {
       const RelativeMotion touch{Vec3(0, 0, 1), Vec3(v_t, 0, -1), Vec3(0, 0.3, 0)};
       const CollisionEnd a = integrate_collision_with_memory(setting, touch, 0, 1, reading),
@@ -162,7 +162,7 @@ TEST(Sliding, ReadingsOfTruncateAreDifferentLaws) {
   // Printed for docs/friction.md; that they differ, and where they must not.
   for (const double degrees : {10.0, 30.0, 45.0, 60.0, 75.0}) {
     double spin[3];
-    for (const SlipReading r : {SlipReading::rescale, SlipReading::spring_only, SlipReading::clip}) {
+    for (const SlipReading r : {SlipReading::rescale, SlipReading::spring_limited, SlipReading::clip}) {
       const Outcome o = exact_outcomes({Impact::at(degrees, true)}, impact_scene(), r).front();
       spin[static_cast<int>(r)] = o.spin;
       const char* words[] = {"spring", "spring-limited", "force-clipped"};

@@ -6,12 +6,12 @@
 
 namespace twincell::sim {
 
-/// The pull at the end of a contact is cut off, which raises e (bead-bead of Fortini & Huang: 0.8948 ->
-/// 0.8971).
-struct ClippedSpringDashpot : LinearSpringDashpot {
+/// The attraction at the end of a contact is removed, which raises e (bead-bead contact of Fortini & Huang:
+/// 0.8948 -> 0.8971).
+struct NoTensionSpringDashpot : LinearSpringDashpot {
   static constexpr std::string_view kWord = "linear-no-tension", kName = "linear spring-dashpot, no tension";
 
-  static ClippedSpringDashpot read(const ContactTable& t) { return {LinearSpringDashpot::read(t)}; }
+  static NoTensionSpringDashpot read(const ContactTable& t) { return {LinearSpringDashpot::read(t)}; }
   [[nodiscard]] Collision collision(const PairScale& p) const { return oscillator(p).without_pull(); }
 
   template <class V>

@@ -1,8 +1,9 @@
 #pragma once
 /// \file
-/// Linear spring whose dashpot is chosen anew at every collision, so that the restitution falls with the
-/// impact speed: e(v) = max(e_0, 1 - (1 - e_0) (v/v_0)^(3/4)) (Bizon et al., Phys. Rev. Lett. 80, 57, 1998).
-/// Bhateja et al. 2016 name the absence of such a law as a cause of their deviations from experiments.
+/// Linear spring with a dashpot that is set at the start of each collision, so that the restitution decreases
+/// with the impact speed: e(v) = max(e_0, 1 - (1 - e_0) (v/v_0)^(3/4)) (Bizon et al., Phys. Rev. Lett. 80,
+/// 57, 1998). Bhateja et al. 2016 name the absence of such a law as a cause of their deviations from
+/// experiments.
 
 #include <cmath>
 #include <string_view>
@@ -12,18 +13,18 @@
 
 namespace twincell::sim {
 
-/// One number is remembered per contact: its eta, fixed at first touch.
-struct FallingRestitution {
+/// Each contact remembers one number: its damping, fixed at first touch.
+struct VelocityDependentRestitution {
   static constexpr std::string_view kWord = "velocity-dependent-restitution",
                                     kName = "linear spring, restitution falling with speed";
   static constexpr const char* kKeys[] = {"k_n", "restitution_fast", "restitution_speed"};
   static constexpr int kConstants = 4, kMemory = 1;
 
   double k_n = 1e6;               ///< m g/sigma
-  double restitution_fast = 0.7;  ///< e_0, of impacts at v_0 and faster
+  double restitution_fast = 0.7;  ///< e_0, for impacts at v_0 and faster
   double restitution_speed = 1;   ///< v_0, sqrt(g sigma)
 
-  static FallingRestitution read(const ContactTable& t) {
+  static VelocityDependentRestitution read(const ContactTable& t) {
     return {read_stiffness(t), t.number("restitution_fast", 0, 1, true).value_or(0.7),
             t.number("restitution_speed", 0, 1e6, true).value_or(1)};
   }
@@ -43,7 +44,9 @@ struct FallingRestitution {
   static V force(const V* c, V overlap, V v_n, V* memory) {
     const auto first = both(memory[0] == V(0.0), overlap > V(0.0));
     if (any(first)) {
-      // (v/v_0)^(3/4) by two roots, and the logarithm lane by lane: once a collision.
+      // (v/v_0)^(3/4) is computed with two square roots. The logarithm has no vector form; it runs lane by
+      // lane, once per collision. The lower bound kTiny distinguishes an undamped contact (e = 1) from a new
+      // one, whose memory is 0.
       const V u = sqrt(max(-v_n, V(0.0)) * c[3]);
       const V e = max(c[2], fma(c[2] - V(1.0), u * sqrt(u), V(1.0)));
       memory[0] =

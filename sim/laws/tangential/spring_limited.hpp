@@ -1,18 +1,18 @@
 #pragma once
 /// \file
-/// The other reading of "truncate": the spring alone is held at the Coulomb limit, the dashpot dropped while
-/// sliding.
+/// Second reading of "truncate": only the spring is limited to the Coulomb limit, and the dashpot is dropped
+/// while the surfaces slide.
 
 #include "sim/laws/tangential/spring.hpp"
 
 namespace twincell::sim {
 
-/// A different law from SpringSlider: single collisions differ by per cents.
-struct SpringOnlySlider : SpringSlider {
+/// This law differs from SpringSlider: the results of single collisions differ by per cents.
+struct SpringLimitedSlider : SpringSlider {
   static constexpr std::string_view kWord = "spring-limited",
                                     kName = "spring with history, dashpot, limit on the spring alone";
 
-  static SpringOnlySlider read(const ContactTable& t) { return {SpringSlider::read(t)}; }
+  static SpringLimitedSlider read(const ContactTable& t) { return {SpringSlider::read(t)}; }
 
   template <class V, class T, class X>
   static T force(const V* c, const T& v_t, V f_n, V dt, X& xi) {
