@@ -3,7 +3,7 @@
 namespace twincell::sim {
 
 const Target& widest_target() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef __SANITIZE_THREAD__
   return kScalar;  // the only kernels that are compiled with sanitizers (CMakeLists.txt)
 #endif
   static const Target& widest = kAvx512.available() ? kAvx512 : kAvx2.available() ? kAvx2 : kScalar;

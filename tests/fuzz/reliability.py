@@ -78,8 +78,8 @@ def page():
     for name in readers():
         text += table(r for r in fuzz if r["subject"] == name) or [f"| fuzz | {name} | 0 | – | – | – | – |"]
     text += ["", "**Tests under sanitizers** (`./run asan`, `./run tsan`). A sanitizer ends the program that it finds at fault, and so the",
-             "test. Both look into the scalar kernels only; those for vector units (`sim/kernels/kernels_avx*.cpp`) are the same text. Nor do",
-             "they look into libraries.",
+             "test. The kernels for vector units (`sim/kernels/kernels_avx*.cpp`) are not looked into: the agreement tests run the same text as",
+             "scalar kernels. Nor are libraries.",
              "", "| campaign | tests | ran | failed | last run | commit | sanitizers |", "|---|---|---|---|---|---|---|"]
     suites = [r for r in rows() if r["campaign"] != "fuzz"]
     text += table(suites) or ["| – | – | 0 | – | – | – | – |"]

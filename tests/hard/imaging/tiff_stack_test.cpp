@@ -10,6 +10,7 @@
 #include "imaging/stack/open_frames.hpp"
 #include "tests/support/camera_files.hpp"
 #include "tests/support/frames.hpp"
+#include "tests/support/sanitized.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace twincell;
@@ -44,12 +45,6 @@ void expect_stack(const fs::path& stack, int width, int height, int frames, int 
     EXPECT_TRUE(equal(read[static_cast<std::size_t>(f)], expected(width, height, f, bits, value)))
         << stack << ", frame " << f;
 }
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;  // what is freed is kept a while, to find who still uses it
-#else
-constexpr bool kSanitized = false;
-#endif
 
 long peak_kib() {
   rusage use{};

@@ -8,6 +8,7 @@
 #include "tests/support/complaint.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace twincell::sim {
 namespace {
@@ -47,6 +48,7 @@ TEST(ResourceDemand, MoreThanTheMachineHasIsRefusedByKey) {
 
 // With a limit of the shell, as a batch system sets one: before a bead is placed.
 TEST(ResourceDemand, TheProgramRefusesWhatItsLimitDoesNotAllow) {
+  if (kSanitized) GTEST_SKIP() << "A sanitized program cannot start within a limit of memory.";
   const TemporaryFolder folder;
   const std::string scene = folder / "s.toml", err = folder / "err";
   put_file(scene, kScene + "[cell]\nwidth = 10000\n[beads]\nlayers = 900\n");
