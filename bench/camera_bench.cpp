@@ -1,6 +1,6 @@
 // The synthetic camera on the first paper's cell of 1600 beads: one exposure (one thread, processor time),
-// and whole runs as `twincell render` makes them, PNGs and truth written (all cores, wall time). Goal: 1000
-// frames in a minute.
+// and complete runs as `twincell render` makes them, with PNGs and true positions written (all cores, wall
+// time). Goal: 1000 frames per minute.
 
 #include <benchmark/benchmark.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kWidth = 20, kLayers = 80;
 
-/// A crystal that rides on the plate; every other layer moves at the plate's peak speed to the side.
+/// A crystal that rides on the plate; every second layer moves sideways at the plate's peak speed.
 MemoryTrajectory riding(int frames) {
   TrajectoryInfo info;
   info.n_beads = kWidth * kLayers;

@@ -1,5 +1,5 @@
-// The list kernel with the widest vectors and with AVX2, beside the
-// all-pairs oracle on the same driven bed, in one run. Items are particle-steps.
+// The list kernel with the widest vectors and with AVX2, compared with the all-pairs reference on the same
+// driven bed, in one run. Items are particle-steps.
 
 #include <benchmark/benchmark.h>
 
@@ -11,7 +11,7 @@
 namespace twincell::sim {
 namespace {
 
-/// A crystal of the first paper's beads riding on the plate at Gamma = 1.5.
+/// Force pass on a crystal of the first paper's beads that rides on the plate at Gamma = 1.5.
 void force_pass(benchmark::State& state, SolverKind kind) {
   if (!available(kind)) return state.SkipWithError("this processor cannot");
   const auto n = state.range(0);

@@ -1,7 +1,7 @@
 // link_cost TABLE DIAMETER PHASES [FALL] [MEMORY] [REPETITIONS] -> identities on TABLE.ids, one line of JSON.
 //
 // TABLE, little-endian: int64 frames; per frame int64 beads, then x, y as float64 for each. PHASES 0: the
-// linker is not told the phase of a frame. What link_peers.py drives beside other linkers.
+// linker gets no phase of a frame. link_peers.py runs this program and compares it with other linkers.
 
 #include <fmt/format.h>
 
@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: link_cost TABLE DIAMETER PHASES [FALL] [MEMORY] [REPETITIONS]\n");
     return 2;
   }
+  // Detections.
   const std::string path = argv[1];
   std::ifstream in(path, std::ios::binary);
   std::vector<std::vector<PixelPoint>> frames(static_cast<std::size_t>(get<std::int64_t>(in)));
@@ -53,6 +54,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "link_cost: {} is missing or too short.\n", path);
     return 3;
   }
+  // Options of the linker.
   LinkOptions options{.diameter_px = std::stod(argv[2])};
   const int phases = std::stoi(argv[3]);
   options.closed = true;
@@ -68,6 +70,7 @@ int main(int argc, char** argv) {
     }
     return time;
   };
+  // Linking: the fastest repetition counts; the first one also writes the identities.
   double best = 1e300;
   LinkReport report;
   for (int r = 0; r < repetitions; ++r) {

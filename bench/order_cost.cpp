@@ -1,7 +1,8 @@
 // order_cost TABLE RULE [REPETITIONS] -> q6 of every bead on TABLE.RULE.q6, one line of JSON.
 //
 // TABLE, little-endian: int64 frames, int64 beads; then x, z as float64 for each bead of each frame. RULE:
-// cutoff (1.2 sigma), delaunay, voronoi. What order_peers.py drives beside NumPy and SciPy.
+// cutoff (1.2 sigma), delaunay, voronoi. order_peers.py runs this program and compares it with NumPy and
+// SciPy.
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
-// Runs a scene and says what pieces of it cost, each when asked, so that another program can be timed on the
-// same piece in between.
+// Runs a scene in pieces and prints the cost of each. It starts each piece on request, so another program can
+// be timed on the same piece in between.
 //
 // usage: period_cost SCENE.toml PERIODS FOLDER
 //
-// A piece is PERIODS whole periods of the drive, since the cost varies over one; there are
-// time.cycles/PERIODS of them. Before each: writes its first state to FOLDER/piece_K.h5, prints {"state": …,
-// "beads": …, "steps": …} and waits for a line on standard input; after it prints {"cpu_s": …}, processor
-// time of the whole program.
+// A piece is PERIODS whole periods of the drive, because the cost varies over one period; there are
+// time.cycles/PERIODS pieces. Before each piece the program writes its first state to FOLDER/piece_K.h5,
+// prints {"state": …, "beads": …, "steps": …} and waits for a line on standard input. After the piece it
+// prints {"cpu_s": …}, the processor time of the whole program.
 
 #include <fmt/format.h>
 

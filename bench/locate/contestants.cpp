@@ -11,7 +11,7 @@ namespace twincell::bench {
 
 namespace {
 
-// The only place that knows how this library is called.
+// The only function here that calls this library's locator.
 std::vector<cv::Point2d> ours(const cv::Mat1b& frame, LocatorOptions options, const rendered::Case& of) {
   options.diameter_px = of.diameter;
   options.other_diameters_px = of.other_diameters;
@@ -20,7 +20,7 @@ std::vector<cv::Point2d> ours(const cv::Mat1b& frame, LocatorOptions options, co
   return centres;
 }
 
-// True where the options know ways of refining by name.
+// True if the options select the refinement method by name.
 template <class Options>
 constexpr bool kNamesRefinements = requires(Options o) {
   o.method = std::string();
@@ -88,8 +88,8 @@ std::vector<Contestant> contestants() {
                      return opencv_hough(frame, of, settings);
                    }});
   };
-  // Without an enlarged frame: the best of `locate_truth --tune`. Enlarged: tried by hand on the random
-  // packing.
+  // Without enlargement: the best setting of `locate_truth --tune`. With enlargement: tuned by hand on the
+  // random packing.
   hough("opencv gradient", {cv::HOUGH_GRADIENT, 1, 0, 120, 4, 0.7, 0.15});
   hough("opencv gradient, enlarged", {cv::HOUGH_GRADIENT, 3, 0, 60, 10, 0.8, 0.15});
   hough("opencv alt", {cv::HOUGH_GRADIENT_ALT, 1, 0, 60, 0.5, 0.8, 0.15});

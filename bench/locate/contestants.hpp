@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Who finds circles: this library with each finder and refinement, OpenCV's two Hough transforms.
+/// The circle finders that are compared: this library with each finder and refinement, and OpenCV's two Hough
+/// transforms.
 
 #include <functional>
 #include <opencv2/core.hpp>
@@ -13,7 +14,7 @@ namespace twincell::bench {
 
 struct Contestant {
   std::string name;
-  /// Centres in an 8-bit frame of a case, told its nominal diameters.
+  /// Finds the centres in an 8-bit frame of a case, given its nominal diameters.
   std::function<std::vector<cv::Point2d>(const cv::Mat1b&, const rendered::Case&)> find;
 };
 
@@ -22,11 +23,11 @@ std::vector<Contestant> contestants();
 /// The settings of one of OpenCV's transforms.
 struct HoughSettings {
   int mode = 3;                ///< cv::HOUGH_GRADIENT or cv::HOUGH_GRADIENT_ALT
-  double enlarge = 1;          ///< the frame is enlarged by this first (cubic)
-  double smooth = 0;           ///< Gaussian blur before, px of the original frame
+  double enlarge = 1;          ///< the frame is first enlarged by this factor (cubic)
+  double smooth = 0;           ///< Gaussian blur applied first, px of the original frame
   double edge = 100;           ///< param1
   double votes = 100;          ///< param2
-  double apart = 0.8;          ///< minDist, in the least diameter
+  double apart = 0.8;          ///< minDist, in units of the least diameter
   double radius_slack = 0.15;  ///< minRadius = least radius (1 - this), maxRadius = largest (1 + this)
 };
 std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, const rendered::Case& of,

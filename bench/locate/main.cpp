@@ -1,12 +1,12 @@
-// Locators against rendered truth and the Cramér-Rao bound. locate_peers.py drives it; its rows go to
-// standard output as one JSON document.
+// Compares locators with rendered true positions and the Cramér-Rao bound. locate_peers.py runs this program,
+// which writes its rows to standard output as one JSON document.
 //
-//   --case NAME --snr S --method NAME   only those (repeatable; a method's name may be a part of it)
+//   --case NAME --snr S --method NAME   only these (repeatable; --method matches a part of the name)
 //   --frames N     frames per case and noise level, default 3
-//   --write DIR    only write the frames: CASE_SNR_FRAME.pgm, CASE_FRAME_truth.csv, and
+//   --write DIR    write the frames only: CASE_SNR_FRAME.pgm, CASE_FRAME_truth.csv, and
 //                  index.json with each case's diameters
-//   --read DIR     score what others found too: DIR/METHOD/CASE_SNR_FRAME.csv, first line processor ms, then
-//   x,y
+//   --read DIR     also score the results of other programs: DIR/METHOD/CASE_SNR_FRAME.csv,
+//                  first line processor ms, then x,y
 //   --tune         search OpenCV's settings on the random packing at SNR 51 instead
 
 #include <fmt/format.h>
@@ -68,7 +68,7 @@ std::uint64_t seed_of(int frame) {
   return 1 + static_cast<std::uint64_t>(frame);
 }
 
-// What another program found, if it was asked.
+// Results of another program, if they were requested.
 struct Reported {
   double ms = 0;
   std::vector<cv::Point2d> found;
@@ -82,7 +82,7 @@ std::optional<Reported> read_found(const fs::path& file) {
   return r;
 }
 
-// What cannot be said, because nothing was found, is absent.
+// A value that is undefined because no bead was found is absent.
 nlohmann::json as_json(const Marks::Summary& s) {
   nlohmann::json j{{"beads", s.beads},   {"found", s.found},         {"invented", s.invented},
                    {"recall", s.recall}, {"precision", s.precision}, {"bound", s.bound}};
@@ -100,7 +100,7 @@ nlohmann::json as_json(const Marks::Summary& s) {
   return j;
 }
 
-// The fastest of a few runs: other programs only ever add.
+// The fastest of a few runs: other processes only ever add time.
 double time_of(const Contestant& contestant, const cv::Mat1b& frame, const Case& of,
                std::vector<cv::Point2d>& found) {
   constexpr double kEnough_ms = 150;
@@ -150,7 +150,7 @@ struct Row {
   double ms = 1e300;
 };
 
-// Who needs longer for its first frame sees no other of that case.
+// A method that exceeds this time on its first frame is skipped for the rest of that case.
 constexpr double kPatience_ms = 1000;
 
 nlohmann::json measure(const Wanted& wanted) {
@@ -215,8 +215,8 @@ nlohmann::json measure(const Wanted& wanted) {
   return rows;
 }
 
-// Every setting of OpenCV's on one frame; best first, by the harmonic mean of recall and precision, then by
-// rms.
+// Tries every OpenCV setting on one frame and lists the best first, by the harmonic mean of recall and
+// precision, then by rms.
 void tune() {
   const Case& c =
       *std::find_if(cases().begin(), cases().end(), [](const Case& k) { return k.name == "random"; });

@@ -1,5 +1,5 @@
-// Who may include whom. The lists are taken from the tree; what is stated here is the order of the top
-// folders and the homes of outside libraries.
+// Permitted includes between folders. The lists of files are read from the tree; this test states the order
+// of the top folders and the folder that owns each outside library.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Graph = std::map<std::string, std::set<std::string>>;
 
-/// Top folder -> top folders that it may include besides itself.
+/// Top folder -> other top folders that it may include.
 const Graph kAllowed = {
     {"core", {}},
     {"trajectory", {"core"}},
@@ -38,7 +38,7 @@ const Graph kAllowed = {
      {"core", "trajectory", "analysis", "imaging", "sim", "calibration", "sweep", "twin", "reproduce"}},
 };
 
-/// Outside libraries that must stay inside one folder.
+/// Outside libraries that must be confined to one folder.
 const std::vector<std::pair<std::string, std::set<std::string>>> kLibraryHomes = {
     {"opencv2/", {"imaging", "tests", "bench"}},
     {"ceres/", {"calibration", "tests"}},
@@ -54,14 +54,14 @@ std::string top_of(const std::string& path) {
   return path.substr(0, path.find('/'));
 }
 
-/// "imaging/link" of imaging/link/assignment.cpp; the formats of imaging/stack/formats belong to
-/// imaging/stack.
+/// Folder of a file: "imaging/link" of imaging/link/assignment.cpp; the formats in imaging/stack/formats
+/// belong to imaging/stack.
 std::string room_of(const std::string& path) {
   const std::size_t first = path.find('/'), second = path.find('/', first + 1);
   return path.substr(0, second == std::string::npos ? first : second);
 }
 
-/// A module is a header and its source.
+/// Module of a file: a header and its source form one module.
 std::string module_of(const std::string& path) {
   return fs::path(path).replace_extension().string();
 }
@@ -119,7 +119,7 @@ std::string cycle_of(const Graph& graph) {
   return found;
 }
 
-/// Includes between files of the tree, as edges between what `name` makes of them.
+/// Includes between files of the tree, as edges between the names that `name` gives them.
 template <class Name>
 Graph graph_of(const std::vector<Include>& includes, Name name) {
   Graph graph;
@@ -170,9 +170,9 @@ TEST(IncludeGraph, NoCycleOfModules) {
   EXPECT_EQ(cycle_of(graph_of(all_includes(), module_of)), "");
 }
 
-// The search for cycles itself.
+// Test of the search for cycles.
 TEST(IncludeGraph, ACycleThroughASourceIsFound) {
-  // plan.cpp asks the kernel one question, and the kernel's header includes the plan's.
+  // plan.cpp includes the kernel's header, and the kernel's header includes the plan's.
   const std::vector<std::pair<std::string, std::string>> lines = {
       {"sim/plan.cpp", "sim/kernel.hpp"}, {"sim/kernel.hpp", "sim/plan.hpp"}, {"sim/a.hpp", "sim/plan.hpp"}};
   Graph headers, modules;
@@ -184,7 +184,7 @@ TEST(IncludeGraph, ACycleThroughASourceIsFound) {
   EXPECT_EQ(cycle_of(modules), "sim/plan -> sim/kernel -> sim/plan");
 }
 
-// One observable must not depend on another: each sees the trajectory, the neighbours and the statistics
+// Observables must not depend on each other: each may use the trajectory, the neighbours and the statistics
 // only. An observable is a module of analysis whose header declares NAME_observable.
 TEST(IncludeGraph, ObservablesDoNotKnowEachOther) {
   const std::regex maker(R"(extern const ObservableEntry \w+_observable;)");
@@ -200,7 +200,7 @@ TEST(IncludeGraph, ObservablesDoNotKnowEachOther) {
   }
 }
 
-// What is installed must be complete: an installed header includes only installed headers of ours.
+// The installation must be complete: an installed header includes only installed headers of this project.
 TEST(IncludeGraph, InterfacesIncludeInterfacesOnly) {
   const std::regex header(R"([\w/]+\.hpp)");
   std::set<std::string> interfaces;

@@ -1,4 +1,4 @@
-// Every row of the verification plan that a verification test checks stands in docs/validation.md.
+// docs/validation.md must contain every row of the verification plan that a verification test checks.
 
 #include <gtest/gtest.h>
 

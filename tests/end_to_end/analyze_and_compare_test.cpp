@@ -1,4 +1,4 @@
-// analyze and compare as a user runs them, on beds whose s_b and s_c are known.
+// `analyze` and `compare` as a user runs them, on beds with known s_b and s_c.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,8 +40,8 @@ int files_called(const fs::path& folder, const std::string& ending) {
   return n;
 }
 
-/// Every element that is opened is closed, in order; attributes quoted; no bare ampersand. Enough to fail on
-/// a broken drawing.
+/// True if every opened element is closed in order, attributes are quoted and no ampersand is bare. This is
+/// enough to reject a broken drawing.
 bool well_formed(const std::string& xml) {
   std::vector<std::string> open;
   for (std::size_t i = 0; i < xml.size(); ++i) {
@@ -82,8 +82,8 @@ bool well_formed(const std::string& xml) {
   return open.empty();
 }
 
-/// Every difference is the sum of what the camera makes and what is left; the camera's own part of s_b is
-/// small: beds filmed at 15 px per bead are located to a hundredth of a bead.
+/// Every difference is the sum of the camera's contribution and the remainder. The camera's contribution to
+/// s_b is small: beads filmed at 15 px each are located to a hundredth of a bead.
 void check_parts(const nlohmann::json& differences) {
   int filmed = 0;
   for (const auto& d : differences) {
@@ -190,7 +190,8 @@ TEST(Compare, OneReportWithEverythingInIt) {
     }
 
   const std::string html = read_text_file(report / "report.html");
-  // That a browser asks for nothing is tests/end_to_end/report_test.py's; here what can be read in the text.
+  // tests/end_to_end/report_test.py checks that a browser makes no request. Here the text of the page is
+  // checked.
   const std::string markup = html.substr(0, html.find("<script"));
   for (const char* outside : {"src=", "@import", "<link", "href=\"http"})
     EXPECT_EQ(markup.find(outside), std::string::npos) << outside;
@@ -200,8 +201,8 @@ TEST(Compare, OneReportWithEverythingInIt) {
   EXPECT_NE(html.find("exp_a\\u003c&>"), std::string::npos);  // nor in the page's data
   EXPECT_LT(html.size(), 3500000U);
 
-  // The rigid beds cross sigma/30 between Gamma 1.1 and 1.5 on both sides; convection was seen in the
-  // experiment alone.
+  // The rigid beds cross sigma/30 between Gamma 1.1 and 1.5 in both experiment and simulation. Only the
+  // experiment shows convection.
   const auto& boundaries = document["boundaries"];
   ASSERT_EQ(boundaries.size(), 4U);
   EXPECT_EQ(boundaries[0]["of"], "experiment");

@@ -1,4 +1,4 @@
-// analyze's spatial observables and figures as a user asks for them.
+// Spatial observables and figures of `analyze`, as a user requests them.
 #include <gtest/gtest.h>
 
 #include <cmath>

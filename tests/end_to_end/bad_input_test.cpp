@@ -1,5 +1,5 @@
-// Bad input, as a user meets it: one sentence naming the culprit, the exit code of the table, nothing
-// half-written.
+// Bad input as a user meets it: one sentence that names the cause, the documented exit code, and no partial
+// output.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,8 @@ void write(const fs::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-/// A refusal: the code, exactly one line on stderr that mentions every word, nothing on stdout.
+/// Expects a refusal: the exit code, exactly one line on stderr that contains every word, and nothing on
+/// stdout.
 void expect_refusal(const std::vector<std::string>& words, int code,
                     const std::vector<std::string>& mentioned) {
   const Ran ran = run_program(words);
@@ -35,7 +36,7 @@ void expect_refusal(const std::vector<std::string>& words, int code,
 
 class BadInput : public ::testing::Test {
  protected:
-  /// The folder must hold these names and no others after each case.
+  /// Expects the folder to contain these names and no others.
   void expect_only(const std::vector<std::string>& names) const {
     EXPECT_EQ(names_in(folder_.path()), names);
   }
@@ -77,7 +78,7 @@ TEST_F(BadInput, Images) {
   expect_only({"cut.tif", "empty", "text.png"});
 }
 
-// Pictures on which there is nothing to see, or hardly a pixel: a sentence, or an empty table.
+// Images without content, or of hardly one pixel: a one-sentence message, or an empty table.
 TEST_F(BadInput, PicturesWithoutAnything) {
   const auto picture = [&](int width, int height, int type, double value) {
     cv::Mat m(height, width, type, cv::Scalar(value));
@@ -120,7 +121,7 @@ TEST_F(BadInput, PicturesWithoutAnything) {
   expect_only({"a.tif"});
 }
 
-// What libraries would say of themselves, with addresses and file names of theirs, is said in a sentence.
+// A library's own messages, with their addresses and file names, are replaced by one sentence.
 TEST_F(BadInput, NumbersThatNoFitCanHold) {
   write(at("huge.csv"), "x,y\n1,1e308\n2,1e308\n3,-1e308\n4,1e308\n");
   for (const char* law : {"line", "constant", "exponential"})
@@ -193,7 +194,7 @@ TEST_F(BadInput, ScenesThatLammpsHasNoWordsFor) {
   expect_only({"s.toml"});
 }
 
-// A trajectory that is not of the scene, or from which a run cannot go on.
+// A trajectory that does not belong to the scene, or from which a run cannot continue.
 TEST_F(BadInput, FramesFromWhichLammpsCannotBegin) {
   write(at("s.toml"), "preset = \"fortini-huang-2015\"\n[beads]\ncount = 1\n[drive]\ngamma = 1.5\n");
   TrajectoryInfo info;
@@ -240,7 +241,7 @@ TEST_F(BadInput, UnwritableOutput) {
   expect_only({"taken.h5"});
 }
 
-// Ctrl-C in the middle of a run: exit code 130, nothing under the final name and nothing beside it.
+// Ctrl-C in the middle of a run: exit code 130, and neither the final file nor temporary files remain.
 TEST_F(BadInput, InterruptLeavesNothing) {
   const std::string scene =
       std::string(TWINCELL_SOURCE_DIR) + "/data_samples/fortini-huang-crystal/scene.toml";
@@ -262,7 +263,8 @@ TEST(MissingTmpdir, IsNoMatterForHelp) {
   const char* const given = std::getenv("TMPDIR");
   const std::string before = given != nullptr ? given : "";
   ASSERT_EQ(setenv("TMPDIR", "/nonexistent/folder", 1), 0);
-  // The program's output is kept in a folder for temporary files, so only the program may see the new value.
+  // The test program itself also keeps its output in a temporary folder, so only the child process may see
+  // the new value.
   const std::string line = std::string(TWINCELL_PROGRAM) + " --help > /dev/null 2>&1";
   const int status = std::system(line.c_str());  // NOLINT: a fixed command of a test
   if (given != nullptr)

@@ -1,5 +1,4 @@
-// calibrate as a user runs it: a stack whose scale, drive, phase and restitution nobody wrote down, and its
-// twin.
+// `calibrate` as a user runs it: a stack of unknown scale, drive, phase and restitution, and its twin.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +25,7 @@ namespace fs = std::filesystem;
 
 const test::RigidBed kBed = {.gamma = 1.3, .columns = 12, .rows = 5, .phases = 20, .cycles = 3};
 
-/// Frames of a known bed. Each is 0.04 t0 late.
+/// Films a known bed. Each frame is 0.04 t0 late.
 void film(const TemporaryFolder& folder, const CameraOptions& camera) {
   render(test::rigid_bed(kBed), camera, folder / "frames");
 }
@@ -39,7 +38,7 @@ nlohmann::json run_json(const std::vector<std::string>& words) {
   return ran.code == 0 ? nlohmann::json::parse(ran.out) : nlohmann::json();
 }
 
-/// The measured number lies within three of its standard errors, which are small.
+/// Expects the measured value to be within three of its standard errors, and the errors to be small.
 void expect_within(const nlohmann::json& document, const std::string& name, double truth,
                    double largest_error) {
   ASSERT_TRUE(document["measured"].contains(name)) << document.dump(1).substr(0, 2000);
@@ -76,15 +75,17 @@ TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
   film(folder, camera);
   const std::string frames = folder / "frames", file = folder / "cell.calibration.toml",
                     known = folder / "KNOWN.toml";
-  // What a user knows: how wide the cell is, how long, and how fast the shaker turns.
+  // Inputs that a user has: the width and height of the cell, and the angular frequency of the shaker.
   put_file(known, "[cell]\nwidth = 12.0\nheight = 20.0\n[drive]\nomega = 1.0\n");
 
+  // Camera: scale and rotation.
   const nlohmann::json c = run_json({"calibrate", "camera", frames, "--cell", known, "-o", file});
   expect_within(c, "camera.pixels_per_sigma", 14.37, 0.02);
   expect_within(c, "camera.rotation_deg", 0.6, 0.03);
   EXPECT_EQ(c["covariance"]["matrix"].size(), 25U);
   EXPECT_LT(c["scales"]["standard_errors_apart"].get<double>(), 4);
 
+  // Plate: drive and phases, with a cell that takes its scale from the camera calibration.
   put_file(folder / "CELL.toml",
            "[cell]\nwidth = 12.0\nheight = 20.0\n[drive]\nomega = 1.0\n[calibration]\nfrom = "
            "\"cell.calibration.toml\"\n");
@@ -100,6 +101,7 @@ TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
   EXPECT_EQ(p["frames"]["dropped"], 0);
   EXPECT_TRUE(fs::exists(folder / "figures/plate.svg"));
 
+  // Walls, beads and contacts.
   const nlohmann::json w = run_json({"calibrate", "walls", frames, "--cell", cell});
   const auto& tilt = w["measured"]["cell.side_tilt"];
   for (int side = 0; side < 2; ++side)
@@ -112,7 +114,7 @@ TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
   const nlohmann::json e = run_json({"calibrate", "contacts", "bounce", folder / "bounce.csv", "-o", file});
   expect_within(e, "contact.wall.restitution", 0.8545, 0.005);
 
-  // One file holds it all, and the twin is made of it.
+  // One file contains all results, and the twin is built from it.
   const Calibration all = read_calibration(file);
   EXPECT_NE(all.find("camera.origin_px"), nullptr);
   EXPECT_NE(all.find("drive.amplitude"), nullptr);
@@ -128,7 +130,7 @@ TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
   const sim::Scene scene = sim::read_scene(folder / "twin/scene.toml");
   EXPECT_NEAR(scene.contact.wall.at("bottom").required("restitution"),
               all.find("contact.wall.restitution")->value[0], 1e-9);
-  // Positions: the truth of the film, in the cell. The turned picture was turned back.
+  // Positions: the true positions of the film, in the cell. The rotated image was rotated back.
   const MemoryTrajectory truth = test::rigid_bed(kBed);
   Frame seen;
   double squares = 0, n = 0;
@@ -144,15 +146,15 @@ TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
   std::cout << "positions: rms " << std::sqrt(squares / n) << " sigma from the untimed truth\n";
   // 0.04 t0 at speeds of up to A omega = 1.3 are 0.05 sigma.
   EXPECT_LT(std::sqrt(squares / n), 0.06);
-  // Phases as a list do the same for track.
+  // A list of phases gives the same result in `track`.
   const Ran tracked = run_program(
       {"track", frames, "-o", folder / "listed.h5", "--cell", cell, "--phase-lock", phases, "-q"});
   EXPECT_EQ(tracked.code, 0) << tracked.err;
 }
 
-// A bed that slips and mixes between leaning walls: the film alone says scale, turn, bend, tilt and drive,
-// the preset what its beads are. Tracking returns the hidden numbers, and the twin's differ by no more than
-// it says they may.
+// A bed that slips and mixes between tilted walls. The film alone gives scale, rotation, distortion, tilt and
+// drive; the preset gives the bead properties. Tracking returns the hidden values, and those of the twins
+// differ by no more than the stated uncertainty.
 TEST(Calibrate, TheTwinOfAHiddenCellAgreesInBouncingAndConvection) {
   const TemporaryFolder folder;
   put_file(
@@ -160,6 +162,7 @@ TEST(Calibrate, TheTwinOfAHiddenCellAgreesInBouncingAndConvection) {
       "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 12.0\nside_tilt = [0.6, -0.4]\n"
       "[beads]\ncount = 120\n[drive]\ngamma = 2.1\n[start]\nkind = \"random\"\nseed = 11\n"
       "[time]\nintegrator = \"verlet\"\nsteps_per_contact = 20\ndiscard = 0\ncycles = 10\nphases = 20\n");
+  // Hidden cell: simulated, then filmed by a camera with rotation, distortion and delay.
   const std::string hidden = folder / "hidden.h5", frames = folder / "frames",
                     file = folder / "cell.calibration.toml", cell = folder / "CELL.toml";
   for (const auto& words : std::vector<std::vector<std::string>>{
@@ -170,6 +173,7 @@ TEST(Calibrate, TheTwinOfAHiddenCellAgreesInBouncingAndConvection) {
     const Ran ran = run_program(words);
     ASSERT_EQ(ran.code, 0) << ran.err;
   }
+  // Calibration from the film alone.
   const std::string known = "[cell]\nwidth = 12.0\nheight = 30.0\n[drive]\nomega = 1.0\n";
   put_file(folder / "KNOWN.toml", known);
   put_file(cell, known + "[calibration]\nfrom = \"cell.calibration.toml\"\n");
@@ -191,7 +195,7 @@ TEST(Calibrate, TheTwinOfAHiddenCellAgreesInBouncingAndConvection) {
   }
 
   const std::string twin = folder / "twin";
-  // In some twins a tracer slips that does not in the others; three would not say in how many.
+  // A tracer slips in some twins and not in others; three twins are too few to estimate the fraction.
   const nlohmann::json m = run_json({"match", frames, cell, "-o", twin, "--no-film", "--twins", "8", "--set",
                                      "time.integrator=verlet", "--set", "time.steps_per_contact=20"});
   const sim::Scene scene = sim::read_scene(twin + "/scene.toml");
@@ -211,8 +215,8 @@ TEST(Calibrate, TheTwinOfAHiddenCellAgreesInBouncingAndConvection) {
       EXPECT_LE(error, 0.1 * hid);
     }
   }
-  // How far s_c is known depends on how many of the twins slip, which the last bit of a machine decides: one
-  // in four or so. The others follow the hidden bed.
+  // The uncertainty of s_c depends on how many of the twins slip, about one in four, which rounding in the
+  // last bit decides. The other twins follow the hidden bed.
   int follow = 0;
   for (int t = 1; t <= 8; ++t) {
     const nlohmann::json one =
@@ -233,7 +237,7 @@ TEST(Calibrate, DroppedFramesAreCountedAndTheDriveStands) {
   ASSERT_GT(done.dropped, 0U);
   const nlohmann::json p =
       run_json({"calibrate", "plate", folder / "frames", "--cell", folder / "frames/CELL.toml"});
-  // A frame lost before the first that was stored, or after the last, leaves no gap.
+  // A frame dropped before the first stored frame, or after the last, leaves no gap.
   std::ifstream record(folder / "frames/frames.csv");
   std::string line;
   std::getline(record, line);
@@ -273,8 +277,8 @@ TEST(Calibrate, AccuracyCostsFrames) {
   EXPECT_TRUE(fs::exists(folder / "cost/calibrating.svg"));
 }
 
-// A bed whose restitution nobody says: the curve of its tracers, the time that it flies, its granular
-// temperature and the drive at which it begins to bounce have to give it back.
+// A bed of unknown restitution: the tracer curve, the flight time, the granular temperature and the drive at
+// the onset of bouncing must recover it.
 TEST(Calibrate, InfersFromACurveAFlightTimeAndAnOnset) {
   const TemporaryFolder folder;
   const auto scene = [](double restitution) {
@@ -295,13 +299,13 @@ TEST(Calibrate, InfersFromACurveAFlightTimeAndAnOnset) {
     all.insert(all.end(), vary.begin(), vary.end());
     return all;
   };
-  // A rigid inelastic bed begins to bounce at Gamma = 1.164.
+  // The onset of bouncing of a rigid inelastic bed is at Gamma = 1.164.
   const nlohmann::json d = run_json(words({film, "--observables", "s_k,flight_time,T_g", "--onset",
                                            "bouncing=1.16+-0.05", "--figures", figures, "--seed", "100"}));
   const auto& profile = d["profiles"][0];
   std::cout << "restitution " << profile["best"] << " [" << profile["low"] << ", " << profile["high"]
             << "], truth 0.75; chi^2 " << d["chi2"] << " of " << d["freedom"] << "\n";
-  // One interval in twenty may miss; how often they do is counted in recovery.Inference.*.
+  // One interval in twenty may miss the true value; recovery.Inference.* counts how often they do.
   EXPECT_LE(profile["low"].get<double>(), 0.75 + 0.1);
   EXPECT_GE(profile["high"].get<double>(), 0.75 - 0.1);
   ASSERT_EQ(d["curves"].size(), 1U);

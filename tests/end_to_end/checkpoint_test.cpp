@@ -1,4 +1,4 @@
-// Runs that are stopped, killed or damaged, as a user meets them: what is resumed ends in the same datasets.
+// Runs that are stopped, killed or damaged, as a user meets them: a resumed run ends with the same datasets.
 
 #include "sim/run/checkpoint.hpp"
 
@@ -23,7 +23,7 @@ using std::chrono::milliseconds;
 
 constexpr int kDone = 0, kUsage = 2, kInput = 3, kPartial = 5;
 
-/// The bytes of every dataset of numbers in a file, by path.
+/// The bytes of every numeric dataset in a file, by path.
 std::map<std::string, std::string> datasets_of(const std::string& path) {
   std::map<std::string, std::string> all;
   const h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
@@ -59,7 +59,7 @@ class Checkpoints : public ::testing::Test {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  /// What a run without interruption makes.
+  /// Datasets of an uninterrupted run.
   [[nodiscard]] std::map<std::string, std::string> uninterrupted() const {
     const std::string path = folder_ / "whole.h5";
     const Ran ran = run_program({"simulate", scene_, "-o", path, "-q"});
@@ -76,7 +76,7 @@ class Checkpoints : public ::testing::Test {
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
     for (const auto& word : mentioned) EXPECT_NE(ran.err.find(word), std::string::npos) << ran.err;
   }
-  /// Starts a run and stops it once it has saved something with frames in it.
+  /// Starts a run and stops it once it has saved a checkpoint that contains frames.
   [[nodiscard]] Ran stopped_in_the_middle(int signal) const {
     RunningProgram program(words({"--checkpoint-every", "0.02"}));
     for (int k = 0; k < 1000 && !fs::exists(place_ / "segment-0002.h5"); ++k)
@@ -95,7 +95,7 @@ TEST_F(Checkpoints, KilledAgainAndAgainTheRunEndsAsIfNothingHadHappened) {
   std::mt19937 random(20150101);
   int killed = 0, ended = 0;
   for (int k = 0; k < 60 && ended == 0; ++k) {
-    // A save at every update: most kills fall into a save.
+    // Every update saves a checkpoint, so most kills hit a save.
     RunningProgram program(words({"--resume", "--checkpoint-every", "1e-9"}));
     std::this_thread::sleep_for(milliseconds(30 + random() % 300));
     program.signal(SIGKILL);
@@ -126,7 +126,7 @@ TEST_F(Checkpoints, SignalsSaveAndSayHowToGoOn) {
     EXPECT_EQ(rest.code, kDone) << rest.err;
     EXPECT_EQ(datasets_of(output_), whole);
     EXPECT_EQ(names_in(folder_.path()), (std::vector<std::string>{"o.h5", "scene.toml"}));
-    // A script that asks once more is not punished.
+    // A script that resumes once more gets no error.
     EXPECT_EQ(run_program(words({"--resume"})).code, kDone);
     fs::remove(output_);
   }
@@ -151,8 +151,8 @@ TEST_F(Checkpoints, WhatAnotherVersionWroteIsRefused) {
   expect_refusal({"--resume"}, kInput, {"state.h5", "checkpoint_version", "99"});
 }
 
-// Single bits, cut files, a missing piece: refused with the name of the file, never a run from damaged
-// numbers.
+// Flipped bits, truncated files, a missing segment: the run is refused with the name of the file, and never
+// continues from damaged data.
 TEST_F(Checkpoints, DamageIsFound) {
   const auto whole = uninterrupted();
   ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
@@ -179,7 +179,7 @@ TEST_F(Checkpoints, DamageIsFound) {
       stream.put(flipped);
     }
     const Ran ran = run_program(words({"--resume"}));
-    if (ran.code == kDone) {  // a byte that nobody reads
+    if (ran.code == kDone) {  // the flipped byte is unused
       EXPECT_EQ(datasets_of(output_), whole);
     } else {
       ++refused;
@@ -188,7 +188,7 @@ TEST_F(Checkpoints, DamageIsFound) {
     }
     restore();
   }
-  EXPECT_GE(refused, 14);  // all of the segments' and the cut ones at least
+  EXPECT_GE(refused, 14);  // at least all segments and all truncated files
   fs::remove(place_ / "segment-0001.h5");
   expect_refusal({"--resume"}, kInput, {"segment-0001.h5", "missing"});
 }
@@ -204,7 +204,7 @@ TEST_F(Checkpoints, AnotherProgramsRunIsNotResumed) {
   expect_refusal({"--resume"}, kUsage,
                  {"o.h5.checkpoint", "written by twincell 0.0.1", "this is " + own, "remove"});
   EXPECT_FALSE(fs::exists(output_));
-  // The refusal leaves the run as it was.
+  // The refusal leaves the checkpoint unchanged.
   checkpoint.program = own;
   sim::write_checkpoint(state, checkpoint);
   const Ran rest = run_program(words({"--resume"}));
@@ -214,7 +214,7 @@ TEST_F(Checkpoints, AnotherProgramsRunIsNotResumed) {
 
 TEST_F(Checkpoints, AFullDiskStopsTheRunWhichGoesOnWhenThereIsRoom) {
   const auto whole = uninterrupted();
-  // A limit on the size of files stands for the full disk; the program inherits it.
+  // A limit on the size of files represents the full disk; the program inherits it.
   struct rlimit usual {};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &usual), 0);
   const auto under_limit = [&](rlim_t bytes, const std::vector<std::string>& more) {

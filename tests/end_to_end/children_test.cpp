@@ -1,4 +1,4 @@
-// Programs that are started inherit no file of ours.
+// Child processes inherit no open file of the program.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A program in the place of another, first in PATH, that writes down the files it has open.
+/// A substitute for a program, first in PATH, that records the files it has open.
 class Stub {
  public:
   explicit Stub(const std::string& name) : before_(std::getenv("PATH")) {

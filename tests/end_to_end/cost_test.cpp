@@ -1,4 +1,4 @@
-// `cost sim` as a user runs it, on few settings.
+// `cost sim` as a user runs it, on a few settings.
 
 #include <gtest/gtest.h>
 
@@ -42,14 +42,14 @@ TEST(Cost, SaysWhatAccuracyCosts) {
     EXPECT_NEAR(seconds["contact_time"].get<double>() / seconds["t0"].get<double>(), 2.222831e-3, 1e-8);
     EXPECT_LE(w["bed"]["floor_force"], 1e-8);
   }
-  // Impacts of a bed that slide and stick.
+  // Impacts of a bed with sliding and sticking contacts.
   ASSERT_EQ(d["sliding"].size(), d["settings"].size());
   for (const auto& w : d["sliding"]) {
     for (const char* key : {"restitution", "tangential", "spin"})
       EXPECT_LE(w[key]["rms"], w[key]["max"]) << key;
     EXPECT_NEAR(w["spin_change"], 0.072, 0.02);
-    // A fifth of what friction does, by Verlet (22 %: k_n tau/(gamma_n m), tau the age of the first
-    // position).
+    // For Verlet the error is a fifth of the effect of friction (22 %: k_n tau/(gamma_n m), where tau is the
+    // age of the first position).
     if (w["integrator"] == "verlet" && w["n"] > 50) {
       EXPECT_NEAR(w["spin"]["rms"].get<double>() / w["spin_change"].get<double>(), 0.22, 0.05);
     }
@@ -60,7 +60,8 @@ TEST(Cost, SaysWhatAccuracyCosts) {
   const auto& impacts = d["equal_impacts"];
   EXPECT_NEAR(impacts["verlet"]["spin"]["rms"].get<double>() / impacts["verlet"]["spin_change"].get<double>(),
               impacts["spin_share"], 5e-4);
-  // k_n tau/(gamma_n m) = 1 % asks for about a thousand; e and angles scatter it.
+  // k_n tau/(gamma_n m) = 1 % requires about a thousand steps per contact; the spread of e and of the angles
+  // varies it.
   EXPECT_GT(impacts["verlet"]["n"], 600);
   EXPECT_LT(impacts["verlet"]["n"], 2000);
   EXPECT_GT(impacts["step_ratio"], 40);
@@ -82,7 +83,7 @@ TEST(Cost, SaysWhatAGasCosts) {
   EXPECT_EQ(d["gas"][2]["stepping"], "event-driven");
   for (const auto& g : d["gas"]) {
     EXPECT_NEAR(g["t_z"], 0.36,
-                0.15);  // Table III: 0.327 at W = 50; ours 0.36; six hundred periods leave some per cent
+                0.15);  // Table III: 0.327 at W = 50; ours 0.36; six hundred periods leave a few per cent
     EXPECT_LT(std::abs(g["errors_from_first"].get<double>()), 5);
     const double share = g["standard_error"].get<double>() / g["t_z"].get<double>() / 0.01;
     EXPECT_NEAR(g["seconds_to_accuracy"].get<double>(), g["seconds"].get<double>() * share * share, 1e-9);
@@ -114,7 +115,7 @@ TEST(Cost, SaysWhatLocatingCosts) {
     if (p["sweeps"] == 30 && p["refine"] == "exact" && p["finder"] == "vote") {
       EXPECT_EQ(p["recall"], 1);
       EXPECT_EQ(p["precision"], 1);
-      EXPECT_GE(p["rms_over_bound"], 0.8);  // 200 beads: 3.5 % of scatter
+      EXPECT_GE(p["rms_over_bound"], 0.8);  // 200 beads: scatter of 3.5 %
       EXPECT_LE(p["rms_over_bound"], 1.3);
     }
   }

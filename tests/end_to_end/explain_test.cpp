@@ -1,4 +1,4 @@
-// What `explain` says of a scene is what is run: the lists, the refusals, the columns and the provenance.
+// The `explain` report of a scene matches the run: the lists, the refusals, the columns and the provenance.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -70,8 +70,8 @@ TEST_F(Explain, EachEffectStandsInItsList) {
   EXPECT_EQ(all["tangential history"], "off (proven)");
   const Ran text = run("explain", {});
   for (const char* heading :
-       {"On, set by the scene", "Off, set by the scene",
-        "Off, because the effect provably cannot act", "Approximated", "measured on this machine"})
+       {"On, set by the scene", "Off, set by the scene", "Off, because the effect provably cannot act",
+        "Approximated", "measured on this machine"})
     EXPECT_NE(text.out.find(heading), std::string::npos) << text.out;
 }
 
@@ -84,8 +84,8 @@ TEST_F(Explain, WhatItCostsIsMeasured) {
   EXPECT_GT(plan["expected_seconds"].get<double>(), 0);
   EXPECT_NEAR(plan["expected_seconds"].get<double>() * plan["particle_steps_per_second"].get<double>(),
               plan["particle_steps"].get<double>(), 1e-9 * plan["particle_steps"].get<double>());
-  // A bead holds at least position, velocity and force; a listed pair two indices and, with history, a
-  // number.
+  // A bead stores at least position, velocity and force; a listed pair stores two indices and, with history,
+  // a number.
   EXPECT_GE(plan["bytes_per_bead"].get<double>(), 48);
   EXPECT_LE(plan["bytes_per_bead"].get<double>(), 1024);
   EXPECT_GE(plan["bytes_per_pair"].get<double>(), smooth["bytes_per_pair"].get<double>() + 8);
@@ -95,9 +95,9 @@ TEST_F(Explain, WhatItCostsIsMeasured) {
 TEST_F(Explain, WhatActsMayNotBeDropped) {
   expect_refusal({"--set", "effects.rotation=false"}, {"scene.toml", "effects.rotation", "mu = 0.6"});
   expect_refusal({"--set", "effects.history=false"}, {"effects.history", "spring", "k_t = 10000"});
-  // Rough beads, smooth walls: still friction.
+  // Rough beads between smooth walls still have friction.
   expect_refusal({"--set", "effects.rotation=false", "--set", "contact.wall.mu=0.0"}, {"effects.rotation"});
-  // Smooth beads between rough walls turn too.
+  // Smooth beads between rough walls also rotate.
   expect_refusal(
       {"--set", "effects.rotation=false", "--set", "contact.mu=0.0", "--set", "contact.wall.mu=0.3"},
       {"effects.rotation"});
@@ -134,7 +134,7 @@ TEST_F(Explain, FilesWithoutAnEndAreRefused) {
   }
 }
 
-// Ten million beads are being placed: a signal does not wait for them.
+// A signal interrupts the placement of ten million beads.
 TEST_F(Explain, ASignalEndsThePlacingOfManyBeads) {
   RunningProgram program({"explain", scene_, "-q", "--set", "beads.count=10000000"});
   std::this_thread::sleep_for(std::chrono::milliseconds(400));

@@ -1,4 +1,4 @@
-// fit as a user runs it.
+// `fit` as a user runs it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -84,7 +84,7 @@ TEST(Fit, ErrorsThatAreNoneAreSaid) {
   EXPECT_NE(line.out.find("not weighted: the given errors are not above 0 at 4 of 5 points"),
             std::string::npos)
       << line.out;
-  // Without scatter and without a decay: the plateau is known, how it decays is not, and has no error of 0.
+  // Without scatter and without decay, the plateau is determined. The decay is not, and its error is not 0.
   const Ran flat = run_program({"fit", folder / "flat.csv", "--law", "algebraic", "--json"});
   EXPECT_EQ(flat.code, 0) << flat.err;
   const auto document = nlohmann::json::parse(flat.out);

@@ -1,5 +1,5 @@
-// Stacks as a user meets them: the same frames in every format give the same beads, info says what a stack
-// holds, and what cannot be read is refused in one line.
+// Stacks as a user meets them: the same frames in every format give the same beads, `info` describes the
+// stack, and an unreadable file is refused in one line.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr int kWidth = 160, kHeight = 120, kFrames = 3;
 
-/// Back-lit discs of 12 bits that move to the right, drawn eight times as large and averaged down.
+/// Back-lit discs of 12 bits that move to the right, drawn eight times as large and averaged to pixels.
 std::vector<cv::Mat> discs() {
   std::vector<cv::Mat> frames;
   for (int f = 0; f < kFrames; ++f) {
@@ -152,13 +152,13 @@ TEST_F(Frames, InfoSaysWhatTheyHold) {
     EXPECT_EQ(d["first_frame"]["max"], 3440) << name;
     EXPECT_EQ(d["first_frame"]["bits"], 12) << name;
   }
-  EXPECT_FALSE(info("folder").contains("bits"));  // a PNG does not say
+  EXPECT_FALSE(info("folder").contains("bits"));  // a PNG does not state it
   for (const char* name : {"a.cine", "packed.cine", "a.seq", "a.mrf", "a.mraw", "a.tif"})
     EXPECT_EQ(info(name)["bits"], 12) << name;
   const nlohmann::json cine = info("a.cine");
   EXPECT_EQ(cine["first_number"], -2);
   EXPECT_EQ(cine["frame_rate_hz"], 1000);
-  EXPECT_NEAR(cine["stamped_rate_hz"], 1000, 1e-3);  // stamps count 2^-30 s, over 2 ms
+  EXPECT_NEAR(cine["stamped_rate_hz"], 1000, 1e-3);  // time stamps count 2^-30 s, over 2 ms
   EXPECT_EQ(cine["time"]["origin"], "trigger");
   EXPECT_NEAR(cine["time"]["first_s"], -0.002, 1e-9);
   EXPECT_NEAR(cine["time"]["second_s"], -0.001, 1e-9);
@@ -180,7 +180,7 @@ TEST_F(Frames, InfoNotesWhatTheValuesSuggest) {
   EXPECT_EQ(notes(16, [](int x, int y, int) { return static_cast<unsigned>(1000 + x + y); }), "");
   EXPECT_NE(notes(8, [](int, int, int) { return 0U; }).find("every pixel of the first frame has the value 0"),
             std::string::npos);
-  // 36 of 1200 pixels at the full scale of twelve bits; a hundredth of them is the bound.
+  // 36 of 1200 pixels are at the full scale of twelve bits; the limit for a note is a hundredth.
   const auto clipped = [](int wide) {
     return [wide](int x, int y, int) { return x < wide && y < 6 ? 4095U : static_cast<unsigned>(100 + x); };
   };
@@ -198,7 +198,7 @@ TEST_F(Frames, ATrackOfADatasetRemembersItsFile) {
   ASSERT_EQ(ran.code, 0) << ran.err;
   const nlohmann::json d = info("track.h5");
   EXPECT_EQ(d["provenance"]["inputs"][0]["path"].get<std::string>(), at("a.h5"));
-  // A trajectory is no stack, though it holds datasets of three dimensions.
+  // A trajectory is not a stack, although it contains three-dimensional datasets.
   const Ran refused = run_program({"locate", at("track.h5"), "--diameter", "15", "-o", at("beads.csv")});
   EXPECT_EQ(refused.code, 3);
   EXPECT_NE(refused.err.find("trajectory (H5MD)"), std::string::npos) << refused.err;

@@ -1,5 +1,5 @@
-// A gas measured as a user would: until an error is reached, in the hard cases of the regime, and as the
-// paper's figures.
+// A gas measured as a user would measure it: until an error is reached, in the hard cases of the regime, and
+// for the figures of the paper.
 
 #include <gtest/gtest.h>
 
@@ -45,10 +45,10 @@ TEST(Gas, IsMeasuredUntilItsErrorIsReached) {
   const json& t = d["results"]["T_z"];
   const double half = (t["interval"]["high"].get<double>() - t["interval"]["low"].get<double>()) / 2;
   EXPECT_LE(half, 0.25 * t["value"].get<double>());
-  // Table III of the paper: 0.357 at this W; the error asked is a quarter.
+  // Table III of the paper gives 0.357 at this W; the requested error is a quarter.
   EXPECT_NEAR(d["results"]["T_bar_z"]["value"].get<double>(), 0.357, 0.357 * 0.35);
   EXPECT_NEAR(d["results"]["T_z_eq5"]["value"].get<double>(), t["value"].get<double>() / 2, 1e-12);
-  // Four rows of discs: densest 0.5 + 1.5 sqrt(3)/2, on top of each other 2.
+  // Rest height of four rows of discs: 0.5 + 1.5 sqrt(3)/2 at closest packing, 2 if stacked vertically.
   EXPECT_GT(d["rest_height"], 1.79);
   EXPECT_LT(d["rest_height"], 2.0 + 0.2);
   EXPECT_TRUE(d["results"]["delta_h_cm"].contains("value"));
@@ -80,16 +80,17 @@ TEST(Gas, ASolidBedHasNoTemperatureAndBothStartsAreCompared) {
 TEST(Gas, HardCasesRun) {
   const TemporaryFolder folder;
   const std::string drive = "[drive]\nk_m = 22.356\n";
-  // One bead: nothing fluctuates about its own centre of mass.
+  // One bead does not fluctuate about its own centre of mass.
   const json one = measured(folder, drive + "[beads]\ncount = 1\n");
   EXPECT_EQ(one["results"]["T_z"]["value"], 0);
   EXPECT_TRUE(one["results"]["h_cm"].contains("value"));
-  // None: every result says why it is absent.
+  // Without beads, every result states why it is absent.
   const json none = measured(folder, drive + "[beads]\ncount = 0\n");
   EXPECT_TRUE(none["results"]["T_z"].contains("absent"));
   EXPECT_TRUE(none["results"]["phi_top"].contains("absent"));
   EXPECT_TRUE(none["results"]["T_z_z"].contains("absent"));
-  // e = 1 gains what the plate gives: hotter than e = 0.9 (0.36); e = 0.05 is colder than it.
+  // With e = 1 the bed keeps the energy from the plate and is hotter than at e = 0.9 (0.36); at e = 0.05 it
+  // is colder than at e = 0.9.
   const json elastic = measured(folder, drive + "[contact]\nrestitution = 1.0\n", {"--only", "T_bar_z"});
   EXPECT_GT(elastic["results"]["T_bar_z"]["value"], 0.5);
   const json dead = measured(folder, drive + "[contact]\nrestitution = 0.05\n", {"--only", "T_bar_z"});
@@ -121,7 +122,7 @@ TEST(Gas, AnUnknownQuantityIsRefused) {
 
 TEST(GasFigures, ShareTheirRunsAndTakeTheUsersData) {
   const TemporaryFolder folder;
-  // T_bar_z ~ W^(-1/4), so T_z ~ V_p^(3/2); a solid point is counted and left out.
+  // T_bar_z ~ W^(-1/4), so T_z ~ V_p^(3/2); a point of a solid bed is counted and excluded.
   std::ofstream own(folder / "own.csv");
   own.precision(17);
   own << "W,T_bar_z\n0.8,0\n";
@@ -146,7 +147,7 @@ TEST(GasFigures, ShareTheirRunsAndTakeTheUsersData) {
   std::set<std::string> first;
   for (const json& p : table["measured"]["points"]) first.insert(p["id"].get<std::string>());
   ASSERT_FALSE(first.empty());
-  // The longest point is begun first: 300 rpm, Gamma < 1, a bed that rides on its plate.
+  // The longest point starts first: 300 rpm, Gamma < 1, a bed that moves with its plate.
   EXPECT_LT(table["measured"]["points"][0]["T_bar_z"]["value"], 1e-4);
   const json figure = reproduce("p2-fig7", {});
   std::set<std::string> second;

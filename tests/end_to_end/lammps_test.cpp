@@ -1,6 +1,6 @@
-// The same scene in LAMMPS, from the deck that `export` writes, read back by `import`: two programs without a
-// line in common must differ by rounding alone. What rounding becomes in a bed of colliding beads is measured
-// beside it: by how much Twincell differs from itself when gravity is changed by parts in 10^11.
+// The same scene in LAMMPS, from the deck that `export` writes, read back by `import`. The two programs share
+// no code and may differ only by rounding. A control measures how rounding grows in a bed of colliding beads:
+// the difference between two Twincell runs whose gravity differs by parts in 10^11.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Forty beads between side walls that ride with the plate, spring friction with history. The crystal begins
-// with every contact just touching, so that no history has to be carried over.
+// Forty beads between side walls that move with the plate, with spring friction and history. In the starting
+// crystal every contact just touches, so no history has to be transferred.
 const std::string kPaperOne = R"(
 preset = "fortini-huang-2015"
 [cell]
@@ -39,7 +39,7 @@ cycles = 1
 phases = 40
 )";
 
-// Forty rough beads, periodic, thrown into the air above a plate that flings them.
+// Forty rough beads, periodic, thrown into the air above a plate that propels them.
 const std::string kPaperTwo = R"(
 preset = "bhateja-2016-rough-2d"
 [drive]
@@ -55,7 +55,7 @@ cycles = 1
 phases = 40
 )";
 
-// Its gas in space: a hundred rough spheres.
+// The gas of the same model in three dimensions: a hundred rough spheres.
 const std::string kSpace = R"(
 preset = "bhateja-2016-rough-3d"
 [drive]
@@ -71,7 +71,8 @@ cycles = 1
 phases = 40
 )";
 
-/// Largest distance between the same bead in both, per frame; frame k of `b` is frame k + skip of `a`.
+/// Largest distance between the same bead in the two runs, per frame; frame k of `b` is frame k + skip of
+/// `a`.
 std::vector<double> differences(const fs::path& a, const fs::path& b, std::size_t skip = 0) {
   const H5mdReader first(a), second(b);
   EXPECT_EQ(second.info().n_beads, first.info().n_beads);
@@ -89,8 +90,8 @@ std::vector<double> differences(const fs::path& a, const fs::path& b, std::size_
   return worst;
 }
 
-/// One word of a deck, by the beginning of its line and its number there, and what to put in its place;
-/// without that a number a hundredth larger. One past the last word appends.
+/// One word of a deck, selected by the beginning of its line and its index there, and its replacement.
+/// Without a replacement the number increases by a hundredth. An index one past the last word appends.
 struct Change {
   std::string line;
   std::size_t word;
@@ -127,7 +128,7 @@ class Lammps : public ::testing::Test {
     ASSERT_EQ(ran.code, 0) << ran.err;
   }
 
-  /// Runs the scene here, and what becomes of it when gravity is a little different.
+  /// Runs the scene in Twincell, and again with slightly different gravity as the control.
   void simulate(const std::string& scene, const std::vector<std::string>& set) {
     put_file(folder_ / "scene.toml", scene);
     set_ = set;
@@ -168,14 +169,14 @@ class Lammps : public ::testing::Test {
     return differences(folder_ / "ours.h5", folder_ / "deck/lammps.h5", skip);
   }
 
-  /// Largest quotient of a difference and what the control allows in its frame.
+  /// Largest ratio of a difference to the control's limit for that frame.
   [[nodiscard]] double over_control(const std::vector<double>& d, std::size_t skip = 0) const {
     double most = 0;
     for (std::size_t k = 0; k < d.size(); ++k) most = std::max(most, d[k] / control_[k + skip]);
     return most;
   }
 
-  /// The deck as it is agrees; with any one word changed it does not.
+  /// The unchanged deck agrees; with any one word changed it does not.
   void expect_agreement_and_notice(const std::vector<Change>& wrong) {
     const auto d = lammps(input_);
     ASSERT_EQ(d.size(), 40U);
@@ -212,10 +213,11 @@ class Lammps : public ::testing::Test {
   }
 
   std::vector<std::string> set_;
-  std::vector<double> control_;  ///< per frame, the largest up to there, at least kRounding
+  std::vector<double> control_;  ///< per frame, the largest difference so far, at least kRounding
 };
 
-// Words of `pair_style`: 2 k_n, 3 k_t, 4 gamma_n, 5 gamma_t, 6 mu; of `fix … wall/gran`: 5 to 9 the same.
+// Words of `pair_style`: 2 k_n, 3 k_t, 4 gamma_n, 5 gamma_t, 6 mu; words 5 to 9 of `fix … wall/gran` are the
+// same.
 TEST_F(Lammps, FirstPaperPressedBed) {
   simulate(kPaperOne, {});
   export_deck();
@@ -249,7 +251,7 @@ TEST_F(Lammps, SecondPaperSmooth) {
   expect_agreement_and_notice({{"pair_style", 4}});
 }
 
-// What the papers do not use: no tension, damping constants, walls at rest, a tilted cell.
+// Options that the papers do not use: no tension, damping constants, walls at rest, a tilted cell.
 TEST_F(Lammps, OtherWords) {
   simulate(kPaperTwo, {"contact.normal=linear-no-tension", "contact.c_n=47.0", "contact.c_t=30.0",
                        "cell.sides=walls", "cell.side_walls=rest", "cell.tilt=10.0"});
@@ -276,7 +278,8 @@ TEST_F(Lammps, SecondPaperInABox) {
   expect_agreement_and_notice({{"fix left_right", 7}, {"fix front_back", 8}, {"fix front_back", 16}});
 }
 
-// The pressed bed again, of spheres in space: the spring is then a vector in the tangent plane.
+// The pressed bed with spheres in three dimensions: the tangential spring is then a vector in the tangent
+// plane.
 TEST_F(Lammps, PressedBedInSpace) {
   simulate(kPaperOne, {"cell.dimension=3", "cell.depth=1.2", "beads.inertia=sphere"});
   export_deck();
@@ -291,7 +294,7 @@ TEST_F(Lammps, HorizontalDriveUnderALid) {
   expect_agreement_and_notice({{"pair_style", 4}, {"fix left_right", 16}, {"fix bottom_lid", 7}});
 }
 
-// One large bead among the others: masses and radii of its own.
+// One large bead among the others, with its own mass and radius.
 TEST_F(Lammps, Intruder) {
   simulate(kPaperTwo, {"beads.intruder={radius=1.0, z=3.0}", "contact.gamma_n=90.0", "contact.gamma_t=90.0"});
   export_deck();
@@ -308,7 +311,8 @@ TEST_F(Lammps, GoesOnFromAFrame) {
   EXPECT_LT(over_control(d, kFrame), 10);
 }
 
-// Where the scene states no integrator, ours differs from LAMMPS's.
+// If the scene states no integrator, Twincell's default differs from LAMMPS's integrator, so the deck states
+// the latter.
 TEST(LammpsDeck, WithoutAnIntegratorIsOfLammpssOwnAndSaysSo) {
   const TemporaryFolder folder;
   std::string silent = kPaperOne;
@@ -332,7 +336,7 @@ TEST(LammpsDeck, WithoutAnIntegratorIsOfLammpssOwnAndSaysSo) {
   EXPECT_NE(line(deck, "timestep ").find("e-05"), std::string::npos);  // 2.2e-3 t0 over 50
   EXPECT_EQ(line(deck, "# integrator"), "# integrator = 'verlet'") << deck;
   EXPECT_EQ(read_text_file(folder / "silent/data.twincell"), read_text_file(folder / "stated/data.twincell"));
-  // Stated otherwise it is refused.
+  // A scene that states another integrator is refused.
   const Ran split = run_program({"export", folder / "silent.toml", "--to", "lammps", "-o", folder / "split",
                                  "--set", "time.integrator=split"});
   EXPECT_EQ(split.code, 2);

@@ -1,4 +1,5 @@
-// match as a user runs it, on frames that the synthetic camera took of a bed that is shipped with its truth.
+// `match` as a user runs it, on frames that the synthetic camera took of a bed that is shipped with its true
+// positions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 
 const fs::path kStack = fs::path(TWINCELL_SOURCE_DIR) / "data_samples/demo/gamma-0.9";
 
-/// The first cycle of the shipped stack, to be quick.
+/// The first cycle of the shipped stack, for speed.
 fs::path short_stack(const TemporaryFolder& folder) {
   fs::path stack = folder.path() / "frames";
   fs::create_directory(stack);
@@ -41,8 +42,8 @@ fs::path cell_without(const TemporaryFolder& folder, const std::string& key,
   return path;
 }
 
-/// A simulated bed filmed from so high that the plate never comes into the picture. \return the frames'
-/// folder, with CELL.toml as it truly is
+/// Films a simulated bed from so high that the plate is never in the image. \return the folder of the frames,
+/// with a correct CELL.toml
 fs::path film_above_plate(const TemporaryFolder& folder, double gamma, int seed) {
   const fs::path run = folder / "run.h5", stack = folder / "above";
   EXPECT_EQ(
@@ -84,7 +85,7 @@ TEST(Match, GivesTheTwinOfAFilmedCell) {
                                "--set", "time.steps_per_contact=20", "-q", "--json"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const auto d = nlohmann::json::parse(ran.out);
-  // SOURCE.md: 100 beads, 12 px each; truth.csv: located to a hundredth of a bead.
+  // SOURCE.md: 100 beads of 12 px; truth.csv: located to a hundredth of a bead.
   EXPECT_EQ(d["beads"], 100);
   EXPECT_EQ(d["pixels_per_sigma"], 12);
   EXPECT_EQ(d["cycles"], 1);
@@ -96,8 +97,8 @@ TEST(Match, GivesTheTwinOfAFilmedCell) {
   EXPECT_EQ(d["matches"][0]["experiments"].size(), 1U);
   EXPECT_EQ(d["matches"][0]["simulations"].size(), 2U);
 
-  // Both sides are of one cell, and the first twin begins where the beads were seen, up to what settling
-  // moves.
+  // Experiment and twins have the same cell. The first twin starts at the observed bead positions, up to the
+  // displacement of settling.
   const H5mdReader experiment(folder / "twin/experiment.h5"), one(folder / "twin/simulation-1.h5"),
       two(folder / "twin/simulation-2.h5");
   EXPECT_NEAR(one.info().drive->gamma(), 0.9, 1e-12);
@@ -125,7 +126,7 @@ TEST(Match, GivesTheTwinOfAFilmedCell) {
   EXPECT_EQ(shifted_beads, 100) << "the second twin begins a little elsewhere";
   EXPECT_LT(far_away, 5) << "but only beads that nothing holds settle far away";
 
-  // The scene can be run by itself and gives the first twin again, to the bit.
+  // The scene runs on its own and reproduces the first twin bit for bit.
   const Ran again = run_program({"simulate", folder / "twin/scene.toml", "--set", "time.steps_per_contact=20",
                                  "-q", "-o", folder / "again.h5"});
   ASSERT_EQ(again.code, 0) << again.err;
@@ -178,7 +179,7 @@ TEST(Match, AStatedDriveIsHeldAgainstThePlate) {
   EXPECT_NE(refused.err.find("--trust-stated-drive"), std::string::npos) << refused.err;
   EXPECT_FALSE(fs::exists(folder / "twin"));
 
-  // track notes it and keeps it; compare refuses what it kept.
+  // `track` reports the mismatch and keeps the statement; `compare` refuses the kept file.
   const fs::path kept = folder / "kept.h5", trusted_film = folder / "trusted.h5";
   const Ran noted = run_program({"track", kStack, "--cell", cell, "-o", kept});
   ASSERT_EQ(noted.code, 0) << noted.err;
@@ -217,14 +218,14 @@ TEST(Match, AStatedDriveIsHeldAgainstTheBedWhereThePlateIsNotInThePicture) {
     EXPECT_NE(refused.err.find(gamma < 1 ? "states 0.5625" : "states 1;"), std::string::npos) << refused.err;
     EXPECT_NE(refused.err.find("--trust-stated-drive"), std::string::npos) << refused.err;
     EXPECT_FALSE(fs::exists(folder / "twin/experiment.h5"));
-    // track notes it and keeps it; compare refuses what it kept.
+    // `track` reports the mismatch and keeps the statement; `compare` refuses the kept file.
     const fs::path kept = folder / "kept.h5";
     const Ran noted = run_program({"track", stack, "--cell", cell, "-o", kept});
     EXPECT_EQ(noted.code, 0);
     EXPECT_NE(noted.err.find("does not fit the film"), std::string::npos) << noted.err;
     const Ran compared = run_program({"compare", "--experiment", kept, "-o", folder / "report", "-q"});
     EXPECT_EQ(compared.code, 2) << compared.err;
-    // What passes for an edge without the plate does not measure a drive either.
+    // Without the plate, a false edge in the image must not be used to measure a drive.
     const Ran unknown = run_program({"match", stack, with_amplitude(stack, ""), "-o", folder / "twin", "-q"});
     EXPECT_EQ(unknown.code, 3) << unknown.err;
     EXPECT_NE(unknown.err.find("cannot be seen on the plate"), std::string::npos) << unknown.err;

@@ -1,5 +1,5 @@
-// Nothing is deleted or overwritten that the program did not make: every verb that writes, against every kind
-// of place that could hurt.
+// The program never deletes or overwrites anything that it did not make. Every command that writes is run
+// against every kind of unsafe output path.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ void write(const fs::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-/// A user's folder: scene, trajectory, frames, tables, and things that are none of the program's business.
+/// A user's folder: scene, trajectory, frames, tables, and files unrelated to the program.
 class Sandbox {
  public:
   Sandbox() : old_(fs::current_path()) {
@@ -42,7 +42,7 @@ class Sandbox {
     write("table.csv", "x,y\n1,2\n2,4.1\n3,5.9\n4,8.2\n");
     EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "sim.h5", "-q"}).code, 0);
     EXPECT_EQ(run_program({"render", "sim.h5", "-o", "frames", "-q"}).code, 0);
-    fs::remove("frames/twincell-manifest.json");  // an experiment's frames have none
+    fs::remove("frames/twincell-manifest.json");  // the frames of an experiment have no manifest
     fs::create_directory("io");
     fs::copy_file("sim.h5", "io/sim.h5");
     write("io/notes.txt", "mine");
@@ -60,7 +60,7 @@ class Sandbox {
   Sandbox(const Sandbox&) = delete;
   Sandbox& operator=(const Sandbox&) = delete;
 
-  /// Everything that lies there: path -> hash, or kind.
+  /// Contents of the folder: path -> hash, or kind of entry.
   [[nodiscard]] static std::map<std::string, std::string> contents() {
     std::map<std::string, std::string> all;
     for (const auto& entry : fs::recursive_directory_iterator("."))
@@ -83,7 +83,7 @@ struct Verb {
   bool folder;
 };
 
-/// Every option of every verb that names an output.
+/// Every option of every command that names an output.
 std::vector<Verb> verbs() {
   return {
       {"simulate", {"simulate", "scene.toml"}, "-o", false},
@@ -157,14 +157,14 @@ TEST(Outputs, NoVerbHarmsWhatItDidNotMake) {
     places.insert(places.end(), {"scene.toml", "./io/../scene.toml", "link.toml", "sim.h5", "table.csv",
                                  "notes.txt", "frames/frame_00000.png", "plan.toml", "foreign/thesis.tex"});
     for (const std::string& place : places) {
-      // A product of the same kind may be replaced where it is no input; these would be.
+      // A product of the same kind may be replaced unless it is an input, so these cases are skipped.
       if (place == "sim.h5" && std::string(verb.name) != "analyze" && !verb.folder) continue;
       const Ran ran = run_verb(verb, place);
       EXPECT_EQ(ran.code, 2) << verb.name << " into '" << place << "': " << ran.err;
       EXPECT_FALSE(ran.err.empty()) << verb.name << " into '" << place << "'";
     }
     ASSERT_EQ(Sandbox::contents(), before) << verb.name;
-    // An input stays even with --force.
+    // An input is not overwritten, even with --force.
     if (!verb.folder) {
       const Ran ran =
           run_verb(verb, verb.words[1] == "frames" ? "frames/frame_00000.png" : "foreign", {"--force"});
@@ -174,7 +174,7 @@ TEST(Outputs, NoVerbHarmsWhatItDidNotMake) {
   }
 }
 
-// `-o -`: text in one file goes to standard output, whole, and nothing else does; all other outputs are
+// `-o -`: a single-file text output goes to standard output, complete and alone; all other outputs are
 // refused.
 TEST(Outputs, StandardOutputTakesTextAlone) {
   const Sandbox sandbox;
@@ -202,7 +202,7 @@ TEST(Outputs, StandardOutputTakesTextAlone) {
   EXPECT_EQ(json.code, 0) << json.err;
   EXPECT_TRUE(nlohmann::json::parse(json.out, nullptr, false).is_object()) << json.out.substr(0, 200);
   EXPECT_EQ(Sandbox::contents(), before);
-  // One standard output takes one thing.
+  // Standard output accepts one output only.
   EXPECT_EQ(run_program({"locate", frames, "-o", "-", "--candidates", "-"}).code, 2);
   EXPECT_EQ(run_program({"locate", frames, "-o", "-", "--json"}).code, 2);
   for (const Verb& verb : verbs()) {
@@ -218,7 +218,7 @@ TEST(Outputs, StandardOutputTakesTextAlone) {
   EXPECT_EQ(Sandbox::contents(), before);
 }
 
-// `sweep collect` writes tables under names that nobody said.
+// `sweep collect` also writes tables under names that the user did not give.
 TEST(Outputs, ATableBesideTheCollectedFileIsHeldToTheSameRules) {
   const Sandbox sandbox;
   write("plan.toml", "scene = \"scene.toml\"\n[axes]\nstart.kind = [\"random\"]\nseeds = 2\n");
@@ -258,7 +258,7 @@ TEST(Outputs, AnInputIsNeverAnOutputThroughAnyName) {
 
 TEST(Outputs, AWordOfTheProgramIsNoInputThoughAFileHasItsName) {
   const Sandbox sandbox;
-  for (int time = 0; time < 2; ++time) {  // the second goes on in the folder that the first made
+  for (int time = 0; time < 2; ++time) {  // the second run continues in the folder that the first made
     const Ran figure = run_program({"reproduce", "p1-table1", "-q"});
     EXPECT_EQ(figure.code, 0) << figure.err;
     std::ofstream("t.csv") << "x,y\n1,2\n2,4.1\n3,5.9\n4,8\n";
@@ -294,7 +294,7 @@ TEST(Outputs, AFolderIsReplacedAsFarAsItsManifestGoes) {
     EXPECT_EQ(hashes, nlohmann::json::array({sha256_of(fs::path("new") / name)})) << name;
   EXPECT_EQ(manifest["files"].size() + 1, names_in("new").size());
 
-  // Files of others stay, in the folder and below it; fewer frames leave no old ones.
+  // Foreign files stay, in the folder and in its subfolders; a shorter stack leaves no old frames.
   write("new/thesis.tex", "mine");
   fs::create_directories("new/deep/er");
   write("new/deep/er/a.txt", "mine");
@@ -306,7 +306,7 @@ TEST(Outputs, AFolderIsReplacedAsFarAsItsManifestGoes) {
   EXPECT_TRUE(fs::exists("new/frame_00019.png"));
   EXPECT_FALSE(fs::exists("new/frame_00020.png"));
 
-  // A file that has changed is no longer ours.
+  // A file that was changed no longer belongs to the program.
   write("new/CELL.toml", "changed by hand");
   const Ran refused = run_program(render);
   EXPECT_EQ(refused.code, 2);
@@ -314,13 +314,13 @@ TEST(Outputs, AFolderIsReplacedAsFarAsItsManifestGoes) {
   std::ifstream cell("new/CELL.toml");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(cell), {}), "changed by hand");
 
-  // What another output has not finished is not this one's to remove.
+  // Unfinished output of another run is not removed.
   fs::create_directory("busy");
   write("busy/.twincell-notes", "mine");
   EXPECT_EQ(run_program({"render", "sim.h5", "-o", "busy", "-q"}).code, 2);
   EXPECT_TRUE(fs::exists("busy/.twincell-notes"));
 
-  // Nor is a folder of another product, or one whose manifest points elsewhere.
+  // Nor is a folder of another product, or one whose manifest points outside it.
   EXPECT_EQ(run_program({"analyze", "sim.h5", "--figures", "new", "-q"}).code, 2);
   fs::create_directory("trap");
   write("trap/twincell-manifest.json",
@@ -348,7 +348,7 @@ TEST(Outputs, FilesAreReplacedByTheirOwnKindOrByForce) {
     const Ran again = run_program(words);
     EXPECT_EQ(again.code, 0) << words[0] << ": " << again.err;
   }
-  // One kind does not replace another.
+  // An output of one kind does not replace one of another kind.
   EXPECT_EQ(run_program({"analyze", "sim.h5", "-o", "a.h5", "-q"}).code, 2);
   EXPECT_EQ(run_program({"locate", "frames", "-o", "t.csv", "-q"}).code, 2);
   EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "notes.txt", "-q"}).code, 2);
@@ -357,7 +357,7 @@ TEST(Outputs, FilesAreReplacedByTheirOwnKindOrByForce) {
 
 TEST(Outputs, TwoRunsDoNotShareAnOutput) {
   const Sandbox sandbox;
-  // The lock of an output, as another process would hold it.
+  // The lock of an output, as another process would keep it.
   RunningProgram first({"simulate", "scene.toml", "-o", "both.h5", "-q", "--set", "time.cycles=100000"});
   const auto temporaries = [] {
     int n = 0;
@@ -375,7 +375,7 @@ TEST(Outputs, TwoRunsDoNotShareAnOutput) {
   EXPECT_EQ(temporaries(), 0);
   EXPECT_FALSE(fs::exists("both.h5"));
 
-  // What a killed run leaves is removed by the next one with the same output.
+  // The next run with the same output removes the files that a killed run left.
   RunningProgram killed({"simulate", "scene.toml", "-o", "both.h5", "-q", "--set", "time.cycles=100000"});
   for (int wait = 0; wait < 2000 && temporaries() < 2; ++wait) ::usleep(10000);
   killed.signal(SIGKILL);

@@ -1,4 +1,5 @@
-// `reproduce` says at any budget what it wanted, what it measured, and what was cheaper.
+// At any budget, `reproduce` reports the wanted value, the measured value, and where it used cheaper
+// settings.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +23,7 @@ TEST(Reproduce, ASmallBudgetEndsInTimeAndNamesEveryTarget) {
                                "-o", out, "--data", folder / "own.csv"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   EXPECT_LT(std::chrono::steady_clock::now() - begin,
-            std::chrono::minutes(4));  // the point that was begun is finished
+            std::chrono::minutes(4));  // a point that has started is completed
   const auto document = nlohmann::json::parse(ran.out);
   EXPECT_FALSE(document["complete"]);
   int bouncing = 0, slips = 0;
@@ -42,7 +43,7 @@ TEST(Reproduce, ASmallBudgetEndsInTimeAndNamesEveryTarget) {
   EXPECT_FALSE(document["cheaper"].empty());
   for (const char* name : {"p1-fig3.svg", "p1-fig3.gp", "p1-fig3.dat", "p1-fig3.json", "p1-fig3.txt"})
     EXPECT_TRUE(fs::exists(fs::path(out) / name)) << name;
-  // The experiment's onsets, by height; a field that is empty is no point.
+  // The onsets of the experiment, by height; an empty field is not a point.
   std::ostringstream data;
   data << std::ifstream(fs::path(out) / "p1-fig3.dat").rdbuf();
   EXPECT_NE(data.str().find("# convection, experiment\n20 2.1\n60 2.9\n"), std::string::npos) << data.str();
@@ -58,7 +59,7 @@ TEST(Reproduce, AnExperimentsTableNeedsItsColumns) {
   EXPECT_NE(bad.err.find("bouncing"), std::string::npos) << bad.err;
 }
 
-/// Runs one with the smallest budget, and checks what all have in common.
+/// Runs one name with the smallest budget and checks the properties common to all.
 nlohmann::json reproduced(const std::string& name, const std::string& out,
                           const std::vector<std::string>& figures) {
   const Ran ran =
@@ -84,7 +85,7 @@ nlohmann::json reproduced(const std::string& name, const std::string& out,
   return document;
 }
 
-/// The target whose name begins so.
+/// The target whose name begins with this text.
 nlohmann::json target_of(const nlohmann::json& document, const std::string& name) {
   for (const auto& target : document["targets"])
     if (target["name"].get<std::string>().find(name) == 0) return target;
@@ -123,7 +124,7 @@ TEST(Reproduce, InitialBedsAndTheirOrientations) {
   const TemporaryFolder folder;
   const auto beds = reproduced("p1-fig1", folder / "one", {"p1-fig1"});
   EXPECT_EQ(target_of(beds, "q6 inside the crystal")["verdict"], "met");
-  // The same beds again, and with the second crystal what the first call's time did not suffice for.
+  // The same beds again, with the second crystal, for which the first call had no time left.
   const auto again = reproduced("p1-fig2", folder / "two", {"p1-fig2"});
   EXPECT_EQ(target_of(again, "close-packed rows of the crystal in orientation A")["verdict"], "met");
   EXPECT_TRUE(fs::exists(fs::path(folder / "p1-packings") / "points"));
@@ -140,7 +141,7 @@ TEST(Reproduce, TemperatureAndSlipsShareTheirRuns) {
     return n;
   };
   EXPECT_GE(points(fig4), 1U);
-  EXPECT_GT(points(fig5), points(fig4));  // it took up the points of Fig. 4, and had time for another
+  EXPECT_GT(points(fig5), points(fig4));  // it reused the points of Fig. 4 and had time for another
 }
 
 TEST(Reproduce, AnUnknownNameListsTheKnown) {

@@ -1,4 +1,4 @@
-// A signal ends every verb within a second, whatever it is at, and leaves nothing behind.
+// A signal ends every command within a second, at any stage, and no file remains.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ constexpr const char* kScene =
     "preset = \"fortini-huang-2015\"\n[beads]\nlayers = 4\n[cell]\nwidth = 10\n[drive]\ngamma = 1.8\n"
     "[time]\ncycles = 2\ndiscard = 0\n";
 
-/// A picture large enough that the search for settings takes seconds.
+/// An image large enough that the search for settings takes seconds.
 cv::Mat many_discs() {
   std::mt19937 chance(1);
   std::uniform_real_distribution<double> off(-3, 3);
@@ -55,7 +55,7 @@ class Stop : public ::testing::Test {
 };
 
 TEST_F(Stop, EveryLongWorkEndsWithinASecond) {
-  constexpr double kPatience = 2;  // s: a second, and another for a machine that is busy
+  constexpr double kPatience = 2;  // s: one second, plus one for a busy machine
   const std::vector<Words> all = {
       {"locate", "frames", "--refine", "profile", "-o", "out/b.csv"},
       {"locate", "frames", "--refine", "profile", "--diameter", "31", "-o", "out/b.csv"},
@@ -80,9 +80,9 @@ TEST_F(Stop, EveryLongWorkEndsWithinASecond) {
       program.signal(signal);
       const Ran ran = program.wait();
       const double took = std::chrono::duration<double>(Clock::now() - asked).count();
-      if (ran.code != 0) {  // otherwise it was done before it was asked
+      if (ran.code != 0) {  // otherwise it finished before the signal
         EXPECT_EQ(ran.code, 128 + signal) << ran.err;
-        const bool shared = words[0] == "reproduce" || words[0] == "sweep";  // what is done stays done
+        const bool shared = words[0] == "reproduce" || words[0] == "sweep";  // completed points remain
         if (!shared) {
           EXPECT_EQ(names_in("out"), Words{}) << ran.err;
         }
@@ -96,8 +96,8 @@ TEST_F(Stop, EveryLongWorkEndsWithinASecond) {
 }
 
 TEST_F(Stop, TheSearchForSettingsIsStoppedInTheMiddle) {
-  // It takes seconds: here the program cannot have ended before it is asked. A busy machine may need half of
-  // one to load the program's libraries, before which no signal is heeded.
+  // The search takes seconds, so the program cannot finish before the signal. A busy machine may need half a
+  // second to load the program's libraries; until then no signal is handled.
   RunningProgram program({"locate", "frames", "--refine", "profile", "-o", "out/b.csv"});
   std::this_thread::sleep_for(std::chrono::milliseconds(900));
   program.signal(SIGTERM);

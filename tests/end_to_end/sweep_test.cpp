@@ -1,5 +1,5 @@
-// Sweeps as a user meets them: whichever process computes the points, however often it is stopped, the
-// collected file is the same.
+// Sweeps as a user meets them: the collected file is the same regardless of which process computes the points
+// and how often it is stopped.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -50,7 +50,7 @@ class Sweeps : public ::testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return run_program(words);
   }
-  /// What collect makes of a folder.
+  /// Text that `collect` writes for a folder.
   static std::string collected(const std::string& plan, const std::string& folder) {
     const std::string out = folder + ".json";
     const Ran ran = run_program({"sweep", "collect", plan, "--folder", folder, "-o", out, "-q"});
@@ -66,7 +66,7 @@ TEST_F(Sweeps, OneCoreTwoCoresShardsAndRanksGiveTheSameBytes) {
   ASSERT_EQ(run(grid_, at("one"), {"--threads", "1"}).code, kDone);
   const std::string one = collected(grid_, at("one"));
   const auto document = nlohmann::json::parse(bytes_of(at("one.json")));
-  ASSERT_EQ(document["points"].size(), 6U);  // another seed makes no other crystal
+  ASSERT_EQ(document["points"].size(), 6U);  // another seed does not change the crystal
   EXPECT_EQ(document["open"], 0);
   for (const auto& point : document["points"]) {
     EXPECT_TRUE(point["results"]["s_b"].contains("value")) << point;
@@ -110,7 +110,7 @@ TEST_F(Sweeps, TheTemplatesOfGnuParallelAndOfSlurmGiveTheSameBytes) {
     EXPECT_EQ(ran.code, kDone) << ran.err;
     return ran.out;
   };
-  // What Slurm does with an array of three: the script once with each number.
+  // Slurm runs an array of three by calling the script once with each number.
   const std::string array = script("slurm", at("array"));
   EXPECT_NE(array.find("#SBATCH --array=1-3"), std::string::npos) << array;
   for (const char* task : {"2", "1", "3"})
@@ -129,10 +129,12 @@ TEST_F(Sweeps, TheTemplatesOfGnuParallelAndOfSlurmGiveTheSameBytes) {
 TEST_F(Sweeps, KilledAgainAndAgainNothingIsLostAndNothingDoneTwice) {
   const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(run(grid_, at("whole")).code, kDone);
-  const auto undisturbed = std::chrono::steady_clock::now() - start;  // fast or slow, it is killed midway
+  // The kills come midway through a run, so its duration on this machine is measured.
+  const auto undisturbed = std::chrono::steady_clock::now() - start;
   std::mt19937 random(20150101);
   const auto results = [&] {
-    std::map<std::string, std::string> all;  // with the seconds each took: computed again they would differ
+    // The text includes the seconds of each point, which would differ if the point were computed again.
+    std::map<std::string, std::string> all;
     if (fs::exists(at("k") + "/points"))
       for (const auto& point : fs::directory_iterator(at("k") + "/points"))
         if (fs::exists(point.path() / "result.json"))
@@ -170,7 +172,7 @@ TEST_F(Sweeps, TwoProcessesInOneFolderShareTheWork) {
 TEST_F(Sweeps, AFullDiskIsOneSentenceAndTheSweepGoesOn) {
   struct rlimit usual {};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &usual), 0);
-  for (const rlim_t bytes : {rlim_t{400}, rlim_t{800}}) {  // no room for a scene; none for a result
+  for (const rlim_t bytes : {rlim_t{400}, rlim_t{800}}) {  // no room for a scene; no room for a result
     const rlimit limit{bytes, usual.rlim_max};
     ::setrlimit(RLIMIT_FSIZE, &limit);
     const Ran ran = run(grid_, at("f"));
@@ -195,7 +197,7 @@ TEST_F(Sweeps, ASearchBracketsTheOnsetOfBouncingWhateverTheEngine) {
   ASSERT_EQ(document["onsets"].size(), 1U);
   const auto& onset = document["onsets"][0];
   EXPECT_TRUE(onset["complete"]);
-  // A completely inelastic rigid bed crosses s_b = sigma/30 at Gamma = 1.1636; a bed of beads nearby.
+  // A completely inelastic rigid bed crosses s_b = sigma/30 at Gamma = 1.1636; a bed of beads does so nearby.
   EXPECT_GT(onset["value"], 1.06);
   EXPECT_LT(onset["value"], 1.30);
   EXPECT_LT(onset["low"], onset["value"]);
@@ -253,7 +255,7 @@ TEST_F(Sweeps, TheResultsAreThoseOfSimulateAndAnalyze) {
   const fs::path point = fs::directory_iterator(at("o") + "/points")->path();
   const auto result = nlohmann::json::parse(bytes_of(point / "result.json"));
   const auto& swept = result["results"];
-  const std::string rest = result["rest_height"].dump();  // the bed's own, which a file does not hold
+  const std::string rest = result["rest_height"].dump();  // from the bed; not stored in a file
   const auto scene = nlohmann::json::parse(bytes_of(point / "point.json"))["scene"].get<std::string>();
   write(at("scene.toml"), scene);
   ASSERT_EQ(run_program({"simulate", at("scene.toml"), "-o", at("sim.h5"), "-q"}).code, kDone);
@@ -288,14 +290,14 @@ TEST_F(Sweeps, SeedsArePooledAsAnalyzePoolsThem) {
       EXPECT_TRUE(pooled[name] == group["results"][name]) << pooled[name] << group["results"][name];
     EXPECT_EQ(pooled["s_b"]["runs"].size(), 3U);
     EXPECT_LT(pooled["s_b"]["interval"]["low"], pooled["s_b"]["value"]);
-    // The same runs stand in the report as runs and as points of the sweep.
+    // The same runs appear in the report as runs and as points of the sweep.
     words = {"compare", "-q",         "--json",       "--sweep", at("r.json"),
              "-o",      at("report"), "--simulation", words[3],  words[4]};
     const Ran compared = run_program(words);
     EXPECT_EQ(compared.code, kDone) << compared.err;
     EXPECT_NE(bytes_of(at("report/report.html")).find("sweep"), std::string::npos);
   }
-  // Two strengths are not one condition, and one run is not two.
+  // Two drive strengths are not one condition, and one run repeated is not two runs.
   const std::string a =
       at("o") + "/points/" + collected["points"][0]["id"].get<std::string>() + "/trajectory.h5";
   const std::string b =
@@ -318,14 +320,14 @@ TEST_F(Sweeps, SeedsThatChangeNothingAreRunOnceAndSaid) {
   EXPECT_EQ(nlohmann::json::parse(seeds.out)["repeats_left_out"], 2);
   EXPECT_EQ(nlohmann::json::parse(planned("[axes]\ndrive.gamma = 1.6\nstart.seed = [1, 2]\n").out)["points"],
             1);
-  // What is drawn from the seed makes another run of it.
+  // A scene with a random property gives a different run for each seed.
   for (const char* chance :
        {"start.perturbation = 0.01\n", "beads.spread = \"uniform\"\nbeads.spread_width = 0.05\n"}) {
     const Ran drawn = planned(chance + std::string("[axes]\ndrive.gamma = 1.6\nseeds = 3\n"));
     ASSERT_EQ(drawn.code, kDone) << drawn.err;
     EXPECT_EQ(nlohmann::json::parse(drawn.out)["points"], 3) << chance;
   }
-  // Run and collected: one run, no interval over runs.
+  // Run and collected: one run, so no interval over runs.
   planned("[axes]\ndrive.gamma = 1.6\nseeds = 3\n");
   ASSERT_EQ(run(at("p.toml"), at("o")).code, kDone);
   ASSERT_EQ(
@@ -373,7 +375,7 @@ TEST_F(Sweeps, WrongPlansAreRefusedInOneSentence) {
   }
 }
 
-// The base scene names Gamma and layers; an axis says both in other words.
+// The base scene states Gamma and layers; an axis states the same quantities by other keys.
 TEST_F(Sweeps, AnAxisDisplacesWhatTheSceneSaysInOtherWords) {
   write(at("km.toml"), "results = [\"s_b\"]\n" + std::string(kScene) +
                            "drive.gamma = 1.2\n[axes]\ndrive.k_m = [2.25]\nbeads.count = [12]\n");

@@ -1,5 +1,5 @@
-// A bouncing and a rearranging cell: simulated, filmed, tracked, as a user would; the truth is the
-// simulation's.
+// A bouncing and a rearranging cell: simulated, filmed and tracked as a user would; the simulation gives the
+// true positions.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -55,8 +55,8 @@ TEST(Track, NoLinkIsWrongAtTwentyPhasesPerCycle) {
 }
 
 TEST(Track, AConvectingCellAtTwentyPhasesKeepsItsCrystalTogether) {
-  // The plate moves by up to one diameter between two frames. Single beads of the spray above the bed may go
-  // wrong; a block of the crystal that is taken a lattice vector off would cost dozens of links at once.
+  // The plate moves by up to one diameter between two frames. Single beads of the spray above the bed may get
+  // wrong links; a crystal block shifted by a lattice vector would cost dozens of links at once.
   const TemporaryFolder folder;
   write(folder / "scene.toml", scene("crystal_a", 3.2));
   ASSERT_EQ(run_program({"simulate", folder / "scene.toml", "-o", folder / "sim.h5", "-q"}).code, 0);
@@ -72,7 +72,7 @@ TEST(Track, AConvectingCellAtTwentyPhasesKeepsItsCrystalTogether) {
   EXPECT_GT(said["links"]["rematched"], 0);
 }
 
-// Walls and plate, and gaps nearly as dark as the beads, in a picture blurred by a third of a radius.
+// Walls, plate, and gaps nearly as dark as the beads, in an image blurred by a third of a radius.
 TEST(Track, ACellOutOfFocus) {
   const TemporaryFolder folder;
   write(folder / "scene.toml", scene("crystal_a", 1.8));
@@ -91,7 +91,8 @@ TEST(Track, ACellOutOfFocus) {
   EXPECT_LE(said["truth"]["wrong_links"], 2);
 }
 
-// Radii within a quarter: at one size a fourth of the beads is left out, and that is said; at two none is.
+// Radii spread by a quarter: with one size, a fourth of the beads is left out, and the output reports it;
+// with two sizes, none is left out.
 TEST(Track, BeadsOfSeveralSizes) {
   const TemporaryFolder folder;
   std::string mixed = scene("random", 1.8);

@@ -1,4 +1,5 @@
-// Writes a small trajectory with missing beads, and what is in it as CSV, for the readers of other people.
+// Writes a small trajectory with missing beads, and its content as CSV, to test the readers of other
+// programs.
 // usage: write_client_sample TRAJECTORY.h5 EXPECTED.csv
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// A CELL.toml.
+// Fuzz target: a CELL.toml.
 
 #include "imaging/cell/cell.hpp"
 #include "tests/fuzz/input.hpp"

@@ -1,4 +1,4 @@
-// A dump of LAMMPS, in two and in three dimensions.
+// Fuzz target: a LAMMPS dump, in two and in three dimensions.
 
 #include "tests/fuzz/input.hpp"
 #include "trajectory/formats/lammps_dump.hpp"

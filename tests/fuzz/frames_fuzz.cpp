@@ -1,6 +1,6 @@
-// The readers of frame stacks, on whatever bytes. A program per format: TWINCELL_FUZZ_READER is its name. An
-// input may be refused in a sentence; it must not crash, hang, or ask for memory that its size cannot
-// explain.
+// Fuzz targets: the readers of frame stacks, on arbitrary bytes. There is one program per format;
+// TWINCELL_FUZZ_READER is its name. An input may be refused with a message; it must not crash, hang, or
+// request memory out of proportion to its size.
 
 #include <hdf5.h>
 
@@ -17,7 +17,7 @@
 #include "imaging/stack/formats/reader.hpp"
 #include "tests/fuzz/input.hpp"
 
-// HDF5 1.10 itself loses some bytes when it refuses a damaged file.
+// HDF5 1.10 itself leaks some bytes when it refuses a damaged file.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libhdf5";
 }
@@ -35,7 +35,7 @@ using Source = std::unique_ptr<FrameSource>;
 
 constexpr std::string_view kFormat = TWINCELL_FUZZ_READER;
 
-/// The reader of a format with one file.
+/// The reader of a single-file format.
 const frames::Reader& reader() {
   using namespace frames;
   return kFormat == "cine"      ? cine_reader
@@ -47,7 +47,7 @@ const frames::Reader& reader() {
                                 : tiff_reader;
 }
 
-/// A .cih and its .mraw, for which the name matters: the input up to its first NUL, and the rest.
+/// Writes a .cih and its .mraw, whose names must match: the input up to its first NUL, and the rest.
 fs::path write_photron_pair(const fs::path& folder, std::string_view all) {
   const std::size_t cut = std::min(all.find('\0'), all.size());
   std::ofstream(folder / "a.cih", std::ios::binary) << all.substr(0, cut);
@@ -55,8 +55,8 @@ fs::path write_photron_pair(const fs::path& folder, std::string_view all) {
   return folder / "a.mraw";
 }
 
-/// Up to eight files. Each is a byte that selects its extension, two bytes of its length (low byte first),
-/// and its content.
+/// Writes up to eight files. Each is a byte that selects its extension, two bytes for its length (low byte
+/// first), and its content.
 void write_folder(const fs::path& folder, std::string_view all) {
   constexpr std::string_view kExtensions[] = {".png", ".tif", ".jpg",  ".bmp",
                                               ".pgm", ".txt", ".cine", ".PNG"};
@@ -77,19 +77,19 @@ void read_stack(const std::function<Source()>& open) {
     if (!source) return;
     (void)source->info();
     cv::Mat frame;
-    // A small file may well hold millions of frames of one pixel.
+    // A small file may validly contain millions of frames of one pixel.
     for (int i = 0; i < 64 && source->next(frame); ++i) {
       if (frame.empty() || frame.channels() != 1) std::abort();
       (void)source->time_s();
       (void)source->current();
     }
   } catch (const InputError& e) {
-    // One sentence that names the file.
+    // The message is one line that names the file.
     if (std::string_view(e.what()).find('\n') != std::string_view::npos) std::abort();
   }
 }
 
-/// As `open_frames` does: a file that is not of the format is another reader's.
+/// Opens a file as `open_frames` does: a file of another format is left to another reader.
 Source open_owned(const fs::path& file) {
   return reader().owns(frames::head_of(file)) ? reader().open(file, "") : nullptr;
 }

@@ -1,4 +1,4 @@
-// A trajectory: read frame by frame, and validated.
+// Fuzz target: a trajectory, read frame by frame and validated.
 
 #include <hdf5.h>
 
@@ -7,8 +7,8 @@
 #include "tests/fuzz/input.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-// HDF5 1.10 itself loses some bytes when it refuses a damaged file. What of it we would have to close is
-// counted below.
+// HDF5 1.10 itself leaks some bytes when it refuses a damaged file. HDF5 objects that the program failed to
+// close are counted below.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libhdf5";
 }

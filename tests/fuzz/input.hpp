@@ -1,6 +1,6 @@
 /// \file
-/// What the entry points of the fuzzers share. An input may be refused in a sentence; it must not crash,
-/// hang, or ask for memory that its size cannot explain.
+/// Common code of the fuzz targets. An input may be refused with a message; it must not crash, hang, or
+/// request memory out of proportion to its size.
 
 #pragma once
 
@@ -33,8 +33,8 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// A file on disk, overwritten by each input: for HDF5, which resolves links and does not find the file
-/// behind /proc/self/fd.
+/// A file on disk, overwritten by each input. HDF5 needs it because it resolves links and does not find the
+/// file behind /proc/self/fd.
 class DiskFile {
  public:
   DiskFile() {
@@ -78,8 +78,8 @@ class DiskFolder {
   std::filesystem::path path_;
 };
 
-/// Calls `read`, which may refuse its input by an Error that says something. Any other exception ends the
-/// program, which the fuzzer reports.
+/// Calls `read`, which may refuse its input by an Error with a message. Any other exception ends the program,
+/// which the fuzzer reports.
 template <class Read>
 void accept_or_refuse(const Read& read) {
   try {

@@ -1,5 +1,5 @@
-// A plan of a sweep over the scene "scene.toml", which is there. An input that has a NUL brings its own scene
-// behind it.
+// Fuzz target: a plan of a sweep over the existing scene "scene.toml". An input that contains a NUL supplies
+// its own scene after it.
 
 #include <algorithm>
 #include <fstream>
@@ -9,7 +9,7 @@
 
 namespace {
 
-/// A folder of its own, removed in the end.
+/// A temporary folder of this process, removed at exit.
 class Folder {
  public:
   Folder() {

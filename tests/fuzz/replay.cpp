@@ -1,4 +1,5 @@
-// Gives every file of the folders named to the fuzz target, without a fuzzer: what once crashed stays tested.
+// Passes every file of the named folders to the fuzz target, without a fuzzer, so that inputs that once
+// crashed it stay tested.
 
 #include <algorithm>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A scene, as text.
+// Fuzz target: a scene, as text.
 
 #include "sim/scene/scene.hpp"
 #include "tests/fuzz/input.hpp"

@@ -1,5 +1,5 @@
-// Writes a few small whole files of each binary format, for the fuzzer to begin with: seeds FOLDER. Those of
-// the text formats lie in tests/fuzz/corpus.
+// Writes a few small complete files of each binary format as initial inputs of the fuzzer: seeds FOLDER.
+// Those of the text formats are in tests/fuzz/corpus.
 
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-// A table of comma-separated numbers.
+// Fuzz target: a table of comma-separated numbers.
 
 #include "calibration/fit/table.hpp"
 #include "tests/fuzz/input.hpp"

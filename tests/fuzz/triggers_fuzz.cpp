@@ -1,4 +1,4 @@
-// A list of triggers: frames per cycle found, and stated.
+// Fuzz target: a list of triggers, with the number of frames per cycle detected and stated.
 
 #include "imaging/phase/trigger_list.hpp"
 #include "tests/fuzz/input.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Files as cameras write them, byte by byte, by other code than that which reads them.
+/// Files as cameras write them, written byte by byte by code that is independent of the readers.
 
 #include <cmath>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace twincell {
 
-/// Little-endian bytes that grow as they are written to.
+/// Little-endian byte buffer that grows as it is written to.
 class ByteWriter {
  public:
   /// Writes the low `n` bytes of `value` at byte `at`.
@@ -41,7 +41,7 @@ class ByteWriter {
 /// Value of the pixel in a column and row (0 at the top) of a frame.
 using PixelValue = std::function<unsigned(int x, int y, int frame)>;
 
-/// Values in a row, most significant bit first, without gaps.
+/// Values of a row packed without gaps, most significant bit first.
 inline std::string packed(const std::vector<unsigned>& values, int bits) {
   std::string out;
   int room = 0;
@@ -83,8 +83,8 @@ struct CineSpec {
   unsigned rate = 1000;
 };
 
-/// A Phantom cine file. Frame i is taken (first_image + i)/rate seconds after the trigger, at 1 600 000
-/// 000.25 s.
+/// A Phantom cine file. Frame i is taken (first_image + i)/rate seconds after the trigger; the trigger is at
+/// 1 600 000 000.25 s.
 inline std::string cine_file(const CineSpec& c, const PixelValue& value) {
   ByteWriter w;
   const std::size_t setup = 84, tags = setup + c.setup_bytes;
@@ -119,7 +119,7 @@ inline std::string cine_file(const CineSpec& c, const PixelValue& value) {
   const std::size_t offset_bytes = c.version == 0 ? 4 : 8;
   std::size_t image = at + offset_bytes * n;
   for (std::size_t i = 0; i < n; ++i) {
-    // A flip asked for by the set-up is undone here, so that what is seen is what `value` says.
+    // A flip that the set-up requests is undone here, so that the displayed image equals `value`.
     const bool bottom_up = (c.packing == 0 && !c.top_down) != c.flip_v;
     const PixelValue seen = [&](int x, int y, int f) { return value(c.flip_h ? c.width - 1 - x : x, y, f); };
     const std::string pixels = plane(c.width, c.height, c.container, static_cast<int>(i), seen, bottom_up);
@@ -134,12 +134,12 @@ struct SeqSpec {
   int width = 6, height = 4, frames = 3;
   int bits = 8, real_bits = 8;
   int version = 5;
-  bool counted = true;  ///< the header holds the number of frames
+  bool counted = true;  ///< the header contains the number of frames
   unsigned format = 100, compression = 0;
 };
 
-/// A NorPix sequence; frame i is taken 2.5 ms after the one before (in whole milliseconds before version 5: 3
-/// ms).
+/// A NorPix sequence. Consecutive frames are 2.5 ms apart (3 ms before version 5, which stores whole
+/// milliseconds).
 inline std::string seq_file(const SeqSpec& s, const PixelValue& value) {
   ByteWriter w;
   const std::size_t first = s.version >= 5 ? 8192 : 1024;
@@ -172,7 +172,7 @@ inline std::string mrf_file(int width, int height, int frames, int bits, const P
   return w.text();
 }
 
-/// The text beside a Photron .mraw.
+/// The text file that accompanies a Photron .mraw.
 inline std::string cih_text(int width, int height, int frames, int bits, int depth,
                             const std::string& side = "Lower") {
   return "#Camera Information Header\r\nDate : 2020/1/1\r\nCamera Type : FASTCAM\r\nRecord Rate(fps) : "
@@ -186,7 +186,7 @@ inline std::string cih_text(int width, int height, int frames, int bits, int dep
          "\r\nEffectiveBit Side : " + side + "\r\nEND\r\n";
 }
 
-/// The same as .cihx: XML between bytes that are none.
+/// The same information as .cihx: XML between bytes that are not XML.
 inline std::string cihx_text(int width, int height, int frames, int bits, int depth) {
   return std::string("\x01\x02\0junk", 7) +
          "<?xml version=\"1.0\"?>\n<cih>\n<fileInfo><date>2020/1/1</date></fileInfo>" +
@@ -214,20 +214,21 @@ struct TiffSpec {
   int photometric = 1;
   std::string description;
   int pages_written =
-      -1;  ///< directories; the planes of the other pages lie bare behind; -1: as many as pages
+      -1;  ///< number of directories; the planes of the other pages follow without one; -1: as many as pages
   int max_sample = 0;
-  bool only_head = false;  ///< leave out the pixels of all but the first page
+  bool only_head = false;  ///< omit the pixels of all but the first page
 };
 
 /// An uncompressed TIFF, one strip per page.
 inline std::string tiff_file(const TiffSpec& t, const PixelValue& value) {
   ByteWriter w;
+  // Header, and the description if there is one.
   const std::size_t word = t.big_tiff ? 8 : 4;
   const auto put = [&](std::size_t at, std::uint64_t v, std::size_t n) { w.put(at, v, n, t.big_first); };
   w.put(0, t.big_first ? "MM" : "II");
   put(2, t.big_tiff ? 43 : 42, 2);
   if (t.big_tiff) put(4, 8, 2);
-  std::size_t link = t.big_tiff ? 8 : 4;  // where the offset of the next directory goes
+  std::size_t link = t.big_tiff ? 8 : 4;  // position of the next directory's offset
   put(link, 0, word);
   std::size_t text_at = 0;
   if (!t.description.empty()) {
@@ -239,8 +240,9 @@ inline std::string tiff_file(const TiffSpec& t, const PixelValue& value) {
   const int directories = t.pages_written < 0 ? t.pages : t.pages_written;
   for (int i = 0; i < t.pages; ++i) {
     if (i >= directories && t.only_head) break;
+    // Pixels of the page.
     std::string pixels;
-    if (t.bits > 8 && t.bits < 16) {  // rows begin at whole bytes
+    if (t.bits > 8 && t.bits < 16) {  // rows begin at byte boundaries
       for (int y = 0; y < t.height; ++y)
         pixels += plane(t.width, 1, t.bits, i, [&](int x, int, int f) { return value(x, y, f); });
     } else {
@@ -253,6 +255,7 @@ inline std::string tiff_file(const TiffSpec& t, const PixelValue& value) {
     struct Entry {
       std::uint64_t tag, type, n, value;
     };
+    // Entries of the directory, in ascending order of the tag.
     std::vector<Entry> entries = {{256, 4, 1, static_cast<std::uint64_t>(t.width)},
                                   {257, 4, 1, static_cast<std::uint64_t>(t.height)},
                                   {258, 3, 1, static_cast<std::uint64_t>(t.bits)},
@@ -264,6 +267,7 @@ inline std::string tiff_file(const TiffSpec& t, const PixelValue& value) {
     entries.push_back({278, 4, 1, static_cast<std::uint64_t>(t.height)});
     entries.push_back({279, 4, 1, bytes});
     if (t.max_sample > 0) entries.push_back({281, 3, 1, static_cast<std::uint64_t>(t.max_sample)});
+    // Directory: the previous one links to it, and the pixels follow it.
     const std::size_t at = (w.size() + 7) / 8 * 8;
     put(link, at, word);
     const std::size_t count = t.big_tiff ? 8 : 2, each = t.big_tiff ? 20 : 12;

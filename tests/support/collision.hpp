@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// One contact at a time: scenes whose kernel is driven by hand, and collisions with a chosen entry phase.
+/// Single contacts: scenes whose kernel the test advances step by step, and collisions with a chosen entry
+/// phase.
 
 #include <cmath>
 #include <string>
@@ -9,26 +10,26 @@
 
 namespace twincell::sim {
 
-/// A kernel and a system of the first paper's model without gravity, changed by `extra` (TOML, table by
-/// table).
+/// A kernel and a system with the model of the first paper without gravity, changed by `extra` (TOML, table
+/// by table).
 struct Bench {
   Scene scene;
   Plan plan;
   System system;
   std::unique_ptr<Solver> kernel;
 
-  /// \param n steps per contact time of the bead-bead contact. Use numbers like 50.37: a step that divides
-  /// t_c hides errors.
+  /// \param n steps per contact time of the bead-bead contact. Use a non-integer such as 50.37: a step that
+  /// divides t_c hides errors.
   explicit Bench(const std::string& extra, double n = 50.37, SolverKind kind = SolverKind::best) {
     scene = read_scene_text(
         "preset = \"fortini-huang-2015\"\n[beads]\ncount = 1\n[drive]\namplitude = 0.0\n" + extra, "bench");
     scene.steps_per_contact = n;
     if (!scene.integrator_stated) scene.integrator = "verlet";
     if (scene.stepping == Stepping::automatic)
-      scene.stepping = Stepping::steps;  // these tests are of the steps
+      scene.stepping = Stepping::steps;  // these tests concern the fixed steps
     plan = make_plan(scene);
     system = make_system(scene, plan);
-    // The plan rounds the step so that phases are whole; here the step itself is what is studied.
+    // The plan rounds the step to give whole phases; these tests need the exact step.
     double shortest = HUGE_VAL;
     for (const TimeLimit& limit : plan.limits)
       if (limit.name.find("bead-bead, normal") == 0) shortest = limit.time;
@@ -50,8 +51,8 @@ struct Bench {
 
 inline const std::string kNoGravity = "[cell]\ngravity = 0.0\nheight = 1000.0\nlid = \"wall\"\n";
 
-/// Head-on collision of two beads far from the walls at +-v/2; returns e. `phase`: gap at start in steps of v
-/// dt, beyond 5.
+/// Head-on collision of two beads far from the walls at +-v/2; returns e. `phase`: the initial gap is
+/// 5 + `phase` steps of v dt.
 inline double pair_restitution(const std::string& extra, double n, double v, double phase) {
   Bench b(kNoGravity + extra, n);
   const double gap = (5 + phase) * v * b.system.dt;
@@ -61,7 +62,7 @@ inline double pair_restitution(const std::string& extra, double n, double v, dou
   return (b.system.beads[1].vx - b.system.beads[0].vx) / v;
 }
 
-/// Vertical collision with the resting plate; returns e.
+/// Vertical collision with the plate at rest; returns e.
 inline double wall_restitution(const std::string& extra, double n, double v, double phase) {
   Bench b(kNoGravity + extra, n);
   const double gap = (5 + phase) * v * b.system.dt;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// That something is refused, and in which words.
+/// Checks that an action is refused, and the wording of the error.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 namespace twincell {
 
-/// Expects `action` to throw an E whose sentence holds all of `wanted`.
+/// Expects `action` to throw an E whose message contains all of `wanted`.
 template <class E, class ContactLoad, class... Words>
 void expect_refusal(ContactLoad action, const Words&... wanted) {
   try {

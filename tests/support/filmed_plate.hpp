@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A cell with a plate that moves and a crystal that rides on it, filmed with a known camera.
+/// A cell with a moving plate and a crystal that rides on it, filmed with a known camera.
 
 #include <cmath>
 #include <vector>
@@ -16,7 +16,7 @@ inline RigidBed small_bed(double gamma, int cycles) {
   return {.gamma = gamma, .columns = 12, .rows = 5, .phases = 20, .cycles = cycles};
 }
 
-/// Frames in memory.
+/// Films the bed and returns the frames in memory.
 inline std::vector<cv::Mat> film(const MemoryTrajectory& bed, const CameraOptions& options) {
   const SyntheticCamera camera(options, bed.info());
   std::vector<cv::Mat> frames;
@@ -31,7 +31,7 @@ inline std::vector<cv::Mat> film(const MemoryTrajectory& bed, const CameraOption
   return frames;
 }
 
-/// Pictures as a stack.
+/// Images in memory as a stack.
 class FilmedFrames : public FrameSource {
  public:
   explicit FilmedFrames(std::vector<cv::Mat> frames) : frames_(std::move(frames)) {}

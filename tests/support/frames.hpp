@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Stacks written, read whole, and refused.
+/// Helpers that write stacks, read all of their frames, and return the message of a refusal.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ inline void put(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-/// All frames of a stack. A frame that is handed out stays as it is when the next one is read.
+/// All frames of a stack. A returned frame does not change when the next one is read.
 inline std::vector<cv::Mat> read_all(const std::filesystem::path& stack) {
   const auto source = open_frames(stack);
   std::vector<cv::Mat> frames;
@@ -41,7 +41,7 @@ inline std::vector<cv::Mat> read_all(const std::filesystem::path& stack) {
   return frames;
 }
 
-/// The sentence with which a stack is refused; empty if it is not.
+/// The message with which a stack is refused; empty if it is accepted.
 inline std::string refusal(const std::filesystem::path& stack) {
   try {
     read_all(stack);

@@ -19,8 +19,8 @@ namespace twincell::sim {
 
 struct GasOptions {
   int dimension = 2;
-  int cells = 16;          ///< beads along each axis: cells^dimension of them
-  double phi = 0.1;        ///< share of the area or volume
+  int cells = 16;          ///< beads along each axis: cells^dimension in total
+  double phi = 0.1;        ///< fraction of the area or volume
   double stiffness = 1e6;  ///< k_n
   double restitution = 1;
   double n = 20.37;  ///< steps per contact time
@@ -28,8 +28,8 @@ struct GasOptions {
   std::string integrator = "verlet";
 };
 
-/// Starts as a lattice, hexagonal rows or simple cubic, with Maxwellian velocities of temperature 1 and
-/// total momentum 0.
+/// A gas that starts as a lattice, hexagonal rows or simple cubic, with Maxwellian velocities of temperature
+/// 1 and total momentum 0.
 class Gas {
  public:
   explicit Gas(const GasOptions& o) : options(o) {
@@ -49,7 +49,7 @@ class Gas {
     const Scene scene = read_scene_text(text, "gas");
     const Plan plan = make_plan(scene);
     system = make_system(scene, plan);
-    contact_time = std::numbers::pi / std::sqrt(2 * o.stiffness);  // without the little that damping adds
+    contact_time = std::numbers::pi / std::sqrt(2 * o.stiffness);  // without the damping correction
     system.dt = contact_time / o.n;
     std::mt19937_64 engine(o.seed);
     std::normal_distribution<double> maxwell(0, 1);
@@ -68,7 +68,7 @@ class Gas {
     kernel = make_solver(plan, {.overlap = 0.3, .travel_per_step = 1});
   }
 
-  /// Takes the motion of the whole away.
+  /// Subtracts the mean velocity.
   void stand_still() {
     Vec3 momentum = Vec3::Zero();
     double mass = 0;
@@ -92,8 +92,8 @@ class Gas {
     const auto& p = system.period;
     return count() / (p[0] * p[2] * (options.dimension == 3 ? p[1] : 1));
   }
-  /// visit(i, j, overlap) for every pair in contact. Looks at near pairs only, which are found anew when some
-  /// bead has gone half of their margin.
+  /// Calls visit(i, j, overlap) for every pair in contact. It tests only the pairs of a list, which is
+  /// rebuilt when a bead has moved by half of the list's margin.
   template <class Visit>
   void for_each_contact(Visit visit) {
     constexpr double kMargin = 0.3;
@@ -144,11 +144,11 @@ class Gas {
   }
 };
 
-/// Collisions counted by looking twice in a contact time: a contact of the linear law lasts t_c, whatever its
-/// speed.
+/// Counts collisions by sampling the contacts twice per contact time: a contact of the linear law lasts t_c
+/// at any speed.
 class CollisionCounter {
  public:
-  /// \return contacts that were not there at the last look
+  /// \return the number of contacts that were absent at the previous sample
   int look(Gas& gas) {
     std::set<std::pair<std::int32_t, std::int32_t>> now;
     int fresh = 0;
@@ -176,12 +176,12 @@ inline double carnahan_starling_z(double phi) {
 inline double contact_value(int dimension, double phi) {
   return dimension == 2 ? (1 - 7 * phi / 16) / ((1 - phi) * (1 - phi)) : (1 - phi / 2) / std::pow(1 - phi, 3);
 }
-/// Collisions of a bead per time in a hard gas of d = m = 1: 2 sqrt(pi) n g sqrt(T) for discs, 4 sqrt(pi) n g
-/// sqrt(T) for spheres.
+/// Collisions per bead and unit time in a hard gas of d = m = 1: 2 sqrt(pi) n g sqrt(T) for discs, 4 sqrt(pi)
+/// n g sqrt(T) for spheres.
 inline double collision_rate(int dimension, double number_density, double g, double temperature) {
   return (dimension == 2 ? 2 : 4) * std::sqrt(std::numbers::pi) * number_density * g * std::sqrt(temperature);
 }
-/// Diameter of the hard bead that stands for the linear spring at temperature T, to first order in its
+/// Diameter of the hard bead equivalent to the linear spring at temperature T, to first order in its
 /// softness: the integral of 1 - exp(-k x^2/2T) (Barker & Henderson 1967).
 inline double effective_diameter(double stiffness, double temperature) {
   return 1 - std::sqrt(std::numbers::pi * temperature / (2 * stiffness));
@@ -189,9 +189,9 @@ inline double effective_diameter(double stiffness, double temperature) {
 
 /// Equation of state of hard discs from the virial coefficients B_2...B_10 of Clisby & McCoy, J. Stat. Phys.
 /// 122, 15 (2006), Table 1 (B_3 and B_4 are closed forms), as the Pade approximant [4/5]; [5/4] agrees to
-/// 0.03 % up to phi = 0.6, where Henderson's formula lies 1.2 % higher.
+/// 0.03 % up to phi = 0.6, where Henderson's formula is 1.2 % higher.
 inline double hard_disc_z(double phi) {
-  // In x = 2 phi: numerator and denominator of the approximant.
+  // Numerator and denominator of the approximant, in x = 2 phi.
   static const auto pade = [] {
     constexpr int kTop = 4, kBottom = 5;
     constexpr double kPi = std::numbers::pi, kRoot = std::numbers::sqrt3;
@@ -228,7 +228,7 @@ inline double hard_disc_z(double phi) {
   return value(pade.first) / value(pade.second);
 }
 
-/// Mean and standard error from the means of blocks.
+/// Mean and standard error from block means.
 struct Averaged {
   double mean = 0, error = 0;
 };

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// HDF5 objects whose data is in another file.
+/// HDF5 objects whose data are in another file.
 
 #include <array>
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace twincell::test {
 
-/// Adds to an open file what is called `kind`: "link", "virtual" or "external". The data is in `other`.
+/// Adds an object of the given `kind` to an open file: "link", "virtual" or "external". Its data are in
+/// `other`.
 inline void add_elsewhere(hid_t file, const std::string& kind, const std::string& other) {
   const std::array<hsize_t, 3> shape = {2, 3, 4};
   if (kind == "link")

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A hexagonal lattice that goes on beyond a picture.
+/// A hexagonal lattice that extends beyond an image.
 
 #include <cmath>
 #include <numbers>
@@ -9,7 +9,7 @@
 
 namespace twincell {
 
-/// Sites of so many rows and columns on every side of (0, 0), row by row, turned by an angle.
+/// Sites of `rows` rows and columns on every side of (0, 0), row by row, rotated by the angle `turned`.
 inline std::vector<cv::Point2d> hexagonal_sites(double constant, double turned, int rows) {
   std::vector<cv::Point2d> sites;
   for (int row = -rows; row <= rows; ++row)

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Runs the program as a user would and keeps what it said.
+/// Runs the program as a user would and stores its output.
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -25,7 +25,7 @@ struct Ran {
   std::string out, err;
 };
 
-/// A program that is running.
+/// A running program.
 class RunningProgram {
  public:
   /// \param words arguments of twincell
@@ -67,7 +67,7 @@ inline Ran run_program(const std::vector<std::string>& words) {
   return RunningProgram(words).wait();
 }
 
-/// Names of everything in a folder, sorted, for "nothing was left behind".
+/// Names of all entries of a folder, sorted, to check that no files were left behind.
 inline std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder))

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Writes a file of a test, over whatever is there. The program's own write_text_file refuses that.
+/// Writes a test file and replaces any existing one, which the program's own write_text_file refuses to do.
 
 #include <filesystem>
 #include <fstream>

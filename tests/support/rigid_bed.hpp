@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The rigid bed of reproduce/rigid_bed.hpp under the tests' name.
+/// The rigid bed of reproduce/rigid_bed.hpp, made available in the namespace of the tests.
 
 #include "reproduce/rigid_bed.hpp"
 

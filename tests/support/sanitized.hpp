@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Whether the tests are built with a sanitizer. The address sanitizer keeps freed memory for a while and
-/// reserves terabytes of addresses, so that neither memory use nor a limit of memory can be tested.
+/// Whether the tests are built with a sanitizer. The address sanitizer delays the release of freed memory and
+/// reserves terabytes of address space, so neither memory use nor a memory limit can be tested.
 
 namespace twincell {
 

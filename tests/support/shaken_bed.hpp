@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Beds driven by hand, for what must not change their bits.
+/// Beds that the test advances step by step, to check that results stay identical to the bit.
 
 #include <cstring>
 
@@ -14,7 +14,8 @@ inline bool same_bits(const System& a, const System& b) {
          std::memcmp(a.beads.data(), b.beads.data(), a.beads.size() * sizeof(Bead)) == 0;
 }
 
-/// Sixty beads of the first paper's law thrown onto a plate that shakes them, Gamma = 3, with softer springs.
+/// Sixty beads with the contact law of the first paper, with softer springs, thrown onto a plate that shakes
+/// them at Gamma = 3.
 struct ShakenBed {
   Scene scene;
   Plan plan;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A folder that goes away with the test.
+/// A folder that is deleted at the end of the test.
 
 #include <cstdlib>
 #include <filesystem>

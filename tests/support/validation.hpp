@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One checked number: the expectation of a test and a row of docs/validation.md in one.
+/// One checked value: both the expectation of a test and a row of docs/validation.md.
 
 #include <gtest/gtest.h>
 
@@ -10,13 +10,13 @@
 
 namespace twincell::test {
 
-/// What a number is checked against.
+/// Independent reference for a checked value.
 struct Outside {
   std::string id;      ///< row of the verification plan, "V1.2"
   std::string what;    ///< law or case, with what was varied
   double number;       ///< from outside the code
-  double tolerance;    ///< absolute, both ways
-  std::string source;  ///< closed form, paper, or peer
+  double tolerance;    ///< absolute, in both directions
+  std::string source;  ///< closed form, paper, or independent program
 };
 
 /// Expects |measured - number| <= tolerance, and prints the row
@@ -33,7 +33,7 @@ inline void validate(const Outside& outside, double measured) {
       << outside.number << ", error " << error << ", tolerance " << outside.tolerance;
 }
 
-/// A number of which the outside says between what it lies, and no more.
+/// Independent reference that gives only a lower and an upper bound.
 struct OutsideBounds {
   std::string id, what;
   double least, most;

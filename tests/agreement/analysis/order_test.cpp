@@ -1,5 +1,5 @@
-// The planar q6 against Steinhardt's definition written out in three dimensions with all pairs and another
-// polar axis.
+// The planar q6 against a direct evaluation of Steinhardt's definition in three dimensions, over all pairs
+// and with a different polar axis.
 #include "analysis/order/order.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ struct Slow {
   std::vector<double> q6, psi6;
 };
 
-/// q_6 = sqrt(4 pi/13 sum_m |mean Y_6m|^2) with z, which lies in the plane, as polar axis.
+/// q_6 = sqrt(4 pi/13 sum_m |mean Y_6m|^2), with the polar axis along z, which is in the plane of the beads.
 Slow slow_order(const Frame& frame, const Box& box, double cutoff) {
   Slow slow;
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
@@ -28,7 +28,7 @@ Slow slow_order(const Frame& frame, const Box& box, double cutoff) {
     for (std::size_t j = 0; j < frame.position.size(); ++j) {
       if (j == i || !frame.present(i) || !frame.present(j)) continue;
       Vec3 d = frame.position[j] - frame.position[i];
-      for (int a = 0; a < 3; ++a) {  // images by hand
+      for (int a = 0; a < 3; ++a) {  // explicit minimum image
         if (box.boundary[static_cast<std::size_t>(a)] != Boundary::periodic) continue;
         const double period = box.upper[a] - box.lower[a];
         while (d[a] > period / 2) d[a] -= period;
@@ -134,7 +134,7 @@ TEST(OrderAgreement, RelabellingShiftAndWrapChangeNothing) {
     ASSERT_EQ(folded.n_bonds[i], before.n_bonds[i]);
     if (before.n_bonds[i] < 2) continue;
     EXPECT_NEAR(relabelled.q6[n - 1 - i], before.q6[i], 1e-12);
-    EXPECT_NEAR(moved.q6[i], before.q6[i], 1e-9);  // positions near 1234 hold 1e-13 of a bond
+    EXPECT_NEAR(moved.q6[i], before.q6[i], 1e-9);  // positions near 1234 resolve 1e-13 of a bond
     EXPECT_NEAR(folded.q6[i], before.q6[i], 1e-9);
   }
 }

@@ -1,6 +1,6 @@
-// The fit of picture_fit.hpp against Ceres: one patch, one model, one set of weights. Ceres fits every disc
-// and the quadratic surface of the light together. Sizes and darknesses scatter widely, so that the fit's
-// belief that beads are alike has no weight.
+// The fit of picture_fit.hpp against Ceres, with the same patch, model and weights. Ceres fits all discs and
+// the quadratic surface of the illumination together. Sizes and darknesses scatter widely, so that the prior
+// of the fit (beads are alike) carries no weight.
 
 #include <ceres/ceres.h>
 #include <gtest/gtest.h>
@@ -21,8 +21,9 @@ namespace {
 
 constexpr double kRing = 3;
 
-/// Darkness of a pixel less T + (1 - T) q, in standard deviations of the noise: T of all discs near it, mean
-/// over their path, q the quadratic surface by which the light is off. The first block is q's.
+/// Residual: darkness of a pixel minus (T + (1 - T) q), in standard deviations of the noise. T is the
+/// darkness of all discs near the pixel, averaged over their path during the exposure; q is the quadratic
+/// surface of the illumination error. The first parameter block contains the coefficients of q.
 struct Pixel {
   double x, y, darkness, weight, variance;  // s^2
   std::array<double, 2> path;
@@ -59,7 +60,7 @@ double largest_difference(const rendered::Picture& picture, double snr) {
   const Refined refined = refine(image, proposals, 7.5, options);
   EXPECT_EQ(refined.beads.size(), picture.discs.size());
 
-  // Weights are those of the fitted model, as in the fit's last sweep.
+  // The weights are those of the fitted model, as in the last sweep of the fit.
   const Noise noise = noise_of(image.darkness);
   const double variance = refined.blur_px * refined.blur_px;
   std::vector<std::array<double, 4>> discs;

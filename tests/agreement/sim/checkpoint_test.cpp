@@ -1,5 +1,5 @@
-// A run that is written down and taken up again, in another process of another width and thread count,
-// against the run that was never interrupted: the same bits.
+// A run that is saved and resumed in another process, with another vector width and another thread count,
+// gives the same bits as the uninterrupted run.
 
 #include "sim/run/checkpoint.hpp"
 
@@ -33,7 +33,7 @@ bool same_bits(const RunState& a, const RunState& b) {
   return same;
 }
 
-/// Keeps states on the way: at every `every`-th update.
+/// Stores the state of the run at every `every`-th progress update.
 class Keeping : public Progress {
  public:
   Keeping(const Simulation& run, int every) : run_(run), every_(every) {}
@@ -87,7 +87,7 @@ void expect_resumable(const std::string& laws, const std::string& integrator) {
       Nowhere others;
       rest.run(others);
       EXPECT_TRUE(same_bits(rest.state(), end)) << text << " from step " << state.step;
-      // The frames after it, with their means over time; the first of a run has none.
+      // The frames after the restart, with their time averages; the first frame of a run has no time average.
       ASSERT_GE(sink.means.size(), others.means.size());
       for (std::size_t k = 1; k <= others.means.size(); ++k) {
         const Vec3 &mean = others.means[others.means.size() - k], &truth = sink.means[sink.means.size() - k];

@@ -1,5 +1,6 @@
-// Beads that fly from contact to contact do what beads moved by steps do: one collision as of infinitely many
-// steps, a gas as hot, and the same bits however a run is cut.
+// Event-driven motion agrees with motion by time steps: a single collision equals the limit of infinitely
+// many steps, a gas has the same temperature, and the result has the same bits however the run is divided
+// into calls.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -20,13 +21,13 @@ namespace {
 Scene scene_of(const std::string& text) {
   return read_scene_text(text, "gas");
 }
-/// The second paper's cell, driven hard.
+/// The cell of the second paper, strongly driven.
 std::string gas(const std::string& system, double w, const std::string& more = "") {
   return "preset = \"bhateja-2016-" + system + "\"\n[drive]\nk_m = " + std::to_string(w) +
          "\n[time]\nintegrator = \"split\"\nsteps_per_contact = 25\n" + more;
 }
 
-// --- one collision ---
+// --- single collision ---
 
 struct Impact {
   double normal, tangential, spin, mu, restitution;
@@ -40,7 +41,7 @@ ContactLaws laws_of(const Impact& m) {
   if (m.mu > 0) laws.tangential = DashpotSlider{normal.damping, m.mu};
   return laws;
 }
-/// Two beads of mass 1 and radius 1/2, spheres in space, discs in the plane.
+/// Two beads of mass 1 and radius 1/2: spheres in 3D, discs in 2D.
 CollisionSetting setting_of(const Impact& m, const ContactLaws& laws) {
   const double turn = m.dimension == 2 ? 2 : 2.5;  // R^2/I for m = 1
   CollisionSetting s;
@@ -67,7 +68,8 @@ TEST(BinaryCollision, HeadOnHasTheClosedFormsRestitutionAndDuration) {
   }
 }
 
-/// The same collision by the stepping kernel, n steps a contact: v_i - v_j and R_i w_i + R_j w_j after it.
+/// The same collision by the time-stepping solver with n steps per contact. Returns v_i - v_j and R_i w_i +
+/// R_j w_j after the collision.
 std::pair<Vec3, Vec3> by_steps(const Impact& m, double n) {
   std::string text =
       "[cell]\ndimension = " + std::to_string(m.dimension) +
@@ -83,7 +85,8 @@ std::pair<Vec3, Vec3> by_steps(const Impact& m, double n) {
   System s = make_system(scene, plan);
   Bead a, b;
   a.inertia = b.inertia = m.dimension == 2 ? 0.125 : 0.1;
-  // Touching at the end of a step, then flown back by half a step: the entry lies within a step as any other.
+  // The beads touch at the end of a step and are then moved back by half a step, so that contact begins
+  // inside a step, as it does in general.
   const double back = 0.5 * plan.dt;
   a.z = 0.5 + back * m.normal, a.vz = -0.5 * m.normal;
   b.z = -0.5, b.vz = 0.5 * m.normal;
@@ -99,7 +102,7 @@ std::pair<Vec3, Vec3> by_steps(const Impact& m, double n) {
     kernel->advance(s, 1);
     ++steps;
   } while (steps < 10 || Vec3(s.beads[0].x - s.beads[1].x, 0, s.beads[0].z - s.beads[1].z).norm() < apart);
-  kernel->advance(s, 2);  // what a last step has left to correct
+  kernel->advance(s, 2);  // the last contact step may leave a correction to later steps
   const Bead &p = s.beads[0], &q = s.beads[1];
   return {Vec3(p.vx - q.vx, p.vy - q.vy, p.vz - q.vz), Vec3(0, -p.radius * p.spin - q.radius * q.spin, 0)};
 }
@@ -114,7 +117,7 @@ TEST(BinaryCollision, ObliqueIsTheLimitOfEverSmallerSteps) {
         const RelativeMotion start{Vec3(0, 0, 1), Vec3(tangential, 0, -normal), Vec3(0, -spin, 0)};
         const CollisionEnd end = integrate_collision(setting_of(impact, laws), start, 0, 1, 1e-12);
         ASSERT_TRUE(end.parted);
-        // Second order: two step lengths tell the limit, a third how well.
+        // The method is of second order: two step lengths give the limit, a second pair gives its accuracy.
         const auto limit = [&](double n) {
           const auto coarse = by_steps(impact, n), fine = by_steps(impact, 2 * n);
           return std::pair<Vec3, Vec3>{(4 * fine.first - coarse.first) / 3,
@@ -130,7 +133,8 @@ TEST(BinaryCollision, ObliqueIsTheLimitOfEverSmallerSteps) {
       }
 }
 
-// Whatever way two spheres lie in space, they meet as in the plane of their motion: speed, course, spin kept.
+// The orientation of two spheres in space does not change their collision from that in the plane of their
+// motion: relative speed, direction and spin are preserved.
 TEST(BinaryCollision, OfSmoothSpheresDoesNotDependOnHowTheyLie) {
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
@@ -152,15 +156,15 @@ TEST(BinaryCollision, OfSmoothSpheresDoesNotDependOnHowTheyLie) {
     EXPECT_EQ(end.motion.s, turned.s);
     EXPECT_NEAR((end.motion.r.cross(end.motion.u) - turned.r.cross(turned.u)).norm(), 0, 1e-11);
   }
-  // Head on, no direction across is given.
+  // In a head-on collision the tangential direction is undefined.
   const CollisionEnd end = integrate_collision(setting_of(impact, laws),
                                                {Vec3(0, 1, 0), Vec3(0, -4, 0), Vec3::Zero()}, 0, 1, 1e-12);
   EXPECT_NEAR(end.motion.u.y() / 4, 0.8, 1e-10);
   EXPECT_LT(std::hypot(end.motion.u.x(), end.motion.u.z()), 1e-15);
 }
 
-// Short contacts, sliding that begins and ends within a moment, a floor that comes back: what a long step
-// could leap over, short ones see.
+// Short contacts, sliding that begins and ends within a small fraction of the contact, and a floor that
+// returns: a long step must not miss what short steps resolve.
 TEST(BinaryCollision, NoStepLeapsOverWhatShorterOnesSee) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -287,8 +291,8 @@ const std::string kDashpot = "tangential = \"dashpot\"\nc_t_over_c_n = 1.0\n",
                   kSpringOnly = "tangential = \"spring-limited\"\nk_t = 2e5\ngamma_t = 100.0\n",
                   kForceClipped = "tangential = \"force-clipped\"\nk_t = 2e5\ngamma_t = 100.0\n";
 
-/// Two spheres that slide on each other, and elsewhere a row that is pressed together meanwhile; all of them
-/// after that.
+/// Two spheres slide on each other while a separate row of `row` beads is compressed. Returns all beads after
+/// both events.
 std::vector<Bead> pair_and_row(const std::string& stepping, int n, int row, const std::string& friction) {
   const Scene scene = scene_of(fmt::format(
       "[cell]\ndimension = 3\nwidth = 40.0\ndepth = 40.0\nheight = 40.0\ngravity = 0.0\nbottom = "
@@ -304,10 +308,10 @@ std::vector<Bead> pair_and_row(const std::string& stepping, int n, int row, cons
     b.x = r.x(), b.y = r.y(), b.z = r.z(), b.vx = v.x(), b.vy = v.y(), b.vz = v.z();
     s.beads.push_back(b);
   };
-  const double t_c = 2.2227e-3, gap = 1e-4, v = 4;  // the pair touches after gap/v
+  const double t_c = 2.2227e-3, gap = 1e-4, v = 4;  // the pair touches after a time gap/v
   put({10, 10, 10.5 + gap / 2}, {1.5, 1, -v / 2});
   put({10, 10, 9.5 - gap / 2}, {-1.5, -1, v / 2});
-  // A row that is pressed together: all of it meets 0.45 t_c after that.
+  // The beads of the row all touch 0.45 t_c after the pair.
   const double space = v * (gap / v + 0.45 * t_c);
   for (int k = 0; k < row; ++k) {
     const double place = k - 0.5 * (row - 1);
@@ -317,7 +321,8 @@ std::vector<Bead> pair_and_row(const std::string& stepping, int n, int row, cons
   while (s.time() < 3 * t_c) kernel->advance(s, 1);
   return s.beads;
 }
-/// What of the fine steps' result the others' are off by, at most, in sigma/t0.
+/// Largest difference of velocity and of surface speed R w between `a` and `b`, in sigma/t0, over beads
+/// `first` to `last` - 1.
 double difference(const std::vector<Bead>& a, const std::vector<Bead>& b, std::size_t first,
                   std::size_t last) {
   double most = 0;
@@ -328,7 +333,7 @@ double difference(const std::vector<Bead>& a, const std::vector<Bead>& b, std::s
   return most;
 }
 
-// Three meet: they go by steps until they have parted, the pair does not.
+// Three beads in contact move by time steps until they separate; the pair stays event-driven.
 TEST(Flights, ThreeThatMeetMoveAsByStepsAndTheOthersFlyOn) {
   for (const std::string& law : {kDashpot, kSpring, kSpringOnly, kForceClipped}) {
     const auto exact = pair_and_row("steps", 8000, 3, law), by_steps = pair_and_row("steps", 200, 3, law),
@@ -340,8 +345,9 @@ TEST(Flights, ThreeThatMeetMoveAsByStepsAndTheOthersFlyOn) {
   }
 }
 
-// Ten meet, too many to be moved alone: all go over to steps in the middle of the pair's contact, and it must
-// end as if nothing had happened: the spring goes over too.
+// Ten beads in contact are too many to be stepped separately, so that the whole system changes to time steps
+// in the middle of the contact of the pair. The contact must end as if uninterrupted, which requires that its
+// tangential spring is passed on.
 TEST(Flights, AContactIsHandedOverAsItStands) {
   for (const std::string& law : {kDashpot, kSpring, kSpringOnly, kForceClipped}) {
     const auto exact = pair_and_row("steps", 8000, 10, law),
@@ -353,8 +359,8 @@ TEST(Flights, AContactIsHandedOverAsItStands) {
   }
 }
 
-// Beads that lose nothing, in a box without gravity: the energy is that of the start after some ten thousand
-// collisions, but for what the contacts of the moment hold.
+// Elastic beads in a box without gravity: the energy after some ten thousand collisions equals the initial
+// energy, except for the energy stored in current contacts.
 TEST(Flights, ElasticBeadsKeepTheirEnergy) {
   Gas g(
       "[cell]\ndimension = 3\nwidth = 8.0\ndepth = 8.0\nheight = 8.0\ngravity = 0.0\nsides = "
@@ -365,7 +371,7 @@ TEST(Flights, ElasticBeadsKeepTheirEnergy) {
       "6.0\n[time]\nintegrator = "
       "\"split\"\nsteps_per_contact = 400\nstepping = \"event-driven\"\n",
       true);
-  const auto least = [&] {  // over some steps, in one of which nothing touches
+  const auto least = [&] {  // maximum over several steps, at one of which no beads are in contact
     double e = 0;
     for (int k = 0; k < 200; ++k) {
       g.kernel->advance(g.system, 37);
@@ -380,19 +386,19 @@ TEST(Flights, ElasticBeadsKeepTheirEnergy) {
   EXPECT_NEAR(after / before, 1, 3e-6);
 }
 
-// The box at rest without gravity, as a scene says it and `auto` runs it.
+// A box at rest without gravity, defined by a scene file and run with `auto`.
 TEST(Flights, AreWhatAutoChoosesWithoutGravity) {
   const Scene scene = scene_of(
       "[cell]\nwidth = 8.0\nheight = 8.0\ngravity = 0.0\nsides = \"periodic\"\nbottom = \"periodic\"\n"
       "[beads]\ncount = 20\n[start]\nkind = \"random\"\n[contact]\nk_n = 1e5\nrestitution = 1.0\n"
       "tangential = \"none\"\n[drive]\namplitude = 0.0\nomega = 6.0\n"
-      "[time]\nintegrator = \"verlet\"\n");  // where three meet split's energy drifts
+      "[time]\nintegrator = \"verlet\"\n");  // `split` drifts in energy where three beads are in contact
   const Plan plan = make_plan(scene);
   EXPECT_TRUE(plan.event_driven);
   System s = make_system(scene, plan);
   s.beads = placed(scene).beads;
   const auto kernel = make_solver(plan, guard_limits(plan));
-  const auto most = [&] {  // over some moments, in one of which nothing touches
+  const auto most = [&] {  // maximum over several instants, at one of which no beads are in contact
     double e = 0;
     for (int k = 0; k < 100; ++k) {
       kernel->advance(s, 37);
@@ -404,14 +410,14 @@ TEST(Flights, AreWhatAutoChoosesWithoutGravity) {
   kernel->advance(s, 300 * plan.steps_per_period);
   EXPECT_GT(before, 0.1);
   EXPECT_NEAR(most() / before, 1, 2e-4);
-  // Beads that fall on a plate at rest are no gas.
+  // Beads that fall on a plate at rest do not form a gas.
   Scene heavy = scene;
   heavy.gravity = -Vec3::UnitZ();
   EXPECT_FALSE(make_plan(heavy).event_driven);
 }
 
 TEST(Flights, HardCases) {
-  // Weak drives: the bed rides, and all is left to steps.
+  // Weak drive: the bed stays on the plate, and all motion is by time steps.
   {
     Gas g(gas("smooth-2d", 0.5, "stepping = \"event-driven\"\n"), true);
     g.periods(30);
@@ -419,7 +425,7 @@ TEST(Flights, HardCases) {
     for (const Bead& b : g.system.beads) v += b.vz / 40, vv += b.vz * b.vz / 40;
     EXPECT_LT(vv - v * v, 1e-4 * 0.5);
   }
-  // One bead, and one very high: it comes down when a parabola says.
+  // A single bead, then one very high above the plate: it follows its parabola.
   {
     Gas g(gas("smooth-2d", 50, "[beads]\ncount = 1\n"), true);
     g.periods(100);
@@ -434,7 +440,7 @@ TEST(Flights, HardCases) {
     EXPECT_NEAR(g.system.beads[0].z, 1e4 - 0.5 * t * t, 1e-9);
     EXPECT_NEAR(g.system.beads[0].x, x_0 + 3 * t, 1e-9);
   }
-  // Overdamped contacts do not end by themselves.
+  // Overdamped contacts do not end without an external force.
   {
     Gas g(gas("smooth-2d", 30, "[contact]\nrestitution = 1e-6\n"), true);
     g.periods(20);

@@ -1,6 +1,6 @@
-// Every combination of laws, dimension, integrator, sizes and edges: all kernels give the same
-// bits, and so do all habits that must not show - when lists are built, who shares the work, how beads are
-// numbered, where a run is cut.
+// For every combination of laws, dimension, integrator, sizes and boundaries, all solvers give the same bits.
+// The result also does not depend on when neighbour lists are rebuilt, how threads share the work, how beads
+// are numbered, or how a run is divided into calls.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ std::vector<Laws> all_laws() {
 struct Case {
   int dimension;
   std::string integrator;
-  bool unequal;  ///< radii spread, and an intruder
+  bool unequal;  ///< distributed radii, and an intruder
   bool periodic;
 };
 void PrintTo(const Case& c, std::ostream* out) {
@@ -54,7 +54,8 @@ Scene scene_of(const Case& c, const Laws& laws) {
           c.integrator + "\"\n";
   text += "[contact]\nnormal = \"" + laws.normal + "\"\ntangential = \"" + laws.tangential +
           "\"\nrolling = \"" + laws.rolling + "\"\n";
-  // A value for every key that a law may read, and of keys of which one says it all, the one named here.
+  // One value for every key that a law may read. Where several keys set the same quantity, only the one
+  // listed here is used.
   const std::map<std::string, double> values = {{"k_n", 1e4},
                                                 {"restitution", 0.8},
                                                 {"restitution_fast", 0.6},
@@ -90,7 +91,7 @@ System bed_of(const Scene& scene, const Plan& plan) {
   return s;
 }
 
-/// What a run comes to.
+/// Final state of a run.
 struct Outcome {
   System system;
   std::vector<ContactMemory> contacts;
@@ -99,7 +100,7 @@ struct Habits {
   SolverKind kind = SolverKind::scalar;
   int threads = 1;
   std::int64_t rebuild_every = 0;
-  std::int64_t piece = 1 << 30;  ///< steps a call
+  std::int64_t piece = 1 << 30;  ///< steps per call
 };
 Outcome run(const Plan& plan, System s, std::int64_t steps, const Habits& habits) {
   const auto kernel = make_solver(plan, {.overlap = 0.3, .travel_per_step = 1}, habits.kind, habits.threads);
@@ -116,7 +117,7 @@ bool same_bits(const Outcome& a, const Outcome& b) {
   if (!same(a.system.beads, b.system.beads) || a.contacts.size() != b.contacts.size()) return false;
   for (std::size_t k = 0; k < a.contacts.size(); ++k) {
     const ContactMemory &p = a.contacts[k], &q = b.contacts[k];
-    const std::size_t kept = std::min(p.values.size(), q.values.size());  // the oracle keeps zeros behind
+    const std::size_t kept = std::min(p.values.size(), q.values.size());  // the oracle stores trailing zeros
     if (p.i != q.i || p.j != q.j || std::memcmp(p.values.data(), q.values.data(), kept * sizeof(double)) != 0)
       return false;
   }
@@ -125,8 +126,8 @@ bool same_bits(const Outcome& a, const Outcome& b) {
 
 class Kernels : public testing::TestWithParam<Case> {
  protected:
-  /// Calls check(plan, start, reference, name) for each combination of laws; the reference is the scalar
-  /// kernel's.
+  /// Calls check(plan, start, reference, name) for each combination of laws. The reference is the result of
+  /// the scalar solver.
   template <class Check>
   void for_each_law(std::int64_t steps, Check check) {
     for (const Laws& laws : all_laws()) {
@@ -172,7 +173,8 @@ TEST_P(Kernels, HabitsDoNotShow) {
       });
 }
 
-TEST_P(Kernels, NumbersOfBeadsDoNotShow) {  // H24, H25: a remembered vector changes its sign with i and j
+// H24, H25: a stored vector changes sign when i and j are exchanged
+TEST_P(Kernels, NumbersOfBeadsDoNotShow) {
   constexpr std::int64_t kSteps = 300;
   for_each_law(kSteps,
                [&](const Plan& plan, const System& start, const Outcome& reference, const std::string& name) {

@@ -1,4 +1,5 @@
-// The list kernel against the all-pairs oracle, and against itself with other rebuild habits: the same bits.
+// The list solver against the all-pairs oracle, and against itself with other rebuild intervals: the same
+// bits.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ bool same_bits(const System& a, const System& b) {
          std::memcmp(a.beads.data(), b.beads.data(), a.beads.size() * sizeof(Bead)) == 0;
 }
 
-/// Makes a kernel.
+/// Creates a solver for a plan.
 using Maker = std::function<std::unique_ptr<Solver>(const Plan&)>;
 Maker of_kind(SolverKind kind, std::int64_t rebuild_every) {
   return [=](const Plan& plan) {
@@ -30,8 +31,8 @@ Maker of_kind(SolverKind kind, std::int64_t rebuild_every) {
   };
 }
 
-/// A shaken random bed after some thousand steps, by the given kernel, and when that is done in several calls
-/// each with a kernel of its own, which is told what contacts remember.
+/// A shaken random bed after some thousand steps by the given solver. With several calls, each call uses a
+/// new solver, to which the contact memory is passed.
 System shaken(const std::string& extra, const Maker& make, int calls = 1) {
   const Scene scene = read_scene_text(
       "[beads]\ncount = 60\n[drive]\nomega = 1.0\ngamma = 3.0\n[start]\nkind = \"random\"\nseed = 5\n" +
@@ -68,7 +69,7 @@ const std::string kSmooth =
     "[cell]\nwidth = 8.0\nsides = \"periodic\"\n[contact]\nk_n = 1e5\nrestitution = 0.9\ntangential = "
     "\"none\"\n";
 
-/// The other integrators, at steps so long that lists are made anew while contacts begin and end.
+/// Another integrator, with steps so long that lists are rebuilt while contacts begin and end.
 std::string by(const std::string& integrator) {
   return "[time]\nsteps_per_contact = 10\nintegrator = \"" + integrator + "\"\n";
 }
@@ -89,7 +90,8 @@ TEST(AllPairsSolver, ManyContactsAtATimeHaveTheBitsOfOne) {
   }
 }
 
-TEST(ListSolver, RebuildHabitsChangeNothing) {  // V2.14, H22, H24: history is neither lost nor doubled
+// V2.14, H22, H24: contact history is neither lost nor duplicated
+TEST(ListSolver, RebuildHabitsChangeNothing) {
   for (const auto& law : {kPaperOne, kDashpot, kPaperOne + by("predicted"), kPaperOne + by("split"),
                           kSmooth + by("split"), kSpace + by("split")}) {
     const System seldom = shaken(law, SolverKind::best, 0);
@@ -98,8 +100,8 @@ TEST(ListSolver, RebuildHabitsChangeNothing) {  // V2.14, H22, H24: history is n
   }
 }
 
-/// A dilute gas over a plate: most beads fly freely for as long as a list holds, and are then moved many
-/// steps at once.
+/// A dilute gas over a plate: most beads move freely for the whole life of a neighbour list and are then
+/// advanced many steps at once.
 System dilute(const std::string& dimension, SolverKind kind, std::int64_t rebuild_every, int calls) {
   const Scene scene = read_scene_text(
       "[cell]\nwidth = 60.0\n" + dimension +
@@ -111,7 +113,7 @@ System dilute(const std::string& dimension, SolverKind kind, std::int64_t rebuil
   System s = make_system(scene, plan);
   std::mt19937_64 engine(4);
   std::uniform_real_distribution<double> place(0, 1), speed(-3, 3);
-  for (int i = 0; i < 61; ++i) {  // a number that no group of beads divides
+  for (int i = 0; i < 61; ++i) {  // not a multiple of any group size
     Bead b;
     b.x = 0.5 + 0.97 * i, b.z = 0.6 + 12 * place(engine);
     if (scene.dimension == 3) b.y = 0.5 + 2.9 * place(engine);
@@ -142,7 +144,7 @@ TEST(ListSolver, SameSceneSameBits) {  // H12
   EXPECT_TRUE(same_bits(shaken(kPaperOne, SolverKind::best, 0), shaken(kPaperOne, SolverKind::best, 0)));
 }
 
-TEST(ListSolver, FrictionOffIsTheSameAsMuZero) {  // EFFECTS: mu = 0 proves friction away, bit for bit
+TEST(ListSolver, FrictionOffIsTheSameAsMuZero) {  // EFFECTS: mu = 0 is bit for bit the same as no friction
   const System none = shaken(kSmooth, SolverKind::best, 0);
   const System zero = shaken(
       "[cell]\nwidth = 8.0\nsides = \"periodic\"\n[contact]\nk_n = 1e5\nrestitution = 0.9\ntangential = "
@@ -151,7 +153,7 @@ TEST(ListSolver, FrictionOffIsTheSameAsMuZero) {  // EFFECTS: mu = 0 proves fric
   EXPECT_TRUE(same_bits(none, zero));
 }
 
-// A frictional pair that drifts through the periodic boundary in contact behaves as one that does not (H15).
+// A frictional pair that crosses the periodic boundary while in contact behaves like one that does not (H15).
 TEST(ListSolver, HistoryCrossesThePeriodicBoundary) {
   auto run = [](double x) {
     Bench b("[cell]\ngravity = 1.0\nsides = \"periodic\"\nwidth = 8.0\n");

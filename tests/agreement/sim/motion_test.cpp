@@ -1,5 +1,5 @@
-// A run that another one goes on from a stored frame, springs of its contacts included; and drives that begin
-// anywhere in their cycle.
+// A run that continues another run from a stored frame, including the springs of its contacts; and drives
+// that start at any phase of their cycle.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace twincell::sim {
 namespace {
 
-constexpr int kFrom = 41;  // cycle 2, phase 1: the bed lies, and takes off after it
+constexpr int kFrom = 41;  // cycle 2, phase 1: the bed rests on the plate and takes off later
 
 std::string cell(const std::string& integrator, double n) {
   return "preset = \"fortini-huang-2015\"\n[beads]\nlayers = 5\n[cell]\nwidth = 8.0\n[start]\nkind = "
@@ -42,7 +42,8 @@ void save(const MemoryTrajectory& t, const std::filesystem::path& path, bool spr
   writer.finish();
 }
 
-/// Largest difference of positions and spins between frames of the same moment, `frames` after the start.
+/// Largest difference of positions and spins between frames of the same time, over frames 0 to `frames` after
+/// the start.
 double apart(const MemoryTrajectory& whole, const MemoryTrajectory& rest, std::size_t frames) {
   double largest = 0;
   for (std::size_t f = 0; f <= frames; ++f) {
@@ -73,7 +74,7 @@ TEST(InMotion, AFrameWithItsSpringsGoesOnAsTheRunDid) {
     EXPECT_TRUE(run.warnings().empty());
     MemoryTrajectory with(run.trajectory_info());
     run.run(with);
-    ASSERT_EQ(with.frames().size(), 59U);  // what is left of its cycle, and two more
+    ASSERT_EQ(with.frames().size(), 59U);  // the rest of its cycle, and two more cycles
     EXPECT_EQ(with.info().tracer, whole.info().tracer);
     EXPECT_EQ(apart(whole, with, 18), 0) << integrator;  // bit for bit
     Simulation bare(rest("without.h5"));
@@ -127,7 +128,8 @@ TEST(DrivePhase, TheDriveBeginsThere) {
     EXPECT_NEAR(frame.plate_height,
                 amplitude * std::sin(2 * std::numbers::pi * static_cast<double>(f + 5) / 20), 1e-12);
   }
-  // At its highest the plate turns: the bed begins there at rest, as high above it as the settled bed was.
+  // At its highest point the plate reverses. The bed starts there at rest, at the height above the plate that
+  // the settled bed had.
   for (std::size_t i = 0; i < quarter.info().n_beads; ++i) {
     EXPECT_NEAR(quarter.frames()[0].velocity[i].norm(), 0, 1e-5);
     EXPECT_NEAR(quarter.frames()[0].position[i].z() - amplitude, zero.frames()[0].position[i].z(), 1e-9);

@@ -1,4 +1,4 @@
-// A user's own program against the installed package.
+// An external program that is built against the installed package.
 #include <cstdio>
 #include <trajectory/drive.hpp>
 

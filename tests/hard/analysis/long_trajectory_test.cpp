@@ -1,4 +1,4 @@
-// A long film costs no more memory than its results.
+// The analysis of a long film needs no more memory than its results.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -11,7 +11,7 @@ using namespace twincell;
 
 namespace {
 
-/// Beads that jitter in place, made up frame by frame: the source itself holds nothing.
+/// Beads that fluctuate about fixed positions. The source generates each frame on demand and stores none.
 class Endless : public TrajectorySource {
  public:
   explicit Endless(std::size_t cycles) : cycles_(cycles) {
@@ -36,7 +36,7 @@ class Endless : public TrajectorySource {
                                   0.5 + static_cast<double>(i / 10) + jitter);
       frame.velocity.emplace_back(jitter, 0, -jitter);
     }
-    // What is in use while the frames run by, not what is left at the end.
+    // Records the memory in use while frames are read, not the memory left at the end.
     most_ = std::max(most_, mallinfo2().uordblks);
   }
   [[nodiscard]] std::size_t most() const { return most_; }
@@ -56,8 +56,9 @@ TEST(LongTrajectory, MemoryGrowsByThePerCycleSeriesOnly) {
   analyze(brief, options);
   const auto results = analyze(lasting, options);
   const std::size_t tracers = find_result(results, "tracer_heights").shape[1];
-  // 380 more cycles of: a height per tracer, a cycle's number, a slip fraction and its directions, averages
-  // kept whole below 4096 values; a vector that grows holds its old and its doubled self.
+  // Allowance for 380 more cycles, each with a height per tracer, a cycle number, a slip fraction and its
+  // directions, and averages stored in full below 4096 values. A growing vector holds its old and its doubled
+  // buffer at once.
   const double per_cycle = 3 * 8.0 * (static_cast<double>(tracers) + 2 + 4 + 12);
   const auto grown = static_cast<double>(lasting.most()) - static_cast<double>(brief.most());
   const double frames = 380.0 * 20 * 300 * 48;

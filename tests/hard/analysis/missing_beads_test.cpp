@@ -1,4 +1,4 @@
-// What cannot be known is absent with a reason, never 0 (H50, H52, H53, H62).
+// Undeterminable results are absent with a reason, never 0 (H50, H52, H53, H62).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ using namespace twincell;
 
 namespace {
 
-/// The bed with bead identities, seen through an eye that loses what `lost(frame, slot)` says.
+/// The bed with bead identities, without the beads for which `lost(frame, slot)` is true.
 template <class Lost>
 MemoryTrajectory seen(const test::RigidBed& bed, const Lost& lost) {
   const MemoryTrajectory whole = test::rigid_bed(bed);

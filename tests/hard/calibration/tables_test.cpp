@@ -1,5 +1,5 @@
-// Tables as spreadsheets and cameras write them, and as they should not be: each reader takes the first kind
-// as it is meant and refuses the second by file, line and column.
+// Well-formed tables as spreadsheets and cameras write them, and malformed ones. Each reader accepts the
+// former with their intended meaning and refuses the latter with file, line and column.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace twincell {
 namespace {
 
-/// What one reader makes of a table of two columns: the second row's numbers.
+/// Reads a table of two columns with one of the readers and returns the numbers of the second row.
 struct TableReader {
   const char *name, *first, *second;
   std::pair<double, double> (*read)(const std::filesystem::path&);
@@ -47,7 +47,7 @@ const TableReader kReaders[] = {{"calibration", "a", "b", of_calibration},
                                 {"truth", "x_px", "y_px", of_truth},
                                 {"beads", "x", "z", of_beads}};
 
-/// "A,B" and "R" in a text become the names of a reader's columns, and the third one that truth needs.
+/// Replaces "A,B" and "R" in a text by the reader's column names and by the third column that truth requires.
 std::string in_words_of(const TableReader& reader, std::string text) {
   const bool truth = std::string(reader.name) == "truth";
   const auto put = [&](const std::string& from, const std::string& to) {
@@ -82,7 +82,7 @@ TEST(Tables, WhatIsNoTableIsRefusedByEveryReader) {
   };
   const Case cases[] = {
       {"<A>,<B>,<B><R>\n0,2,2<r>\n1,3,3<r>\n", "twice"},
-      {"<A>;<B><R>\n0;2<r>\n1;3<r>\n", ""},  // with R there is a comma, and names are missing
+      {"<A>;<B><R>\n0;2<r>\n1;3<r>\n", ""},  // with R there is a comma, and column names are missing
       {"0,2<r>\n1,3<r>\n", ""},
       {"<A>,<B><R>\n0,2<r>\n1,3,5<r>\n", ":3:"},
       {"<A>,<B><R>\n0,2<r>\n1\n", ":3:"},
@@ -116,7 +116,7 @@ TEST(Tables, ALineOfNumbersAndSemicolonsAreNamedAsWhatTheyAre) {
   expect_refusal<InputError>([&] { (void)read_table(folder / "t.csv"); }, "tabs");
 }
 
-// A decimal comma makes two fields of a number: the first of them is no time.
+// A decimal comma splits a number into two fields: the first of them is not a time.
 TEST(Tables, TriggersAreBelievedOnlyAsFarAsTheyAreOne) {
   const TemporaryFolder folder;
   struct Case {

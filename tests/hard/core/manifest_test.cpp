@@ -1,4 +1,5 @@
-// Manifests: a file that has changed is told, however it was made to look; one that has not is read once.
+// Manifests: a changed file is always detected, even with its old size and time; an unchanged file is read
+// once.
 
 #include "core/manifest.hpp"
 
@@ -18,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bytes that this process has read so far.
+/// Number of bytes that this process has read so far.
 std::uint64_t bytes_read() {
   std::ifstream io("/proc/self/io");
   std::string word;
@@ -29,7 +30,7 @@ std::uint64_t bytes_read() {
 }
 
 TEST(Manifest, AFileThatHasNotChangedIsReadOnce) {
-  // A file of the source tree: it was not changed a moment ago.
+  // A file of the source tree, whose last modification is not recent.
   const fs::path folder = fs::path(TWINCELL_SOURCE_DIR) / "docs";
   const std::string name = "scene.md";
   const auto size = fs::file_size(folder / name);
@@ -47,7 +48,7 @@ TEST(Manifest, AFileThatHasNotChangedIsReadOnce) {
 TEST(Manifest, AFileThatChangesIsToldAlthoughItsSizeAndTimeAreTheOld) {
   const TemporaryFolder folder;
   put_file(folder / "a", "old bytes");
-  // An old file, by its own word.
+  // A file whose modification time is set to the distant past.
   const timespec long_ago[2] = {{1'000'000'000, 0}, {1'000'000'000, 0}};
   ASSERT_EQ(::utimensat(AT_FDCWD, (folder / "a").c_str(), long_ago, 0), 0);
   const Manifest manifest = Manifest::of(folder.path(), "a folder");

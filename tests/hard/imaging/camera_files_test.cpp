@@ -1,5 +1,5 @@
-// Phantom .cine, NorPix .seq, Photron .mraw and IDT .mrf: every depth and order of pixels, the times, and
-// every way in which such a file is known to be spoilt.
+// Phantom .cine, NorPix .seq, Photron .mraw and IDT .mrf: every pixel depth and order, the time stamps, and
+// every known form of damage to such a file.
 #include "tests/support/camera_files.hpp"
 
 #include <fmt/format.h>
@@ -17,14 +17,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A value of its own for every pixel, within the depth.
+/// A distinct value for every pixel, within the depth.
 PixelValue values(int bits) {
   return [bits](int x, int y, int frame) {
     return static_cast<unsigned>(7 + 211 * x + 1013 * y + 5003 * frame) & ((1U << bits) - 1);
   };
 }
 
-/// That a stack holds exactly these values.
+/// Expects a stack to contain exactly these values.
 void expect_values(const fs::path& stack, int width, int height, int frames, int bits) {
   const PixelValue value = values(bits);
   const auto source = open_frames(stack);
@@ -45,7 +45,7 @@ void expect_values(const fs::path& stack, int width, int height, int frames, int
   }
 }
 
-/// That every shorter file is refused in one line that names it.
+/// Expects every truncated copy of the file to be refused in one line that names it.
 void expect_truncation_is_found(const fs::path& file, const std::string& whole) {
   put(file, whole);
   ASSERT_EQ(refusal(file), "");
@@ -82,7 +82,7 @@ void expect_sample(const Sample& s) {
 
 }  // namespace
 
-// --- files of real cameras (soft-matter/pims @ d8bd899, pims/tests/data) and what is known of them ---
+// --- files of real cameras (soft-matter/pims @ d8bd899, pims/tests/data) and their known properties ---
 
 TEST(RealCameraFiles, Cine) {
   if (!fs::exists(kSamples)) GTEST_SKIP() << "The real camera files are not beside the source tree.";
@@ -91,12 +91,12 @@ TEST(RealCameraFiles, Cine) {
   const StackInfo info = source->info();
   EXPECT_EQ(info.first_number, -5417);
   EXPECT_EQ(info.bits, 12);
-  // Images are numbered from the trigger, so that number and time stamp must agree: by the stamps' own rate.
+  // Images are numbered from the trigger, so number and time stamp must agree at the rate of the stamps.
   cv::Mat frame;
   ASSERT_TRUE(source->next(frame));
   ASSERT_TRUE(info.stamped_rate_hz && source->time_s());
   EXPECT_NEAR(*source->time_s() * *info.stamped_rate_hz, -5417, 1);
-  // Every tenth image of 90 000 per second was saved; the header does not say so, the stamps do.
+  // Every tenth image of 90 000 per second was saved. The header does not state this; the stamps show it.
   EXPECT_EQ(info.frame_rate_hz, 90000);
   EXPECT_NEAR(*info.stamped_rate_hz, 9000, 9);
   ASSERT_EQ(info.notes.size(), 1U);
@@ -130,7 +130,8 @@ TEST(RealCameraFiles, Seq) {
 
 TEST(CameraFiles, ColourBecomesGrey) {
   const TemporaryFolder folder;
-  // Blue, green, red; ITU-R BT.601 weighs them 0.114, 0.587, 0.299. Rows differ, so that their order shows.
+  // Blue, green, red; ITU-R BT.601 weights 0.114, 0.587, 0.299. Rows differ, so that a wrong row order is
+  // detected.
   const PixelValue colour = [](int, int y, int) {
     return y == 0 ? 200U << 16 | 100U << 8 | 50U : 10U << 16 | 20U << 8 | 30U;
   };
@@ -154,7 +155,7 @@ TEST(Cine, EveryDepth) {
   const fs::path file = folder / "a.cine";
   for (const auto& [container, bits] : {std::pair{8, 8}, {16, 8}, {16, 10}, {16, 12}, {16, 14}, {16, 16}}) {
     put(file, cine_file({.container = container, .real_bits = bits}, values(bits)));
-    if (container == 16 && bits == 8) {  // the container decides the type, the file's word the depth
+    if (container == 16 && bits == 8) {  // the container sets the type, the header field sets the depth
       EXPECT_EQ(open_frames(file)->info().bits, 8);
       EXPECT_EQ(read_all(file).at(0).type(), CV_16UC1);
     } else {
@@ -170,8 +171,8 @@ TEST(Cine, EveryDepth) {
     }
 }
 
-// The camera stores packed 10-bit values companded. Its makers' table has 1024 entries (listed in
-// ottomatic-io/pycine pycine/linLUT.py); these are eight of them.
+// The camera stores packed 10-bit values in companded form. The manufacturer's table has 1024 entries (listed
+// in ottomatic-io/pycine pycine/linLUT.py); these are eight of them.
 TEST(Cine, Packed10BitIsMadeLinear) {
   const TemporaryFolder folder;
   const std::vector<std::pair<unsigned, int>> table = {{64, 64},    {128, 125},  {256, 290},   {512, 998},
@@ -289,10 +290,10 @@ TEST(Seq, TimesAndRate) {
     const double step = version >= 5 ? 0.0025 : 0.003;
     EXPECT_EQ(source->info().frame_rate_hz, 400);
     EXPECT_NEAR(*source->info().stamped_rate_hz, 1 / step, 1e-6);
-    EXPECT_EQ(source->info().notes.size(), version >= 5 ? 0U : 1U);  // 333 frames/s are not 400
+    EXPECT_EQ(source->info().notes.size(), version >= 5 ? 0U : 1U);  // 333 frames/s differ from 400
     EXPECT_EQ(source->info().recorded_unix, 1600000000);
     cv::Mat frame;
-    for (int i = 0; i < 4; ++i) {  // the second begins a new second of the clock
+    for (int i = 0; i < 4; ++i) {  // the second stamp is in the next second of the clock
       ASSERT_TRUE(source->next(frame));
       EXPECT_NEAR(*source->time_s(), i * step, 1e-9);
     }
@@ -311,7 +312,7 @@ TEST(Seq, Spoilt) {
   const TemporaryFolder folder;
   const fs::path file = folder / "a.seq";
   expect_truncation_is_found(file, [] {
-    // Padding behind the last time stamp may be missing.
+    // The padding after the last time stamp may be missing.
     const std::string whole = seq_file({}, values(8));
     return whole.substr(0, whole.size() - 16);
   }());
@@ -361,7 +362,7 @@ TEST(Mraw, EveryDepth) {
     expect_values(folder / "b.mraw", 8, 4, 3, bits);
     expect_values(folder / "b.cihx", 8, 4, 3, bits);
   }
-  // Twelve bits at the upper side of sixteen.
+  // Twelve bits in the upper bits of sixteen.
   put(folder / "c.mraw", planes(8, 4, 3, 16, [](int x, int y, int f) { return values(12)(x, y, f) << 4; }));
   put(folder / "c.CIH", cih_text(8, 4, 3, 16, 12, "Higher"));
   expect_values(folder / "c.mraw", 8, 4, 3, 12);
@@ -399,7 +400,7 @@ TEST(Mraw, Spoilt) {
   for (const char* key : {"Total Frame", "Image Width", "Image Height", "Color Bit", "EffectiveBit Depth"}) {
     std::string without = text;
     without.replace(without.find(key), 3, "***");
-    if (std::string(key) == "Total Frame") continue;  // "Original Total Frame" keeps the words
+    if (std::string(key) == "Total Frame") continue;  // still in "Original Total Frame"
     expect_words(with(without), {"a.cih", key});
   }
   expect_words(with(cih_text(8, 4, 0, 12, 12)), {"no frames"});

@@ -1,4 +1,4 @@
-// Every promise of frame_source.hpp, and every way in which a stack is known to be spoilt.
+// Every guarantee of frame_source.hpp, and every known form of damage to a stack.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A picture in which every pixel has a value of its own, up to the depth's range.
+/// A picture in which every pixel has a distinct value, within the range of the depth.
 template <class Pixel>
 cv::Mat pattern(int width, int height, int offset = 0) {
   cv::Mat_<Pixel> m(height, width);
@@ -94,7 +94,7 @@ TEST(FrameSource, ColourBecomesGrey) {
 TEST(FrameSource, AllPagesOfATiff) {
   const TemporaryFolder folder;
   std::vector<cv::Mat> pages;
-  for (int i = 0; i < 40; ++i) pages.push_back(pattern<ushort>(12, 10, i));  // more than are read at once
+  for (int i = 0; i < 40; ++i) pages.push_back(pattern<ushort>(12, 10, i));  // more than are read at a time
   ASSERT_TRUE(cv::imwritemulti((folder / "stack.tif").string(), pages));
   EXPECT_EQ(open_frames(folder / "stack.tif")->announced(), 40U);
   const auto frames = read_all(folder / "stack.tif");
@@ -189,8 +189,8 @@ TEST(SpoiltFrames, ASpoiltFrameInTheMiddleIsNamed) {
   expect_words(refusal(folder.path()), {"f1.png", "truncated"});
 }
 
-// Any bytes may be a film to ffmpeg; in a folder of pictures they are a spoilt picture, and ffmpeg does not
-// see them.
+// ffmpeg can take any bytes for a film. In a folder of pictures such bytes are a damaged picture and are not
+// passed to ffmpeg.
 TEST(SpoiltFrames, BytesNamedLikeAPictureInAFolder) {
   const TemporaryFolder folder;
   write(folder / "f1.png", pattern<uchar>(16, 16));
@@ -276,7 +276,7 @@ TEST(SpoiltFrames, AHeaderThatPromisesMoreThanAFileCanHold) {
   expect_words(refusal(folder / "b.pgm"), {"4000000000 x 1", "sides"});
   write(folder / "c.png", pattern<uchar>(8, 6));
   std::string bytes = contents(folder / "c.png");
-  bytes[16] = bytes[20] = 1;  // 2^24 more pixels each way
+  bytes[16] = bytes[20] = 1;  // 2^24 more pixels in each direction
   put(folder / "c.png", bytes);
   expect_words(refusal(folder / "c.png"), {"c.png", "pixels"});
   write(folder / "d.jpg", pattern<uchar>(8, 6));

@@ -1,4 +1,4 @@
-// Stacks in HDF5 files.
+// Image stacks in HDF5 files.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using namespace twincell;
 
 namespace {
 
-/// Writes values 0, 1, 2 … as a dataset of the given type and shape; chunk {}: contiguous.
+/// Writes the values 0, 1, 2 … as a dataset of the given type and shape; an empty chunk means contiguous.
 void add_dataset(hid_t file, const std::string& path, hid_t type, const std::vector<hsize_t>& shape,
                  const std::vector<hsize_t>& chunk = {}) {
   const h5::Handle space =
@@ -166,7 +166,7 @@ TEST(Hdf5Stack, WhatACompressedDatasetClaims) {
   blank({1, 16384, 16384}, {1, 16384, 16384});
   ASSERT_GT(contents(path).size(), 200'000U);
   expect_words(refusal(path), {"a.h5", "16384 x 16384", "cannot hold"});
-  // The bytes of another dataset explain nothing of this one.
+  // The stored bytes of another dataset must not count for this one.
   {
     const h5::Handle file = h5::own(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), path);
     add_dataset(file.get(), "/padding", H5T_STD_I32LE, {1000, 1000});
@@ -187,8 +187,8 @@ TEST(Hdf5Stack, WhatACompressedDatasetClaims) {
   expect_words(refusal(path), {"a.h5", "chunks of /a", "16384 x 256 x 256", "cannot hold"});
 }
 
-// All frames of a stack, not one alone, must be explained by what is stored: a film of zeros costs its reader
-// hours.
+// The stored bytes must account for all frames of a stack, not only for one: otherwise a file of zeros costs
+// its reader hours.
 TEST(Hdf5Stack, MoreFramesThanAreStored) {
   const TemporaryFolder folder;
   const std::string path = folder / "a.h5";
@@ -217,13 +217,15 @@ TEST(Hdf5Stack, MoreFramesThanAreStored) {
   expect_words(refusal(path), {"a.h5", "/a", "claims 1e+12 bytes"});
   claim(100'000'000, {});
   expect_words(refusal(path), {"a.h5", "/a", "claims 1e+12 bytes", "holds 0"});
-  // A recording of a second that was ended after its first frame is read: what is missing is black.
+  // A recording planned for one second that stopped after its first frame is accepted: missing frames are
+  // black.
   claim(100, {1, 100, 100});
   EXPECT_EQ(refusal(path), "");
   EXPECT_EQ(read_all(path).size(), 100U);
 }
 
-// Zeros deflated twice shrink to a millionth, and are unpacked before their size is compared with a chunk's.
+// Zeros deflated twice shrink to a millionth, and they are decompressed before their size is compared with
+// that of a chunk.
 TEST(Hdf5Stack, DeflatedTwice) {
   const TemporaryFolder folder;
   const std::string path = folder / "a.h5";
@@ -245,8 +247,8 @@ TEST(Hdf5Stack, DeflatedTwice) {
   expect_words(refusal(path), {"a.h5", "/a", "compressed 2 times"});
 }
 
-// A file from a stranger could otherwise show the bytes of any file of the account as grey values, and HDF5
-// fills a virtual dataset whose files are missing with zeros.
+// Otherwise a foreign file could expose the bytes of any file of the account as grey values. HDF5 also fills
+// a virtual dataset whose files are missing with zeros.
 TEST(Hdf5Stack, DataInOtherFilesIsNotRead) {
   const TemporaryFolder folder;
   const std::string secret = folder / "secret";

@@ -1,5 +1,5 @@
-// TIFF and BigTIFF in every order and depth, ImageJ's stacks above 4 GB, and memory that does not grow with a
-// stack.
+// TIFF and BigTIFF in every byte order and depth, ImageJ's stacks above 4 GB, and memory that does not grow
+// with the stack.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -86,7 +86,7 @@ TEST(TiffStack, ZeroIsWhite) {
   }
 }
 
-// libtiff itself writes what our writer cannot: compressed, tiled, real numbers, colour.
+// libtiff writes the formats that the writer of the tests cannot: compressed, tiled, floating point, colour.
 TEST(TiffStack, CompressedTiledRealColour) {
   const TemporaryFolder folder;
   const std::string file = (folder / "a.tif").string();
@@ -175,18 +175,18 @@ TEST(TiffStack, AnImageJStackOnOnePage) {
       expect_stack(file, 32, 20, 5, bits, values(bits));
       EXPECT_EQ(open_frames(file)->info().frame_rate_hz, 500);
     }
-  // An ordinary stack with ImageJ's words is read page by page.
+  // An ordinary stack with ImageJ's description is read page by page.
   put(file, tiff_file({.pages = 5, .description = words}, values(16)));
   expect_stack(file, 32, 20, 5, 16, values(16));
-  // Planes that are not there.
+  // Planes that the description claims but the file lacks.
   put(file, tiff_file({.pages = 4, .description = words, .pages_written = 1}, values(16)));
   expect_words(refusal(file), {"a.tif", "truncated", "plane 5 of 5"});
   put(file, tiff_file({.pages = 1, .description = "ImageJ=1.53t\nimages=1e30\n"}, values(16)));
   expect_words(refusal(file), {"1e+30 planes"});
 }
 
-// Beyond the reach of the 32-bit offsets of a TIFF, which is why ImageJ does so; and long, so that memory
-// that grew with the stack would show. The file is a hole on the disk but for its ends.
+// The stack is beyond the range of a TIFF's 32-bit offsets, which is why ImageJ writes it on one page. It is
+// also long, so that memory growing with the stack would be detected. The file is sparse except for its ends.
 TEST(TiffStack, AboveFourGigabytesAndInLittleMemory) {
   if (kSanitized) GTEST_SKIP() << "Memory cannot be judged under a sanitizer.";
   const TemporaryFolder folder;
@@ -224,7 +224,7 @@ TEST(TiffStack, AboveFourGigabytesAndInLittleMemory) {
   EXPECT_LT(peak_kib() - before, 16 * 1024) << "KiB of memory for 2099 frames of 2 MiB";
 }
 
-// Many ordinary pages, so that what is kept per page would show.
+// Many ordinary pages, so that memory kept per page would be detected.
 TEST(TiffStack, PagesInLittleMemory) {
   if (kSanitized) GTEST_SKIP() << "Memory cannot be judged under a sanitizer.";
   const TemporaryFolder folder;
@@ -255,14 +255,14 @@ TEST(TiffStack, Spoilt) {
       EXPECT_EQ(std::count(sentence.begin(), sentence.end(), '\n'), 0) << sentence;
     }
   }
-  // A chain of pages that goes round.
+  // A cyclic chain of pages.
   std::string round = tiff_file({.pages = 1}, values(16));
   const std::size_t link = 8 + 2 + 9 * 12;
   ASSERT_EQ(round.substr(link, 4), std::string(4, '\0'));
   round[link] = 8;
   put(file, round);
   expect_words(refusal(file), {"a.tif", "no end"});
-  // Pages of unlike sizes.
+  // Pages of different sizes.
   std::string mixed = tiff_file({.pages = 2}, values(16));
   const std::size_t second =
       mixed.rfind(std::string("\x01\x01\x04\x00\x01\x00\x00\x00\x14", 9));  // height 20
@@ -270,7 +270,7 @@ TEST(TiffStack, Spoilt) {
   mixed[second + 8] = 10;
   put(file, mixed);
   expect_words(refusal(file), {"page 2: is 32 x 10", "page 1 is 32 x 20"});
-  // More rows than there are pixels for, in one strip and in strips that have no place.
+  // More rows than there are pixels for, in one strip and in strips without a location.
   std::string tall = tiff_file({.pages = 1}, values(16));
   const std::size_t rows = 8 + 2 + 12, rows_per_strip = 8 + 2 + 7 * 12;
   ASSERT_EQ(tall.substr(rows, 2), "\x01\x01");
@@ -281,7 +281,7 @@ TEST(TiffStack, Spoilt) {
   tall[rows_per_strip + 8] = 7;
   put(file, tall);
   expect_words(refusal(file), {"3 pieces, of which 1"});
-  // Sides beyond reason.
+  // Unreasonable image dimensions.
   std::string huge = tiff_file({.pages = 1}, values(16));
   huge[8 + 2 + 8 + 3] = 0x70;
   put(file, huge);

@@ -1,5 +1,5 @@
-// Videos: by OpenCV with 8 bits and a warning; grey and deeper ones through ffmpeg, exactly, where it is
-// installed.
+// Videos: OpenCV decodes them to 8 bits with a warning. Where ffmpeg is installed, grey and deeper videos are
+// decoded exactly through it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ bool runs(const std::string& command) {
 }
 const bool kFfmpeg = runs("ffmpeg -version") && runs("ffprobe -version");
 
-/// Makes a video from raw frames.
+/// Encodes raw frames as a video.
 void encode(const std::string& raw, const std::string& pixels, int width, int height,
             const std::string& codec, const std::string& video) {
   ASSERT_TRUE(runs(fmt::format("ffmpeg -y -f rawvideo -pix_fmt {} -s {}x{} -r 50 -i {} -c:v {} {}", pixels,
@@ -42,7 +42,7 @@ void write_film(const std::string& file, int frames) {
   ASSERT_TRUE(writer.isOpened());
   for (int i = 0; i < frames; ++i) {
     cv::Mat picture(48, 64, CV_8UC3, cv::Scalar::all(30 * i));
-    picture(cv::Rect(0, 0, 16, 16)).setTo(cv::Scalar(0, 0, 200));  // colour, so that it is no grey video
+    picture(cv::Rect(0, 0, 16, 16)).setTo(cv::Scalar(0, 0, 200));  // coloured, so that the video is not grey
     writer.write(picture);
   }
 }
@@ -110,7 +110,7 @@ TEST(Video, ATruncatedOneIsRefused) {
   write_film(folder / "opencv.avi", 60);
   names.emplace_back("opencv.avi");
   if (kFfmpeg) {
-    // Values that do not compress, so that half the file is half the frames.
+    // Incompressible values, so that half of the file contains half of the frames.
     std::mt19937 chance(1);
     put(folder / "raw",
         planes(64, 48, 20, 16, [&](int, int, int) { return static_cast<unsigned>(chance() & 0xFFFF); }));
@@ -129,7 +129,7 @@ TEST(Video, ATruncatedOneIsRefused) {
   }
 }
 
-// A film that was streamed states no number of frames, and ffv1 in Matroska never does.
+// A streamed film states no number of frames, and ffv1 in Matroska never does.
 TEST(Video, FramesAreCountedWhereTheHeaderStatesNone) {
   if (!kFfmpeg) GTEST_SKIP() << "ffmpeg is not installed.";
   const TemporaryFolder folder;
@@ -187,7 +187,7 @@ TEST(Video, APlaylistOpensNoOtherFile) {
   for (const std::string& list : lists)
     for (const char* ending : {".avi", ".mkv", ".mp4"}) {
       const std::filesystem::path file = here / (std::string("list") + ending);
-      // A byte that is no text: the reader leaves text alone before any decoder sees it.
+      // A non-text byte: the reader leaves a text file alone before any decoder sees it.
       std::ofstream(file, std::ios::binary) << list << "#\x01\n";
       EXPECT_THROW((void)read_all(file), InputError) << file;
     }

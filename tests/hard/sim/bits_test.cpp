@@ -1,4 +1,4 @@
-// What must not change the bits of a run, nor its speed (VERIFICATION H12, H22, H25-H27, H29).
+// Changes that must not affect the bits or the speed of a run (VERIFICATION H12, H22, H25-H27, H29).
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 namespace twincell::sim {
 namespace {
 
-/// The frames of a run of the program.
+/// The frames of a trajectory file that the program wrote.
 std::vector<Frame> frames_of(const std::filesystem::path& file) {
   const H5mdReader reader(file);
   std::vector<Frame> all(reader.n_frames());
@@ -36,7 +36,7 @@ void expect_same_frames(const std::vector<Frame>& a, const std::vector<Frame>& b
   }
 }
 
-/// The program's frames of a bed in motion.
+/// Runs the program on a moving bed and returns the frames.
 std::vector<Frame> program(const std::vector<std::string>& more) {
   const TemporaryFolder folder;
   std::ofstream(folder / "scene.toml")
@@ -64,7 +64,7 @@ TEST(Bits, H12_OnlyASeededPerturbationMakesEnsembles) {
   EXPECT_NE(one[0].position, other[0].position);
 }
 
-TEST(Bits, H16_ANarrowPeriodicCellAgreesWithTheOracle) {  // 2.5 diameters: no second image comes in reach
+TEST(Bits, H16_ANarrowPeriodicCellAgreesWithTheOracle) {  // 2.5 diameters: no second image is within range
   for (const char* width : {"2.5", "2.6", "5"}) {
     const std::vector<std::string> set = {"beads.count=20", "cell.sides=periodic",
                                           std::string("cell.width=") + width};
@@ -74,7 +74,7 @@ TEST(Bits, H16_ANarrowPeriodicCellAgreesWithTheOracle) {  // 2.5 diameters: no s
   }
 }
 
-TEST(Bits, H22_AListMissesNoContact) {  // lists made at every step and when they are due, 1e5 steps
+TEST(Bits, H22_AListMissesNoContact) {  // lists rebuilt at every step and only when due, 1e5 steps
   ShakenBed due, always;
   always.kernel->rebuild_every(1);
   for (int k = 0; k < 100; ++k) {
@@ -86,7 +86,7 @@ TEST(Bits, H22_AListMissesNoContact) {  // lists made at every step and when the
   EXPECT_GT(always.kernel->list_builds(), 100 * due.kernel->list_builds());
 }
 
-TEST(Bits, H25_SortingInMemoryChangesNothing) {  // the oracle never sorts; output is by bead
+TEST(Bits, H25_SortingInMemoryChangesNothing) {  // the oracle never sorts; output is in bead order
   ShakenBed sorted, unsorted({}, SolverKind::all_pairs);
   const double first = sorted.system.beads[0].radius;
   sorted.advance(30000), unsorted.advance(30000);
@@ -118,9 +118,9 @@ bool any_subnormal(const System& s) {
 }
 
 TEST(Bits, H29_ASettledBedIsNotSlowedBySubnormals) {
-  // Drag takes a velocity down to 1e-308 in 71 t0, and then through the subnormal numbers to 0.
+  // Drag reduces a velocity to 1e-308 in 71 t0, and then through the subnormal numbers to 0.
   ShakenBed bed({"cell.plate_drag=10", "contact.mu=0", "drive.gamma=0", "cell.sides=periodic"});
-  const auto seconds = [&](std::int64_t steps) {  // the best of five
+  const auto seconds = [&](std::int64_t steps) {  // the fastest of five runs
     double best = HUGE_VAL;
     for (int k = 0; k < 5; ++k) {
       const auto begin = std::clock();
@@ -129,7 +129,7 @@ TEST(Bits, H29_ASettledBedIsNotSlowedBySubnormals) {
     }
     return best;
   };
-  double before = 0, after = 0;  // the slowest until velocities are small, and since
+  double before = 0, after = 0;  // the slowest time until velocities are small, and after that
   for (int k = 0; k < 60; ++k) {
     bed.advance(static_cast<std::int64_t>(1.5 / bed.system.dt));
     double& slowest = bed.system.time() < 60 ? before : after;

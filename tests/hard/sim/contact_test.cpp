@@ -1,5 +1,5 @@
-// Contacts in which a formula could divide by zero, forget or remember too much (VERIFICATION H1-H4, H15,
-// H17, H24, H31).
+// Contacts for which a formula could divide by zero, or lose history or keep stale history (VERIFICATION
+// H1-H4, H15, H17, H24, H31).
 
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ TEST(Contact, H2_NoTangentialVelocityNoTangentialForce) {
       b.add(9, 50, 1, 0), b.add(10.01, 50, -1, 0);
       for (Bead& bead : b.system.beads) bead.y = b.scene.dimension == 3 ? 10 : 0;
       b.advance_time(0.02);
-      EXPECT_LT(b.system.beads[0].vx, -0.5);  // they have met
+      EXPECT_LT(b.system.beads[0].vx, -0.5);  // the beads have collided
       for (const Bead& bead : b.system.beads)
         EXPECT_EQ(std::abs(bead.spin) + std::abs(bead.spin_x) + std::abs(bead.spin_z) + std::abs(bead.vz) +
                       std::abs(bead.vy),
@@ -95,7 +95,7 @@ void expect_limits(const Law& law) {
       double xi = stretch;
       EXPECT_EQ(std::abs(force(v, 0, xi)), 0) << Law::kWord;
       EXPECT_TRUE(std::isfinite(xi)) << Law::kWord << " v " << v;
-      double pulled = stretch;  // at the end of a contact the normal force pulls: the limit is mu |F_n|
+      double pulled = stretch;  // at the end of a contact the normal force is tensile: the limit is mu |F_n|
       const double f = force(v, -10, pulled);
       EXPECT_LE(std::abs(f), 0.6 * 10 * (1 + 1e-12)) << Law::kWord;
       EXPECT_TRUE(std::isfinite(f) && std::isfinite(pulled)) << Law::kWord;
@@ -107,15 +107,15 @@ TEST(Contact, H3_CoulombLimitAtNoNormalForceAndInThePull) {
   expect_limits(SpringLimitedSlider{{1e4, {100, 0, 0}, 0.6}});
   expect_limits(ForceClippedSlider{{1e4, {100, 0, 0}, 0.6}});
   expect_limits(DashpotSlider{{0, 50, 0}, 0.6});
-  expect_limits(SpringSlider{0, {100, 0, 0}, 0.6});  // a spring of no stiffness
+  expect_limits(SpringSlider{0, {100, 0, 0}, 0.6});  // a spring of zero stiffness
   expect_limits(SpringSlider{0, {0, 0, 0}, 0.6});
   const auto c = SpringSlider{1e4, {100, 0, 0}, 0.6}.constants({1, 0.5, 3});
   Tangent<double, 1> xi{{1e-3}};
   SpringSlider::force(c.data(), Tangent<double, 1>{{0.5}}, 0.0, 1e-5, xi);
-  EXPECT_DOUBLE_EQ(xi.c[0], -100 * 0.5 / 1e4);  // spring and dashpot together give the limit, which is 0
+  EXPECT_DOUBLE_EQ(xi.c[0], -100 * 0.5 / 1e4);  // spring and dashpot together equal the limit, which is 0
   Tangent<double, 1> kept{{1e-3}};
   ForceClippedSlider::force(c.data(), Tangent<double, 1>{{0.5}}, 0.0, 1e-5, kept);
-  EXPECT_DOUBLE_EQ(kept.c[0], 1e-3 + 0.5 * 1e-5);  // only the force is cut
+  EXPECT_DOUBLE_EQ(kept.c[0], 1e-3 + 0.5 * 1e-5);  // only the force is clipped
 }
 
 TEST(Contact, H4_EveryContactBeginsAnew) {  // a bead that bounces along a rough floor, 1e6 steps
@@ -143,10 +143,10 @@ TEST(Contact, H4_EveryContactBeginsAnew) {  // a bead that bounces along a rough
   EXPECT_TRUE(finite(b.system));
 }
 
-/// An oblique collision, one bead above the other, of a pair that moves along x at speed 1.
-/// \param image what is added to the second one's x: a whole period changes nothing
+/// An oblique collision of a pair, one bead above the other, that moves along x at speed 1.
+/// \param image offset added to the x of the second bead; a whole period must change nothing
 System drifting_collision(double x, double image, std::int64_t rebuild_every) {
-  // Soft springs make little of the last bit of a position.
+  // Soft springs reduce the effect of the last bit of a position.
   Bench b(
       "[cell]\ngravity = 0.0\nsides = \"periodic\"\nwidth = 4.0\nheight = 64.0\nlid = \"wall\"\n"
       "[contact]\nk_n = 1e4\nk_t = 1e2\n");
@@ -158,13 +158,13 @@ System drifting_collision(double x, double image, std::int64_t rebuild_every) {
 }
 
 TEST(Contact, H15_HistoryCrossesThePeriodicBoundary) {
-  // Centres 0.968 apart in z when they touch, after 0.032 t0; the contact lasts 0.022, and within it the
-  // contact point passes x = 4.
+  // The centres are 0.968 apart in z at first touch, after 0.032 t0. The contact lasts 0.022, and during it
+  // the contact point passes x = 4.
   for (const std::int64_t rebuild_every : {0, 1, 7})
     for (const double image : {0.0, -4.0, 8.0}) {
       const System inside = drifting_collision(1.84, 0, rebuild_every),
                    across = drifting_collision(3.84, image, rebuild_every);
-      EXPECT_GT(std::abs(inside.beads[0].spin), 1e-2);  // friction acted
+      EXPECT_GT(std::abs(inside.beads[0].spin), 1e-2);  // friction was active
       double worst = 0;
       for (std::size_t i = 0; i < 2; ++i) {
         const Bead &a = inside.beads[i], &b = across.beads[i];
@@ -178,7 +178,7 @@ TEST(Contact, H15_HistoryCrossesThePeriodicBoundary) {
 }
 
 TEST(Contact, H17_ABeadInACornerIsInBalance) {
-  // Soft springs: at k_n = 1e6 the last bit of a position is a force of 1e-10.
+  // Soft springs: at k_n = 1e6 the last bit of a position changes the force by 1e-10.
   Bench b(
       "[cell]\ngravity = [-0.6, -0.8]\n[contact]\nk_n = 1e3\ngamma_n = 20.0\ngamma_t = 20.0\nk_t = 300.0\n");
   b.add(0.5, 0.5, 0, 0), b.add(1.5, 0.5, 0, 0), b.add(0.5, 1.5, 0, 0);
@@ -190,7 +190,7 @@ TEST(Contact, H17_ABeadInACornerIsInBalance) {
   }
   std::printf("largest residual force %.1e\n", worst);
   EXPECT_LE(worst, 1e-12);
-  int walls = 0;  // of the bead in the corner, each with its own history
+  int walls = 0;  // wall contacts of the bead in the corner, each with its own history
   for (const ContactMemory& c : b.kernel->contacts()) walls += c.i == 0 && c.j < 0;
   EXPECT_EQ(walls, 2);
 }

@@ -1,4 +1,4 @@
-// A deep bed rests (VERIFICATION H28).
+// A deep bed comes to rest (VERIFICATION H28).
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using test::validate;
 
-/// Eighty layers of the first paper's beads on a plate at rest, calm after 30 t0.
+/// Eighty layers of the first paper's beads on a plate at rest, after 30 t0 of settling.
 struct DeepBed {
   Scene scene;
   Plan plan;
@@ -38,7 +38,7 @@ struct DeepBed {
   void advance_time(double time) {
     kernel->advance(system, static_cast<std::int64_t>(std::ceil(time / system.dt)));
   }
-  /// Weight on the floor over N m g.
+  /// Force on the floor over the weight N m g.
   [[nodiscard]] double carried() const {
     double force = 0;
     for (const Force& f : system.forces) force += f.z;

@@ -1,4 +1,4 @@
-// What a run asks of the machine: the estimate against what kernels hold, and what is refused.
+// Resources of a run: the estimate against the memory that kernels use, and the refusals.
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ TEST(ResourceDemand, MoreThanTheMachineHasIsRefusedByKey) {
                               "the machine has 1 MB");
 }
 
-// With a limit of the shell, as a batch system sets one: before a bead is placed.
+// Under a shell limit, as a batch system sets one: the run is refused before a bead is placed.
 TEST(ResourceDemand, TheProgramRefusesWhatItsLimitDoesNotAllow) {
   if (kSanitized) GTEST_SKIP() << "A sanitized program cannot start within a limit of memory.";
   const TemporaryFolder folder;

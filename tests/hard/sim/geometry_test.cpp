@@ -1,5 +1,4 @@
-// Starts that overlap, unlike sizes, tall boxes, numbers that are none (VERIFICATION H5, H8, H21, H23, H30,
-// H32).
+// Overlapping starts, unequal sizes, tall boxes, invalid numbers (VERIFICATION H5, H8, H21, H23, H30, H32).
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -19,7 +18,7 @@
 namespace twincell::sim {
 namespace {
 
-/// A scene whose beads stand in a table.
+/// A scene whose beads come from a table.
 struct Table {
   TemporaryFolder folder;
   Scene scene(const std::string& csv, std::vector<std::string> set = {}) {
@@ -51,7 +50,7 @@ TEST(Overlaps, H1_H5_AreRefusedAtTheStartByName) {
 }
 
 TEST(Overlaps, H5_RelaxedBeadsAreNotLaunched) {
-  // Ninety beads where forty have room, some almost in the same place.
+  // Ninety beads in a space for forty, some almost at the same position.
   std::string csv = "x,z\n";
   std::mt19937_64 engine(3);
   const auto uniform = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
@@ -72,14 +71,14 @@ TEST(Overlaps, H5_RelaxedBeadsAreNotLaunched) {
   }
   std::printf("largest energy of a relaxed bead %.1e\n", fastest);
   EXPECT_LT(fastest, 1e-6);
-  double moved = 0;  // they did have to move
+  double moved = 0;  // relaxation did have to move them
   for (std::size_t i = 0; i < after.size(); ++i)
     moved = std::max(moved, std::hypot(after[i].x - before[i].x, after[i].z - before[i].z));
   EXPECT_GT(moved, 0.3);
   EXPECT_LT(moved, 10);
 }
 
-/// A hundred small discs and one a hundred times larger, of 1e6 times the mass, that comes down on them.
+/// A hundred small discs, and one that is a hundred times larger and 1e6 times heavier and falls on them.
 System unlike(SolverKind kind, std::string* said = nullptr) {
   std::string csv = "x,z,vz,radius,mass\n6,5.27,-1,5,1e4\n";
   for (int i = 0; i < 100; ++i)
@@ -95,7 +94,7 @@ System unlike(SolverKind kind, std::string* said = nullptr) {
   System s = make_system(scene, plan);
   s.beads = beads;
   GuardLimits limits = guard_limits(plan);
-  limits.overlap = 0.05;  // the large one presses hard
+  limits.overlap = 0.05;  // the large disc causes large overlaps
   make_solver(plan, limits, kind)->advance(s, 8000);
   return s;
 }
@@ -103,7 +102,7 @@ System unlike(SolverKind kind, std::string* said = nullptr) {
 TEST(Sizes, H8_UnlikeBeadsAgreeWithTheOracle) {
   const System list = unlike(SolverKind::best);
   EXPECT_TRUE(same_bits(list, unlike(SolverKind::all_pairs)));
-  double fastest = 0;  // small ones were hit
+  double fastest = 0;  // the small discs were hit
   for (std::size_t i = 1; i < list.beads.size(); ++i) fastest = std::max(fastest, std::abs(list.beads[i].vx));
   EXPECT_GT(fastest, 0.1);
 }
@@ -116,12 +115,12 @@ TEST(Sizes, H8_TheLightestBeadSetsTheStepAndTheUsualOneTheBound) {
   const Plan equal = plan_of({});
   const Plan light =
       plan_of({"beads.intruder.radius=0.005", "beads.intruder.mass=1e-6", "beads.intruder.z=40"});
-  EXPECT_NEAR(light.dt, 1e-3 * equal.dt, 0.02e-3 * equal.dt);  // t_c goes as the root of the mass
+  EXPECT_NEAR(light.dt, 1e-3 * equal.dt, 0.02e-3 * equal.dt);  // t_c is proportional to sqrt(mass)
   EXPECT_DOUBLE_EQ(light.overlap_bound, 0.1);
   EXPECT_DOUBLE_EQ(light.travel_bound, 0.05 * 0.01);
   EXPECT_EQ(plan_of({"beads.intruder.radius=5", "beads.intruder.mass=1e6", "beads.intruder.z=40"}).dt,
             equal.dt);
-  // A file's beads are not the scene's.
+  // The masses of a file replace those of the scene.
   Table t;
   const Scene scene = t.scene("x,z,mass\n5,3,1\n9,3,0.01\n", {"start.settle_limit=0"});
   EXPECT_NEAR(Simulation(scene).plan().dt, 0.1 * equal.dt, 1e-3 * equal.dt);
@@ -188,10 +187,11 @@ TEST(Lists, H23_ABedThatRidesOnItsPlateKeepsItsList) {
     std::printf("Gamma = %s: %.1f lists a cycle\n", gamma, lists);
     return lists;
   };
-  // In the laboratory two beads of a bed that rides along use up the skin of 1/4 in 1/8 of the way 4 A.
+  // In the laboratory frame, two beads of a bed that moves with its plate use up the skin of 1/4 after 1/8 of
+  // the distance 4 A.
   EXPECT_LT(lists_per_cycle("0.9"), 0.1 * 4 * 0.9 / 0.125);
-  // At Gamma = 2 a reference whose displacements were the laboratory's built 20,000 in 6.4e6 steps, 45
-  // cycles. There the fastest two beads at the surface set the pace.
+  // At Gamma = 2, reference positions in the laboratory frame caused 20,000 rebuilds in 6.4e6 steps, 45
+  // cycles. There the two fastest beads at the surface determine the rate.
   EXPECT_LT(lists_per_cycle("2"), 0.5 * 20000 / 45);
 }
 

@@ -1,4 +1,4 @@
-// Plans that cannot be, and runs that go wrong: refused or stopped with one sentence.
+// Impossible plans and failing runs: each is refused or stopped with one sentence.
 
 #include <gtest/gtest.h>
 
@@ -77,7 +77,7 @@ TEST(Run, H20_StopsWithStepBeadAndCause) {
     EXPECT_NE(std::string(e.what()).find("overlap"), std::string::npos) << e.what();
     EXPECT_NE(std::string(e.what()).find("raise contact.k_n"), std::string::npos) << e.what();
   }
-  EXPECT_GT(out.n_frames(), 0U);  // the frames up to there were handed over
+  EXPECT_GT(out.n_frames(), 0U);  // the frames up to that step were delivered
 }
 
 TEST(Run, ANumberThatIsNoneIsFoundInItsStep) {
@@ -123,7 +123,7 @@ TEST(Run, H20_TheBoundIsTheScenes) {
   expect_refusal<RunError>([&] { run_with("0.005"); }, "overlap by 0.005", "the bound is 0.005");
 }
 
-/// A crystal of the first paper driven for some cycles.
+/// A crystal of the first paper, driven for some cycles.
 struct Crystal {
   Simulation run;
   MemoryTrajectory out;
@@ -134,8 +134,8 @@ struct Crystal {
         out(run.trajectory_info()) {
     run.run(out);
   }
-  /// By how much two beads that touched at the start, and lay deeper than 10 sigma, have come apart or
-  /// together a whole number of cycles later: the largest.
+  /// Largest change, a whole number of cycles later, of the distance between two beads that touched at the
+  /// start and were deeper than 10 sigma.
   [[nodiscard]] double disorder(std::size_t cycle) const {
     const auto &first = out.frames()[0].position, &now = out.frames()[cycle].position;
     double top = 0, worst = 0;
@@ -149,7 +149,7 @@ struct Crystal {
 };
 
 TEST(Run, H12_ACoMovingCrystalSlipsExactlyNever) {  // region A1 of the first paper, below 10 sigma
-  constexpr double kSlip = 0.5;                     // sigma between neighbours in a cycle
+  constexpr double kSlip = 0.5;                     // sigma between neighbours, from cycle to cycle
   for (const char* gamma : {"0.9", "1.5", "2.2"}) {
     const Crystal bed({std::string("drive.gamma=") + gamma});
     int slips = 0;
@@ -199,8 +199,8 @@ TEST(Run, H35_SettlingEndsAndSaysWhatWasLeft) {
 }
 
 TEST(Run, H36_PeriodTwoIsAveragedOverAnEvenNumberOfCycles) {
-  // A rigid bed that is lifted by 1 at phase 5 of every other cycle: the mean lift is 1/2 over two of three
-  // cycles, it would be 1/3 over all.
+  // A rigid bed that is lifted by 1 at phase 5 of every other cycle. The mean lift over two of three cycles
+  // is 1/2; over all three it would be 1/3.
   const MemoryTrajectory flat = test::rigid_bed({.gamma = 0.9, .cycles = 3});
   MemoryTrajectory lifted(flat.info());
   for (Frame frame : flat.frames()) {
@@ -215,7 +215,7 @@ TEST(Run, H36_PeriodTwoIsAveragedOverAnEvenNumberOfCycles) {
 }
 
 TEST(Run, H37_TheShareOfTimeInContactIsReported) {
-  // One bead between floor and lid, elastic: of each passage of the gap it is in contact for t_c of the wall.
+  // One elastic bead between floor and lid: in each passage of the gap it is in contact for t_c of the wall.
   const auto fraction = [](const char* height, const char* count) {
     Simulation run(read_scene_text(
         "[cell]\ngravity = 0.0\nlid = \"wall\"\nwidth = 4.0\n[contact]\nk_n = 1e4\ntangential = \"none\"\n"
@@ -229,7 +229,7 @@ TEST(Run, H37_TheShareOfTimeInContactIsReported) {
     run.run(out);
     const auto f = run.contact_fraction();
     const Bead& b = run.system().beads.at(0);
-    // Rates of meeting each wall: |v|/gap; t_c = pi sqrt(m/k_n).
+    // Fraction of time in contact with each wall, from the passage time gap/|v| and t_c = pi sqrt(m/k_n).
     const double t_c = std::numbers::pi * 1e-2;
     const double along_z = t_c / ((std::stod(height) - 1) / std::abs(b.vz) + t_c),
                  along_x = t_c / (3 / std::abs(b.vx) + t_c);
@@ -243,7 +243,8 @@ TEST(Run, H37_TheShareOfTimeInContactIsReported) {
 
 TEST(Run, H37_H38_TheProgramSaysShareOfContactAndStart) {
   const TemporaryFolder folder;
-  // Just above Gamma = 1 a bed of the second paper keeps what it began with for long: two starts, both told.
+  // Just above Gamma = 1, a bed of the second paper keeps its initial packing for a long time. The output
+  // reports each of the two starts.
   for (const char* kind : {"random", "crystal_a"}) {
     std::ofstream(folder / "scene.toml")
         << "preset = \"bhateja-2016-smooth-2d\"\n[drive]\nk_m = 1.1\n[start]\nkind = \"" << kind

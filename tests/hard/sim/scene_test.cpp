@@ -1,4 +1,4 @@
-// Scenes that cannot be: refused with one sentence that says where and why.
+// Invalid scenes: each is refused with one sentence that states the place and the reason.
 
 #include "sim/scene/scene.hpp"
 
@@ -139,7 +139,7 @@ TEST(Cell, H16_PeriodsLeaveNoSecondImageInReach) {
                    "less than 2.5");
   EXPECT_EQ(complaint(periodic + "2.6\n"), "accepted");
   expect_complaint(kGood3d + "[cell]\ndepth = 2.4\n", "cell.depth: a bead would meet two images");
-  // 2 (R + R' + reach of the largest) of the two that can meet.
+  // The bound is 2 (R + R' + the reach of the larger bead), for the two largest beads that can meet.
   expect_complaint(periodic + "6.9\n[beads.intruder]\nradius = 2.0\nz = 9.0\n",
                    "a period of 6.9 is less than 7,");
   EXPECT_EQ(complaint(periodic + "7.1\n[beads.intruder]\nradius = 2.0\nz = 9.0\n"), "accepted");
@@ -197,7 +197,7 @@ TEST(Cell, WallsStandWhereTheSceneSays) {
   const auto walls = s.walls();
   ASSERT_EQ(walls.size(), 6U);
   const char* names[] = {"bottom", "left", "right", "front", "back", "lid"};
-  // A point on each wall, and one a sigma further into the cell.
+  // A point on each wall, and a second point one sigma further inside the cell.
   const double left = 10 * std::numbers::pi / 180, right = -5 * std::numbers::pi / 180;
   const Vec3 on[] = {
       {4, 1, 0}, {-4 * std::tan(left), 1, 4}, {8 + 4 * std::tan(right), 1, 4}, {4, 0, 4}, {4, 3, 4},
@@ -227,7 +227,7 @@ TEST(Beads, CountOrLayers) {
   EXPECT_EQ(read_scene_text("preset = \"bhateja-2016-rough-2d\"\n[drive]\nk_m = 5.0\n", "s").n_beads, 40U);
   EXPECT_EQ(read_scene_text(kGood3d, "s").n_beads, 100U);
   EXPECT_EQ(read_scene_text(kGood3d, "s", {"beads.count=7"}).n_beads,
-            7U);  // a scene's choice displaces the preset's
+            7U);  // the scene's choice replaces that of the preset
   EXPECT_EQ(read_scene_text(kGood3d, "s", {"beads.radius=0.25"}).n_beads, 400U);
   expect_complaint("[beads]\ncount = 5\nlayers = 2.0\n[drive]\ngamma = 1.0\nomega = 1.0\n",
                    "beads.layers: contradicts 'count'");
@@ -274,7 +274,7 @@ TEST(Contact, KindsOfLawAreTheSameForAll) {
                    "contact.normal: 'rubber' is not one of linear,");
 }
 
-// Beads that nothing turns do not roll: the resistance would be dropped without a word.
+// Without tangential friction beads do not rotate, so the rolling resistance would be dropped silently.
 TEST(Contact, RollingWithoutFrictionIsRefused) {
   const std::string rolling = kGood + "[contact]\nrolling = \"spring\"\nk_r = 1.0\nmu_r = 0.1\n";
   expect_complaint(rolling + "tangential = \"none\"\n", "scene.toml:7:11: contact.rolling: is \"spring\"");
@@ -297,7 +297,7 @@ TEST(Contact, LawsRefuseTheirParameters) {
                    "scene.toml:7:6: contact.wall.mu: -0.1 is out of range; the value must be at least 0");
 }
 
-/// "a" or "b", each in quotes.
+/// Formats words as `"a" or "b"`, each in quotes.
 std::string any_of(const std::vector<std::string>& words) {
   std::string text;
   for (std::size_t k = 0; k < words.size(); ++k)
@@ -305,14 +305,14 @@ std::string any_of(const std::vector<std::string>& words) {
   return text;
 }
 
-// The list of laws that read a key, by two examples; below it is taken from the laws.
+// Two examples of the laws that read a key. The tests below take the list from the laws themselves.
 TEST(Contact, LawsAreNamedByTheKeysThatTheyRead) {
   EXPECT_EQ(any_of(readers_of("k_t").laws), "\"spring\", \"spring-limited\" or \"force-clipped\"");
   EXPECT_EQ(any_of(readers_of("viscous_time").laws), "\"hertz\"");
   EXPECT_EQ(readers_of("youngs_modulus").axis, "normal");
 }
 
-// Each law with each key of another: the number would be dropped without a word.
+// Each law with each key of another law: the number would be dropped silently.
 TEST(Contact, KeysThatTheLawDoesNotReadAreRefused) {
   const std::string bare = "[beads]\ncount = 9\n[drive]\ngamma = 1.5\nomega = 1.0\n";
   for (const std::string table : {"contact", "contact.wall", "contact.bottom", "contact.sides"})
@@ -342,12 +342,12 @@ TEST(Contact, KeysThatTheLawDoesNotReadAreRefused) {
           head + (table == "contact" ? "" : "[" + table + "]\n") + key + " = 0.3\n",
           table + "." + key + ": the law contact." + law + " does not read it; " + readers + " would.");
     }
-  // With file, line and column.
+  // The message states file, line and column.
   expect_complaint("[beads]\ncount = 9\n[contact]\nnormal = \"hertz\"\nrestitution = 0.5\n",
                    "scene.toml:5:15: contact.restitution: the law contact.normal = \"hertz\" does not read");
 }
 
-// What the plan leaves out by itself is no mistake of the user's.
+// A value that the plan drops by itself is not an error of the user.
 TEST(Contact, SmoothBeadsMayBeSaidInBothWays) {
   EXPECT_EQ(complaint(kGood, {"contact.mu=0"}), "accepted");  // the preset's k_t and gamma_t are read
   EXPECT_EQ(complaint(kGood, {"contact.mu=0", "contact.k_t=2e4"}), "accepted");
@@ -379,7 +379,7 @@ TEST(Contact, APresetsKeysGiveWayAndAreNamed) {
                                  "[drive]\nk_m = 9\n",
                                  "s")),
             std::vector<std::string>{"cell.lid_motion"});
-  // A multiple of a dashpot that is gone is no friction at all: that is not left to a note.
+  // A multiple of a dashpot that no longer exists would mean no friction: this is an error, not only a note.
   EXPECT_NE(complaint("preset = \"bhateja-2016-rough-2d\"\n[drive]\nk_m = 9\n[contact]\nnormal = "
                       "\"hertz\"\nyoungs_modulus = 1e7\n")
                 .find("contact.c_t_over_c_n: there is no normal dashpot"),
@@ -396,7 +396,7 @@ TEST(Scene, KeysOfAnotherStartOrCellAreRefused) {
                 .find("beads.spread: radii are not drawn for the beads of a table"),
             std::string::npos);
   expect_complaint("\"beads.count\" = 5\n" + kGood, "beads.count: there is no such key");
-  expect_complaint(kGood + "gamma = 2.0\n", "scene.toml:6");  // twice
+  expect_complaint(kGood + "gamma = 2.0\n", "scene.toml:6");  // the key occurs twice
 }
 
 TEST(Scene, SeedsAreNeverRounded) {
@@ -421,7 +421,7 @@ TEST(Scene, AStartsFileLiesBesideTheScene) {
   EXPECT_NE(read_scene_text(text, "s", {}, "/x/y").resolved.find("b/a.csv"), std::string::npos);
 }
 
-// A user's file of an earlier version is refused with the word of today.
+// A file for an earlier version is refused with the present word.
 TEST(Contact, FormerWordsAreRefusedWithThoseOfToday) {
   const std::vector<std::pair<std::string, std::string>> now = {
       {"contact.normal=linear-clipped",
@@ -448,7 +448,7 @@ TEST(Contact, InnermostTableWins) {
   EXPECT_EQ(s.contact.wall.at("left").number("mu"), 0.2);
   EXPECT_EQ(s.contact.wall.at("lid").number("mu"), 0.3);
   EXPECT_EQ(s.contact.wall.at("lid").number("k_n"), 1e6);
-  // The wall's restitution displaces the preset's gamma_n, which stays the beads'.
+  // The wall's restitution replaces the preset's gamma_n there; the beads keep gamma_n.
   EXPECT_EQ(s.contact.wall.at("lid").which_of(normal_damping_keys()), "restitution");
   EXPECT_EQ(s.contact.bead.which_of(normal_damping_keys()), "gamma_n");
   EXPECT_EQ(good({"contact.restitution=0.8"}).contact.bead.which_of(normal_damping_keys()), "restitution");
@@ -492,7 +492,7 @@ TEST(Presets, AreThePapersCells) {
   EXPECT_EQ(still.g(), 0);
   EXPECT_EQ(still.n_beads, 100U);
   for (const Wall& wall : still.walls()) EXPECT_TRUE(wall.moves) << wall.name;
-  // A crystal's mirror planes would hold its beads for ever.
+  // The mirror planes of a crystal would confine its beads for ever.
   for (const std::string& name : preset_names()) {
     const bool still_cell = name == "bhateja-2016-zero-g";
     const Scene s = read_scene_text("preset = \"" + name + "\"\n[beads]\ncount = 9\n", "s",

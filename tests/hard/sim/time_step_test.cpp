@@ -1,4 +1,5 @@
-// Steps too long, too short, too many, and the clock (VERIFICATION H6, H7, H9-H11, H14, H18, H19, H33).
+// Time steps that are too long, too short or too many, and the clock (VERIFICATION H6, H7, H9-H11, H14, H18,
+// H19, H33).
 
 #include <gtest/gtest.h>
 
@@ -46,7 +47,7 @@ TEST(TimeStep, UnstatedItIsTheFrontsAndStandsInTheResolvedScene) {
   } cases[] = {{{}, "split", 20, false},
                {{"time.steps_per_contact=33"}, "split", 33, false},
                {{"time.integrator=split"}, "split", 20, true},
-               {{"time.integrator=verlet"}, "verlet", 50, true},  // LAMMPS's, as it ever was
+               {{"time.integrator=verlet"}, "verlet", 50, true},  // LAMMPS's step, as before
                {{"time.integrator=predicted"}, "predicted", 50, true},
                {{"time.integrator=verlet", "time.steps_per_contact=8"}, "verlet", 8, true},
                {{"contact.tangential=none", "contact.mu=0"}, "split", 20, false},
@@ -56,14 +57,14 @@ TEST(TimeStep, UnstatedItIsTheFrontsAndStandsInTheResolvedScene) {
     EXPECT_EQ(s.integrator, c.integrator);
     EXPECT_EQ(s.steps_per_contact, c.n);
     EXPECT_EQ(s.integrator_stated, c.stated);
-    // Whatever a later program takes for granted, what is stored is of this step.
+    // The stored scene fixes the step, whatever defaults a later program has.
     EXPECT_TRUE(again.integrator_stated);
     EXPECT_EQ(again.integrator, c.integrator);
     EXPECT_EQ(again.steps_per_contact, c.n);
     EXPECT_EQ(again.resolved, s.resolved);
   }
-  // A scene that states both is stored as it was by earlier programs: so are the names of points and the
-  // seeds drawn from it.
+  // A scene that states both is stored as by earlier programs, so the point names and the seeds derived from
+  // it stay the same.
   const std::string whole =
       "[beads]\ncount = 3\n[drive]\ngamma = 1.0\nomega = 1.0\n[time]\nintegrator = \"split\"\n";
   EXPECT_EQ(read_scene_text(whole + "steps_per_contact = 20\n", "s").resolved,
@@ -77,7 +78,7 @@ TEST(TimeStep, UnstatedItIsTheFrontsAndStandsInTheResolvedScene) {
   EXPECT_TRUE(stated_of(plan_of({"time.integrator=split"})));
 }
 
-/// Lets a crystal rest at steps of dt/t_c = 1/n.
+/// Settles a crystal at steps of dt/t_c = 1/n.
 RelaxationResult rest(const char* n) {
   return Simulation(good({"beads.count=100", "cell.width=10", "time.allow_unstable_step=true",
                           "start.settle_limit=20", std::string("time.steps_per_contact=") + n}))
@@ -95,7 +96,7 @@ TEST(TimeStep, H7_TheFastestRateSetsTheStep) {
   const struct {
     std::vector<std::string> set;
     const char* limit;
-    double time;  // of equal discs of mass 1: 1/m_t = 6, at a wall 3
+    double time;  // for equal discs of mass 1: 1/m_t = 6, at a wall 3
   } cases[] = {
       {{"contact.gamma_t=1e5"}, "bead-bead, tangential contact", 2 / (6 * 1e5 * 0.5)},
       {{"contact.k_t=1e9"}, "bead-bead, tangential contact", std::numbers::pi / std::sqrt(6e9)},
@@ -163,7 +164,7 @@ TEST(TimeStep, H11_RestitutionOneAndBeyond) {
 
 TEST(TimeStep, H14_TimeIsAStepCount) {
   System s = make_system(good({}), plan_of({}));
-  // The same phase in the first period and after 1e8 and 1e15 steps: the same bits.
+  // The same phase in the first period and after 1e8 and 1e15 steps gives the same bits.
   for (const std::int64_t far : {std::int64_t{100'000'000}, std::int64_t{1'000'000'000'000'000}}) {
     const std::int64_t periods = far / s.steps_per_period;
     for (const std::int64_t k : {0, 1, 77, 4711, 70000, 141'000}) {
@@ -188,7 +189,7 @@ TEST(TimeStep, H14_EnergyHasNoDriftIn1e8Steps) {  // an elastic bead between flo
     const double low = std::max(0.0, 0.5 - bead.z), high = std::max(0.0, bead.z - 0.52);
     return 0.5 * bead.vz * bead.vz + 0.5e6 * (low * low + high * high);
   };
-  double first = 0, last = 0, worst = 0;  // means over the first and last tenth
+  double first = 0, last = 0, worst = 0;  // means over the first and the last tenth
   for (int k = 0; k < 10; ++k)
     for (int j = 0; j < 100; ++j) {
       b.kernel->advance(b.system, 100'000);
@@ -199,7 +200,7 @@ TEST(TimeStep, H14_EnergyHasNoDriftIn1e8Steps) {  // an elastic bead between flo
     }
   EXPECT_EQ(b.system.step, 100'000'000);
   std::printf("energy off by %.1e at most, drift %.1e\n", worst, last / first - 1);
-  EXPECT_LE(worst, 3e-3);  // a single collision errs by its entry phase, 0.25/n^2
+  EXPECT_LE(worst, 3e-3);  // the error of one collision depends on its entry phase, 0.25/n^2
   EXPECT_LE(std::abs(last / first - 1), 5e-4);
 }
 

@@ -1,5 +1,5 @@
-// Trajectories whose numbers cannot be a bead cell's: refused by the reader, hence by `validate` and every
-// verb, with file and dataset named.
+// Trajectories with numbers that are impossible for a bead cell: the reader, hence `validate` and every verb,
+// refuses them and names file and dataset.
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ void write(const std::filesystem::path& path, const TrajectoryInfo& info, int ph
   writer.finish();
 }
 
-/// What each verb says of it: validate, and those that read every number.
+/// Expects `validate` and every verb that reads all numbers to refuse the file.
 void expect_refused(const std::string& file, const std::string& what) {
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{"validate", file},
@@ -83,7 +83,7 @@ TEST(H5mdRanges, WhatNoCellCanBeIsRefusedByEveryVerb) {
   expect_refused(file, "phase");
 }
 
-/// Changes a sound file by hand, as damage or a stranger would.
+/// Changes a valid file by hand, as damage or malice would.
 template <class Change>
 void spoil(const std::string& file, const std::string& object, Change change) {
   write(file, sound());

@@ -1,5 +1,5 @@
-// Dumps of LAMMPS as other people write them: columns and ids in any order, beads that are missing,
-// coordinates scaled, wrapped or not; and files that are none.
+// Third-party LAMMPS dumps: columns and ids in any order, missing beads, coordinates scaled, wrapped or not;
+// and files that are not dumps.
 
 #include "trajectory/formats/lammps_dump.hpp"
 
@@ -43,7 +43,7 @@ class Dump : public ::testing::Test {
     EXPECT_EQ(trajectory.n_frames(), dump.n_frames());
     return trajectory;
   }
-  /// The sentence with which `text` is refused, the folder's name left out.
+  /// The message with which `text` is refused, without the folder's name.
   std::string refusal(const std::string& text, const LammpsDumpOptions& options = reduced()) {
     try {
       read(text, options);
@@ -76,7 +76,7 @@ TEST_F(Dump, ColumnsAndIdsInAnyOrder) {
   const auto& f = t.frames();
   EXPECT_EQ(f[0].position[0], Vec3(5, 0, 4));  // id 3
   EXPECT_EQ(f[0].velocity[0], Vec3(0.125, 0, 0.75));
-  EXPECT_EQ(f[0].spin[0], Vec3(0, 1, 0));  // counter-clockwise in (x, y) is about -y of ours
+  EXPECT_EQ(f[0].spin[0], Vec3(0, 1, 0));  // counter-clockwise in (x, y) is about -y in Twincell's axes
   EXPECT_EQ(f[0].position[1], Vec3(1, 0, 2));
   EXPECT_EQ(f[1].position[0], Vec3(1, 0, 2));
   EXPECT_DOUBLE_EQ(f[1].time, 0.5);
@@ -95,7 +95,7 @@ TEST_F(Dump, BeadsMayBeMissing) {
   EXPECT_TRUE(std::isnan(t.frames()[0].position[0].x()));
 }
 
-// A bead that goes right at 3 a frame in a period of 8, in every way of saying so.
+// A bead that moves right by 3 a frame in a period of 8, in every notation of its position.
 TEST_F(Dump, AllWaysToSayWhereABeadIs) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> ways = {
       {"id xu y", {"1 6 1", "1 9 1", "1 12 1"}},
@@ -134,7 +134,7 @@ TEST_F(Dump, ThreeDimensionsKeepTheirAxes) {
   EXPECT_EQ(t.info().box.upper, Vec3(7, 12, 1));
 }
 
-// 2 mm beads in metres and seconds, 50 Hz, 4 frames a cycle, a wall that wiggles from step 0 on.
+// 2 mm beads in metres and seconds, 50 Hz, 4 frames a cycle, a wall that oscillates from step 0 on.
 TEST_F(Dump, LaboratoryUnitsAndPhases) {
   LammpsDumpOptions options;
   options.timestep = 1e-5;
@@ -247,7 +247,8 @@ TEST_F(Dump, OptionsThatDoNotFitAreRefused) {
             "options: --origin: the origin is above or to the right of the dump's box.");
 }
 
-// Bytes changed, taken out and doubled anywhere: refused with a line, or read as numbers that are some.
+// Bytes changed, removed and duplicated anywhere: the dump is refused with a line number or read as finite
+// numbers.
 TEST_F(Dump, DamagedOnesNeitherCrashNorPass) {
   std::string good;
   for (long k = 0; k < 4; ++k)

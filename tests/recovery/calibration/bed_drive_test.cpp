@@ -1,5 +1,5 @@
-// The drive's amplitude from beds whose plate nobody sees: simulated beds of many kinds, their beads seen as
-// a camera sees them.
+// Drive amplitude from beds whose plate is not visible. The beds are simulated, of many kinds, and their
+// beads are observed as a camera observes them.
 
 #include "calibration/drive/bed_drive.hpp"
 
@@ -16,7 +16,8 @@
 namespace twincell {
 namespace {
 
-/// A run as a camera sees it: positions that are uncertain by a fiftieth of a bead, nothing below `lowest`.
+/// Camera view of a run: positions have an uncertainty of a fiftieth of a bead, and nothing below `lowest` is
+/// visible.
 MemoryTrajectory seen(const TrajectorySource& run, double lowest, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> noise(0, 0.02);
@@ -63,8 +64,8 @@ std::string bed(double gamma, int seed, const std::string& kind, int layers) {
          "\n[time]\nphases = 20\ncycles = 8\ndiscard = 2\nsteps_per_contact = 12\nintegrator = \"split\"\n";
 }
 
-/// Largest difference from the true amplitude, as a share of it, over beds of two heights, some seeds and
-/// three statements of the drive; 2 where the bed did not show it.
+/// Largest relative difference from the true amplitude, over beds of two heights, several seeds and three
+/// statements of the drive. It is 2 if the bed does not determine the amplitude.
 double worst(double gamma) {
   double largest = 0;
   for (const int layers : {4, 10})
@@ -109,7 +110,8 @@ TEST(BedDrive, IsNotShownByBedsThatFlyTooLongOrAreNone) {
 }
 
 TEST(BedDrive, OfARigidBedIsExactAndItsErrorHonest) {
-  // A bed in closed form and noise of 0.02 sigma: five standard errors hold the difference, and are small.
+  // The bed has a closed form and noise of 0.02 sigma. The errors must be small, and the differences must
+  // agree with them.
   double squares = 0, n = 0;
   for (const double gamma : {0.7, 1.3, 1.6})
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -120,7 +122,7 @@ TEST(BedDrive, OfARigidBedIsExactAndItsErrorHonest) {
       squares += std::pow((d.amplitude - gamma) / d.amplitude_error, 2);
       ++n;
     }
-  // Of Student's t with 8 degrees of freedom: 8/6.
+  // Mean square of Student's t with 8 degrees of freedom: 8/6.
   test::validate({"V6.3", "mean square of (A - truth)/error, rigid beds", 8.0 / 6, 0.6, "Student's t"},
                  squares / n);
 }

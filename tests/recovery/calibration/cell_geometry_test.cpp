@@ -1,4 +1,5 @@
-// Walls, plate, turn and bend from frames of a synthetic camera, and from edges made by hand.
+// Walls, plate, rotation and distortion from frames of the synthetic camera, and from edges constructed by
+// hand.
 #include "calibration/camera/cell_geometry.hpp"
 
 #include <gtest/gtest.h>
@@ -34,8 +35,8 @@ Found look_at(const MemoryTrajectory& bed, const CameraOptions& camera) {
   return found;
 }
 
-/// Edges of a cell 300 px wide without any picture: lines, noise, beads in front of them. A bead hides the
-/// narrow end of its own gap too, so that what is seen instead of the edge lies 3 px or more further inside.
+/// Edges of a cell 300 px wide, without an image: lines, noise, and beads in front of them. A bead also hides
+/// the narrow end of its own gap, so the point seen in place of the edge is 3 px or more further inside.
 StackEdges edges_by_hand(std::mt19937_64& generator, double tilt_left, double tilt_right, double rotation_deg,
                          double hidden) {
   std::normal_distribution<double> noise(0, 0.05);
@@ -57,7 +58,7 @@ StackEdges edges_by_hand(std::mt19937_64& generator, double tilt_left, double ti
       right.push_back(
           {{r.x_px + noise(generator) - (behind ? 3 + 12 * uniform(generator) : 0), std::round(r.y_px)},
            0.05});
-      // The row was rounded: put the point back onto the line.
+      // The row was rounded, so the point is moved back onto the line.
       left.back().at.x_px -= (l.y_px - std::round(l.y_px)) * std::tan((tilt_left + rotation_deg) * kDegree);
       right.back().at.x_px += (r.y_px - std::round(r.y_px)) * std::tan((tilt_right - rotation_deg) * kDegree);
     }
@@ -134,8 +135,8 @@ TEST(CellGeometry, TurnBendTiltAndUnevenLightComeBackTogether) {
 }
 
 TEST(CellGeometry, FilmedCellsOfManyKindsComeBack) {
-  // What the model of light and blur leaves (kEdgeModelError_px) enters the errors; here is where it was
-  // measured.
+  // The stated errors include the residual error of the model of light and blur (kEdgeModelError_px). This
+  // test is where that value was measured.
   std::mt19937_64 generator(77);
   const auto within = [&](double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(generator);
@@ -274,7 +275,8 @@ TEST(SizeStatistics, SizesAndSpacingComeBack) {
 }
 
 TEST(SizeStatistics, TheDistanceOfTouchingBeadsIsFoundAmongThoseThatNearlyTouch) {
-  // Pairs of beads far from all others: every third touches, the others are up to 0.4 px apart; 200 seeds.
+  // Pairs of beads far from all others: every third pair touches, the others have gaps of up to 0.4 px; 200
+  // seeds.
   std::mt19937_64 generator(19);
   std::normal_distribution<double> normal(0, 1);
   std::uniform_real_distribution<double> gap(0, 0.4);
@@ -307,7 +309,7 @@ TEST(SizeStatistics, TheDistanceOfTouchingBeadsIsFoundAmongThoseThatNearlyTouch)
 }
 
 TEST(SizeStatistics, ACameraThatLooksAskewShowsInTheSizes) {
-  // Beads grow by 1 % over 300 px downwards and not at all across; 200 seeds.
+  // Beads grow by 1 % over 300 px downwards and not at all in the horizontal direction; 200 seeds.
   std::mt19937_64 generator(14);
   std::normal_distribution<double> normal(0, 1);
   int covered_x = 0, covered_y = 0;
@@ -397,7 +399,7 @@ TEST(Target, CornersOfADrawnBoardAreFound) {
       if ((r + c) % 2 == 0) board(cv::Rect(20 + 36 * c, 20 + 36 * r, 36, 36)) = 0;
   const auto points = find_target(board, {.kind = "chessboard", .columns = 9, .rows = 6});
   ASSERT_EQ(points.size(), 54U);
-  // The first inner corner lies between pixels 55 and 56.
+  // The first inner corner is between pixels 55 and 56.
   EXPECT_NEAR(std::min(points.front().x_px, points.back().x_px), 55.5, 0.1);
   EXPECT_NEAR(std::max(points.front().y_px, points.back().y_px), 19.5 + 36 * 6, 0.1);
   EXPECT_TRUE(find_target(cv::Mat1b(300, 400, static_cast<unsigned char>(255)), {}).empty());

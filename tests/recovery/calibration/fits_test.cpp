@@ -1,5 +1,5 @@
-// Laws fitted to data whose truth is known: exact data to the last digits, noisy data with the coverage that
-// the errors promise, and data that cannot answer.
+// Laws fitted to data with known parameters: exact data are recovered to the last digits, noisy data with the
+// stated coverage, and data that do not determine a parameter are reported as such.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using namespace twincell;
 
 namespace {
 
-/// The grid of Bhateja et al. 2016 from W_f on: 800 to 4000 rpm with A = d = 5 mm.
+/// The grid of Bhateja et al. 2016 from W_f upwards: 800 to 4000 rpm with A = d = 5 mm.
 std::vector<double> paper_grid() {
   std::vector<double> w;
   for (int rpm = 800; rpm <= 4000; rpm += 100) w.push_back(5.5891 * rpm * rpm * 1e-6);
@@ -86,8 +86,8 @@ TEST(Fits, TableThreeOfPaperTwo) {
   }
 }
 
-// Paper 2's argument: algebraic data fitted with an exponential leave residuals in systematic order, not the
-// other way round.
+// The argument of paper 2: an exponential fitted to algebraic data leaves residuals in systematic order, and
+// the reverse does not occur.
 TEST(Fits, TheRunsTestTellsTheWrongDecayFromTheRightOne) {
   std::mt19937_64 generator(3);
   std::normal_distribution<double> noise(0, 0.001);
@@ -99,11 +99,11 @@ TEST(Fits, TheRunsTestTellsTheWrongDecayFromTheRightOne) {
   EXPECT_LT(wrong.runs.p, 1e-4);
   EXPECT_TRUE(noted(wrong, "not in random order"));
   EXPECT_FALSE(noted(right, "not in random order"));
-  EXPECT_GT(wrong.correlation, 0.98);  // and yet the correlation looks fine
+  EXPECT_GT(wrong.correlation, 0.98);  // the correlation alone does not reveal it
 }
 
 TEST(Fits, RunsAgainstCountingAllOrders) {
-  // 5 above, 4 below: every order of signs counted.
+  // 5 residuals above, 4 below: all orders of the signs are enumerated.
   std::vector<double> signs = {-1, -1, -1, -1, 1, 1, 1, 1, 1};
   std::vector<double> at_runs(10, 0);
   double all = 0;
@@ -112,11 +112,11 @@ TEST(Fits, RunsAgainstCountingAllOrders) {
     all += 1;
   } while (std::next_permutation(signs.begin(), signs.end()));
   for (std::size_t r = 2; r <= 9; ++r) {
-    std::vector<double> order;  // some order with r runs
+    std::vector<double> order;  // one order with r runs
     std::size_t above = 5, below = 4;
     for (std::size_t k = 0; k < r; ++k) {
       std::size_t& left = k % 2 == 0 ? above : below;
-      const std::size_t later = (r - k - 1) / 2;  // runs of this sign still to come
+      const std::size_t later = (r - k - 1) / 2;  // runs of this sign that follow
       const std::size_t take = later == 0 ? left : 1;
       for (std::size_t i = 0; i < take; ++i) order.push_back(k % 2 == 0 ? 1 : -1);
       left -= take;
@@ -143,7 +143,7 @@ TEST(Fits, BreakPoints) {
   test::validate({"V5.11", "slope above", 1.5, 1e-6, "closed form"}, exact.fit.value("s_2"));
   EXPECT_LT(exact.p_nested, 1e-6);
 
-  // Barriers 130 below K_m = 12, 7 above: regions A2 and B of Fig. 5(b).
+  // Energy barriers: 130 below K_m = 12.3 and 7 above: regions A2 and B of Fig. 5(b).
   std::vector<double> k_m;
   for (int i = 0; i < 14; ++i) k_m.push_back(8 + i);
   const CurveFit barriers = fit_curve(law_named("arrhenius_break"), table_of(k_m, [](double k) {
@@ -154,7 +154,7 @@ TEST(Fits, BreakPoints) {
   test::validate({"V5.11", "two barriers: K_m of the break", 12.3, 1e-6, "closed form"},
                  barriers.fit.value("x_b"));
 
-  // No bend: the break is named undetermined, the line stays.
+  // Without a bend, the break is reported as undetermined and the line remains.
   std::mt19937_64 generator(4);
   std::normal_distribution<double> noise(0, 0.05);
   const CurveFit none =

@@ -1,5 +1,5 @@
-// NIST StRD nonlinear regression: data with certified parameters and standard deviations (11 digits), through
-// the same solver as every fit. https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml
+// NIST StRD nonlinear regression: data with certified parameters and standard deviations (11 digits), solved
+// by the solver that every fit uses. https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ struct Problem {
   double squares;
 };
 
-/// Digits that agree, -log10 of the relative error, at most the 11 that are certified.
+/// Number of correct digits, -log10 of the relative error, at most the 11 certified digits.
 double digits(double value, double certified) {
   const double error = std::abs(value - certified) / std::abs(certified);
   return error <= 1e-11 ? 11 : -std::log10(error);
@@ -114,8 +114,8 @@ TEST(Nist, Misra1a) {
        1.2455138894E-01});
 }
 
-// From NIST's other start, (1, 1), the first step leads to b2 < 0, where no step leads back: the reason why
-// our laws bring starts of their own.
+// From NIST's other start, (1, 1), the first step leads to b2 < 0, from which no step returns. This is why
+// the laws of the program supply their own starts.
 TEST(Nist, BoxBod) {
   expect_certified<Saturation>({"BoxBOD (NIST's second)",
                                 {1, 2, 3, 5, 7, 10},

@@ -1,5 +1,6 @@
-// The drive from heights whose truth is known: bias and rms apart, coverage of the stated intervals, and what
-// goes wrong in a laboratory: outliers, missing and doubled frames, jitter, a shaker that is no sine.
+// The drive from heights with known parameters: bias and rms separately, coverage of the stated intervals,
+// and laboratory faults: outliers, missing and duplicated frames, jitter, and a shaker whose motion is not a
+// sine.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,8 +22,8 @@ constexpr double kPi = std::numbers::pi;
 struct Shaker {
   double z0 = 3, amplitude = 12, period = 20, phi = 0.7;
   double noise = 0.05, jitter = 0, second = 0;
-  double outliers = 0;  ///< share, up to 40 px upwards: beads taken for the plate
-  double missing = 0;   ///< share
+  double outliers = 0;  ///< fraction, up to 40 px upwards: beads mistaken for the plate
+  double missing = 0;   ///< fraction
   int frames = 200;
 };
 
@@ -44,7 +45,7 @@ double cycles_apart(double a, double b) {
   return std::remainder(a - b, 2 * kPi);
 }
 
-/// Bias, rms and coverage of A, omega, phi over seeds, without a trigger and without a known period.
+/// Bias, rms and coverage of A, omega and phi over many seeds, without a trigger and without a known period.
 void recover(const char* what, const Shaker& truth, int trials) {
   std::mt19937_64 generator(20);
   struct Number {
@@ -99,7 +100,7 @@ TEST(DriveFit, ExactHeightsGiveTheDriveBack) {
 
 TEST(DriveFit, PhasesAreThoseOfTheCell) {
   std::mt19937_64 generator(2);
-  // Frame 0 shows phase 3 and is a quarter of a frame late.
+  // Frame 0 is at phase 3 and a quarter of a frame late.
   const DriveFit l = fit_drive(heights_of({.phi = 2 * kPi * 3.25 / 20}, generator));
   EXPECT_EQ(l.frames_per_cycle, 20);
   EXPECT_EQ(l.first_phase, 3);
@@ -148,7 +149,7 @@ TEST(DriveFit, DroppedAndDoubledFramesAreFoundAndMended) {
   std::mt19937_64 generator(5);
   std::vector<double> h = heights_of({.frames = 300}, generator);
   h.erase(h.begin() + 100);           // dropped
-  h.insert(h.begin() + 200, h[199]);  // doubled
+  h.insert(h.begin() + 200, h[199]);  // duplicated
   const DriveFit l = fit_drive(h);
   EXPECT_EQ(l.dropped, 1);
   EXPECT_EQ(l.doubled, 1);
@@ -174,7 +175,7 @@ TEST(DriveFit, WhatCannotBeLocked) {
   EXPECT_THROW(fit_drive(std::vector<double>(50, std::nan(""))), InputError);
   std::mt19937_64 generator(7);
   EXPECT_THROW(fit_drive(heights_of({.amplitude = 0}, generator)), InputError);
-  // Four phases a cycle say nothing of a second harmonic.
+  // Four phases per cycle do not determine a second harmonic.
   const DriveFit coarse = fit_drive(heights_of({.period = 4}, generator));
   EXPECT_NEAR(coarse.amplitude, 12, 5 * coarse.amplitude_error);
   EXPECT_FALSE(coarse.second_harmonic.has_value());

@@ -1,5 +1,4 @@
-// Fits of data whose truth is known: exact data to 1e-10, noisy data with the coverage that the errors
-// promise.
+// Fits of data with known parameters: exact data to 1e-10, noisy data with the stated coverage.
 #include "calibration/drive/plate_motion.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +71,7 @@ TEST(PlateMotion, WhatCannotBeFitted) {
   const PlateMotion m = fit_plate_motion(samples, 1);
   EXPECT_EQ(m.n_left_out, 1U);
   EXPECT_NEAR(m.amplitude, 1, 1e-10);
-  // Sampled once per period, offset and phase are one number.
+  // With one sample per period, offset and phase cannot be separated.
   std::vector<HeightSample> strobe;
   for (int i = 0; i < 20; ++i) strobe.push_back({2 * kPi * i, 0.5});
   const PlateMotion blind = fit_plate_motion(strobe, 1);

@@ -1,4 +1,4 @@
-// What calibrate says of frames nobody on this project made: sizes and counts that others published.
+// Calibration of frames from outside the project, against published sizes and counts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,11 +26,12 @@ SizeStatistics census_of(const std::filesystem::path& stack) {
 }  // namespace
 
 TEST(RealBeads, SizesAreThoseOfTheirTruthAndWhatIsNoWallIsNone) {
-  // Glass beads in a flume (Lafaye de Micheaux et al., Machine Vision and Applications 29 (2018) 735),
-  // halved.
+  // Glass beads in a flume (Lafaye de Micheaux et al., Machine Vision and Applications 29 (2018) 735), at
+  // half resolution.
   const auto folder = kImages / "bedload_left_half";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << kNotThere;
-  // Radii of the black beads whose truth is surest, from another fit that is good to 0.05 px.
+  // Radii of the black beads with the most certain reference values, from a separate fit that is accurate to
+  // 0.05 px.
   double sum = 0, squares = 0, n = 0;
   for (const auto& frame : read_truth(folder))
     for (const TruthBead& bead : frame)
@@ -41,7 +42,7 @@ TEST(RealBeads, SizesAreThoseOfTheirTruthAndWhatIsNoWallIsNone) {
             << "; spread " << c.spread.value << " +- " << c.spread.error << ", truth " << spread << "\n";
   EXPECT_NEAR(c.diameter.value, mean, 0.1);
   EXPECT_NEAR(c.spread.value, spread, 3 * c.spread.error);
-  // The flume is wider than the picture: rims of cut beads at the border are no side walls.
+  // The flume is wider than the image: the rims of beads cut by the border are not side walls.
   const auto frames = open_frames(folder);
   const CellGeometry g = fit_cell_geometry(read_stack_edges(*frames, false, mean, 1));
   EXPECT_FALSE(g.has_left || g.has_right);
@@ -52,6 +53,6 @@ TEST(RealBeads, AllPucksAreCounted) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << kNotThere;
   const SizeStatistics c = census_of(folder);
   std::cout << c.count.value << " pucks of " << c.diameter.value << " +- " << c.diameter.error << " px\n";
-  EXPECT_EQ(c.count.value, 22);            // as the film is called
+  EXPECT_EQ(c.count.value, 22);            // the count in the name of the film
   EXPECT_NEAR(c.diameter.value, 45, 1.5);  // "about 45 px"
 }

@@ -1,4 +1,5 @@
-// The synthetic camera against closed forms: what it draws must be true, for the locators are measured on it.
+// The synthetic camera against closed forms. Its images must be exact, because the locators are measured on
+// them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ namespace {
 
 constexpr double kPixelVariance = 1.0 / 12;
 
-/// A square cell without walls, plate below the picture.
+/// A square cell without walls; the plate is below the image.
 TrajectoryInfo empty_cell(double side, std::size_t beads = 1) {
   TrajectoryInfo info;
   info.n_beads = beads;
@@ -52,7 +53,7 @@ CameraOptions plain() {
   return o;
 }
 
-/// Frames held in memory.
+/// Frames in memory.
 class Held : public FrameSource {
  public:
   explicit Held(std::vector<cv::Mat> frames) : frames_(std::move(frames)) {}
@@ -69,7 +70,7 @@ class Held : public FrameSource {
   std::size_t next_ = 0;
 };
 
-/// Moments of the darkness of a picture.
+/// Moments of the darkness of an image.
 struct Moments {
   double mass = 0, x = 0, y = 0, xx = 0, yy = 0;
 };
@@ -121,9 +122,9 @@ MemoryTrajectory flight(bool velocities, int frames = 40, double step = 0.1) {
 
 }  // namespace
 
-// Mass pi R^2, centre c, variance per axis R^2/4 + s^2 + 1/12: a disc convolved with anything of unit mass.
-// The sum over pixels gives the mass exactly; the centre and the width only as far as the blur hides the
-// grid, by exp(-2 (pi s)^2).
+// Mass pi R^2, centre c, variance per axis R^2/4 + s^2 + 1/12: a disc convolved with any kernel of unit mass.
+// The sum over pixels gives the mass exactly. The centre and the width are exact only to the extent that the
+// blur hides the grid, up to exp(-2 (pi s)^2).
 TEST(Camera, MassCentreAndWidthOfADiscAreExact) {
   std::mt19937_64 generator(1);
   std::uniform_real_distribution<double> place(3.4, 4.6);
@@ -157,7 +158,7 @@ TEST(Camera, MassCentreAndWidthOfADiscAreExact) {
   }
 }
 
-// The same disc drawn on a grid 64 times as fine, blurred and averaged over pixels by OpenCV.
+// The same disc, drawn on a grid 64 times as fine, blurred and averaged over pixels by OpenCV.
 TEST(Camera, PixelsAgreeWithABruteForcePicture) {
   constexpr int kFine = 64, kSide = 32;
   const double radius = 7.5, blur = 0.8, cx = 15.37, cy = 16.21;
@@ -227,19 +228,20 @@ TEST(Camera, LensAndItsInverse) {
           EXPECT_NEAR(back.y_px, y, 1e-9);
         }
     }
-  // The corner of the picture is half a diagonal away: it moves by k1 of that, nothing moves in the middle.
+  // The corner of the image is half a diagonal from the middle. It moves by k1 times that distance; the
+  // middle does not move.
   const Lens lens({600, 1500}, 0, 0.02);
   EXPECT_NEAR(lens.picture_from_ideal({-0.5, -0.5}).x_px, 299.5 - 1.02 * 300, 1e-9);
   EXPECT_NEAR(lens.picture_from_ideal({299.5, 749.5}).x_px, 299.5, 1e-12);
-  // Counter-clockwise to the eye: what was right of the middle is above it.
+  // Counter-clockwise as seen: a point to the right of the middle moves above it.
   const PixelPoint turned = Lens({101, 101}, 90, 0).picture_from_ideal({70, 50});
   EXPECT_NEAR(turned.x_px, 50, 1e-12);
   EXPECT_NEAR(turned.y_px, 30, 1e-12);
 }
 
-// The picture of a disc is a little off the picture of its centre: by 3 k1 R^2 v/u^2 to first order in k1,
-// with v the place from the middle and u half the diagonal (one third the mean of the map, two thirds the
-// change of area).
+// The centre of a disc's image differs slightly from the image of the disc's centre: by 3 k1 R^2 v/u^2 to
+// first order in k1, where v is the position from the middle and u is half the diagonal. One third is the
+// mean of the map, two thirds the change of area.
 TEST(Camera, UnderDistortionTheCentreOfAPictureIsOffByItsClosedForm) {
   CameraOptions o = plain();
   o.distortion = -0.02;
@@ -259,7 +261,8 @@ TEST(Camera, UnderDistortionTheCentreOfAPictureIsOffByItsClosedForm) {
   }
 }
 
-// Uniform motion over a length L adds L^2/12 to the variance along it; the centre is that of the middle.
+// Uniform motion over a length L adds L^2/12 to the variance along the motion; the centre is that of the
+// mid-exposure position.
 TEST(Camera, MotionBlurFollowsTheVelocity) {
   TrajectoryInfo info = empty_cell(8);
   info.columns.velocity = true;
@@ -280,7 +283,7 @@ TEST(Camera, MotionBlurFollowsTheVelocity) {
   }
 }
 
-// In free flight both ways of drawing a path are exact, whatever the moment between two frames.
+// In free flight both methods of path interpolation are exact at any time between two frames.
 TEST(Camera, PathsBetweenFramesAreExactInFreeFlight) {
   for (const bool velocities : {true, false}) {
     const MemoryTrajectory film = flight(velocities);
@@ -332,10 +335,10 @@ TEST(Camera, DiscsHideEachOtherInThreeDimensionsOnly) {
   const Frame frame = frame_with({Vec3(4, 0, 4), Vec3(4.5, 0.9, 4)});
   const Exposure exposure{.now = &frame};
   const Moments m = moments_of(camera.light(exposure), plain().backlight);
-  // Area of the union of two circles of radius R at distance R.
+  // Area of the union of two circles of radius R whose centres are R apart.
   const double lens = 2 * std::acos(0.5) - 0.5 * std::sqrt(3.0);
   EXPECT_NEAR(m.mass / (7.5 * 7.5), 2 * std::numbers::pi - lens, 0.03);
-  // A rim has a third of itself in the other disc: cos of half that angle is 1/2.
+  // A third of each rim is inside the other disc: the cosine of half the angle is 1/2.
   EXPECT_NEAR(camera.truth(exposure).at(0).visible, 2.0 / 3, 0.04);
 }
 
@@ -385,7 +388,8 @@ TEST(Camera, DroppedAndDoubledFramesAreKeptTrackOf) {
       EXPECT_EQ(bytes_of(folder / "a" / fmt::format("frame_{:05}.png", stored)),
                 bytes_of(folder / "a" / fmt::format("frame_{:05}.png", stored - 1)));
     }
-    // Both beads are in the picture all the time; the first one's truth is where it flies at t.
+    // Both beads are in the image throughout. The true position of the first one is that of its flight at
+    // time t.
     ASSERT_TRUE(std::getline(truth, line));
     std::stringstream first(line);
     std::vector<double> number;
@@ -452,7 +456,7 @@ TEST(Camera, OptionsFileIsReadBackAndRefusesWhatItDoesNotKnow) {
   }
 }
 
-// Beads of 2 mm: t0 = 14.2784 ms, so that 714 us are 0.05 t0.
+// Beads of 2 mm: t0 = 14.2784 ms, so 714 us are 0.05 t0.
 TEST(Camera, LaboratoryUnitsGiveTheReducedOptions) {
   const TemporaryFolder folder;
   const Scale scale{.sigma_m = 0.002, .gravity_m_s2 = 9.81, .pixels_per_sigma = {}};
@@ -498,7 +502,8 @@ TEST(Camera, PathsThatCannotBeDrawnAreRefused) {
 }
 
 TEST(CameraLike, FindsTheNoiseOfAnotherCamera) {
-  // Touching beads in the lower half, light above; in 12 bits, so that levels are another camera's.
+  // Touching beads in the lower half, light above. The images have 12 bits, so the grey levels are those of
+  // another camera.
   std::vector<Vec3> beads;
   for (int x = 0; x < 12; ++x)
     for (int z = 0; z < 6; ++z) beads.emplace_back(x + 0.5, 0, z + 0.5);
@@ -518,15 +523,15 @@ TEST(CameraLike, FindsTheNoiseOfAnotherCamera) {
     }
     Held stack(frames);
     const CameraOptions like = with_noise_of(stack, 24, false, plain());
-    // Shares of the light count: 4 levels of 150 are 5.73 of 215. Black is clipped at 0, so that the dark
-    // tells less than there is; in the light all is seen.
+    // The noise is compared as a fraction of the light: 4 levels of 150 are 5.73 of 215. Black is clipped at
+    // 0, so dark pixels show less noise than there is; bright pixels show all of it.
     const auto in_the_light = [](const CameraOptions& o) {
       return std::pow(o.read_noise / o.backlight, 2) +
              (o.electrons_per_level > 0 ? 1 / (o.electrons_per_level * o.backlight) : 0);
     };
     EXPECT_NEAR(in_the_light(like) / in_the_light(other), 1, 0.15) << read_noise << " " << electrons;
   }
-  // Noise of less than a level of an 8-bit picture.
+  // Noise below one level of an 8-bit image.
   CameraOptions quiet;
   quiet.pixels_per_sigma = 24;
   quiet.read_noise = 0.3;

@@ -1,4 +1,4 @@
-// A known motion, filmed by the synthetic camera, tracked, and compared with itself.
+// A known motion is filmed by the synthetic camera, tracked, and compared with itself.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kFramesPerCycle = 20;
 
-/// A crystal carried by the plate, and above it loose beads that fly on parabolas.
+/// A crystal that moves with the plate, and above it loose beads on parabolic trajectories.
 MemoryTrajectory known_motion() {
   TrajectoryInfo info;
   info.box.upper = Vec3(10, 0.5, 14);

@@ -1,4 +1,4 @@
-// Grime that stays where it is while the beads move: taken out by a blank frame, or by the stack itself.
+// Dirt that stays in place while the beads move: a blank frame, or the stack itself, removes it.
 
 #include "imaging/preprocess/flat_field.hpp"
 
@@ -24,7 +24,7 @@ namespace {
 constexpr int kWidth = 260, kHeight = 240;
 constexpr double kSnr = 51;
 
-/// Spots of grime that take up to three tenths of the light, some with the size of a rim's blur, and a
+/// Spots of dirt that absorb up to three tenths of the light, some as small as the blur of a rim, and a
 /// scratch.
 cv::Mat1d grime() {
   cv::Mat1d share(kHeight, kWidth, 1.0);
@@ -42,7 +42,7 @@ cv::Mat1d grime() {
   return share;
 }
 
-/// A loose layer that drifts, and beside it beads that stay.
+/// A loose layer that drifts, next to beads that stay in place.
 rendered::Picture layer(int frame) {
   rendered::Picture p;
   p.width = kWidth, p.height = kHeight;
@@ -79,8 +79,8 @@ struct Stacks {
   std::filesystem::path frames, blank;
 };
 
-/// rms distance per coordinate from the truth, px, of the beads that are whole in the frame, and how many
-/// were missed.
+/// rms distance per coordinate from the true position, px, over the beads that are entirely inside the frame,
+/// and the number of missed beads.
 struct Error {
   double rms = 0;
   int missed = 0;
@@ -127,7 +127,7 @@ TEST(FlatField, TakesOutWhatStaysWhereItIs) {
   EXPECT_LT(by_own.rms, 1.35 * bound);
   EXPECT_EQ(by_blank.missed, 0);
   EXPECT_EQ(by_own.missed, 0);
-  // Beads that stay are no grime.
+  // Beads that stay in place are not dirt.
   for (int row = 0; row < 6; ++row)
     EXPECT_EQ(own(cvRound(20.7 + 33.1 * row), cvRound(kWidth - 10.3)), 1) << row;
 }

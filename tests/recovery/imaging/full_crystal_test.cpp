@@ -1,5 +1,6 @@
-// Crystals of opaque discs that fill the frame, as a camera sees them that looks into the bed: no bare light
-// beside them, gaps as alike as the discs, votes of neighbours that meet everywhere. One frame, nothing said.
+// Crystals of opaque discs that fill the frame, as a camera sees them that looks into the bed. There is no
+// bare background, the gaps resemble the discs, and the votes of neighbouring rims meet everywhere. One
+// frame, no options.
 
 #include <gtest/gtest.h>
 
@@ -30,13 +31,14 @@ constexpr double kSnr = 51;
 
 struct Crystal {
   double diameter, turned, blur;
-  double jitter = 0;     // standard deviation of the places, diameters
+  double jitter = 0;     // standard deviation of the positions, diameters
   bool bright = false;   // light discs on black
-  double most = 5;       // of rms, bounds
-  std::size_t lost = 0;  // one of 12 px has its centre 0.005 px inside the frame
+  double most = 5;       // upper limit of rms, in units of the bound
+  std::size_t lost = 0;  // a bead of 12 px has its centre 0.005 px inside the frame
 };
 
-/// Hexagonal, neighbours in contact but for the jitter, also beyond all four sides of the frame.
+/// Hexagonal, with neighbours in contact except for the jitter; the lattice continues beyond all four sides
+/// of the frame.
 Picture picture_of(const Crystal& c) {
   Picture p;
   p.width = 300, p.height = 300;

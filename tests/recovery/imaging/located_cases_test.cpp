@@ -1,6 +1,7 @@
-// What the locator promises on the rendered cases: every bead and nothing else, errors at the Cramér-Rao
-// bound of the same picture (neighbours included), errors as large as stated, and turned pictures turned
-// results. A frame on which a promise fails is left as CASE_SNR.png in the folder TWINCELL_FAILED_FRAMES.
+// Requirements on the locator for the rendered cases: every bead and no false detection, errors at the
+// Cramér-Rao bound of the same image (neighbours included), stated errors equal to the actual ones, and
+// rotated images giving rotated results. A frame that fails a requirement is saved as CASE_SNR.png in the
+// folder TWINCELL_FAILED_FRAMES.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -35,7 +36,7 @@ const Case& case_of(const std::string& name) {
   throw std::logic_error("no case " + name);
 }
 
-/// Two frames of a case, located.
+/// Two located frames of one case.
 struct Seen {
   struct One {
     Picture picture;
@@ -52,7 +53,7 @@ const Seen& seen(const std::string& name, double snr) {
   if (found != known.end()) return found->second;
   Seen& s = known[{name, snr}];
   Marks marks;
-  const bool slow = name.starts_with("motion") || name == "all_at_once";  // to render, and to bound
+  const bool slow = name.starts_with("motion") || name == "all_at_once";  // expensive to render and to bound
   for (std::uint64_t seed = 11; seed <= (slow ? 11 : 12); ++seed) {
     const Case& c = case_of(name);
     Seen::One one{c.make(seed), {}, {}};
@@ -96,12 +97,12 @@ class LocatedCase : public testing::Test {
     EXPECT_EQ(m.found, m.beads) << name << ", SNR " << snr;
     EXPECT_EQ(m.invented, 0U) << name << ", SNR " << snr;
   }
-  /// \param least, most of rms over bound
+  /// \param least, most limits of rms divided by the bound
   void expect_near_bound(const std::string& name, double snr, double least = 0.9, double most = 1.3) {
     const Marks::Summary& m = look(name, snr).marks;
     EXPECT_GE(m.rms, least * m.bound) << name << ", SNR " << snr;
     EXPECT_LE(m.rms, most * m.bound) << name << ", SNR " << snr;
-    // Four standard errors of a mean: chance passes it once in ten thousand times.
+    // The tolerance is four standard errors of a mean; chance exceeds it once in ten thousand trials.
     const double mean = 4 * m.bound / std::sqrt(static_cast<double>(m.found));
     EXPECT_LE(std::abs(m.bias_x), mean + 0.1 * m.bound) << name << ", SNR " << snr;
     EXPECT_LE(std::abs(m.bias_y), mean + 0.1 * m.bound) << name << ", SNR " << snr;
@@ -121,8 +122,8 @@ TEST_F(LocatedCase, ErrorsAreAtTheBound) {
     for (const double snr : {164.0, 51.0, 18.5, 8.5}) expect_near_bound(name, snr);
 }
 
-// One sweep for all beads together, on every other row: the bound of half the pixels is 1.41 times that of
-// all. In a crystal edges that lie a tenth of a pixel off are not yet straight lines in place and blur.
+// One sweep for all beads together uses every other row. The bound of half the pixels is 1.41 times that of
+// all. In a crystal, edges displaced by a tenth of a pixel do not yet respond linearly to position and blur.
 TEST_F(LocatedCase, OneSweepComesNear) {
   const std::map<std::string, double> most = {{"sparse", 1.7}, {"hexagonal", 3.5}, {"random", 2.2}};
   for (const auto& [name, ratio] : most) {
@@ -144,7 +145,7 @@ TEST_F(LocatedCase, OneSweepComesNear) {
   }
 }
 
-// Of all beads together, a step from the votes' places and one from there reach the bound.
+// Two sweeps over all beads together, the first starting from the voted positions, reach the bound.
 TEST_F(LocatedCase, TwoSweepsDo) {
   for (const char* name : {"sparse", "hexagonal", "random"})
     for (const double snr : {164.0, 51.0, 18.5}) {
@@ -155,8 +156,8 @@ TEST_F(LocatedCase, TwoSweepsDo) {
     }
 }
 
-// Without locking the first harmonic is rms sqrt(pi/n) in the mean, of a Rayleigh distribution; three times
-// that happens once in a thousand times.
+// Without pixel locking the first harmonic follows a Rayleigh distribution with a mean of rms sqrt(pi/n).
+// Three times that value occurs once in a thousand trials.
 TEST_F(LocatedCase, NoLockingToPixels) {
   for (const char* name : {"sparse", "random"}) {
     const Marks::Summary& m = look(name, 51).marks;
@@ -189,14 +190,14 @@ TEST_F(LocatedCase, SizesEdgesLightAndPixels) {
     expect_complete(name, 51);
     expect_near_bound(name, 51);
   }
-  // Light that is no quadratic; six pixels a bead.
+  // Illumination that is not quadratic, and beads of six pixels.
   for (const char* name : {"uneven", "beads_6px"}) {
     expect_complete(name, 51);
     expect_near_bound(name, 51, 0.85, 1.1);
   }
 }
 
-// Each size with its own radius and its own scatter of it.
+// Each size class has its own radius and its own scatter of the radius.
 TEST_F(LocatedCase, TwoSizes) {
   for (const char* name : {"two_sizes", "two_sizes_apart"}) {
     expect_complete(name, 51);
@@ -204,7 +205,7 @@ TEST_F(LocatedCase, TwoSizes) {
   }
 }
 
-// Those beside others that show a sliver, or only their blur, too.
+// This includes beads next to others of which only a sliver, or only the blur, is visible.
 TEST_F(LocatedCase, BeadsCutByTheFrameAreAtTheBound) {
   expect_complete("edge", 51);
   expect_near_bound("edge", 51, 0.9, 1.1);
@@ -222,7 +223,8 @@ TEST_F(LocatedCase, DefocusGlareTracersAndMotion) {
   }
 }
 
-// How far the bed moved during the exposure is found with it; where it rested, nothing is.
+// The displacement of the bed during the exposure is found with the positions. For a bed at rest the
+// displacement is zero.
 TEST_F(LocatedCase, TheWayOfTheBed) {
   const Seen::One& one = look("motion_3px", 51).frames[0];
   const rendered::Disc& any = one.picture.discs[0];
@@ -238,7 +240,7 @@ TEST_F(LocatedCase, TheWayOfTheBed) {
 TEST_F(LocatedCase, EverythingAtOnce) {
   const Seen& s = look("all_at_once", 51);
   EXPECT_EQ(s.marks.invented, 0U);
-  // A centre within a third of a pixel of the frame's border may be called outside.
+  // A centre within a third of a pixel of the frame's border may be classified as outside.
   std::size_t on_border = 0;
   for (const rendered::Disc& d : s.frames[0].picture.discs) {
     const double in =
@@ -263,7 +265,7 @@ TEST_F(LocatedCase, BeadsCutByTheFrameAreFlagged) {
   for (const Seen::One& one : look("edge", 51).frames) {
     int cut = 0;
     for (const Detection& b : one.located.beads) {
-      // A twentieth of a pixel from the line either answer will do.
+      // Within a twentieth of a pixel of the line, either answer is accepted.
       const double inside =
           std::min({b.x - 7.5, b.y - 7.5, one.frame.cols - 1 - b.x - 7.5, one.frame.rows - 1 - b.y - 7.5}) +
           0.5;
@@ -306,7 +308,7 @@ void expect_turned_results(const cv::Mat1b& frame, const Case& c) {
     std::array<double, 2> path = as_is.path_px;
     if ((way & 1) != ((way >> 1) & 1)) path[1] = -path[1];
     if ((way & 4) != 0) std::swap(path[0], path[1]);
-    // Either sense is the same way.
+    // A displacement and its reverse describe the same motion blur.
     const double sense = path[0] < 0 ? -1 : 1;
     for (std::size_t q = 0; q < 2; ++q) worst = std::max(worst, std::abs(sense * path[q] - other.path_px[q]));
     EXPECT_LE(worst, 1e-9) << "way " << way;

@@ -1,5 +1,5 @@
-// Beads back from frames of the synthetic camera, beside the Cramer-Rao bound of 0.36/SNR px per coordinate
-// (15 px disc, blur 0.8 px). Recall, precision, bias and scatter are asserted apart.
+// Beads located in frames of the synthetic camera, compared with the Cramer-Rao bound of 0.36/SNR px per
+// coordinate (15 px disc, blur 0.8 px). Recall, precision, bias and scatter are asserted separately.
 #include "imaging/locate/locator.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ constexpr double kSide = 22;  // sigma
 
 using Packing = std::vector<Vec3>;
 
-// On a grid of 2 sigma, each moved at random by less than half a sigma.
+// On a grid of 2 sigma, each bead displaced at random by less than half a sigma.
 Packing sparse() {
   std::mt19937_64 generator(1);
   std::uniform_real_distribution<double> move(-0.4, 0.4);
@@ -38,7 +38,7 @@ Packing hexagonal() {
   return beads;
 }
 
-// Random places pushed apart until nearly nobody overlaps, then blown up until nobody does.
+// Random positions are pushed apart until almost no beads overlap, then scaled up until none do.
 Packing random_touching() {
   std::mt19937_64 generator(2);
   std::uniform_real_distribution<double> place(0, 14);

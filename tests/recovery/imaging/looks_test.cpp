@@ -1,7 +1,7 @@
-// Discs that are not plain, and plain ones on a ground that is not even, as someone who knows no option meets
-// them: one frame, nothing said. Every disc and nothing else, at its rim's size. Errors are held from below
-// and above by the Cramér-Rao bound of one such disc alone, all its edges together (neighbours in contact
-// change it by a few per cent).
+// Discs that are not uniform, and uniform discs on an uneven background, located without any option from one
+// frame. Every disc is found, there are no false detections, and the sizes are those of the rims. Errors are
+// bounded from below and above by the Cramér-Rao bound of one such disc alone, all its edges together
+// (neighbours in contact change the bound by a few per cent).
 
 #include <gtest/gtest.h>
 
@@ -35,15 +35,15 @@ using rendered::Picture;
 constexpr double kSnr = 51;
 constexpr std::array kDiameters = {12.0, 15.0, 32.0};
 
-/// By how much the found diameter may be wrong, px: the blur shifts the rims of small discs more.
+/// Permitted error of the diameter, px: the blur shifts the rims of small discs more.
 double tolerance(double diameter) {
   return diameter < 15 ? 1 : 0.06 * diameter;
 }
 
-/// A disc as concentric plain ones on top of each other.
+/// One uniform disc of the concentric stack that makes up a bead.
 struct Layer {
-  double share;     // of the radius
-  double contrast;  // that it adds
+  double share;     // fraction of the radius
+  double contrast;  // that this layer adds
 };
 
 enum class Ground { even, dots, cloth };
@@ -51,9 +51,9 @@ enum class Ground { even, dots, cloth };
 struct Look {
   std::string name;
   std::vector<Layer> layers;
-  double light;  // grey levels of the ground
+  double light;  // grey levels of the background
   Ground ground = Ground::even;
-  double most = 2.2;  // of rms, bounds
+  double most = 2.2;  // upper limit of rms, in units of the bound
 };
 
 void PrintTo(const Look& look, std::ostream* out) {
@@ -71,7 +71,7 @@ const std::vector<Look> kLooks = {
     {"on_cloth", {{1, 0.95}}, 190, Ground::cloth, 30},  // black, on cloth, unevenly lit
 };
 
-/// Share of the light that the ground lets through.
+/// Transmission of the background, as a fraction of the light.
 cv::Mat1d ground_of(const Look& look, cv::Size size, double diameter) {
   cv::Mat1d ground(size, 1.0);
   if (look.ground == Ground::dots) {
@@ -113,7 +113,7 @@ void put(Picture& p, const Look& look, double x, double y, double radius) {
   }
 }
 
-/// Variance as `expose` makes it, and that of rounding.
+/// Variance of the noise that `expose` adds, plus that of rounding.
 double variance(double level, const Picture& p) {
   const double sigma = p.light / kSnr;
   return sigma * sigma *
@@ -122,7 +122,7 @@ double variance(double level, const Picture& p) {
          1.0 / 12;
 }
 
-/// By symmetry radius and contrast tell nothing of the place: 1/sqrt(sum (dI/dx)^2/V).
+/// By symmetry, radius and contrast do not affect the bound on position: 1/sqrt(sum (dI/dx)^2/V).
 double bound_of(const Look& look, double diameter) {
   constexpr double kStep = 0.01;
   const int side = static_cast<int>(2 * diameter);
@@ -198,7 +198,7 @@ class Looks : public testing::TestWithParam<Look> {
   }
 };
 
-// A square frame was once transposed in place: the second location saw its mirror image.
+// A square frame was once transposed in place, so the second location saw its mirror image.
 TEST(SquareFrame, StaysAsItIs) {
   cv::Mat1b frame(64, 64, uchar{200});
   for (int y = 20; y < 35; ++y)
@@ -222,8 +222,8 @@ TEST_P(Looks, TouchingAreFoundUnasked) {
   for (const double diameter : kDiameters) see("touching", diameter);
 }
 
-// Six small gaps are all that lies between a disc and its neighbours: votes alone are too few, or meet a
-// pixel or two from the centre.
+// Only six small gaps separate a disc from its neighbours: votes alone are too few, or meet a pixel or two
+// from the centre.
 TEST_P(Looks, CrystalsAreFoundUnasked) {
   for (const double diameter : kDiameters) see("crystal", diameter);
 }

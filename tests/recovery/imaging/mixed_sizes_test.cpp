@@ -1,5 +1,5 @@
-// Packings of several sizes, located as a first-time user does: nothing is said of them. Sizes, beads, and
-// errors against the Cramér-Rao bound of the same picture.
+// Packings of several sizes, located as a first-time user does, without options. Sizes, beads and errors are
+// checked against the truth and the Cramér-Rao bound of the same image.
 
 #include <gtest/gtest.h>
 
@@ -34,8 +34,7 @@ std::ostream& operator<<(std::ostream& out, const Mixture& m) {
   return out << m.name;
 }
 
-/// Two thirds of a square frame of 30 mean diameters filled by touching discs; or a third of it by discs
-/// apart.
+/// A square frame of 30 mean diameters, two thirds filled by touching discs, or one third by separate discs.
 Picture picture_of(const Mixture& m, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> even(0, 1);
@@ -126,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-// Where one size does, no second one is seen.
+// A packing of one size is not reported as two sizes.
 TEST(OneSize, StaysOne) {
   for (const Mixture& m : {Mixture{"15 px", {15}, {1}}, Mixture{"15 px within 10 %", {15}, {1}, 0.8, 51, 0.1},
                            Mixture{"15 px, blur 2 px", {15}, {1}, 2}, Mixture{"8 px", {8}, {1}}}) {
@@ -137,7 +136,7 @@ TEST(OneSize, StaysOne) {
   }
 }
 
-// Sizes spread evenly by a quarter: no two sizes at all, but two describe them.
+// Sizes spread evenly by a quarter are not two sizes, but two sizes describe them.
 TEST(OneSize, SpreadWideIsLocatedAsTwo) {
   const Seen seen = look({"15 px within 25 %", {15}, {1}, 0.8, 51, 0.25});
   EXPECT_EQ(seen.marks.found, seen.marks.beads);

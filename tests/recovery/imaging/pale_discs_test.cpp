@@ -1,5 +1,5 @@
-// Discs that take away a tenth to a third of the light: what is found without options, and at given size and
-// polarity, against the truth and the Cramér-Rao bound of the same picture.
+// Discs that absorb a tenth to a third of the light, located without options, and at given size and polarity,
+// against the truth and the Cramér-Rao bound of the same image.
 
 #include <gtest/gtest.h>
 

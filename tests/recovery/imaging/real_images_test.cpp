@@ -1,6 +1,6 @@
-// Frames nobody on this project made, with published truth: back-lit opaque beads in a narrow flume
-// (Lafaye de Micheaux, Ducottet, Frey, Machine Vision and Applications 29 (2018) 735), halved to 14 px beads.
-// The truth is good to 0.05 px.
+// Frames from outside the project with published reference positions: back-lit opaque beads in a narrow flume
+// (Lafaye de Micheaux, Ducottet, Frey, Machine Vision and Applications 29 (2018) 735), reduced by half to
+// beads of 14 px. The reference is accurate to 0.05 px.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ TEST(RealImages, BedloadIsFoundLinkedAndRepeats) {
   const auto frames = open_frames(folder);
   const TrackedStack stack = track_stack(*frames, locator, {}, {}, 1);
   ASSERT_EQ(stack.frames.size(), truth.size());
-  const ScoredRows rows{30, 147.5};  // between the water line and the glued base
+  const ScoredRows rows{30, 147.5};  // between the water surface and the glued base
   Scorer scorer(rows);
   std::map<std::int64_t, TrackedBead> before;
   double squares = 0;
@@ -41,8 +41,8 @@ TEST(RealImages, BedloadIsFoundLinkedAndRepeats) {
       const auto old = before.find(b.track);
       if (old == before.end()) continue;
       const double dx = b.x_px - old->second.x_px, dy = b.y_px - old->second.y_px;
-      if (std::hypot(dx, dy) > 0.15) continue;  // it moves
-      squares += (dx * dx + dy * dy) / 4;       // a difference has twice the variance of a place
+      if (std::hypot(dx, dy) > 0.15) continue;  // the bead moves
+      squares += (dx * dx + dy * dy) / 4;       // a difference has twice the variance of a position
       ++resting;
     }
     scorer.add(truth[f], found);
@@ -59,14 +59,14 @@ TEST(RealImages, BedloadIsFoundLinkedAndRepeats) {
   EXPECT_EQ(s.precision(), 1);
   EXPECT_LE(s.rms, 0.08);
   EXPECT_GT(s.sure, 2000U);
-  EXPECT_LE(s.rms_sure, 0.05);  // as sure as that truth is
+  EXPECT_LE(s.rms_sure, 0.05);  // the accuracy of the reference
   EXPECT_GT(s.links, 2500U);
   EXPECT_EQ(s.wrong_links, 0U);
   EXPECT_LE(repeat, 0.02);
 }
 
-// One photograph of 29 photoelastic discs of two sizes, bright on dark, with fringes (PEGS, J. Kollmer):
-// counted by eye, centres good to a pixel. Nothing is said but the file's name.
+// One photograph of 29 photoelastic discs of two sizes, bright on dark, with fringes (PEGS, J. Kollmer). The
+// discs are counted by eye; the reference centres are accurate to a pixel. Only the file name is given.
 TEST(RealImages, PhotoelasticDiscsOfTwoSizesAreFoundUnasked) {
   const std::filesystem::path folder = TWINCELL_SOURCE_DIR "/../shared/real_images/photoelastic_29";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "The real images are not beside the source tree.";
@@ -97,7 +97,7 @@ TEST(RealImages, PhotoelasticDiscsOfTwoSizesAreFoundUnasked) {
   EXPECT_LE(s.rms, 1.0);
   EXPECT_TRUE(settled.preprocess.bright);
   EXPECT_EQ(settled.refine.method, "edges");
-  EXPECT_NEAR(settled.diameter_px, 147.2, 1.5);  // of the truth's radii, the mean of either size
+  EXPECT_NEAR(settled.diameter_px, 147.2, 1.5);  // of the reference radii, the mean of each size
   ASSERT_EQ(settled.other_diameters_px.size(), 1U);
   EXPECT_NEAR(settled.other_diameters_px[0], 103.2, 1.5);
 }

@@ -1,4 +1,4 @@
-// What the first frame does not show: settings come from a later one, or nothing is claimed.
+// Stacks whose first frame shows no beads: settings come from a later frame, or none are reported.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ Disc disc(double x, double y, double radius) {
   return d;
 }
 
-/// Beads per frame of a stack, and its settings.
+/// Beads per frame of a stack, and the settings found.
 struct Seen {
   std::vector<std::vector<Detection>> beads;
   LocatorConfiguration configured;
@@ -62,7 +62,7 @@ TEST(ShownLater, TheFirstFramesMayBeBare) {
       {disc(40.3, 50.2, 7.5), disc(80.6, 120.4, 7.5), disc(150.1, 60.8, 7.5), disc(200.7, 150.3, 7.5)});
   const Seen seen = locate_all({bare, bare, bare, beads, beads, bare, beads});
   ASSERT_EQ(seen.frames, 7);
-  EXPECT_EQ(seen.configured.frame, 4);  // 0, 1, 2, 4 are looked at
+  EXPECT_EQ(seen.configured.frame, 4);  // frames 0, 1, 2, 4 are examined
   EXPECT_NEAR(seen.configured.locator.diameter_px, 15, 0.3);
   EXPECT_FALSE(seen.configured.locator.preprocess.bright);
   for (const std::size_t f : {0, 1, 2, 5}) EXPECT_TRUE(seen.beads[f].empty()) << f;
@@ -75,7 +75,8 @@ TEST(ShownLater, WhereNoFrameShowsADiscNoneIsClaimed) {
   EXPECT_THROW(locate_all({bare, bare, bare}), InputError);
 }
 
-// Wider than what is sought first; few, so that their rims do not cover a fifth of the frame.
+// A disc wider than the first search range. The discs are few, so their rims do not cover a fifth of the
+// frame.
 TEST(ShownLater, OneLargeDiscIsFoundUnasked) {
   for (const double diameter : {100.0, 140.0}) {
     Picture p = frame_with({disc(150.3, 160.6, 0.5 * diameter)});

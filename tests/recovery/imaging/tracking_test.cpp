@@ -1,5 +1,5 @@
-// A long stack of known beads through phases, links and file: memory does not grow, and everything comes
-// back.
+// A long stack of known beads passes through phases, links and file: memory use stays constant, and the
+// output reproduces the input.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -27,14 +27,14 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-/// How the beads bounce, and how their places scatter, over what is said of it.
+/// Motion of the beads, and scatter of their positions in units of the stated errors.
 struct Bounce {
   double gamma = 2;
   int phases = kPhases;
   double noise = 0;
 };
 
-/// Rows of ten beads that bounce; bead 3 is a tracer.
+/// Rows of ten bouncing beads; bead 3 is a tracer.
 void fill(DetectionStore& store, int frames, int rows, const std::vector<int>& dropped,
           const std::vector<int>& doubled, const Bounce& bounce = {}) {
   const std::vector<double> bed = inelastic_bed(bounce.gamma, bounce.phases);
@@ -104,7 +104,7 @@ TEST(Tracking, FoundPhasesUncertaintiesAndTracersAreInTheFile) {
   int off_phase = 0;
   for (std::size_t f = 0; f < reader.n_frames(); ++f) {
     reader.read(f, frame);
-    // Frames 0 .. 100, then one is missing, then one is there twice and left out.
+    // Frames 0 to 100, then one missing frame, then one duplicated frame, which is left out.
     const auto tick = static_cast<int>(f < 101 ? f : f + 1);
     off_phase += frame.phase != tick % kPhases || frame.cycle != tick / kPhases ? 1 : 0;
     for (std::size_t i = 0; i < 120; ++i) {
@@ -116,7 +116,7 @@ TEST(Tracking, FoundPhasesUncertaintiesAndTracersAreInTheFile) {
   EXPECT_LE(off_phase, 4) << "a slip may be placed a frame early or late";
 }
 
-// By the mean step alone it was missed or misplaced in NNN of these forty places.
+// The mean step alone does not find the duplicated frame at all of these forty positions.
 TEST(Tracking, AFrameTakenTwiceIsFoundWhereverItIs) {
   constexpr int kMany = 40;
   int found = 0;
@@ -158,6 +158,6 @@ TEST(Tracking, MemoryDoesNotGrowWithTheStack) {
   };
   const double brief = run(200), lengthy = run(4000);
   std::cout << "peak " << brief << " MiB after 200 frames, " << lengthy << " MiB after 4000\n";
-  // Kept in memory, the beads of 3800 more frames would be 73 MiB.
+  // The beads of 3800 more frames would take 73 MiB in memory.
   EXPECT_LE(lengthy - brief, 8);
 }

@@ -1,4 +1,4 @@
-// Onsets drawn from a known law are found again, with intervals that cover as often as they say.
+// Onsets drawn from a known law are recovered, with intervals that have the stated coverage.
 
 #include "sweep/onset.hpp"
 
@@ -10,7 +10,8 @@
 namespace twincell::sweep {
 namespace {
 
-/// A search as a sweep makes it, on answers drawn from P(yes at x) = 1/(1 + exp(-(x - mu)/w)); w = 0: a step.
+/// A search as a sweep performs it, with answers drawn from P(yes at x) = 1/(1 + exp(-(x - mu)/w)); w = 0 is
+/// a step.
 struct Search {
   double mu, w, low = 1, high = 3, width = 0.2;
   int runs = 40;
@@ -54,11 +55,11 @@ TEST(Onset, IntervalsCoverAsOftenAsTheySay) {
       covered += onset.low.value_or(-1e9) <= mu && mu <= onset.high.value_or(1e9) ? 1 : 0;
       sum += onset.value.value_or(mu) - mu;
     }
-    // 95 % of 60 are 57; fewer than 51 would come once in hundreds of such tests.
+    // 95 % of 60 is 57; fewer than 51 would occur once in hundreds of such tests.
     EXPECT_GE(covered, 51) << w;
     EXPECT_NEAR(sum / kSearches, 0, 0.03) << w;
   }
-  // The interval is not merely wide: a law as noisy as this is known to a few of its own widths.
+  // The interval is also narrow enough: for a law with this noise it spans a few widths of the law.
   const Onset onset = Search{.mu = 2, .w = 0.1, .runs = 60}.run(random);
   ASSERT_TRUE(onset.low && onset.high);
   EXPECT_LT(*onset.high - *onset.low, 0.5);
@@ -82,8 +83,8 @@ TEST(Onset, AllOrNoneIsALimit) {
   EXPECT_NE(always.text().find("below"), std::string::npos);
 }
 
-// ln L = 4 ln(1/2) at a lone heap of two noes and two yeses: the profile is flat in the widest w's limit, and
-// symmetric about the heap.
+// ln L = 4 ln(1/2) for a single group of two negative and two positive answers. In the limit of the largest w
+// the profile is flat, and it is symmetric about the group.
 TEST(Onset, TheEstimateIsSymmetric) {
   const Onset onset = estimate_onset(
       {{1.5, false}, {1.5, false}, {2.5, true}, {2.5, true}, {2, true}, {2, false}}, 1, 3, 0.1);

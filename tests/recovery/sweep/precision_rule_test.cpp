@@ -1,4 +1,4 @@
-// A run that ends when its mean is known well enough, on series whose mean is known.
+// A run that ends when its mean is known precisely enough, on series with a known mean.
 #include "sweep/precision_rule.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TrajectoryInfo two_beads() {
   return info;
 }
 
-/// Two beads that part with m <w'^2> = t.
+/// Two beads that separate with m <w'^2> = t.
 Frame frame_of(std::int64_t cycle, double t) {
   Frame frame;
   frame.cycle = cycle;
@@ -38,7 +38,7 @@ Frame frame_of(std::int64_t cycle, double t) {
   return frame;
 }
 
-/// Temperatures about 1 whose fluctuations forget themselves by the factor `memory` a cycle.
+/// Temperatures about 1 whose fluctuations decay by the factor `memory` per cycle.
 class Series {
  public:
   Series(double memory, double deviation, std::mt19937_64& generator)
@@ -75,8 +75,8 @@ TEST(PrecisionRule, EndsWhereTheErrorOfACorrelatedSeriesIsReachedAndTellsTheTrut
     cycles += static_cast<double>(j) / kRuns;
     right += std::abs(sum / static_cast<double>(j) - 1) <= 0.02 ? 1 : 0;
   }
-  // A rule that looks again and again stops a little early on the average, and is right a little less often
-  // than 95 %.
+  // Repeated tests stop the run a little early on average, so slightly fewer than 95 % of the
+  // runs are within the error.
   test::validate(
       {"H38", "runs, %, whose mean is within the error they ended at", 93, 5, "95 % and the looks"},
       100.0 * right / kRuns);
@@ -104,7 +104,7 @@ TEST(PrecisionRule, AnAbsoluteErrorEndsASolidBed) {
   Series series(0, 0.9, generator);
   std::int64_t j = 0;
   while (!rule.reached(frame_of(j, 1e-7 * std::abs(series.next())))) ASSERT_LT(++j, 130);
-  EXPECT_EQ(j, 114);  // the first look: 40 flights of Gamma/pi periods at K_m = 9
+  EXPECT_EQ(j, 114);  // the first test: 40 flights of Gamma/pi periods at K_m = 9
 }
 
 TEST(PrecisionRule, AQuantityItDoesNotKnowIsRefusedWithThoseItKnows) {

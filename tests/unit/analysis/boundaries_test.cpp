@@ -1,4 +1,4 @@
-// Where one phase gives way to another, from runs whose phases are set by hand.
+// Phase boundaries, from runs whose phases are set by hand.
 #include <gtest/gtest.h>
 
 #include "analysis/runs/phase_boundaries.hpp"

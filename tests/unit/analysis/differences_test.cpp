@@ -1,4 +1,5 @@
-// The parts of a difference, on numbers whose parts are set by hand.
+// Contributions to a difference between experiment and simulation, on numbers whose contributions are set by
+// hand.
 #include "analysis/runs/differences.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@
 namespace twincell {
 namespace {
 
-using Runs = std::vector<Run>;  // in a test's body `Run` is googletest's
+using Runs = std::vector<Run>;  // in the body of a test `Run` is a name of googletest
 
 Result number(const std::string& name, double value, double error) {
   Result r{.name = name, .values = {value}};
@@ -49,8 +50,8 @@ TEST(Differences, CameraAndRemainderAddUp) {
   EXPECT_NEAR(d.camera.value(), 0.25, 1e-12);
   EXPECT_NEAR(d.remainder(), 0.05, 1e-12);
   EXPECT_NEAR(d.camera.value() + d.remainder(), d.difference(), 1e-12);
-  EXPECT_NEAR(d.statistics.value(), 0.05,
-              1e-9);  // 3, 4, 5: the filmed error, larger than the simulation's own
+  // 0.03 and 0.04 in quadrature: of simulation and virtual experiment the larger error, 0.04, counts.
+  EXPECT_NEAR(d.statistics.value(), 0.05, 1e-9);
   EXPECT_NEAR(d.in_errors().value(), 1, 1e-6);
   EXPECT_NE(d.attribution().find("camera and tracking cause 83 %"), std::string::npos) << d.attribution();
 }
@@ -59,12 +60,12 @@ TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
   Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.8, 0.01),
                run(Side::simulation, 1.2, 0.01), run(Side::simulation, 1.1, 0.01)};
   const Difference d = only(runs);
-  EXPECT_NEAR(d.seeds.value(), 0.2082, 1e-4);  // of 0.8, 1.2, 1.1
+  EXPECT_NEAR(d.seeds.value(), 0.2082, 1e-4);  // standard deviation of 0.8, 1.2, 1.1
   EXPECT_FALSE(d.camera);
   EXPECT_NE(d.attribution().find("largest part is seeds"), std::string::npos) << d.attribution();
 }
 
-// Two runs 0.02 apart: s = 0.01414, and two of the errors built from it are the 95 % of Student's t with one
+// Two runs 0.02 apart: s = 0.01414, and 1.96 times the seed error is the 95 % limit of Student's t with one
 // degree of freedom, 12.706 s sqrt(3/2).
 TEST(Differences, AFewSeedsAreNoCertainty) {
   const Runs runs = {run(Side::experiment, 1.0, 1e-6), run(Side::simulation, 0.81, 1e-6),
@@ -107,7 +108,7 @@ TEST(Differences, ANumberThatNeverChangedHasNoKnownError) {
 }
 
 // Rows of 9, 10 and 9 beads sheared by 0.1 j per sigma: s_c = 0.1 sqrt(mean j^2) sqrt((n^2 - 1)/12); s_b is
-// the same on every row.
+// the same in every row.
 TEST(Differences, LinesOfTracersInAShearedBed) {
   const test::RigidBed bed{.gamma = 1.5, .columns = 10, .rows = 9, .cycles = 4, .shear_per_cycle = 0.1};
   const TrajectoryInfo info = test::rigid_bed_info(bed);

@@ -1,4 +1,4 @@
-// Strings from outside reach gnuplot as text, never as commands.
+// User strings reach gnuplot as text, never as commands.
 #include "analysis/report/gnuplot_text.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Which frames of a run are kept to be looked at.
+// Which frames of a run are kept for display.
 #include <gtest/gtest.h>
 
 #include "analysis/motion/snapshots.hpp"
@@ -29,8 +29,8 @@ TEST(Moments, HalfAtPhaseZeroHalfInTheLastWholeCycle) {
   const auto chosen = representative_frames(film(100, 10, 3), 20);
   ASSERT_EQ(chosen.size(), 20U);
   EXPECT_EQ(chosen.front(), 0U);
-  EXPECT_EQ(chosen.back(),
-            1000U);  // 100 whole cycles, then three frames of the next: the strobe reaches them
+  // 100 whole cycles, then three frames of the next cycle, the first of which is a strobe frame (phase 0).
+  EXPECT_EQ(chosen.back(), 1000U);
   std::size_t last_cycle = 0;
   for (const std::size_t f : chosen) {
     if (f >= 990 && f < 1000) ++last_cycle;

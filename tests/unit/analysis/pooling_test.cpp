@@ -1,4 +1,4 @@
-// Several runs as one measurement.
+// Several runs pooled into one measurement.
 #include "analysis/runs/pooling.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::vector<std::vector<Result>> runs_of(const std::string& name, const std::vec
   return runs;
 }
 
-/// Percent of pooled intervals that hold the truth.
+/// Percentage of pooled intervals that contain the true value.
 double coverage(const std::function<double()>& draw, double truth, int runs, int trials) {
   int covered = 0;
   for (int t = 0; t < trials; ++t) {
@@ -70,7 +70,8 @@ TEST(Pooling, IntervalsHoldTheTruthAsOftenAsTheySay) {
 TEST(Pooling, TwoRunsAreStudentsT) {
   const Result r = pool(runs_of("T_g", {1, 3})).front();
   EXPECT_DOUBLE_EQ(r.value(), 2);
-  EXPECT_NEAR(r.interval->high, 2 + 12.7062, 1e-3);  // sd of the mean 1, t of one degree of freedom
+  // The standard deviation of the mean is 1; Student's t has one degree of freedom.
+  EXPECT_NEAR(r.interval->high, 2 + 12.7062, 1e-3);
   EXPECT_EQ(r.n, 2U);
   EXPECT_EQ(r.of_runs, (std::vector<double>{1, 3}));
 }
@@ -93,7 +94,7 @@ TEST(Pooling, TheSameRunTwiceIsRefused) {
   EXPECT_THROW(pool(runs_of("T_g", {drawn, 0.2, drawn})), ConfigError);
   EXPECT_EQ(repeated_runs(runs_of("T_g", {drawn, 0.2, drawn})), (std::vector<std::size_t>{0, 1, 0}));
   EXPECT_NO_THROW(pool(runs_of("T_g", {drawn, std::nextafter(drawn, 1)})));
-  // Counts, shares of few counts and what the camera's scale alone says may be the same in different runs.
+  // Counts, fractions of few counts, and values set by the camera scale alone may be equal in different runs.
   EXPECT_NO_THROW(pool(runs_of("slips", {3, 3})));
   EXPECT_NO_THROW(pool(runs_of("hexagonal_fraction", {2.0 / 3, 2.0 / 3})));
   EXPECT_NO_THROW(pool(runs_of("half_pixel", {drawn, drawn})));

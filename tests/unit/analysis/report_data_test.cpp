@@ -1,4 +1,4 @@
-// What the interactive page is told, read back as JSON.
+// Data passed to the interactive page, read back as JSON.
 #include "analysis/report/report_data.hpp"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST(ReportData, MomentsInThousandthsAndAbsentBeadsAsNull) {
   EXPECT_EQ(m["x"], nlohmann::json::parse("[1235, null]"));
   EXPECT_EQ(m["q6"], nlohmann::json::parse("[74, -1]"));
   EXPECT_EQ(m["structure"], nlohmann::json::parse("[1, 0]"));
-  EXPECT_EQ(m["picture"], "data:image/png;base64,TWFu");  // RFC 4648's classic
+  EXPECT_EQ(m["picture"], "data:image/png;base64,TWFu");  // example of RFC 4648
   EXPECT_EQ(j["camera"]["s"], 12);
 }
 

@@ -13,7 +13,7 @@ using namespace twincell;
 
 namespace {
 
-/// A stationary AR(1) series about 0: x <- a x + kick. Correlation time (1 + a)/(2 (1 - a)).
+/// A stationary AR(1) series with mean 0: x <- a x + noise. Correlation time (1 + a)/(2 (1 - a)).
 std::vector<double> correlated(std::size_t n, double a, std::mt19937_64& generator) {
   std::normal_distribution<double> kick;
   std::vector<double> series(n);
@@ -22,7 +22,7 @@ std::vector<double> correlated(std::size_t n, double a, std::mt19937_64& generat
   return series;
 }
 
-/// Share of the intervals that hold `truth`, in per cent. Nearly all of the `trials` must give one.
+/// Percentage of the intervals that contain `truth`. Nearly all of the `trials` must give an interval.
 double coverage(int trials, double truth, const std::function<std::optional<Interval>()>& measure) {
   int covered = 0, given = 0;
   for (int t = 0; t < trials; ++t) {
@@ -91,8 +91,8 @@ TEST(Statistics, BlockIntervalsCoverTheMean) {
 }
 
 TEST(Statistics, BlockIntervalsCoverTheMeanOfASeriesThatEchoes) {
-  // Values that take after the last one and after those 15 before: their correlation falls to 0.05 by the
-  // ninth and is 0.2 again at the fifteenth, much as a vibrated gas' temperature from cycle to cycle.
+  // Each value depends on the previous one and on the one 15 before. The correlation falls to 0.05 by lag
+  // nine and is 0.2 again at lag fifteen, similar to the temperature of a vibrated gas from cycle to cycle.
   std::mt19937_64 generator(8);
   std::normal_distribution<double> fresh;
   const auto echoing = [&](std::size_t n) {
@@ -143,7 +143,8 @@ TEST(Statistics, BlockMeanIsTheMean) {
 }
 
 TEST(Statistics, NoSeriesHasAnIntervalOfZeroWidth) {
-  // 0.1 summed is not 0.1 to the last digit; a bed that bounces with period two cancels in blocks of two.
+  // A sum of 0.1 is not exact in its last digit; a bed that bounces with period two averages out in blocks of
+  // two.
   for (const std::size_t n : {4, 9, 16, 64, 5000, 20000}) {
     BlockAverage constant, period_two, about_zero;
     for (std::size_t i = 0; i < n; ++i) {
@@ -202,7 +203,7 @@ TEST(Statistics, BootstrapCoversMeanAndSpreadOfAFewItems) {
   const auto of_two = mean_interval({1, 2}, "values");
   ASSERT_TRUE(of_two.has_value());
   EXPECT_NEAR(of_two->high, 1.5 + 12.706 * 0.5, 1e-3);  // Student's t
-  // The studentised bootstrap of these three would reach to 2: two of them are alike.
+  // The studentised bootstrap of these three values would extend to 2, because two of them are almost equal.
   const auto of_three = mean_interval({0.1435, 0.1436, 0.15}, "values");
   ASSERT_TRUE(of_three.has_value());
   EXPECT_NEAR(of_three->high - of_three->low, 2 * 4.303 * 0.0021502, 1e-5);
@@ -226,7 +227,7 @@ TEST(Statistics, ItemsThatAreAllTheSameHaveNoInterval) {
 }
 
 TEST(Statistics, AValueBelowAllResamplesLiesInItsInterval) {
-  // |mean| of values that cancel: nearly every resample is above it.
+  // |mean| of values that cancel: nearly every resample exceeds it.
   const std::vector<double> items = {-4, -3, -2, -1, 1, 2, 3, 4};
   const auto off = [&](const std::vector<std::size_t>& pick) {
     double sum = 0;
@@ -240,7 +241,7 @@ TEST(Statistics, AValueBelowAllResamplesLiesInItsInterval) {
 }
 
 TEST(Statistics, ExactBinomialAgainstTablesAndCounts) {
-  // Clopper and Pearson's limits, and the rule of three.
+  // Clopper-Pearson limits, and the rule of three.
   test::validate({"V5.12", "Clopper-Pearson, 3 of 20, lower", 0.0320709, 1e-6, "table"},
                  binomial_interval(3, 20, "trials").low);
   test::validate({"V5.12", "Clopper-Pearson, 3 of 20, upper", 0.3789268, 1e-6, "table"},

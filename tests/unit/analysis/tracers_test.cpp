@@ -14,15 +14,15 @@ TEST(Tracers, OfACrystalAreTheMiddleRow) {
   const MemoryTrajectory bed = test::rigid_bed({.gamma = 1.5, .columns = 20, .rows = 11});
   Frame first = bed.frames().front();
   const TracerChoice choice = choose_tracers(bed.info(), first);
-  ASSERT_EQ(choice.slots.size(), 19U);  // the sixth of 11 rows has one bead less
+  ASSERT_EQ(choice.slots.size(), 19U);  // the sixth of 11 rows has one bead fewer
   for (const std::size_t i : choice.slots)
     EXPECT_NEAR(first.position[i].z(), 0.5 + 5 * std::sqrt(3.0) / 2, 1e-12);
-  first.position.back().z() = 90;  // one high flyer does not move the middle
+  first.position.back().z() = 90;  // a single bead high above the bed does not shift the middle
   EXPECT_EQ(choose_tracers(bed.info(), first).slots, choice.slots);
   std::mt19937_64 generator(1);
   std::normal_distribution<double> noise(0, 0.03);
   for (Vec3& r : first.position) r += Vec3(noise(generator), 0, noise(generator));
-  EXPECT_EQ(choose_tracers(bed.info(), first).slots, choice.slots);  // as seen by a camera
+  EXPECT_EQ(choose_tracers(bed.info(), first).slots, choice.slots);  // with the position noise of a camera
 }
 
 TEST(Tracers, OfARandomBedAreOnePerColumnNearMidHeight) {
@@ -105,7 +105,7 @@ TEST(MatchRuns, ByGammaWithinTheToleranceAndByLayers) {
   EXPECT_EQ(verdict(runs, matches[0]), "only experiment");
   EXPECT_EQ(matches[1].simulations, (std::vector<std::size_t>{1, 2}));
   EXPECT_EQ(matches[1].experiments, std::vector<std::size_t>{0});
-  EXPECT_EQ(verdict(runs, matches[1]), "undetermined");            // two seeds disagree
-  EXPECT_EQ(matches[2].simulations, std::vector<std::size_t>{3});  // another number of layers
-  EXPECT_EQ(matches[3].simulations, std::vector<std::size_t>{5});  // 2.7 % away
+  EXPECT_EQ(verdict(runs, matches[1]), "undetermined");            // the two seeds disagree
+  EXPECT_EQ(matches[2].simulations, std::vector<std::size_t>{3});  // different number of layers
+  EXPECT_EQ(matches[3].simulations, std::vector<std::size_t>{5});  // differs by 2.7 %
 }

@@ -68,7 +68,7 @@ std::string repeated(const std::string& piece, int n) {
   return all;
 }
 
-// Beyond some thousands the parser would exhaust the stack.
+// At a depth of some thousands the parser would exhaust the stack.
 TEST(Config, DepthIsBounded) {
   constexpr int kMany = 50'000;
   const std::string deep = "tables and lists are nested more than 100 levels deep.";
@@ -82,7 +82,7 @@ TEST(Config, DepthIsBounded) {
         "a = \"\\\"\"\nb = ''''x'''''\n" + repeated("'.'.", kMany) + "a = 1\n"})
     EXPECT_NE(refusal(text).find(deep), std::string::npos) << text.substr(0, 40) << ": " << refusal(text);
   EXPECT_EQ(refusal(repeated("a.", kMany) + "a = 1\n"), "f.toml:1: " + deep);
-  // Dots that make no depth.
+  // Dots that do not add depth.
   for (const std::string& text :
        {repeated("a.", 90) + "a = 1.5\n", "a = \"" + repeated("[{.", 999) + "\"\n",
         "a = 1 # " + repeated("[.", 999) + "\n", "a = [" + repeated("1.5, ", 999) + "]\n",
@@ -99,7 +99,7 @@ TEST(Config, SizeIsBounded) {
             std::string::npos);
 }
 
-// What is no regular file may never end.
+// A file that is not a regular file may never end.
 TEST(Config, OnlyRegularFilesAreRead) {
   const TemporaryFolder folder;
   const std::string pipe = folder / "pipe", file = folder / "file", absent = folder / "absent";

@@ -1,4 +1,4 @@
-// Strings of a user's inside other languages.
+// User strings embedded in other languages.
 
 #include "core/escape.hpp"
 
@@ -27,7 +27,7 @@ TEST(Escape, Csv) {
   EXPECT_EQ(csv_field("a\rb"), "\"a\rb\"");
 }
 
-// The shell itself says what it makes of a word.
+// The shell itself shows how it parses a word.
 TEST(Escape, ShellWordsAreOneWord) {
   EXPECT_EQ(shell_word("a/b-1.toml"), "a/b-1.toml");
   EXPECT_EQ(shell_word(""), "''");

@@ -27,7 +27,7 @@ TEST(InParallel, EveryJobIsDoneOnce) {
 }
 
 TEST(InParallel, JobsRunSideBySideOnAsManyThreadsAsAsked) {
-  // Each waits for the others: with fewer threads at work they would wait for ever.
+  // Each task waits for the others: with fewer active threads they would wait for ever.
   constexpr int kThreads = 3;
   std::atomic<int> waiting{0};
   std::mutex mutex;
@@ -53,7 +53,7 @@ TEST(InParallel, TheFirstFailureIsThrownAndNothingBeginsAfterIt) {
     try {
       in_parallel(100000, threads, [&](std::size_t i) {
         ++begun;
-        // The later one fails first, while the earlier one is under way.
+        // The later task fails first, while the earlier one is still running.
         if (i == 10) std::this_thread::sleep_for(std::chrono::milliseconds(20));
         if (i == 10 || i == 11) throw std::runtime_error(std::to_string(i));
       });
@@ -66,12 +66,12 @@ TEST(InParallel, TheFirstFailureIsThrownAndNothingBeginsAfterIt) {
   }
 }
 
-// Under the thread sanitizer, as all tests here.
+// Also run under the thread sanitizer, like all tests here.
 TEST(InParallel, ManyThreadsMakeAndForgetTemporaries) {
   const TemporaryFolder folder;
   std::vector<std::filesystem::path> kept(40);
   in_parallel(400, 4, [&](std::size_t i) {
-    // Names of unequal length, so that one written over another would show.
+    // Names of different lengths, so that one name that overwrites another would be visible.
     const auto path = make_temporary(folder.path() / std::string(1 + i % 7, 'x'), false);
     if (i % 10 == 0)
       kept[i / 10] = path;

@@ -12,7 +12,7 @@ using namespace twincell;
 TEST(Median, OfFewIsThatOfTheSorted) {
   std::mt19937 random(3);
   for (std::size_t n = 1; n <= 64; ++n)
-    for (const int kinds : {1, 3, 1000}) {  // with many equal ones, and few
+    for (const int kinds : {1, 3, 1000}) {  // from few distinct values (many ties) to many
       std::array<float, 64> few{};
       for (std::size_t k = 0; k < n; ++k)
         few.at(k) = static_cast<float>(std::uniform_int_distribution(-kinds, kinds)(random));

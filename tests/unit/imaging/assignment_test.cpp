@@ -1,4 +1,4 @@
-// The sparse assignment against all assignments there are.
+// The sparse assignment against enumeration of all possible assignments.
 #include "imaging/link/assignment.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,8 @@ using namespace twincell;
 
 namespace {
 
-/// Least sum over all ways to give each row a column or none, with one edge of one row forbidden.
+/// Minimum cost over all assignments of each row to a column or to no column, with one edge of one row
+/// forbidden.
 double least_sum(const std::vector<Edge>& edges, std::size_t rows, std::size_t row, std::vector<bool>& taken,
                  std::size_t forbidden_row, std::int64_t forbidden_column) {
   if (row == rows) return 0;
@@ -80,7 +81,7 @@ TEST(Assignment, SumAndMarginsAreThoseOfAllAssignments) {
 }
 
 TEST(Assignment, NetworksAreCounted) {
-  // 0 and 1 share column 0; 2 is by itself; 3 has no edge.
+  // Rows 0 and 1 compete for column 0; row 2 is independent; row 3 has no edge.
   const std::vector<Edge> edges = {{0, 0, -1}, {1, 0, -2}, {1, 1, -1.5}, {2, 2, 0.5}};
   const Assignment a = assign(4, 3, edges);
   EXPECT_EQ(a.column_of_row, (std::vector<std::int64_t>{0, 1, Assignment::kAlone, Assignment::kAlone}));

@@ -1,4 +1,4 @@
-// Discs that darken the border of a frame from beyond it, and beads in its corners.
+// Discs centred outside the frame that darken its border, and beads in the corners of the frame.
 
 #include <gtest/gtest.h>
 
@@ -38,12 +38,12 @@ std::vector<Proposal> beyond(const rendered::Picture& p) {
 }
 
 TEST(BeyondFrame, DiscsAreSeenByTheirSlivers) {
-  // From half a disc to half a pixel of one, at each border.
+  // From half a disc to half a pixel of a disc visible, at each border.
   const std::vector<rendered::Disc> discs = {{30, -3, kRadius}, {70.4, -6.8, kRadius},  {-5.5, 30.3, kRadius},
                                              {-7, 60, kRadius}, {105.2, 20.2, kRadius}, {60, 86, kRadius}};
   const std::vector<Proposal> found = beyond(picture_of(discs));
   for (const rendered::Disc& d : discs) {
-    // The clearest of one disc is the first of those near it.
+    // The best proposal for a disc is the first one near it.
     const auto first = std::find_if(found.begin(), found.end(), [&](const Proposal& p) {
       return std::hypot(p.x - d.x, p.y - d.y) < kRadius;
     });
@@ -59,11 +59,12 @@ TEST(BeyondFrame, DiscsAreSeenByTheirSlivers) {
 
 TEST(BeyondFrame, AnEmptyBorderHasNone) {
   EXPECT_TRUE(beyond(picture_of({{50, 40, kRadius}})).empty());
-  // Its blurred rim ends before the frame.
+  // Its blurred rim ends outside the frame.
   EXPECT_TRUE(beyond(picture_of({{50, -11.5, kRadius}})).empty());
 }
 
-// Three beads touch one that shows three pixels: left out, it moved each by 0.1 to 0.3 px.
+// Three beads touch a disc of which three pixels are visible. Without that disc in the fit, each of the three
+// moved by 0.1 to 0.3 px.
 TEST(BeyondFrame, ItsNeighboursAreNotMoved) {
   const double y = 40, x = 92;
   rendered::Picture p = picture_of({{x, y, kRadius},
@@ -84,7 +85,7 @@ TEST(BeyondFrame, ItsNeighboursAreNotMoved) {
   }
 }
 
-// Beyond a corner a frame goes on dark only where a wall leads to it.
+// Beyond a corner the frame is extended as dark only where a wall reaches the corner.
 TEST(BeyondFrame, ABeadInACornerIsNoWall) {
   rendered::Picture p =
       picture_of({{1.2, 0.7, kRadius}, {98.4, 78.6, kRadius}, {30, 30, kRadius}, {60, 50, kRadius}});
@@ -92,7 +93,7 @@ TEST(BeyondFrame, ABeadInACornerIsNoWall) {
   LocatorOptions options;
   options.diameter_px = 2 * kRadius;
   EXPECT_EQ(locate(frame, options).beads.size(), 4U);
-  // A plate along the bottom is one up to its end.
+  // A plate along the bottom counts as a wall up to its end.
   frame.rowRange(72, 80).setTo(20);
   const cv::Mat1b walls = prepare(frame, {}, kRadius).opaque;
   ASSERT_FALSE(walls.empty());

@@ -22,7 +22,7 @@ std::vector<PixelPoint> crystal(int n) {
   return beads;
 }
 
-// Every bead may go to every detection within reach, all at one price.
+// Each bead may be assigned to every detection within reach, all at the same cost.
 std::vector<Edge> all_within(const std::vector<PixelPoint>& places, const std::vector<PixelPoint>& detections,
                              double reach, double price) {
   std::vector<Edge> choices;
@@ -43,8 +43,8 @@ std::size_t wrong(const std::vector<std::int64_t>& goals) {
 }  // namespace
 
 TEST(CollectiveMatching, ACrystalThatTurnsIsFollowedThoughTheNearestBeadIsAnother) {
-  // By 8 degrees about the middle: up to 1.3 diameters at the rim. Only the middle is near enough to be
-  // known; nothing but the neighbours leads outwards.
+  // Rotation by 8 degrees about the middle: displacements up to 1.3 diameters at the rim. Only beads near the
+  // middle can be matched by distance; outwards the match must follow from the neighbours.
   const auto places = crystal(14);
   const PixelPoint middle{115, 100};
   std::vector<PixelPoint> detections;
@@ -75,8 +75,8 @@ TEST(CollectiveMatching, ACrystalThatTurnsIsFollowedThoughTheNearestBeadIsAnothe
 }
 
 TEST(CollectiveMatching, ABlockGoesWhereItsRimFits) {
-  // The right half is sheared upwards, its last column by nearly a lattice constant: there the bead below
-  // lies nearer than the own one.
+  // The right half is sheared upwards, its last column by nearly a lattice constant: there the detection of
+  // the bead below is nearer than that of the bead itself.
   const auto places = crystal(12);
   auto detections = places;
   const double up = 2 * 1.1 * kDiameter * std::sqrt(0.75);
@@ -88,8 +88,8 @@ TEST(CollectiveMatching, ABlockGoesWhereItsRimFits) {
 }
 
 TEST(CollectiveMatching, DiscsFarApartDoNotPassThroughEachOther) {
-  // Two beads 2.2 d apart, one above the other, hit and go back; to exchange them costs less by itself. They
-  // are too far apart to be neighbours.
+  // Two beads 2.2 d apart, one above the other, collide and rebound; an exchange of the two has the lower
+  // edge cost. They are too far apart to be neighbours.
   const std::vector<PixelPoint> places = {{0, 0}, {1, 33}};
   const std::vector<PixelPoint> detections = {{0, 5}, {1, 28}};
   auto match = [&](double cheaper) {
@@ -102,8 +102,8 @@ TEST(CollectiveMatching, DiscsFarApartDoNotPassThroughEachOther) {
 }
 
 TEST(CollectiveMatching, ThreeBeadsChangePlacesWhereTwoWouldNotGain) {
-  // Of six ways to place three beads the cheapest is a ring; every exchange of two is more expensive than
-  // none.
+  // Of the six assignments of three beads the cheapest is a cyclic exchange; every exchange of two beads
+  // costs more than no exchange.
   const std::vector<PixelPoint> places = {{0, 0}, {60, 0}, {30, 52}};
   const std::vector<Edge> choices = {{0, 0, -10}, {0, 1, -12}, {0, 2, -1}, {1, 0, -1}, {1, 1, -10},
                                      {1, 2, -12}, {2, 0, -12}, {2, 1, -1}, {2, 2, -10}};
@@ -112,9 +112,10 @@ TEST(CollectiveMatching, ThreeBeadsChangePlacesWhereTwoWouldNotGain) {
 }
 
 TEST(CollectiveMatching, WhereNobodyIsLostARowSlidesByALatticeVector) {
-  // The top row of a crystal slides by a lattice vector. All of it but the first bead looks the same at rest,
-  // and to part from the row below is dear: only that the first bead must be somewhere tells. 16.2 (two
-  // pairs, each 2 ln(1 + 1.1^2 / 0.15^2) = 8.0) for each of 12 beads is less than what a lost one costs.
+  // The top row of a crystal slides by a lattice vector. Except for the first bead, the detections are the
+  // same as at rest, and separation from the row below has a high cost. Only the condition that the first
+  // bead must be present decides. The cost of 16.2 (two pairs, each 2 ln(1 + 1.1^2 / 0.15^2) = 8.0) for each
+  // of 12 beads is less than the cost of a lost bead.
   const auto places = crystal(12);
   auto detections = places;
   for (std::size_t t = 0; t < 12; ++t) detections[t].x_px += 1.1 * kDiameter;
@@ -129,7 +130,8 @@ TEST(CollectiveMatching, WhereNobodyIsLostARowSlidesByALatticeVector) {
 }
 
 TEST(CollectiveMatching, NobodyIsFoundAPlaceAcrossTheBed) {
-  // 30 beads would have to move on: rather one is missed, and something else is taken for a bead.
+  // A chain of 30 beads would have to move on by one place. It is cheaper to leave one bead without a
+  // detection and one detection without a bead.
   const auto places = crystal(30);
   auto detections = places;
   detections[29 * 30 + 15] = {places[15].x_px, -1.1 * kDiameter};
@@ -140,8 +142,9 @@ TEST(CollectiveMatching, NobodyIsFoundAPlaceAcrossTheBed) {
 }
 
 TEST(CollectiveMatching, AGuessDoesNoHarm) {
-  // A ring of six, each of whom gains by taking the next one's place, while two, three or four that do lose.
-  // The guess is the ring; or nonsense, which changes nothing.
+  // A ring of six beads: the cost decreases if all six move on to the next place, and increases if only two,
+  // three or four of them do. The initial guess is either the ring or invalid, which must not change the
+  // result.
   std::vector<PixelPoint> places;
   for (int i = 0; i < 6; ++i) places.push_back({60 * std::cos(i * 1.0472), 60 * std::sin(i * 1.0472)});
   std::vector<Edge> choices;
@@ -156,7 +159,7 @@ TEST(CollectiveMatching, AGuessDoesNoHarm) {
 }
 
 TEST(CollectiveMatching, WhatCannotBeToldHasNoMargin) {
-  // Two beads, two detections as near to the one as to the other; a third far off is sure.
+  // Two beads and two detections that are equally near to both; a third pair far away is unambiguous.
   const std::vector<PixelPoint> places = {{0, 0}, {18, 0}, {200, 0}};
   const std::vector<PixelPoint> detections = {{9, 12}, {9, -12}, {200, 1}};
   const auto match =

@@ -1,4 +1,4 @@
-// How beads come into the first frame, learnt by going back to it from the first calm one.
+// Displacements of the beads from the first frame, found by tracking backwards from the first calm frame.
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,9 @@ namespace {
 constexpr double kD = 15;
 constexpr std::size_t kFrames = 30;
 
-/// A square patch of beads, 1.1 d apart, that is thrown apart and comes to rest: its rim moves farther in the
-/// first frame than neighbours are apart, so that a frame alone looks like any of several.
+/// A square patch of beads, 1.1 d apart, that is thrown apart and comes to rest. Its rim moves farther in the
+/// first frame than the distance between neighbours, so that a single pair of frames has several plausible
+/// matches.
 std::vector<FrameOfBeads> burst(std::size_t frames = kFrames, double growth = 1) {
   std::vector<FrameOfBeads> all(frames);
   for (std::size_t f = 0; f < frames; ++f) {
@@ -34,7 +35,8 @@ std::vector<PixelPoint> steps_of(const std::vector<FrameOfBeads>& frames) {
                             [&](std::size_t f) { return frames.at(f); });
 }
 
-/// Links to another bead than the one before; beads keep their order from frame to frame.
+/// Number of links to a bead other than the one of the frame before; beads keep their order from frame to
+/// frame.
 std::size_t wrong(const std::vector<FrameOfBeads>& frames, const std::vector<PixelPoint>& steps) {
   Linker linker({.diameter_px = kD});
   linker.begin(steps);
@@ -56,7 +58,7 @@ TEST(FirstSteps, AStackThatBeginsInABurstIsFollowedBackToIt) {
     EXPECT_NEAR(steps[k].x_px, frames[1].places[k].x_px - frames[0].places[k].x_px, 1e-9) << k;
     EXPECT_NEAR(steps[k].y_px, frames[1].places[k].y_px - frames[0].places[k].y_px, 1e-9) << k;
   }
-  EXPECT_GT(wrong(frames, {}), 50U);  // else this test says nothing
+  EXPECT_GT(wrong(frames, {}), 50U);  // otherwise the test would show nothing
   EXPECT_EQ(wrong(frames, steps), 0U);
 }
 
@@ -67,7 +69,7 @@ TEST(FirstSteps, OfACalmBeginningNothingIsSaid) {
 
 TEST(FirstSteps, ABeadThatIsNotInTheSecondFrameHasNone) {
   std::vector<FrameOfBeads> frames = burst();
-  frames[1].places.erase(frames[1].places.begin());  // a corner
+  frames[1].places.erase(frames[1].places.begin());  // a corner bead
   const std::vector<PixelPoint> steps = steps_of(frames);
   ASSERT_EQ(steps.size(), frames[0].places.size());
   EXPECT_TRUE(std::isnan(steps[0].x_px));

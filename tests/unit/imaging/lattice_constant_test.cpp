@@ -23,7 +23,7 @@ rendered::Picture empty() {
   return p;
 }
 
-// Discs of that diameter on a hexagonal lattice, all over the picture.
+// Discs of that diameter on a hexagonal lattice that fills the picture.
 cv::Mat1b crystal(double constant, double diameter, double turned) {
   rendered::Picture p = empty();
   for (const cv::Point2d& site :
@@ -46,7 +46,7 @@ TEST(LatticeConstant, OfCrystalsToAPixel) {
           << constant << " px, turned by " << turned;
 }
 
-// The gaps are nearer to each other, by the root of 3, than the discs.
+// The bright gaps are closer together than the discs by a factor of the square root of 3.
 TEST(LatticeConstant, LightGapsDoNotPassForDiscs) {
   EXPECT_NEAR(lattice_constant(crystal(16, 15, 0.2)), 16, 0.75);
 }

@@ -49,6 +49,6 @@ TEST(MinCut, OfEqualsTheMostMove) {
   MinCut cut(3);
   cut.move(1, 0);
   cut.move(2, -1);
-  cut.stay_and_move(1, 2, 2);  // 2 gains by moving only if 1 comes along, which costs nothing
+  cut.stay_and_move(1, 2, 2);  // node 2 gains by moving only if node 1 moves too, which costs nothing
   EXPECT_EQ(cut.solve(), (std::vector<std::uint8_t>{1, 1, 1}));
 }

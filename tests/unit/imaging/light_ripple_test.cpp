@@ -1,4 +1,4 @@
-// The light's ripple from the means of coarse tiles.
+// The ripple of the illumination, found from the means of coarse tiles.
 
 #include <gtest/gtest.h>
 
@@ -11,14 +11,14 @@
 namespace twincell {
 namespace {
 
-constexpr double kNoise = 0.01;  // of a tile's mean
+constexpr double kNoise = 0.01;  // standard deviation of a tile's mean
 constexpr int kWide = 16, kHigh = 24;
 
 struct Tiles {
   cv::Mat1d mean = cv::Mat1d::zeros(kHigh, kWide), variance = mean.clone();
 };
 
-/// A wave of that amplitude, nine tiles across and twelve down from crest to crest.
+/// A wave of the given amplitude with a wavelength of nine tiles horizontally and twelve tiles vertically.
 double wave(double amplitude, int x, int y) {
   return amplitude * std::sin(2 * M_PI * x / 9.0 + 1) * std::cos(2 * M_PI * y / 12.0);
 }
@@ -54,7 +54,7 @@ TEST(LightRipple, IsSeenWhereThereIsOne) {
   EXPECT_EQ(seen, 200);
 }
 
-// A disc out of place spoils its own tile alone, be it by fifty times the noise.
+// A misplaced disc changes only its own tile, even by fifty times the noise.
 TEST(LightRipple, IsNotWhatOneTileHasForItself) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     Tiles t = tiles_of(0, seed);
@@ -64,8 +64,8 @@ TEST(LightRipple, IsNotWhatOneTileHasForItself) {
   }
 }
 
-// Of noise in 384 tiles a wave of a dozen crests lets a part through, that of its degrees of freedom: less
-// than half, more than a tenth.
+// A fit of a wave with a dozen crests to 384 noisy tiles passes a fraction of the noise, given by its degrees
+// of freedom: less than half, more than a tenth.
 TEST(LightRipple, IsFoundBelowTheNoiseOfATile) {
   for (const double amplitude : {0.03, 0.3}) {
     double squares = 0;
@@ -91,7 +91,8 @@ TEST(LightRipple, FollowsItsNeighboursWhereNothingIsSeen) {
     EXPECT_NEAR(static_cast<double>(map(hole)), wave(0.1, hole.x, hole.y), 0.03);
 }
 
-// A plate that leans where it is seen last leans on; light does not.
+// For a tilted plane, extrapolation would continue the slope beyond the last visible tile; the map of the
+// illumination must not.
 TEST(LightRipple, GoesNowhereBeyondWhatIsSeen) {
   Tiles t = tiles_of(0, 1);
   for (int y = 0; y < kHigh; ++y)

@@ -102,7 +102,8 @@ TEST(PixelFrame, RoundTrip) {
 }
 
 TEST(Linker, ABallisticBedWithStepsBeyondItsSpacingKeepsItsNames) {
-  // 20 frames per cycle, up to 1.2 d per frame: the nearest is a neighbour most of the time.
+  // 20 frames per cycle, up to 1.2 d per frame: most of the time the nearest detection belongs to a
+  // neighbour.
   const auto start = crystal(14);
   Linker linker({.diameter_px = 15, .fall_px = 1.5});
   double y = 0, v = -18;
@@ -115,7 +116,7 @@ TEST(Linker, ABallisticBedWithStepsBeyondItsSpacingKeepsItsNames) {
 }
 
 TEST(Linker, ABedThatLandsFromBelowIsFollowedLayerByLayer) {
-  // 30 layers fall by 0.8 d per frame; the plate stops one layer after the other in the course of one frame.
+  // 30 layers fall by 0.8 d per frame; the plate stops one layer after another during one frame.
   std::vector<PixelPoint> bed;
   for (int row = 0; row < 30; ++row)
     for (int i = 0; i < 20; ++i) bed.push_back({15 * (i + 0.5 * (row % 2)), -15 * std::sqrt(0.75) * row});
@@ -128,8 +129,8 @@ TEST(Linker, ABedThatLandsFromBelowIsFollowedLayerByLayer) {
 }
 
 TEST(Linker, TheLastCycleForetellsWhatNothingElseCould) {
-  // Beads too far apart to be neighbours, each with a random step of up to 0.8 of their spacing that comes
-  // again in every cycle, and a small drift.
+  // Beads too far apart to be neighbours. Each makes a random step of up to 0.8 of their spacing that repeats
+  // in every cycle, plus a small drift.
   constexpr int kPhases = 8;
   std::mt19937_64 generator(5);
   std::uniform_real_distribution<double> any(-20, 20);
@@ -139,7 +140,7 @@ TEST(Linker, TheLastCycleForetellsWhatNothingElseCould) {
   for (auto& phase : cycle)
     for (const PixelPoint p : home) phase.push_back({p.x_px + any(generator), p.y_px + any(generator)});
   auto wrong = [&](int phases) {
-    // The first cycle goes in small steps, so that it is linked without help.
+    // The first cycle is divided into small steps, so that it is linked without the previous cycle.
     Linker linker({.diameter_px = 15}, phases);
     std::size_t errors = 0;
     for (int j = 0; j < 4; ++j)
@@ -165,7 +166,7 @@ TEST(Linker, TheLastCycleForetellsWhatNothingElseCould) {
 }
 
 TEST(Linker, ACrystalThatTurnsAtOnceKeepsItsNames) {
-  // From rest, by 8 degrees in one frame: up to 1.4 d at the corners.
+  // From rest, rotated by 8 degrees in one frame: up to 1.4 d at the corners.
   const auto start = crystal(14);
   Linker linker({.diameter_px = 15});
   for (int f = 0; f < 2; ++f) linker.next(start);
@@ -182,9 +183,9 @@ TEST(Linker, ACrystalThatTurnsAtOnceKeepsItsNames) {
 }
 
 TEST(Linker, TheFrameAheadTellsWhoIsWhoAfterACollision) {
-  // A gas of discs between walls: straight flight and elastic collisions, up to 1.3 d per frame. Where two
-  // have hit each other between two frames, either could be at either place; but only one of them goes on
-  // from where they hit.
+  // A gas of discs between walls: straight flight and elastic collisions, up to 1.3 d per frame. If two discs
+  // collide between two frames, both assignments are possible, but only one agrees with their paths after the
+  // collision.
   constexpr double kD = 15, kBox = 145;
   constexpr int kBeads = 36, kParts = 200, kFrames = 120;
   std::mt19937_64 generator(9);
@@ -236,7 +237,8 @@ TEST(Linker, TheFrameAheadTellsWhoIsWhoAfterACollision) {
 }
 
 TEST(Linker, InAClosedCellTheBeadThatIsLeftIsTheOneThatWasLost) {
-  // One bead flies off, farther than is looked; where beads may come and go, it is another one.
+  // One bead moves farther than the search range. In an open cell, where beads may leave and enter, it counts
+  // as a new bead.
   for (const bool closed : {true, false}) {
     auto beads = crystal(6);
     beads.push_back({200, 40});
@@ -249,8 +251,8 @@ TEST(Linker, InAClosedCellTheBeadThatIsLeftIsTheOneThatWasLost) {
   }
 }
 
-// Three beads far apart fly straight. A speck lies near one of them for a frame, another on its other side in
-// the next: as many detections as tracks, but no bead goes to a speck.
+// Three beads far apart move in straight lines. A speck of dust appears near one of them for one frame, and
+// another on its other side in the next frame. No bead may be assigned to a speck.
 TEST(Linker, SpecksOfDustTakeNoBeadsPlace) {
   for (const bool closed : {false, true})
     for (const double off : {1.5, 1.8, 2.2}) {
@@ -268,8 +270,8 @@ TEST(Linker, SpecksOfDustTakeNoBeadsPlace) {
     }
 }
 
-// Lanes that flow against each other through an open picture: beads leave and enter side by side, none of
-// which is the other.
+// Lanes that move in opposite directions through an open picture: beads leave and enter next to each other
+// and are different beads.
 TEST(Linker, BeadsThatLeaveAnOpenPictureAreNotThoseThatEnter) {
   constexpr int kLanes = 6, kEach = 12;
   constexpr double kPitch = 25, kStep = 6, kLength = 300;  // px
@@ -281,7 +283,8 @@ TEST(Linker, BeadsThatLeaveAnOpenPictureAreNotThoseThatEnter) {
     std::vector<std::size_t> who;
     for (std::size_t lane = 0; lane < kLanes; ++lane)
       for (std::size_t i = 0; i < kEach; ++i) {
-        // Around a loop twice as long as the picture; the nth time round it is another bead.
+        // Each bead moves around a loop twice as long as the picture; on each new pass it counts as another
+        // bead.
         const double start = kPitch * static_cast<double>(2 * i) + 7.0 * static_cast<double>(lane);
         const double way = std::fmod(start + kStep * f, 2 * kLength);
         if (way >= kLength) {
@@ -304,7 +307,7 @@ TEST(Linker, BeadsThatLeaveAnOpenPictureAreNotThoseThatEnter) {
   EXPECT_LE(wrong, 2U);
 }
 
-// The range holds in frames that are matched anew, too.
+// The limit on the step applies also in frames that are matched again.
 TEST(Linker, NoStepIsLongerThanTheRange) {
   std::mt19937_64 generator(3);
   std::uniform_real_distribution<double> step(-15, 15);
@@ -331,7 +334,7 @@ TEST(Linker, NoStepIsLongerThanTheRange) {
 
 TEST(Linker, DroppedAndDoubledFramesScaleTheStep) {
   const auto start = crystal(8);
-  Linker linker({.diameter_px = 15, .max_shift_diameters = 0});  // the prediction alone
+  Linker linker({.diameter_px = 15, .max_shift_diameters = 0});  // prediction only
   for (int f = 0; f < 3; ++f) linker.next(moved(start, 4.0 * f, 0));
   linker.next(moved(start, 8, 0), {.interval = 0, .phase = -1, .cycle = -1});
   EXPECT_EQ(linker.next(moved(start, 8 + 16, 0), {.interval = 4, .phase = -1, .cycle = -1}),
@@ -342,7 +345,7 @@ TEST(Linker, DroppedAndDoubledFramesScaleTheStep) {
 TEST(Linker, SaysWhichLinksAreAmbiguous) {
   Linker linker({.diameter_px = 15, .max_shift_diameters = 0});
   linker.next(std::vector<PixelPoint>{{0, 0}, {10, 0}, {200, 0}});
-  // Both detections lie as near to the one as to the other.
+  // Both detections are equally near to both tracks.
   linker.next(std::vector<PixelPoint>{{5, 8}, {5, -8}, {200, 1}});
   EXPECT_EQ(linker.ambiguous(), (std::vector<std::uint8_t>{1, 1, 0}));
   EXPECT_EQ(linker.last().ambiguous, 2);

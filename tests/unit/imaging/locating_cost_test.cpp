@@ -1,5 +1,5 @@
-// The measuring of errors and times of the locator: choices made by hand, the noise of s_b by drawing it, and
-// a small run against the bound.
+// The measurement of errors and run times of the locator: choices made by hand, the noise of s_b by random
+// sampling, and a small run against the Cramér-Rao bound.
 
 #include "imaging/benchmark/locating_cost.hpp"
 
@@ -55,7 +55,7 @@ TEST(LocatingCost, NoiseOfTheBedsDisplacement) {
     }
     squares += (sum2 - sum * sum) / kDraws;
   }
-  // s_b^2 of 20 phases scatters by a third of itself: its mean over 2000 draws by 0.7 %.
+  // s_b^2 from 20 phases has a relative scatter of one third; its mean over 2000 draws has one of 0.7 %.
   EXPECT_NEAR(std::sqrt(squares) / bed_displacement_noise(0.01, kTracers, kCycles, kPhases), 1, 0.015);
   EXPECT_NEAR(bed_displacement_noise(1, 1, 1, 2), std::sqrt(0.5), 1e-15);
 }
@@ -86,10 +86,10 @@ TEST(LocatingCost, FitsAreAtTheBoundAndFindersAreNot) {
       EXPECT_LE(p.rms, 0.2);
       continue;
     }
-    EXPECT_GE(p.rms, 0.85 * p.bound);  // 800 errors: 2.5 % of scatter
+    EXPECT_GE(p.rms, 0.85 * p.bound);  // 800 errors: 2.5 % scatter
     EXPECT_LE(p.rms, 1.3 * p.bound);
   }
-  EXPECT_NEAR(all[3].bound / all[0].bound, 51 / 18.5, 0.05);  // rounding to 8 bit aside
+  EXPECT_NEAR(all[3].bound / all[0].bound, 51 / 18.5, 0.05);  // apart from rounding to 8 bits
   EXPECT_GT(all[4].seconds, all[0].seconds);
 }
 

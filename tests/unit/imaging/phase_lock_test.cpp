@@ -1,4 +1,4 @@
-// Phases from a number, from a list, and from the bed's own motion.
+// Phases from a fixed number per cycle, from a list, and from the motion of the bed.
 #include "imaging/phase/phase_lock.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ double bed_height(double gamma, double cycles) {
   return two[i] + (two[(i + 1) % 2000] - two[i]) * (at - std::floor(at));
 }
 
-/// A film of a bed: phases as they were, and heights with noise.
+/// A recording of a bed: the true phases, and heights with noise.
 struct Film {
   std::vector<std::int64_t> ticks;
   std::vector<double> heights;
@@ -48,7 +48,7 @@ Film film(int frames, int first_phase, double noise, double jitter, const std::v
     tick += std::count(drop_before.begin(), drop_before.end(), f);
     out.ticks.push_back(tick);
     const double when = (static_cast<double>(tick) + jitter * normal(generator)) / kPhases;
-    // A slow rise beside it, as of a bed that dilates.
+    // A slow rise is added, as of a bed that dilates.
     out.heights.push_back(bed_height(2.0, when) + noise * normal(generator) + 0.3 * std::sin(0.003 * f));
   }
   return out;
@@ -84,7 +84,8 @@ TEST(PhaseLock, FramesToPhasesAndCycles) {
 
 TEST(TriggerList, PhasesJitterDroppedAndDoubled) {
   const TemporaryFolder folder;
-  // 10 Hz drive, 20 phases: 5 ms apart. Frame 3 comes 0.5 ms late, one is missing before 5, 7 is taken twice.
+  // 10 Hz drive, 20 phases: 5 ms apart. Frame 3 comes 0.5 ms late, one frame is missing before frame 5, and
+  // frame 7 is recorded twice.
   const auto path =
       write_list(folder,
                  "frame,time_s\n0,0.090\n1,0.095\n2,0.100\n3,0.1055\n4,0.110\n5,0.120\n6,0.125\n"
@@ -122,8 +123,8 @@ TEST(TriggerList, RefusesWhatIsNone) {
 }
 
 TEST(FoundPhase, TheBedOnThePlateIsThatOfItsEquation) {
-  // On the plate while Gamma sin(t) <= 1, so that it takes off at asin(1/2) = 1/12 of a cycle, then a
-  // parabola.
+  // The bed is on the plate while Gamma sin(t) <= 1, so that it takes off at asin(1/2) = 1/12 of a cycle and
+  // then follows a parabola.
   const auto bed = inelastic_bed(2.0, 240);
   constexpr double kTau = 2 * std::numbers::pi;
   double worst = 0;
@@ -201,15 +202,15 @@ TEST(FoundPhase, AGapOfHalfACycleIsSeen) {
 }
 
 TEST(FoundPhase, WhatTheBeadsSayOfRepeatsCounts) {
-  // A jumpy bed, as it is above the onset of convection.
+  // A bed with irregular motion, as above the onset of convection.
   const Film clean = film(240, 0, 0.05, 0, {}, {});
   BedMotion motion{clean.heights, std::vector<double>(clean.heights.size(), -40.0)};
   const PhaseEstimationOptions options{.frames_per_cycle = kPhases, .gamma = 2.0};
   EXPECT_EQ(estimate_phases(motion, options).doubled, 0);
-  // Where the bed turns it repeats itself in every cycle: nobody took a frame twice.
+  // At the turning point of the bed successive frames look alike in every cycle: no frame was recorded twice.
   for (std::size_t f = 9; f < motion.repeats.size(); f += kPhases) motion.repeats[f] = 40;
   EXPECT_EQ(estimate_phases(motion, options).doubled, 0);
-  // But once in all, it tells.
+  // A repeat that occurs only once in the recording is a doubled frame.
   const Film twice = film(240, 0, 0.05, 0, {}, {114});
   BedMotion seen{twice.heights, std::vector<double>(twice.heights.size(), -40.0)};
   seen.repeats[114] = 40;

@@ -1,4 +1,5 @@
-// What a profile that discs share says of them: where its rim is, and whether it is that of plain discs.
+// Properties of the common profile of the discs: the position of the rim, and whether it is the profile of
+// plain discs.
 
 #include "imaging/refine/profile_fit.hpp"
 
@@ -12,7 +13,7 @@
 namespace twincell {
 namespace {
 
-/// Plain discs upon each other, as (radius, level), their edges blurred.
+/// Superposed plain discs, given as (radius, level), with blurred edges.
 DiscProfile profile_of(const std::vector<std::pair<double, double>>& discs, double blur) {
   DiscProfile profile;
   profile.radius_px = discs[0].first;
@@ -26,7 +27,7 @@ DiscProfile profile_of(const std::vector<std::pair<double, double>>& discs, doub
   return profile;
 }
 
-// The steepest fall of an error function is where its argument is 0.
+// An error function is steepest where its argument is 0.
 TEST(DiscProfile, ThePlainDiscsRimIsWhereItsEdgeIs) {
   for (const double radius : {5.0, 7.3, 16.0})
     for (const double blur : {0.8, 1.5, 3.0})
@@ -41,22 +42,24 @@ TEST(DiscProfile, PlainDiscsOfAnyBlurArePlain) {
     }
 }
 
-// A spot of light takes a twenty-fifth of the disc's area: (1 - b)^2 of its darkness is left there, and the
-// level that does best leaves q (1 - q) b^2/(1 - 2 q b + q b^2) of the squares, q = 1/25, b = 1/2: 0.0099.
+// A bright spot covers a twenty-fifth of the area of the disc, where (1 - b)^2 of the squared darkness
+// remains. The best constant level leaves the fraction q (1 - q) b^2/(1 - 2 q b + q b^2) of the squares, q =
+// 1/25, b = 1/2: 0.0099.
 TEST(DiscProfile, ASmallSpotOfLightMakesNoOtherDisc) {
   const double unlike = profile_of({{16, 0.9}, {3.2, -0.45}}, 0.5).unlike_plain();
   EXPECT_LT(unlike, 0.012);
   EXPECT_GT(unlike, 0.006);
 }
 
-// The same formula with q = (1 - w)^2, of a rim of width w R: sharp edges, so the blurred ones are near it.
+// The same formula with q = (1 - w)^2, for a rim of width w R. It is derived for sharp edges, and blurred
+// edges give nearly the same value.
 TEST(DiscProfile, AHollowDiscIsUnlikeAPlainOneByItsArea) {
   const double q = 0.64, b = 0.8, sharp = q * (1 - q) * b * b / (1 - 2 * q * b + q * b * b);
   EXPECT_NEAR(profile_of({{30, 0.9}, {24, -0.72}}, 0.5).unlike_plain(), sharp, 0.05 * sharp);
   EXPECT_NEAR(profile_of({{30, 0.9}, {24, -0.72}}, 0.5).rim(), 30, 0.1);
 }
 
-// Half as dark as its core, a ring is the rim all the same; a tenth is none.
+// A ring half as dark as the core still counts as the rim; a ring a tenth as dark does not.
 TEST(DiscProfile, AFaintRingIsTheRim) {
   EXPECT_NEAR(profile_of({{16, 0.4}, {13, -0.4}, {8, 0.9}}, 0.6).rim(), 16, 0.2);
   EXPECT_NEAR(profile_of({{16, -0.4}, {13, 0.4}, {8, 0.9}}, 0.6).rim(), 16, 0.2);

@@ -1,5 +1,5 @@
-// The Cramér-Rao bound of rendered pictures, against Fisher information from differences of whole pictures
-// and against the closed form of a straight edge; packings that touch and do not overlap.
+// The Cramér-Rao bound of rendered pictures, against the Fisher information from finite differences of whole
+// pictures and against the closed form of a straight edge; packings whose discs touch but do not overlap.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,8 @@
 namespace twincell::rendered {
 namespace {
 
-/// All of x, y, R, a of all discs free at once; derivatives from pictures a step apart.
+/// The bound with x, y, R and a of all discs free at the same time; derivatives from finite differences of
+/// pictures.
 std::vector<double> bound_by_differences(const Picture& picture, double snr) {
   constexpr double kStep = 1e-3;
   const auto n = static_cast<Eigen::Index>(picture.discs.size());
@@ -54,20 +55,20 @@ TEST(CramerRaoBound, IsThatOfDifferencesOfWholePictures) {
   for (const double snr : {164.0, 18.5}) {
     const auto all = bound_by_differences(p, snr), own = cramer_rao_bound(expected(p), p, snr);
     for (std::size_t k = 0; k < all.size(); ++k) {
-      // The bound takes the neighbours' neighbours as known: a little less, never more.
+      // The bound takes the neighbours of the neighbours as known: it may be slightly smaller, never larger.
       EXPECT_GE(own[k], all[k] * (1 - 1e-2)) << k;
       EXPECT_LE(own[k], all[k] * (1 + 1e-4)) << k;
     }
   }
 }
 
-// A large disc: the edge is straight, and (dI/dx)^2 averages to half of its square along the rim.
+// For a large disc the edge is straight, and (dI/dx)^2 averages to half of its square along the rim.
 TEST(CramerRaoBound, OfALargeDiscIsThatOfAStraightEdge) {
   Picture p;
   p.width = p.height = 140;
   p.discs = {{.x = 70.3, .y = 69.8, .radius = 50}};
   const double snr = 51, noise = p.light / snr, slope = noise * noise * (1 - kReadShare) / p.light;
-  const double s = std::sqrt(p.blur * p.blur + 1.0 / 12);  // a pixel's width adds its variance
+  const double s = std::sqrt(p.blur * p.blur + 1.0 / 12);  // the width of a pixel adds its variance
   double information = 0;
   constexpr double kStep = 1e-3;
   for (double u = -8; u < 8; u += kStep) {
@@ -93,7 +94,7 @@ TEST(Packing, DepositedDiscsTouchAndDoNotOverlap) {
       EXPECT_GE(gap, -1e-4);
       contacts += gap < 1e-4;
     }
-  // Each disc comes to rest on two others, or one and a wall, or the floor; a few meet a third by then.
+  // Each disc comes to rest on two others, on one disc and a wall, or on the floor; a few also touch a third.
   EXPECT_GE(contacts, 500);
   EXPECT_LE(contacts, 630);
 }

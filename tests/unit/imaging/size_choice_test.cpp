@@ -34,7 +34,8 @@ TEST(SizeChoice, NothingIsMissingOfADiscOrOfWhatLiesInIt) {
   EXPECT_NEAR(missing_share(image, {42, 38, 0.5, 7}, kBlur, 0), 0, 1e-4);
 }
 
-// With sharp rims the share of the outer half's area, from R/2 to R, that lies beyond the disc that is there.
+// For sharp rims the missing share is the fraction of the outer annulus, from R/2 to R, that is outside the
+// actual disc.
 TEST(SizeChoice, OfOneTooWideItsMarginIsMissing) {
   constexpr double kSharp = 0.1;
   const Prepared image = discs({{40, 40, 0.5, 28}}, kSharp);
@@ -46,8 +47,8 @@ TEST(SizeChoice, NothingSeenIsAllMissing) {
   EXPECT_EQ(missing_share(discs({}), {-40, -40, 0.5, 6}, kBlur, 0), 1);
 }
 
-// A large disc beside two small ones that touch, and proposals as votes make them: of the small size inside
-// the large disc, of the large size over the small ones.
+// A large disc and, next to it, two small ones that touch, with proposals as they arise from votes: small
+// ones inside the large disc, and a large one over the small discs.
 TEST(SizeChoice, TheTrueSizesStay) {
   const Proposal large{30, 40, 0.10, 12}, one{52, 34, 0.10, 6}, other{52, 46, 0.10, 6};
   const Prepared image = discs({large, one, other});
@@ -65,6 +66,6 @@ TEST(BlurOf, IsThatOfTheEdges) {
   for (const double s : {0.8, 1.5, 2.5, 4.0})
     EXPECT_NEAR(blur_of(discs({{40, 40, 0.5, 25}}, s).darkness), s, 0.2 * s) << s;
   EXPECT_EQ(blur_of(cv::Mat1f::zeros(50, 50)), 0.5);
-  // Discs of half the darkness are no more blurred.
+  // Discs of half the darkness have the same blur.
   EXPECT_NEAR(blur_of(0.5 * discs({{40, 40, 0.5, 25}}, 1.5).darkness), 1.5, 0.3);
 }

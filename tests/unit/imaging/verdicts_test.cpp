@@ -1,4 +1,4 @@
-// Every verdict has a picture, or a candidate, that earns it.
+// For every verdict, a picture or a candidate that produces it.
 
 #include <gtest/gtest.h>
 
@@ -59,11 +59,11 @@ TEST(Judge, OfTwoThatOverlapTheBetterStays) {
   EXPECT_EQ(j.beads[1].x, 77.9);
   ASSERT_EQ(j.dropped.size(), 1U);
   EXPECT_EQ(j.dropped[0].verdict, Verdict::overlaps);
-  b.x = 63.2;  // by less than a quarter of a radius
+  b.x = 63.2;  // an overlap of less than a quarter of a radius
   EXPECT_EQ(judge({a, b, c}, 7.5, 200, 100, {}).beads.size(), 3U);
 }
 
-// What is dropped itself drops nobody: of three in a row the middle one goes alone.
+// A dropped candidate does not cause others to be dropped: of three in a row only the middle one is dropped.
 TEST(Judge, ADroppedOneDropsNobody) {
   Detection a = good(50, 50), b = good(60, 50), c = good(70, 50);
   b.score = 0.8;
@@ -82,7 +82,7 @@ rendered::Picture row_of_beads() {
   return p;
 }
 
-/// The verdict of refine() on one more proposal.
+/// The verdict of refine() on one additional proposal.
 Verdict refined(const cv::Mat1b& frame, const rendered::Picture& picture, const Proposal& doubtful) {
   std::vector<Proposal> proposals;
   for (int k = 0; k < 8; ++k) {
@@ -122,8 +122,8 @@ TEST(Refine, WhatIsNoBeadIsDroppedWithItsReason) {
   EXPECT_EQ(refined(wall, p, {100, 105, 1}), Verdict::in_wall);
 }
 
-// A bead that nobody proposed is looked for after the first sweep and the second, if there is another to fit
-// it by.
+// A bead without a proposal is searched for after the first and the second sweep, provided that another sweep
+// follows in which it can be fitted.
 TEST(Refine, ABeadFoundLateNeedsASweepOfItsOwn) {
   const rendered::Picture p = row_of_beads();
   std::vector<Proposal> all_but_one;

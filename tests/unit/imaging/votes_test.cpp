@@ -12,7 +12,7 @@ using namespace twincell;
 
 namespace {
 
-// A picture without any order, smooth enough that some gradients count and some do not.
+// A picture without order, smooth enough that some gradients are large enough to vote and some are not.
 cv::Mat1f picture(int width, int height) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> darkness(-0.2F, 1.2F);
@@ -29,7 +29,7 @@ cv::Mat1f picture(int width, int height) {
   return smooth;
 }
 
-// The votes as votes.hpp defines them, a pixel at a time, none left out of memory.
+// The votes as defined in votes.hpp, pixel by pixel, without omitting any to save memory.
 cv::Mat1d smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, const VoteOptions& o) {
   const auto at = [&](int y, int x) {
     return static_cast<double>(
@@ -77,7 +77,7 @@ struct Case {
   int width, height;
   double radius;
   bool ignores;
-  std::size_t tops;  // at least
+  std::size_t tops;  // minimum number
 };
 
 class Votes : public testing::TestWithParam<Case> {};
@@ -122,7 +122,8 @@ TEST_P(Votes, AreThoseOfTheDefinition) {
   EXPECT_GE(tops.size(), c.tops);
 }
 
-// No whole or half radii: a vote straight up would lie between two pixels, and rounding say for which it is.
+// No integer or half-integer radii: a vertical vote would fall halfway between two pixels, and rounding would
+// decide which of them receives it.
 INSTANTIATE_TEST_SUITE_P(OfPictures, Votes,
                          testing::Values(Case{97, 61, 3.1, false, 50}, Case{120, 90, 7.4, true, 10},
                                          Case{64, 140, 20.3, false, 5}, Case{5, 4, 4.2, false, 0},
@@ -133,9 +134,9 @@ TEST(Tops, OfEqualOnesTheFirst) {
   constexpr std::size_t kWide = 40, kSpare = 16;
   std::array<std::array<float, kWide + kSpare>, 3> rows{};
   rows[1][7] = rows[1][8] = rows[2][8] = 2;  // a plateau that begins in the middle row
-  rows[0][20] = rows[1][21] = 3;             // one that begins above it
+  rows[0][20] = rows[1][21] = 3;             // a plateau that begins above the middle row
   rows[1][0] = rows[1][kWide - 1] = 9;       // at the border
-  rows[1][kWide] = 99;                       // beyond it
+  rows[1][kWide] = 99;                       // outside the border
   std::vector<std::int32_t> room;
   const auto tops = tops_of_votes({rows[0].data(), rows[1].data(), rows[2].data()}, kWide, 1, room);
   EXPECT_EQ(std::vector<std::int32_t>(tops.begin(), tops.end()), std::vector<std::int32_t>{7});

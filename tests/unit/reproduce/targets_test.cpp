@@ -1,4 +1,4 @@
-// When a target is met, missed, or left open by an interval.
+// Whether a target is met, missed or left open by an interval.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,8 @@ sweep::Onset onset(std::optional<double> value, std::optional<double> low, std::
 }
 
 TEST(Targets, ABedThatRearrangedOnceCameToRest) {
-  // Of 20 layers at Gamma = 2.2: tracers part during the first cycles, and stay.
+  // From a bed of 20 layers at Gamma = 2.2: tracers separate during the first cycles and then keep their
+  // distance.
   std::vector<double> once(200, 1.44);
   for (std::size_t j = 0; j < 10; ++j) once[j] = 0.14 * static_cast<double>(j);
   EXPECT_TRUE(is_arrested(once));
@@ -33,7 +34,7 @@ TEST(Targets, ABedThatRearrangedOnceCameToRest) {
   EXPECT_FALSE(is_arrested(once));
   once[150] = std::nan("");
   EXPECT_TRUE(is_arrested(once));
-  // One that convects: tracers part as diffusing ones do.
+  // In a convecting bed tracers separate as in diffusion.
   std::vector<double> on;
   for (int j = 0; j < 200; ++j) on.push_back(std::sqrt(0.1 * j));
   EXPECT_FALSE(is_arrested(on));
@@ -53,7 +54,7 @@ TEST(Targets, AValueInsideIsMetAnIntervalOutsideIsMissed) {
   EXPECT_EQ(within(sweep::Onset{}, 1.1, 1.35), Verdict::absent);
 }
 
-/// Of a bed that flips at mu: `n` runs at each of two places on either side.
+/// The onset of a bed whose verdict changes at mu, from `n` runs at each of two points on either side.
 sweep::Onset step_at(double mu, int n) {
   std::vector<sweep::Trial> trials;
   for (int k = 0; k < n; ++k)
@@ -70,7 +71,7 @@ TEST(Targets, OneOnsetIsAboveAnotherWhenTheOppositeIsExcluded) {
   EXPECT_EQ(above(step_at(2.05, 4), step_at(2, 4)), Verdict::open);
   EXPECT_EQ(above(step_at(2.3, 1), step_at(2, 1)), Verdict::open);
   EXPECT_EQ(above(step_at(3, 4), sweep::Onset{}), Verdict::absent);
-  // An onset beyond the range is above one inside it.
+  // An onset above the range is greater than one inside it.
   const std::vector<sweep::Trial> never(10, sweep::Trial{4.9, false});
   EXPECT_EQ(above(estimate_onset(never, 1, 5, 0.2), step_at(2, 4)), Verdict::met);
 }
@@ -99,7 +100,8 @@ TEST(Targets, AnEstimateIsMetMissedOrLeftOpen) {
   EXPECT_EQ(all_of({}), Verdict::absent);
 }
 
-/// A crystal whose slips follow the paper's barriers: none up to K_m = 6, 130 up to 9, 7 beyond.
+/// A crystal whose slip probability follows the paper's barriers: no slips up to K_m = 6, barrier 130 up to
+/// 9, barrier 7 above.
 std::vector<SweepRun> paper_like_crystal() {
   std::vector<SweepRun> runs;
   for (const double gamma :
@@ -114,7 +116,7 @@ std::vector<SweepRun> paper_like_crystal() {
 
 TEST(Targets, TheLadderFindsTheRegionsAndBarriersThatWerePutIn) {
   auto runs = paper_like_crystal();
-  std::reverse(runs.begin(), runs.end());  // in whatever order they come
+  std::reverse(runs.begin(), runs.end());  // the order of the runs must not matter
   const StrengthSweep ladder = make_strength_sweep("crystal_a", runs);
   ASSERT_TRUE(ladder.first_slips && ladder.convection);
   EXPECT_NEAR(*ladder.first_slips->low, 2.4 * 2.4, 1e-12);

@@ -1,4 +1,4 @@
-// Near pairs through cells against looking at all pairs: the same ones, each once, whatever the sizes.
+// Near pairs from the cell grid against a search over all pairs: the same pairs, each once, for all sizes.
 
 #include "sim/system/cell_grid.hpp"
 
@@ -16,7 +16,7 @@ struct Case {
   std::string name;
   int dimension;
   std::array<double, 3> period;
-  double extent;  ///< of the cube (square) in which beads lie, beyond the periods too
+  double extent;  ///< of the cube (3D) or square (2D) that contains the beads; it may exceed the period
   std::vector<double> radii;
 };
 
@@ -50,7 +50,7 @@ Pairs by_cells(const std::vector<Bead>& beads, const Case& c, double margin) {
   return found;
 }
 
-/// Looks at all pairs and all their images.
+/// Searches all pairs and all their periodic images.
 Pairs by_looking_at_all(const std::vector<Bead>& beads, const Case& c, double margin) {
   Pairs found;
   for (std::size_t i = 0; i < beads.size(); ++i)
@@ -87,7 +87,7 @@ TEST(CellGrid, FindsWhatLookingAtAllFinds) {
     cases.push_back({fmt::format("3D, periods x and y, {}", sizes), 3, {7.3, 7, 0}, 6, radii});
     cases.push_back({fmt::format("3D, all periods, {}", sizes), 3, {7, 7.5, 8}, 6, radii});
   }
-  // Two or one cells across a period: neighbours on both sides are the same.
+  // With two cells or one cell per period the neighbours on both sides are the same cell.
   cases.push_back({"3D, narrow", 3, {2.6, 2.6, 0}, 4, {0.5}});
   std::size_t all = 0;
   for (const Case& c : cases)
@@ -107,7 +107,7 @@ TEST(CellGrid, FindsWhatLookingAtAllFinds) {
   std::printf("%zu pairs in %zu cells\n", all, cases.size());
 }
 
-TEST(CellGrid, TouchingAtTheEdgeOfACellCounts) {  // a gap of rounding size, wherever the lattice lies
+TEST(CellGrid, TouchingAtTheEdgeOfACellCounts) {  // a gap of rounding size, for any position of the lattice
   for (const double from : {0.0, 0.3, 1e4, 1e6})
     for (const double gap : {-1e-9, 1e-9}) {
       std::vector<Bead> beads(50);
@@ -139,11 +139,11 @@ TEST(CellGrid, FarAndLostBeadsCostNothing) {  // H21, H30
   }
   const Pairs found = by_cells(beads, c, 0.25);
   EXPECT_EQ(found.size(), usual + 1);
-  EXPECT_TRUE(found.contains({201, 202}));  // two far ones that do touch
+  EXPECT_TRUE(found.contains({201, 202}));  // two beads far from the others that touch each other
   EXPECT_EQ(by_cells({}, c, 0.25).size(), 0U);
 }
 
-TEST(CellGrid, LargeBeadsDoNotMakeSmallOnesMany) {  // H8: candidates per bead, not pairs per bead
+TEST(CellGrid, LargeBeadsDoNotMakeSmallOnesMany) {  // H8: counts candidates per bead, not pairs per bead
   const auto candidates = [](std::size_t n) {
     const double side = std::sqrt(static_cast<double>(n));
     std::vector<double> radii(n, 0.5);

@@ -1,4 +1,5 @@
-// The method against integrals and an oscillator that are known, and its steps the same on every vector unit.
+// The collocation method against known integrals and a known oscillator; its steps are the same in every
+// instruction set.
 
 #include "sim/contact/collocation.hpp"
 
@@ -15,7 +16,7 @@
 namespace twincell::sim {
 namespace {
 
-constexpr std::size_t kNormal = 0, kSmooth = 0, kRough = 1;  // places in laws/axes.hpp
+constexpr std::size_t kNormal = 0, kSmooth = 0, kRough = 1;  // positions in laws/axes.hpp
 
 double at_moment(const StageMap& map, const double* values, std::size_t moment) {
   double sum = 0;
@@ -31,7 +32,8 @@ TEST(Collocation, PowersAreIntegratedToTheMoments) {
     for (std::size_t k = 0; k < kStages; ++k) {
       const double n = power, x = c.moment[k];
       EXPECT_NEAR(at_moment(c.once, values, k), std::pow(x, n + 1) / (n + 1), 1e-15);
-      // The degree of the result, power + 2, is more than eight values can carry only at 7.
+      // The degree of the result is power + 2. Only at power = 7 does it exceed what eight values can
+      // represent.
       if (power < 7) {
         EXPECT_NEAR(at_moment(c.twice, values, k), std::pow(x, n + 2) / ((n + 1) * (n + 2)), 1e-15);
       }
@@ -48,8 +50,8 @@ TEST(Collocation, TheEndOfAStepIsOfOrderFifteen) {
     return at_moment(c.once, values, kStages - 1);
   };
   for (int power = 8; power <= 14; ++power) EXPECT_NEAR(integral(power), 1.0 / (power + 1), 1e-15) << power;
-  // Of x^15 the rule makes (7! 8!)^2/(15! 16!) too much: what P_7 is of x^7 on [0, 1], over the leading
-  // coefficient of P_8.
+  // For x^15 the quadrature rule is too large by (7! 8!)^2/(15! 16!): the P_7 component of x^7 on [0, 1],
+  // over the leading coefficient of P_8.
   EXPECT_NEAR(integral(15) - 1.0 / 16, 25401600 / 1307674368e3 / 12870, 1e-14);
 }
 
@@ -84,7 +86,7 @@ TEST(Collocation, PolynomialsOfDegreeEightAreKnownEverywhere) {
     EXPECT_NEAR(StagePolynomials(c, x).value(p(0), values), p(x), 1e-15) << x;
 }
 
-/// A bead that falls on a wall head on: a damped oscillator that was at rest length.
+/// A bead that hits a wall head-on: a damped oscillator that starts at its rest length.
 class HeadOn {
  public:
   static constexpr double kStiffness = 3, kDamping = 0.4, kMass = 0.7, kReach = 0.5, kSpeed = 1.3;
@@ -98,7 +100,7 @@ class HeadOn {
     target.find_step(kNormal, kSmooth, 2)(start_, m);
     return m;
   }
-  /// Overlap after `t`, and its speed.
+  /// Overlap and its rate of change at time `t`.
   static std::pair<double, double> exact(double t) {
     const double decay = kDamping / (2 * kMass), w = std::sqrt(kStiffness / kMass - decay * decay);
     const double shrunk = std::exp(-decay * t);
@@ -136,7 +138,8 @@ TEST(Collocation, ADampedOscillatorIsFollowed) {
       EXPECT_LE(m.change, 1e-15);
       for (std::size_t k = 0; k < kStages; ++k) {
         const auto [overlap, speed] = HeadOn::exact(h * Collocation::numbers().moment[k]);
-        // Eight moments carry the motion to the eighth power of (omega h)/2 between the steps' ends.
+        // Eight stages represent the motion inside a step up to the eighth power of (omega h)/2; the end of
+        // the step is more accurate.
         const double off = k + 1 == kStages ? 1e-13 : 1e-8;
         EXPECT_NEAR(m.overlap[k], overlap, off);
         EXPECT_NEAR(-m.numbers[3][k], speed, off);

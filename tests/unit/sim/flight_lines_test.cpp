@@ -1,5 +1,5 @@
-// Beads on straight relative lines among their periodic images: the first touch against all images, one by
-// one.
+// Beads in straight relative motion with periodic images: the first touch, against a search over all images
+// one by one.
 
 #include <gtest/gtest.h>
 
@@ -12,17 +12,17 @@
 namespace twincell::sim {
 namespace {
 
-constexpr int kBeads = 13;       // no multiple of a vector's length
+constexpr int kBeads = 13;       // not a multiple of a vector length
 constexpr double kHorizon = 3;   // time
 constexpr double kPeriod = 3.5;  // sigma
-constexpr int kImages = 8;       // to either side: none comes from farther within the horizon
+constexpr int kImages = 8;       // on either side: no bead arrives from farther away within the horizon
 
 struct Touch {
   double time = HUGE_VAL;
   int partner = -1;
 };
 
-/// When two lines, and a shift between them, are first at `reach`, after `from`.
+/// Time after `from` at which two paths, one shifted by `shift`, first come within the distance `reach`.
 double first_touch(const BallisticPath& p, const BallisticPath& q, const Vec3& shift, double reach,
                    double from) {
   const Vec3 w = p.b - q.b, d = p.a - q.a + shift + from * w;
@@ -43,7 +43,7 @@ class FlightLinesOf {
       BallisticPath line{{place(random), dimension == 2 ? 0 : place(random), height(random)},
                          {speed(random), dimension == 2 ? 0 : speed(random), speed(random)}};
       if (i == 0) line.b.z() = 0;
-      if (i == 1) line.b = lines_[0].b;  // no relative motion at all
+      if (i == 1) line.b = lines_[0].b;  // no relative motion
       bool free = true;
       for (std::size_t j = 0; j < i; ++j) {
         const Vec3 d = line.a - lines_[j].a;
@@ -54,7 +54,7 @@ class FlightLinesOf {
     }
   }
 
-  /// The first touch of bead i after a time, every image of every other bead looked at.
+  /// The first touch of bead i after the time `now`, from a search over every image of every other bead.
   [[nodiscard]] Touch among_all_images(std::size_t i, double now) const {
     Touch first;
     const auto reach_of = [&](std::size_t axis) { return period_[axis] > 0 ? kImages : 0; };
@@ -71,7 +71,8 @@ class FlightLinesOf {
     }
     return first;
   }
-  /// The same as a flight finds it: it looks again where it is told to.
+  /// The same from first_hit(), as in event-driven motion: the search is repeated at the time that
+  /// first_hit() returns.
   [[nodiscard]] Touch by_looking(std::size_t i, double now, int& looks) const {
     for (;;) {
       const BallisticPaths::Hit hit = lines_.first_hit(i, now);
@@ -124,19 +125,20 @@ TEST(BallisticPaths, FindTheFirstTouchAmongAllImages) {
 }
 
 TEST(BallisticPaths, DoNotWaitForImagesThatPassAboveOrBelow) {
-  // Bead 1 crosses the cell 3 above bead 0, whose first image it passes at x = 3.5 - 1.
+  // Bead 1 crosses the cell at a height of 3 above bead 0 and reaches its first image at x = 3.5 - 1.
   const auto until = [](double height, double sinks) {
     BallisticPaths lines({0.5, 0.5}, 3, {kPeriod, kPeriod, 0});
     lines.put(0, {{0, 0, 0}, {0, 0, 0}});
     lines.put(1, {{0, 0, height}, {1, 0, -sinks}});
     return lines.first_hit(0, 0).until;
   };
-  EXPECT_GT(until(3, 0), 1e90);              // always above
-  EXPECT_EQ(until(3, -1), HUGE_VAL);         // rises
-  EXPECT_EQ(until(3, 4), HUGE_VAL);          // through the plane of bead 0, at 0.5 to 1, before it is there
-  EXPECT_NEAR(until(3, 0.5), 4, 1e-12);      // there at 2.5, as deep as bead 0 from 4 on
-  EXPECT_NEAR(until(1.5, 0.5), 2.5, 1e-12);  // as deep from 1 to 5, there at 2.5
-  EXPECT_NEAR(until(0.5, 0.0001), 2.5, 1e-12);  // overlaps in height all the time
+  EXPECT_GT(until(3, 0), 1e90);       // always above
+  EXPECT_EQ(until(3, -1), HUGE_VAL);  // rises
+  // Passes the height of bead 0 between 0.5 and 1, before it reaches the image.
+  EXPECT_EQ(until(3, 4), HUGE_VAL);
+  EXPECT_NEAR(until(3, 0.5), 4, 1e-12);      // reaches the image at 2.5, at the height of bead 0 from 4 on
+  EXPECT_NEAR(until(1.5, 0.5), 2.5, 1e-12);  // at the height of bead 0 from 1 to 5, reaches the image at 2.5
+  EXPECT_NEAR(until(0.5, 0.0001), 2.5, 1e-12);  // overlaps in height at all times
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Where beads begin: lattices against their geometry, random deposits, files good and bad.
+// Initial positions of beads: lattices against their geometry, random deposits, valid and invalid files.
 
 #include "sim/start/start.hpp"
 
@@ -26,7 +26,7 @@ Scene scene(const std::string& text, const std::vector<std::string>& set = {}) {
   return read_scene_text(text, "scene.toml", set);
 }
 
-/// Smallest gap between two beads; negative: an overlap.
+/// Smallest gap between two beads; a negative value is an overlap.
 double smallest_gap(const std::vector<Bead>& beads, const Scene& s) {
   double smallest = HUGE_VAL;
   for_each_near_pair(
@@ -35,7 +35,7 @@ double smallest_gap(const std::vector<Bead>& beads, const Scene& s) {
   return smallest;
 }
 
-/// How far a bead reaches into a wall at most.
+/// Largest overlap of a bead with a wall.
 double deepest_in_wall(const std::vector<Bead>& beads, const Scene& s) {
   double deepest = -HUGE_VAL;
   for (const Wall& wall : s.walls())
@@ -95,15 +95,14 @@ TEST(Crystal, BeadsTouchAndStayInTheCell) {
       const std::string which = std::string(kind) + " " + set[0] + " " + set[1] + " " + set[2];
       const double gap = smallest_gap(beads, s);
       EXPECT_GE(gap, -1e-12) << which;
-      EXPECT_LE(gap, s.width == 1 ? HUGE_VAL : 1e-12)
-          << which;  // one upright row of crystal A does not touch
+      EXPECT_LE(gap, s.width == 1 ? HUGE_VAL : 1e-12) << which;  // an upright row of crystal A has gaps
       EXPECT_LE(deepest_in_wall(beads, s), 1e-8) << which;
       EXPECT_NO_THROW(require_sound(beads, s, 1e-8)) << which;
     }
 }
 
-TEST(Crystal,
-     IsClosePackedInSpace) {  // 12 neighbours, 6 of them in the layer; hexagonal stacking: a mirror plane
+// 12 neighbours, 6 of them in the layer; in hexagonal stacking the layer is a mirror plane.
+TEST(Crystal, IsClosePackedInSpace) {
   for (const char* kind : {"crystal_a", "crystal_b"}) {
     const Scene s = scene(kSpace, {"cell.sides=walls", "cell.plates=walls", "cell.width=8", "cell.depth=8",
                                    "beads.count=600", std::string("start.kind=") + kind});
@@ -127,7 +126,7 @@ TEST(Crystal,
         EXPECT_TRUE(std::any_of(bonds.begin(), bonds.end(),
                                 [&](const Vec3& r) { return (r - mirrored).norm() < 1e-9; }));
       }
-      // Rows touch along x in crystal A, upright in crystal B.
+      // Rows touch along x in crystal A, along the vertical in crystal B.
       const Vec3 row = along_x ? Vec3::UnitZ() : Vec3::UnitX();
       EXPECT_TRUE(
           std::any_of(bonds.begin(), bonds.end(), [&](const Vec3& r) { return (r - row).norm() < 1e-9; }));
@@ -192,7 +191,8 @@ TEST(Sizes, FollowTheirSpread) {
         largest = std::max(largest, std::abs(deviation));
       }
       const double w = s.spread_width, cut = largest_deviation(s.spread, w) / w;
-      // Variance of a uniform law, and of a normal one cut at +-cut standard deviations.
+      // Variance of a uniform distribution, and of a normal distribution truncated at +-cut standard
+      // deviations.
       const double tail = std::exp(-cut * cut / 2) / std::sqrt(2 * std::numbers::pi),
                    inside = std::erf(cut / std::numbers::sqrt2);
       const double expected = s.spread == SizeSpread::uniform ? w / std::numbers::sqrt3
@@ -262,7 +262,7 @@ TEST(Random, DrawsFromTheSeedAlone) {
   const Scene s = scene(kFlat, {"beads.count=50", "start.kind=random", "start.seed=5"});
   const auto beads = random_deposit(s).beads, again = random_deposit(s).beads;
   for (std::size_t i = 0; i < beads.size(); ++i) EXPECT_EQ(centre_of(beads[i]), centre_of(again[i]));
-  // The first bead meets no other: it lies where the standard's generator says.
+  // The first bead touches no other, so that its position follows directly from the standard's generator.
   std::mt19937_64 engine(5);
   EXPECT_EQ(beads[0].x, 0.5 + 19 * (static_cast<double>(engine() >> 11) * 0x1p-53));
   EXPECT_NE(random_deposit(scene(kFlat, {"beads.count=50", "start.kind=random", "start.seed=6"})).beads[0].x,
@@ -320,7 +320,7 @@ TEST(Relax, PushesLittleAndTheLighterBeadMore) {  // H5
   pair[0].x = 5, pair[1].x = 5.8, pair[0].z = pair[1].z = 5;
   pair[1].mass = 3;
   relax_overlaps(pair, s, 1e-4, 1);
-  EXPECT_NEAR(pair[0].x, 5 - 0.0075, 1e-15);  // 0.01 in all
+  EXPECT_NEAR(pair[0].x, 5 - 0.0075, 1e-15);  // 0.01 in total
   EXPECT_NEAR(pair[1].x, 5.8 + 0.0025, 1e-15);
   EXPECT_LE(relax_overlaps(pair, s, 1e-4, 1000), 1e-4);
   EXPECT_NEAR(pair[1].x - pair[0].x, 1, 1e-4);
@@ -339,7 +339,7 @@ TEST(Relax, UndoesNoiseInAnyCell) {
       const Scene s = scene(text, set);
       auto beads = make_start(s).beads;
       std::mt19937_64 engine(3);
-      // Equal beads touch on their lattice; unequal ones have the room of the largest.
+      // Equal beads touch on their lattice; unequal beads are placed with the spacing of the largest.
       std::normal_distribution<double> noise(0, std::string(spread) == "none" ? 0.02 : 0.15);
       for (Bead& b : beads) {
         b.x += noise(engine), b.z += noise(engine);
@@ -353,7 +353,7 @@ TEST(Relax, UndoesNoiseInAnyCell) {
       std::printf("%dD, %s: overlap left %.1e, largest displacement %.3f\n", s.dimension, spread, left,
                   moved);
       EXPECT_LE(left, 1e-4);
-      EXPECT_GE(smallest_gap(beads, s), -2e-4);  // a last push may meet a neighbour
+      EXPECT_GE(smallest_gap(beads, s), -2e-4);  // the last correction may push a bead into a neighbour
       EXPECT_LE(deepest_in_wall(beads, s), 2e-4);
       EXPECT_LT(moved, 0.5);
     }
@@ -383,7 +383,7 @@ TEST(Sound, NamesTheBead) {  // H1, H5, H21
               "a bead of radius 0.8 would meet two images of another");
 }
 
-TEST(Sound, LooksAtManyBeadsInNoTime) {  // not at all pairs: 5e9 of them
+TEST(Sound, LooksAtManyBeadsInNoTime) {  // must not search all pairs: there are 5e9
   const Scene s = scene(kFlat, {"beads.count=100000", "cell.width=300"});
   auto beads = crystal_a(s).beads;
   EXPECT_NO_THROW(require_sound(beads, s, 0.05));
@@ -392,7 +392,7 @@ TEST(Sound, LooksAtManyBeadsInNoTime) {  // not at all pairs: 5e9 of them
   EXPECT_LE(relax_overlaps(beads, s, 1e-3, 2000), 1e-3);
 }
 
-/// A trajectory of one frame.
+/// A trajectory with a single frame.
 struct Film {
   TemporaryFolder folder;
   TrajectoryInfo info;
@@ -421,7 +421,7 @@ TEST(Trajectory, ImpossibleOnesAreRefused) {  // H1, H5
   expect_says(refusal({Vec3(9, 0, 0.5)}), "into the wall \"right\"");
   expect_says(refusal({Vec3(2, 0, 0.5)}, {"start.frame=1"}), "start.frame: frame 1 was requested");
   expect_says(refusal({Vec3(2, 0, 0.5)}, {"beads.count=2"}), "beads.count: 2 beads were specified");
-  // Too many for the width: pushing ends in a jam.
+  // Too many beads for the width: the relaxation ends in a jam.
   std::vector<Vec3> row;
   for (int i = 0; i < 9; ++i) row.emplace_back(0.5 + i * 0.875, 0, 0.5);
   expect_says(refusal(row, {"cell.lid=wall", "cell.height=1"}), "the beads cannot be pushed apart");
@@ -574,7 +574,7 @@ TEST(Tracers, AreOneAColumnOtherwise) {
   const Scene space = scene(kSpace, {"beads.count=1000", "start.kind=random"});
   auto beads = random_deposit(space).beads;
   EXPECT_EQ(count(space, beads), 25);
-  // A bead that has drifted across a period is still in its column.
+  // A bead that has drifted across a period remains in its column.
   const auto before = choose_tracers(beads, space);
   for (Bead& b : beads) b.x += 10, b.y -= 15;
   EXPECT_EQ(choose_tracers(beads, space), before);

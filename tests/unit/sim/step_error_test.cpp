@@ -1,5 +1,5 @@
-// The error of e that `explain` states, beside numbers from outside the code: closed forms of e, and the
-// errors that an independent program measured (VERIFICATION.md, V1.2).
+// The error of e that `explain` reports, against values from outside the code: closed forms of e, and errors
+// measured by an independent program (VERIFICATION.md, V1.2).
 
 #include "sim/accuracy/step_error.hpp"
 
@@ -58,7 +58,7 @@ TEST(StepError, FollowsTheScenesOwnRestitution) {
       EXPECT_NEAR(scene.error->error.largest, 0.79 / 50.37, 0.1 * 0.79 / 50.37);
     }
   }
-  // Of second order where steps are split.
+  // The split integrator is of second order.
   const auto split = [](double n) {
     return Explained("[contact]\nrestitution = 0.7\n" + stepped(n, "split")).error->error.rms;
   };
@@ -66,7 +66,7 @@ TEST(StepError, FollowsTheScenesOwnRestitution) {
 }
 
 TEST(StepError, FollowsTheScenesOwnLaw) {
-  // Schwager & Poeschel 2007 for the paper's damping; e of the other laws at the speed of meeting.
+  // Schwager & Poeschel 2007 for the paper's damping; for the other laws, e at the impact speed.
   const Explained clipped("[contact]\nnormal = \"linear-no-tension\"\ngamma_n = 100.0\n" + stepped(50.37));
   ASSERT_TRUE(clipped.error);
   EXPECT_NEAR(clipped.error->restitution, 0.897054, 1e-6);
@@ -90,7 +90,8 @@ TEST(StepError, IsOfStepsAlsoWhereBeadsWouldFlyWithoutGravity) {
 }
 
 TEST(StepError, OfFrictionIsThatOfSlidingImpacts) {
-  // The first paper's beads: a fifth of the friction at n = 50 by Verlet, a hundredth where steps are split.
+  // The first paper's beads: the error is a fifth of the effect of friction at n = 50 with Verlet, and a
+  // hundredth of that with the split integrator.
   const std::string law = "[contact]\ngamma_n = 100.0\ngamma_t = 100.0\nk_t = 1e4\nmu = 0.6\n";
   Explained verlet(law + stepped(50.37));
   const Explained fine(law + stepped(201.48)), split(law + stepped(50.37, "split"));
@@ -100,7 +101,7 @@ TEST(StepError, OfFrictionIsThatOfSlidingImpacts) {
   EXPECT_NEAR(e.spin.rms / fine.error->friction->spin.rms, 4, 0.8) << "first order";
   EXPECT_LT(split.error->friction->spin.rms, 0.02 * e.spin.rms);
   EXPECT_NE(verlet.reason().find("friction changes R w by 0.0"), std::string::npos) << verlet.reason();
-  // The dashpot's slider has no spring, and is exact in another way.
+  // The slider of the dashpot law has no spring and therefore a different error.
   const Explained dashpot(
       "[contact]\nrestitution = 0.9\ntangential = \"dashpot\"\nc_t_over_c_n = 1.0\nmu = 0.4\n" +
       stepped(50.37));
@@ -112,7 +113,8 @@ TEST(StepError, OfFrictionIsThatOfSlidingImpacts) {
 TEST(StepError, OfFrictionIsOfTheStepThatStifferWallsSet) {
   const std::string law = "[contact]\ngamma_n = 100.0\ngamma_t = 100.0\nk_t = 1e4\nmu = 0.6\n";
   const Explained stiff(law + "[contact.wall]\nk_n = 1e8\n" + stepped(50.37));
-  const Explained fine(law + stepped(50.37 * std::sqrt(50.0)));  // the wall's contact over that of two beads
+  // sqrt(50) is the contact time of two beads over that of bead and wall.
+  const Explained fine(law + stepped(50.37 * std::sqrt(50.0)));
   ASSERT_NEAR(stiff.plan.dt / fine.plan.dt, 1, 0.02);
   EXPECT_NEAR(stiff.error->friction->spin.rms / fine.error->friction->spin.rms, 1, 0.05);
 }

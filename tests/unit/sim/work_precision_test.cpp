@@ -1,5 +1,5 @@
-// The measuring of errors and times of steps: against errors that an independent program found, orders that
-// theory states, closed forms, and choices made by hand.
+// The measurement of errors and run times of integration steps: against errors found by an independent
+// program, theoretical orders, closed forms, and choices made by hand.
 
 #include "sim/accuracy/work_precision.hpp"
 
@@ -13,7 +13,7 @@
 namespace twincell::sim {
 namespace {
 
-/// Exponent p of error ~ n^-p between two numbers of steps.
+/// Exponent p of error ~ n^-p, from two values of n.
 template <class Error>
 double order(const std::string& integrator, double few, double many, const Error& error) {
   const auto at = [&](double n) { return error(collision_errors({.integrator = integrator, .n = n})); };
@@ -57,7 +57,7 @@ TEST(CollisionErrors, OrdersAreThoseOfTheIntegrators) {
   EXPECT_NEAR(predicted, 1, 0.15);
   EXPECT_NEAR(verlet_oblique, 1, 0.15);
   EXPECT_NEAR(split_oblique, 2, 0.1);
-  // Parts of second order cancel head-on, for these laws: between second and third.
+  // Head-on, contributions of second order cancel partly for these laws: the order is between two and three.
   EXPECT_GE(split, 1.9);
   EXPECT_LE(split, 3.1);
 }
@@ -75,9 +75,9 @@ TEST(StickingRatio, ClosedForms) {
   // Bead on plate and two beads of Table I: a = 150, Omega = 86.6025 and 193.649.
   EXPECT_NEAR(sticking_ratio(1e4, 100, 3, 3.145527e-3), 0.310127, 1e-6);
   EXPECT_NEAR(sticking_ratio(1e4, 50, 6, 2.222831e-3), 0.419530, 1e-6);
-  // Undamped, k_t/k_n = m_t/m_eff turns the surface round: a disc on a plate, t_c = pi/sqrt(k_n).
+  // Undamped, k_t/k_n = m_t/m_eff reverses the surface velocity: a disc on a plate, t_c = pi/sqrt(k_n).
   EXPECT_NEAR(sticking_ratio(1e6 / 3, 0, 3, std::acos(-1.0) * 1e-3), -1, 1e-12);
-  // A dashpot alone: exp(-c t_c/m_t).
+  // With a dashpot alone: exp(-c t_c/m_t).
   EXPECT_NEAR(sticking_ratio(0, 100, 3, 2e-3), std::exp(-0.6), 1e-12);
 }
 
@@ -90,7 +90,7 @@ TEST(BedErrors, BedsRestAtTheFewestSteps) {
       EXPECT_LE(e.kinetic_energy, 1e-20);
       EXPECT_LE(e.floor_force, 1e-8);
       EXPECT_LE(e.overlap, 1e-8);
-      EXPECT_GT(e.overlap, 1e-13);  // a column has been weighed: it never rests to the last bit
+      EXPECT_GT(e.overlap, 1e-13);  // the column has really been evaluated: it never rests to the last bit
     }
 }
 
@@ -102,7 +102,8 @@ TEST(GasTemperature, IsThatOfTheGasWhateverTheStep) {
               coarse.standard_error);
   EXPECT_EQ(fine.periods, 200);
   EXPECT_NEAR(fine.value, coarse.value, 4 * both);
-  EXPECT_GT(both, 0.005 * fine.value);  // ten blocks of twenty periods of forty beads are no better known
+  // Smallest plausible error for ten blocks of twenty periods of forty beads.
+  EXPECT_GT(both, 0.005 * fine.value);
   EXPECT_LT(both, 0.10 * fine.value);
   EXPECT_NEAR(fine.seconds_to(0.5 * fine.standard_error / fine.value), 4 * fine.seconds, 1e-9 * fine.seconds);
 }
@@ -131,9 +132,9 @@ WorkPrecision made_up(const std::string& integrator, double n, double error, dou
 
 TEST(WorkPrecision, CheapestPassesWithAllLargerNumbersOfSteps) {
   const std::vector<WorkPrecision> all = {
-      made_up("verlet", 10, 2e-4, 1),  // by luck: with 20 steps it is worse
+      made_up("verlet", 10, 2e-4, 1),  // accurate by chance: the error with 20 steps is larger
       made_up("verlet", 20, 5e-3, 2), made_up("verlet", 50, 1e-3, 5),     made_up("split", 10, 9e-4, 3),
-      made_up("split", 20, 1e-5, 4),  made_up("split", 5, 1e-6, 0.1, 1e5)};  // another stiffness
+      made_up("split", 20, 1e-5, 4),  made_up("split", 5, 1e-6, 0.1, 1e5)};  // different stiffness
   EXPECT_EQ(cheapest(all, 1e6, 1e-3)->setting, all[3].setting);
   EXPECT_EQ(cheapest(all, 1e6, 1e-4)->setting, all[4].setting);
   EXPECT_EQ(cheapest(all, 1e6, 1e-2)->setting, all[0].setting);

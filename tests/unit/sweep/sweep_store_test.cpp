@@ -43,7 +43,7 @@ TEST(SweepStore, AResultIsHeldAgainstItsSum) {
     put_file(file, damaged);
     EXPECT_THROW((void)store.result(point()), InputError) << damaged;
   }
-  // Of a version without sums.
+  // Written by a version without checksums.
   put_file(file, kResult);
   EXPECT_TRUE(store.result(point()));
 }
@@ -59,7 +59,7 @@ TEST(SweepStore, OnlyASweepsFolderIsWrittenInto) {
   EXPECT_NO_THROW(Store(folder / "thesis", Store::Access::read));
 }
 
-// The first paper's beds take 650 bytes a bead, so that the four points take 1.3, 1.3, 2.6 and 2.6 MB.
+// The first paper's beds take 650 bytes per bead, so that the four points take 1.3, 1.3, 2.6 and 2.6 MB.
 TEST(SweepMemory, PointsThatRunAtOnceMustFitTogether) {
   const TemporaryFolder folder;
   const std::string scene =
@@ -79,7 +79,7 @@ TEST(SweepMemory, PointsThatRunAtOnceMustFitTogether) {
                               "4 points that run at once", "with --threads 3");
   expect_refusal<ConfigError>([&] { require_memory_together(schedule, 2, "--threads", 2.5e6); },
                               "beads.count", "requires 4000 beads in one point", "2.6 MB");
-  // Later rounds of a search go to the ends of its range.
+  // Later rounds of a search may reach the ends of its range.
   const Plan search = read_plan_text(scene +
                                          "drive.gamma = 1.5\n[search]\nkey = \"beads.layers\"\nverdict = "
                                          "\"convecting\"\nrange = [1.0, 10.0]\n"

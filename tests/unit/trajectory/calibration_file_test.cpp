@@ -1,4 +1,4 @@
-// Calibration files: written, read, merged, included; what is wrong with one is said with file and line.
+// Calibration files: writing, reading, merging, inclusion; errors are reported with file and line.
 #include "trajectory/calibration_file.hpp"
 
 #include <gtest/gtest.h>
@@ -124,7 +124,7 @@ TEST(CalibrationFile, ACellTakesWhatItDoesNotState) {
   EXPECT_EQ((*cell.side_tilt)[1], -0.2);
   EXPECT_TRUE(cell.included.overridden.empty());
 
-  // What is stated wins, and is named; a drive that is whole takes nothing.
+  // Explicit values take precedence and are listed; a complete drive takes nothing from the calibration.
   put_file(folder / "CELL.toml",
            "[camera]\npixels_per_sigma = 12.0\n[drive]\nomega = 2.0\ngamma = 2.0\n[calibration]\nfrom = "
            "\"c.toml\"\n");
@@ -143,16 +143,16 @@ TEST(CalibrationFile, ASceneTakesContactsOverItsPreset) {
   put_file(folder / "scene.toml", scene);
   const sim::Scene s = sim::read_scene(folder / "scene.toml");
   EXPECT_EQ(s.drive.amplitude, 1.25);
-  EXPECT_EQ(s.drive.omega, 1);  // the preset's
+  EXPECT_EQ(s.drive.omega, 1);  // from the preset
   EXPECT_EQ(s.left_tilt, 0.4);
   EXPECT_EQ(s.right_tilt, -0.2);
   EXPECT_EQ(s.contact.bead.which_of(sim::normal_damping_keys()), "restitution");
   EXPECT_EQ(s.contact.bead.number("restitution"), 0.91);
-  // The scene's own damping stays, in whichever word.
+  // The scene's own damping takes precedence, whichever key states it.
   put_file(folder / "scene.toml", scene + "[contact]\ngamma_n = 50.0\n");
   EXPECT_EQ(sim::read_scene(folder / "scene.toml").contact.bead.which_of(sim::normal_damping_keys()),
             "gamma_n");
-  // The resolved scene stands alone.
+  // The resolved scene is complete without other files.
   const sim::Scene again = sim::read_scene_text(s.resolved, "elsewhere.toml");
   EXPECT_EQ(again.drive.amplitude, 1.25);
 }

@@ -48,10 +48,11 @@ TEST(Drive, ContradictionAndShortageAreNamed) {
   }
   EXPECT_THROW(solve_drive({.gamma = 1.8}, 1, where), ConfigError);
   EXPECT_THROW(solve_drive({.k_m = 4.0, .peak_velocity = 2.0}, 1, where),
-               ConfigError);  // the same statement twice
+               ConfigError);  // the same quantity given twice
   EXPECT_THROW(solve_drive({.omega = 1.0, .gamma = -1.0}, 1, where), ConfigError);
   EXPECT_THROW(solve_drive({.omega = 0.0, .gamma = 1.0}, 1, where), ConfigError);
-  EXPECT_THROW(solve_drive({.omega = 1.0, .gamma = 1.0}, 0, where), ConfigError);  // no gravity, no Gamma
+  // Without gravity Gamma is undefined.
+  EXPECT_THROW(solve_drive({.omega = 1.0, .gamma = 1.0}, 0, where), ConfigError);
   EXPECT_THROW(solve_drive({.omega = std::nan(""), .gamma = 1.0}, 1, where), ConfigError);
 }
 

@@ -37,7 +37,7 @@ TrajectoryInfo experiment_info() {
   return info;
 }
 
-/// Bead 2 is missing in odd frames.
+/// Bead 2 is absent in odd frames.
 Frame frame_number(int f) {
   Frame frame;
   frame.step = 10 * f;
@@ -179,7 +179,7 @@ TEST(H5mdFile, DamagedFilesAreOneSentence) {
 TEST(H5mdFile, ADamagedChunkNamesTheFrame) {
   const TemporaryFolder folder;
   write(folder / "run.h5", 45);
-  // Find the compressed position chunk of some frame through HDF5 itself and scribble over it.
+  // Finds the compressed position chunk of a frame through HDF5 itself and overwrites it with invalid data.
   haddr_t where = 0;
   {
     const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
@@ -198,7 +198,7 @@ TEST(H5mdFile, ADamagedChunkNamesTheFrame) {
   EXPECT_FALSE(validate_h5md(folder / "run.h5").empty());
 }
 
-// Files of others: what they leave out is taken from what they hold.
+// Files of other programs: omitted fields are inferred from the frames.
 TEST(H5mdFile, ThePlaneAndThePhasesShowInTheFrames) {
   const TemporaryFolder folder;
   for (const bool planar : {true, false}) {

@@ -1,4 +1,5 @@
-// Laboratory units in cells and scenes: the same numbers as reduced ones, and no bare number beside a scale.
+// Laboratory units in cells and scenes: the same values as in reduced units, and no unitless value together
+// with a scale.
 #include <gtest/gtest.h>
 
 #include "core/atomic_file.hpp"
@@ -33,7 +34,7 @@ void expect_says(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
-// Beads of 2 mm: t0 = 14.2784 ms and v0 = 140.07 mm/s by hand; 8 Hz are omega = 0.717713.
+// Beads of 2 mm, by hand: t0 = 14.2784 ms and v0 = 140.07 mm/s; 8 Hz corresponds to omega = 0.717713.
 const std::string kScale = "[scale]\nsigma_mm = 2\ngravity_m_s2 = 9.81\n";
 
 TEST(Quantities, LaboratoryUnitsGiveTheReducedNumbers) {
@@ -67,7 +68,7 @@ TEST(Quantities, ABareNumberBesideAScaleIsRefusedWithBothSpellings) {
     expect_says(said, "without a unit");
     expect_says(said, std::string(key) + "_");
   }
-  // Where no scale is, reduced units are the only ones.
+  // Without a scale only reduced units are accepted.
   EXPECT_EQ(cell_of("[drive]\namplitude = 1.5\nomega = 1.0\n").drive()->amplitude, 1.5);
 }
 
@@ -83,10 +84,11 @@ TEST(Quantities, WhatCannotBeConvertedOrContradictsIsNamed) {
   expect_says(complaint_of_cell("[scale]\nsigma_mm = 2.0\nsigma_m = 0.001\n"),
               "scale.sigma_m sets the same quantity");
   expect_says(complaint_of_cell("[drive]\nfrequency_hz = -8.0\n" + kScale), "CELL.toml:2:");
-  // Also where the two agree: which one follows when the scale is corrected nobody can tell.
+  // Refused even where the two agree: if the scale is corrected later, it is undefined which of them should
+  // follow.
   expect_says(complaint_of_cell("[drive]\namplitude_mm = 3.2\namplitude_sigma = 1.6\n" + kScale),
               "amplitude_sigma sets the same quantity");
-  // Three words of a drive must agree.
+  // Three keys of a drive must agree.
   EXPECT_NO_THROW(
       (void)cell_of("[drive]\namplitude_mm = 4\nomega_per_t0 = 1.0\ngamma = 2.0\n" + kScale).drive());
   EXPECT_THROW((void)cell_of("[drive]\namplitude_mm = 4\nomega_per_t0 = 1.0\ngamma = 2.5\n" + kScale).drive(),
@@ -175,7 +177,7 @@ TEST(Quantities, ABareLengthOfASceneBesideItsScaleIsRefused) {
     expect_refusal<ConfigError>([&] { (void)sim::read_scene_text(kSlot, "s.toml", {path + "=7"}); },
                                 "--set " + path, path + "_mm");
   }
-  // Of a diameter and a radius one is said.
+  // Only one of diameter and radius may be given.
   expect_refusal<ConfigError>(
       [&] { (void)sim::read_scene_text(kSlot + "[beads]\nradius_mm = 1\ndiameter_mm = 2\n", "s.toml"); },
       "beads.diameter_mm", "beads.radius_mm", "give only one of the two");
@@ -198,7 +200,7 @@ TEST(Quantities, AnAssignmentDisplacesOtherSpellings) {
   EXPECT_DOUBLE_EQ(larger.drive.amplitude, 0.8);
   EXPECT_THROW((void)sim::read_scene_text(kBeads + "[drive]\nfrequency = 8.0\n" + kScale, "s.toml"),
                ConfigError);
-  // An assignment is no less a user's number than the file's, whichever of the two says the scale.
+  // An assignment is a user's value like one in the file, wherever the scale is given.
   expect_refusal<ConfigError>([&] { (void)sim::read_scene_text(text, "s.toml", {"drive.frequency=8"}); },
                               "drive.frequency: is 8 without a unit", "frequency_per_t0", "frequency_hz");
   expect_refusal<ConfigError>(

@@ -1,4 +1,4 @@
-// Collected results of a sweep, as written by hand in the format that `sweep collect` writes.
+// Collected results of a sweep, written by hand in the format of `sweep collect`.
 #include "twin/sweep_results.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,8 @@ std::string results(const std::string& plan) {
 }
 
 void check(const Comparison& c) {
-  ASSERT_EQ(c.sweep.size(), 2U);  // the point that failed has no phase, nor has one that bounces, without s_c
+  // The failed point has no phase, and neither has the bouncing one, which lacks s_c.
+  ASSERT_EQ(c.sweep.size(), 2U);
   EXPECT_DOUBLE_EQ(c.sweep[0].n_l, 20);  // 400 beads in the preset's 20 sigma
   EXPECT_DOUBLE_EQ(c.sweep[0].gamma, 1.5);
   EXPECT_EQ(c.sweep[0].start, "random");
@@ -51,7 +52,7 @@ TEST(SweepResults, PointsAndOnsetsArePlacedByTheirScene) {
   check(c);
 }
 
-// Beads of 2 mm: 800 of them in 80 mm are 20 layers, and Gamma is a spelling too.
+// Beads of 2 mm: 800 of them in 80 mm are 20 layers. drive.peak_acceleration_g is another key for Gamma.
 TEST(SweepResults, ASceneInLaboratoryUnitsIsPlacedByThem) {
   const TemporaryFolder folder;
   std::string text = results(
@@ -81,7 +82,7 @@ TEST(SweepResults, AnythingElseIsRefused) {
   Comparison c;
   for (const char* text :
        {"", "[]", "{\"format\": \"else\"}", "{\"format\": \"twincell sweep 1\"}",
-        // A key of a point or an onset is missing, or of another type.
+        // A key of a point or an onset is missing or has another type.
         R"({"format": "twincell sweep 1", "plan": 3, "points": []})",
         R"({"format": "twincell sweep 1", "plan": "[scene]\ndrive.gamma = 1.0"})",
         R"({"format": "twincell sweep 1", "plan": "[scene]\ndrive.gamma = 1.0", "points":

@@ -28,7 +28,7 @@ TEST(CentreOfMass, OfTheBouncingRigidBed) {
   const double phi = 2 * std::numbers::pi * 10 / 40;
   EXPECT_NEAR(by_phase.values[10], rest + 1.5 + test::rigid_bed_height(1.5, phi), 1e-12);
   EXPECT_EQ(find_result(results, "h_cm_j").values.size(), 6U);
-  // Every cycle is the same: nothing scatters, so there is nothing from which an interval could be taken.
+  // All cycles are equal, so there is no scatter from which to compute an interval.
   EXPECT_FALSE(find_result(results, "delta_h_cm").interval);
   EXPECT_FALSE(find_result(results, "delta_h_cm").no_interval.empty());
 }
@@ -62,7 +62,7 @@ TEST(CentreOfMass, ABedThatBeginsAtRestTellsItsRestHeight) {
   };
   // The plate passes its mean height at A omega = 1.5.
   const auto riding = analyze(shaken(1.5), {.discard_cycles = 1});
-  // 1 above the plate; h_cm counts from the plate's mean, 0.1 below the plate.
+  // The rest height is 1 above the plate. h_cm is measured from the plate's mean height, 0.1 below the plate.
   test::validate({"V5.16", "lift over the first frame's rest height", 0.35, 1e-12, "closed form"},
                  find_result(riding, "delta_h_cm").value());
   EXPECT_NEAR(find_result(analyze(shaken(0)), "delta_h_cm").value(), 0.35 - 0.25 / 12, 1e-12);

@@ -1,4 +1,4 @@
-// Flights of beds whose motion is known in closed form (docs/validation.md: V5.17).
+// Flight times of beds whose motion is known in closed form (docs/validation.md: V5.17).
 #include "analysis/motion/bed_flight.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-/// How long a bed that leaves at sin(phi) = 1/Gamma flies until it meets the plate again, omega = g = 1.
+/// Flight time of a bed that takes off at sin(phi) = 1/Gamma and lands on the plate, omega = g = 1.
 double flight_of_rigid_bed(double gamma) {
   const double start = std::asin(1 / gamma);
   const auto gap = [&](double t) {
@@ -67,7 +67,7 @@ TEST(BedFlight, OfTheRigidBedIsThatOfItsParabola) {
 }
 
 TEST(BedFlight, OfAFilmWithNoiseIsTheSame) {
-  // 195 beads seen to 0.03 sigma: the centre of mass to 0.002 sigma.
+  // 195 beads measured to 0.03 sigma each give the centre of mass to 0.002 sigma.
   const auto clean = test::rigid_bed({.gamma = 2.0, .cycles = 60});
   const Result flight =
       find_result(analyze(with_noise(clean, 0.03, 3), {.only = {"flight_time"}}), "flight_time");
@@ -100,8 +100,8 @@ TEST(BedFlight, AFilmWithGapsLosesFlightsAndNothingElse) {
 }
 
 TEST(BedFlight, BeadsThatComeAndGoDoNotBreakFlights) {
-  // Every frame misses one bead in ten, another ten each time: the mean height of those seen jumps by 0.1
-  // sigma.
+  // Every frame lacks one bead in ten, different ones each time: the mean height of the detected beads jumps
+  // by 0.1 sigma.
   const auto whole = test::rigid_bed({.gamma = 2.0, .columns = 10, .rows = 8, .cycles = 20});
   MemoryTrajectory seen(whole.info());
   seen.info().columns.identity = true;
@@ -133,8 +133,8 @@ TEST(BedFlight, WhatItCannotTell) {
   EXPECT_NE(absent(sideways).find("along z"), std::string::npos);
 }
 
-// A bead of restitution e on its orbit of period 1 (Mehta & Luck 1990 and before) flies all the time, a
-// period at a time.
+// A bead of restitution e on its period-1 orbit (Mehta & Luck 1990 and earlier) is always in flight, one
+// period per flight.
 TEST(BedFlight, OfABeadThatReboundsEveryPeriod) {
   const double e = 0.5, gamma = 1.3, speed = std::numbers::pi;
   const double phase = std::acos(std::numbers::pi * (1 - e) / ((1 + e) * gamma));

@@ -1,5 +1,5 @@
-// How often a 95 % interval holds the truth: every result that has one, over many short trajectories of
-// random processes whose expected values are known, in closed form or from one long trajectory of the same
+// Coverage of the 95 % intervals: every result that has an interval, over many short trajectories of random
+// processes. The expected values are known in closed form or come from one long trajectory of the same
 // process.
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-/// Stationary, of mean 0 and variance 1, rho_k = a^k.
+/// A stationary process of mean 0 and variance 1, with autocorrelation rho_k = a^k.
 class Correlated {
  public:
   Correlated(double a, Random& random) : a_(a), random_(&random), x_(normal(random)) {}
@@ -72,7 +72,7 @@ std::vector<Correlated> many_correlated(std::size_t n, double a, Random& random)
   return all;
 }
 
-/// The rows of the table, and which results have been counted.
+/// Counts for the rows of the table, and which results have been counted.
 struct Counts {
   int of = 0, held = 0, above = 0, none = 0;
 };
@@ -83,8 +83,8 @@ std::set<std::string>& counted() {
 
 constexpr int kTrajectories = 1000;
 
-/// Analyses trajectories of `cycles` and validates how many intervals hold `truth`: 95 %, or `known` where so
-/// few tracers or events do not give 95 (docs/statistics.md).
+/// Analyses trajectories of `cycles` and validates the fraction of intervals that contain `truth`: 95 %, or
+/// `known` where the number of tracers or events is too small for 95 % (docs/statistics.md).
 void cover(const std::string& what, const Generator& make, int cycles, const Truth& truth,
            AnalysisOptions options, std::uint64_t seed, const Truth& known = {}) {
   options.only.clear();
@@ -114,7 +114,7 @@ void cover(const std::string& what, const Generator& make, int cycles, const Tru
   }
 }
 
-/// Values that one long trajectory gives.
+/// Expected values from one long trajectory.
 Truth long_run(const Generator& make, int cycles, const std::vector<std::string>& names,
                AnalysisOptions options, std::uint64_t seed) {
   options.only = names;
@@ -124,7 +124,7 @@ Truth long_run(const Generator& make, int cycles, const std::vector<std::string>
   return truth;
 }
 
-// --- a gas whose temperature fluctuates for longer than a cycle ---
+// --- a gas whose temperature is correlated over more than one cycle ---
 
 constexpr std::size_t kGas = 12;
 constexpr double kOverTime = 0.8, kCoarse = 1.05;
@@ -196,9 +196,10 @@ void cover_heights_and_volume_fractions() {
   cover("heights that are correlated", make, 40, truth, options, 4);
 }
 
-// --- packings that come and go ---
+// --- packings that change from state to state ---
 
-/// One of some hexagonal or square pieces, one or two of them side by side, shaken, with beads taken out.
+/// A packing of one or two randomly chosen pieces, hexagonal or square, side by side, with position noise and
+/// some beads removed.
 std::vector<Vec3> packing(Random& random) {
   constexpr double kWidth = 9, kHeight = 7;
   const double turn[2] = {uniform(random, 2, 28), uniform(random, 2, 28)};
@@ -249,7 +250,7 @@ void cover_order_grains_and_defects() {
       frame.id.push_back(i < states[state].size() ? static_cast<std::int64_t>(i) : -1);
     return frame;
   };
-  // The mean over the states in which there is a value: all are as frequent.
+  // The mean over the states in which the value exists; all states are equally frequent.
   const std::vector<std::string> names = {"q6",
                                           "psi6",
                                           "psi4",
@@ -363,8 +364,8 @@ void cover_the_spread_of_tracers() {
 
 // --- beads that slip ---
 
-/// Periods apart from each other, in each of which up to three deep beads of a crystal jump. What happens in
-/// a period prefers one direction.
+/// Independent periods, in each of which up to three deep beads of a crystal jump. The jumps of one period
+/// prefer one direction.
 MemoryTrajectory slipping(int cycles, Random& random) {
   constexpr int kColumns = 6, kRows = 15, kDeep = 3;
   const double row = std::sqrt(3.0) / 2;
@@ -400,8 +401,8 @@ void cover_slip() {
 
 // --- rolls ---
 
-/// Cycles apart from each other, in each of which beads that lie anywhere go round in two rolls of a strength
-/// that is correlated.
+/// Independent displacement fields, in each of which beads at random positions circulate in two rolls. The
+/// strength of the rolls is correlated from cycle to cycle.
 MemoryTrajectory rolling(int cycles, Random& random) {
   constexpr double kWidth = 8, kHeight = 6;
   constexpr std::size_t kBeads = 60;
@@ -432,7 +433,8 @@ void cover_circulations() {
 
 // --- flights ---
 
-/// A bed that is thrown off once a cycle, with a speed that differs and is correlated.
+/// A bed that is launched once a cycle, with a launch speed that varies and is correlated from cycle to
+/// cycle.
 MemoryTrajectory hopping(int cycles, Random& random) {
   constexpr int kPhases = 20;
   TrajectoryInfo info = info_of(2, kPhases, Vec3(4, 1, 40));
@@ -466,7 +468,7 @@ TEST(Coverage, OfEveryResultThatHasAnInterval) {
   cover_slip();
   cover_circulations();
   cover_flights();
-  // Words, arrays, counts, and what says in its own words why it has none.
+  // Words, arrays, counts, and results that state themselves why they have no interval.
   const std::set<std::string> without = {"s_k",
                                          "half_pixel",
                                          "s_b_noise",

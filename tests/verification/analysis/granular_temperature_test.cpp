@@ -50,8 +50,8 @@ TEST(GranularTemperature, MassesWeighTheCentreOfMass) {
 
 namespace {
 
-/// 200 beads in 2D whose velocities are a translation of the whole, a wave in height and phase, and Gaussian
-/// noise of variances t_x, t_z.
+/// 200 beads in 2D whose velocities are the sum of a common translation, a wave in height and phase, and
+/// Gaussian noise of variances t_x, t_z.
 MemoryTrajectory gas(double t_x, double t_z, double wave, int cycles, std::mt19937_64& generator,
                      std::size_t beads = 200) {
   TrajectoryInfo info;
@@ -131,7 +131,7 @@ TEST(GranularTemperature, IntervalsCover) {
     AnalysisOptions options;
     options.only = {"T_g"};
     const auto interval = find_result(analyze(gas(0.4, 0.9, 0, 40, generator, 20), options), "T_g").interval;
-    if (!interval) continue;  // 40 cycles are not enough where they happen to look correlated
+    if (!interval) continue;  // 40 cycles are too few where they appear correlated by chance
     ++given;
     const double truth = 0.65 * (1 - 1 / 20.0);
     covered += interval->low <= truth && truth <= interval->high ? 1 : 0;
@@ -155,8 +155,8 @@ TEST(GranularTemperature, AbsentWithoutVelocitiesOrDrive) {
 
 namespace {
 
-/// T_g over time is 1, 2, 3, … from cycle to cycle, and 1.1 and 0.98 times that by the frames and by every
-/// second sample: two beads that part.
+/// The time average of T_g is 1, 2, 3, … from cycle to cycle; the averages over the frames and over every
+/// second sample are 1.1 and 0.98 times that. The cell holds two beads that separate.
 MemoryTrajectory aliased(bool with_means) {
   TrajectoryInfo info;
   info.n_beads = 2;

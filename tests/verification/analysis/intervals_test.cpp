@@ -1,5 +1,6 @@
-// Of every result that has an interval, in beds of several kinds: the value lies in it, and it has a width.
-// Whatever has none says why. Coverage is tested observable by observable (docs/validation.md, V5.12).
+// For every result that has an interval, in beds of several kinds: the interval contains the value and has a
+// width. Every result without an interval states the reason. Coverage is tested for each observable in
+// coverage_test.cpp (docs/validation.md, V5.12).
 
 #include <gtest/gtest.h>
 
@@ -70,7 +71,7 @@ TEST(Intervals, HoldTheirValueAndHaveAWidth) {
       options.rest_height = 2.5;
       seen.merge(hold(what, results_of(scene, options)));
     }
-  // A test that meets no interval tests nothing.
+  // Guards against an empty test: these results must have had an interval.
   for (const char* name : {"s_b", "s_c", "T_g", "p_s", "h_cm", "T_g_aliasing"})
     EXPECT_TRUE(seen.contains(name)) << name;
   EXPECT_GE(seen.size(), 15U);

@@ -41,8 +41,8 @@ std::vector<double> every(double step_degrees, int n) {
   return angles;
 }
 
-/// Weights in exact rational form: a_m = 4 pi/13 |Y_6m(pi/2)|^2 = 105/1024, 126/1024, 231/1024; (5/16)^2 for
-/// m = 0.
+/// Weights as exact fractions: a_m = 4 pi/13 |Y_6m(pi/2)|^2 = 105/1024, 126/1024, 231/1024; (5/16)^2 for m =
+/// 0.
 double q6_from(double psi2, double psi4, double psi6) {
   return std::sqrt(25.0 / 256 + 2 * (105 * psi2 * psi2 + 126 * psi4 * psi4 + 231 * psi6 * psi6) / 1024);
 }
@@ -66,12 +66,12 @@ TEST(BondOrder, TableOfNeighbourhoods) {
       {"5-fold", every(72, 5), 0.3125, 0, 0},
       {"2 opposite", every(180, 2), 1, 1, 1},
   };
-  // The same numbers as printed in the literature to five digits, so that the rational weights are not our
-  // own witness.
+  // Values printed in the literature to five digits, as a check that is independent of the weights above.
   const std::vector<double> five_digits = {0.74083, 0.75291, 0.75962, 0.58630,
                                            0.31250, 0.31250, 0.31250, 1.00000};
   for (std::size_t c = 0; c < cases.size(); ++c) {
-    // Smaller than the gap between the neighbours of 12 directions, so that only the centre's bonds matter.
+    // The cut-off is smaller than the gap between the neighbours of 12 directions, so only the centre's bonds
+    // count.
     const BondOrder order = order_of(star(cases[c].angles), 1.0 + 1e-9);
     EXPECT_EQ(order.n_bonds[0], cases[c].angles.size()) << cases[c].name;
     test::validate(
@@ -161,5 +161,5 @@ TEST(BondOrder, StructuresOfPerfectLattices) {
   const std::size_t centre = 3 * 7 + 3;
   EXPECT_EQ(structure_of(order_of(hexagonal, 1.2), centre), Structure::hexagonal);
   EXPECT_EQ(structure_of(order_of(square, 1.2), centre), Structure::square);
-  EXPECT_EQ(structure_of(order_of(square, 1.5), centre), Structure::other);  // the diagonals came in
+  EXPECT_EQ(structure_of(order_of(square, 1.5), centre), Structure::other);  // diagonals within the cut-off
 }

@@ -57,8 +57,8 @@ TEST(BouncingThreshold, CriticalGamma) {
 }
 
 TEST(BouncingThreshold, IntervalsHoldTheirValueWhereTracersRestAtDifferentHeights) {
-  // A bed that moves with its plate, seen by a camera: all that s_b has to show is noise, while the tracers
-  // rest a tenth of a bead apart.
+  // A bed that moves with its plate, as seen by a camera: s_b consists of noise only, while the rest heights
+  // of the tracers differ by a tenth of a diameter.
   constexpr std::size_t kTracers = 12;
   constexpr int kPhases = 10, kCycles = 6;
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -91,7 +91,8 @@ TEST(BouncingThreshold, IntervalsHoldTheirValueWhereTracersRestAtDifferentHeight
       EXPECT_LE(r.interval->low, r.value()) << r.name << ", seed " << seed;
       EXPECT_GE(r.interval->high, r.value()) << r.name << ", seed " << seed;
       EXPECT_LT(r.interval->low, r.interval->high) << r.name << ", seed " << seed;
-      // With the rest height held fixed the interval is that of the tracers' rest heights, 0.1/sqrt(12).
+      // If the bootstrap kept the rest height fixed, the interval would be that of the tracers' rest heights,
+      // 0.1/sqrt(12).
       if (r.name == "s_b_about_rest") {
         EXPECT_LT(r.interval->high, 0.01) << seed;
       }
@@ -100,7 +101,7 @@ TEST(BouncingThreshold, IntervalsHoldTheirValueWhereTracersRestAtDifferentHeight
 }
 
 TEST(BouncingThreshold, AsPrintedIsTheHeightOfTheTracers) {
-  // 5 rows: the tracers are the third, 0.5 + 2 (sqrt 3/2) above the plate.
+  // 5 rows: the tracers are the third row, 0.5 + 2 (sqrt 3/2) above the plate.
   const double printed = measured_s_b(0.5, SbForm::as_printed, 20);
   EXPECT_NEAR(printed, 0.5 + std::sqrt(3.0), 1e-12);
   EXPECT_NEAR(measured_s_b(0.5, SbForm::variance, 20), 0, 1e-12);
@@ -148,8 +149,8 @@ TEST(PhaseLabel, FollowsTheTwoThresholds) {
 }
 
 TEST(BouncingThreshold, ABedOfPeriodTwoIsAveragedOverAnEvenNumberOfCycles) {
-  // Lifted by 1 at phase 5 of odd cycles only: over an even number of cycles s(5) is 1/2, over 3 it would be
-  // 1/3.
+  // The bed is lifted by 1 at phase 5 of odd cycles only. Over an even number of cycles s(5) is 1/2; over 3
+  // cycles it would be 1/3.
   MemoryTrajectory flat = test::rigid_bed({.gamma = 0.9, .cycles = 3});
   MemoryTrajectory lifted(flat.info());
   for (Frame frame : flat.frames()) {

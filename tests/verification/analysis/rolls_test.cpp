@@ -1,5 +1,5 @@
-// Convection rolls: the stream function against a closed form, the count against flows of known rolls in
-// noise.
+// Convection rolls: the stream function against a closed form, and the count of rolls in flows of known rolls
+// with noise.
 #include "analysis/motion/rolls.hpp"
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kColumns = 10;
 
-/// Blocks of a flow in 10 x `rows` cells: `m` rolls side by side in `floors` layers, senses alternating, of
-/// the greatest speed `speed`, in noise that doubles towards the surface.
+/// Blocks of a flow in 10 x `rows` cells: `m` rolls side by side in `floors` layers, with alternating senses
+/// of rotation, maximum speed `speed`, and noise that doubles towards the surface.
 CirculationBlocks blocks_of(int m, int floors, double speed, double noise, std::size_t rows,
                             std::size_t blocks, std::mt19937_64& generator) {
   std::normal_distribution<double> normal;
@@ -62,12 +62,12 @@ TEST(Rolls, StreamFunctionOfAnEigenvector) {
   for (std::size_t i = 0; i < psi.size(); ++i) worst = std::max(worst, std::abs(solved[i] - psi[i]));
   test::validate({"V5.14", "stream function of an eigenvector of the grid", 0, 1e-14, "closed form"}, worst);
 
-  // One loop alone, in the middle of holes: 4 psi = C.
+  // A single loop surrounded by holes: 4 psi = C.
   std::vector<double> alone(15, std::nan(""));
   alone[7] = 2;
   EXPECT_DOUBLE_EQ(stream_function(alone, 5, false)[7], 0.5);
   EXPECT_TRUE(std::isnan(stream_function(alone, 5, false)[6]));
-  // Periodic: the same for every column, as if the grid had no end.
+  // Periodic: the same for every column, as if the grid were infinite.
   const std::vector<double> ring = stream_function(std::vector<double>(6, 1.0), 6, true);
   for (const double p : ring) EXPECT_NEAR(p, 0.5, 1e-14);  // 4 p - 2 p = 1
 }
@@ -96,7 +96,7 @@ TEST(Rolls, KnownRollsInNoiseAreCounted) {
     int right = 0, few = 0, many = 0;
     const int trials = 40;
     for (int t = 0; t < trials; ++t) {
-      // Noise in a cell is as large as the flow where it is fastest: no block shows the rolls to the eye.
+      // The noise in a cell equals the maximum flow speed, so no single block shows the rolls.
       const auto rolls =
           static_cast<int>(count_rolls(blocks_of(c.m, c.floors, 0.3, 0.3, 12, 20, generator), 0));
       right += rolls == c.m * c.floors ? 1 : 0;

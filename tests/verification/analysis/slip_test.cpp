@@ -1,4 +1,4 @@
-// V5.5, V5.6: slip of crystals whose rows are moved by hand: counts in closed form.
+// V5.5, V5.6: slip of crystals whose rows are displaced by prescription; the counts are known in closed form.
 #include "analysis/motion/slip.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ struct Crystal {
   std::vector<int> row;
 };
 
-/// Close-packed rows, horizontal, periodic in x so that a shifted row stays a row.
+/// Close-packed horizontal rows, periodic in x so that a shifted row remains a row.
 Crystal crystal(int rows) {
   Crystal c;
   for (int r = 0; r < rows; ++r)
@@ -39,7 +39,7 @@ Crystal crystal(int rows) {
   return c;
 }
 
-/// One frame a cycle; `move(bead, cycle)` is added to the resting place.
+/// One frame a cycle; `move(bead, cycle)` is added to the rest position.
 template <class Move>
 std::vector<Result> film(const Crystal& c, int cycles, const Move& move) {
   MemoryTrajectory trajectory(c.info);
@@ -60,8 +60,8 @@ std::vector<Result> film(const Crystal& c, int cycles, const Move& move) {
 }  // namespace
 
 TEST(Slip, ARowShiftedByALatticeConstantACycle) {
-  // 30 rows; the slip runs under row 5, deep in the bed: everything above moves by one lattice constant a
-  // cycle.
+  // 30 rows. The slip plane is under row 5, deep in the bed: everything above it moves by one lattice
+  // constant a cycle.
   const Crystal c = crystal(30);
   const double top = 0.5 + 29 * kRow;
   std::size_t eligible = 0;
@@ -80,7 +80,7 @@ TEST(Slip, ARowShiftedByALatticeConstantACycle) {
   EXPECT_GT(p_s.interval->high, p_s.value());
   EXPECT_EQ(find_result(results, "slip_horizontal").value(), 1);
   EXPECT_EQ(find_result(results, "slip_oblique").value(), 0);
-  // Two bonds across the plane for each bead beside it, once each.
+  // Each bead next to the plane has two bonds across it, each counted once.
   EXPECT_EQ(find_result(results, "slip_directions").values[0], 10.0 * 2 * kColumns);
 }
 
@@ -157,7 +157,8 @@ TEST(Slip, EligibleShareOfTwentyLayers) {
                  static_cast<double>(find_result(results, "p_s").n) / 400);
 }
 
-// Whole rows slip at once, on some cycles: beads are not independent, and the interval must know.
+// Whole rows slip together in some cycles. The beads are then not independent, and the interval must account
+// for it.
 TEST(Slip, TheIntervalCoversAlthoughBeadsSlipTogether) {
   const Crystal c = crystal(16);
   const double top = 0.5 + 15 * kRow;

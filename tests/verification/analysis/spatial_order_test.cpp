@@ -1,4 +1,4 @@
-// V5: lattices and flows made by hand, whose neighbours, defects, grains and circulation are known.
+// V5: constructed lattices and flows whose neighbours, defects, grains and circulation are known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ Box open_box() {
   return box;
 }
 
-/// A hexagonal lattice of unit spacing, turned by `degrees`, cut to a rectangle.
+/// A hexagonal lattice of unit spacing, rotated by `degrees` and cut to a rectangle.
 std::vector<Vec3> lattice(double degrees, double left, double right, double bottom, double top) {
   std::vector<Vec3> beads;
   const double c = std::cos(degrees * kPi / 180), s = std::sin(degrees * kPi / 180);
@@ -70,8 +70,8 @@ double value(const std::vector<Result>& results, const std::string& name) {
   return r.value();
 }
 
-/// An edge dislocation with Burgers vector (1, 0) at `core`: the lattice displaced as linear isotropic
-/// elasticity says (Hirth & Lothe, eq. 3-45, Poisson's ratio 1/3).
+/// An edge dislocation with Burgers vector (1, 0) at `core`: the lattice with the displacements of linear
+/// isotropic elasticity (Hirth & Lothe, eq. 3-45, Poisson's ratio 1/3).
 std::vector<Vec3> dislocated(std::vector<Vec3> beads, Vec3 core) {
   const double nu = 1.0 / 3;
   for (Vec3& r : beads) {
@@ -117,7 +117,8 @@ TEST(VoronoiCells, EdgesOfPerfectLattices) {
 }
 
 TEST(VoronoiCells, WeightsMakeOrderContinuous) {
-  // A square lattice sheared by 1e-4: its diagonals become neighbours, by an edge as short as the shear.
+  // A square lattice sheared by 1e-4: its diagonals become neighbours, with a Voronoi edge as short as the
+  // shear.
   Frame sheared;
   for (int x = 0; x < 9; ++x)
     for (int z = 0; z < 9; ++z) sheared.position.emplace_back(x + 1e-4 * z, 0, z);
@@ -135,7 +136,7 @@ TEST(VoronoiCells, WeightsMakeOrderContinuous) {
 }
 
 TEST(VoronoiCells, AreTheDelaunayTriangulationWhereBeadsAreDense) {
-  // Independent of the construction: a triangle is Delaunay if no bead lies in its circle.
+  // Independent of the construction: a triangle is Delaunay if no bead is inside its circumcircle.
   std::mt19937_64 generator(11);
   std::uniform_real_distribution<double> place(0, 12);
   Frame frame;
@@ -223,7 +224,8 @@ TEST(Orientation, CrystalsAAndB) {
   }
 }
 
-// 45 degrees are -15: frames on either side of the seam must not make 15 of it.
+// The angles 45 and -15 degrees are equivalent. For frames on either side of this seam, the mean must not
+// become 15.
 TEST(Orientation, FramesOnBothSidesOfTheSeamKeepTheirMean) {
   for (const double first : {44.9, 45.1}) {
     std::vector<Frame> frames;
@@ -284,11 +286,11 @@ TEST(Defects, AMissingBeadIsAHole) {
   const Defects d = find_defects(voronoi_cells(frame_of(beads), open_box()));
   EXPECT_EQ(d.holes, 1U);
   EXPECT_EQ(d.five + d.seven + d.other, 0U);
-  EXPECT_EQ(before.bulk - d.bulk, 7U);  // the bead and the six that now stand at a surface
+  EXPECT_EQ(before.bulk - d.bulk, 7U);  // the bead and its six neighbours, which are now at a surface
 }
 
 TEST(Defects, ADislocationIsAFiveAndASeven) {
-  // The extra half row ends at the core: one bead there has 5 neighbours, the one beside it 7.
+  // The extra half row ends at the core: one bead there has 5 neighbours, the adjacent bead has 7.
   const Frame frame = frame_of(dislocated(lattice(0, 0, 20, 0, 20), Vec3(10.25, 0, 10 + 0.25 * kRow)));
   const VoronoiCells cells = voronoi_cells(frame, open_box());
   const Defects d = find_defects(cells);
@@ -304,7 +306,7 @@ TEST(Defects, ADislocationIsAFiveAndASeven) {
 }
 
 TEST(Defects, AFreeDisclinationHasNoPartner) {
-  // Five wedges of 60 degrees round one bead, stretched to 72: a 5-fold disclination in an otherwise 6-fold
+  // Five wedges of 60 degrees around one bead, stretched to 72: a 5-fold disclination in an otherwise 6-fold
   // sheet.
   Frame frame;
   frame.position.emplace_back(10, 0, 10);
@@ -322,11 +324,12 @@ TEST(Defects, AFreeDisclinationHasNoPartner) {
 }
 
 TEST(Defects, PairsAreAsManyAsCanBeMade) {
-  // A chain 7 - 5 - 7 - 5 by hand: taken greedily from the middle it would give one pair; there are two.
+  // A constructed chain 7 - 5 - 7 - 5: greedy pairing from the middle would give one pair; the maximum is
+  // two.
   VoronoiCells cells;
   const std::vector<std::vector<std::size_t>> beside = {{1}, {0, 2}, {1, 3}, {2}};
   const std::vector<std::size_t> wanted = {7, 5, 7, 5};
-  const std::size_t extra = 4;  // beads that only fill up the numbers of neighbours
+  const std::size_t extra = 4;  // beads that only complete the neighbour counts
   cells.neighbours.first = {0};
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     std::vector<std::size_t> list = beside[i];
@@ -360,7 +363,7 @@ TEST(Grains, TwoOfKnownMisorientation) {
     const auto results = analyze(film({frame}), {.neighbours = NeighbourRule::voronoi});
     EXPECT_NEAR(value(results, "grain_boundary_angle"), degrees, 0.5);
     EXPECT_EQ(value(results, "grains"), 2);
-    // A line of beads on each side of a boundary 20 long, out of 20 x 20.
+    // One line of beads on each side of a boundary 20 long, out of 20 x 20.
     EXPECT_NEAR(value(results, "grain_boundary_fraction"), 2.0 / 20, 0.035);
     EXPECT_GE(value(results, "dislocations"), 3) << degrees;
   }
@@ -368,7 +371,7 @@ TEST(Grains, TwoOfKnownMisorientation) {
 
 namespace {
 
-/// Beads of a box 20 x 20 carried once round by a velocity field, filmed at the beginnings of cycles.
+/// Beads of a 20 x 20 box, repeatedly displaced by the same field and recorded at the beginnings of cycles.
 template <class Field>
 MemoryTrajectory carried(const Field& field, int cycles, double noise = 0) {
   std::mt19937_64 generator(9);
@@ -377,14 +380,15 @@ MemoryTrajectory carried(const Field& field, int cycles, double noise = 0) {
   box.lower = Vec3(0, -0.5, 0);
   box.upper = Vec3(20, 0.5, 20);
   Frame frame;
-  // Four beads to a cell of side 2, at places that are symmetric in it: their mean is the field at its
-  // centre.
+  // Each cell of side 2 contains four beads at positions symmetric in the cell: their mean is the field at
+  // its centre.
   for (int x = 0; x < 20; ++x)
     for (int z = 0; z < 20; ++z) frame.position.emplace_back(x + 0.5, 0, z + 0.5);
   const std::vector<Vec3> home = frame.position;
   std::vector<Frame> frames;
   for (int j = 0; j <= 2 * cycles; ++j) {
-    // Every second step takes the beads back home, and its cycle number jumps: it is no displacement.
+    // Every second step returns the beads to their initial positions. The cycle number jumps there, so the
+    // return does not count as a displacement.
     frame.phase = 0;
     frame.cycle = j + j / 2;
     frame.step = j;
@@ -417,8 +421,8 @@ TEST(Convection, SolidRotationHasTheCirculationOfItsRectangle) {
 }
 
 TEST(Convection, RollsOfAStreamFunction) {
-  // u = (-d psi/dz, d psi/dx), psi = -a sin(pi m x/L) sin(pi z/L): m rolls side by side, signs alternating,
-  // the first counter-clockwise for a > 0: down at the left wall.
+  // u = (-d psi/dz, d psi/dx), psi = -a sin(pi m x/L) sin(pi z/L): m rolls side by side with alternating
+  // signs. For a > 0 the first rotates counter-clockwise: down at the left wall.
   const double L = 20, a = 0.3;
   for (const int m : {1, 2, 4}) {
     const auto psi_flow = [&](const Vec3& r) {
@@ -433,8 +437,8 @@ TEST(Convection, RollsOfAStreamFunction) {
     const Result& left = find_result(results, "circulation_left");
     ASSERT_TRUE(left.interval);
     EXPECT_GT(left.interval->low, 0);
-    // The line integral round the loop through the outermost centres and half the middle one, in closed form
-    // of the cells' means (a cell's mean is the field at its four beads).
+    // The line integral round the loop through the outermost centres and along half of the middle one, in
+    // closed form from the cell means (a cell mean is the field at its four beads).
     EXPECT_NEAR(left.value() + value(results, "circulation_right"), 0,
                 3 * (left.interval->high - left.value()));
     const auto mirrored = analyze(carried([&](const Vec3& r) { return Vec3(-psi_flow(r)); }, 12, 0.01));
@@ -443,7 +447,7 @@ TEST(Convection, RollsOfAStreamFunction) {
 }
 
 TEST(Convection, AHalfWithoutCellsHasNoCirculation) {
-  // Solid rotation by 0.1, seen in the three left columns of six.
+  // Solid rotation by 0.1, with data in the left three of six columns.
   DisplacementField field;
   field.columns = 6, field.rows = 2, field.dx = field.dz = 2;
   for (std::size_t r = 0; r < 2; ++r)
@@ -466,7 +470,7 @@ TEST(Convection, TooFewCyclesAreSaid) {
   const auto one = analyze(carried([](const Vec3&) { return Vec3(0.1, 0, 0); }, 2));
   EXPECT_TRUE(find_result(one, "displacement_field").present());
   EXPECT_NE(find_result(one, "rolls").absent.find("blocks"), std::string::npos);
-  // One displacement of each bead: no cell has five, and what has no cells has no circulation.
+  // One displacement of each bead: no cell has five displacements, and without cells there is no circulation.
   const auto two = analyze(carried([](const Vec3&) { return Vec3(0.1, 0, 0); }, 1));
   EXPECT_FALSE(find_result(two, "circulation_left").present());
   EXPECT_FALSE(find_result(two, "circulation_right").present());
@@ -478,7 +482,7 @@ TEST(Convection, TooFewCyclesAreSaid) {
 TEST(Profiles, OverlapIsExact) {
   test::validate({"V5.15", "disc of radius 1/2 below its centre", kPi / 8, 1e-15, "pi/8"},
                  disc_below(0.5, 0));
-  // Segment of half-angle 60 degrees: R^2 (pi/3 - sqrt(3)/4).
+  // Circular segment of half-angle 60 degrees: R^2 (pi/3 - sqrt(3)/4).
   test::validate({"V5.15", "disc of radius 2 below half a radius under its centre",
                   4 * (kPi / 3 - std::sqrt(3.0) / 4), 1e-14, "circular segment"},
                  disc_below(2, -1));
@@ -490,7 +494,7 @@ TEST(Profiles, OverlapIsExact) {
 }
 
 TEST(Profiles, PackingAndTemperatureOfKnownBeds) {
-  // Touching discs in a square lattice, moved by z0: the slab sees pi/4 wherever it lies.
+  // Touching discs in a square lattice, shifted by z0: a slab has packing fraction pi/4 at any position.
   std::mt19937_64 generator(8);
   std::normal_distribution<double> thermal(0, 1);
   std::vector<Frame> frames;
@@ -502,7 +506,7 @@ TEST(Profiles, PackingAndTemperatureOfKnownBeds) {
     for (int x = 0; x < 10; ++x)
       for (int z = 0; z < 10; ++z) {
         frame.position.emplace_back(x + 0.5, 0, z + 0.8);
-        // Variance (1 + z)/10, on top of a mean velocity of the slab, which must drop out.
+        // Variance (1 + z)/10 about a mean velocity of the slab, which must cancel.
         frame.velocity.emplace_back(3, 0, z + std::sqrt((1.0 + z) / 10) * thermal(generator));
       }
     frames.push_back(frame);
@@ -522,12 +526,12 @@ TEST(Profiles, PackingAndTemperatureOfKnownBeds) {
     EXPECT_NEAR(t.values[k] / ((1.0 + static_cast<double>(k)) / 10), 1, 0.09);
   }
   test::validate({"V5.15", "area of 100 discs in the profile", 25 * kPi, 1e-10, "100 pi/4"}, total);
-  EXPECT_TRUE(std::isnan(t.values[10]));  // discs reach into the slab, no centre lies in it
+  EXPECT_TRUE(std::isnan(t.values[10]));  // discs extend into the slab, but no centre is in it
   EXPECT_NEAR(find_result(results, "T_x_z").values[3], 0, 1e-12);
 }
 
 TEST(Profiles, ASlabThatIsEmptyHalfOfTheTimeHasHalfTheTemperatureOverFrames) {
-  // Two beads fly apart with speeds 2 from their centre of mass, which moves itself.
+  // Two beads separate at speed 2 relative to their centre of mass, which itself moves.
   std::vector<Frame> frames;
   Box box;
   box.upper = Vec3(10, 1, 30);
@@ -544,6 +548,6 @@ TEST(Profiles, ASlabThatIsEmptyHalfOfTheTimeHasHalfTheTemperatureOverFrames) {
   EXPECT_NEAR(over.values[0], 4, 1e-12);
   EXPECT_NEAR(over.values[1], 2, 1e-12);
   EXPECT_NEAR(over.values[2], 2, 1e-12);
-  // About the mean of the slab, nothing fluctuates.
+  // There are no fluctuations about the mean of the slab.
   for (const double t : find_result(results, "T_z_z").values) EXPECT_NEAR(t, 0, 1e-12);
 }

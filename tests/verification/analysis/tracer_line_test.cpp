@@ -1,4 +1,4 @@
-// Drift and annealing of lines of tracers whose motion is known; growth rates in closed form.
+// Drift and annealing of tracer lines whose motion is known; growth rates in closed form.
 #include "analysis/motion/tracer_line.hpp"
 
 #include <gtest/gtest.h>
@@ -46,21 +46,21 @@ TEST(TracerLine, WordsForKnownMotions) {
     return drift_name(verdict.drift);
   };
   EXPECT_EQ(word(line_of(20, 200, [](std::size_t, std::size_t) { return 5.0; })), "still");
-  // The whole bed rises: no tracer moves against another.
+  // The whole bed rises: the tracers do not move relative to each other.
   EXPECT_EQ(word(line_of(20, 200, [](std::size_t j, std::size_t) { return 0.1 * static_cast<double>(j); })),
             "still");
-  // The random bed of paper 1 at N_l = 20: moves for some ten cycles, then freezes with s_j > sigma.
+  // The random bed of paper 1 at N_l = 20: it moves for about ten cycles, then freezes with s_j > sigma.
   EXPECT_EQ(word(diffusing(20, 200, 0.4, 12, generator)), "annealed");
-  // A line sheared at a steady rate.
+  // A line sheared at a constant rate.
   EXPECT_EQ(word(line_of(20, 200,
                          [](std::size_t j, std::size_t t) {
                            return 0.003 * static_cast<double>(j) * (static_cast<double>(t) - 9.5);
                          })),
             "drifting");
-  // Tracers that have filled the bed: they move on, their spread does not.
+  // Tracers that have spread over the whole bed: they still move, but their spread is constant.
   EXPECT_EQ(word(line_of(20, 200, [&](std::size_t, std::size_t) { return 10 + 3 * kick(generator); })),
             "mixing");
-  // Camera noise of 0.03 sigma is no motion.
+  // Camera noise of 0.03 sigma does not count as motion.
   const TracerLine noisy =
       line_of(20, 200, [&](std::size_t, std::size_t) { return 8 + 0.03 * kick(generator); });
   EXPECT_EQ(word(noisy, 0.03), "still");

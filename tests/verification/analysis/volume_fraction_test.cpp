@@ -1,4 +1,4 @@
-// Volume fractions and the volume mean of the temperature, of beds that can be counted by hand.
+// Volume fractions, and the volume mean of the temperature, of beds whose values can be counted by hand.
 #include "analysis/gas/volume_fraction.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ MemoryTrajectory two_rows(int dimension) {
     for (int i = 0; i < 20; ++i) {
       const bool upper = i >= 15;
       frame.position.emplace_back(i % 10 + 0.5, 1, upper ? 3.5 : 0.5);
-      // m <w'^2> is 1 below and 9 above, about slabs' means of 0.
+      // m <w'^2> is 1 below and 9 above, about slab means of 0.
       frame.velocity.emplace_back(0, 0, ((i + j) % 2 == 0 ? 1 : -1) * (upper ? 3 : 1));
     }
     trajectory.append(frame);
@@ -47,7 +47,7 @@ TEST(VolumeFraction, OfTwoRowsUpToTheTopAndToTwiceTheCentre) {
     test::validate(
         {"V5.16", "volume fraction up to twice the centre of mass" + of, beads / 2.5, 1e-12, "closed form"},
         find_result(results, "phi_cm").value());
-    // Over beads it would be 3: three of four are in the cold slab.
+    // The mean over beads would be 3: three of four beads are in the cold slab.
     test::validate({"V5.16", "mean over volume of T_z(z)" + of, 5, 1e-12, "closed form"},
                    find_result(results, "T_z_volume").value());
   }

@@ -1,5 +1,5 @@
-// Many beads and beads on the plate against closed forms (docs/validation.md: V2.10, V3.9, V4.2-V4.4,
-// V4.10).
+// Beds of many beads, and single beads on the plate, against closed forms (docs/validation.md: V2.10, V3.9,
+// V4.2-V4.4, V4.10).
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ TEST(Bed, LoneBeadFliesAParabola) {  // H31
   Bench b("[contact]\ntangential = \"none\"\n");
   b.add(10, 50, 0.3, 1);
   b.kernel->advance(b.system, 20000);
-  const double t = b.system.time();  // 1e-13 a step
+  const double t = b.system.time();
   EXPECT_NEAR(b.system.beads[0].x, 10 + 0.3 * t, 1e-9);
   EXPECT_NEAR(b.system.beads[0].z, 50 + t - t * t / 2, 1e-9);
 }
@@ -33,9 +33,9 @@ TEST(Bed, SlidingBecomesRolling) {  // V2.10: v = 2/3 v_0 for a disc
     if (sphere) b.system.beads[0].inertia = 0.1;
     const double rolls = sphere ? 5.0 / 7 : 2.0 / 3, stop = 0.6 * (sphere ? 2.0 / 7 : 1.0 / 3) / 0.1;
     const std::string what = sphere ? "sphere thrown along the plate: " : "disc thrown along the plate: ";
-    b.advance_time(0.9 * stop);  // the dashpot smears the very end
+    b.advance_time(0.9 * stop);  // the dashpot smooths the transition at the end
     const Bead& bead = b.system.beads[0];
-    // The surface's speed falls by mu g (1 + m R^2/I).
+    // The surface speed falls at the rate mu g (1 + m R^2/I).
     const double surface = 0.6 - 0.1 * b.system.time() / (1 - rolls);
     validate({"V2.10", what + "speed of its surface over v_0 at 0.9 of the sliding time", surface / 0.6, 0.01,
               "closed form"},
@@ -62,7 +62,7 @@ TEST(Bed, ColumnCarriesItsWeight) {  // V4.2: overlap of contact i from the top 
            "column of 8, overlap below bead " + std::to_string(kBeads - i) + " from the top over m g/k_n",
            1.0 * (kBeads - i), 1e-8, "closed form"},
           below / 1e-6);
-    EXPECT_NEAR(below, (kBeads - i) * 1e-6, 1e-14) << i;  // places are rounded to 1e-15
+    EXPECT_NEAR(below, (kBeads - i) * 1e-6, 1e-14) << i;  // positions are rounded to 1e-15
   }
   double floor = 0;
   for (const Force& f : b.system.forces) floor += f.z;
@@ -78,7 +78,7 @@ Scene crystal(double gamma, int cycles) {
       "crystal");
 }
 
-/// Standard deviation over the cycle of the bed's mean height above the plate.
+/// Standard deviation of the bed's mean height above the plate, over the cycle.
 double bed_travel(const Scene& scene) {
   Simulation run(scene);
   MemoryTrajectory out(run.trajectory_info());
@@ -102,7 +102,7 @@ TEST(Bed, TakesOffAboveGammaOne) {  // V4.10
 }
 
 TEST(Bed, SmoothBedWeighsOnItsFloorAlone) {  // V4.3
-  // Pair forces cancel in the sum over beads to the last bit, so that the walls' is what is left.
+  // Pair forces cancel exactly in the sum over beads, so the sum is the force of the walls.
   const auto walls = [](const System& s) {
     Vec3 sum = Vec3::Zero();
     for (const Force& f : s.forces) sum += Vec3(f.x, f.y, f.z);
@@ -124,8 +124,8 @@ TEST(Bed, SmoothBedWeighsOnItsFloorAlone) {  // V4.3
       for (const Bead& b : s.beads) sum += Vec3(b.vx, b.vy, b.vz);
       return sum;
     };
-    // Thrown about for two periods: by the theorem of momentum the mean wall force is the weight and the
-    // change of momentum.
+    // The bed is shaken for two periods. By the momentum theorem, the mean wall force is the weight plus the
+    // rate of change of the momentum.
     kernel->advance(s, 1);
     const Vec3 before = momentum();
     const double start = s.time();
@@ -157,14 +157,14 @@ TEST(Bed, SmoothBedWeighsOnItsFloorAlone) {  // V4.3
   }
 }
 
-/// The floor's share of the weight, and the height of the bed.
+/// Fraction of the weight that the floor carries, and the height of the bed.
 struct Silo {
   double share = 0, height = 0;
 };
 constexpr double kSiloWidth = 5.3, kSiloFriction = 0.6;
 
-/// A bed is poured into a narrow cell whose floor then sinks a little between resting walls, so that friction
-/// there is fully mobilised.
+/// Pours a bed into a narrow cell, then lowers the floor slightly between walls at rest, so that wall
+/// friction is fully mobilised.
 Silo sinking_floor(int layers, int seed) {
   const Scene scene =
       read_scene_text("[cell]\nwidth = " + std::to_string(kSiloWidth) +
@@ -182,7 +182,7 @@ Silo sinking_floor(int layers, int seed) {
   s.drive.amplitude = 0;
   kernel->advance(s, static_cast<std::int64_t>((30 + layers) / s.dt));
   s.step = s.steps_per_period / 2,
-  s.drive = sinking;  // the plate goes down from here, for a quarter of the cycle
+  s.drive = sinking;  // the plate moves down from here, for a quarter of the cycle
   kernel->advance(s, s.steps_per_period / 4 - 2000);
   const double n = static_cast<double>(s.beads.size());
   Silo silo;
@@ -191,14 +191,14 @@ Silo sinking_floor(int layers, int seed) {
     for (const Bead& b : s.beads)
       silo.share += 1e5 * std::max(0.0, 0.5 - (b.z - s.plate_height())) / (20 * n);
   }
-  // Of a uniform column, twice the height of its centre of mass.
+  // The height of a uniform column is twice the height of its centre of mass.
   for (const Bead& b : s.beads) silo.height += 2 * (b.z - s.plate_height()) / n;
   return silo;
 }
 
-TEST(Bed, WallsCarryTallBeds) {  // V4.4, Janssen: the floor's force saturates with height
+TEST(Bed, WallsCarryTallBeds) {  // V4.4, Janssen: the force on the floor saturates with height
   constexpr int kPackings = 6;
-  // Two standard errors: the share differs by 0.1 from one packing to the next.
+  // Two standard errors: the carried fraction varies by 0.1 from one packing to the next.
   const double tolerance = 2 * 0.1 / std::sqrt(kPackings);
   const double sin_squared = kSiloFriction * kSiloFriction / (1 + kSiloFriction * kSiloFriction);
   const double stress_ratio = (1 - sin_squared) / (1 + sin_squared);  // Krynine 1945
@@ -216,7 +216,7 @@ TEST(Bed, WallsCarryTallBeds) {  // V4.4, Janssen: the floor's force saturates w
   }
 }
 
-TEST(Bed, ColumnOfGasIsBarometric) {  // V3.9: density ~ exp(-m g z/T), after a start far from it
+TEST(Bed, ColumnOfGasIsBarometric) {  // V3.9: density ~ exp(-m g z/T), from a start far from equilibrium
   constexpr int kBeads = 300, kLooks = 1000;
   constexpr double kWidth = 7800;
   const Scene scene = read_scene_text(
@@ -226,7 +226,8 @@ TEST(Bed, ColumnOfGasIsBarometric) {  // V3.9: density ~ exp(-m g z/T), after a 
   const Plan plan = make_plan(scene);
   System s = make_system(scene, plan);
   s.dt = std::numbers::pi / std::sqrt(2 * 1e3) / 12.37;
-  // All start with the same energy, 6 m g sigma, as height or as motion: no Boltzmann factor in that.
+  // All beads start with the same energy, 6 m g sigma, as height or as motion, so the start contains no
+  // Boltzmann factor.
   std::mt19937_64 engine(9);
   std::uniform_real_distribution<double> place(0, 1);
   for (int i = 0; i < kBeads; ++i) {
@@ -248,7 +249,7 @@ TEST(Bed, ColumnOfGasIsBarometric) {  // V3.9: density ~ exp(-m g z/T), after a 
       if (b.z > 0.5) heights.push_back(b.z - 0.5);
     }
   }
-  // The decay length over two decades of density, by maximum likelihood for an exponential that is cut.
+  // The decay length over two decades of density, by maximum likelihood for a truncated exponential.
   const double top = std::log(100.0) * heat;
   double mean = 0, inside = 0;
   for (const double z : heights)
@@ -259,7 +260,7 @@ TEST(Bed, ColumnOfGasIsBarometric) {  // V3.9: density ~ exp(-m g z/T), after a 
     const double h = (low + high) / 2;
     (h - top / std::expm1(top / h) < mean ? low : high) = h;
   }
-  // With the second virial coefficient ln(phi) + 4 phi falls by m g z/T: the mean height is 1 + phi_0.
+  // With the second virial coefficient, ln(phi) + 4 phi falls by m g z/T: the mean height is 1 + phi_0.
   const double floor = kBeads * std::numbers::pi / 4 / (kWidth * heat);
   validate(
       {"V3.9",
@@ -270,7 +271,7 @@ TEST(Bed, ColumnOfGasIsBarometric) {  // V3.9: density ~ exp(-m g z/T), after a 
     double count = 0;
     for (const double z : heights) count += z >= bin * heat && z < (bin + 1) * heat;
     const double exact = std::exp(-bin) * -std::expm1(-1.0) * static_cast<double>(heights.size());
-    // Four phi_0, and three standard errors of a count whose looks are half independent.
+    // The tolerance is 4 phi_0 plus three standard errors of a count whose samples are half independent.
     validate(
         {"V3.9",
          "gas under gravity: beads in layer " + std::to_string(bin + 1) + " of height T/(m g), over exact", 1,
@@ -301,7 +302,7 @@ TEST(Bed, TimeMeansAreThoseOfDenseFrames) {
     Simulation run(settled.scene(), settled.state());
     MemoryTrajectory out(run.trajectory_info());
     run.run(out);
-    EXPECT_EQ(run.plan().steps_per_period % 400, 0);  // or the two would not see the same moments
+    EXPECT_EQ(run.plan().steps_per_period % 400, 0);  // otherwise the two would sample different instants
     return out;
   };
   const MemoryTrajectory sparse = film("20", "400"), dense = film("400", "0");
@@ -322,7 +323,7 @@ TEST(Bed, TimeMeansAreThoseOfDenseFrames) {
     EXPECT_LE((mean.temperature - all).norm(), 1e-12);
     EXPECT_LE((mean.temperature_coarse - coarse).norm(), 1e-12);
   }
-  EXPECT_GT(largest, 0.01);  // a bed that rests would show nothing
+  EXPECT_GT(largest, 0.01);  // a bed at rest would make the comparison empty
 }
 
 TEST(Bed, SmoothBeadsHaveNoSpinColumn) {

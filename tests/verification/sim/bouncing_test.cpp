@@ -20,7 +20,7 @@ std::string number(double v) {
   return text;
 }
 
-/// A bead above the plate, ready to fall on it.
+/// A bead above the plate, about to fall on it.
 struct Bouncer : Bench {
   Bouncer(const std::string& law, double gamma, double n)
       : Bench("[contact]\ntangential = \"none\"\n" + law + "[time]\nintegrator = \"split\"\n", n) {
@@ -29,15 +29,15 @@ struct Bouncer : Bench {
     system.dt = kTurn / static_cast<double>(system.steps_per_period);
   }
   [[nodiscard]] bool touches() const { return system.beads[0].z - system.plate_height() < 0.5; }
-  /// Runs until it touches, or does not, and returns the time.
+  /// Runs until the contact state equals `touching` and returns the time.
   double until(bool touching, std::int64_t block) {
     while (touches() != touching) kernel->advance(system, block);
     return system.time();
   }
 };
 
-/// The phases of `count` landings after `discard`, started on the orbit of period 1: take-off at the phase at
-/// which it would land, with the speed that brings it there again a period later.
+/// Phases of `count` landings after `discard` discarded ones. The bead starts on the period-1 orbit: it takes
+/// off at the landing phase, with the speed that returns it to that phase one period later.
 std::vector<double> landings(double e, double gamma, double n, int discard, int count) {
   Bouncer b("restitution = " + std::to_string(e) + "\n", gamma, n);
   const double phase = std::acos(std::numbers::pi * (1 - e) / ((1 + e) * gamma));
@@ -47,7 +47,7 @@ std::vector<double> landings(double e, double gamma, double n, int discard, int 
   const std::int64_t block = 10;
   for (int k = 0; k < discard + count; ++k) {
     b.until(true, block);
-    // Back to the moment of first touch, at the relative speed of landing.
+    // Extrapolates back to the instant of first touch at the relative landing speed.
     const Bead& p = b.system.beads[0];
     const double late = (0.5 + b.system.plate_height() - p.z) / (b.system.plate_velocity() - p.vz);
     const double at =
@@ -59,8 +59,8 @@ std::vector<double> landings(double e, double gamma, double n, int discard, int 
 }
 
 TEST(BouncingBead, LandsAtThePhaseOfPeriodOneAndDoublesItsPeriod) {  // V4.7
-  // 2-3 % below the bifurcation every landing is at cos(phi) = pi (1 - e)/((1 + e) Gamma); above it two
-  // phases alternate, here those of an event-driven bead with the same spring.
+  // 2-3 % below the bifurcation, every landing is at cos(phi) = pi (1 - e)/((1 + e) Gamma). Above it two
+  // phases alternate; their reference values come from an event-driven bead with the same spring.
   struct Case {
     double e, gamma, upper, lower, tolerance;
   };
@@ -86,7 +86,8 @@ TEST(BouncingBead, LandsAtThePhaseOfPeriodOneAndDoublesItsPeriod) {  // V4.7
   }
 }
 
-/// Landing phases of a hard bead, from its closed flight: t' > t with z(t') = A sin t' solved by bisection.
+/// Iterates the landing phases of a hard bead by its closed-form flight: t' > t with z(t') = A sin t', solved
+/// by bisection.
 /// \return whether two successive landings on the settled orbit differ
 bool map_has_doubled(double e, double gamma) {
   double t = std::acos(std::numbers::pi * (1 - e) / ((1 + e) * gamma)) + 1e-3, up = std::numbers::pi;
@@ -106,7 +107,7 @@ bool map_has_doubled(double e, double gamma) {
   return std::abs(last - before) > 1e-4;
 }
 
-TEST(BouncingBead, PeriodDoublingOfTheHardBead) {  // V4.7, its closed form against the map itself
+TEST(BouncingBead, PeriodDoublingOfTheHardBead) {  // V4.7, the closed form against the map itself
   for (const auto& [e, outside] :
        {std::pair{0.5, 1.52682}, {0.8, 1.07084}, {0.85447, 1.03592}, {0.9, 1.01631}}) {
     double low = outside - 0.04, high = outside + 0.06;
@@ -133,7 +134,7 @@ TEST(InelasticBead, FliesFromTakeOffToLanding) {  // V4.8: e = 0 by critical dam
     validate({"V4.8", what + ": sin of the take-off phase times Gamma", 1, 0.01, "sin(phi) = 1/Gamma"},
              gamma * std::sin(std::fmod(off, kTurn)));
   }
-  // Independently: a flight of one whole period at Gamma = sqrt(1 + pi^2).
+  // Independent check: at Gamma = sqrt(1 + pi^2) the flight lasts one whole period.
   const double top = std::sqrt(1 + std::numbers::pi * std::numbers::pi);
   Bouncer b("gamma_n = 2000.0\n", 0.999 * top, 50.37);
   b.add(10, 0.5 - 1e-6, 0, 0.999 * top);

@@ -1,4 +1,4 @@
-// A straight chain of beads pressed together: what a spring network knows in closed form (docs/validation.md:
+// A straight chain of compressed beads against the closed forms of a spring network (docs/validation.md:
 // V4.5, V4.6).
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@ namespace {
 
 using test::validate;
 
-/// `count` beads along x, closed to a ring by a period a little shorter than they are, so that no contact
-/// opens.
+/// `count` beads along x, closed to a ring by a period slightly shorter than their total length, so that no
+/// contact opens.
 Bench ring(int count, const std::string& law, double n) {
   constexpr double kPressed = 1e-3;
   Bench b(
@@ -44,7 +44,7 @@ TEST(Chain, NormalModes) {  // V4.5: w = 2 sqrt(k/m) |sin(q/2)|
       b.system.beads[static_cast<std::size_t>(i)].vx =
           0.01 * std::cos(2 * std::numbers::pi * mode * i / kBeads);
     const double exact = 2 * 1000 * std::sin(std::numbers::pi * mode / kBeads);
-    // Times at which the mode's velocity passes 0, over some twenty of its periods.
+    // Times of the zero crossings of the mode's velocity, over about twenty of its periods.
     const std::int64_t block = std::max<std::int64_t>(1, std::llround(0.05 / exact / b.system.dt));
     std::vector<double> zeros;
     double before = projection(b, mode), at = 0;
@@ -95,7 +95,7 @@ TEST(Chain, ModesRelax) {  // V4.6: amplitude falls at (eta/m)(1 - cos q), eta =
       b.system.beads[static_cast<std::size_t>(i)].vx =
           0.01 * std::cos(2 * std::numbers::pi * mode * i / kBeads);
     const double q = 2 * std::numbers::pi * mode / kBeads, rate = 50 * (1 - std::cos(q));
-    // Crests of |v|, each by a parabola through three looks.
+    // Maxima of |v|, each from a parabola through three samples.
     const double period = std::numbers::pi / (1000 * std::sin(q / 2));
     const std::int64_t block = std::max<std::int64_t>(1, std::llround(period / 60 / b.system.dt));
     std::vector<std::pair<double, double>> crests;  // time, log amplitude

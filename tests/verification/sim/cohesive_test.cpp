@@ -1,4 +1,4 @@
-// A constant attraction while surfaces touch (docs/validation.md: V1.12).
+// A constant attraction while surfaces are in contact (docs/validation.md: V1.12).
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using test::validate;
 
-constexpr double kStiffness = 1e6, kDamping = 100, kPullOff = 200;  // m = 1; the wall's: gamma = 100
+constexpr double kStiffness = 1e6, kDamping = 100, kPullOff = 200;  // m = 1; at the wall gamma = 100
 
 std::string contact() {
   return "[contact]\nnormal = \"cohesive\"\ntangential = \"none\"\npull_off_force = " +
@@ -22,14 +22,14 @@ std::string contact() {
          "\n[time]\nintegrator = \"split\"\n";
 }
 
-/// Overlap of a bead that meets the wall with speed v: m d'' = F_c - eta d' - k d.
+/// Overlap of a bead that hits the wall at speed v: m d'' = F_c - eta d' - k d.
 double overlap_at(double t, double v) {
   const double beta = kDamping / 2, w = std::sqrt(kStiffness - beta * beta), rest = kPullOff / kStiffness;
   const double sine = (v - beta * rest) / w;
   return rest + std::exp(-beta * t) * (-rest * std::cos(w * t) + sine * std::sin(w * t));
 }
 
-/// Restitution of that motion where the overlap returns to 0; 0 if it never does.
+/// Restitution of that motion at the instant when the overlap returns to 0; 0 if it never does.
 double restitution(double v) {
   const double period = 2 * std::acos(-1.0) / std::sqrt(kStiffness);
   double low = 0.1 * period;
@@ -54,7 +54,7 @@ TEST(Cohesive, FastBeadsLeaveWithARestitutionThatDependsOnTheSpeed) {
   }
 }
 
-// Two-sided: the slowest bead that leaves, by the closed form, is between these speeds.
+// Tested from both sides: the closed form puts the lowest escape speed between these speeds.
 TEST(Cohesive, SlowBeadsAreCaptured) {
   double low = 0.01, high = 3;
   ASSERT_EQ(restitution(low), 0);
@@ -79,8 +79,8 @@ TEST(Cohesive, ACapturedBeadRestsAtTheOverlapOfItsPullOffForce) {
            0.5 - b.system.beads[0].z);
 }
 
-// A contact that attracts may last for ever, and friction begins while the surfaces pull: no isolated
-// integration is exact there, and beads move by steps.
+// An attractive contact may last for ever, and friction begins while the surfaces attract each other.
+// Integrating a contact in isolation is then not exact, so the plan uses time steps only.
 TEST(Cohesive, BeadsMoveByStepsOnly) {
   const std::string scene = "[beads]\ncount = 20\n[drive]\nomega = 1.0\nk_m = 100.0\n" + contact();
   EXPECT_FALSE(make_plan(read_scene_text(scene, "s")).event_driven);

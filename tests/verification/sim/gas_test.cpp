@@ -1,6 +1,6 @@
-// Many beads without gravity, elastic and cooling (docs/validation.md: V3.1-V3.8, V4.1). Lengths of runs are
-// chosen so that the standard error, from the means of blocks of time or of several starts, is at most half
-// of the tolerance; the tests check that too.
+// Many beads without gravity, elastic and cooling (docs/validation.md: V3.1-V3.8, V4.1). Run lengths are
+// chosen so that the standard error, from the means of time blocks or of several starts, is at most half of
+// the tolerance. The tests check this condition too.
 
 #include "tests/support/gas.hpp"
 
@@ -22,9 +22,10 @@ std::string number(double v) {
 }
 
 TEST(ElasticGas, EnergyWalksAtRandomAndDoesNotDrift) {
-  // Verlet makes an error of (w0 dt)^2 theta (1 - theta) in the energy E_n of the approach where a contact
-  // begins a share theta into a step, and the opposite one where it ends. Its variance over theta is 1/180,
-  // <E_n^2> = 2 T^2 over collisions: after N_c of them the energy has walked T (pi/n)^2 sqrt(N_c/45).
+  // Where a contact begins a fraction theta into a step, Verlet makes an error of (w0 dt)^2 theta (1 - theta)
+  // in the energy E_n of the approach; where the contact ends, it makes the opposite error. The variance over
+  // theta is 1/180, and <E_n^2> = 2 T^2 over collisions: after N_c collisions the energy has random-walked by
+  // T (pi/n)^2 sqrt(N_c/45).
   constexpr int kStarts = 24;
   constexpr std::int64_t kSteps = 40'000;
   for (const double n : {50.37, 100.37}) {
@@ -53,8 +54,8 @@ TEST(ElasticGas, EnergyWalksAtRandomAndDoesNotDrift) {
 }
 
 TEST(ElasticGas, KeepsEnergyWhereStepsAreSplit) {
-  // The plan asks for 1e-4 over 1e7 steps, with a fitted drift of 1e-5: n = 100 holds that, n = 50 a
-  // twentieth of it.
+  // The plan requires 1e-4 over 1e7 steps, with a fitted drift of 1e-5. n = 100 meets this; n = 50 meets it
+  // over a twentieth of the steps.
   struct Case {
     double n;
     std::int64_t steps;
@@ -79,7 +80,7 @@ TEST(ElasticGas, KeepsEnergyWhereStepsAreSplit) {
 }
 
 TEST(ElasticGas, KeepsAngularMomentum) {
-  // A cloud in open space, thrown together.
+  // A contracting and rotating cloud in open space.
   for (const int dimension : {2, 3}) {
     Gas gas({.dimension = dimension, .cells = dimension == 2 ? 12 : 5, .phi = 0.2});
     gas.system.period = {0, 0, 0};
@@ -112,7 +113,7 @@ TEST(ElasticGas, KeepsAngularMomentum) {
 }
 
 TEST(ElasticGas, SharesEnergyEqually) {
-  // Half of the beads ten times as heavy, all at first equally fast: far from equilibrium.
+  // Half of the beads are ten times as heavy and all start at the same speed: far from equilibrium.
   Gas gas({.cells = 20, .phi = 0.5, .stiffness = 2.5e3, .n = 15.37});
   for (std::size_t i = 0; i < gas.system.beads.size(); i += 2) gas.system.beads[i].mass = 10;
   gas.stand_still();
@@ -150,19 +151,19 @@ TEST(ElasticGas, SharesEnergyEqually) {
   };
   row("temperature of heavy over light beads, masses 10 : 1, mixed from afar", 1, ratio);
   row("<v_x^2>/<v_z^2>", 1, axes);
-  // A sum of N squares is given: <v^4>/<v^2>^2 = 3 (1 - 2/(2 N)) or so.
+  // The sum of N squares is fixed: <v^4>/<v^2>^2 is approximately 3 (1 - 2/(2 N)).
   row("kurtosis of a velocity component", 3, kurtosis);
 }
 
 struct State {
-  double z;       ///< P/(n T) for beads of the effective diameter, carried over to diameter 1
+  double z;       ///< P/(n T) for beads of the effective diameter, converted to diameter 1
   double z_soft;  ///< as measured
-  double rate;    ///< collisions of a bead per time, over sqrt(T)
+  double rate;    ///< collisions per bead and time, over sqrt(T)
   double temperature;
-  Averaged virial;  ///< relative
+  Averaged virial;  ///< its error is relative to z_soft
 };
 
-/// Pressure and collision rate. \param equation Z(phi) of the hard gas, for the carry-over
+/// Pressure and collision rate. \param equation Z(phi) of the hard gas, for the conversion to diameter 1
 template <class Equation>
 State measure(const GasOptions& options, double collisions, Equation equation) {
   Gas gas(options);
@@ -217,7 +218,7 @@ TEST(ElasticGas, PressureOfDiscs) {
 }
 
 TEST(ElasticGas, PressureTendsToThatOfHardDiscs) {
-  // Three stiffnesses; what is left is proportional to sqrt(T/k_n).
+  // Three stiffnesses; the remaining deviation is proportional to sqrt(T/k_n).
   const double phi = 0.3, outside = hard_disc_z(phi);
   double s_0 = 0, s_x = 0, s_xx = 0, s_y = 0, s_xy = 0;
   for (const double stiffness : {2.5e3, 1e4, 4e4}) {
@@ -269,8 +270,8 @@ TEST(ElasticGas, PairCorrelationAtContact) {
     const double phi = 0.3;
     Gas gas({.dimension = dimension, .cells = dimension == 2 ? 24 : 9, .phi = phi, .stiffness = 1e4});
     gas.advance_time(10);
-    // g in shells up to 1.2 d; a parabola through ln g, weighted by counts, carried to the effective
-    // diameter, where soft beads have the g that hard ones of that diameter have at contact.
+    // g(r) in shells up to 1.2 d. A parabola through ln g, weighted by counts, is extrapolated to the
+    // effective diameter, where g of soft beads equals the contact value of hard beads of that diameter.
     constexpr int kShells = 10, kLooks = 800;
     const double reach = 0.2;
     std::array<double, kShells> counts{};
@@ -306,8 +307,8 @@ TEST(ElasticGas, PairCorrelationAtContact) {
   }
 }
 
-/// The elastic gas stirred, then left to cool with e = 0.9: slope of sqrt(T_0/T) over t up to 5 tau, times
-/// tau.
+/// Equilibrates the elastic gas, then lets it cool with e = 0.9. Returns the slope of sqrt(T_0/T) over t up
+/// to 5 tau, times tau.
 double haff_slope(const GasOptions& options) {
   Gas elastic(options);
   const double g = contact_value(options.dimension, options.phi);
@@ -330,7 +331,7 @@ double haff_slope(const GasOptions& options) {
   return up / down;
 }
 
-/// Few enough beads that shear modes, which cool more slowly than the rest, carry little of the energy.
+/// Uses so few beads that shear modes, which cool more slowly than the rest, carry little of the energy.
 void expect_haff(const GasOptions& options, int starts) {
   std::vector<double> slopes;
   for (int seed = 1; seed <= starts; ++seed) {

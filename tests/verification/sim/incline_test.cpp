@@ -25,7 +25,7 @@ constexpr double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-/// A bead resting on the plate of a cell tilted by `degrees`, its overlap already that of its weight.
+/// A bead at rest on the plate of a cell tilted by `degrees`, with the static overlap of its weight.
 Bench incline(const std::string& extra, double degrees) {
   Bench b(extra);
   b.system.gravity = Vec3(std::sin(radians(degrees)), 0, -std::cos(radians(degrees)));
@@ -33,14 +33,14 @@ Bench incline(const std::string& extra, double degrees) {
   return b;
 }
 
-/// The same for a block: a bead that cannot turn.
+/// The same for a block: a bead whose inertia prevents rotation.
 Bench block(const std::string& extra, double degrees) {
   Bench b = incline(extra, degrees);
   b.system.beads[0].inertia = 1e15;
   return b;
 }
 
-/// Acceleration along the incline after the first transient.
+/// Acceleration along the incline after the initial transient.
 double acceleration(Bench& b) {
   b.advance_time(1);
   const double v = b.system.beads[0].vx, t = b.system.time();

@@ -22,8 +22,7 @@ std::string contact(double mu) {
          std::to_string(mu) + "\n";
 }
 
-// Tangential over normal stiffness of a contact at constant load is 2 (1 - nu)/(2 - nu), whatever the
-// overlap.
+// The ratio of tangential to normal stiffness at constant load is 2 (1 - nu)/(2 - nu) at every overlap.
 TEST(Mindlin, StiffnessRatio) {
   const PairScale pair{.m_eff = 0.5, .r_eff = 0.25, .inv_m_t = 6};
   for (const double nu : {0.0, 0.3, 0.5})
@@ -47,9 +46,10 @@ TEST(Mindlin, StiffnessRatio) {
     }
 }
 
-// An elastic impact that slides throughout changes v_t by -2 mu v_n and R w by 2 mu v_n m R^2/I, whatever the
-// stiffness. Maw, Barber & Fawcett 1976: it does from psi_1 = 4 chi - 1 on, here v_t/v_n = 5.88 mu. A spring
-// without partial slip sticks for an instant at the end, where the normal force vanishes.
+// An elastic impact that slides throughout changes v_t by -2 mu v_n and R w by 2 mu v_n m R^2/I, at any
+// stiffness. By Maw, Barber & Fawcett 1976, it slides throughout from psi_1 = 4 chi - 1 on,
+// here v_t/v_n = 5.88 mu. A spring without partial slip sticks for an instant at the end, where the normal
+// force vanishes.
 TEST(Mindlin, GrossSlidingTakesTwiceMuTimesTheNormalMomentum) {
   constexpr double kMu = 0.2, kDegrees = 70;
   for (const int dimension : {2, 3}) {
@@ -74,8 +74,8 @@ TEST(Mindlin, GrossSlidingTakesTwiceMuTimesTheNormalMomentum) {
   }
 }
 
-// At 20 degrees the surfaces stick at first. No closed form holds without partial slip: the limit of small
-// steps is the reference, which the split integrator reaches at second order.
+// At 20 degrees the surfaces stick at first. Without partial slip there is no closed form. The reference is
+// the limit of small steps, which the split integrator reaches at second order.
 TEST(Mindlin, StickingImpactsConvergeAtSecondOrder) {
   const Scene scene = impact_scene(contact(0.3));
   const std::vector<Impact> impacts = {Impact::at(20, true), Impact::at(35, true), Impact::at(35, false)};

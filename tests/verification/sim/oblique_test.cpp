@@ -1,5 +1,5 @@
-// Oblique impacts: the picture of Walton, and the eight cases of Chung & Ooi, Granular Matter 13, 643 (2011),
-// for the linear law, whose closed forms are the reference (docs/validation.md: V2.7, V2.9).
+// Oblique impacts: Walton's diagram, and the eight cases of Chung & Ooi, Granular Matter 13, 643 (2011), for
+// the linear law, whose closed forms are the reference (docs/validation.md: V2.7, V2.9).
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ std::string number(double v) {
   return text;
 }
 
-/// Impact on the resting plate, split steps: motion after it.
+/// Motion after an impact on the plate at rest, with split steps.
 struct Impact {
   double vx, vz, spin;
 };
@@ -33,14 +33,14 @@ Impact on_plate(const std::string& law, double inertia_factor, double v_n, doubl
   const Bead& a = b.system.beads[0];
   return {a.vx, a.vz, a.spin};
 }
-/// Speed of the surface at the plate.
+/// Tangential speed of the bead's surface at the plate.
 double surface(double v_x, double spin) {
   return v_x + 0.5 * spin;
 }
 
-/// Elastic, k_t/k_n = 2/7: a sphere's tangential and normal springs swing at the same rate, so F_t/F_n stays
-/// what it is at first touch, 2/7 psi: beads stick below psi = 3.5 mu, and reverse; from psi = 7 mu on they
-/// slide throughout.
+/// Elastic, k_t/k_n = 2/7: a sphere's tangential and normal springs oscillate at the same frequency, so
+/// F_t/F_n keeps its value at first touch, 2/7 psi. Below psi = 3.5 mu beads stick and the surface velocity
+/// is reversed; from psi = 7 mu on they slide throughout.
 const std::string kWalton = "[contact]\ngamma_n = 0.0\ngamma_t = 0.0\nmu = 0.3\nk_t = 285714.2857142857\n";
 
 TEST(ObliqueImpact, WaltonsPicture) {  // V2.7
@@ -64,7 +64,7 @@ TEST(ObliqueImpact, WaltonsPicture) {  // V2.7
            after(0.5, 4));
 }
 
-/// Overlap and force of a head-on impact, step by step.
+/// Maximum overlap and duration of a head-on impact, sampled step by step.
 struct Course {
   double deepest = 0, time = 0;
 };
@@ -116,7 +116,7 @@ TEST(ChungAndOoi, ObliqueOnPlateAtFixedSpeed) {  // case 4
   for (const double degrees : {10.0, 30.0, 40.0, 70.0, 80.0, 85.0}) {
     const double a = degrees * std::numbers::pi / 180, v_n = std::cos(a), v_t = std::sin(a);
     const Impact i = on_plate(kWalton, 0.4, v_n, v_t, 0);
-    // Sticking: the surface is reversed; sliding: the impulse is mu (1 + e) v_n. Spheres: 1/m_t = 3.5.
+    // Sticking reverses the surface velocity; in sliding the impulse is mu (1 + e) v_n. Spheres: 1/m_t = 3.5.
     const double psi = v_t / v_n;
     ASSERT_TRUE(psi < 3.5 * 0.3 || psi > 7 * 0.3);
     const double impulse = psi < 3.5 * 0.3 ? 2 * v_t / 3.5 : 0.3 * 2 * v_n;
@@ -155,14 +155,16 @@ TEST(ChungAndOoi, PairsThatSpin) {  // cases 7, 8
     b.advance_time(1.2e-2);
     return std::array{b.system.beads[0], b.system.beads[1]};
   };
-  // Case 7: opposite spins, the surfaces roll on each other: nothing turns, nothing is thrown aside.
+  // Case 7: with opposite spins the surfaces roll on each other, so neither spins nor tangential velocities
+  // change.
   const auto opposite = collide(3, -3, 0.5, 1, "");
   validate({"V2.9", "case 7, two beads with opposite spins: change of spin", 0, 1e-12, "symmetry"},
            std::max(std::abs(opposite[0].spin - 3), std::abs(opposite[1].spin + 3)));
   validate({"V2.9", "case 7: sideways speed", 0, 1e-12, "symmetry"},
            std::max(std::abs(opposite[0].vz), std::abs(opposite[1].vz)));
   validate({"V2.9", "case 7: e", 0.8948121, 0.25 / 400, "closed form"}, opposite[1].vx - opposite[0].vx);
-  // Case 8: unequal beads, no slip, dashpot alone: v_t falls by exp(-c_t t_c/(2 m_t) 2), shared by impulse.
+  // Case 8: unequal beads, no slip, dashpot only: v_t falls by exp(-c_t t_c/(2 m_t) 2) and is shared by
+  // impulse.
   const double radius = 0.8, mass = 3, spin_1 = 2, spin_2 = 1;
   const auto unequal = collide(spin_1, spin_2, radius, mass,
                                "[contact]\ntangential = \"dashpot\"\nmu = 1e9\nc_t = 40.0\nc_n = 50.0\n");

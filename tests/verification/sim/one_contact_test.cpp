@@ -38,7 +38,7 @@ TEST(NormalContact, ElasticPairKeepsItsSpeedToSecondOrder) {  // V1.1
               1.2 / (n * n), "closed form"},
              e.largest);
     EXPECT_GE(e.largest,
-              0.2 / (n * n));  // second order, and no better: a zero would mean that nothing collided
+              0.2 / (n * n));  // second order, and no better: a zero would mean that no collision occurred
   }
 }
 
@@ -76,7 +76,7 @@ TEST(NormalContact, DeepestOverlapAndThePullAtTheEnd) {  // V1.2, V1.4
       pulled = b.system.time() - entered;
   }
   validate({"V1.2", "two beads, deepest overlap at v = 1", 6.697e-4, 2e-6, "closed form"}, deepest);
-  // F_n changes sign before the beads part; known to a step or so.
+  // F_n changes sign before the beads separate; the instant is resolved to about one step.
   validate({"V1.4", "two beads, moment of zero force over t_c", 0.977487, 3.0 / 400, "closed form"},
            pulled / 2.222831e-3);
 }
@@ -114,7 +114,7 @@ TEST(NormalContact, RestitutionAskedIsRestitutionMeasured) {  // V1.6, V1.8: the
     validate({"V1.6", "bead and wall, mean e where " + number(e) + " is asked", e, tolerance, "closed form"},
              e + wall.mean);
   }
-  // One dashpot for both would give the wall 0.9282.
+  // A single dashpot for both would give the wall 0.9282.
   const std::string second = "[contact]\ntangential = \"none\"\nrestitution = 0.9\n";
   validate(
       {"V1.8", "second paper's wall: e with its own c_n", 0.9, 1e-3, "Bhateja et al. 2016"},
@@ -122,7 +122,7 @@ TEST(NormalContact, RestitutionAskedIsRestitutionMeasured) {  // V1.6, V1.8: the
           over_entry_phases([&](double p) { return wall_restitution(second, 200.37, 1, p); }, 0.9, 20).mean);
   for (const char* k_n : {"1e5", "1e7"}) {
     const std::string law = second + "k_n = " + k_n + "\n";
-    Bench time(kNoGravity + law, 200.37);  // its step: collisions of other stiffness last longer or shorter
+    Bench time(kNoGravity + law, 200.37);  // its own step: t_c depends on the stiffness
     const double v = 0.05 / time.system.dt * 1e-3;
     validate(
         {"V1.6", std::string("two beads, mean e where 0.9 is asked, k_n = ") + k_n, 0.9, 1e-3, "closed form"},
@@ -138,8 +138,8 @@ TEST(NormalContact, RestitutionAskedIsRestitutionMeasured) {  // V1.6, V1.8: the
                   0.9, 20)
                   .mean);
   }
-  // The law has no scale of speed: at the same entry phase the same e.
-  const auto at_origin = [&](double v) {  // where places are not rounded to more than 1e-16
+  // The law has no velocity scale: the same entry phase gives the same e.
+  const auto at_origin = [&](double v) {  // where positions are rounded to at most 1e-16
     Bench b(kNoGravity + second, 50.37);
     b.system.walls.clear();
     const double gap = 5.3 * v * b.system.dt;
@@ -175,11 +175,11 @@ TEST(NormalContact, SameCollisionInAMovingFrame) {  // V1.9
   const auto rest = relative(0, 0), moving = relative(3, -7);
   double worst = 0;
   for (std::size_t k = 0; k < 3; ++k) worst = std::max(worst, std::abs(rest[k] - moving[k]));
-  // Places up to 50 are rounded to 7e-15, which the spring multiplies by k_n t_c.
+  // Positions up to 50 are rounded to 7e-15; the spring multiplies this error by k_n t_c.
   validate({"V1.9", "rough collision in a frame moving at (3, -7)", 0, 1e-10, "Galilei"}, worst);
 }
 
-// A bead hitting the plate at 45 degrees; returns v_t'/v_t of the surface.
+// A bead hits the plate at 45 degrees; returns v_t'/v_t of the surface.
 double tangential_ratio_wall(const std::string& extra, double n, double phase) {
   Bench b(kNoGravity + extra, n);
   const double v = 1, gap = (5 + phase) * v * b.system.dt;
@@ -195,8 +195,8 @@ double tangential_ratio_pair(const std::string& extra, double n, double phase) {
   const double v = 1, gap = (5 + phase) * v * b.system.dt;
   b.add(10 - 0.5 - gap / 2, 50, v / 2, v / 2);
   b.add(10 + 0.5 + gap / 2, 50, -v / 2, -v / 2);
-  // Approaching at v along x while sliding past at v along z turns n slightly; the gap is kept to a few steps
-  // for that.
+  // An approach at v along x with sliding at v along z turns n slightly. A gap of only a few steps keeps this
+  // turn small.
   b.advance_time(8e-3 + 2 * gap);
   const Bead &p = b.system.beads[0], &q = b.system.beads[1];
   const double dx = p.x - q.x, dz = p.z - q.z, r = std::hypot(dx, dz), nx = dx / r, nz = dz / r;
@@ -212,12 +212,12 @@ TEST(TangentialContact, NoSlipFirstPaper) {  // V2.1, V2.2
       over_entry_phases([&](double p) { return tangential_ratio_pair(rough, 200.37, p); }, 0.419530, 20);
   validate({"V2.1", "bead and wall without slip, first paper: v_t'/v_t", 0.310127, 3e-3, "closed form"},
            0.310127 + wall.mean);
-  // The pair turns by about t_c while in contact.
+  // The pair turns by about t_c during the contact.
   validate({"V2.2", "two beads without slip, first paper: v_t'/v_t", 0.419530, 6e-3, "closed form"},
            0.419530 + pair.mean);
 }
 
-TEST(TangentialContact, NoSlipSecondPaper) {  // V2.3: 0.9^7 for spheres, 0.9^6 for discs, wall and pair alike
+TEST(TangentialContact, NoSlipSecondPaper) {  // V2.3: 0.9^7 for spheres, 0.9^6 for discs, wall and pair
   for (const auto& [inertia, exact] : {std::pair{"sphere", 0.478297}, {"disc", 0.531441}}) {
     const std::string law =
         "[contact]\nrestitution = 0.9\ntangential = \"dashpot\"\nc_t_over_c_n = 1.0\nmu = 1e9\n";
@@ -237,14 +237,14 @@ TEST(TangentialContact, NoSlipSecondPaper) {  // V2.3: 0.9^7 for spheres, 0.9^6 
 }
 
 TEST(TangentialContact, FullSlidingTakesThePullIntoAccount) {  // V2.4
-  // With the slider alone: the spring law, its spring shortened by the dashpot's share, follows at k_t v_t
-  // instead.
+  // Uses the slider alone. In the spring law the dashpot's share shortens the spring, so the force follows
+  // the limit only at the rate k_t v_t.
   Bench b(kNoGravity + "[contact]\ntangential = \"dashpot\"\nmu = 0.01\ngamma_t = 1e4\n", 400.37);
   const double v_n = 0.5, v_t = 0.5 * std::sqrt(3.0), gap = 5.3 * v_n * b.system.dt;
   b.add(10, 0.5 + gap, v_t, -v_n);
   b.advance_time(1e-2 + 2 * gap / v_n);
   const double impulse = v_t - b.system.beads[0].vx;
-  // Without the pull at the end it would be 1.854468.
+  // Without the tensile force at the end it would be 1.854468.
   validate({"V2.4", "sliding impact: impulse over mu m v_n", 1.863048, 2e-3 * 1.863, "closed form"},
            impulse / (0.01 * v_n));
 }
@@ -258,7 +258,7 @@ TEST(TangentialContact, SpinUpIdentity) {  // V2.5: I (spin' - spin) = m R (v_x'
     validate({"V2.5", std::string("spin-up on the floor, ") + law + ": I dspin - m R dv_x", 0, 1e-12,
               "closed form"},
              0.125 * (a.spin - 0.4) - 0.5 * (a.vx - 0.8));
-    EXPECT_LT(a.spin, 0.4);  // thrown to +x it ends up turning clockwise
+    EXPECT_LT(a.spin, 0.4);  // a bead launched towards +x ends up rotating clockwise
   }
 }
 
@@ -273,7 +273,7 @@ TEST(TangentialContact, SpinningBeadLeavesToTheLeft) {  // V2.15
   EXPECT_GT(b.system.beads[0].vz, 0);
 }
 
-TEST(TangentialContact, MeasuredObliqueImpacts) {  // reference numbers at n = 2000, tolerance 5e-4
+TEST(TangentialContact, MeasuredObliqueImpacts) {  // reference values at n = 2000, tolerance 5e-4
   for (const auto& [degrees, vx, vz, spin] :
        {std::tuple{30.0, 0.38830, 0.74009, 0.44680}, {60.0, 0.77975, 0.42723, 0.34509}}) {
     const double angle = degrees * std::numbers::pi / 180;
@@ -284,20 +284,20 @@ TEST(TangentialContact, MeasuredObliqueImpacts) {  // reference numbers at n = 2
     const std::string what = "oblique impact at " + number(degrees) + " degrees, first paper: ";
     validate({"V2", what + "v_x", vx, 5e-4, "independent program"}, b.system.beads[0].vx);
     validate({"V2", what + "v_z", vz, 5e-4, "independent program"}, b.system.beads[0].vz);
-    // Four times v_x, by the identity.
+    // The spin is four times the change of v_x, by the spin-up identity.
     validate({"V2", what + "|spin|", spin, 2e-3, "independent program"}, std::abs(b.system.beads[0].spin));
   }
 }
 
 TEST(TangentialContact,
-     CoulombLimitAtZeroNormalForce) {  // H3, H2: finite, and the spring keeps what the dashpot leaves
+     CoulombLimitAtZeroNormalForce) {  // H3, H2: finite, and the spring carries what the dashpot leaves
   using Scalar = Tangent<double, 1>;
   const PairScale wall{1, 0.5, 3};
   const auto spring = SpringSlider{1e4, {100, 0, 0}, 0.6}.constants(wall);
   Scalar xi{{1e-3}};
   EXPECT_EQ(std::abs(SpringSlider::force(spring.data(), Scalar{{0.5}}, 0.0, 1e-5, xi).c[0]), 0);
   EXPECT_DOUBLE_EQ(xi.c[0], -100 * 0.5 / 1e4);
-  xi.c[0] = 2e-5;  // at rest the spring alone holds
+  xi.c[0] = 2e-5;  // at rest the spring alone carries the force
   EXPECT_DOUBLE_EQ(SpringSlider::force(spring.data(), Scalar{{0}}, 10.0, 1e-5, xi).c[0], -0.2);
   const auto slider = DashpotSlider{{0, 50, 0}, 0.4}.constants(wall);
   Scalar none{{0}};

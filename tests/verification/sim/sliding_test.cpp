@@ -1,5 +1,6 @@
-// Impacts that slide, with a tangential spring that remembers: the exact solution against closed forms and
-// the limit of ever smaller steps, and the orders at which steps come to it (docs/validation.md: V2.16).
+// Sliding impacts with a tangential spring that has memory: the exact solution against closed forms and
+// against the limit of small steps, and the orders of convergence of the step integrators
+// (docs/validation.md: V2.16).
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -26,7 +27,7 @@ std::string name(const Impact& i) {
 // --- the exact solution ---
 
 TEST(Sliding, ConvergedValuesOfTheFirstPapersContact) {
-  // Of steps with n = 20000 and first order, whose own error is some 3e-6 of the spin.
+  // Reference: steps with n = 20000 at first order, whose own error is about 3e-6 of the spin.
   const std::tuple<double, double, double> rows[] = {{45, 0.603046, 0.416243}, {60, 0.780520, 0.342021}};
   for (const auto& [degrees, v_t, spin] : rows) {
     const Outcome o = exact_outcomes({Impact::at(degrees, true)}, impact_scene()).front();
@@ -51,7 +52,7 @@ TEST(Sliding, WithoutSlipItIsTheDampedOscillator) {
 }
 
 TEST(Sliding, ElasticBeadsSlideThroughoutOrReverse) {
-  // Walton & Braun 1986; a disc's springs swing at one rate where k_t/k_n = 1/3.
+  // Walton & Braun 1986; a disc's two springs oscillate at the same frequency at k_t/k_n = 1/3.
   const Scene scene = impact_scene("gamma_n = 0.0\ngamma_t = 0.0\nmu = 0.3\nk_t = 333333.3333333333\n");
   for (const double psi : {0.3, 0.8}) {
     const Outcome o = exact_outcomes({{true, 1, psi, 0}}, scene).front();
@@ -66,7 +67,7 @@ TEST(Sliding, ElasticBeadsSlideThroughoutOrReverse) {
   }
 }
 
-/// A general collision of two beads in space by steps: v_i - v_j and R_i w_i + R_j w_j after it.
+/// A general collision of two beads in space, by time steps: v_i - v_j and R_i w_i + R_j w_j after it.
 std::pair<Vec3, Vec3> by_steps(const RelativeMotion& touch, const std::string& keys, double n) {
   Scene scene = read_scene_text(
       "preset = \"fortini-huang-2015\"\n[cell]\ndimension = 3\nwidth = 40.0\ndepth = 40.0\nheight = 40.0\n"
@@ -102,7 +103,8 @@ std::pair<Vec3, Vec3> by_steps(const RelativeMotion& touch, const std::string& k
 }
 
 TEST(Sliding, InSpaceItIsTheLimitOfEverSmallerSteps) {
-  // Beads whose surfaces move across the plane in which the centres do, so that the force turns as it slides.
+  // The surfaces move out of the plane of the centres' motion, so the friction force turns while the contact
+  // slides.
   const RelativeMotion touch{Vec3(0.6, 0, 0.8), Vec3(-1.4, 0.5, -0.9), Vec3(0.7, -0.4, 0.9)};
   for (const char* keys :
        {"", "mu = 0.2\nk_t = 285714.0\n", "tangential = \"spring-limited\"\n",
@@ -129,8 +131,8 @@ TEST(Sliding, InSpaceItIsTheLimitOfEverSmallerSteps) {
 }
 
 TEST(Sliding, InAPlaneOfSpaceAHertzianContactHasTheNormalForceOfThePlane) {
-  // Without friction worth the name spheres in space part as discs do. F_n begins at nothing there, and the
-  // direction of the force, which knows no other plane, must not leave it.
+  // With negligible friction, spheres in space separate as discs do. F_n starts at zero, and the direction of
+  // the friction force must stay in the plane.
   const std::string hertz = "normal = \"hertz\"\nyoungs_modulus = 1e7\nviscous_time = 2e-5\nmu = 1e-4\n";
   for (const double degrees : {45.0, 75.0, 85.0})
     for (const bool wall : {true, false}) {
@@ -159,7 +161,7 @@ TEST(Sliding, CutIntoFinerStepsTheExactSolutionIsTheSame) {
 }
 
 TEST(Sliding, ReadingsOfTruncateAreDifferentLaws) {
-  // Printed for docs/friction.md; that they differ, and where they must not.
+  // Printed for docs/friction.md. Also tests where the readings must differ and where they must agree.
   for (const double degrees : {10.0, 30.0, 45.0, 60.0, 75.0}) {
     double spin[3];
     for (const SlipReading r : {SlipReading::rescale, SlipReading::spring_limited, SlipReading::clip}) {
@@ -171,12 +173,12 @@ TEST(Sliding, ReadingsOfTruncateAreDifferentLaws) {
           << "the scene's word";
       std::printf("READING|%g|%d|%.6f|%.6f\n", degrees, static_cast<int>(r), o.v_t, o.spin);
     }
-    // Where everything slides, the spring-limited and the clipped force are both mu F_n.
+    // Where the contact slides throughout, the spring-limited and the clipped force are both mu F_n.
     if (degrees >= 60) {
       EXPECT_NEAR(spin[1], spin[2], 1e-9);
       EXPECT_GT(spin[1], 1.5 * spin[0]);
     }
-    // From outside: at 60 degrees 0.760 against 0.342.
+    // Independent values at 60 degrees: 0.760 and 0.342.
     if (degrees == 60) {
       EXPECT_NEAR(spin[1], 0.760, 5e-4);
       EXPECT_NEAR(spin[0], 0.342, 5e-4);
@@ -184,9 +186,9 @@ TEST(Sliding, ReadingsOfTruncateAreDifferentLaws) {
   }
 }
 
-// --- orders ---
+// --- orders of convergence ---
 
-/// Angles from nearly head on to grazing, with and without spin that helps or hinders.
+/// Angles from nearly head-on to grazing, without spin and with spin along or against the sliding.
 std::vector<Impact> impacts() {
   std::vector<Impact> all;
   for (const bool wall : {true, false})
@@ -198,7 +200,7 @@ std::vector<Impact> impacts() {
 struct Case {
   std::string what, keys;
   int dimension = 2;
-  double order = 0.1;  ///< within which of 2
+  double order = 0.1;  ///< allowed deviation of the order from 2
 };
 
 TEST(Sliding, SplitIsOfSecondOrder) {
@@ -237,8 +239,8 @@ TEST(Sliding, SplitIsOfSecondOrder) {
 }
 
 TEST(Sliding, PairsThatTurnKeepARemnantOfFirstOrder) {
-  // Beads turn about each other by v t_c/n within a step, and the normal of a step's end stands for all of
-  // it.
+  // The beads turn about each other by v t_c/n within a step, and the normal at the end of the step is used
+  // for the whole step.
   std::vector<Impact> pairs;
   for (const Impact& i : impacts())
     if (!i.wall) pairs.push_back(i);
@@ -252,7 +254,7 @@ TEST(Sliding, PairsThatTurnKeepARemnantOfFirstOrder) {
 }
 
 TEST(Sliding, VerletIsOfFirstOrder) {
-  // Its friction is that of the first position inside the contact (docs/friction.md).
+  // Verlet computes friction from the first position inside the contact (docs/friction.md).
   const auto errors = [&](double n) {
     return impact_errors(impacts(), impact_scene(), {.integrator = "verlet", .n = n}, 16);
   };
@@ -262,8 +264,8 @@ TEST(Sliding, VerletIsOfFirstOrder) {
 }
 
 TEST(Sliding, SpringOnlyKeepsARemnantOfFirstOrder) {
-  // Where sliding ends with surfaces that move back, the dashpot acts at once: the force itself jumps, by at
-  // most mu |F_n|, somewhere within a step. Table I has no such jump.
+  // Where sliding ends with reversed surface motion, the dashpot acts at once: the force itself jumps, by at
+  // most mu |F_n|, somewhere within a step. The contact of Table I has no such jump.
   const auto errors = [&](double n) {
     return impact_errors(impacts(),
                          impact_scene("tangential = \"spring-limited\"\nk_t = 285714.2857142857\n"),
@@ -288,8 +290,8 @@ TEST(Sliding, AtSixStepsAContactSpinIsRightToAHundredth) {
   }
 }
 
-/// The n of a scene that has Hertzian beads that meet at v_n = 1 touch for n steps: the plan's shortest time
-/// is that of slower ones. n itself for contacts whose time does not hang on their speed.
+/// The n for which Hertzian beads that meet at v_n = 1 touch for n steps. The plan's shortest contact time is
+/// that of slower beads. Returns n itself for contacts whose duration does not depend on speed.
 double hertz_steps(const Scene& scene, double n) {
   const Plan plan = make_plan(scene);
   const auto* hertz = std::get_if<HertzViscoelastic>(&plan.bead.normal);
@@ -298,7 +300,7 @@ double hertz_steps(const Scene& scene, double n) {
   return n * plan.shortest().time / hertz->shortest_time(pair, 1);
 }
 
-/// The exact outcomes, or where the laws cannot be solved alone those of 6400 steps.
+/// The exact outcomes, or the outcomes of 6400 steps for laws without an exact solution.
 std::vector<Outcome> limit_of_steps(const std::vector<Impact>& impacts, const Scene& scene) {
   try {
     return exact_outcomes(impacts, scene);
@@ -312,8 +314,8 @@ std::vector<Outcome> limit_of_steps(const std::vector<Impact>& impacts, const Sc
 }
 
 TEST(Sliding, HertzianContactsComeNearSecondOrderInSplit) {
-  // F_n begins at nothing, as a root of the overlap if beads are viscous, so that neither it nor the Coulomb
-  // limit jumps at first touch; but the root has no slope there.
+  // F_n starts at zero, for viscous beads as the square root of the overlap, so neither F_n nor the Coulomb
+  // limit jumps at first touch. But the square root has an infinite slope there.
   const std::string hertz = "normal = \"hertz\"\nyoungs_modulus = 1e7\n",
                     viscous = hertz + "viscous_time = 2e-5\n";
   const std::vector<Case> cases = {
@@ -336,7 +338,7 @@ TEST(Sliding, HertzianContactsComeNearSecondOrderInSplit) {
     };
     const ImpactErrors coarse = errors("split", 50.37), fine = errors("split", 800.37),
                        verlet = errors("verlet", 50.37), verlet_fine = errors("verlet", 800.37);
-    // Where sliding ends with surfaces that move back the force jumps, as it does between linear springs.
+    // Where sliding ends with reversed surface motion, the force jumps, as it does for linear springs.
     const bool jumps = c.what == "Hertz, spring-limited";
     validate({"V2.16", c.what + ": order of the error of w'", jumps ? 1.0 : 2.0, jumps ? 0.15 : c.order,
               "second order, or a force that jumps"},
@@ -352,7 +354,7 @@ TEST(Sliding, HertzianContactsComeNearSecondOrderInSplit) {
   }
 }
 
-// --- the step of a scene that states none ---
+// --- the default step of a scene without steps_per_contact ---
 
 TEST(DefaultStep, IsTheFewestThatIsRightToAHundredthWhateverTheLaw) {
   constexpr double kFriction = 0.01, kRestitution = 2e-3, kNextOfTheLadder = 14.37;

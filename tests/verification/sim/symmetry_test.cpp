@@ -1,4 +1,4 @@
-// What a change of frame, of units or of the direction of time must not change (docs/validation.md: V1.10,
+// Invariance under a change of frame, of units and of the direction of time (docs/validation.md: V1.10,
 // V1.11, V4.11-V4.14).
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ void set(Bead& b, const Vec3& r, const Vec3& v, const Vec3& w) {
 
 TEST(Symmetry, CollisionsTurnWithTheScene) {  // V1.10
   for (const int dimension : {2, 3}) {
-    // In the plane about y, in space about an axis that favours none.
+    // In the plane about y, in space about an oblique axis.
     const Vec3 axis = dimension == 2 ? Vec3(0, 1, 0) : Vec3(1, 2, 3).normalized();
     const bool flat = dimension == 2;
     const auto collide = [&](double angle) {
@@ -51,8 +51,8 @@ TEST(Symmetry, CollisionsTurnWithTheScene) {  // V1.10
       Bench b(closed_box(dimension, 20));
       b.system.walls.clear();
       b.add(0, 0, 0, 0), b.add(0, 0, 0, 0);
-      // Observer the origin, where coordinates are finest, and a few steps before they touch: what free
-      // flight rounds, the spring multiplies by k_n dt.
+      // The collision takes place at the origin, where coordinates have the finest resolution, and a few
+      // steps after the start: the spring multiplies the rounding errors of free flight by k_n dt.
       set(b.system.beads[0], turn * Vec3(-0.4951, 0, 0.1), turn * Vec3(0.5, flat ? 0 : 0.2, 0.4),
           flat ? Vec3(0, 1, 0) : Vec3(turn * Vec3(1, -2, 0.5)));
       set(b.system.beads[1], turn * Vec3(0.5, 0, 0), turn * Vec3(-0.5, 0, 0),
@@ -120,7 +120,7 @@ MemoryTrajectory film(const std::string& text) {
   run.run(out);
   return out;
 }
-/// Numbers of b that are not the bits of a, velocities times `factor`.
+/// Counts the numbers of b whose bits differ from those of a, the velocities of a multiplied by `factor`.
 int unlike(const MemoryTrajectory& a, const MemoryTrajectory& b, double factor) {
   int count = 0;
   EXPECT_EQ(a.n_frames(), b.n_frames());
@@ -219,7 +219,7 @@ TEST(Symmetry, UnitsDoNotMatter) {  // V4.13
            worst);
 }
 
-/// The first paper's crystal in a cell whose middle is x = 0, where a mirror image has the same digits.
+/// The first paper's crystal in a cell centred on x = 0, where a mirror image has the same digits.
 System centred_crystal(const Scene& scene, const Plan& plan) {
   System s = make_system(scene, plan);
   s.beads = make_start(scene).beads;
@@ -247,7 +247,7 @@ TEST(Symmetry, MirrorImagesStayMirrorImages) {  // V4.14, H12
     make_solver(plan, {})->advance(s, 2 * plan.steps_per_period);
     return s.beads;
   };
-  // A crystal disturbed at random, and its image.
+  // A randomly disturbed crystal and its mirror image.
   System disturbed = centred_crystal(scene, plan);
   std::mt19937_64 engine(3);
   for (Bead& b : disturbed.beads)
@@ -267,7 +267,7 @@ TEST(Symmetry, MirrorImagesStayMirrorImages) {  // V4.14, H12
             "mirror symmetry"},
            unlike);
 
-  // The perfect crystal is its own image, and stays so for as long as no rounding tells left from right.
+  // The perfect crystal is its own mirror image, and stays so until a rounding error breaks the symmetry.
   const System perfect = centred_crystal(scene, plan);
   const auto after = run(perfect);
   int alone = 0;
