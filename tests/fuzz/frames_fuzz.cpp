@@ -16,6 +16,7 @@
 #include "core/error.hpp"
 #include "imaging/stack/formats/reader.hpp"
 #include "tests/fuzz/input.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 // HDF5 1.10 itself leaks some bytes when it refuses a damaged file.
 extern "C" const char* __lsan_default_suppressions() {
@@ -99,8 +100,9 @@ Source open_owned(const fs::path& file) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view all(reinterpret_cast<const char*>(data), size);
   if (kFormat == "mraw" || kFormat == "folder") {
-    static const fuzz::DiskFolder folder;
-    const fs::path place = folder.empty();
+    static const TemporaryFolder folder;
+    const fs::path& place = folder.path();
+    for (const auto& entry : fs::directory_iterator(place)) fs::remove(entry.path());
     if (kFormat == "folder") write_folder(place, all);
     read_stack([&] {
       return kFormat == "folder" ? frames::open_folder(place)

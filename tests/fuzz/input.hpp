@@ -54,30 +54,6 @@ class DiskFile {
   std::string name_ = "/dev/shm/twincell-fuzz-XXXXXX";
 };
 
-/// A folder that is emptied before each input.
-class DiskFolder {
- public:
-  DiskFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "twincell-fuzz-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) std::abort();
-    path_ = name;
-  }
-  DiskFolder(const DiskFolder&) = delete;
-  DiskFolder& operator=(const DiskFolder&) = delete;
-  ~DiskFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  [[nodiscard]] const std::filesystem::path& empty() const {
-    for (const auto& entry : std::filesystem::directory_iterator(path_))
-      std::filesystem::remove(entry.path());
-    return path_;
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// Calls `read`, which may refuse its input by an Error with a message. Any other exception ends the program,
 /// which the fuzzer reports.
 template <class Read>

@@ -6,34 +6,11 @@
 
 #include "sweep/plan.hpp"
 #include "tests/fuzz/input.hpp"
-
-namespace {
-
-/// A temporary folder of this process, removed at exit.
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "twincell-fuzz-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) std::abort();
-    path_ = name;
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-}  // namespace
+#include "tests/support/temporary_folder.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace twincell;
-  static const Folder folder;
+  static const TemporaryFolder folder;
   const std::string_view all(reinterpret_cast<const char*>(data), size);
   const std::size_t cut = std::min(all.find('\0'), size);
   std::ofstream(folder.path() / "scene.toml", std::ios::binary)
