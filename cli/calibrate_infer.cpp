@@ -22,6 +22,7 @@
 #include "calibration/contact/inference.hpp"
 #include "calibration/fit/curve_components.hpp"
 #include "cli/calibrate.hpp"
+#include "core/assignments.hpp"
 #include "core/error.hpp"
 #include "core/in_parallel.hpp"
 #include "sim/run/simulation.hpp"

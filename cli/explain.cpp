@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "cli/output.hpp"
-#include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
+#include "sim/accuracy/plan_json.hpp"
 #include "sim/accuracy/step_error.hpp"
 #include "sim/run/cost.hpp"
 #include "sim/scene/resource_demand.hpp"
@@ -87,25 +87,7 @@ void run(const ExplainOptions& o, const Common& common) {
   const sim::Cost cost = sim::measure_cost(scene, kMeasuredSeconds, common.threads, bar);
   sim::Plan plan = cost.plan;
   sim::state_step_error(scene, plan);
-  nlohmann::json d = as_json(plan);
-  const double beads = static_cast<double>(cost.beads);
-  d["beads"] = cost.beads;
-  d["has_chance"] = sim::has_chance(scene);
-  d["vectors"] = cost.kernel;
-  d["bytes_per_bead"] = cost.bytes_per_bead;
-  d["bytes_per_pair"] = cost.bytes_per_pair > 0 ? nlohmann::json(cost.bytes_per_pair) : nlohmann::json();
-  d["pairs_per_bead"] = cost.pairs_per_bead;
-  const sim::ResourceDemand demand = sim::resource_demand(scene, plan, cost.beads);
-  d["expected_memory_bytes"] = demand.memory;
-  d["expected_disk_bytes"] = demand.disk;
-  d["particle_steps"] = beads * static_cast<double>(plan.steps);
-  if (cost.stopped.empty()) {
-    d["expected_seconds"] = cost.seconds_per_step * static_cast<double>(plan.steps);
-    d["particle_steps_per_second"] = beads / cost.seconds_per_step;
-    d["measured_steps"] = cost.measured_steps;
-  } else {
-    d["stopped"] = cost.stopped;
-  }
+  const nlohmann::json d = nlohmann::json::parse(sim::cost_json(scene, cost));
   print_result(common, d, as_text(plan, scene, cost));
 }
 

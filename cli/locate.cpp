@@ -17,6 +17,8 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "imaging/benchmark/score.hpp"
+#include "imaging/disc/position_error.hpp"
+#include "imaging/preprocess/open_flattened.hpp"
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/track/debug_pictures.hpp"
 #include "imaging/track/locate_stack.hpp"
@@ -41,7 +43,7 @@ constexpr const char* kHeading =
     "y,x,mass,size,ecc,signal,raw_mass,ep,frame,radius,sigma_x,sigma_y,sigma_radius,score,tracer,edge\n";
 
 std::string row(const Detection& b, std::int64_t frame) {
-  const double ep = std::sqrt(0.5 * (b.sigma_x * b.sigma_x + b.sigma_y * b.sigma_y));
+  const double ep = position_error(b);
   return fmt::format(
       "{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.5f},{},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{},{}\n",
       b.y, b.x, b.mass, b.size, b.ecc, b.signal, b.raw_mass, ep, frame, b.radius, b.sigma_x, b.sigma_y,

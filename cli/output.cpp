@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/assignments.hpp"
 #include "core/cancellation.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
@@ -114,18 +115,6 @@ Provenance Common::provenance() const {
   p.seed = seed;
   p.threads = n_threads();
   return p;
-}
-
-void refuse_said_twice(const std::vector<std::string>& assignments) {
-  const auto key_of = [](const std::string& assignment) {
-    return assignment.substr(0, assignment.find('='));
-  };
-  for (std::size_t k = 0; k < assignments.size(); ++k)
-    for (std::size_t m = 0; m < k; ++m)
-      if (key_of(assignments[m]) == key_of(assignments[k]) && assignments[m] != assignments[k])
-        throw ConfigError({"--set", 0, 0, key_of(assignments[k])},
-                          fmt::format("is set twice, \"{}\" and \"{}\"; set it only once.", assignments[m],
-                                      assignments[k]));
 }
 
 std::vector<std::string> with_seed(std::vector<std::string> assignments, const Common& common) {

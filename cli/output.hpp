@@ -44,9 +44,6 @@ struct Common {
   [[nodiscard]] Provenance provenance() const;
 };
 
-/// \throws ConfigError if --set gives one key two different values
-void refuse_said_twice(const std::vector<std::string>& assignments);
-
 /// The --set assignments of a scene, with --seed appended as start.seed.
 /// \throws ConfigError for a seed that is larger than a scene allows, and for a key that is given two
 /// different values

@@ -1,19 +1,15 @@
 // twincell track STACK: locates the beads, determines the drive phases, links the beads, and writes a
 // trajectory.
 
-#include "imaging/track/track.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <cmath>
 #include <fstream>
 #include <memory>
 #include <optional>
 
-#include "calibration/drive/plate_drive.hpp"
+#include "calibration/drive/track_film.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
@@ -29,101 +25,10 @@ namespace twincell::cli {
 namespace {
 
 struct TrackOptions {
-  std::string stack, output, cell_file, csv, truth;
-  std::vector<double> scored_rows, origin, diameters;
-  std::vector<std::string> assignments;
-  std::string phase_lock;
-  std::optional<double> drive_hz;
-  std::optional<double> pixels_per_sigma, gamma, amplitude, width, height;
-  std::optional<int> frames_per_cycle, first_phase;
-  int shortest = 1;
-  bool trust_stated_drive = false;
-  LocatorOptions locator;
-  std::string flat;
-  LinkOptions link;
+  std::string stack, output, csv, truth;
+  std::vector<double> scored_rows;
+  FilmOptions film;
 };
-
-// Source of the phases according to --phase-lock: N, found, none, or a list of triggers. N and none are
-// stored in `cell`.
-PhaseSource phase_source(const TrackOptions& o, CellDescription& cell) {
-  PhaseSource source{.find = false, .triggers = {}, .drive_hz = o.drive_hz};
-  const bool list = o.phase_lock.ends_with(".csv");
-  const Where drive_hz{.file = {}, .key = "--drive-hz"};
-  if (o.drive_hz && !list)
-    throw ConfigError(drive_hz,
-                      fmt::format("is {:g}, but it is used only with a list of triggers (--phase-lock "
-                                  "FILE.csv); the drive of the cell is set by drive.frequency_hz.",
-                                  *o.drive_hz));
-  if (o.phase_lock.empty()) return source;
-  int n = 0;
-  const char* end = o.phase_lock.data() + o.phase_lock.size();
-  if (const auto [last, error] = std::from_chars(o.phase_lock.data(), end, n);
-      error == std::errc() && last == end) {
-    cell.phase_lock.frames_per_cycle = n;
-    if (cell.phase_lock.first_phase >= n) cell.phase_lock.first_phase = 0;
-    cell.phase_lock.check(Where{.file = {}, .key = "phase-lock"});
-  } else if (o.phase_lock == "found") {
-    source.find = true;
-  } else if (o.phase_lock == "none") {
-    cell.phase_lock = {};
-  } else if (list) {
-    source.triggers = o.phase_lock;
-    const auto drive = cell.drive();
-    const auto t0 = cell.scale.t0_s();
-    if (drive && t0) {
-      constexpr double kSame = 1e-3;
-      const double stated = drive->omega / (2 * M_PI * *t0);
-      if (o.drive_hz && std::abs(*o.drive_hz / stated - 1) > kSame)
-        throw ConfigError(drive_hz,
-                          fmt::format("is {:g}, but the drive in {} is {:.6g} Hz; correct one of the two.",
-                                      *o.drive_hz, o.cell_file, stated));
-      if (!source.drive_hz) source.drive_hz = stated;
-    }
-  } else {
-    throw ConfigError(
-        Where{.file = {}, .key = "phase-lock"},
-        "'" + o.phase_lock +
-            "' is neither a number of frames per cycle, 'found', 'none', nor a list of triggers (*.csv).");
-  }
-  return source;
-}
-
-// The cell description of the file, with the options of the command line taking precedence.
-CellDescription resolve_cell(const TrackOptions& o) {
-  // Options that set keys of the file are passed on as assignments. If the file states a scale, a value
-  // without a unit is therefore refused here too.
-  std::vector<std::string> assignments = o.assignments;
-  const auto assign = [&](const char* key, std::optional<double> value) {
-    if (value) assignments.push_back(fmt::format("{}={}", key, *value));
-  };
-  assign("cell.width", o.width);
-  assign("cell.height", o.height);
-  assign("drive.gamma", o.gamma);
-  assign("drive.amplitude", o.amplitude);
-  refuse_said_twice(assignments);
-  CellDescription cell = read_cell(o.cell_file, assignments);
-  if (o.pixels_per_sigma) cell.pixels_per_sigma = o.pixels_per_sigma;
-  if (o.origin.size() == 2) cell.origin = PixelPoint{o.origin[0], o.origin[1]};
-  if (o.frames_per_cycle) cell.phase_lock.frames_per_cycle = *o.frames_per_cycle;
-  if (o.first_phase) cell.phase_lock.first_phase = *o.first_phase;
-  // Two quantities determine the drive. A third quantity, from the file, would contradict them and is
-  // dropped.
-  if (o.gamma || o.amplitude) {
-    for (const std::string& assignment : o.assignments)
-      if (assignment.starts_with("drive."))
-        throw ConfigError(
-            {"--set", 0, 0, assignment},
-            "and --drive-gamma or --drive-amplitude both set the drive; use only one of the two.");
-    cell.drive_spec = {.amplitude = o.amplitude ? cell.drive_spec.amplitude : std::nullopt,
-                       .omega = {},
-                       .frequency = {},
-                       .gamma = o.gamma ? cell.drive_spec.gamma : std::nullopt,
-                       .k_m = {},
-                       .peak_velocity = {}};
-  }
-  cell.phase_lock.check(Where{.file = {}, .key = "first-phase"});
-  return cell;
-}
 
 constexpr const char* kHeading = "y,x,frame,particle,radius,tracer,phase,cycle,sigma_y,sigma_x,ambiguous\n";
 
@@ -208,44 +113,23 @@ std::string describe(const TrackedStack& stack) {
 }
 
 void run(TrackOptions& o, const Common& common) {
-  // Settings: cell, phases, bead diameters.
-  CellDescription cell = resolve_cell(o);
-  if (!cell.included.overridden.empty())
-    note(common, fmt::format("values in {} take precedence over those measured in {}: {}", o.cell_file,
-                             cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
-  const PhaseSource source = phase_source(o, cell);
-  (void)cell.drive();  // refuse a contradictory drive before the work starts
-  o.locator.preprocess.bright |= cell.bright;
-  if (o.diameters.empty()) {
-    o.locator.diameter_px = cell.pixels_per_sigma.value_or(0);
-  } else {
-    o.locator.diameter_px = o.diameters.front();
-    o.locator.other_diameters_px.assign(o.diameters.begin() + 1, o.diameters.end());
-  }
-  // Locate and link all frames.
-  const auto frames = open_flattened(o.stack, o.flat, common);
   const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
-  const std::filesystem::path folder = parent.empty() ? "." : parent;
-  ProgressBar bar(common, "track");
-  const TrackedStack stack =
-      track_stack(*frames, o.locator, o.link, cell, common.n_threads(), bar, source, folder);
-  check_flat(o.flat, stack.locator.preprocess.bright);
-  TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, o.shortest);
-  // Check the stated drive against the motion of the plate, or of the bed if the plate is not visible.
-  DriveCheck check{.not_comparable = "the stated drive is trusted"};
-  if (!o.trust_stated_drive && plan.info.drive) {
-    ProgressBar edge(common, "the plate's edge");
-    check = check_by_plate(cell, o.stack, common.n_threads(), edge);
-    if (check.by.empty() && cell.pixels_per_sigma) {
-      BedSteps bed(plan.info);
-      write_trajectory(stack, plan, cell, bed);
-      check = check_by_bed(bed, plan.info, check.frame_rate_hz);
-    }
-    if (!check.disagreement.empty())
-      note(common,
-           "the stated drive does not fit the film: " + check.disagreement + " (--trust-stated-drive).");
-  }
-  if (plan.info.drive) record(check, plan.info);
+  o.film.folder = parent.empty() ? "." : parent;
+  o.film.threads = common.n_threads();
+  TrackedFilm film = track_film([&] { return open_flattened(o.stack, o.film.flat, common); }, o.stack, o.film,
+                                [&](const std::string& stage) -> std::unique_ptr<Progress> {
+                                  return std::make_unique<ProgressBar>(common, stage);
+                                });
+  const CellDescription& cell = film.cell;
+  const TrackedStack& stack = film.stack;
+  TrackPlan& plan = film.plan;
+  if (!cell.included.overridden.empty())
+    note(common,
+         fmt::format("values in {} take precedence over those measured in {}: {}", o.film.request.cell_file,
+                     cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
+  if (!film.check.disagreement.empty())
+    note(common,
+         "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
   // Write the trajectory, then the table.
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
@@ -313,59 +197,62 @@ void add_track(CLI::App& program, Common& common) {
   writes(common, verb,
          verb.add_option("-o,--output", o->output, "Trajectory file to write (H5MD)")->required(),
          Product::trajectory());
-  verb.add_option("--cell", o->cell_file, "CELL.toml with scale, origin, size and drive of the cell");
-  verb.add_option("--pixels-per-sigma", o->pixels_per_sigma,
+  verb.add_option("--cell", o->film.request.cell_file,
+                  "CELL.toml with scale, origin, size and drive of the cell");
+  verb.add_option("--pixels-per-sigma", o->film.request.pixels_per_sigma,
                   "Camera pixels per bead diameter; default: the scale in CELL.toml, otherwise the located "
                   "bead diameter")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--origin-px", o->origin,
+  verb.add_option("--origin-px", o->film.request.origin,
                   "Lower left inside corner of the cell, with the plate at its mean height: x y, px")
       ->expected(2);
-  verb.add_option("--set", o->assignments,
+  verb.add_option("--set", o->film.request.assignments,
                   "Set a key of CELL.toml, as section.key=value (cell.width_mm=40); overrides the file; may "
                   "be repeated")
       ->take_all();
-  verb.add_option("--cell-width", o->width,
+  verb.add_option("--cell-width", o->film.request.width,
                   "Distance of the side walls, sigma; if CELL.toml has a [scale], use --set "
                   "cell.width_sigma= or cell.width_mm= instead")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--cell-height", o->height,
+  verb.add_option("--cell-height", o->film.request.height,
                   "Height of the cell, sigma; if CELL.toml has a [scale], use --set with a unit instead")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--frames-per-cycle", o->frames_per_cycle,
+  verb.add_option("--frames-per-cycle", o->film.request.frames_per_cycle,
                   "Frames per drive cycle; 0: not phase-locked; default: the value in CELL.toml")
       ->check(CLI::NonNegativeNumber);
-  verb.add_option("--phase-lock", o->phase_lock,
+  verb.add_option("--phase-lock", o->film.request.phase_lock,
                   "Source of the drive phases: frames per drive cycle, 'found' (from the motion of the bed), "
                   "'none', or a list of triggers (*.csv)");
   verb.add_option(
-          "--drive-hz", o->drive_hz,
+          "--drive-hz", o->film.request.drive_hz,
           "Frequency of the drive, Hz, for a list of triggers in seconds; default: the drive in CELL.toml")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--first-phase", o->first_phase,
+  verb.add_option("--first-phase", o->film.request.first_phase,
                   "Phase of the first frame, 0 to frames per cycle - 1; default: the value in CELL.toml")
       ->check(CLI::NonNegativeNumber);
-  verb.add_option("--drive-gamma", o->gamma, "Drive strength Gamma = A omega^2/g; with --drive-amplitude");
-  verb.add_option("--drive-amplitude", o->amplitude,
+  verb.add_option("--drive-gamma", o->film.request.gamma,
+                  "Drive strength Gamma = A omega^2/g; with --drive-amplitude");
+  verb.add_option("--drive-amplitude", o->film.request.amplitude,
                   "Amplitude A of the drive, sigma; if CELL.toml has a [scale], use --set "
                   "drive.amplitude_sigma= or drive.amplitude_mm= instead");
-  verb.add_option("--diameter", o->diameters,
+  verb.add_option("--diameter", o->film.diameters,
                   "Bead diameter, px, or up to 8 different diameters; default: the scale in CELL.toml, "
                   "otherwise determined from the first frame")
       ->check(CLI::Range(3.0, 400.0))
       ->expected(1, 8);
-  verb.add_option("--locator", o->locator.finder, "Method that finds candidates for beads; default: vote")
+  verb.add_option("--locator", o->film.locator.finder,
+                  "Method that finds candidates for beads; default: vote")
       ->check(CLI::IsMember(finder_names()));
-  verb.add_flag("--bright", o->locator.preprocess.bright, "Beads are brighter than the background");
-  add_flat_option(verb, o->flat);
-  verb.add_option("--range", o->link.range_diameters,
+  verb.add_flag("--bright", o->film.locator.preprocess.bright, "Beads are brighter than the background");
+  add_flat_option(verb, o->film.flat);
+  verb.add_option("--range", o->film.link.range_diameters,
                   "Largest distance of a bead from its predicted position, bead diameters, above 0, at most "
                   "10; default: 2");
-  verb.add_option("--memory", o->link.memory,
+  verb.add_option("--memory", o->film.link.memory,
                   "Number of frames for which a bead may be missing, 0 to 1000; default: 3");
-  verb.add_flag("--trust-stated-drive", o->trust_stated_drive,
+  verb.add_flag("--trust-stated-drive", o->film.trust_stated_drive,
                 "Do not check the stated drive against the motion of the plate or the bed in the frames");
-  verb.add_option("--shortest", o->shortest,
+  verb.add_option("--shortest", o->film.shortest,
                   "Smallest number of frames in which a track must be seen to be written; default: 1")
       ->check(CLI::PositiveNumber);
   writes(common, verb,

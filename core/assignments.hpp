@@ -1,0 +1,13 @@
+#pragma once
+/// \file
+/// Assignments "section.key=value", with which a user overrides keys of a file.
+
+#include <string>
+#include <vector>
+
+namespace twincell {
+
+/// \throws ConfigError if --set gives one key two different values
+void refuse_said_twice(const std::vector<std::string>& assignments);
+
+}  // namespace twincell

@@ -1,0 +1,92 @@
+#include "imaging/track/track_request.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "core/assignments.hpp"
+#include "core/error.hpp"
+
+namespace twincell {
+
+PhaseSource phase_source(const TrackRequest& o, CellDescription& cell) {
+  PhaseSource source{.find = false, .triggers = {}, .drive_hz = o.drive_hz};
+  const bool list = o.phase_lock.ends_with(".csv");
+  const Where drive_hz{.file = {}, .key = "--drive-hz"};
+  if (o.drive_hz && !list)
+    throw ConfigError(drive_hz,
+                      fmt::format("is {:g}, but it is used only with a list of triggers (--phase-lock "
+                                  "FILE.csv); the drive of the cell is set by drive.frequency_hz.",
+                                  *o.drive_hz));
+  if (o.phase_lock.empty()) return source;
+  int n = 0;
+  const char* end = o.phase_lock.data() + o.phase_lock.size();
+  if (const auto [last, error] = std::from_chars(o.phase_lock.data(), end, n);
+      error == std::errc() && last == end) {
+    cell.phase_lock.frames_per_cycle = n;
+    if (cell.phase_lock.first_phase >= n) cell.phase_lock.first_phase = 0;
+    cell.phase_lock.check(Where{.file = {}, .key = "phase-lock"});
+  } else if (o.phase_lock == "found") {
+    source.find = true;
+  } else if (o.phase_lock == "none") {
+    cell.phase_lock = {};
+  } else if (list) {
+    source.triggers = o.phase_lock;
+    const auto drive = cell.drive();
+    const auto t0 = cell.scale.t0_s();
+    if (drive && t0) {
+      constexpr double kSame = 1e-3;
+      const double stated = drive->omega / (2 * M_PI * *t0);
+      if (o.drive_hz && std::abs(*o.drive_hz / stated - 1) > kSame)
+        throw ConfigError(drive_hz,
+                          fmt::format("is {:g}, but the drive in {} is {:.6g} Hz; correct one of the two.",
+                                      *o.drive_hz, o.cell_file, stated));
+      if (!source.drive_hz) source.drive_hz = stated;
+    }
+  } else {
+    throw ConfigError(
+        Where{.file = {}, .key = "phase-lock"},
+        "'" + o.phase_lock +
+            "' is neither a number of frames per cycle, 'found', 'none', nor a list of triggers (*.csv).");
+  }
+  return source;
+}
+
+CellDescription resolve_cell(const TrackRequest& o) {
+  // Options that set keys of the file are passed on as assignments. If the file states a scale, a value
+  // without a unit is therefore refused here too.
+  std::vector<std::string> assignments = o.assignments;
+  const auto assign = [&](const char* key, std::optional<double> value) {
+    if (value) assignments.push_back(fmt::format("{}={}", key, *value));
+  };
+  assign("cell.width", o.width);
+  assign("cell.height", o.height);
+  assign("drive.gamma", o.gamma);
+  assign("drive.amplitude", o.amplitude);
+  refuse_said_twice(assignments);
+  CellDescription cell = read_cell(o.cell_file, assignments);
+  if (o.pixels_per_sigma) cell.pixels_per_sigma = o.pixels_per_sigma;
+  if (o.origin) cell.origin = PixelPoint{(*o.origin)[0], (*o.origin)[1]};
+  if (o.frames_per_cycle) cell.phase_lock.frames_per_cycle = *o.frames_per_cycle;
+  if (o.first_phase) cell.phase_lock.first_phase = *o.first_phase;
+  // Two quantities determine the drive. A third quantity, from the file, would contradict them and is
+  // dropped.
+  if (o.gamma || o.amplitude) {
+    for (const std::string& assignment : o.assignments)
+      if (assignment.starts_with("drive."))
+        throw ConfigError(
+            {"--set", 0, 0, assignment},
+            "and --drive-gamma or --drive-amplitude both set the drive; use only one of the two.");
+    cell.drive_spec = {.amplitude = o.amplitude ? cell.drive_spec.amplitude : std::nullopt,
+                       .omega = {},
+                       .frequency = {},
+                       .gamma = o.gamma ? cell.drive_spec.gamma : std::nullopt,
+                       .k_m = {},
+                       .peak_velocity = {}};
+  }
+  cell.phase_lock.check(Where{.file = {}, .key = "first-phase"});
+  return cell;
+}
+
+}  // namespace twincell
