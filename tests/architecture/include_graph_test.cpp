@@ -33,6 +33,8 @@ const Graph kAllowed = {
     {"reproduce", {"core", "trajectory", "analysis", "sim", "calibration", "sweep", "twin"}},
     {"cli",
      {"core", "trajectory", "analysis", "imaging", "sim", "calibration", "sweep", "twin", "reproduce"}},
+    {"python",
+     {"core", "trajectory", "analysis", "imaging", "sim", "calibration", "sweep", "twin", "reproduce"}},
     {"bench", {"core", "trajectory", "analysis", "imaging", "sim", "calibration", "tests"}},
     {"tests",
      {"core", "trajectory", "analysis", "imaging", "sim", "calibration", "sweep", "twin", "reproduce"}},
@@ -40,12 +42,13 @@ const Graph kAllowed = {
 
 /// Outside libraries that must be confined to one folder.
 const std::vector<std::pair<std::string, std::set<std::string>>> kLibraryHomes = {
-    {"opencv2/", {"imaging", "tests", "bench"}},
+    {"opencv2/", {"imaging", "python", "tests", "bench"}},
     {"ceres/", {"calibration", "tests"}},
     {"toml++/", {"core"}},
     {"CLI/", {"cli", "bench"}},
     {"hdf5.h", {"core", "trajectory", "tests"}},
     {"mpi.h", {"cli"}},
+    {"pybind11/", {"python"}},
 };
 
 const fs::path kRoot = TWINCELL_SOURCE_DIR;

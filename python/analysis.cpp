@@ -1,0 +1,159 @@
+// analyze in Python: options of the verb's names, results as objects.
+
+#include <fmt/format.h>
+
+#include "analysis/observable/observable.hpp"
+#include "analysis/observable/results.hpp"
+#include "analysis/runs/pooling.hpp"
+#include "core/error.hpp"
+#include "python/trajectory.hpp"
+
+namespace twincell::python {
+
+namespace {
+
+constexpr const char* kHeader = "analysis/observable/observable.hpp";
+
+/// Results of one call, in order.
+struct Results {
+  std::vector<Result> all;
+  std::string provenance_json;
+};
+
+py::object value_of(const Result& r) {
+  if (!r.present()) return py::none();
+  if (!r.text.empty()) return py::str(r.text);
+  if (r.shape.empty()) return py::float_(r.value());
+  return array_of(r.values, {r.shape.begin(), r.shape.end()});
+}
+
+py::object interval_of(const Result& r) {
+  if (!r.interval) return py::none();
+  return py::make_tuple(r.interval->low, r.interval->high);
+}
+
+Results analyzed(const std::vector<std::shared_ptr<Trajectory>>& trajectories, const AnalysisOptions& options,
+                 const py::object& callback) {
+  std::vector<const TrajectorySource*> sources;
+  Provenance provenance = provenance_of("twincell.analyze (Python)");
+  for (const auto& t : trajectories) {
+    if (t->n_frames() == 0)
+      throw InputError({.file = t->source().name(), .key = {}}, "the trajectory contains no frame");
+    sources.push_back(&t->source());
+    if (std::filesystem::is_regular_file(t->source().name()))
+      provenance.inputs.emplace_back(t->source().name());
+  }
+  if (sources.empty()) throw ConfigError({.file = {}, .key = "trajectory"}, "the list has no trajectory.");
+  require_one_condition(sources);
+  return unlocked(callback, [&](Progress& progress) {
+    std::vector<std::vector<Result>> runs;
+    runs.reserve(sources.size());
+    for (const TrajectorySource* source : sources) runs.push_back(analyze(*source, options, progress));
+    return Results{runs.size() > 1 ? pool(runs) : runs.front(), provenance.to_json()};
+  });
+}
+
+}  // namespace
+
+void bind_analysis(py::module_& module) {
+  py::class_<Result>(module, "Result", header_text(kHeader, "Result"))
+      .def_readonly("name", &Result::name, "Name of the result.")
+      .def_property_readonly("value", &value_of,
+                             "A number, a word, or an array; None if the result is absent (see `absent`).")
+      .def_property_readonly("interval", &interval_of, "(low, high) of the confidence interval, or None.")
+      .def_property_readonly(
+          "level",
+          [](const Result& r) { return r.interval ? std::optional(r.interval->level) : std::nullopt; },
+          "Confidence level of the interval.")
+      .def_property_readonly(
+          "method", [](const Result& r) { return r.interval ? r.interval->method : std::string(); },
+          header_text("analysis/statistics/statistics.hpp", "Interval::method"))
+      .def_readonly("unit", &Result::unit, header_text(kHeader, "Result::unit"))
+      .def_readonly("n", &Result::n, header_text(kHeader, "Result::n"))
+      .def_readonly("n_of", &Result::n_of, header_text(kHeader, "Result::n_of"))
+      .def_readonly("no_interval", &Result::no_interval, header_text(kHeader, "Result::no_interval"))
+      .def_readonly("convention", &Result::convention, header_text(kHeader, "Result::convention"))
+      .def_readonly("source", &Result::source, header_text(kHeader, "Result::source"))
+      .def_readonly("absent", &Result::absent, header_text(kHeader, "Result::absent"))
+      .def_readonly("of_runs", &Result::of_runs, header_text(kHeader, "Result::of_runs"))
+      .def("__float__", [](const Result& r) {
+        if (!r.present()) throw ConfigError({.file = {}, .key = r.name}, "is absent: " + r.absent);
+        if (!r.text.empty() || !r.shape.empty())
+          throw ConfigError({.file = {}, .key = r.name}, "is not a single number.");
+        return r.value();
+      });
+  py::class_<Results>(module, "Results",
+                      "The results of one analysis: a mapping from names to Result, in order.")
+      .def("__len__", [](const Results& r) { return r.all.size(); })
+      .def(
+          "__contains__",
+          [](const Results& r, const std::string& name) { return seek_result(r.all, name) != nullptr; },
+          py::arg("name"))
+      .def(
+          "__getitem__",
+          [](const Results& r, const std::string& name) {
+            const Result* found = seek_result(r.all, name);
+            if (found == nullptr) throw py::key_error(name);
+            return *found;
+          },
+          py::arg("name"))
+      .def(
+          "keys",
+          [](const Results& r) {
+            std::vector<std::string> names;
+            for (const Result& one : r.all) names.push_back(one.name);
+            return names;
+          },
+          "Names of the results, in order.")
+      .def(
+          "values", [](const Results& r) { return r.all; }, "The results, in order.")
+      .def(
+          "to_dict", [](const Results& r) { return from_json(results_json(r.all)); },
+          header_text("analysis/observable/results.hpp", "results_json"))
+      .def(
+          "write",
+          [](const Results& r, const std::filesystem::path& path) {
+            write_results(path, r.all, r.provenance_json);
+          },
+          py::arg("path"), header_text("analysis/observable/results.hpp", "write_results"))
+      .def_property_readonly(
+          "provenance", [](const Results& r) { return from_json(r.provenance_json); },
+          "What produced the results, as a dict.")
+      .def("__str__", [](const Results& r) { return results_text(r.all); })
+      .def("__repr__",
+           [](const Results& r) { return fmt::format("<twincell.Results: {} results>", r.all.size()); });
+  module.def("result_names", &result_names, header_text(kHeader, "result_names"));
+  module.def(
+      "analyze",
+      [](const py::object& trajectory, const std::vector<std::string>& only, std::int64_t discard,
+         std::int64_t cycles, const std::vector<std::int64_t>& tracers,
+         const std::optional<std::array<double, 2>>& tracer_band, const std::string& s_b,
+         const std::string& neighbours, double cell_radius, double field_cell,
+         std::optional<double> rest_height, std::optional<double> cutoff, const py::object& callback) {
+        std::vector<std::shared_ptr<Trajectory>> trajectories;
+        if (py::isinstance<py::list>(trajectory) || py::isinstance<py::tuple>(trajectory))
+          for (const py::handle one : trajectory) trajectories.push_back(trajectory_of(one));
+        else
+          trajectories.push_back(trajectory_of(trajectory));
+        const AnalysisOptions options = {.discard_cycles = discard,
+                                         .cycles = cycles,
+                                         .tracers = tracers,
+                                         .tracer_band = tracer_band,
+                                         .s_b = s_b_named(s_b),
+                                         .neighbours = neighbour_rule_named(neighbours),
+                                         .neighbour_cutoff = cutoff,
+                                         .cell_radius = cell_radius,
+                                         .field_cell = field_cell,
+                                         .rest_height = rest_height,
+                                         .only = only};
+        return analyzed(trajectories, options, callback);
+      },
+      py::arg("trajectory"), py::arg("only") = std::vector<std::string>{}, py::kw_only(),
+      py::arg("discard") = 0, py::arg("cycles") = 0, py::arg("tracers") = std::vector<std::int64_t>{},
+      py::arg("tracer_band") = py::none(), py::arg("s_b") = "variance", py::arg("neighbours") = "cutoff",
+      py::arg("cell_radius") = AnalysisOptions{}.cell_radius,
+      py::arg("field_cell") = AnalysisOptions{}.field_cell, py::arg("rest_height") = py::none(),
+      py::arg("cutoff") = py::none(), py::arg("callback") = py::none(), header_text(kHeader, "analyze"));
+}
+
+}  // namespace twincell::python

@@ -1,0 +1,285 @@
+// locate and track in Python: options of the verbs' names, columns as arrays.
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <map>
+
+#include "calibration/drive/track_film.hpp"
+#include "core/error.hpp"
+#include "imaging/disc/position_error.hpp"
+#include "imaging/preprocess/flat_field.hpp"
+#include "imaging/preprocess/open_flattened.hpp"
+#include "imaging/settings/configure_locator.hpp"
+#include "imaging/stack/open_frames.hpp"
+#include "imaging/track/locate_stack.hpp"
+#include "imaging/track/write_trajectory.hpp"
+#include "python/frames.hpp"
+#include "python/trajectory.hpp"
+
+namespace twincell::python {
+
+namespace {
+
+/// One column of the table of beads: trackpy's columns in trackpy's order, then the additional columns, as
+/// `twincell locate` writes them.
+struct BeadColumn {
+  const char* name;
+  double (*of)(const Detection&);
+};
+constexpr BeadColumn kColumns[] = {
+    {"y", [](const Detection& b) { return b.y; }},
+    {"x", [](const Detection& b) { return b.x; }},
+    {"mass", [](const Detection& b) { return b.mass; }},
+    {"size", [](const Detection& b) { return b.size; }},
+    {"ecc", [](const Detection& b) { return b.ecc; }},
+    {"signal", [](const Detection& b) { return b.signal; }},
+    {"raw_mass", [](const Detection& b) { return b.raw_mass; }},
+    {"ep", [](const Detection& b) { return position_error(b); }},
+    {"frame", nullptr},
+    {"radius", [](const Detection& b) { return b.radius; }},
+    {"sigma_x", [](const Detection& b) { return b.sigma_x; }},
+    {"sigma_y", [](const Detection& b) { return b.sigma_y; }},
+    {"sigma_radius", [](const Detection& b) { return b.sigma_radius; }},
+    {"score", [](const Detection& b) { return b.score; }},
+    {"tracer", nullptr},
+    {"edge", nullptr},
+};
+
+/// The beads of all frames.
+struct Beads {
+  std::vector<std::vector<double>> columns{std::size(kColumns)};  ///< as kColumns; empty where `of` is null
+  std::vector<std::int64_t> frame;
+  std::vector<std::uint8_t> tracer, edge;
+};
+
+struct FrameReport {
+  std::size_t beads;
+  double blur_px;
+  std::array<double, 2> path_px;
+  std::map<Verdict, std::size_t> dropped;
+};
+
+py::dict in_words(const std::map<Verdict, std::size_t>& counts) {
+  py::dict d;
+  for (const auto& [why, count] : counts) d[py::str(std::string(word_of(why)))] = count;
+  return d;
+}
+
+void set_diameters(LocatorOptions& options, const std::vector<double>& diameters) {
+  if (diameters.size() > 8)
+    throw ConfigError({.file = {}, .key = "diameter"},
+                      fmt::format("has {} values; there may be up to 8.", diameters.size()));
+  for (const double d : diameters) require_range({.file = {}, .key = "diameter"}, d, 3, 400);
+  if (diameters.empty()) return;
+  options.diameter_px = diameters.front();
+  options.other_diameters_px.assign(diameters.begin() + 1, diameters.end());
+}
+
+/// One number, or several. None: none.
+std::vector<double> numbers(const py::object& said) {
+  if (said.is_none()) return {};
+  if (py::isinstance<py::float_>(said) || py::isinstance<py::int_>(said)) return {said.cast<double>()};
+  return said.cast<std::vector<double>>();
+}
+
+std::unique_ptr<FrameSource> flattened_stack(const py::object& stack, const std::string& flat) {
+  std::string name;
+  auto frames = source_of(stack, name);
+  if (flat == "stack" && name.empty())
+    throw ConfigError({.file = {}, .key = "flat"},
+                      "'stack' reads the stack twice, so it needs the name of a stack instead of arrays.");
+  const py::gil_scoped_release release;
+  return flattened_by(std::move(frames), name, flat);
+}
+
+py::object locate_beads_of(const py::object& stack, const py::object& diameter, const std::string& finder,
+                           double min_score, const std::string& refine, bool bright, bool dark,
+                           const std::string& flat, int threads, const py::object& callback) {
+  if (bright && dark)
+    throw ConfigError({.file = {}, .key = "bright"},
+                      "and dark exclude each other; give only one of the two.");
+  LocatorOptions given;
+  given.finder = finder;
+  given.find.min_score = min_score;
+  given.refine.method = refine;
+  (void)refiner_named(refine);
+  given.preprocess.bright = bright;
+  given.polarity_known = bright || dark;
+  set_diameters(given, numbers(diameter));
+  const int n_threads = threads_of(threads);
+  const auto frames = flattened_stack(stack, flat);
+  Beads beads;
+  std::vector<FrameReport> reports;
+  std::map<Verdict, std::size_t> left_out;
+  const LocatorConfiguration found = unlocked(callback, [&](Progress& progress) {
+    FramesAhead ahead(*frames);
+    LocatorConfiguration configuration = configure_locator(ahead, given);
+    locate_stack(
+        ahead, configuration.locator, n_threads,
+        [&](std::int64_t frame, const cv::Mat&, const Located& located) {
+          for (const Detection& b : located.beads) {
+            for (std::size_t c = 0; c < std::size(kColumns); ++c)
+              if (kColumns[c].of != nullptr) beads.columns[c].push_back(kColumns[c].of(b));
+            beads.frame.push_back(frame);
+            beads.tracer.push_back(b.tracer ? 1 : 0);
+            beads.edge.push_back(b.edge ? 1 : 0);
+          }
+          FrameReport report{located.beads.size(), located.blur_px, located.path_px, {}};
+          for (const Detection& b : located.dropped) ++report.dropped[b.verdict];
+          for (const auto& [why, count] : report.dropped) left_out[why] += count;
+          reports.push_back(std::move(report));
+        },
+        progress);
+    return configuration;
+  });
+  check_flat(flat, found.locator.preprocess.bright);
+
+  py::dict columns;
+  for (std::size_t c = 0; c < std::size(kColumns); ++c) {
+    const std::string name = kColumns[c].name;
+    columns[py::str(name)] = kColumns[c].of != nullptr ? array_of(std::move(beads.columns[c]))
+                             : name == "frame"         ? array_of(std::move(beads.frame))
+                             : name == "tracer"        ? array_of(std::move(beads.tracer))
+                                                       : array_of(std::move(beads.edge));
+  }
+  // The options with which the same beads are found again.
+  py::list diameters;
+  diameters.append(found.locator.diameter_px);
+  for (const double other : found.locator.other_diameters_px) diameters.append(other);
+  py::dict settings;
+  settings["diameter"] = diameters;
+  settings["locator"] = found.locator.finder;
+  settings["min_score"] = found.locator.find.min_score;
+  settings["refine"] = found.locator.refine.method;
+  settings[found.locator.preprocess.bright ? "bright" : "dark"] = true;
+  settings["flat"] = flat;
+  py::list per_frame;
+  for (std::size_t f = 0; f < reports.size(); ++f) {
+    py::dict one;
+    one["frame"] = f;
+    one["beads"] = reports[f].beads;
+    one["blur_px"] = reports[f].blur_px;
+    one["path_px"] = reports[f].path_px;
+    one["dropped"] = in_words(reports[f].dropped);
+    per_frame.append(one);
+  }
+  py::dict report;
+  report["settings"] = settings;
+  report["settings_frame"] = found.frame;
+  report["contrast"] = found.locator.preprocess.contrast;
+  report["left_out"] = in_words(left_out);
+  report["frames"] = per_frame;
+  return py::make_tuple(columns, report);
+}
+
+struct TrackCall {
+  FilmOptions film;
+  std::optional<std::filesystem::path> output;
+};
+
+py::object track(const py::object& stack, TrackCall call, const py::object& callback) {
+  std::string name;
+  source_of(stack, name);  // for the name, and so that a stack that cannot be opened is refused first
+  if (call.output) {
+    const std::filesystem::path parent = call.output->parent_path();
+    call.film.folder = parent.empty() ? "." : parent;
+  }
+  struct Forwarded : Progress {
+    explicit Forwarded(Progress& to) : to_(to) {}
+    void update(std::int64_t done, std::int64_t total) override { to_.update(done, total); }
+    Progress& to_;
+  };
+  TrackedFilm film = unlocked(callback, [&](Progress& progress) {
+    return track_film(
+        [&] {
+          const py::gil_scoped_acquire lock;
+          return flattened_stack(stack, call.film.flat);
+        },
+        name, call.film, [&](const std::string&) { return std::make_unique<Forwarded>(progress); });
+  });
+  Provenance provenance = provenance_of("twincell.track (Python)", call.film.threads);
+  provenance.config = film.cell.text;
+  if (!name.empty()) provenance.inputs.push_back(file_of_stack(name));
+  film.plan.info.provenance_json = provenance.to_json();
+  std::shared_ptr<Trajectory> trajectory;
+  if (call.output) {
+    H5mdWriter writer(*call.output, film.plan.info);
+    write_trajectory(film.stack, film.plan, film.cell, writer);
+    writer.finish();
+    trajectory = std::make_shared<Trajectory>(*call.output);
+  } else {
+    SharedFrames memory(film.plan.info);
+    write_trajectory(film.stack, film.plan, film.cell, memory);
+    trajectory = std::make_shared<Trajectory>(std::move(memory));
+  }
+  if (!film.check.disagreement.empty())
+    PyErr_WarnEx(PyExc_UserWarning,
+                 ("the stated drive does not fit the film: " + film.check.disagreement + ".").c_str(), 2);
+  return py::cast(trajectory);
+}
+
+}  // namespace
+
+void bind_locating(py::module_& module) {
+  const LocatorOptions locator;
+  const LinkOptions link;
+  module.def("locate", &locate_beads_of, py::arg("stack"), py::kw_only(), py::arg("diameter") = py::none(),
+             py::arg("locator") = locator.finder, py::arg("min_score") = locator.find.min_score,
+             py::arg("refine") = locator.refine.method, py::arg("bright") = false, py::arg("dark") = false,
+             py::arg("flat") = "", py::arg("threads") = 0, py::arg("callback") = py::none(),
+             header_text("imaging/track/locate_stack.hpp", "locate_stack"));
+  module.def(
+      "track",
+      [](const py::object& stack, const std::optional<std::filesystem::path>& output,
+         const std::optional<std::filesystem::path>& cell, std::optional<double> pixels_per_sigma,
+         const std::optional<std::array<double, 2>>& origin_px, const std::vector<std::string>& set,
+         std::optional<double> cell_width, std::optional<double> cell_height,
+         std::optional<int> frames_per_cycle, const py::object& phase_lock, std::optional<double> drive_hz,
+         std::optional<int> first_phase, std::optional<double> drive_gamma,
+         std::optional<double> drive_amplitude, const py::object& diameter, const std::string& finder,
+         bool bright, const std::string& flat, double range, int memory, bool trust_stated_drive,
+         int shortest, int threads, const py::object& callback) {
+        TrackCall call;
+        call.output = output;
+        call.film.request = {
+            .cell_file = cell ? cell->string() : std::string(),
+            .assignments = set,
+            .pixels_per_sigma = pixels_per_sigma,
+            .origin = origin_px,
+            .width = cell_width,
+            .height = cell_height,
+            .gamma = drive_gamma,
+            .amplitude = drive_amplitude,
+            .frames_per_cycle = frames_per_cycle,
+            .first_phase = first_phase,
+            .phase_lock = phase_lock.is_none() ? "" : py::str(phase_lock).cast<std::string>(),
+            .drive_hz = drive_hz};
+        call.film.diameters = numbers(diameter);
+        LocatorOptions checked;
+        set_diameters(checked, call.film.diameters);
+        call.film.locator.finder = finder;
+        call.film.locator.preprocess.bright = bright;
+        call.film.link.range_diameters = range;
+        call.film.link.memory = memory;
+        call.film.flat = flat;
+        require_range({.file = {}, .key = "shortest"}, shortest, 1, std::nullopt);
+        call.film.shortest = shortest;
+        call.film.trust_stated_drive = trust_stated_drive;
+        call.film.threads = threads_of(threads);
+        return track(stack, std::move(call), callback);
+      },
+      py::arg("stack"), py::arg("output") = py::none(), py::kw_only(), py::arg("cell") = py::none(),
+      py::arg("pixels_per_sigma") = py::none(), py::arg("origin_px") = py::none(),
+      py::arg("set") = std::vector<std::string>{}, py::arg("cell_width") = py::none(),
+      py::arg("cell_height") = py::none(), py::arg("frames_per_cycle") = py::none(),
+      py::arg("phase_lock") = py::none(), py::arg("drive_hz") = py::none(),
+      py::arg("first_phase") = py::none(), py::arg("drive_gamma") = py::none(),
+      py::arg("drive_amplitude") = py::none(), py::arg("diameter") = py::none(),
+      py::arg("locator") = locator.finder, py::arg("bright") = false, py::arg("flat") = "",
+      py::arg("range") = link.range_diameters, py::arg("memory") = link.memory,
+      py::arg("trust_stated_drive") = false, py::arg("shortest") = 1, py::arg("threads") = 0,
+      py::arg("callback") = py::none(), header_text("calibration/drive/track_film.hpp", "track_film"));
+}
+
+}  // namespace twincell::python

@@ -1,0 +1,157 @@
+// twincell._core: exceptions and helpers of the Python module; the parts are bound by the other files.
+
+#include "python/module.hpp"
+
+#include <fmt/format.h>
+
+#include <new>
+#include <thread>
+
+#include "core/error.hpp"
+#include "core/hdf5.hpp"
+#include "imaging/stack/opencv_errors.hpp"
+
+namespace twincell::python {
+
+namespace {
+
+/// The exception classes, kept alive by the module.
+PyObject *error_class = nullptr, *config_class = nullptr, *input_class = nullptr, *run_class = nullptr,
+         *interrupted_class = nullptr;
+
+PyObject* make_class(py::module_& module, const char* name, const char* doc, const py::tuple& bases,
+                     ExitCode code) {
+  py::dict members;
+  members["exit_code"] = static_cast<int>(code);
+  PyObject* made =
+      PyErr_NewExceptionWithDoc(fmt::format("twincell.{}", name).c_str(), doc, bases.ptr(), members.ptr());
+  if (made == nullptr) throw py::error_already_set();
+  module.attr(name) = py::reinterpret_borrow<py::object>(made);
+  return made;
+}
+
+void make_classes(py::module_& module) {
+  const auto of = [](PyObject* a, PyObject* b) { return py::make_tuple(py::handle(a), py::handle(b)); };
+  error_class =
+      make_class(module, "Error", "An error with a sentence for the user; exit_code is that of the program.",
+                 py::make_tuple(py::handle(PyExc_Exception)), ExitCode::failed);
+  config_class = make_class(module, "ConfigError", header_text("core/error.hpp", "ConfigError"),
+                            of(error_class, PyExc_ValueError), ExitCode::usage);
+  input_class = make_class(module, "InputError", header_text("core/error.hpp", "InputError"),
+                           of(error_class, PyExc_OSError), ExitCode::input);
+  run_class = make_class(module, "RunError", header_text("core/error.hpp", "RunError"),
+                         of(error_class, PyExc_RuntimeError), ExitCode::failed);
+  interrupted_class = make_class(module, "Interrupted", header_text("core/error.hpp", "Interrupted"),
+                                 py::make_tuple(py::handle(error_class)), ExitCode::interrupted);
+}
+
+PyObject* class_of(ExitCode code) {
+  switch (code) {
+    case ExitCode::usage:
+      return config_class;
+    case ExitCode::input:
+      return input_class;
+    case ExitCode::interrupted:
+    case ExitCode::terminated:
+      return interrupted_class;
+    default:
+      return run_class;
+  }
+}
+
+void translate(std::exception_ptr thrown) {
+  if (!thrown) return;
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const Error& e) {
+    PyErr_SetString(class_of(e.exit_code()), e.what());
+  } catch (const std::bad_alloc&) {
+    PyErr_NoMemory();
+  } catch (const py::builtin_exception&) {
+    throw;
+  } catch (const py::error_already_set&) {
+    throw;
+  } catch (const std::exception& e) {
+    const auto fault = opencv_error(e);
+    if (!fault) throw;
+    if (fault->out_of_memory)
+      PyErr_NoMemory();
+    else
+      PyErr_SetString(run_class, ("the image processing failed: " + fault->what).c_str());
+  }
+}
+
+}  // namespace
+
+void PythonProgress::update(std::int64_t done, std::int64_t total) {
+  constexpr std::chrono::milliseconds kPause{100};
+  const bool last = total > 0 && done >= total;
+  if (const auto now = Clock::now(); now - last_ < kPause && !(last && !callback_.is_none())) return;
+  last_ = Clock::now();
+  const py::gil_scoped_acquire lock;
+  try {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (!callback_.is_none()) callback_(done, total);
+  } catch (py::error_already_set&) {
+    raised_ = std::current_exception();
+    throw Interrupted(ExitCode::interrupted);
+  }
+}
+
+py::object from_json(const std::string& text) {
+  return py::module_::import("json").attr("loads")(text);
+}
+
+Provenance provenance_of(const std::string& call, int threads) {
+  Provenance p;
+  p.command_line = call;
+  p.threads = threads;
+  return p;
+}
+
+int threads_of(int threads) {
+  require_range({.file = {}, .key = "threads"}, threads, 0, 4096);
+  return threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+std::vector<Vec3> points_of(const py::handle& points, const std::string& name) {
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(points);
+  if (!array) throw py::error_already_set();
+  if (array.ndim() != 2 || (array.shape(1) != 2 && array.shape(1) != 3)) {
+    std::string shape;
+    for (py::ssize_t k = 0; k < array.ndim(); ++k)
+      shape += fmt::format("{}{}", k > 0 ? ", " : "", array.shape(k));
+    throw ConfigError(
+        {.file = {}, .key = name},
+        fmt::format("has the shape ({}); points are (N, 2) as (x, z) or (N, 3) as (x, y, z).", shape));
+  }
+  const auto p = array.unchecked<2>();
+  std::vector<Vec3> out(static_cast<std::size_t>(p.shape(0)));
+  for (py::ssize_t i = 0; i < p.shape(0); ++i)
+    out[static_cast<std::size_t>(i)] =
+        p.shape(1) == 2 ? Vec3(p(i, 0), 0, p(i, 1)) : Vec3(p(i, 0), p(i, 1), p(i, 2));
+  return out;
+}
+
+}  // namespace twincell::python
+
+PYBIND11_MODULE(_core, module) {
+  using namespace twincell;
+  using namespace twincell::python;
+  h5::quiet();
+  quiet_opencv();
+  module.doc() = "The C++ side of twincell.";
+  make_classes(module);
+  py::register_exception_translator(&translate);
+  module.attr("__version__") = from_json(version_json())["version"];
+  module.def(
+      "version", [] { return from_json(version_json()); },
+      header_text("core/provenance.hpp", "version_json"));
+  bind_trajectory(module);
+  bind_frames(module);
+  bind_locating(module);
+  bind_analysis(module);
+  bind_observables(module);
+  bind_simulation(module);
+  bind_verbs(module);
+}

@@ -1,0 +1,108 @@
+#pragma once
+/// \file
+/// What the parts of the Python module share: exceptions, progress with Ctrl-C, arrays without a copy,
+/// docstrings.
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "core/provenance.hpp"
+#include "trajectory/box.hpp"
+
+namespace twincell::python {
+
+namespace py = pybind11;
+
+/// The comment of a symbol in a header of the source tree, which header_docs.py collects at build time.
+const char* header_text(std::string_view header, std::string_view symbol);
+
+/// Forwards the progress of work that runs without the interpreter's lock: at most ten times a second it
+/// takes the lock, lets Python handle signals, and calls `callback(done, total)` if there is one. If either
+/// raises, the work is interrupted; `rethrow` then raises the same exception in the caller.
+class PythonProgress : public Progress {
+ public:
+  explicit PythonProgress(py::object callback) : callback_(std::move(callback)) {}
+  void update(std::int64_t done, std::int64_t total) override;
+  /// Whether Python raised an exception.
+  [[nodiscard]] bool raised() const { return raised_ != nullptr; }
+  [[noreturn]] void rethrow() const { std::rethrow_exception(raised_); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  py::object callback_;
+  std::exception_ptr raised_;
+  Clock::time_point last_ = Clock::now();
+};
+
+/// Calls work(progress) without the interpreter's lock.
+/// \param callback None, or a function of (done, total)
+template <class Work>
+auto unlocked(const py::object& callback, const Work& work) {
+  PythonProgress progress(callback);
+  try {
+    const py::gil_scoped_release release;
+    return work(static_cast<Progress&>(progress));
+  } catch (...) {
+    if (progress.raised()) progress.rethrow();
+    throw;
+  }
+}
+
+/// An array over memory that `owner` keeps alive; read-only unless `writable`.
+template <class T, class Owner>
+py::array view(const T* data, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
+               std::shared_ptr<Owner> owner, bool writable = false) {
+  const py::capsule base(new std::shared_ptr<const void>(std::move(owner)),
+                         [](void* p) { delete static_cast<std::shared_ptr<const void>*>(p); });
+  py::array array(py::dtype::of<T>(), std::move(shape), std::move(strides), data, base);
+  if (!writable) array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+/// An array that takes over the numbers of a vector.
+template <class T>
+py::array array_of(std::vector<T> values, std::vector<py::ssize_t> shape = {}) {
+  auto owner = std::make_shared<std::vector<T>>(std::move(values));
+  if (shape.empty()) shape = {static_cast<py::ssize_t>(owner->size())};
+  std::vector<py::ssize_t> strides(shape.size());
+  py::ssize_t step = sizeof(T);
+  for (std::size_t k = shape.size(); k-- > 0; step *= shape[k]) strides[k] = step;
+  const T* data = owner->data();
+  return view(data, std::move(shape), std::move(strides), std::move(owner), true);
+}
+
+/// JSON text as Python values.
+py::object from_json(const std::string& text);
+
+/// Provenance of what Python computes. \param call for example "twincell.simulate (Python)"
+Provenance provenance_of(const std::string& call, int threads = 1);
+
+/// Number of threads: `threads`, or the number of cores if it is 0. \throws ConfigError below 0, above 4096
+int threads_of(int threads);
+
+/// Points (N, 2) as (x, z), or (N, 3) as (x, y, z).
+/// \throws ConfigError for another shape \param name of the argument, for the message
+std::vector<Vec3> points_of(const py::handle& points, const std::string& name);
+
+void bind_trajectory(py::module_& module);
+void bind_frames(py::module_& module);
+void bind_locating(py::module_& module);
+void bind_analysis(py::module_& module);
+void bind_observables(py::module_& module);
+void bind_simulation(py::module_& module);
+void bind_verbs(py::module_& module);
+
+}  // namespace twincell::python

@@ -1,0 +1,178 @@
+// Observables of one frame, on arrays of points.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <complex>
+
+#include "analysis/neighbours/bond_order.hpp"
+#include "analysis/neighbours/neighbours.hpp"
+#include "analysis/neighbours/voronoi.hpp"
+#include "analysis/observable/observable.hpp"
+#include "core/error.hpp"
+#include "python/module.hpp"
+
+namespace twincell::python {
+
+namespace {
+
+/// A frame of points; points that are not finite are empty slots.
+Frame frame_of(const py::object& points) {
+  Frame frame;
+  frame.position = points_of(points, "points");
+  bool missing = false;
+  for (const Vec3& p : frame.position) missing = missing || !p.allFinite();
+  if (!missing) return frame;
+  for (std::size_t i = 0; i < frame.position.size(); ++i)
+    frame.id.push_back(frame.position[i].allFinite() ? static_cast<std::int64_t>(i) : -1);
+  return frame;
+}
+
+/// The box of an argument: a Box; None (open); or the two or three lengths of a periodic box.
+Box box_of(const py::object& said) {
+  if (py::isinstance<Box>(said)) return said.cast<Box>();
+  Box box;
+  box.boundary = {Boundary::open, Boundary::open, Boundary::open};
+  if (said.is_none()) return box;
+  const auto lengths = said.cast<std::vector<double>>();
+  if (lengths.size() != 2 && lengths.size() != 3)
+    throw ConfigError(
+        {.file = {}, .key = "box"},
+        fmt::format("has {} lengths; a periodic box has 2 (x, z) or 3 (x, y, z).", lengths.size()));
+  for (std::size_t k = 0; k < lengths.size(); ++k) {
+    require_range({.file = {}, .key = "box"}, lengths[k], 0, std::nullopt, true);
+    const std::size_t axis = lengths.size() == 2 ? 2 * k : k;
+    box.boundary[axis] = Boundary::periodic;
+    box.upper[static_cast<Eigen::Index>(axis)] = lengths[k];
+  }
+  return box;
+}
+
+double checked_length(const char* name, double value) {
+  require_range({.file = {}, .key = name}, value, 0, std::nullopt, true);
+  return value;
+}
+
+py::array indices_of(const std::vector<std::size_t>& values) {
+  return array_of(std::vector<std::int64_t>(values.begin(), values.end()));
+}
+
+py::dict dict_of(const Neighbours& n) {
+  std::vector<std::int64_t> from;
+  std::vector<double> bonds;
+  for (std::size_t i = 0; i + 1 < n.first.size(); ++i)
+    from.insert(from.end(), n.count(i), static_cast<std::int64_t>(i));
+  for (const Vec3& b : n.bond) bonds.insert(bonds.end(), b.data(), b.data() + 3);
+  const auto entries = static_cast<py::ssize_t>(n.index.size());
+  py::dict d;
+  d["i"] = array_of(std::move(from));
+  d["j"] = indices_of(n.index);
+  d["bond"] = array_of(std::move(bonds), {entries, 3});
+  return d;
+}
+
+struct Bonds {
+  Neighbours neighbours;
+  std::vector<double> weight;
+};
+
+Bonds bonds_of(const py::object& points, const py::object& box, const std::string& rule, double cutoff,
+               double cell_radius) {
+  const Frame frame = frame_of(points);
+  const Box cell = box_of(box);
+  const NeighbourRule named = neighbour_rule_named(rule);
+  if (named == NeighbourRule::cutoff)
+    return {find_neighbours(frame, cell, checked_length("cutoff", cutoff)), {}};
+  VoronoiCells cells = voronoi_cells(frame, cell, checked_length("cell_radius", cell_radius));
+  return {std::move(cells.neighbours),
+          named == NeighbourRule::voronoi ? std::move(cells.edge) : std::vector<double>{}};
+}
+
+}  // namespace
+
+void bind_observables(py::module_& module) {
+  constexpr double kCutoff = 1.2;  // between touching beads and the next shell (neighbour_cutoff)
+  const std::string points_text =
+      "\n\npoints: (N, 2) as (x, z) or (N, 3) as (x, y, z), in bead diameters; NaN where a bead is missing. "
+      "box: a Box, None for open sides, or the lengths (x, z) or (x, y, z) of a periodic box.";
+  const std::string bonds_text =
+      points_text +
+      " neighbours: cutoff, delaunay or voronoi, as in `analyze`; cutoff and cell_radius as there.";
+  module.def(
+      "neighbours",
+      [](const py::object& points, const py::object& box, double cutoff) {
+        return dict_of(find_neighbours(frame_of(points), box_of(box), checked_length("cutoff", cutoff)));
+      },
+      py::arg("points"), py::arg("box") = py::none(), py::arg("cutoff") = kCutoff,
+      (header_text("analysis/neighbours/neighbours.hpp", "find_neighbours") + points_text +
+       "\n\nReturns a dict of arrays with one entry per bond: i, j (beads) and bond (from i to j, (n, 3)).")
+          .c_str());
+  module.def(
+      "coordination",
+      [](const py::object& points, const py::object& box, const std::string& neighbours, double cutoff,
+         double cell_radius) {
+        const Bonds bonds = bonds_of(points, box, neighbours, cutoff, cell_radius);
+        std::vector<std::int64_t> counts;
+        for (std::size_t i = 0; i + 1 < bonds.neighbours.first.size(); ++i)
+          counts.push_back(static_cast<std::int64_t>(bonds.neighbours.count(i)));
+        return array_of(std::move(counts));
+      },
+      py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
+      py::arg("cutoff") = kCutoff, py::arg("cell_radius") = kCellRadius,
+      ("Number of neighbours of every bead." + bonds_text).c_str());
+  module.def(
+      "bond_order",
+      [](const py::object& points, const py::object& box, const std::string& neighbours, double cutoff,
+         double cell_radius) {
+        const Bonds bonds = bonds_of(points, box, neighbours, cutoff, cell_radius);
+        BondOrder order = bond_order(bonds.neighbours, bonds.weight);
+        py::dict d;
+        d["q6"] = array_of(std::move(order.q6));
+        d["psi6"] = array_of(std::move(order.psi6));
+        d["psi4"] = array_of(std::move(order.psi4));
+        d["angle"] = array_of(std::move(order.angle));
+        d["n_bonds"] = indices_of(order.n_bonds);
+        return d;
+      },
+      py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
+      py::arg("cutoff") = kCutoff, py::arg("cell_radius") = kCellRadius,
+      (header_text("analysis/neighbours/bond_order.hpp", "bond_order") + bonds_text).c_str());
+  module.def(
+      "hexatic_order",
+      [](const py::object& points, const py::object& box, const std::string& neighbours, double cutoff,
+         double cell_radius) {
+        const Bonds bonds = bonds_of(points, box, neighbours, cutoff, cell_radius);
+        const BondOrder order = bond_order(bonds.neighbours, bonds.weight);
+        std::vector<std::complex<double>> psi;
+        for (std::size_t i = 0; i < order.psi6.size(); ++i)
+          psi.push_back(std::isfinite(order.angle[i])
+                            ? std::polar(order.psi6[i], 6 * order.angle[i] * M_PI / 180)
+                            : std::complex<double>(order.psi6[i]));
+        return array_of(std::move(psi));
+      },
+      py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
+      py::arg("cutoff") = kCutoff, py::arg("cell_radius") = kCellRadius,
+      ("Complex hexatic order psi6 = <exp(6 i phi)> of every bead (`bond_order`): phi is the angle of a bond "
+       "in the "
+       "plane (x, z). NaN for fewer than 2 bonds." +
+       bonds_text)
+          .c_str());
+  module.def(
+      "voronoi",
+      [](const py::object& points, const py::object& box, double cell_radius) {
+        VoronoiCells cells =
+            voronoi_cells(frame_of(points), box_of(box), checked_length("cell_radius", cell_radius));
+        py::dict d = dict_of(cells.neighbours);
+        d["edge"] = array_of(std::move(cells.edge));
+        d["enclosed"] = array_of(std::move(cells.enclosed)).attr("astype")("bool");
+        return d;
+      },
+      py::arg("points"), py::arg("box") = py::none(), py::arg("cell_radius") = kCellRadius,
+      (header_text("analysis/neighbours/voronoi.hpp", "voronoi_cells") + points_text +
+       "\n\nReturns a dict of arrays: i, j, bond and edge (length of the shared edge) with one entry per "
+       "bond, "
+       "enclosed with one per bead.")
+          .c_str());
+}
+
+}  // namespace twincell::python

@@ -1,0 +1,455 @@
+// Trajectories in Python: columns as NumPy arrays without a copy, made from arrays, opened and written.
+
+#include "python/trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.hpp"
+#include "trajectory/box.hpp"
+
+namespace twincell::python {
+
+std::shared_ptr<const Frame> Trajectory::frame(std::size_t index) {
+  if (memory_ != nullptr) return memory_->frames()[index];
+  if (last_ == nullptr || last_index_ != index) {
+    auto read = std::make_shared<Frame>();
+    source_->read(index, *read);
+    last_ = std::move(read);
+    last_index_ = index;
+  }
+  return last_;
+}
+
+std::shared_ptr<Trajectory> trajectory_of(const py::handle& said) {
+  if (py::isinstance<Trajectory>(said)) return said.cast<std::shared_ptr<Trajectory>>();
+  return std::make_shared<Trajectory>(said.cast<std::filesystem::path>());
+}
+
+namespace {
+
+static_assert(sizeof(Vec3) == 3 * sizeof(double));
+
+constexpr const char* kHeader = "trajectory/trajectory.hpp";
+
+std::size_t index_of(py::ssize_t i, std::size_t n) {
+  const auto length = static_cast<py::ssize_t>(n);
+  if (i < -length || i >= length)
+    throw py::index_error(fmt::format("frame {} does not exist; the trajectory has {} frames.", i, n));
+  return static_cast<std::size_t>(i < 0 ? i + length : i);
+}
+
+/// A per-bead vector of every frame: column[t] is an array (n_beads, 3) without a copy.
+struct Column {
+  std::shared_ptr<Trajectory> trajectory;
+  std::vector<Vec3> Frame::*member;
+
+  [[nodiscard]] py::array at(std::size_t t) const {
+    const auto frame = trajectory->frame(t);
+    const std::vector<Vec3>& values = (*frame).*member;
+    return view(reinterpret_cast<const double*>(values.data()), {static_cast<py::ssize_t>(values.size()), 3},
+                {sizeof(Vec3), sizeof(double)}, frame);
+  }
+  [[nodiscard]] py::array stack(std::size_t start, py::ssize_t step, std::size_t length) const {
+    const std::size_t n = trajectory->info().n_beads;
+    std::vector<double> all;
+    all.reserve(length * n * 3);
+    for (std::size_t k = 0; k < length; ++k) {
+      const auto frame = trajectory->frame(
+          static_cast<std::size_t>(static_cast<py::ssize_t>(start) + static_cast<py::ssize_t>(k) * step));
+      for (const Vec3& v : (*frame).*member) all.insert(all.end(), v.data(), v.data() + 3);
+    }
+    return array_of(std::move(all), {static_cast<py::ssize_t>(length), static_cast<py::ssize_t>(n), 3});
+  }
+};
+
+/// Number of every frame, from a pass over the file.
+template <class Value>
+py::array of_frames(Trajectory& trajectory, Value value) {
+  std::vector<decltype(value(Frame{}))> values;
+  values.reserve(trajectory.n_frames());
+  for (std::size_t t = 0; t < trajectory.n_frames(); ++t) values.push_back(value(*trajectory.frame(t)));
+  return array_of(std::move(values));
+}
+
+template <class T>
+py::object of_slots(const std::shared_ptr<Trajectory>& trajectory, const std::vector<T>& values) {
+  if (values.empty()) return py::none();
+  return view(values.data(), {static_cast<py::ssize_t>(values.size())}, {sizeof(T)}, trajectory);
+}
+
+const char* word_of(Boundary b) {
+  return b == Boundary::open ? "open" : b == Boundary::wall ? "wall" : "periodic";
+}
+
+Boundary boundary_named(const std::string& word) {
+  for (const Boundary b : {Boundary::open, Boundary::wall, Boundary::periodic})
+    if (word == word_of(b)) return b;
+  throw ConfigError({.file = {}, .key = "boundary"},
+                    fmt::format("'{}' is none of open, wall, periodic.", word));
+}
+
+void bind_box(py::module_& module) {
+  py::class_<Box>(module, "Box", header_text("trajectory/box.hpp", "Box"))
+      .def(py::init([](const std::array<double, 3>& lower, const std::array<double, 3>& upper,
+                       const std::array<std::string, 3>& boundary, int dimension) {
+             Box box;
+             if (dimension != 2 && dimension != 3)
+               throw ConfigError({.file = {}, .key = "dimension"},
+                                 fmt::format("is {}; it must be 2 or 3.", dimension));
+             box.dimension = dimension;
+             for (int a = 0; a < 3; ++a) {
+               const auto k = static_cast<std::size_t>(a);
+               if (!(lower[k] < upper[k]))
+                 throw ConfigError({.file = {}, .key = "upper"},
+                                   fmt::format("is {:g} along {}; it must be above lower, {:g}.", upper[k],
+                                               "xyz"[a], lower[k]));
+               box.lower[a] = lower[k];
+               box.upper[a] = upper[k];
+               box.boundary[k] = boundary_named(boundary[k]);
+             }
+             return box;
+           }),
+           py::arg("lower"), py::arg("upper"),
+           py::arg("boundary") = std::array<std::string, 3>{"wall", "open", "wall"}, py::arg("dimension") = 2,
+           "Corners (x, y, z) in sigma, and the boundary along each axis: open, wall or periodic.")
+      .def_property_readonly(
+          "lower",
+          [](const Box& b) {
+            return std::array{b.lower.x(), b.lower.y(), b.lower.z()};
+          },
+          header_text("trajectory/box.hpp", "Box::lower"))
+      .def_property_readonly(
+          "upper",
+          [](const Box& b) {
+            return std::array{b.upper.x(), b.upper.y(), b.upper.z()};
+          },
+          header_text("trajectory/box.hpp", "Box::upper"))
+      .def_readonly("dimension", &Box::dimension, header_text("trajectory/box.hpp", "Box::dimension"))
+      .def_readonly("side_tilt", &Box::side_tilt, header_text("trajectory/box.hpp", "Box::side_tilt"))
+      .def_property_readonly(
+          "boundary",
+          [](const Box& b) {
+            return std::array<std::string, 3>{word_of(b.boundary[0]), word_of(b.boundary[1]),
+                                              word_of(b.boundary[2])};
+          },
+          header_text("trajectory/box.hpp", "Boundary"))
+      .def("__repr__", [](const Box& b) {
+        return fmt::format("Box(({:g}, {:g}, {:g}), ({:g}, {:g}, {:g}), ({}, {}, {}), dimension={})",
+                           b.lower.x(), b.lower.y(), b.lower.z(), b.upper.x(), b.upper.y(), b.upper.z(),
+                           word_of(b.boundary[0]), word_of(b.boundary[1]), word_of(b.boundary[2]),
+                           b.dimension);
+      });
+  py::class_<Drive>(module, "Drive", header_text("trajectory/drive.hpp", "Drive"))
+      .def(py::init(
+               [](double amplitude, double omega) { return Drive{.amplitude = amplitude, .omega = omega}; }),
+           py::arg("amplitude"), py::arg("omega"),
+           "Vertical drive A sin(omega t): A in sigma, omega in 1/t0.")
+      .def_readonly("amplitude", &Drive::amplitude, header_text("trajectory/drive.hpp", "Drive::amplitude"))
+      .def_readonly("omega", &Drive::omega, header_text("trajectory/drive.hpp", "Drive::omega"))
+      .def_property_readonly(
+          "gamma", [](const Drive& d) { return d.gamma(); },
+          header_text("trajectory/drive.hpp", "Drive::gamma"))
+      .def_property_readonly(
+          "k_m", [](const Drive& d) { return d.k_m(); }, header_text("trajectory/drive.hpp", "Drive::k_m"))
+      .def_property_readonly("period", &Drive::period, header_text("trajectory/drive.hpp", "Drive::period"))
+      .def("__repr__", [](const Drive& d) {
+        return fmt::format("Drive(amplitude={:g}, omega={:g})", d.amplitude, d.omega);
+      });
+}
+
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// An array (T, N, 2 or 3) as vectors, one call per frame.
+class VectorArray {
+ public:
+  VectorArray(const py::object& said, const char* name, py::ssize_t frames, py::ssize_t beads) {
+    if (said.is_none()) return;
+    values_ = Numbers::ensure(said);
+    if (!values_) throw py::error_already_set();
+    const bool fits = values_.ndim() == 3 && (values_.shape(2) == 2 || values_.shape(2) == 3) &&
+                      (frames < 0 || (values_.shape(0) == frames && values_.shape(1) == beads));
+    if (fits) return;
+    std::string shape;
+    for (py::ssize_t k = 0; k < values_.ndim(); ++k)
+      shape += fmt::format("{}{}", k > 0 ? ", " : "", values_.shape(k));
+    throw ConfigError(
+        {.file = {}, .key = name},
+        frames < 0
+            ? fmt::format("has the shape ({}); it must be (frames, beads, 2) as (x, z) or "
+                          "(frames, beads, 3) as (x, y, z).",
+                          shape)
+            : fmt::format("has the shape ({}); positions have {} frames of {} beads.", shape, frames, beads));
+  }
+  [[nodiscard]] bool given() const { return static_cast<bool>(values_) && values_.ndim() == 3; }
+  [[nodiscard]] py::ssize_t extent(int axis) const { return values_.shape(axis); }
+  [[nodiscard]] std::vector<Vec3> of(py::ssize_t t, double missing_y) const {
+    const auto v = values_.unchecked<3>();
+    std::vector<Vec3> out(static_cast<std::size_t>(v.shape(1)));
+    for (py::ssize_t i = 0; i < v.shape(1); ++i) {
+      const bool planar = v.shape(2) == 2;
+      out[static_cast<std::size_t>(i)] =
+          Vec3(v(t, i, 0), planar ? missing_y : v(t, i, 1), v(t, i, planar ? 1 : 2));
+    }
+    return out;
+  }
+
+ private:
+  Numbers values_;
+};
+
+/// One number per frame or per bead.
+template <class T>
+std::vector<T> numbers_of(const py::object& said, const char* name, py::ssize_t length, const char* of) {
+  if (said.is_none()) return {};
+  const auto values = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(said);
+  if (!values) throw py::error_already_set();
+  if (values.ndim() != 1 || values.shape(0) != length)
+    throw ConfigError({.file = {}, .key = name},
+                      fmt::format("has {} values; there are {} {}.", values.size(), length, of));
+  return std::vector<T>(values.data(), values.data() + length);
+}
+
+std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::object& velocities,
+                                        const py::object& position_sigma, const py::object& radii,
+                                        const py::object& masses, const py::object& tracers,
+                                        const py::object& phase, const py::object& cycle,
+                                        const py::object& time, const py::object& step,
+                                        const py::object& plate_height, const std::optional<Box>& box,
+                                        const std::optional<Drive>& drive, int phases_per_cycle,
+                                        const std::string& source) {
+  const VectorArray r(positions, "positions", -1, -1);
+  if (!r.given()) throw ConfigError({.file = {}, .key = "positions"}, "is missing.");
+  const py::ssize_t frames = r.extent(0), beads = r.extent(1);
+  const VectorArray v(velocities, "velocities", frames, beads),
+      s(position_sigma, "position_sigma", frames, beads);
+  TrajectoryInfo info;
+  info.n_beads = static_cast<std::size_t>(beads);
+  info.drive = drive;
+  info.phases_per_cycle = phases_per_cycle;
+  if (source != "simulation" && source != "experiment" && source != "unknown")
+    throw ConfigError({.file = {}, .key = "source"},
+                      fmt::format("'{}' is none of simulation, experiment, unknown.", source));
+  info.source = source;
+  info.radius = numbers_of<double>(radii, "radii", beads, "beads");
+  info.mass = numbers_of<double>(masses, "masses", beads, "beads");
+  info.tracer = numbers_of<std::uint8_t>(tracers, "tracers", beads, "beads");
+  info.provenance_json = provenance_of("twincell.Trajectory.from_arrays (Python)").to_json();
+  const auto phases = numbers_of<std::int32_t>(phase, "phase", frames, "frames");
+  const auto cycles = numbers_of<std::int64_t>(cycle, "cycle", frames, "frames");
+  const auto times = numbers_of<double>(time, "time", frames, "frames");
+  const auto steps = numbers_of<std::int64_t>(step, "step", frames, "frames");
+  const auto heights = numbers_of<double>(plate_height, "plate_height", frames, "frames");
+  if (phases.empty() != cycles.empty())
+    throw ConfigError({.file = {}, .key = phases.empty() ? "phase" : "cycle"},
+                      "is missing; phase and cycle of the frames are given together.");
+  for (std::size_t t = 1; t < steps.size(); ++t)
+    if (steps[t] <= steps[t - 1])
+      throw ConfigError(
+          {.file = {}, .key = "step"},
+          fmt::format("is {} in frame {} and {} before; it must increase.", steps[t], t, steps[t - 1]));
+  bool missing = false;
+  Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
+  std::vector<Frame> all(static_cast<std::size_t>(frames));
+  for (py::ssize_t t = 0; t < frames; ++t) {
+    const auto k = static_cast<std::size_t>(t);
+    Frame& frame = all[k];
+    frame.step = steps.empty() ? t : steps[k];
+    frame.time = times.empty() ? static_cast<double>(frame.step) : times[k];
+    if (!phases.empty()) frame.phase = phases[k], frame.cycle = cycles[k];
+    if (!heights.empty()) frame.plate_height = heights[k];
+    frame.position = r.of(t, 0);
+    if (v.given()) frame.velocity = v.of(t, 0);
+    if (s.given()) frame.position_sigma = s.of(t, std::nan(""));
+    for (Vec3& p : frame.position) {
+      if (!p.allFinite()) {
+        p.setConstant(std::nan(""));
+        missing = true;
+        continue;
+      }
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+  }
+  info.columns = {.velocity = v.given(),
+                  .identity = missing,
+                  .phase = !phases.empty(),
+                  .plate_height = !heights.empty(),
+                  .position_sigma = s.given()};
+  if (box) {
+    info.box = *box;
+  } else {  // open on all sides, around the beads
+    info.box.dimension = r.extent(2);
+    info.box.boundary = {Boundary::open, Boundary::open, Boundary::open};
+    if (!(low.array() <= high.array()).all()) low.setZero(), high.setOnes();
+    info.box.lower = low - Vec3::Constant(0.5);
+    info.box.upper = high + Vec3::Constant(0.5);
+  }
+  SharedFrames memory(std::move(info));
+  for (Frame& frame : all) {
+    if (missing) {
+      frame.id.resize(memory.info().n_beads, -1);
+      for (std::size_t i = 0; i < memory.info().n_beads; ++i)
+        if (frame.position[i].allFinite()) frame.id[i] = static_cast<std::int64_t>(i);
+    }
+    memory.append(frame);
+  }
+  return std::make_shared<Trajectory>(std::move(memory));
+}
+
+void write(Trajectory& trajectory, const std::filesystem::path& path) {
+  H5mdWriter writer(path, trajectory.info());
+  for (std::size_t t = 0; t < trajectory.n_frames(); ++t) writer.append(*trajectory.frame(t));
+  writer.finish();
+}
+
+}  // namespace
+
+void bind_trajectory(py::module_& module) {
+  bind_box(module);
+  py::class_<Column>(
+      module, "Column",
+      "A vector per bead in every frame: column[t] is a read-only array (n_beads, 3) over the memory of "
+      "the frame, column[a:b] and numpy.asarray(column) are copies (frames, n_beads, 3).")
+      .def("__len__", [](const Column& c) { return c.trajectory->n_frames(); })
+      .def(
+          "__getitem__",
+          [](const Column& c, py::ssize_t t) { return c.at(index_of(t, c.trajectory->n_frames())); },
+          py::arg("frame"))
+      .def(
+          "__getitem__",
+          [](const Column& c, const py::slice& slice) {
+            std::size_t start = 0, stop = 0, step = 0, length = 0;
+            if (!slice.compute(c.trajectory->n_frames(), &start, &stop, &step, &length))
+              throw py::error_already_set();
+            return c.stack(start, static_cast<py::ssize_t>(step), length);
+          },
+          py::arg("frames"))
+      .def(
+          "__array__",
+          [](const Column& c, const py::object& dtype) -> py::object {
+            const py::array all = c.stack(0, 1, c.trajectory->n_frames());
+            return dtype.is_none() ? py::object(all) : all.attr("astype")(dtype);
+          },
+          py::arg("dtype") = py::none());
+
+  const auto column = [](bool Columns::*has, std::vector<Vec3> Frame::*member) {
+    return [has, member](const std::shared_ptr<Trajectory>& t) -> py::object {
+      if (has != nullptr && !(t->info().columns.*has)) return py::none();
+      return py::cast(Column{t, member});
+    };
+  };
+  py::class_<Trajectory, std::shared_ptr<Trajectory>>(module, "Trajectory",
+                                                      header_text(kHeader, "TrajectorySource"))
+      .def_static(
+          "open", [](const std::filesystem::path& path) { return std::make_shared<Trajectory>(path); },
+          py::arg("path"), header_text("trajectory/formats/h5md_file.hpp", "H5mdReader"))
+      .def_static(
+          "from_arrays", &from_arrays, py::arg("positions"), py::kw_only(),
+          py::arg("velocities") = py::none(), py::arg("position_sigma") = py::none(),
+          py::arg("radii") = py::none(), py::arg("masses") = py::none(), py::arg("tracers") = py::none(),
+          py::arg("phase") = py::none(), py::arg("cycle") = py::none(), py::arg("time") = py::none(),
+          py::arg("step") = py::none(), py::arg("plate_height") = py::none(), py::arg("box") = py::none(),
+          py::arg("drive") = py::none(), py::arg("phases_per_cycle") = 0, py::arg("source") = "unknown",
+          "A trajectory in memory, so that data of any origin can be analysed.\n\n"
+          "positions: (frames, beads, 2) as (x, z) or (frames, beads, 3) as (x, y, z), sigma; NaN where a "
+          "bead "
+          "is missing. The other arguments are the columns of the same names: vectors have the shape of "
+          "positions, numbers of beads (beads,), numbers of frames (frames,). Without a box the cell is open "
+          "on all sides. Arrays are copied.")
+      .def("write", &write, py::arg("path"), header_text("trajectory/formats/h5md_file.hpp", "H5mdWriter"))
+      .def("__len__", &Trajectory::n_frames)
+      .def_property_readonly("n_frames", &Trajectory::n_frames, "Number of frames.")
+      .def_property_readonly(
+          "n_beads", [](const Trajectory& t) { return t.info().n_beads; },
+          "Number of slots: slot i is the same bead in every frame.")
+      .def_property_readonly(
+          "name", [](const Trajectory& t) { return t.source().name(); }, "The file, or \"memory\".")
+      .def_property_readonly("positions", column(nullptr, &Frame::position),
+                             header_text(kHeader, "Frame::position"))
+      .def_property_readonly("velocities", column(&Columns::velocity, &Frame::velocity),
+                             header_text(kHeader, "Frame::velocity"))
+      .def_property_readonly("spins", column(&Columns::spin, &Frame::spin),
+                             header_text(kHeader, "Frame::spin"))
+      .def_property_readonly("position_sigma", column(&Columns::position_sigma, &Frame::position_sigma),
+                             header_text(kHeader, "Frame::position_sigma"))
+      .def_property_readonly(
+          "radii", [](const std::shared_ptr<Trajectory>& t) { return of_slots(t, t->info().radius); },
+          header_text(kHeader, "TrajectoryInfo::radius"))
+      .def_property_readonly(
+          "masses", [](const std::shared_ptr<Trajectory>& t) { return of_slots(t, t->info().mass); },
+          header_text(kHeader, "TrajectoryInfo::mass"))
+      .def_property_readonly(
+          "tracers", [](const std::shared_ptr<Trajectory>& t) { return of_slots(t, t->info().tracer); },
+          header_text(kHeader, "TrajectoryInfo::tracer"))
+      .def_property_readonly(
+          "step", [](Trajectory& t) { return of_frames(t, [](const Frame& f) { return f.step; }); },
+          header_text(kHeader, "Frame::step"))
+      .def_property_readonly(
+          "time", [](Trajectory& t) { return of_frames(t, [](const Frame& f) { return f.time; }); },
+          header_text(kHeader, "Frame::time"))
+      .def_property_readonly(
+          "phase",
+          [](Trajectory& t) -> py::object {
+            if (!t.info().columns.phase) return py::none();
+            return of_frames(t, [](const Frame& f) { return f.phase; });
+          },
+          header_text(kHeader, "Frame::phase"))
+      .def_property_readonly(
+          "cycle",
+          [](Trajectory& t) -> py::object {
+            if (!t.info().columns.phase) return py::none();
+            return of_frames(t, [](const Frame& f) { return f.cycle; });
+          },
+          header_text(kHeader, "Frame::cycle"))
+      .def_property_readonly(
+          "plate_height",
+          [](Trajectory& t) -> py::object {
+            if (!t.info().columns.plate_height) return py::none();
+            return of_frames(t, [](const Frame& f) { return f.plate_height; });
+          },
+          header_text(kHeader, "Frame::plate_height"))
+      .def_property_readonly(
+          "box", [](const Trajectory& t) { return t.info().box; }, header_text("trajectory/box.hpp", "Box"))
+      .def_property_readonly(
+          "drive", [](const Trajectory& t) { return t.info().drive; },
+          header_text("trajectory/drive.hpp", "Drive"))
+      .def_property_readonly(
+          "phases_per_cycle", [](const Trajectory& t) { return t.info().phases_per_cycle; },
+          header_text(kHeader, "TrajectoryInfo::phases_per_cycle"))
+      .def_property_readonly(
+          "source", [](const Trajectory& t) { return t.info().source; },
+          header_text(kHeader, "TrajectoryInfo::source"))
+      .def_property_readonly(
+          "scale",
+          [](const Trajectory& t) {
+            py::dict d;
+            d["sigma_m"] = t.info().scale.sigma_m;
+            d["gravity_m_s2"] = t.info().scale.gravity_m_s2;
+            d["pixels_per_sigma"] = t.info().scale.pixels_per_sigma;
+            d["t0_s"] = t.info().scale.t0_s();
+            return d;
+          },
+          header_text("trajectory/units.hpp", "Scale"))
+      .def_property_readonly(
+          "provenance",
+          [](const Trajectory& t) {
+            return t.info().provenance_json.empty() ? py::object(py::none())
+                                                    : from_json(t.info().provenance_json);
+          },
+          "What produced the trajectory, as a dict; None if the file does not say.")
+      .def_property_readonly(
+          "tracking",
+          [](const Trajectory& t) {
+            return t.info().tracking_json.empty() ? py::object(py::none())
+                                                  : from_json(t.info().tracking_json);
+          },
+          header_text(kHeader, "TrajectoryInfo::tracking_json"))
+      .def("__repr__", [](const Trajectory& t) {
+        return fmt::format("<twincell.Trajectory of {}: {} frames of {} beads, {}>", t.source().name(),
+                           t.n_frames(), t.info().n_beads, t.info().source);
+      });
+}
+
+}  // namespace twincell::python

@@ -1,0 +1,56 @@
+#pragma once
+/// \file
+/// The class Trajectory of the Python module: one trajectory, in memory or in a file.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "python/module.hpp"
+#include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/trajectory.hpp"
+
+namespace twincell::python {
+
+/// Frames in memory, each shared with the arrays over it. Copies share the frames.
+class SharedFrames : public TrajectorySource, public TrajectorySink {
+ public:
+  explicit SharedFrames(TrajectoryInfo info) : info_(std::move(info)) {}
+  [[nodiscard]] const TrajectoryInfo& info() const override { return info_; }
+  [[nodiscard]] std::size_t n_frames() const override { return frames_.size(); }
+  void read(std::size_t index, Frame& frame) const override { frame = *frames_[index]; }
+  [[nodiscard]] std::string name() const override { return "memory"; }
+  void append(const Frame& frame) override { frames_.push_back(std::make_shared<const Frame>(frame)); }
+  void append(std::shared_ptr<const Frame> frame) { frames_.push_back(std::move(frame)); }
+  [[nodiscard]] const std::vector<std::shared_ptr<const Frame>>& frames() const { return frames_; }
+
+ private:
+  TrajectoryInfo info_;
+  std::vector<std::shared_ptr<const Frame>> frames_;
+};
+
+/// A trajectory, and of a file the frame that was read last. An array of a column keeps its frame alive.
+class Trajectory {
+ public:
+  explicit Trajectory(SharedFrames frames)
+      : source_(std::make_unique<SharedFrames>(std::move(frames))),
+        memory_(static_cast<const SharedFrames*>(source_.get())) {}
+  explicit Trajectory(const std::filesystem::path& file) : source_(std::make_unique<H5mdReader>(file)) {}
+
+  [[nodiscard]] const TrajectorySource& source() const { return *source_; }
+  [[nodiscard]] const TrajectoryInfo& info() const { return source_->info(); }
+  [[nodiscard]] std::size_t n_frames() const { return source_->n_frames(); }
+  /// Frame `index`. \pre index < n_frames()
+  std::shared_ptr<const Frame> frame(std::size_t index);
+
+ private:
+  std::unique_ptr<TrajectorySource> source_;
+  const SharedFrames* memory_ = nullptr;  ///< source_, if it is in memory
+  std::shared_ptr<const Frame> last_;
+  std::size_t last_index_ = 0;
+};
+
+/// The trajectory of an argument: a Trajectory, or the name of a file.
+std::shared_ptr<Trajectory> trajectory_of(const py::handle& said);
+
+}  // namespace twincell::python

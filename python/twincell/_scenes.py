@@ -1,0 +1,60 @@
+"""Scenes from words of Python."""
+from __future__ import annotations
+
+import json
+import math
+
+from . import _core
+
+
+def _toml(value) -> str:
+    """A value as TOML."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{json.dumps(str(k), ensure_ascii=False)} = {_toml(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_toml(v) for v in value) + "]"
+    if hasattr(value, "item"):  # a number of NumPy
+        return _toml(value.item())
+    if isinstance(value, float):
+        return repr(value) if math.isfinite(value) else str(value)
+    if isinstance(value, int):
+        return str(value)
+    raise _core.ConfigError(f"{value!r} is of type {type(value).__name__}, which has no counterpart in a scene.")
+
+
+def assignments(said) -> list[str]:
+    """`set` as a list of "section.key=value"; it may also be a dict {"section.key": value}."""
+    if isinstance(said, dict):
+        return [f"{key}={_toml(value)}" for key, value in said.items()]
+    return [said] if isinstance(said, str) else list(said)
+
+
+def _from_dict(scene: dict, set=()):
+    """The scene of nested dicts: {"preset": name, "drive": {"gamma": 2.0}, ...} (docs/scene.md lists the keys)."""
+    text = "".join(f"{json.dumps(str(k), ensure_ascii=False)} = {_toml(v)}\n" for k, v in scene.items()
+                   if not isinstance(v, dict))
+    for name, table in scene.items():
+        if isinstance(table, dict):
+            text += f"[{json.dumps(str(name), ensure_ascii=False)}]\n" + "".join(
+                f"{json.dumps(str(k), ensure_ascii=False)} = {_toml(v)}\n" for k, v in table.items())
+    return _core.Scene.from_text(text, "dict", assignments(set))
+
+
+def _preset(name: str, set=()):
+    """The scene of a preset (preset_names()), with keys overridden by `set`."""
+    return _core.Scene.from_text(f"preset = {_toml(name)}\n", "preset", assignments(set))
+
+
+def _from_toml(path, set=()):
+    return _core.Scene._from_toml(path, assignments(set))
+
+
+_core.Scene._from_toml = _core.Scene.from_toml
+_from_toml.__doc__ = (_core.Scene.from_toml.__doc__ or "").partition("\n\n")[2]
+_core.Scene.from_toml = staticmethod(_from_toml)
+_core.Scene.from_dict = staticmethod(_from_dict)
+_core.Scene.preset = staticmethod(_preset)

@@ -1,0 +1,69 @@
+"""Trajectories as tables of pandas and universes of MDAnalysis."""
+from __future__ import annotations
+
+import numpy as np
+
+from . import _core
+
+
+def _to_dataframe(self):
+    """One row per bead and frame in which it is present, in the columns of trackpy: x, y, frame, particle.
+
+    x and z are in bead diameters, z up; y is -z, so that it increases downwards as in trackpy's pictures. Further columns: time,
+    and those that the trajectory has: depth, phase, cycle, radius, tracer, vx, vz, sigma_x, sigma_z.
+    """
+    import pandas as pd
+
+    parts = []
+    time, step, phase, cycle = self.time, self.step, self.phase, self.cycle
+    for t in range(len(self)):
+        r = self.positions[t]
+        here = np.flatnonzero(np.isfinite(r[:, 0]))
+        part = {"x": r[here, 0], "y": -r[here, 2], "z": r[here, 2], "frame": np.full(here.size, t),
+                "particle": here, "step": np.full(here.size, step[t]), "time": np.full(here.size, time[t])}
+        if self.box.dimension == 3:
+            part["depth"] = r[here, 1]
+        if phase is not None:
+            part |= {"phase": np.full(here.size, phase[t]), "cycle": np.full(here.size, cycle[t])}
+        if self.radii is not None:
+            part["radius"] = self.radii[here]
+        if self.tracers is not None:
+            part["tracer"] = self.tracers[here].astype(bool)
+        if self.velocities is not None:
+            v = self.velocities[t]
+            part |= {"vx": v[here, 0], "vz": v[here, 2]}
+        if self.position_sigma is not None:
+            s = self.position_sigma[t]
+            part |= {"sigma_x": s[here, 0], "sigma_z": s[here, 2]}
+        parts.append(pd.DataFrame(part))
+    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=["x", "y", "z", "frame", "particle"])
+
+
+def _to_mdanalysis(self):
+    """The trajectory as an MDAnalysis Universe in memory, one atom per slot, lengths in bead diameters.
+
+    Positions are copied, because MDAnalysis keeps 32-bit numbers. The type of a tracer is "tracer", of any other bead
+    "bead"; the time step is that of the first two frames in t0.
+    """
+    import MDAnalysis as mda
+    from MDAnalysis.coordinates.memory import MemoryReader
+
+    universe = mda.Universe.empty(self.n_beads, trajectory=True)
+    tracers = self.tracers if self.tracers is not None else np.zeros(self.n_beads)
+    universe.add_TopologyAttr("types", np.where(tracers, "tracer", "bead"))
+    if self.masses is not None:
+        universe.add_TopologyAttr("masses", self.masses)
+    if self.radii is not None:
+        universe.add_TopologyAttr("radii", self.radii)
+    time = self.time
+    size = np.subtract(self.box.upper, self.box.lower)
+    box = np.array([*size, 90, 90, 90], dtype=np.float32)
+    options = {"dt": float(time[1] - time[0])} if len(time) > 1 else {}
+    velocities = np.asarray(self.velocities, dtype=np.float32) if self.velocities is not None else None
+    universe.load_new(np.asarray(self.positions, dtype=np.float32), format=MemoryReader, order="fac",
+                      dimensions=box, velocities=velocities, **options)
+    return universe
+
+
+_core.Trajectory.to_dataframe = _to_dataframe
+_core.Trajectory.to_mdanalysis = _to_mdanalysis

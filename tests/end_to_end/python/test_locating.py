@@ -1,0 +1,98 @@
+"""locate and track from Python against the program."""
+import io
+
+import numpy as np
+import pytest
+
+pd = pytest.importorskip("pandas")
+
+import twincell  # noqa: E402
+from conftest import DEMO, document, sentence  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def verb(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("locate")
+    said = document("locate", DEMO, "-o", folder / "beads.csv")
+    return said, (folder / "beads.csv").read_text()
+
+
+def test_locate_is_the_verb(verb):
+    said, csv = verb
+    beads = twincell.locate(DEMO)
+    heads = csv.splitlines()[0].split(",")
+    assert list(beads.columns) == heads  # trackpy's columns and order
+    # The table of the program is rounded; rounded in the same way, the numbers are the same.
+    decimals = {"raw_mass": 2, "ep": 5, "sigma_x": 5, "sigma_y": 5, "sigma_radius": 5}
+    table = pd.read_csv(io.StringIO(csv), dtype=str)
+    assert len(table) == len(beads)
+    for name in heads:
+        mine = (beads[name].astype(int).astype(str) if name in ("frame", "tracer", "edge")
+                else beads[name].map(lambda v, n=decimals.get(name, 4): f"{v:.{n}f}"))
+        assert (mine == table[name]).all(), name
+    settings = beads.attrs["settings"]
+    assert settings["diameter"][0] == said["diameter_px"] and settings["refine"] == said["refine"]
+    assert ("bright" in settings) == said["bright"] and beads.attrs["left_out"] == said["left_out"]
+    assert [f["blur_px"] for f in beads.attrs["frames"]] == [f["blur_px"] for f in said["frames"]]
+
+
+def test_arrays_iterables_and_files_give_the_same_beads():
+    frames = twincell.open_frames(DEMO)[:3]
+    beads = twincell.locate(frames)
+    for same in (np.asarray(frames), [frames[0], frames[1], frames[2]], (f for f in frames)):
+        pd.testing.assert_frame_equal(twincell.locate(same), beads)
+    settings = beads.attrs["settings"]
+    one = twincell.locate(frames[0], **settings)
+    first = beads[beads.frame == 0]
+    assert np.array_equal(one.x, first.x) and np.array_equal(one.ep, first.ep)
+    as_float = twincell.locate(np.asarray(frames, dtype=float) / 255, **settings)
+    assert np.allclose(as_float.x, beads.x, atol=1e-4)
+
+
+def test_track_is_the_verb_to_the_bit(tmp_path, tracked):
+    document("track", DEMO, "-o", tmp_path / "verb.h5", "--cell", DEMO / "CELL.toml")
+    verb = twincell.Trajectory.open(tmp_path / "verb.h5")
+    for column in ("positions", "position_sigma"):
+        a, b = np.asarray(getattr(verb, column)), np.asarray(getattr(tracked, column))
+        assert np.array_equal(a, b, equal_nan=True)
+    for column in ("phase", "cycle", "step", "time", "plate_height", "radii", "tracers"):
+        assert np.array_equal(getattr(verb, column), getattr(tracked, column)), column
+    assert verb.tracking == tracked.tracking
+    again = twincell.track(DEMO, tmp_path / "mine.h5", cell=DEMO / "CELL.toml", threads=1)
+    assert again.name == str(tmp_path / "mine.h5")
+    assert np.array_equal(np.asarray(again.positions), np.asarray(tracked.positions), equal_nan=True)
+
+
+def test_wrong_options_have_the_sentence_of_the_program(tmp_path):
+    out = tmp_path / "x.h5"
+    said, _ = sentence("track", DEMO, "-o", out, "--phase-lock", "often")
+    with pytest.raises(ValueError) as raised:
+        twincell.track(DEMO, phase_lock="often")
+    assert str(raised.value) == said
+    said, _ = sentence("track", DEMO, "-o", out, "--cell", DEMO / "CELL.toml", "--range", 11)
+    with pytest.raises(ValueError) as raised:
+        twincell.track(DEMO, cell=DEMO / "CELL.toml", range=11)
+    assert str(raised.value) == said
+    with pytest.raises(ValueError, match="exclude each other"):
+        twincell.locate(DEMO, bright=True, dark=True)
+    with pytest.raises(ValueError, match="a picture is"):
+        twincell.locate(np.zeros((2, 8, 8, 3), dtype=np.uint8))
+    with pytest.raises(ValueError, match="int64"):
+        twincell.locate(np.zeros((2, 8, 8), dtype=int))
+    with pytest.raises(OSError, match="picture 1"):
+        twincell.locate([np.zeros((40, 40), np.uint8), np.zeros((40, 41), np.uint8)], diameter=10, dark=True)
+
+
+def test_options_are_those_of_the_verbs():
+    import inspect
+    import re
+    from conftest import program
+    for verb, function in (("locate", twincell.locate), ("track", twincell.track), ("analyze", twincell.analyze)):
+        text = program(verb, "--help").stdout
+        options = {o.replace("-", "_") for o in re.findall(r"--([a-z][a-z-]*)", text)}
+        try:
+            mine = set(inspect.signature(function).parameters)
+        except ValueError:  # a function of C++
+            mine = set(re.findall(r"(\w+): ", function.__doc__.splitlines()[0]))
+        positional = {"locate": {"stack"}, "track": {"stack"}, "analyze": {"trajectory"}}[verb]
+        assert mine - positional - {"callback"} <= options, verb

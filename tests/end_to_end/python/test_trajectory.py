@@ -1,0 +1,187 @@
+"""Frames, trajectories and their analysis from Python."""
+import numpy as np
+import pytest
+
+import twincell
+from conftest import DEMO, document, program, sentence
+
+
+def test_frames_are_lazy_and_those_of_another_reader():
+    cv = pytest.importorskip("PIL.Image", reason="python3-pil is missing")
+    frames = twincell.open_frames(DEMO)
+    files = sorted(DEMO.glob("*.png"))
+    assert len(frames) == len(files)
+    assert frames.shape == (len(files), *frames[0].shape)
+    for i in (0, 5, 3, -1):  # forwards, backwards, from the end
+        assert np.array_equal(frames[i], np.asarray(cv.open(files[i]).convert("L")))
+    some = frames[10:20:3]
+    assert len(some) == 4
+    assert np.array_equal(some[1], frames[13])
+    assert np.array_equal(np.asarray(frames[:3])[2], frames[2])
+    assert sum(1 for _ in frames[70:]) == len(files) - 70
+    assert not frames[0].flags.writeable
+    with pytest.raises(IndexError):
+        frames[len(files)]
+
+
+def test_columns_are_views_that_keep_their_memory_alive(sim_file):
+    h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
+    t = twincell.Trajectory.open(sim_file)
+    with h5py.File(sim_file) as file:
+        group = next(iter(file["particles"].values()))
+        positions, velocities = group["position/value"][:], group["velocity/value"][:]
+    assert np.array_equal(np.asarray(t.positions), positions)
+    assert np.array_equal(np.asarray(t.velocities), velocities)
+    first, again = t.positions[3], t.positions[3]
+    assert np.shares_memory(first, again)  # no copy of the frame
+    assert not first.flags.owndata and not first.flags.writeable
+    radii = t.radii
+    assert np.shares_memory(radii, t.radii)
+    kept = first.copy()
+    for other in range(len(t)):
+        t.positions[other]
+    del t, again
+    assert np.array_equal(first, kept)  # the frame lives as long as the array
+    assert np.array_equal(np.full(radii.shape, 0.5), radii)
+
+
+def test_a_million_beads_without_a_copy():
+    points = np.zeros((1, 1_000_000, 3))
+    points[0, :, 0] = np.arange(1_000_000)
+    t = twincell.Trajectory.from_arrays(points)
+    views = [t.positions[0] for _ in range(1000)]
+    assert all(np.shares_memory(views[0], v) for v in views[1:])
+    assert views[-1][-1, 0] == 999_999
+
+
+def test_written_and_opened_again_are_the_same(tmp_path, tracked):
+    path = tmp_path / "exp.h5"
+    tracked.write(path)
+    again = twincell.Trajectory.open(path)
+    assert np.array_equal(np.asarray(again.positions), np.asarray(tracked.positions), equal_nan=True)
+    assert np.array_equal(again.phase, tracked.phase) and np.array_equal(again.cycle, tracked.cycle)
+    assert again.drive.gamma == tracked.drive.gamma and again.source == "experiment"
+    assert program("validate", path).returncode == 0
+
+
+def test_from_arrays_analyses_like_the_original(sim_file):
+    t = twincell.Trajectory.open(sim_file)
+    own = twincell.Trajectory.from_arrays(
+        np.asarray(t.positions), velocities=np.asarray(t.velocities), radii=t.radii, masses=t.masses, phase=t.phase,
+        cycle=t.cycle, time=t.time, step=t.step, plate_height=t.plate_height, box=t.box, drive=t.drive,
+        phases_per_cycle=t.phases_per_cycle, tracers=t.tracers, source=t.source)
+    # Not those that need what an array cannot carry: spins, and averages over the time between frames.
+    names = ["s_b", "s_c", "q6", "psi4", "holes", "phi_z", "h_cm", "phase"]
+    assert twincell.analyze(own, names).to_dict() == twincell.analyze(t, names).to_dict()
+
+
+def test_missing_beads_are_absent():
+    points = np.array([[[0, 0], [1, 0], [0.5, 0.866]], [[0, 0], [np.nan, 0], [0.5, 0.866]]])
+    t = twincell.Trajectory.from_arrays(points)
+    assert np.isnan(t.positions[1][1]).all() and t.box.dimension == 2
+    table = t.to_dataframe()
+    assert table.groupby("frame").size().tolist() == [3, 2]
+    assert table.query("frame == 1").particle.tolist() == [0, 2]
+
+
+def test_analyze_is_the_verb_to_the_bit(sim_file):
+    verb = document("analyze", sim_file, "--discard", 1, "--neighbours", "voronoi")["results"]
+    mine = twincell.analyze(sim_file, discard=1, neighbours="voronoi")
+    assert mine.to_dict() == verb
+    assert list(mine)[0] in verb and len(mine) == len(verb)
+    q6 = mine["q6"]
+    assert q6.value == verb["q6"]["value"] and q6.unit == "1" and "Steinhardt" in q6.source
+    assert mine["s_k"].value.tolist() == verb["s_k"]["value"]
+    html = mine._repr_html_()
+    assert html.count("<tr>") == len(mine) + 1 and f"{q6.value:.6g}" in html
+    assert mine.to_dataframe().loc["q6", "value"] == q6.value
+
+
+def test_results_pool_and_write_as_the_verb(tmp_path, scene_file):
+    files = []
+    for seed in (1, 2):
+        files.append(tmp_path / f"{seed}.h5")
+        assert program("simulate", scene_file, "-o", files[-1], "-q", "--seed", seed).returncode == 0
+    verb = document("analyze", *files, "-o", tmp_path / "verb.h5", "--only", "q6,s_b")["results"]
+    mine = twincell.analyze(files, ["q6", "s_b"])
+    assert mine.to_dict() == verb
+    mine.write(tmp_path / "mine.h5")
+    h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
+    with h5py.File(tmp_path / "mine.h5") as a, h5py.File(tmp_path / "verb.h5") as b:
+        assert a["results/q6/value"][()] == b["results/q6/value"][()]
+
+
+def test_observables_on_arrays():
+    rows = 12
+    i, j = np.meshgrid(np.arange(rows), np.arange(rows))
+    lattice = np.column_stack([(i + 0.5 * (j % 2)).ravel(), (j * np.sqrt(3) / 2).ravel()])
+    box = (rows, rows * np.sqrt(3) / 2)  # periodic
+    psi = twincell.hexatic_order(lattice, box)
+    assert np.allclose(psi, 1, atol=1e-12)  # rows along x
+    turned = twincell.hexatic_order(lattice[:, ::-1], box[::-1])
+    assert np.allclose(turned, -1, atol=1e-12)  # rows along z: 6 times 90 degrees
+    assert (twincell.coordination(lattice, box) == 6).all()
+    assert (twincell.coordination(lattice, box, neighbours="delaunay") == 6).all()
+    order = twincell.bond_order(lattice, box)
+    assert np.allclose(order["q6"], 0.74083, atol=1e-5)  # Steinhardt et al. 1983
+    cells = twincell.voronoi(lattice, box)
+    assert np.allclose(cells["edge"], 1 / np.sqrt(3), atol=1e-12) and cells["enclosed"].all()
+    bonds = twincell.neighbours(lattice, box)
+    assert len(bonds["i"]) == 6 * len(lattice) and np.allclose(np.linalg.norm(bonds["bond"], axis=1), 1)
+    # Open sides: a corner bead has fewer neighbours.
+    assert twincell.coordination(lattice).min() in (2, 3)
+    assert np.isnan(twincell.hexatic_order(np.zeros((1, 2)))).all()
+
+
+def test_mdanalysis_reads_the_same(tracked):
+    pytest.importorskip("MDAnalysis", reason="python3-mdanalysis is missing")
+    universe = tracked.to_mdanalysis()
+    assert len(universe.trajectory) == len(tracked) and len(universe.atoms) == tracked.n_beads
+    universe.trajectory[7]
+    assert np.array_equal(universe.atoms.positions, tracked.positions[7].astype(np.float32), equal_nan=True)
+    assert universe.trajectory.dt == pytest.approx(tracked.time[1] - tracked.time[0])
+
+
+@pytest.mark.parametrize("words, call, kind", [
+    (("analyze", "/nowhere.h5"), lambda: twincell.analyze("/nowhere.h5"), OSError),
+    (("analyze", __file__), lambda: twincell.Trajectory.open(__file__), OSError),
+    (("locate", "/nowhere"), lambda: twincell.open_frames("/nowhere"), OSError),
+    (("explain", "/nowhere.toml"), lambda: twincell.Scene.from_toml("/nowhere.toml"), OSError),
+])
+def test_errors_have_the_sentence_of_the_program(words, call, kind):
+    said, code = sentence(*words)
+    with pytest.raises(kind) as raised:
+        call()
+    assert str(raised.value) == said and raised.value.exit_code == code
+    assert isinstance(raised.value, twincell.Error)
+
+
+def test_errors_of_options_have_the_sentence_of_the_program(sim_file):
+    said, code = sentence("analyze", sim_file, "--only", "q7")
+    with pytest.raises(ValueError) as raised:
+        twincell.analyze(sim_file, ["q7"])
+    assert str(raised.value) == said and raised.value.exit_code == code
+    with pytest.raises(ValueError, match=r"shape \(3, 4\)"):
+        twincell.hexatic_order(np.zeros((3, 4)))
+    with pytest.raises(ValueError, match="2 frames of 3 beads"):
+        twincell.Trajectory.from_arrays(np.zeros((2, 3, 2)), velocities=np.zeros((2, 4, 2)))
+    with pytest.raises(IndexError, match="frame 99"):
+        twincell.Trajectory.open(sim_file).positions[99]
+
+
+def test_docstrings_are_those_of_the_headers():
+    from conftest import ROOT
+    header = (ROOT / "analysis/neighbours/bond_order.hpp").read_text()
+    assert "Steinhardt's q_6 with the plane's normal" in header
+    assert "Steinhardt's q_6 with the plane's normal" in twincell.bond_order.__doc__
+    for name in twincell.__all__:
+        assert name.startswith("__") or getattr(twincell, name).__doc__, name
+
+
+def test_stubs_name_everything():
+    import ast
+    from pathlib import Path
+    import twincell._core as core
+    tree = ast.parse((Path(core.__file__).parent / "_core.pyi").read_text())
+    named = {node.name for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    assert {n for n in vars(core) if not n.startswith("__")} <= named
