@@ -265,6 +265,4 @@ void bind_simulation(py::module_& module) {
       "removed.");
 }
 
-void bind_verbs(py::module_&) {}
-
 }  // namespace twincell::python

@@ -7,12 +7,13 @@ from . import _core
 from . import _results, _scenes, _tables  # noqa: F401  (they add methods to the classes of _core)
 from ._core import (
     Box, ConfigError, Drive, Error, InputError, Interrupted, Result, Results, RunError, Scene, Simulation, Trajectory,
-    __version__, analyze, bond_order, coordination, hexatic_order, neighbours, preset_names, result_names, simulate,
-    track, version, voronoi)
+    __version__, analyze, bond_order, coordination, fit, hexatic_order, laws, neighbours, preset_names,
+    result_names, simulate, sweep, track, version, voronoi)
 from ._frames import Frames, open_frames
 from ._locating import locate
 
 __all__ = [
     "Box", "ConfigError", "Drive", "Error", "Frames", "InputError", "Interrupted", "Result", "Results", "RunError",
-    "Scene", "Simulation", "Trajectory", "__version__", "analyze", "bond_order", "coordination", "hexatic_order",
-    "locate", "neighbours", "open_frames", "preset_names", "result_names", "simulate", "track", "version", "voronoi"]
+    "Scene", "Simulation", "Trajectory", "__version__", "analyze", "bond_order", "coordination", "fit",
+    "hexatic_order", "laws", "locate", "neighbours", "open_frames", "preset_names", "result_names", "simulate",
+    "sweep", "track", "version", "voronoi"]

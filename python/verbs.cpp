@@ -1,0 +1,105 @@
+// fit and sweep in Python.
+
+#include <fmt/format.h>
+
+#include "calibration/fit/table_fit.hpp"
+#include "core/error.hpp"
+#include "python/module.hpp"
+#include "sweep/collect.hpp"
+#include "sweep/farm.hpp"
+#include "sweep/plan.hpp"
+
+namespace twincell::python {
+
+namespace {
+
+/// The table of an argument: a file, or a mapping from names to columns, such as a DataFrame.
+Table table_of(const py::object& said) {
+  if (!py::hasattr(said, "keys")) return read_table(said.cast<std::filesystem::path>());
+  Table table;
+  table.file = "table";
+  for (const py::handle name : said.attr("keys")()) {
+    const auto column = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(
+        said.attr("__getitem__")(name));
+    if (!column) throw py::error_already_set();
+    table.names.push_back(py::str(name).cast<std::string>());
+    table.columns.emplace_back(column.data(), column.data() + column.size());
+    if (column.ndim() != 1 || table.columns.back().size() != table.n_rows())
+      throw InputError({.file = table.file, .key = table.names.back()},
+                       fmt::format("has {} values; the first column has {}.", column.size(), table.n_rows()));
+  }
+  if (table.n_rows() == 0) throw InputError({.file = table.file, .key = {}}, "has no rows.");
+  return table;
+}
+
+/// Forwards the progress of a sweep as numbers of points.
+class ProgressWatch : public sweep::Watch {
+ public:
+  explicit ProgressWatch(Progress& progress) : progress_(progress) {}
+  void look(const sweep::Counts& counts, double) override {
+    progress_.update(static_cast<std::int64_t>(counts.done), static_cast<std::int64_t>(counts.known));
+  }
+
+ private:
+  Progress& progress_;
+};
+
+std::string swept(const std::filesystem::path& plan_file, const std::optional<std::filesystem::path>& output,
+                  std::optional<std::uint64_t> seed, bool keep_trajectories, int threads,
+                  const py::object& callback) {
+  const int n_threads = threads_of(threads);
+  return unlocked(callback, [&](Progress& progress) {
+    sweep::Plan plan = sweep::read_plan(plan_file);
+    if (seed) plan.seed = *seed;
+    const sweep::Store store(output ? *output : std::filesystem::path(plan_file).replace_extension(".sweep"));
+    sweep::Schedule schedule(plan, store);
+    sweep::require_memory_together(schedule, n_threads, "threads");
+    ProgressWatch watch(progress);
+    sweep::run_here({&schedule}, store, {n_threads, keep_trajectories}, watch);
+    return sweep::collected_json(schedule);
+  });
+}
+
+}  // namespace
+
+void bind_verbs(py::module_& module) {
+  module.def(
+      "fit",
+      [](const py::object& table, const std::string& law, const std::string& x, const std::string& y,
+         const std::string& sigma, const std::string& trials,
+         const std::optional<std::array<double, 2>>& window) {
+        check_fit(law, window);
+        return from_json(fit_json(fit_table(table_of(table), law, {x, y, sigma, trials}, window)));
+      },
+      py::arg("table"), py::arg("law"), py::kw_only(), py::arg("x") = "", py::arg("y") = "",
+      py::arg("sigma") = "", py::arg("trials") = "", py::arg("window") = py::none(),
+      (std::string(header_text("calibration/fit/curve_fit.hpp", "fit_curve")) +
+       "\n\ntable: a CSV file, a DataFrame, or a mapping from names to columns. Returns a dict "
+       "(docs/fitting.md).")
+          .c_str());
+  module.def(
+      "laws",
+      [] {
+        py::dict d;
+        for (const Law* law : laws()) d[py::str(law->name)] = law->formula;
+        return d;
+      },
+      "Names and formulas of the laws of `fit`.");
+  module.def(
+      "sweep",
+      [](const std::filesystem::path& plan, const std::optional<std::filesystem::path>& output,
+         std::optional<std::uint64_t> seed, bool keep_trajectories, int threads, const py::object& callback) {
+        return from_json(swept(plan, output, seed, keep_trajectories, threads, callback));
+      },
+      py::arg("plan"), py::arg("output") = py::none(), py::kw_only(), py::arg("seed") = py::none(),
+      py::arg("keep_trajectories") = false, py::arg("threads") = 0, py::arg("callback") = py::none(),
+      (std::string(
+           "Computes the points of a plan, one on each core, stores them in the folder `output` (default: "
+           "PLAN.sweep), and returns the collected results as a dict. Finished points are not repeated, so "
+           "an "
+           "interrupted sweep goes on when it is called again.\n\n") +
+       header_text("sweep/collect.hpp", "collected_json"))
+          .c_str());
+}
+
+}  // namespace twincell::python
