@@ -53,6 +53,18 @@ double checked_length(const char* name, double value) {
   return value;
 }
 
+/// The Voronoi cells of points. \throws ConfigError for a periodic box too narrow for them
+VoronoiCells cells_of(const Frame& frame, const Box& box, double cell_radius) {
+  checked_length("cell_radius", cell_radius);
+  for (const Axis axis : {Axis::x, Axis::z})
+    if (const double width = box.size()[static_cast<int>(axis)];
+        box.periodic(axis) && width <= 4 * cell_radius)
+      throw ConfigError({.file = {}, .key = "box"},
+                        fmt::format("has the period {:g}; Voronoi cells of radius {:g} need more than {:g}.",
+                                    width, cell_radius, 4 * cell_radius));
+  return voronoi_cells(frame, box, cell_radius);
+}
+
 py::array indices_of(const std::vector<std::size_t>& values) {
   return array_of(std::vector<std::int64_t>(values.begin(), values.end()));
 }
@@ -83,7 +95,7 @@ Bonds bonds_of(const py::object& points, const py::object& box, const std::strin
   const NeighbourRule named = neighbour_rule_named(rule);
   if (named == NeighbourRule::cutoff)
     return {find_neighbours(frame, cell, checked_length("cutoff", cutoff)), {}};
-  VoronoiCells cells = voronoi_cells(frame, cell, checked_length("cell_radius", cell_radius));
+  VoronoiCells cells = cells_of(frame, cell, cell_radius);
   return {std::move(cells.neighbours),
           named == NeighbourRule::voronoi ? std::move(cells.edge) : std::vector<double>{}};
 }
@@ -160,8 +172,7 @@ void bind_observables(py::module_& module) {
   module.def(
       "voronoi",
       [](const py::object& points, const py::object& box, double cell_radius) {
-        VoronoiCells cells =
-            voronoi_cells(frame_of(points), box_of(box), checked_length("cell_radius", cell_radius));
+        VoronoiCells cells = cells_of(frame_of(points), box_of(box), cell_radius);
         py::dict d = dict_of(cells.neighbours);
         d["edge"] = array_of(std::move(cells.edge));
         d["enclosed"] = array_of(std::move(cells.enclosed)).attr("astype")("bool");

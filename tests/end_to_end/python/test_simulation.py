@@ -131,7 +131,9 @@ def test_a_simulation_runs_in_one_thread_at_a_time():
 
 
 def test_ctrl_c_stops_a_simulation_and_leaves_no_file(tmp_path):
-    code = ("import twincell\n"
+    # A shell in the background starts its children with SIGINT ignored.
+    code = ("import signal, twincell\n"
+            "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
             f"scene = twincell.Scene.from_dict({LONG!r})\n"
             "print('ready', flush=True)\n"
             "try:\n"
@@ -140,9 +142,12 @@ def test_ctrl_c_stops_a_simulation_and_leaves_no_file(tmp_path):
             "    print('stopped')\n")
     process = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path, stdout=subprocess.PIPE, text=True,
                                env=os.environ)
-    assert process.stdout.readline() == "ready\n" and process.stdout.readline() == "running\n"
-    process.send_signal(signal.SIGINT)
-    out, _ = process.communicate(timeout=60)
+    try:
+        assert process.stdout.readline() == "ready\n" and process.stdout.readline() == "running\n"
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert out.endswith("stopped\n") and process.returncode == 0
     assert list(tmp_path.iterdir()) == []
 

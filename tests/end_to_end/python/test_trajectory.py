@@ -163,6 +163,8 @@ def test_errors_of_options_have_the_sentence_of_the_program(sim_file):
     assert str(raised.value) == said and raised.value.exit_code == code
     with pytest.raises(ValueError, match=r"shape \(3, 4\)"):
         twincell.hexatic_order(np.zeros((3, 4)))
+    with pytest.raises(ValueError, match="need more than 3.6"):
+        twincell.voronoi(np.zeros((3, 2)), (3, 10))
     with pytest.raises(ValueError, match="2 frames of 3 beads"):
         twincell.Trajectory.from_arrays(np.zeros((2, 3, 2)), velocities=np.zeros((2, 4, 2)))
     with pytest.raises(IndexError, match="frame 99"):
