@@ -1,4 +1,5 @@
-// twincell sweep plan|run|status|collect|template PLAN.toml: many scenes, their results and their progress.
+// twincell sweep plan|run|status|collect|plot|template PLAN.toml: many scenes, their results and their
+// progress.
 
 #include <fmt/format.h>
 
@@ -19,6 +20,7 @@
 #include "core/output_rules.hpp"
 #include "sweep/collect.hpp"
 #include "sweep/farm.hpp"
+#include "sweep/results_figure.hpp"
 
 namespace twincell::cli {
 
@@ -33,6 +35,7 @@ Product collected_product() {
 
 struct SweepOptions {
   std::string plan, folder, shard, output, engine;
+  sweep::FigureOptions figure;
   bool mpi = false, keep_trajectories = false;
   int jobs = 8;
 };
@@ -188,6 +191,25 @@ void run_collect(const SweepOptions& options, const Common& common) {
   print_result(common, nlohmann::json::parse(json), collected_text(schedule) + output.string() + "\n");
 }
 
+Product figures_folder() {
+  return Product::shared_folder("the figures of a sweep");
+}
+
+void run_plot(const SweepOptions& options, const Common& common) {
+  const sweep::Plan plan = plan_of(options, common);
+  const sweep::Store store = store_of(options);
+  const sweep::Schedule schedule(plan, store);
+  const fs::path folder = options.output.empty() ? store.folder() / "figures" : fs::path(options.output);
+  const Figure figure = sweep::results_figure(collected_json(schedule), options.figure);
+  if (!schedule.all()) note(common, "not all points are done; the figure shows those that are.");
+  AtomicPath output(folder, figures_folder());
+  draw(figure, output.part());
+  output.commit();
+  const std::string file = (folder / (figure.name + ".svg")).string();
+  print_result(common, {{"figure", file}, {"title", figure.title}},
+               fmt::format("{}\npicture: {} (also .pdf, .png)\n", figure.title, file));
+}
+
 void run_template(const SweepOptions& options) {
   const std::string run = fmt::format("twincell sweep run {} -o {} --threads 1 --quiet",
                                       shell_word(options.plan), shell_word(folder_of(options).string()));
@@ -268,6 +290,24 @@ void add_sweep(CLI::App& program, Common& common) {
              "it; '-': only the JSON, to standard output; default: results.json in the folder of the sweep"),
          collected_product());
   collect.callback([options, &common] { run_collect(*options, common); });
+
+  CLI::App& plot =
+      add("plot", "Draw a result, or the onsets of a search, over one or two axes, with intervals",
+          "twincell sweep plot plan.toml --result s_b --over drive.gamma beads.layers");
+  plot.add_option("--result", options->figure.result,
+                  "Name of a scalar result; default: the onsets of a search, otherwise s_c")
+      ->type_name(kWord);
+  plot.add_option(
+          "--over", options->figure.over,
+          "Axis of the plan to plot against, and a second axis that separates the curves; default: the axis "
+          "with the most values")
+      ->type_name(kWord)
+      ->expected(1, 2);
+  writes(common, plot,
+         plot.add_option("--figures", options->output,
+                         "Folder for the figure and its data; default: figures in the folder of the sweep"),
+         figures_folder());
+  plot.callback([options, &common] { run_plot(*options, common); });
 
   CLI::App& script =
       *verb.add_subcommand("template", "Print a script that runs the sweep with Slurm or GNU parallel");
