@@ -79,7 +79,7 @@ std::string table_of(const CellDraft& draft) {
     const std::string error = k.measured.empty() ? "" : k.comment.substr(0, colon);
     text += fmt::format("  {:<26} {:<24} {}\n", k.key, k.open ? "still needed" : k.value, error);
   }
-  if (draft.gamma)
+  if (draft.gamma && draft.gamma->error > 0)
     text += fmt::format("  {:<26} {:<24} +- {}\n", "Gamma = A omega^2/g", value_text(*draft.gamma),
                         error_text(draft.gamma->error));
   return text;

@@ -116,6 +116,34 @@ void run_plan(const SweepOptions& options, const Common& common) {
                   counts.done, counts.work_left, store.folder().string()));
 }
 
+Product figures_folder() {
+  return Product::shared_folder("the figures of a sweep");
+}
+
+/// Draws a result into `folder`. \return the path of the SVG
+std::string draw_results(const sweep::Schedule& schedule, const sweep::FigureOptions& options,
+                         const fs::path& folder) {
+  const Figure figure = sweep::results_figure(collected_json(schedule), options);
+  AtomicPath output(folder, figures_folder());
+  draw(figure, output.part());
+  output.commit();
+  return (folder / (figure.name + ".svg")).string();
+}
+
+/// The picture of a sweep that this process completed. Without one the results are complete all the same, so
+/// its failure (no gnuplot, no axis with numbers, another process that draws it now) is a note.
+std::optional<std::string> final_picture(const sweep::Schedule& schedule, const sweep::Store& store,
+                                         const Common& common) {
+  try {
+    return draw_results(schedule, {}, store.folder() / "figures");
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& e) {
+    note(common, fmt::format("no picture was drawn: {}", e.what()));
+    return std::nullopt;
+  }
+}
+
 void run_run(const SweepOptions& options, const Common& common) {
   const sweep::Plan plan = plan_of(options, common);
   const sweep::Shard shard = shard_of(options.shard);
@@ -138,7 +166,13 @@ void run_run(const SweepOptions& options, const Common& common) {
   if (!schedule) return;
   nlohmann::json document = as_json(schedule->counts(), store.folder(), schedule->all());
   document["shard"] = options.shard.empty() ? "1/1" : options.shard;
-  print_result(common, document, collected_text(*schedule) + store.folder().string() + "\n");
+  std::string text = collected_text(*schedule) + store.folder().string() + "\n";
+  if (options.shard.empty() && schedule->all())
+    if (const auto picture = final_picture(*schedule, store, common)) {
+      document["figure"] = *picture;
+      text += fmt::format("picture: {}; sweep plot draws other results\n", *picture);
+    }
+  print_result(common, document, text);
 }
 
 void run_status(const SweepOptions& options, const Common& common) {
@@ -191,23 +225,14 @@ void run_collect(const SweepOptions& options, const Common& common) {
   print_result(common, nlohmann::json::parse(json), collected_text(schedule) + output.string() + "\n");
 }
 
-Product figures_folder() {
-  return Product::shared_folder("the figures of a sweep");
-}
-
 void run_plot(const SweepOptions& options, const Common& common) {
   const sweep::Plan plan = plan_of(options, common);
   const sweep::Store store = store_of(options);
   const sweep::Schedule schedule(plan, store);
-  const fs::path folder = options.output.empty() ? store.folder() / "figures" : fs::path(options.output);
-  const Figure figure = sweep::results_figure(collected_json(schedule), options.figure);
   if (!schedule.all()) note(common, "not all points are done; the figure shows those that are.");
-  AtomicPath output(folder, figures_folder());
-  draw(figure, output.part());
-  output.commit();
-  const std::string file = (folder / (figure.name + ".svg")).string();
-  print_result(common, {{"figure", file}, {"title", figure.title}},
-               fmt::format("{}\npicture: {} (also .pdf, .png)\n", figure.title, file));
+  const fs::path folder = options.output.empty() ? store.folder() / "figures" : fs::path(options.output);
+  const std::string file = draw_results(schedule, options.figure, folder);
+  print_result(common, {{"figure", file}}, fmt::format("picture: {} (also .pdf, .png)\n", file));
 }
 
 void run_template(const SweepOptions& options) {

@@ -144,7 +144,7 @@ std::vector<std::string> distinguishing(const std::vector<Value>& values, const 
 }
 
 struct Rows {
-  std::string whole, limits;
+  std::string whole, lower, upper;  ///< values with intervals, lower limits, upper limits
   std::size_t points = 0;
 };
 
@@ -190,13 +190,14 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
     if (!rows.contains(curve)) curves.push_back(curve);
     Rows& r = rows[curve];
     const double at = v.axes.at(x).get<double>();
-    constexpr int kUp = 8, kDown = 10;
     if (v.value) {
       r.whole +=
           fmt::format("{} {} {} {}\n", at, *v.value, v.low.value_or(*v.value), v.high.value_or(*v.value));
       ++r.points;
-    } else if (v.low || v.high) {
-      r.limits += fmt::format("{} {} {}\n", at, v.low ? *v.low : *v.high, v.low ? kUp : kDown);
+    } else if (v.low) {
+      r.lower += fmt::format("{} {}\n", at, *v.low);
+    } else if (v.high) {
+      r.upper += fmt::format("{} {}\n", at, *v.high);
     }
   }
 
@@ -209,7 +210,7 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
         fmt::format("{}'{}.dat' index {} using {} {}", block > 0 ? ", " : "", f.name, block, columns, style);
     ++block;
   };
-  constexpr std::array kSymbols = {7, 5, 9, 11, 13, 6, 4, 8};
+  constexpr std::array kSymbols = {7, 5, 13, 6, 4, 12};
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const Rows& r = rows[curves[c]];
     const std::string title =
@@ -220,10 +221,14 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
     if (r.points > 0)
       add(r.whole, "1:2:3:4",
           fmt::format("with yerrorbars pt {} ps 1.1 lw 1.3 lc rgb '{}' {}", symbol, colour, title));
-    if (!r.limits.empty())
-      add(r.limits, "1:2:3",
-          fmt::format("with points pt variable ps 1.4 lc rgb '{}' {}", colour,
-                      r.points > 0 ? "notitle" : title));
+    constexpr int kUp = 9, kDown = 11;
+    bool named = r.points > 0;
+    for (const auto& [data, limit] : {std::pair(&r.lower, kUp), std::pair(&r.upper, kDown)})
+      if (!data->empty()) {
+        add(*data, "1:2",
+            fmt::format("with points pt {} ps 1.4 lc rgb '{}' {}", limit, colour, named ? "notitle" : title));
+        named = true;
+      }
   }
   if (block == 0)
     throw InputError({.file = {}, .key = "the sweep"},

@@ -97,11 +97,14 @@ void draw_edges(cv::Mat3b& picture, int enlarge, const CellSurvey& s, const Cell
     double n = 1;
     for (const double longer : {1., 2., 5., 10., 20., 50., 100.})
       if (longer * *draft.pixels_per_sigma < w / 3) n = longer;
-    const double y = 14.0 / enlarge, x = w - 14.0 / enlarge, length = n * *draft.pixels_per_sigma;
-    const cv::Point b(cvRound(x * enlarge), cvRound(y * enlarge)), a(cvRound((x - length) * enlarge), b.y);
-    cv::line(picture, a, b, kAxis, 3);
-    label(picture, fmt::format("{:g} bead diameter{}", n, n == 1 ? "" : "s"), a + cv::Point(0, kLine - 4),
-          kAxis);
+    constexpr int kMargin = 14, kRim = 7, kBar = 3;
+    const int length = cvRound(n * *draft.pixels_per_sigma * enlarge);
+    const cv::Point end(picture.cols - kMargin, kMargin), begin(end.x - length, end.y);
+    cv::line(picture, begin, end, cv::Scalar(255, 255, 255), kRim);
+    cv::line(picture, begin, end, kAxis, kBar);
+    const std::string text = fmt::format("{:g} bead diameter{}", n, n == 1 ? "" : "s");
+    const int wide = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kFont, 1, nullptr).width;
+    label(picture, text, {std::min(begin.x, end.x - wide), end.y + kLine - 4}, kAxis);
   }
 }
 
@@ -124,6 +127,8 @@ std::vector<Entry> entries(const CellSurvey& s, const CellDraft& draft) {
     list.push_back(
         {fmt::format("{:.0f} beads, diameter {}", s.beads->count.value, with_error(s.beads->diameter, "px")),
          green});
+  if (std::any_of(s.discs.begin(), s.discs.end(), [](const Detection& d) { return d.tracer; }))
+    list.push_back({"  magenta: tracers, brighter inside", cv::Scalar(255, 0, 255)});
   if (s.has_walls())
     list.push_back(
         {"walls apart " + with_error({s.geometry->width_px(), s.geometry->width_error_px()}, "px"), kWall});
@@ -143,7 +148,8 @@ std::vector<Entry> entries(const CellSurvey& s, const CellDraft& draft) {
     if (const DraftKey* k = draft.find(key))
       list.push_back(
           {std::string(key) + " = " + (k->open ? "to be filled in" : k->value), k->open ? kPlate : kAxis});
-  if (draft.gamma) list.push_back({"Gamma = A omega^2/g = " + with_error(*draft.gamma, ""), kAxis});
+  if (draft.gamma && draft.gamma->error > 0)
+    list.push_back({"Gamma = A omega^2/g = " + with_error(*draft.gamma, ""), kAxis});
   for (const NotMeasured& m : s.missing) list.push_back({"not measured: " + m.what, kPlate});
   return list;
 }
@@ -181,7 +187,7 @@ void draw_motion(cv::Mat3b& picture, cv::Rect area, const CellSurvey& s) {
 }  // namespace
 
 cv::Mat3b draw_cell(const CellSurvey& s, const CellDraft& draft) {
-  constexpr int kWidest = 1200, kMost = 4, kPlot = 200;
+  constexpr int kWidest = 1200, kMost = 3, kPlot = 200;
   const int enlarge = std::clamp(kWidest / std::max(1, s.size.width), 1, kMost);
   cv::Mat3b frame = draw_overlay(s.picture, s.discs, enlarge);
   draw_edges(frame, enlarge, s, draft);

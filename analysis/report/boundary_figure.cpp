@@ -70,8 +70,9 @@ void add_points(Blocks& blocks, const Comparison& c) {
 
 void add_onsets(Blocks& blocks, const Comparison& c, double aside) {
   struct Group {
-    std::string whole, limits, line;
+    std::string whole, lower, upper;  ///< rows: onsets with a value, lower limits, upper limits
     int symbol = 7;
+    bool filled = true;
     BedPhase onset = BedPhase::bouncing;
     bool sweep = false;
   };
@@ -84,12 +85,14 @@ void add_onsets(Blocks& blocks, const Comparison& c, double aside) {
     g.symbol = b.sweep ? kSquare : b.side == Side::experiment ? kOpenCircle : kCircle;
     // Onsets of several sides at one N_l are drawn side by side.
     const double x = b.n_l + (b.sweep ? 0 : b.side == Side::experiment ? -aside : aside);
-    constexpr int kUp = 8, kDown = 10;
+    g.filled = b.side != Side::experiment;
     if (b.gamma())
       g.whole += fmt::format("{} {} {} {}\n", x, *b.gamma(), b.below.value_or(*b.gamma()),
                              b.above.value_or(*b.gamma()));
-    else if (b.below || b.above)
-      g.limits += fmt::format("{} {} {}\n", x, b.below ? *b.below : *b.above, b.below ? kUp : kDown);
+    else if (b.below)
+      g.lower += fmt::format("{} {}\n", x, *b.below);
+    else if (b.above)
+      g.upper += fmt::format("{} {}\n", x, *b.above);
   }
   for (const auto& [name, g] : groups) {
     const std::string title = fmt::format("'{}' noenhanced", gnuplot_plain_text(name));
@@ -100,10 +103,15 @@ void add_onsets(Blocks& blocks, const Comparison& c, double aside) {
                  fmt::format("with yerrorbars pt {} ps 1.3 lw 1.5 lc rgb {} title {}", g.symbol,
                              colour_of(g.onset), title));
     }
-    if (!g.limits.empty())
-      blocks.add(g.limits, "1:2:3",
-                 fmt::format("with points pt variable ps 1.5 lc rgb {} title {}", colour_of(g.onset),
-                             g.whole.empty() ? title : "''"));
+    constexpr int kUp = 8, kDown = 10;  // the filled symbol is the next one
+    bool named = !g.whole.empty();
+    for (const auto& [rows, symbol] : {std::pair(&g.lower, kUp), std::pair(&g.upper, kDown)})
+      if (!rows->empty()) {
+        blocks.add(*rows, "1:2",
+                   fmt::format("with points pt {} ps 1.5 lc rgb {} {} {}", symbol + (g.filled ? 1 : 0),
+                               colour_of(g.onset), named ? "notitle" : "title", named ? "" : title));
+        named = true;
+      }
   }
 }
 
@@ -125,7 +133,7 @@ Figure boundary_figure(const Comparison& c) {
   y.pad(0.1, 0.1);
   Blocks blocks(f.name);
   add_points(blocks, c);
-  constexpr double kAside = 0.012;
+  constexpr double kAside = 0.03;
   add_onsets(blocks, c, kAside * (x.high - x.low));
   f.data = blocks.data;
   f.plot = fmt::format(

@@ -15,6 +15,14 @@ OnsetAgreement agreement_of(const PhaseBoundary& a, const PhaseBoundary& b) {
   return apart ? OnsetAgreement::different : OnsetAgreement::compatible;
 }
 
+namespace {
+/// "twins" for simulations that start from a filmed packing, else the side with its kind of start.
+std::string name_of(const PhaseBoundary& b) {
+  if (!b.sweep && b.start == "trajectory") return "twins";
+  return (b.sweep ? "sweep" : side_name(b.side)) + (b.start.empty() ? "" : fmt::format(" ({})", b.start));
+}
+}  // namespace
+
 std::string onset_sentences(const std::vector<PhaseBoundary>& boundaries) {
   constexpr double kSameLayers = 0.1;
   const auto same_layers = [](const PhaseBoundary& a, const PhaseBoundary& b) {
@@ -31,10 +39,14 @@ std::string onset_sentences(const std::vector<PhaseBoundary>& boundaries) {
         continue;
       const OnsetAgreement agreement = agreement_of(e, s);
       if (agreement == OnsetAgreement::unknown) continue;
-      text +=
-          fmt::format("{}Onset of {}: Gamma {} in the experiment and {} in the {}, {}.",
-                      text.empty() ? "" : " ", phase_name(e.onset), boundary_text(e), boundary_text(s),
-                      boundary_of(s), agreement == OnsetAgreement::compatible ? "compatible" : "different");
+      const bool open = (!e.above && !s.above) || (!e.below && !s.below);
+      const bool compatible = agreement == OnsetAgreement::compatible;
+      text += fmt::format("{}Onset of {}: Gamma {} in the experiment and {} in the {}, {}.",
+                          text.empty() ? "" : " ", phase_name(e.onset), boundary_text(e), boundary_text(s),
+                          name_of(s),
+                          open         ? "not bracketed on either side"
+                          : compatible ? "compatible"
+                                       : "different");
     }
   }
   return text;

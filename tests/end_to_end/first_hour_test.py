@@ -5,15 +5,16 @@ usage: first_hour_test.py TWINCELL SOURCE_FOLDER SCRATCH_FOLDER
 import json
 import os
 import pathlib
+import pty
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 
 program, source, scratch = sys.argv[1:4]
 page = pathlib.Path(source, "docs/first_hour.md").read_text()
-commands = re.findall(r"^    (twincell .+)$", page, re.M)
+commands = re.findall(r"^    ((?:twincell|mkdir) .+)$", page, re.M)
 assert len(commands) >= 7, commands
 
 with tempfile.TemporaryDirectory(dir=scratch) as folder:
@@ -23,7 +24,6 @@ with tempfile.TemporaryDirectory(dir=scratch) as folder:
     where = dict(os.environ, PATH=str(pathlib.Path(folder, "bin")) + ":" + os.environ["PATH"])
     said = {}
     for command in commands:
-        # What the page tells to be made beforehand is nothing: outputs go into new folders.
         ran = subprocess.run(command, shell=True, cwd=folder, env=where, stdin=subprocess.DEVNULL,
                              capture_output=True, text=True, timeout=280)
         print("$", command, ran.stdout, ran.stderr, sep="\n", flush=True)
@@ -37,3 +37,36 @@ with tempfile.TemporaryDirectory(dir=scratch) as folder:
     assert "Onset of bouncing: Gamma 1.25" in said["match"] and "compatible" in said["match"]
     results = json.loads((home / "hour/twins/report/results.json").read_text())
     assert [m["verdict"] for m in results["matches"]] == ["same", "same"], results["matches"]
+
+    # On a terminal `new` asks. A wrong answer is asked for again; an empty one stays open.
+
+    def asked(name, answers):
+        master, slave = pty.openpty()
+        heard = []
+
+        def listen():
+            try:
+                while True:
+                    heard.append(os.read(master, 1000))
+            except OSError:  # the last writer has closed the terminal
+                pass
+
+        listener = threading.Thread(target=listen)
+        process = subprocess.Popen([program, "new", "data_samples/demo/gamma-0.9", "-o", name], cwd=folder, stdin=slave,
+                                   stderr=slave, stdout=subprocess.PIPE, text=True)
+        os.close(slave)
+        listener.start()
+        os.write(master, answers)
+        out = process.communicate(timeout=200)[0]
+        listener.join()
+        os.close(master)
+        assert process.returncode == 0, out
+        return b"".join(heard).decode(), out, (home / name).read_text()
+
+    heard, out, text = asked("asked.toml", b"two\n2\n11.15\n")
+    assert "Diameter of a bead in mm" in heard and "Frequency of the shaker in Hz" in heard, heard
+    assert "A number above 0 is needed" in heard, heard
+    assert "FILL IN" not in text and "sigma_mm = 2 " in text and "frequency_hz = 11.15" in text, text
+    heard, out, text = asked("open.toml", b"\n\n")
+    assert "Gamma" in heard and "2 values are still needed" in out, heard + out
+    assert 'sigma_mm = "FILL IN: ' in text, text

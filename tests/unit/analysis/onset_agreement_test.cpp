@@ -28,6 +28,14 @@ TEST(OnsetAgreement, TheSentenceStatesBothIntervals) {
       "Onset of convecting: Gamma 2.05 ± 0.45 in the experiment and above 2.6 in the simulation, different.");
 }
 
+TEST(OnsetAgreement, LimitsOnTheSameSideAgreeOnNothing) {
+  PhaseBoundary twins = onset(Side::simulation, 1.6, {});
+  twins.start = "trajectory";
+  EXPECT_EQ(onset_sentences({onset(Side::experiment, 1.6, {}), twins}),
+            "Onset of convecting: Gamma above 1.6 in the experiment and above 1.6 in the twins, not "
+            "bracketed on either side.");
+}
+
 TEST(OnsetAgreement, BedsOfOtherHeightsAreNotCompared) {
   EXPECT_EQ(onset_sentences({onset(Side::experiment, 1.6, 2.5), onset(Side::simulation, 2.6, 3, 20)}), "");
 }
