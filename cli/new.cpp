@@ -196,10 +196,13 @@ void add_new(CLI::App& program, Common& common) {
       "Stack: folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md); several "
       "stacks: one for each drive strength");
   verb.add_flag("--keys", o->keys, "Print all keys of a CELL.toml with unit, range, default and example");
-  // The outputs follow the rules of each file; see write_one().
-  verb.add_option("-o,--output", o->output,
-                  "Cell file to write; the picture is written next to it, with the ending .png. For several "
-                  "stacks: folder of the cell files. Default: CELL.toml, for several stacks cells");
+  // One file, or a folder for several stacks: write_one() checks the outputs.
+  common.outputs.push_back(
+      {verb.add_option(
+           "-o,--output", o->output,
+           "Cell file to write; the picture is written next to it, with the ending .png. For several "
+           "stacks: folder of the cell files. Default: CELL.toml, for several stacks cells"),
+       nullptr, cell_file()});
   verb.add_option("--diameter", o->diameter_px, "Bead diameter, px; default: found in the first frames")
       ->check(CLI::Range(3.0, 400.0));
   const auto answer = [&](const char* name, std::optional<double>& value, const char* what) {

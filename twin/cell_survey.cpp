@@ -70,6 +70,13 @@ void survey_beads(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
     }
     bar->update(1, 1);
   }
+  // A single blob is no bed: an evenly lit cell looks like one large disc.
+  constexpr std::size_t kFewest = 3;
+  if (options.diameter_px <= 0 && s.discs.size() < kFewest) {
+    s.discs.clear();
+    s.missing.push_back({"the bead diameter", "no round beads stand out in the first frames", remedy});
+    return;
+  }
   s.bright = found.preprocess.bright;
   s.diameter_px = found.diameter_px;
   s.other_diameters_px = found.other_diameters_px;

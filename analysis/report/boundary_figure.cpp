@@ -57,13 +57,15 @@ const char* colour_of(BedPhase onset) {
 }
 
 void add_points(Blocks& blocks, const Comparison& c) {
+  constexpr std::size_t kMany = 200;
+  const double size = c.sweep.size() > kMany ? 0.6 : 1.2;
   for (const PhaseSign& sign : kSigns) {
     std::string rows;
     for (const SweepPoint& p : c.sweep)
       if (p.phase == sign.phase) rows += fmt::format("{} {}\n", p.n_l, p.gamma);
     if (!rows.empty())
       blocks.add(rows, "1:2",
-                 fmt::format("with points pt {} ps 0.6 lc rgb {} title '{} (sweep)'", sign.symbol,
+                 fmt::format("with points pt {} ps {} lc rgb {} title '{} (sweep)'", sign.symbol, size,
                              sign.colour, phase_name(sign.phase)));
   }
 }

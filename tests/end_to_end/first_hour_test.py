@@ -12,7 +12,7 @@ import sys
 import tempfile
 import threading
 
-program, source, scratch = sys.argv[1:4]
+program, source, scratch = map(os.path.abspath, sys.argv[1:4])
 page = pathlib.Path(source, "docs/first_hour.md").read_text()
 commands = re.findall(r"^    ((?:twincell|mkdir) .+)$", page, re.M)
 assert len(commands) >= 7, commands
