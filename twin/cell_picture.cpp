@@ -6,9 +6,9 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <opencv2/imgproc.hpp>
 
 #include "imaging/geometry/lens.hpp"
+#include "imaging/track/annotation.hpp"
 #include "imaging/track/overlay.hpp"
 
 namespace twincell {
@@ -17,19 +17,6 @@ namespace {
 const cv::Scalar kWall(220, 110, 20), kPlate(50, 40, 215), kAxis(160, 0, 140), kText(40, 40, 40),
     kQuiet(130, 130, 130), kDot(60, 60, 60);
 constexpr int kPanel = 620, kBorder = 18, kLine = 24;
-constexpr double kFont = 0.5;
-
-void write(cv::Mat3b& picture, const std::string& text, cv::Point at, const cv::Scalar& colour) {
-  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, kFont, colour, 1, cv::LINE_AA);
-}
-
-/// Text on the frame: with a white rim, so that it can be read on beads too.
-void label(cv::Mat3b& picture, const std::string& text, cv::Point at, const cv::Scalar& colour) {
-  constexpr int kRim = 4;
-  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, kFont, cv::Scalar(255, 255, 255), kRim,
-              cv::LINE_AA);
-  write(picture, text, at, colour);
-}
 
 /// Draws on the enlarged frame in coordinates of the ideal picture.
 class Canvas {
@@ -46,13 +33,13 @@ class Canvas {
     const int pieces = std::max(2, cvRound(cv::norm(b - a) * enlarge_ / 8)) | 1;
     for (int k = 0; k < pieces; k += dashed ? 2 : 1) {
       const cv::Point2d p = a + (b - a) * k / pieces, q = a + (b - a) * (k + 1) / pieces;
-      cv::line(picture_, at(p.x, p.y), at(q.x, q.y), colour, width, cv::LINE_AA);
+      draw_line(picture_, at(p.x, p.y), at(q.x, q.y), colour, width);
     }
   }
   void arrow(cv::Point2d a, cv::Point2d b, const cv::Scalar& colour, const std::string& name) {
     constexpr int kWidth = 2, kAside = 6;
-    cv::arrowedLine(picture_, at(a.x, a.y), at(b.x, b.y), colour, kWidth, cv::LINE_AA, 0, 0.2);
-    label(picture_, name, at(b.x, b.y) + cv::Point(kAside, kAside), colour);
+    draw_arrow(picture_, at(a.x, a.y), at(b.x, b.y), colour, kWidth);
+    draw_label(picture_, name, at(b.x, b.y) + cv::Point(kAside, kAside), colour);
   }
 
  private:
@@ -100,11 +87,11 @@ void draw_edges(cv::Mat3b& picture, int enlarge, const CellSurvey& s, const Cell
     constexpr int kMargin = 14, kRim = 7, kBar = 3;
     const int length = cvRound(n * *draft.pixels_per_sigma * enlarge);
     const cv::Point end(picture.cols - kMargin, kMargin), begin(end.x - length, end.y);
-    cv::line(picture, begin, end, cv::Scalar(255, 255, 255), kRim);
-    cv::line(picture, begin, end, kAxis, kBar);
+    draw_line(picture, begin, end, cv::Scalar(255, 255, 255), kRim);
+    draw_line(picture, begin, end, kAxis, kBar);
     const std::string text = fmt::format("{:g} bead diameter{}", n, n == 1 ? "" : "s");
-    const int wide = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kFont, 1, nullptr).width;
-    label(picture, text, {std::min(begin.x, end.x - wide), end.y + kLine - 4}, kAxis);
+    const int wide = text_width(text);
+    draw_label(picture, text, {std::min(begin.x, end.x - wide), end.y + kLine - 4}, kAxis);
   }
 }
 
@@ -163,25 +150,25 @@ void draw_motion(cv::Mat3b& picture, cv::Rect area, const CellSurvey& s) {
     return cv::Point(area.x + cvRound(frame / last * area.width),
                      area.y + cvRound(area.height * (0.5 - height / (2 * kHeadroom * d.amplitude))));
   };
-  cv::rectangle(picture, area, kQuiet);
-  cv::line(picture, place(0, 0), place(last, 0), kQuiet);
+  draw_box(picture, area, kQuiet);
+  draw_line(picture, place(0, 0), place(last, 0), kQuiet);
   std::vector<cv::Point> curve;
   for (int k = 0; k <= area.width; ++k) {
     const double t = last * k / area.width;
     curve.push_back(place(t, d.amplitude * std::sin(d.omega * t + d.phi)));
   }
-  cv::polylines(picture, curve, false, kPlate, 1, cv::LINE_AA);
+  draw_curve(picture, curve, kPlate);
   for (std::size_t f = 0; f < d.frames.size() && d.frames[f].tick <= last; ++f)
     if (const double h = s.geometry->heights[f].height_px; std::isfinite(h))
-      cv::circle(
+      draw_dot(
           picture,
           place(d.frames[f].tick, std::clamp(h - d.z0, -kHeadroom * d.amplitude, kHeadroom * d.amplitude)), 3,
-          kDot, cv::FILLED, cv::LINE_AA);
-  write(picture, "height of the plate, px, against frame: seen (dots), fitted (line)", {area.x, area.y - 8},
-        kText);
-  write(picture, "0", {area.x - 2, area.y + area.height + kLine - 4}, kText);
-  write(picture, fmt::format("{:.0f}", last),
-        {area.x + area.width - 2 * kBorder, area.y + area.height + kLine - 4}, kText);
+          kDot);
+  draw_text(picture, "height of the plate, px, against frame: seen (dots), fitted (line)",
+            {area.x, area.y - 8}, kText);
+  draw_text(picture, "0", {area.x - 2, area.y + area.height + kLine - 4}, kText);
+  draw_text(picture, fmt::format("{:.0f}", last),
+            {area.x + area.width - 2 * kBorder, area.y + area.height + kLine - 4}, kText);
 }
 
 }  // namespace
@@ -190,9 +177,7 @@ cv::Mat3b draw_cell(const CellSurvey& s, const CellDraft& draft) {
   constexpr int kWidest = 1200, kMost = 3, kPlot = 200;
   const int enlarge = std::clamp(kWidest / std::max(1, s.size.width), 1, kMost);
   cv::Mat3b frame = draw_overlay(s.picture, s.discs, enlarge);
-  // Noise of the camera below 8 grey levels shows nothing here, and doubles the size of the file.
-  constexpr int kLevels = 0xF8;
-  cv::bitwise_and(frame, cv::Scalar::all(kLevels), frame);
+  flatten_noise(frame);
   draw_edges(frame, enlarge, s, draft);
   const std::vector<Entry> list = entries(s, draft);
   const int text = kBorder + kLine * static_cast<int>(list.size());
@@ -201,7 +186,7 @@ cv::Mat3b draw_cell(const CellSurvey& s, const CellDraft& draft) {
   frame.copyTo(page(cv::Rect(0, 0, frame.cols, frame.rows)));
   const int x = frame.cols + kBorder;
   for (std::size_t i = 0; i < list.size(); ++i)
-    write(page, list[i].text, {x, kBorder + kLine * static_cast<int>(i) + 10}, list[i].colour);
+    draw_text(page, list[i].text, {x, kBorder + kLine * static_cast<int>(i) + 10}, list[i].colour);
   if (s.drive) draw_motion(page, {x, text + 2 * kLine, kPanel - 2 * kBorder, kPlot}, s);
   return page;
 }

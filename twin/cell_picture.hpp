@@ -2,8 +2,6 @@
 /// \file
 /// Picture of everything that the survey of a stack measured.
 
-#include <opencv2/core.hpp>
-
 #include "twin/cell_draft.hpp"
 
 namespace twincell {

@@ -5,7 +5,6 @@
 /// measured.
 
 #include <filesystem>
-#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
