@@ -52,13 +52,10 @@ void require_drive_of_film(const std::vector<std::filesystem::path>& experiments
 void run(const Common& common, CompareOptions& o) {
   resolve(o.flags, common);
   const ComparingOptions& options = o.flags.options;
-  if (options.experiments.empty() && options.simulations.empty())
-    throw ConfigError(
-        {.file = {}, .key = "compare"},
-        options.sweeps.empty()
-            ? "there is nothing to compare: give --experiment and --simulation trajectories"
-            : "the results of a sweep contain no trajectories: also give --simulation or --experiment, for "
-              "example the trajectories that sweep run --keep-trajectories stores in points/");
+  if (options.experiments.empty() && options.simulations.empty() && options.sweeps.empty())
+    throw ConfigError({.file = {}, .key = "compare"},
+                      "there is nothing to compare: give --experiment and --simulation trajectories, or the "
+                      "results of a --sweep.");
   if (!o.trust_stated_drive) require_drive_of_film(options.experiments);
   compare_and_report(common, options, o.output, nlohmann::json::object(), "");
 }

@@ -1,4 +1,5 @@
-// twincell sweep plan|run|status|collect|template PLAN.toml: many scenes, their results and their progress.
+// twincell sweep plan|run|status|collect|plot|template PLAN.toml: many scenes, their results and their
+// progress.
 
 #include <fmt/format.h>
 
@@ -19,6 +20,7 @@
 #include "core/output_rules.hpp"
 #include "sweep/collect.hpp"
 #include "sweep/farm.hpp"
+#include "sweep/results_figure.hpp"
 
 namespace twincell::cli {
 
@@ -33,6 +35,7 @@ Product collected_product() {
 
 struct SweepOptions {
   std::string plan, folder, shard, output, engine;
+  sweep::FigureOptions figure;
   bool mpi = false, keep_trajectories = false;
   int jobs = 8;
 };
@@ -113,6 +116,34 @@ void run_plan(const SweepOptions& options, const Common& common) {
                   counts.done, counts.work_left, store.folder().string()));
 }
 
+Product figures_folder() {
+  return Product::shared_folder("the figures of a sweep");
+}
+
+/// Draws a result into `folder`. \return the path of the SVG
+std::string draw_results(const sweep::Schedule& schedule, const sweep::FigureOptions& options,
+                         const fs::path& folder) {
+  const Figure figure = sweep::results_figure(collected_json(schedule), options);
+  AtomicPath output(folder, figures_folder());
+  draw(figure, output.part());
+  output.commit();
+  return (folder / (figure.name + ".svg")).string();
+}
+
+/// The picture of a sweep that this process completed. Without one the results are complete all the same, so
+/// its failure (no gnuplot, no axis with numbers, another process that draws it now) is a note.
+std::optional<std::string> final_picture(const sweep::Schedule& schedule, const sweep::Store& store,
+                                         const Common& common) {
+  try {
+    return draw_results(schedule, {}, store.folder() / "figures");
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& e) {
+    note(common, fmt::format("no picture was drawn: {}", e.what()));
+    return std::nullopt;
+  }
+}
+
 void run_run(const SweepOptions& options, const Common& common) {
   const sweep::Plan plan = plan_of(options, common);
   const sweep::Shard shard = shard_of(options.shard);
@@ -135,7 +166,13 @@ void run_run(const SweepOptions& options, const Common& common) {
   if (!schedule) return;
   nlohmann::json document = as_json(schedule->counts(), store.folder(), schedule->all());
   document["shard"] = options.shard.empty() ? "1/1" : options.shard;
-  print_result(common, document, collected_text(*schedule) + store.folder().string() + "\n");
+  std::string text = collected_text(*schedule) + store.folder().string() + "\n";
+  if (options.shard.empty() && schedule->all())
+    if (const auto picture = final_picture(*schedule, store, common)) {
+      document["figure"] = *picture;
+      text += fmt::format("picture: {}; sweep plot draws other results\n", *picture);
+    }
+  print_result(common, document, text);
 }
 
 void run_status(const SweepOptions& options, const Common& common) {
@@ -186,6 +223,16 @@ void run_collect(const SweepOptions& options, const Common& common) {
   if (!pooled.empty()) write_text_file(pooled_table, pooled, Product::table(pooled));
   if (!schedule.all()) note(common, "not all points are done; the file states how many are open.");
   print_result(common, nlohmann::json::parse(json), collected_text(schedule) + output.string() + "\n");
+}
+
+void run_plot(const SweepOptions& options, const Common& common) {
+  const sweep::Plan plan = plan_of(options, common);
+  const sweep::Store store = store_of(options);
+  const sweep::Schedule schedule(plan, store);
+  if (!schedule.all()) note(common, "not all points are done; the figure shows those that are.");
+  const fs::path folder = options.output.empty() ? store.folder() / "figures" : fs::path(options.output);
+  const std::string file = draw_results(schedule, options.figure, folder);
+  print_result(common, {{"figure", file}}, fmt::format("picture: {} (also .pdf, .png)\n", file));
 }
 
 void run_template(const SweepOptions& options) {
@@ -268,6 +315,24 @@ void add_sweep(CLI::App& program, Common& common) {
              "it; '-': only the JSON, to standard output; default: results.json in the folder of the sweep"),
          collected_product());
   collect.callback([options, &common] { run_collect(*options, common); });
+
+  CLI::App& plot =
+      add("plot", "Draw a result, or the onsets of a search, over one or two axes, with intervals",
+          "twincell sweep plot plan.toml --result s_b --over drive.gamma beads.layers");
+  plot.add_option("--result", options->figure.result,
+                  "Name of a scalar result; default: the onsets of a search, otherwise s_c")
+      ->type_name(kWord);
+  plot.add_option(
+          "--over", options->figure.over,
+          "Axis of the plan to plot against, and a second axis that separates the curves; default: the axis "
+          "with the most values")
+      ->type_name(kWord)
+      ->expected(1, 2);
+  writes(common, plot,
+         plot.add_option("--figures", options->output,
+                         "Folder for the figure and its data; default: figures in the folder of the sweep"),
+         figures_folder());
+  plot.callback([options, &common] { run_plot(*options, common); });
 
   CLI::App& script =
       *verb.add_subcommand("template", "Print a script that runs the sweep with Slurm or GNU parallel");

@@ -28,6 +28,7 @@ void add_info(CLI::App& program, Common& common);
 void add_locate(CLI::App& program, Common& common);
 void add_match(CLI::App& program, Common& common);
 void add_measure(CLI::App& program, Common& common);
+void add_new(CLI::App& program, Common& common);
 void add_render(CLI::App& program, Common& common);
 void add_reproduce(CLI::App& program, Common& common);
 void add_simulate(CLI::App& program, Common& common);

@@ -1,6 +1,7 @@
 #include "core/config.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "core/atomic_file.hpp"
+#include "core/placeholder.hpp"
 
 namespace twincell {
 
@@ -65,9 +67,33 @@ Where ConfigSection::where(const std::string& key) const {
   return {shared_->name, 0, 0, path};
 }
 
+namespace {
+/// Keys of all placeholders in a table, in the order of the file.
+void collect_placeholders(const toml::table& table, const std::string& prefix,
+                          std::vector<std::string>& keys) {
+  for (const auto& [key, node] : table) {
+    const std::string path = prefix + std::string(key.str());
+    if (const toml::table* inner = node.as_table()) collect_placeholders(*inner, path + ".", keys);
+    if (const auto text = node.value_exact<std::string>(); text && text->starts_with(kPlaceholder))
+      keys.push_back(path);
+  }
+}
+}  // namespace
+
 bool ConfigSection::has(const std::string& key) const {
-  shared_->asked.insert(full(key));
-  return find(shared_->table, full(key)) != nullptr;
+  const std::string path = full(key);
+  shared_->asked.insert(path);
+  const toml::node* node = find(shared_->table, path);
+  if (node == nullptr) return false;
+  if (const auto text = node->value_exact<std::string>(); text && text->starts_with(kPlaceholder)) {
+    std::vector<std::string> keys;
+    collect_placeholders(shared_->table, "", keys);
+    std::erase(keys, path);
+    throw ConfigError(
+        where(key), fmt::format("is not filled in yet: {}{}.", text->substr(std::string(kPlaceholder).size()),
+                                keys.empty() ? "" : fmt::format(" (as are {})", fmt::join(keys, ", "))));
+  }
+  return true;
 }
 
 namespace {

@@ -77,7 +77,7 @@
           line: {color: sideColour[experiment ? 'experiment' : 'simulation'], width: 1.2, dash: kind === 'bouncing' ? 'dot' : 'solid'},
           marker: {size: 6, symbol: experiment ? 'square' : 'diamond', color: sideColour[experiment ? 'experiment' : 'simulation']}});
       }
-    const omegas = runs.map(r => r.omega), one = omegas.every(w => Math.abs(w - omegas[0]) <= 1e-3 * omegas[0]);
+    const omegas = runs.map(r => r.omega), one = omegas.length > 0 && omegas.every(w => Math.abs(w - omegas[0]) <= 1e-3 * omegas[0]);
     const layout = {height: 520, xaxis: axis('N<sub>l</sub> σ', {range: x}), yaxis: axis('Γ = A ω² / g', {range: y}),
                     margin: {l: 58, r: one ? 58 : 12, t: 10, b: 46}};
     if (one && runs.length) {
@@ -403,8 +403,9 @@
   document.body.classList.add('live');
   tables();
   drawDiagram();
-  drawThresholds();
+  $('point').hidden = $('curves').hidden = !runs.length;  // a diagram of a sweep only
   if (runs.length) {
+    drawThresholds();
     const differ = matches.findIndex(m => m.verdict === 'differ'), first = matches[differ >= 0 ? differ : matches.length - 1];
     show(first.experiments.concat(first.simulations)[0]);
   }

@@ -11,8 +11,10 @@
 #include <string_view>
 
 #include "analysis/observable/results.hpp"
+#include "analysis/report/boundary_figure.hpp"
 #include "analysis/report/figures.hpp"
 #include "analysis/report/report_data.hpp"
+#include "analysis/runs/onset_agreement.hpp"
 #include "core/atomic_file.hpp"
 #include "core/escape.hpp"
 #include "core/json_text.hpp"
@@ -57,8 +59,34 @@ std::string phases_of(const std::vector<Run>& runs, const std::vector<std::size_
   return fmt::format("{}", fmt::join(names, " / "));
 }
 
-/// Concluding sentences: where the sides differ.
-std::string conclusion(const std::vector<Run>& runs, const std::vector<Match>& matches) {
+/// How many numbers differ really, and the first of them by name.
+std::string real_differences(const Comparison& c) {
+  constexpr std::size_t kMostNamed = 5;
+  std::vector<std::string> names;
+  for (const Difference& d : c.differences)
+    if (d.is_real()) names.push_back(fmt::format("{} at Gamma {:.3g}", d.quantity, c.matches[d.match].gamma));
+  if (c.differences.empty()) return {};
+  if (names.empty())
+    return fmt::format(" None of the {} compared numbers differs really.", c.differences.size());
+  const std::size_t n = names.size();
+  if (n > kMostNamed) names.resize(kMostNamed);
+  return fmt::format(" {} of the {} compared numbers differ{} really: {}{}.", n, c.differences.size(),
+                     n == 1 ? "s" : "", fmt::join(names, ", "), n > kMostNamed ? ", ..." : "");
+}
+
+std::string conclusion_of_sweep(const Comparison& c) {
+  std::string text = fmt::format("The diagram shows {} points of a sweep.", c.sweep.size());
+  for (const PhaseBoundary& b : c.boundaries)
+    text += fmt::format(" Onset of {} ({}, N_l = {:.3g}): Gamma {}.", phase_name(b.onset), boundary_of(b),
+                        b.n_l, boundary_text(b));
+  return text;
+}
+
+/// Concluding sentences: where the sides agree and where they differ.
+std::string conclusion(const Comparison& c) {
+  const std::vector<Run>& runs = c.runs;
+  const std::vector<Match>& matches = c.matches;
+  if (runs.empty() && (!c.sweep.empty() || !c.boundaries.empty())) return conclusion_of_sweep(c);
   std::vector<std::string> differ;
   std::size_t paired = 0, same = 0;
   for (const Match& match : matches) {
@@ -74,7 +102,8 @@ std::string conclusion(const std::vector<Run>& runs, const std::vector<Match>& m
   if (!differ.empty()) text += fmt::format(" They differ at {}.", fmt::join(differ, "; "));
   if (const std::size_t open = paired - same - differ.size(); open > 0)
     text += fmt::format(" Undetermined at {}.", open);
-  return text;
+  if (const std::string onsets = onset_sentences(c.boundaries); !onsets.empty()) text += " " + onsets;
+  return text + real_differences(c);
 }
 
 nlohmann::json or_null(double v) {
@@ -366,8 +395,10 @@ constexpr std::string_view kLive = R"(
 <figure id="convection-simulation" hidden><svg class="field" role="img"></svg><figcaption></figcaption></figure>
 </div>
 </section>
+<section id="curves">
 <h2>s<sub>b</sub> and s<sub>c</sub> against the drive</h2>
 <div class="pair"><div id="curve-s_b"></div><div id="curve-s_c"></div></div>
+</section>
 </div>
 )";
 
@@ -401,12 +432,12 @@ std::string page(const Comparison& c, const std::vector<Figure>& figures,
       "content=\"width=device-width, initial-scale=1\">\n"
       "<title>Experiment and simulation</title><style>{}</style></head><body>\n<h1>Experiment and "
       "simulation, side by side</h1>\n<p class=\"lead\">{}</p>\n",
-      embedded::page_css, html_text(conclusion(c.runs, c.matches)));
+      embedded::page_css, html_text(conclusion(c)));
   html +=
       "<p>Both sides went through the same analysis. A bed <em>bounces</em> if s<sub>b</sub> &gt; σ/30 and "
       "<em>convects</em> if also s<sub>c</sub> &gt; σ "
       "(Fortini &amp; Huang 2015, app. B). In brackets: 95 % intervals.</p>\n";
-  html += "<h2>Phases</h2>\n" + verdict_table(c.runs, c.matches);
+  if (!c.runs.empty()) html += "<h2>Phases</h2>\n" + verdict_table(c.runs, c.matches);
   html += kLive;
   if (!c.boundaries.empty())
     html +=
@@ -420,7 +451,7 @@ std::string page(const Comparison& c, const std::vector<Figure>& figures,
         "the difference between the simulation as filmed and tracked and the simulation itself; what is left "
         "is compared with the errors (± one standard error). " +
         html_text(filmed_words(c)) + "</p>\n" + differences_table(c);
-  html += "<h2>Runs</h2>\n" + runs_table(c.runs);
+  if (!c.runs.empty()) html += "<h2>Runs</h2>\n" + runs_table(c.runs);
   html += "<details><summary>The same figures, drawn by gnuplot</summary>\n" +
           static_figures(figures, figure_folder) + "</details>\n";
   html +=
@@ -487,8 +518,10 @@ nlohmann::json boundaries_json(const std::vector<PhaseBoundary>& boundaries) {
 }  // namespace
 
 std::string comparison_text(const Comparison& c) {
-  std::string text = fmt::format("{:>7}  {:>7}  {:>6}  {:<22}  {:<22}  {}\n", "Gamma", "K_m", "N_l",
-                                 "experiment", "simulation", "verdict");
+  std::string text;
+  if (!c.matches.empty())
+    text = fmt::format("{:>7}  {:>7}  {:>6}  {:<22}  {:<22}  {}\n", "Gamma", "K_m", "N_l", "experiment",
+                       "simulation", "verdict");
   for (const Match& match : c.matches) {
     const Run& any =
         c.runs[match.experiments.empty() ? match.simulations.front() : match.experiments.front()];
@@ -499,12 +532,12 @@ std::string comparison_text(const Comparison& c) {
   for (const PhaseBoundary& b : c.boundaries)
     text += fmt::format("onset of {}, {}, N_l = {:.3g}: Gamma {}\n", phase_name(b.onset), boundary_of(b),
                         b.n_l, boundary_text(b));
-  return text + differences_text(c.differences, c.matches) + conclusion(c.runs, c.matches) + "\n";
+  return text + differences_text(c.differences, c.matches) + conclusion(c) + "\n";
 }
 
 std::string comparison_json(const Comparison& c) {
   nlohmann::json document;
-  document["conclusion"] = conclusion(c.runs, c.matches);
+  document["conclusion"] = conclusion(c);
   document["runs"] = nlohmann::json::array();
   for (const Run& run : c.runs)
     document["runs"].push_back({{"side", side_name(run.side)},
@@ -540,8 +573,11 @@ void write_report(const std::filesystem::path& folder, const Comparison& c,
   const std::filesystem::path figure_folder = output.part() / "figures";
   std::filesystem::create_directories(figure_folder);
 
-  std::vector<Figure> figures = {phase_strip_figure(c.runs), phase_diagram_figure(c.runs),
-                                 thresholds_figure(c.runs), s_k_figure(c.runs), s_j_figure(c.runs)};
+  std::vector<Figure> figures;
+  if (!c.runs.empty())
+    figures = {phase_strip_figure(c.runs), phase_diagram_figure(c.runs), thresholds_figure(c.runs),
+               s_k_figure(c.runs), s_j_figure(c.runs)};
+  if (!c.boundaries.empty() || !c.sweep.empty()) figures.push_back(boundary_figure(c));
   for (std::size_t m = 0; m < c.matches.size(); ++m)
     figures.push_back(snapshots_figure(c.runs, c.matches[m], fmt::format("snapshots_{}", m + 1)));
   for (std::size_t i = 0; i < figures.size(); ++i) {

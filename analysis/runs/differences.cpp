@@ -153,6 +153,11 @@ std::optional<double> Difference::in_errors() const {
   return remainder() / *e;
 }
 
+bool Difference::is_real() const {
+  const auto t = in_errors();
+  return t && std::abs(*t) > kSignificant && !(defects && std::abs(remainder()) <= *defects);
+}
+
 std::string Difference::attribution() const {
   const double size = std::abs(difference());
   if (size == 0 && remainder() == 0) return "none: the same on both sides";
@@ -176,7 +181,7 @@ std::string Difference::attribution() const {
       text += fmt::format(", known from {} runs only", seed_runs);
     return text;
   }
-  if (defects && std::abs(remainder()) <= *defects)
+  if (!is_real())
     return fmt::format("{:.1f} errors; not larger than the difference between starts with other defects",
                        std::abs(*t));
   return fmt::format("{:.1f} errors: a real difference{}{}{}", std::abs(*t),

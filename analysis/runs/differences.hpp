@@ -50,6 +50,8 @@ struct Difference {
   [[nodiscard]] std::optional<double> error() const;
   /// remainder / error; absent without an error.
   [[nodiscard]] std::optional<double> in_errors() const;
+  /// Whether the remainder exceeds two errors and the difference between starts with other defects.
+  [[nodiscard]] bool is_real() const;
   /// The cause to which the difference is attributed, in one sentence.
   [[nodiscard]] std::string attribution() const;
 };

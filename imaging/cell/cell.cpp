@@ -46,6 +46,10 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
   cell.frame_rate_hz = camera.number_in("frame_rate_hz", 0, 1e9, true);
 
   const ConfigSection box = root.section("cell");
+  // The conversion of units also knows keys of scenes, so that refuse_unknown_keys() does not see these.
+  for (const auto& [section, key] : {std::pair{box, "depth"}, std::pair{root, "beads"}})
+    if (section.has(key))
+      throw ConfigError(section.where(key), "is a key of a scene; a cell description does not have it.");
   cell.width = box.number_in("width", 0, std::nullopt, true);
   cell.height = box.number_in("height", 0, std::nullopt, true);
   if (const auto sides = box.word("sides", {"walls", "periodic", "open"}))

@@ -80,6 +80,35 @@ TEST_F(Sweeps, OneCoreTwoCoresShardsAndRanksGiveTheSameBytes) {
   EXPECT_EQ(collected(grid_, at("parts")), one);
 }
 
+TEST_F(Sweeps, ASweepEndsInItsPictureAndPlotDrawsOtherResults) {
+  const Ran ran = run(grid_, at("one"));
+  ASSERT_EQ(ran.code, kDone) << ran.err;
+  EXPECT_NE(ran.out.find("picture: " + at("one/figures/sweep.svg")), std::string::npos) << ran.out;
+  const std::string drawn = bytes_of(at("one/figures/sweep.dat"));
+  // s_c of two drives and two starts, the random one with the interval of its two seeds.
+  EXPECT_NE(drawn.find("1.05 "), std::string::npos) << drawn;
+  EXPECT_NE(drawn.find("1.6 "), std::string::npos) << drawn;
+  const Ran plot = run_program({"sweep", "plot", grid_, "-o", at("one"), "--figures", at("s_b"), "--result",
+                                "s_b", "--over", "drive.gamma", "start.kind"});
+  ASSERT_EQ(plot.code, kDone) << plot.err;
+  EXPECT_NE(bytes_of(at("s_b/sweep.gp")).find("start.kind = \"random\""), std::string::npos);
+  EXPECT_NE(bytes_of(at("s_b/sweep.dat")), drawn);
+  const Ran wrong = run_program({"sweep", "plot", grid_, "-o", at("one"), "--result", "s_d"});
+  EXPECT_EQ(wrong.code, kUsage);
+  EXPECT_NE(wrong.err.find("it has s_b, s_c"), std::string::npos) << wrong.err;
+}
+
+TEST_F(Sweeps, CompareDrawsTheDiagramOfASweepAlone) {
+  ASSERT_EQ(run(grid_, at("one")).code, kDone);
+  (void)collected(grid_, at("one"));
+  const Ran ran = run_program({"compare", "--sweep", at("one.json"), "-o", at("report"), "-q"});
+  ASSERT_EQ(ran.code, kDone) << ran.err;
+  EXPECT_NE(ran.out.find("points of a sweep"), std::string::npos) << ran.out;
+  EXPECT_NE(bytes_of(at("report/report.html")).find("points of a sweep"), std::string::npos);
+  EXPECT_GT(fs::file_size(at("report/figures/boundaries.svg")), 1000U);
+  EXPECT_EQ(run_program({"compare", "-o", at("none"), "-q"}).code, kUsage);
+}
+
 TEST_F(Sweeps, RanksOfMpiGiveTheSameBytes) {
   if (std::system("command -v mpirun >/dev/null 2>&1") != 0) GTEST_SKIP() << "mpirun is not there";
   ASSERT_EQ(run(grid_, at("one"), {"--threads", "1"}).code, kDone);

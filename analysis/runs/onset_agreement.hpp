@@ -1,0 +1,26 @@
+#pragma once
+/// \file
+/// Agreement of the phase boundaries of experiment and simulation, in sentences.
+
+#include <string>
+#include <vector>
+
+#include "analysis/runs/phase_boundaries.hpp"
+
+namespace twincell {
+
+/// Agreement of two onsets. The interval of an onset reaches from the strongest drive without the phase to
+/// the weakest drive with it; without one of them it is open.
+enum class OnsetAgreement {
+  unknown,     ///< one of the onsets has no interval
+  compatible,  ///< the intervals have a common point
+  different,   ///< they have none
+};
+OnsetAgreement agreement_of(const PhaseBoundary& a, const PhaseBoundary& b);
+
+/// One sentence for each onset that experiment and simulation (or, without one, a sweep) both have at one N_l
+/// (within 10 %), with both intervals and their agreement; joined by spaces. Empty if no onset has both
+/// sides.
+std::string onset_sentences(const std::vector<PhaseBoundary>& boundaries);
+
+}  // namespace twincell

@@ -1,0 +1,224 @@
+// twincell new STACK...: measures what a stack shows of its cell and writes CELL.toml with a picture of it.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/comparing_options.hpp"
+#include "cli/output.hpp"
+#include "cli/verb.hpp"
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "core/escape.hpp"
+#include "core/output_rules.hpp"
+#include "imaging/cell/cell_keys.hpp"
+#include "imaging/stack/open_frames.hpp"
+#include "imaging/track/overlay.hpp"
+#include "twin/cell_draft.hpp"
+#include "twin/cell_names.hpp"
+#include "twin/cell_picture.hpp"
+
+namespace twincell::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct NewOptions {
+  std::vector<std::string> stacks;
+  std::string output;
+  double diameter_px = 0;
+  bool keys = false;
+  CellAnswers answers;
+};
+
+/// A cell file is edited by hand, so an existing one is replaced only with --force.
+Product cell_file() {
+  return {.name = "a cell file", .sign = Product::Sign::none, .mark = {}};
+}
+
+/// Asks one question on the terminal. An empty line, or the end of the input, leaves the value unknown.
+std::optional<double> ask(const std::string& question, const std::string& otherwise) {
+  for (;;) {
+    std::cerr << question << " [" << otherwise << "]: " << std::flush;
+    std::string line;
+    if (!std::getline(std::cin, line)) return std::nullopt;
+    const std::size_t from = line.find_first_not_of(" \t\r"), to = line.find_last_not_of(" \t\r");
+    if (from == std::string::npos) return std::nullopt;
+    double value = 0;
+    const char *begin = line.data() + from, *end = line.data() + to + 1;
+    if (const auto [last, error] = std::from_chars(begin, end, value);
+        error == std::errc() && last == end && std::isfinite(value) && value > 0)
+      return value;
+    std::cerr << "A number above 0 is needed, or an empty line.\n";
+  }
+}
+
+/// Asks for what no stack shows, unless options have answered it.
+void ask_for_the_rest(CellAnswers& a, const CellSurvey& s) {
+  if (!a.sigma_mm) a.sigma_mm = ask("Diameter of a bead in mm", "unknown");
+  if (a.sigma_mm && !a.width_mm && !s.has_walls())
+    a.width_mm = ask("Distance of the side walls in mm", "unknown");
+  const bool rate = s.drive && (a.frame_rate_hz || s.frame_rate_hz);
+  if (a.sigma_mm && !a.frequency_hz && !a.gamma && !rate)
+    a.frequency_hz = ask("Frequency of the shaker in Hz", "unknown");
+  if (!a.gamma && (!s.drive || !a.sigma_mm || (!a.frequency_hz && !rate)))
+    a.gamma = ask("Peak acceleration of the plate over g (Gamma)", "unknown");
+}
+
+std::string table_of(const CellDraft& draft) {
+  std::string text;
+  for (const DraftKey& k : draft.keys) {
+    const std::size_t colon = k.comment.find(':');
+    const std::string error = k.measured.empty() ? "" : k.comment.substr(0, colon);
+    text += fmt::format("  {:<26} {:<24} {}\n", k.key, k.open ? "still needed" : k.value, error);
+  }
+  if (draft.gamma && draft.gamma->error > 0)
+    text += fmt::format("  {:<26} {:<24} +- {}\n", "Gamma = A omega^2/g", value_text(*draft.gamma),
+                        error_text(draft.gamma->error));
+  return text;
+}
+
+nlohmann::json json_of(const CellSurvey& s, const CellDraft& draft) {
+  nlohmann::json d = {
+      {"stack", s.stack.string()}, {"frames", s.n_frames}, {"measured", nlohmann::json::object()}};
+  d["open"] = nlohmann::json::array();
+  d["not_measured"] = nlohmann::json::array();
+  for (const DraftKey& k : draft.keys) {
+    if (k.open) d["open"].push_back(k.key);
+    for (const Estimate& e : k.measured)
+      d["measured"][k.key].push_back(
+          {{"value", e.value},
+           {"standard_error", std::isfinite(e.error) ? nlohmann::json(e.error) : nlohmann::json()}});
+  }
+  for (const NotMeasured& m : s.missing)
+    d["not_measured"].push_back({{"what", m.what}, {"why", m.why}, {"remedy", m.remedy}});
+  if (s.drive && s.drive->frames_per_cycle > 0) {
+    d["frames_per_cycle"] = s.drive->frames_per_cycle;
+    d["first_phase"] = s.drive->first_phase;
+  }
+  return d;
+}
+
+/// Surveys one stack and writes its cell file and picture.
+nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& stack, const fs::path& cell,
+                         bool first, std::string& said) {
+  const fs::path picture = fs::path(cell).replace_extension(".png");
+  require_output(cell, cell_file());
+  require_output(picture, Product::picture());
+  const CellSurvey survey = survey_cell(stack, {.diameter_px = o.diameter_px, .threads = common.n_threads()},
+                                        progress_bars(common));
+  if (first && ::isatty(STDIN_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0 && !common.quiet && !common.json)
+    ask_for_the_rest(o.answers, survey);
+  const CellDraft draft = draft_cell(survey, o.answers);
+  for (const auto* sentences : {&survey.notes, &draft.notes})
+    for (const std::string& sentence : *sentences) note(common, sentence);
+  write_text_file(
+      cell, cell_text(draft, survey, "# Cell description, written by: " + one_line(common.command_line)),
+      cell_file());
+  write_png(picture, draw_cell(survey, draft));
+  said += stack.string() + "\n" + table_of(draft);
+  for (const NotMeasured& m : survey.missing)
+    said += fmt::format("  not measured: {}, because {}; {}\n", m.what, m.why, m.remedy);
+  said += fmt::format("{}\npicture: {}\n", cell.string(), picture.string());
+  nlohmann::json document = json_of(survey, draft);
+  document["cell"] = cell.string();
+  document["picture"] = picture.string();
+  return document;
+}
+
+nlohmann::json json_of_keys() {
+  nlohmann::json list = nlohmann::json::array();
+  for (const CellKey& k : cell_keys())
+    list.push_back({{"key", k.key},
+                    {"unit", k.unit},
+                    {"range", k.range},
+                    {"default", k.absent},
+                    {"example", k.example},
+                    {"meaning", k.meaning}});
+  return {{"keys", list}};
+}
+
+void run(const Common& common, NewOptions& o) {
+  if (o.keys) return print_result(common, json_of_keys(), cell_keys_markdown());
+  if (o.stacks.empty())
+    throw ConfigError({.file = {}, .key = "new"}, "no stack is named; give at least one stack of frames.");
+  const bool several = o.stacks.size() > 1;
+  if (o.output.empty()) o.output = several ? "cells" : "CELL.toml";
+  if (several && fs::path(o.output).extension() == ".toml")
+    throw ConfigError(
+        {.file = o.output, .key = "-o"},
+        fmt::format("is one file, but {} stacks need a cell file each; name a folder.", o.stacks.size()));
+  if (!several && fs::path(o.output).extension() != ".toml")
+    throw ConfigError({.file = o.output, .key = "-o"},
+                      "must end in .toml; the picture next to it ends in .png.");
+  for (const std::string& stack : o.stacks) protect_input(file_of_stack(stack));
+  const std::vector<std::string> names = names_of_stacks({o.stacks.begin(), o.stacks.end()});
+  if (several) claim_shared_folder(o.output, cells_folder());
+  nlohmann::json cells = nlohmann::json::array();
+  std::string said;
+  std::size_t open = 0;
+  for (std::size_t i = 0; i < o.stacks.size(); ++i) {
+    const fs::path cell = several ? fs::path(o.output) / (names[i] + ".toml") : fs::path(o.output);
+    cells.push_back(write_one(common, o, o.stacks[i], cell, i == 0, said));
+    open += cells.back()["open"].size();
+  }
+  if (open > 0)
+    said += fmt::format("{} value{} still needed: look for \"FILL IN\" in the file{}.\n", open,
+                        open == 1 ? " is" : "s are", several ? "s" : "");
+  else
+    said += "next: twincell match " +
+            (several ? "STACKS... " + shell_word(o.output)
+                     : shell_word(o.stacks[0]) + " " + shell_word(o.output)) +
+            " -o twin/\n";
+  nlohmann::json document = {{"cells", cells},
+                             {"provenance", nlohmann::json::parse(common.provenance().to_json())}};
+  print_result(common, document, said);
+}
+
+}  // namespace
+
+void add_new(CLI::App& program, Common& common) {
+  CLI::App& verb =
+      add_verb(program, common, "new",
+               "Measure what a stack shows of its cell (beads, walls, plate, scale, origin, drive, "
+               "phases), ask for the rest, and write CELL.toml with a picture of what was measured.",
+               "twincell new frames/ -o CELL.toml --sigma-mm 2 --frequency-hz 20");
+  auto o = std::make_shared<NewOptions>();
+  verb.add_option(
+      "stacks", o->stacks,
+      "Stack: folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md); several "
+      "stacks: one for each drive strength");
+  verb.add_flag("--keys", o->keys, "Print all keys of a CELL.toml with unit, range, default and example");
+  // One file, or a folder for several stacks: write_one() checks the outputs.
+  common.outputs.push_back(
+      {verb.add_option(
+           "-o,--output", o->output,
+           "Cell file to write; the picture is written next to it, with the ending .png. For several "
+           "stacks: folder of the cell files. Default: CELL.toml, for several stacks cells"),
+       nullptr, cell_file()});
+  verb.add_option("--diameter", o->diameter_px, "Bead diameter, px; default: found in the first frames")
+      ->check(CLI::Range(3.0, 400.0));
+  const auto answer = [&](const char* name, std::optional<double>& value, const char* what) {
+    verb.add_option(name, value, what)->check(CLI::PositiveNumber);
+  };
+  answer("--sigma-mm", o->answers.sigma_mm, "Bead diameter, mm");
+  answer("--width-mm", o->answers.width_mm, "Distance of the side walls, mm");
+  answer("--frequency-hz", o->answers.frequency_hz,
+         "Frequency of the shaker, Hz; default: frame rate over the period of the plate");
+  answer("--gamma", o->answers.gamma, "Peak acceleration of the plate over g; needs no bead diameter in mm");
+  answer("--frame-rate-hz,--fps", o->answers.frame_rate_hz,
+         "Frame rate of the camera, 1/s; default: that of the stack");
+  verb.add_option("--gravity-m-s2", o->answers.gravity_m_s2, "Gravity, m/s^2")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb.callback([&common, o] { run(common, *o); });
+}
+
+}  // namespace twincell::cli

@@ -1,0 +1,249 @@
+#include "sweep/results_figure.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "analysis/report/colours.hpp"
+#include "analysis/report/gnuplot_text.hpp"
+#include "core/error.hpp"
+#include "core/json_text.hpp"
+
+namespace twincell::sweep {
+namespace {
+
+using nlohmann::json;
+
+/// One result at one set of axes.
+struct Value {
+  json axes;
+  std::optional<double> value, low, high;
+};
+
+std::optional<double> number(const json& object, const char* key) {
+  const auto it = object.find(key);
+  return it != object.end() && it->is_number() ? std::optional(it->get<double>()) : std::nullopt;
+}
+
+bool is_scalar(const json& result) {
+  return number(result, "value").has_value();
+}
+
+/// Names of all scalar results of the points.
+std::set<std::string> scalars(const json& document) {
+  std::set<std::string> names;
+  for (const json& point : document.at("points")) {
+    const json results = point.value("results", json::object());
+    for (const auto& [name, result] : results.items())
+      if (is_scalar(result)) names.insert(name);
+  }
+  return names;
+}
+
+Value value_of(const json& point, const std::string& result) {
+  const json r = point.value("results", json::object()).value(result, json::object());
+  const json interval = r.value("interval", json());
+  Value v{.axes = point.at("axes"), .value = number(r, "value"), .low = {}, .high = {}};
+  if (interval.is_object()) {
+    v.low = number(interval, "low");
+    v.high = number(interval, "high");
+  }
+  return v;
+}
+
+/// The result at every set of axes: pooled where several seeds ran.
+std::vector<Value> values_of(const json& document, const std::string& result) {
+  std::vector<Value> values;
+  std::set<std::string> pooled;
+  for (const json& group : document.value("pooled", json::array())) {
+    values.push_back(value_of(group, result));
+    pooled.insert(json_text(group.at("axes")));
+  }
+  for (const json& point : document.at("points")) {
+    json axes = point.at("axes");
+    axes.erase("start.seed");
+    if (pooled.contains(json_text(axes))) continue;
+    values.push_back(value_of(point, result));
+    values.back().axes.erase("start.seed");
+  }
+  std::erase_if(values, [](const Value& v) { return !v.value; });
+  return values;
+}
+
+std::vector<Value> onsets_of(const json& document) {
+  std::vector<Value> values;
+  for (const json& onset : document.value("onsets", json::array()))
+    values.push_back({.axes = onset.at("axes"),
+                      .value = number(onset, "value"),
+                      .low = number(onset, "low"),
+                      .high = number(onset, "high")});
+  return values;
+}
+
+/// The axes of the values with the number of their different values, the most first.
+std::vector<std::pair<std::size_t, std::string>> axes_of(const std::vector<Value>& values, bool numbers) {
+  std::map<std::string, std::set<std::string>> seen;
+  std::set<std::string> words;
+  for (const Value& v : values)
+    for (const auto& [key, at] : v.axes.items()) {
+      seen[key].insert(json_text(at));
+      if (!at.is_number()) words.insert(key);
+    }
+  std::vector<std::pair<std::size_t, std::string>> axes;
+  for (const auto& [key, distinct] : seen)
+    if (!numbers || !words.contains(key)) axes.emplace_back(distinct.size(), key);
+  std::stable_sort(axes.begin(), axes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  return axes;
+}
+
+/// The horizontal axis. \throws ConfigError if the named one is no axis with numbers
+std::string horizontal(const std::vector<Value>& values, const FigureOptions& options) {
+  const auto axes = axes_of(values, true);
+  std::vector<std::string> names;
+  for (const auto& [count, key] : axes) names.push_back(key);
+  if (names.empty()) throw ConfigError({.file = {}, .key = "--over"}, "the sweep has no axis with numbers.");
+  if (options.over.empty()) return names.front();
+  if (std::find(names.begin(), names.end(), options.over.front()) == names.end())
+    throw ConfigError({.file = {}, .key = "--over"},
+                      fmt::format("'{}' is no axis with numbers; the sweep has {}.", options.over.front(),
+                                  fmt::join(names, ", ")));
+  return options.over.front();
+}
+
+/// The axes other than x that distinguish a value, as "key = value, ...", the named one first.
+std::string curve_of(const Value& v, const std::string& x, const std::vector<std::string>& order) {
+  std::vector<std::string> parts;
+  for (const std::string& key : order)
+    if (key != x && v.axes.contains(key)) parts.push_back(key + " = " + json_text(v.axes[key]));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// Axes with more than one value, those of `over` first.
+std::vector<std::string> distinguishing(const std::vector<Value>& values, const FigureOptions& options) {
+  std::vector<std::string> keys;
+  std::vector<std::string> all;
+  for (const auto& [count, key] : axes_of(values, false)) {
+    all.push_back(key);
+    if (count > 1) keys.push_back(key);
+  }
+  for (const std::string& key : options.over) {
+    if (std::find(all.begin(), all.end(), key) == all.end())
+      throw ConfigError({.file = {}, .key = "--over"},
+                        fmt::format("'{}' is no axis of the sweep; it has {}.", key, fmt::join(all, ", ")));
+    std::erase(keys, key);
+  }
+  keys.insert(keys.begin(), options.over.begin(), options.over.end());
+  return keys;
+}
+
+struct Rows {
+  std::string whole, lower, upper;  ///< values with intervals, lower limits, upper limits
+  std::size_t points = 0;
+};
+
+}  // namespace
+
+Figure results_figure(const std::string& collected, const FigureOptions& options) {
+  constexpr std::size_t kMostAxes = 2;
+  if (options.over.size() > kMostAxes)
+    throw ConfigError({.file = {}, .key = "--over"},
+                      fmt::format("names {} axes; at most two can be drawn.", options.over.size()));
+  const json document = json::parse(collected);
+  const bool onsets = options.result.empty() && !document.value("onsets", json::array()).empty();
+  const std::set<std::string> names = scalars(document);
+  std::string result = options.result;
+  if (!onsets && result.empty() && !names.empty()) result = names.contains("s_c") ? "s_c" : *names.begin();
+  if (!onsets && !names.contains(result)) {
+    if (names.empty())
+      throw InputError({.file = {}, .key = "the sweep"},
+                       "has no scalar result yet; sweep run computes its points.");
+    throw ConfigError(
+        {.file = {}, .key = "--result"},
+        fmt::format("'{}' is no scalar result of the sweep; it has {}.", result, fmt::join(names, ", ")));
+  }
+  std::vector<Value> values = onsets ? onsets_of(document) : values_of(document, result);
+  const std::string x = horizontal(values, options);
+  const std::vector<std::string> order = distinguishing(values, options);
+
+  std::stable_sort(values.begin(), values.end(), [&](const Value& a, const Value& b) {
+    return a.axes.value(x, 0.0) < b.axes.value(x, 0.0);
+  });
+  // Curves in the order of their first value of the second axis, not of its text.
+  std::vector<std::string> curves;
+  std::map<std::string, Rows> rows;
+  if (order.size() > 1) {
+    const std::string second = order[0] == x ? order[1] : order[0];
+    std::stable_sort(values.begin(), values.end(), [&](const Value& a, const Value& b) {
+      const json p = a.axes.value(second, json()), q = b.axes.value(second, json());
+      return p.is_number() && q.is_number() ? p.get<double>() < q.get<double>() : json_text(p) < json_text(q);
+    });
+  }
+  for (const Value& v : values) {
+    const std::string curve = curve_of(v, x, order);
+    if (!rows.contains(curve)) curves.push_back(curve);
+    Rows& r = rows[curve];
+    const double at = v.axes.at(x).get<double>();
+    if (v.value) {
+      r.whole +=
+          fmt::format("{} {} {} {}\n", at, *v.value, v.low.value_or(*v.value), v.high.value_or(*v.value));
+      ++r.points;
+    } else if (v.low) {
+      r.lower += fmt::format("{} {}\n", at, *v.low);
+    } else if (v.high) {
+      r.upper += fmt::format("{} {}\n", at, *v.high);
+    }
+  }
+
+  Figure f{.name = "sweep", .width = 620, .height = 500};
+  std::string clauses;
+  int block = 0;
+  const auto add = [&](const std::string& data, const std::string& columns, const std::string& style) {
+    f.data += (block > 0 ? "\n\n" : "") + data;
+    clauses +=
+        fmt::format("{}'{}.dat' index {} using {} {}", block > 0 ? ", " : "", f.name, block, columns, style);
+    ++block;
+  };
+  constexpr std::array kSymbols = {7, 5, 13, 6, 4, 12};
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    const Rows& r = rows[curves[c]];
+    const std::string title =
+        curves[c].empty() ? "notitle" : fmt::format("title '{}' noenhanced", gnuplot_plain_text(curves[c]));
+    const char* colour = colours::kCurves[c % colours::kCurves.size()];
+    const int symbol = kSymbols[c % kSymbols.size()];
+    if (r.points > 1) add(r.whole, "1:2", fmt::format("with lines lc rgb '{}' notitle", colour));
+    if (r.points > 0)
+      add(r.whole, "1:2:3:4",
+          fmt::format("with yerrorbars pt {} ps 1.1 lw 1.3 lc rgb '{}' {}", symbol, colour, title));
+    constexpr int kUp = 9, kDown = 11;
+    bool named = r.points > 0;
+    for (const auto& [data, limit] : {std::pair(&r.lower, kUp), std::pair(&r.upper, kDown)})
+      if (!data->empty()) {
+        add(*data, "1:2",
+            fmt::format("with points pt {} ps 1.4 lc rgb '{}' {}", limit, colour, named ? "notitle" : title));
+        named = true;
+      }
+  }
+  if (block == 0)
+    throw InputError({.file = {}, .key = "the sweep"},
+                     "has no value to draw yet; sweep run computes its points.");
+  const std::string y = onsets ? fmt::format("{} at the onset of {}", document["onsets"][0].value("key", ""),
+                                             document["onsets"][0].value("verdict", ""))
+                               : result;
+  f.title = y + " against " + x;
+  f.plot = fmt::format(
+      "set xlabel '{}' noenhanced\nset ylabel '{}' noenhanced\nset offsets graph 0.06, graph 0.06, graph "
+      "0.06, graph 0.06\n"
+      "set key outside below center vertical maxrows 4 samplen 1 spacing 1.1 Left reverse\nplot {}\n",
+      gnuplot_plain_text(x), gnuplot_plain_text(y), clauses);
+  f.caption = y + " with its 95 % intervals.";
+  return f;
+}
+
+}  // namespace twincell::sweep

@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// Figure of the collected results of a sweep: any scalar result, or the onsets, over one or two axes.
+
+#include <string>
+#include <vector>
+
+#include "analysis/report/figures.hpp"
+
+namespace twincell::sweep {
+
+/// What a figure of a sweep shows.
+struct FigureOptions {
+  /// Name of a scalar result; empty: the onsets if the sweep searched for some, else s_c, else the first
+  /// scalar result.
+  std::string result;
+  /// One or two axes of the sweep with numbers: the horizontal axis, and the axis that separates the curves.
+  /// Empty: the axes with the most values.
+  std::vector<std::string> over;
+};
+
+/// "sweep": the result with its intervals against the first axis, one curve for each value of the other axes.
+/// Points that differ only in the seed are shown by their pooled value. An onset with one limit only is a
+/// triangle that points to where it lies.
+/// \param collected text of collected_json()
+/// \throws ConfigError naming the result or axis that does not exist, with those that do; InputError if no
+/// point has the result
+Figure results_figure(const std::string& collected, const FigureOptions& options = {});
+
+}  // namespace twincell::sweep

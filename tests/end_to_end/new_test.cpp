@@ -1,0 +1,227 @@
+// `new` as a user runs it: the shipped stacks against their hand-written cell files, and stacks with faults.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+
+#include "imaging/cell/cell.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/put_file.hpp"
+
+namespace twincell {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kDemo = fs::path(TWINCELL_SOURCE_DIR) / "data_samples/demo";
+
+std::string frame_name(int f) {
+  return fmt::format("frame_{:05}.png", f);
+}
+
+/// A copy of the first `n` frames of a shipped stack, without its cell file; `change` edits each frame.
+fs::path copy_of(const TemporaryFolder& folder, const std::string& name, int n,
+                 const std::function<cv::Mat(const cv::Mat&, int)>& change = nullptr) {
+  const fs::path stack = folder / ("copy-of-" + name);
+  fs::create_directory(stack);
+  for (int f = 0; f < n; ++f) {
+    if (change)
+      cv::imwrite((stack / frame_name(f)).string(),
+                  change(cv::imread((kDemo / name / frame_name(f)).string(), cv::IMREAD_GRAYSCALE), f));
+    else
+      fs::copy_file(kDemo / name / frame_name(f), stack / frame_name(f));
+  }
+  return stack;
+}
+
+std::string text_of(const fs::path& file) {
+  std::ostringstream all;
+  all << std::ifstream(file).rdbuf();
+  return all.str();
+}
+
+nlohmann::json run_json(std::vector<std::string> words, int code = 0) {
+  words.insert(words.end(), {"-q", "--json"});
+  const Ran ran = run_program(words);
+  EXPECT_EQ(ran.code, code) << ran.err;
+  return ran.code == 0 ? nlohmann::json::parse(ran.out) : nlohmann::json();
+}
+
+/// s_b and s_c of the first frames of a stack, tracked with a cell file.
+std::pair<double, double> order_of(const TemporaryFolder& folder, const fs::path& stack,
+                                   const fs::path& cell) {
+  const fs::path trajectory = folder / (cell.stem().string() + "-" + stack.filename().string() + ".h5");
+  const Ran ran = run_program({"track", stack, "--cell", cell, "-o", trajectory, "-q"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  const nlohmann::json r = run_json({"analyze", trajectory, "--only", "s_b", "s_c"})["results"];
+  return {r["s_b"]["value"], r["s_c"]["value"]};
+}
+
+/// \return the document of `new`, which must name `what` as not measured
+nlohmann::json without(const fs::path& stack, const fs::path& cell, const std::string& what,
+                       const std::string& why) {
+  const nlohmann::json d = run_json({"new", stack, "-o", cell})["cells"][0];
+  bool named = false;
+  for (const auto& m : d["not_measured"])
+    named = named || (m["what"] == what && m["why"].get<std::string>().find(why) != std::string::npos);
+  EXPECT_TRUE(named) << d["not_measured"].dump(1);
+  EXPECT_TRUE(fs::exists(fs::path(cell).replace_extension(".png")));
+  return d;
+}
+
+TEST(New, TheShippedStacksGiveTheNumbersOfTheirHandWrittenCells) {
+  const TemporaryFolder folder;
+  for (const char* gamma : {"0.9", "1.6", "2.5"}) {
+    const fs::path stack = kDemo / (std::string("gamma-") + gamma),
+                   cell = folder / (std::string(gamma) + ".toml");
+    const nlohmann::json d = run_json({"new", stack, "-o", cell, "--gamma", gamma})["cells"][0];
+    EXPECT_TRUE(d["open"].empty() && d["not_measured"].empty()) << d.dump(1);
+    const CellDescription hand = read_cell(stack / "CELL.toml"), found = read_cell(cell);
+    const auto error = [&](const char* key, std::size_t k = 0) {
+      return d["measured"][key][k]["standard_error"].get<double>();
+    };
+    EXPECT_NEAR(*found.pixels_per_sigma, *hand.pixels_per_sigma, 3 * error("camera.pixels_per_sigma"));
+    EXPECT_NEAR(found.origin->x_px, hand.origin->x_px, 3 * error("camera.origin_px", 0));
+    EXPECT_NEAR(found.origin->y_px, hand.origin->y_px, 3 * error("camera.origin_px", 1));
+    EXPECT_NEAR(*found.width, *hand.width, 3 * error("cell.width_sigma"));
+    EXPECT_NEAR(found.drive()->amplitude, hand.drive()->amplitude, 3 * error("drive.amplitude_sigma"));
+    EXPECT_LT(error("camera.origin_px", 1), 0.01);
+    EXPECT_LT(error("camera.pixels_per_sigma"), 0.01);
+    EXPECT_LT(error("drive.amplitude_sigma"), 0.002);
+    EXPECT_NEAR(found.drive()->omega, 1, 1e-3);
+    EXPECT_EQ(found.phase_lock.frames_per_cycle, hand.phase_lock.frames_per_cycle);
+    EXPECT_EQ(found.phase_lock.first_phase, 0);
+    EXPECT_EQ(found.sides, Boundary::wall);
+    EXPECT_EQ(found.rotation_deg, 0);
+  }
+}
+
+TEST(New, TrackingWithTheWrittenCellGivesTheSameResults) {
+  const TemporaryFolder folder;
+  const fs::path cell = folder / "new.toml", stack = kDemo / "gamma-1.6", hand = folder / "hand.toml";
+  fs::copy_file(stack / "CELL.toml", hand);
+  ASSERT_EQ(run_program({"new", stack, "-o", cell, "--gamma", "1.6", "-q"}).code, 0);
+  const auto [s_b, s_c] = order_of(folder, stack, cell);
+  const auto [s_b_hand, s_c_hand] = order_of(folder, stack, hand);
+  // The scales differ by 2e-5, and so do all lengths; 0.1 % leaves room for the origin's 0.002 px.
+  EXPECT_NEAR(s_b, s_b_hand, 1e-3 * s_b_hand);
+  EXPECT_NEAR(s_c, s_c_hand, 1e-3 * s_c_hand);
+  EXPECT_GT(s_b, 1.0 / 30);
+}
+
+TEST(New, WithoutAnswersPlaceholdersAreLeftThatEveryVerbRefusesByName) {
+  const TemporaryFolder folder;
+  const fs::path cell = folder / "CELL.toml", stack = kDemo / "gamma-0.9";
+  const Ran ran = run_program({"new", stack, "-o", cell, "-q"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("2 values are still needed"), std::string::npos) << ran.out;
+  EXPECT_NE(text_of(cell).find("sigma_mm = \"FILL IN: bead diameter in mm\""), std::string::npos)
+      << text_of(cell);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"track", stack, "--cell", cell, "-o", folder / "a.h5"},
+        {"match", stack, cell, "-o", folder / "b"},
+        {"calibrate", "walls", stack, "--cell", cell}}) {
+    const Ran refused = run_program(words);
+    EXPECT_EQ(refused.code, 2) << words[0];
+    EXPECT_NE(refused.err.find("scale.sigma_mm"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("bead diameter in mm"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("drive.frequency_hz"), std::string::npos) << refused.err;
+  }
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"CELL.png", "CELL.toml"}));
+}
+
+TEST(New, AnEditedCellIsNotReplacedWithoutForce) {
+  const TemporaryFolder folder;
+  const fs::path cell = folder / "CELL.toml", stack = copy_of(folder, "gamma-0.9", 20);
+  ASSERT_EQ(run_program({"new", stack, "-o", cell, "-q"}).code, 0);
+  const std::string before = text_of(cell);
+  const Ran ran = run_program({"new", stack, "-o", cell, "-q", "--gamma", "0.9"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_NE(ran.err.find("CELL.toml"), std::string::npos) << ran.err;
+  EXPECT_EQ(text_of(cell), before);
+  EXPECT_EQ(run_program({"new", stack, "-o", cell, "-q", "--gamma", "0.9", "--force"}).code, 0);
+  EXPECT_NE(text_of(cell), before);
+}
+
+TEST(New, SeveralStacksGetACellEachInOneFolder) {
+  const TemporaryFolder folder;
+  const fs::path a = copy_of(folder, "gamma-0.9", 22), b = copy_of(folder, "gamma-1.6", 22);
+  const Ran wrong = run_program({"new", a, b, "-o", folder / "CELL.toml"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.err.find("2 stacks"), std::string::npos) << wrong.err;
+  const nlohmann::json d =
+      run_json({"new", a, b, "-o", folder / "cells", "--sigma-mm", "2", "--frequency-hz", "11.15"});
+  ASSERT_EQ(d["cells"].size(), 2U);
+  // 2 mm and 11.15 Hz are omega = 1.0003 /t0: Gamma is A omega^2.
+  EXPECT_NEAR(read_cell(folder / "cells/copy-of-gamma-0.9.toml").drive()->gamma(), 0.9, 0.003);
+  EXPECT_NEAR(read_cell(folder / "cells/copy-of-gamma-1.6.toml").drive()->gamma(), 1.6, 0.003);
+}
+
+TEST(New, OneFrameGivesBeadsWallsAndSaysThatTheMotionIsMissing) {
+  const TemporaryFolder folder;
+  const fs::path cell = folder / "CELL.toml";
+  const nlohmann::json d = without(copy_of(folder, "gamma-0.9", 1), cell, "the plate's motion", "1");
+  EXPECT_TRUE(d["measured"].contains("camera.pixels_per_sigma")) << d.dump(1);
+  EXPECT_TRUE(d["measured"].contains("cell.width_sigma"));
+  EXPECT_NE(text_of(cell).find("frames_per_cycle = \"FILL IN"), std::string::npos) << text_of(cell);
+  EXPECT_NE(text_of(cell).find("origin_px = \"FILL IN"), std::string::npos);
+}
+
+TEST(New, AFrameOfAnotherSizeEndsTheStackThere) {
+  const TemporaryFolder folder;
+  const fs::path stack = copy_of(folder, "gamma-0.9", 30, [](const cv::Mat& frame, int f) {
+    return f == 25 ? frame(cv::Rect(0, 0, 100, 100)).clone() : frame;
+  });
+  const Ran ran = run_program({"new", stack, "-o", folder / "CELL.toml", "--gamma", "0.9"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.err.find("only the first 25 frames are used"), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("frame_00025.png"), std::string::npos) << ran.err;
+  EXPECT_NEAR(read_cell(folder / "CELL.toml").drive()->amplitude, 0.9, 0.003);
+}
+
+TEST(New, AStackWithoutBeadsGivesWallsAndPlate) {
+  const TemporaryFolder folder;
+  // The cell as it would be empty: light everywhere above the plate and between the walls.
+  const fs::path stack = copy_of(folder, "gamma-0.9", 22, [](const cv::Mat& frame, int f) {
+    cv::Mat empty(frame.size(), CV_8U, cv::Scalar(20));
+    const double plate = 186.2 - 10.8 * std::sin(2 * M_PI * f / 20);
+    for (int r = 0; r < empty.rows; ++r)
+      for (int c = 20; c < 140; ++c)
+        empty.at<unsigned char>(r, c) =
+            static_cast<unsigned char>(20 + 190 * std::clamp(plate - r, 0.0, 1.0));
+    cv::GaussianBlur(empty, empty, {}, 0.8);
+    return empty;
+  });
+  const nlohmann::json d = without(stack, folder / "CELL.toml", "the bead diameter", "no round beads");
+  EXPECT_TRUE(d["measured"].contains("camera.origin_px")) << d.dump(1);
+  EXPECT_EQ(d["frames_per_cycle"], 20);
+  EXPECT_NE(text_of(folder / "CELL.toml").find("pixels_per_sigma = \"FILL IN"), std::string::npos);
+}
+
+TEST(New, WithoutThePlateInThePictureItsKeysAreLeftOpen) {
+  const TemporaryFolder folder;
+  // Above the highest position of the plate: only beads and walls are in the picture.
+  const fs::path stack = copy_of(folder, "gamma-1.6", 30, [](const cv::Mat& frame, int) {
+    return frame(cv::Rect(0, 0, frame.cols, 205)).clone();
+  });
+  const nlohmann::json d = without(stack, folder / "CELL.toml", "the plate", "");
+  EXPECT_TRUE(d["measured"].contains("cell.width_sigma")) << d.dump(1);
+  EXPECT_TRUE(d["measured"].contains("camera.pixels_per_sigma"));
+  EXPECT_FALSE(d["measured"].contains("camera.origin_px")) << d.dump(1);
+}
+
+TEST(New, AMissingStackIsAnError) {
+  const TemporaryFolder folder;
+  const Ran ran = run_program({"new", folder / "none", "-o", folder / "CELL.toml"});
+  EXPECT_EQ(ran.code, 3);
+  EXPECT_NE(ran.err.find("none"), std::string::npos);
+  EXPECT_TRUE(names_in(folder.path()).empty());
+}
+
+}  // namespace
+}  // namespace twincell

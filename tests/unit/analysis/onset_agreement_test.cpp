@@ -1,0 +1,54 @@
+// Sentences on onsets of both sides.
+#include "analysis/runs/onset_agreement.hpp"
+
+#include <gtest/gtest.h>
+
+namespace twincell {
+namespace {
+
+PhaseBoundary onset(Side side, std::optional<double> below, std::optional<double> above, double n_l = 10) {
+  return {
+      .side = side, .onset = BedPhase::convecting, .n_l = n_l, .n_runs = 3, .below = below, .above = above};
+}
+
+TEST(OnsetAgreement, IntervalsWithACommonPointAreCompatible) {
+  const PhaseBoundary e = onset(Side::experiment, 1.6, 2.5);
+  EXPECT_EQ(agreement_of(e, onset(Side::simulation, 2.5, 3)), OnsetAgreement::compatible);
+  EXPECT_EQ(agreement_of(e, onset(Side::simulation, 2.51, 3)), OnsetAgreement::different);
+  EXPECT_EQ(agreement_of(e, onset(Side::simulation, 1, 1.59)), OnsetAgreement::different);
+  EXPECT_EQ(agreement_of(e, onset(Side::simulation, 2, {})), OnsetAgreement::compatible);
+  EXPECT_EQ(agreement_of(e, onset(Side::simulation, 2.6, {})), OnsetAgreement::different);
+  EXPECT_EQ(agreement_of(e, onset(Side::simulation, {}, 1.5)), OnsetAgreement::different);
+  EXPECT_EQ(agreement_of(e, onset(Side::simulation, {}, {})), OnsetAgreement::unknown);
+}
+
+TEST(OnsetAgreement, TheSentenceStatesBothIntervals) {
+  EXPECT_EQ(
+      onset_sentences({onset(Side::experiment, 1.6, 2.5), onset(Side::simulation, 2.6, {})}),
+      "Onset of convecting: Gamma 2.05 ± 0.45 in the experiment and above 2.6 in the simulation, different.");
+}
+
+TEST(OnsetAgreement, LimitsOnTheSameSideAgreeOnNothing) {
+  PhaseBoundary twins = onset(Side::simulation, 1.6, {});
+  twins.start = "trajectory";
+  EXPECT_EQ(onset_sentences({onset(Side::experiment, 1.6, {}), twins}),
+            "Onset of convecting: Gamma above 1.6 in the experiment and above 1.6 in the twins, not "
+            "bracketed on either side.");
+}
+
+TEST(OnsetAgreement, BedsOfOtherHeightsAreNotCompared) {
+  EXPECT_EQ(onset_sentences({onset(Side::experiment, 1.6, 2.5), onset(Side::simulation, 2.6, 3, 20)}), "");
+}
+
+TEST(OnsetAgreement, ASweepIsUsedWithoutTwins) {
+  PhaseBoundary sweep = onset(Side::simulation, 2, 2.2);
+  sweep.sweep = true;
+  EXPECT_NE(onset_sentences({onset(Side::experiment, 1.6, 2.5), sweep}).find("in the sweep, compatible"),
+            std::string::npos);
+  EXPECT_EQ(onset_sentences({onset(Side::experiment, 1.6, 2.5), sweep, onset(Side::simulation, 2.6, 3)})
+                .find("sweep"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace twincell

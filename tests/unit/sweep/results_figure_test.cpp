@@ -1,0 +1,48 @@
+// Figures of collected results, written by hand in the format of `sweep collect`.
+#include "sweep/results_figure.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/error.hpp"
+#include "tests/support/complaint.hpp"
+
+namespace twincell::sweep {
+namespace {
+
+const std::string kGrid = R"({"points": [
+  {"axes": {"beads.layers": 10, "drive.gamma": 1.5, "start.seed": 1}, "results": {"s_b": {"value": 0.3, "interval": {"low": 0.2, "high": 0.4}}}},
+  {"axes": {"beads.layers": 10, "drive.gamma": 1.5, "start.seed": 2}, "results": {"s_b": {"value": 0.5, "interval": {"low": 0.4, "high": 0.6}}}},
+  {"axes": {"beads.layers": 20, "drive.gamma": 2.5}, "results": {"s_b": {"value": 0.9, "interval": {"low": 0.8, "high": 1.0}}}},
+  {"axes": {"beads.layers": 20, "drive.gamma": 2.0}, "results": {"s_b": {"value": 0.7}, "phase": {"value": "bouncing"}}}],
+ "pooled": [{"axes": {"beads.layers": 10, "drive.gamma": 1.5}, "runs": 2,
+             "results": {"s_b": {"value": 0.4, "interval": {"low": 0.25, "high": 0.55}}}}]})";
+
+TEST(ResultsFigure, SeedsArePooledAndCurvesAreSortedAlongTheAxis) {
+  const Figure f = results_figure(kGrid, {.result = "s_b", .over = {"drive.gamma", "beads.layers"}});
+  // One point of two seeds with its interval, then the curve of the other height: lines, then points.
+  EXPECT_EQ(f.data,
+            "1.5 0.4 0.25 0.55\n\n\n2 0.7 0.7 0.7\n2.5 0.9 0.8 1\n\n\n2 0.7 0.7 0.7\n2.5 0.9 0.8 1\n");
+  EXPECT_NE(f.plot.find("beads.layers = 10"), std::string::npos);
+  EXPECT_NE(f.plot.find("beads.layers = 20"), std::string::npos);
+  EXPECT_EQ(f.title, "s_b against drive.gamma");
+}
+
+TEST(ResultsFigure, OnsetsAreTheDefaultAndLimitsAreTriangles) {
+  const Figure f = results_figure(R"({"points": [], "onsets": [
+    {"axes": {"beads.layers": 20}, "key": "drive.gamma", "verdict": "convecting", "value": 2.1, "low": 2.0, "high": 2.3},
+    {"axes": {"beads.layers": 10}, "key": "drive.gamma", "verdict": "convecting", "value": null, "low": 2.9, "high": null}]})");
+  EXPECT_EQ(f.data, "20 2.1 2 2.3\n\n\n10 2.9\n");
+  EXPECT_NE(f.plot.find("with points pt 9"), std::string::npos);  // a triangle that points up
+  EXPECT_EQ(f.title, "drive.gamma at the onset of convecting against beads.layers");
+}
+
+TEST(ResultsFigure, WrongNamesAreRefusedWithTheRightOnes) {
+  expect_refusal<ConfigError>([] { (void)results_figure(kGrid, {.result = "s_d"}); }, "s_d", "s_b");
+  expect_refusal<ConfigError>([] { (void)results_figure(kGrid, {.result = "s_b", .over = {"gamma"}}); },
+                              "gamma", "drive.gamma");
+  expect_refusal<ConfigError>([] { (void)results_figure(kGrid, {.result = "phase"}); }, "phase");
+  expect_refusal<InputError>([] { (void)results_figure(R"({"points": []})"); }, "no scalar result");
+}
+
+}  // namespace
+}  // namespace twincell::sweep

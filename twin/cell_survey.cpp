@@ -1,0 +1,187 @@
+#include "twin/cell_survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/median.hpp"
+#include "imaging/settings/configure_locator.hpp"
+#include "imaging/stack/open_frames.hpp"
+
+namespace twincell {
+namespace {
+
+/// The frames of a stack up to the first one that cannot be read.
+class ReadableFrames : public FrameSource {
+ public:
+  explicit ReadableFrames(const std::filesystem::path& stack) : all_(open_frames(stack)) {}
+  bool next(cv::Mat& frame) override {
+    if (!unreadable_.empty()) return false;
+    try {
+      if (!all_->next(frame)) return false;
+    } catch (const InputError& e) {
+      if (read_ == 0) throw;
+      unreadable_ = e.what();
+      return false;
+    }
+    ++read_;
+    return true;
+  }
+  [[nodiscard]] std::size_t announced() const override { return all_->announced(); }
+  [[nodiscard]] std::string current() const override { return all_->current(); }
+  [[nodiscard]] StackInfo info() const override { return all_->info(); }
+  [[nodiscard]] std::optional<double> time_s() const override { return all_->time_s(); }
+  [[nodiscard]] const std::string& unreadable() const { return unreadable_; }
+  [[nodiscard]] std::size_t read() const { return read_; }
+
+ private:
+  std::unique_ptr<FrameSource> all_;
+  std::string unreadable_;
+  std::size_t read_ = 0;
+};
+
+/// Bead size and polarity from the first frames; sizes in a dozen frames.
+void survey_beads(CellSurvey& s, const SurveyOptions& options, const ProgressOf& progress) {
+  constexpr int kFrames = 12;
+  const char* remedy = "give the bead diameter in px with --diameter";
+  LocatorOptions given;
+  given.diameter_px = options.diameter_px;
+  given.polarity_known = false;
+  LocatorOptions found;
+  {
+    ReadableFrames frames(s.stack);
+    FramesAhead ahead(frames);
+    const auto bar = progress("bead size");
+    bar->update(0, 1);
+    if (const cv::Mat* first = ahead.look(0)) s.picture = first->clone();
+    s.size = s.picture.size();
+    s.info = frames.info();
+    try {
+      const LocatorConfiguration c = configure_locator(ahead, given);
+      found = c.locator;
+      s.frame = static_cast<std::size_t>(c.frame);
+      s.picture = ahead.look(s.frame)->clone();
+      s.discs = locate(s.picture, found).beads;
+    } catch (const InputError&) {
+      s.missing.push_back({"the bead diameter", "no round beads stand out in the first frames", remedy});
+      return;
+    }
+    bar->update(1, 1);
+  }
+  // A single blob is no bed: an evenly lit cell looks like one large disc.
+  constexpr std::size_t kFewest = 3;
+  if (options.diameter_px <= 0 && s.discs.size() < kFewest) {
+    s.discs.clear();
+    s.missing.push_back({"the bead diameter", "no round beads stand out in the first frames", remedy});
+    return;
+  }
+  s.bright = found.preprocess.bright;
+  s.diameter_px = found.diameter_px;
+  s.other_diameters_px = found.other_diameters_px;
+  try {
+    ReadableFrames frames(s.stack);
+    const auto bar = progress("beads");
+    s.beads = count_beads(locate_beads(frames, found, std::nullopt, kFrames, options.threads, *bar));
+  } catch (const InputError& e) {
+    s.missing.push_back({"the bead diameter", fmt::format("too few beads are seen ({})", e.what()), remedy});
+  }
+}
+
+/// Whether a bead lies below the plate by more than a third of its diameter. The lowest edge is then no plate
+/// but the lower side of the bed or the picture's border.
+bool beads_below_plate(const CellSurvey& s) {
+  const auto& heights = s.geometry->heights;
+  if (s.frame >= heights.size() || !std::isfinite(heights[s.frame].height_px)) return false;
+  const double row = s.geometry->plate_row - heights[s.frame].height_px;
+  return std::any_of(s.discs.begin(), s.discs.end(),
+                     [&](const Detection& d) { return d.y + d.radius > row + 2 * d.radius / 3; });
+}
+
+/// The fitted motion, if the lowest edge moves as a plate does.
+void survey_plate(CellSurvey& s) {
+  constexpr double kSeen = 0.9;
+  const auto heights = s.geometry->heights_px();
+  const auto seen = std::count_if(heights.begin(), heights.end(), [](double h) { return std::isfinite(h); });
+  const auto unseen = [&](const std::string& why) {
+    s.missing.push_back(
+        {"the plate", why,
+         "state camera.origin_px and the drive by hand, or film with the plate's upper edge and a "
+         "dark plate below it in the picture"});
+    s.geometry->has_plate = false;
+  };
+  if (!s.geometry->has_plate || seen == 0)
+    return unseen("no edge of a plate is seen at the bottom of the picture");
+  if (static_cast<double>(seen) < kSeen * static_cast<double>(heights.size()))
+    return unseen(fmt::format("its edge is seen in only {} of {} frames", seen, heights.size()));
+  if (beads_below_plate(s)) return unseen("beads are seen below the lowest edge, so this edge is no plate");
+  s.plate_row = Estimate{s.geometry->plate_row, s.geometry->plate_row_error};
+  try {
+    s.drive = fit_drive(heights, {.frames_per_cycle = 0, .mend = true, .model_error = kHeightModelError_px});
+  } catch (const InputError& e) {
+    s.missing.push_back({"the plate's motion", e.what(),
+                         "give at least one whole cycle of frames, or state the drive by hand"});
+    // Without a cycle, the row is the mean height only if the plate does not move.
+    const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+    if (heights.size() < 2 || !(*high - *low < 1)) s.plate_row.reset();
+    return;
+  }
+  s.plate_row = Estimate{s.geometry->plate_row - s.drive->z0,
+                         std::hypot(s.drive->z0_error, s.geometry->plate_row_error_of_map)};
+  s.drive->amplitude_error =
+      std::hypot(s.drive->amplitude_error, s.drive->amplitude * s.geometry->stretch_error);
+  s.notes.insert(s.notes.end(), s.drive->notes.begin(), s.drive->notes.end());
+  if (s.drive->frames_per_cycle == 0)
+    s.missing.push_back(
+        {"the number of frames per cycle",
+         fmt::format("the period of {:.6g} +- {:.1g} frames is not a whole number over the stack",
+                     s.drive->period, s.drive->period_error),
+         "calibrate plate --phases LIST.csv writes the phase of each frame, for track --phase-lock "
+         "LIST.csv"});
+}
+
+void survey_edges(CellSurvey& s, const SurveyOptions& options, const ProgressOf& progress) {
+  const double diameter = diameter_for_edges(s.stack, s.bright, s.diameter_px);
+  ReadableFrames frames(s.stack);
+  const auto bar = progress("edges of walls and plate");
+  const StackEdges edges = read_stack_edges(frames, s.bright, diameter, options.threads, *bar);
+  s.n_frames = frames.read();
+  s.unreadable = frames.unreadable();
+  const bool video = s.info.format.starts_with("video");
+  if (const auto rate = frame_rate_of({}, edges, s.stack))
+    (video && edges.time_s.empty() ? s.playback_hz : s.frame_rate_hz) = rate;
+  else if (s.info.frame_rate_hz)
+    (video ? s.playback_hz : s.frame_rate_hz) = s.info.frame_rate_hz;
+  try {
+    s.geometry = fit_cell_geometry(edges);
+  } catch (const InputError&) {
+    s.missing.push_back({"the walls and the plate", "no edge of the cell is seen in the picture",
+                         "state camera.origin_px, cell.width and the drive by hand"});
+    return;
+  }
+  survey_plate(s);
+  if (!s.has_walls())
+    s.missing.push_back(
+        {s.geometry->has_left    ? "the right wall"
+         : s.geometry->has_right ? "the left wall"
+                                 : "the side walls",
+         "a wall needs a dark border of 3 px at the side of the picture with light next to it",
+         "state cell.width and camera.origin_px by hand, or cell.sides = \"periodic\""});
+}
+
+}  // namespace
+
+CellSurvey survey_cell(const std::filesystem::path& stack, const SurveyOptions& options,
+                       const ProgressOf& progress) {
+  CellSurvey s{.stack = stack};
+  survey_beads(s, options, progress);
+  survey_edges(s, options, progress);
+  s.notes.insert(s.notes.begin(), s.info.notes.begin(), s.info.notes.end());
+  if (!s.unreadable.empty())
+    s.notes.insert(s.notes.begin(),
+                   fmt::format("only the first {} frames are used: {}", s.n_frames, s.unreadable));
+  return s;
+}
+
+}  // namespace twincell
