@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -79,60 +79,73 @@ void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text
   }
 }
 
-void run(const CameraCalibration& o, const Common& common) {
-  CellDescription cell = cell_of(o.flags);
-  CalibrationResult out;
-  nlohmann::json& d = out.document;
-  d["stack"] = o.flags.stack;
-  StackEdges edges;
-  const CellGeometry g = geometry_of(o.flags, cell, common, edges);
-  const std::string data = data_hash(o.flags.stack);
+/// The geometry of the cell, and what else the results of this kind are computed from.
+struct Measured {
+  const CameraCalibration& options;
+  const CellDescription& cell;
+  const CellGeometry& geometry;
+  std::string data;                      // hash of the stack
+  std::optional<SizeStatistics> census;  // of the beads; absent if none are found
+  std::optional<Estimate> by_walls;      // pixels per sigma; absent if a wall or their distance is unknown
+};
 
-  // Scale from the beads, located in the picture after correction of rotation and distortion.
+/// Sizes of the beads, located in the picture after correction of rotation and distortion.
+std::optional<SizeStatistics> census_of(const CameraCalibration& o, const CellDescription& cell,
+                                        const CellGeometry& g, const Common& common,
+                                        std::vector<std::string>& notes) {
   LocatorOptions locator;
   locator.preprocess.bright = o.flags.bright || cell.bright;
   locator.diameter_px = o.flags.diameter_px > 0 ? o.flags.diameter_px : cell.pixels_per_sigma.value_or(0);
   std::optional<Lens> lens;
   if (g.rotation_deg != 0 || g.distortion != 0) lens = Lens(g.size, g.rotation_deg, g.distortion);
-  std::optional<SizeStatistics> census;
   try {
     const auto frames = open_stack(o.flags.stack, common);
     ProgressBar bar(common, "beads");
-    census = count_beads(locate_beads(*frames, locator, lens, o.frames, common.n_threads(), bar));
+    return count_beads(locate_beads(*frames, locator, lens, o.frames, common.n_threads(), bar));
   } catch (const InputError& e) {
-    out.notes.push_back(fmt::format("no scale from the beads: {}", e.what()));
+    notes.push_back(fmt::format("no scale from the beads: {}", e.what()));
+    return std::nullopt;
   }
-  // Scale: from the walls if their distance is known, otherwise from the diameter of the beads.
-  const bool walls = g.has_left && g.has_right;
-  std::optional<Estimate> by_walls;
-  if (walls && cell.width) {
-    double e = g.width_error_px() / *cell.width;
-    if (const auto m = calibrated(cell, "cell.width"))
-      e = std::hypot(e, g.width_px() / *cell.width * m->standard_error[0] / *cell.width);
-    by_walls = Estimate{g.width_px() / *cell.width, e};
-  }
-  std::optional<Estimate> scale = by_walls;
-  std::string method = kScaleByWalls;
-  if (!scale && census) {
-    scale = census->diameter;
-    method = fmt::format("mean diameter of {} discs in {} frames", census->sizes, census->frames);
-  }
-  if (!scale)
-    throw InputError({.file = o.flags.stack, .key = {}},
-                     "gives no scale: no beads are found, and cell.width or a side wall is missing.");
+}
 
+/// Pixels per sigma from the distance of the walls over the known width of the cell.
+std::optional<Estimate> scale_by_walls(const CellDescription& cell, const CellGeometry& g) {
+  if (!g.has_left || !g.has_right || !cell.width) return std::nullopt;
+  double e = g.width_error_px() / *cell.width;
+  if (const auto m = calibrated(cell, "cell.width"))
+    e = std::hypot(e, g.width_px() / *cell.width * m->standard_error[0] / *cell.width);
+  return Estimate{g.width_px() / *cell.width, e};
+}
+
+struct Scale {
+  Estimate pixels_per_sigma;
+  std::string method;
+};
+
+/// The scale from the walls if their distance is known, otherwise from the diameter of the beads.
+Scale scale_of(const Measured& m) {
+  if (m.by_walls) return {*m.by_walls, kScaleByWalls};
+  if (m.census)
+    return {m.census->diameter,
+            fmt::format("mean diameter of {} discs in {} frames", m.census->sizes, m.census->frames)};
+  throw InputError({.file = m.options.flags.stack, .key = {}},
+                   "gives no scale: no beads are found, and cell.width or a side wall is missing.");
+}
+
+/// Adds scale, origin, rotation and distortion.
+void add_quantities(CalibrationResult& out, const Measured& m, const Scale& scale, const Estimate& row) {
+  const CellGeometry& g = m.geometry;
   const auto add = [&](const std::string& name, std::vector<double> value, std::vector<double> error,
                        const std::string& how) {
     out.measured.push_back({.name = name,
                             .value = std::move(value),
                             .standard_error = std::move(error),
                             .method = how,
-                            .data = data});
+                            .data = m.data});
   };
-  // Quantities: scale, origin, rotation and distortion.
-  add("camera.pixels_per_sigma", {scale->value}, {scale->error}, method);
-  const Estimate row = mean_row(g);
   const auto err = [&](const char* name) { return g.fit.standard_error(name); };
+  add("camera.pixels_per_sigma", {scale.pixels_per_sigma.value}, {scale.pixels_per_sigma.error},
+      scale.method);
   if (g.has_left && g.has_plate)
     add("camera.origin_px", {g.fit.value("x_left"), row.value}, {err("x_left"), row.error},
         "foot of the left wall and mean height of the plate, picture without turn and distortion");
@@ -144,82 +157,113 @@ void run(const CameraCalibration& o, const Common& common) {
     add("camera.distortion", {g.distortion}, {*g.distortion_error},
         g.distortion != 0 ? "bend of walls and plate"
                           : "bend of walls and plate: less than three standard errors, taken as 0");
-  if (g.has_left && g.has_plate && g.fit.covariance.size() > 0) {
-    // Covariance of the stored quantities. The rows of `map` lead from the parameters of the fit to these
-    // quantities.
-    const auto place = [&](const char* name) {
-      return std::find(g.fit.names.begin(), g.fit.names.end(), name) - g.fit.names.begin();
-    };
-    const auto n = static_cast<Eigen::Index>(g.fit.names.size());
-    Eigen::MatrixXd map = Eigen::MatrixXd::Zero(5, n);
-    if (by_walls) {
-      map(0, place("x_right")) = 1 / *cell.width;
-      map(0, place("x_left")) = -1 / *cell.width;
-    }
-    map(1, place("x_left")) = 1;
-    map(3, place("rotation")) = 1;
-    if (g.distortion != 0) map(4, place("distortion")) = 1;
-    Eigen::MatrixXd c = map * g.fit.covariance * map.transpose();
-    c(0, 0) = scale->error * scale->error;
-    c(2, 2) = row.error * row.error;
-    MeasuredCovariance stored{
-        .names = {"pixels_per_sigma", "origin_x_px", "origin_y_px", "rotation_deg", "distortion"},
-        .matrix = {}};
-    for (Eigen::Index r = 0; r < 5; ++r)
-      for (Eigen::Index k = 0; k < 5; ++k) stored.matrix.push_back(std::isfinite(c(r, k)) ? c(r, k) : 0);
-    d["covariance"] = {{"names", stored.names}, {"matrix", stored.matrix}};
-    out.camera = std::move(stored);
+}
+
+/// Adds the covariance of the stored quantities. The rows of `map` lead from the parameters of the fit to
+/// these quantities.
+void add_covariance(CalibrationResult& out, const Measured& m, const Scale& scale, const Estimate& row) {
+  const CellGeometry& g = m.geometry;
+  if (!g.has_left || !g.has_plate || g.fit.covariance.size() == 0) return;
+  const auto place = [&](const char* name) {
+    return std::find(g.fit.names.begin(), g.fit.names.end(), name) - g.fit.names.begin();
+  };
+  const auto n = static_cast<Eigen::Index>(g.fit.names.size());
+  Eigen::MatrixXd map = Eigen::MatrixXd::Zero(5, n);
+  if (m.by_walls) {
+    map(0, place("x_right")) = 1 / *m.cell.width;
+    map(0, place("x_left")) = -1 / *m.cell.width;
   }
-  // Comparison of the scales, printed only.
+  map(1, place("x_left")) = 1;
+  map(3, place("rotation")) = 1;
+  if (g.distortion != 0) map(4, place("distortion")) = 1;
+  Eigen::MatrixXd c = map * g.fit.covariance * map.transpose();
+  c(0, 0) = scale.pixels_per_sigma.error * scale.pixels_per_sigma.error;
+  c(2, 2) = row.error * row.error;
+  MeasuredCovariance stored{
+      .names = {"pixels_per_sigma", "origin_x_px", "origin_y_px", "rotation_deg", "distortion"},
+      .matrix = {}};
+  for (Eigen::Index r = 0; r < 5; ++r)
+    for (Eigen::Index k = 0; k < 5; ++k) stored.matrix.push_back(std::isfinite(c(r, k)) ? c(r, k) : 0);
+  out.document["covariance"] = {{"names", stored.names}, {"matrix", stored.matrix}};
+  out.camera = std::move(stored);
+}
+
+/// Perspective: only walls and beads together distinguish a tilted camera from tilted walls.
+void report_perspective(CalibrationResult& out, const SizeStatistics& census, cv::Size size) {
+  constexpr double kSure = 4, kWorthSaying = 2e-3;
+  const double change_x = census.gradient_x.value * size.width,
+               error_x = census.gradient_x.error * size.width,
+               change_y = census.gradient_y.value * size.height,
+               error_y = census.gradient_y.error * size.height;
+  out.document["perspective"] = {
+      {"across", {{"value", finite(change_x)}, {"standard_error", finite(error_x)}}},
+      {"downwards", {{"value", finite(change_y)}, {"standard_error", finite(error_y)}}}};
+  out.text += fmt::format(
+      "  beads grow by {:.2f} +- {:.2f} % from left to right, by {:.2f} +- {:.2f} % from top to bottom\n",
+      100 * change_x, 100 * error_x, 100 * change_y, 100 * error_y);
+  const auto seen = [&](double change, double error) {
+    return std::abs(change) > kSure * error && std::abs(change) > kWorthSaying;
+  };
+  if (seen(change_x, error_x) || seen(change_y, error_y))
+    out.notes.push_back(fmt::format(
+        "the camera is tilted, or the beads are sorted by size: they grow by {:.1f} % from left to right "
+        "and by {:.1f} % from top to bottom. Perspective is not modelled: scale and tilts of the walls are "
+        "means over the picture; a --target distinguishes the two cases",
+        100 * change_x, 100 * change_y));
+}
+
+/// Comparison of the scales, printed only.
+void report_scales(CalibrationResult& out, const Measured& m) {
+  nlohmann::json& d = out.document;
   const auto scale_line = [&](const char* what, const Estimate& e) {
     d["scales"][what] = {{"value", e.value}, {"standard_error", finite(e.error)}};
     out.text += fmt::format("  {:<10} {:.5f} +- {:.5f}\n", what, e.value, e.error);
   };
   out.text = "pixels per sigma\n";
-  if (by_walls) scale_line("walls", *by_walls);
-  if (census) {
-    scale_line("diameter", census->diameter);
-    if (census->spacing) scale_line("spacing", *census->spacing);
+  if (m.by_walls) scale_line("walls", *m.by_walls);
+  if (m.census) {
+    scale_line("diameter", m.census->diameter);
+    if (m.census->spacing) scale_line("spacing", *m.census->spacing);
+    report_perspective(out, *m.census, m.geometry.size);
   }
-  if (census) {
-    // Perspective: only walls and beads together distinguish a tilted camera from tilted walls.
-    constexpr double kSure = 4, kWorthSaying = 2e-3;
-    const double change_x = census->gradient_x.value * g.size.width,
-                 error_x = census->gradient_x.error * g.size.width,
-                 change_y = census->gradient_y.value * g.size.height,
-                 error_y = census->gradient_y.error * g.size.height;
-    d["perspective"] = {{"across", {{"value", finite(change_x)}, {"standard_error", finite(error_x)}}},
-                        {"downwards", {{"value", finite(change_y)}, {"standard_error", finite(error_y)}}}};
-    out.text += fmt::format(
-        "  beads grow by {:.2f} +- {:.2f} % from left to right, by {:.2f} +- {:.2f} % from top to bottom\n",
-        100 * change_x, 100 * error_x, 100 * change_y, 100 * error_y);
-    const auto seen = [&](double change, double error) {
-      return std::abs(change) > kSure * error && std::abs(change) > kWorthSaying;
-    };
-    if (seen(change_x, error_x) || seen(change_y, error_y))
-      out.notes.push_back(fmt::format(
-          "the camera is tilted, or the beads are sorted by size: they grow by {:.1f} % from left to right "
-          "and by {:.1f} % from top to bottom. Perspective is not modelled: scale and tilts of the walls are "
-          "means over the picture; a --target distinguishes the two cases",
-          100 * change_x, 100 * change_y));
-  }
-  if (by_walls && census) {
-    const double apart =
-        (census->diameter.value - by_walls->value) / std::hypot(census->diameter.error, by_walls->error);
+  if (m.by_walls && m.census) {
+    const Estimate &beads = m.census->diameter, &walls = *m.by_walls;
+    const double apart = (beads.value - walls.value) / std::hypot(beads.error, walls.error);
     d["scales"]["standard_errors_apart"] = finite(apart);
     out.text += fmt::format("  walls and diameters are {:.1f} standard errors apart\n", std::abs(apart));
   }
+}
+
+/// Distortion as fitted, residuals of the edges, blur.
+void report_edges(CalibrationResult& out, const CellGeometry& g) {
   if (g.distortion_found)
     out.text += fmt::format("distortion k1 = {:.2g} +- {:.1g}{}\n", *g.distortion_found, *g.distortion_error,
                             g.distortion == 0 ? ": not significant" : "");
   double squares = 0;
   for (const EdgeResidual& r : g.residuals) squares += r.distance_px * r.distance_px;
   const double rms = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, g.residuals.size())));
-  d["residuals"] = {{"points", g.residuals.size()}, {"rms_px", rms}};
-  d["blur_px"] = g.blur_px;
+  out.document["residuals"] = {{"points", g.residuals.size()}, {"rms_px", rms}};
+  out.document["blur_px"] = g.blur_px;
   out.text += fmt::format("{} points on walls and plate, rms {:.3f} px; blur {:.2f} px\n", g.residuals.size(),
                           rms, g.blur_px);
-  if (!o.target.empty()) add_target(o, d, out.text);
+}
+
+void run(const CameraCalibration& o, const Common& common) {
+  const CellDescription cell = cell_of(o.flags);
+  CalibrationResult out;
+  out.document["stack"] = o.flags.stack;
+  StackEdges edges;
+  const CellGeometry g = geometry_of(o.flags, cell, common, edges);
+  Measured m{o, cell, g, data_hash(o.flags.stack), {}, {}};
+  m.census = census_of(o, cell, g, common, out.notes);
+  m.by_walls = scale_by_walls(cell, g);
+  const Scale scale = scale_of(m);
+  const Estimate row = mean_row(g);
+  add_quantities(out, m, scale, row);
+  add_covariance(out, m, scale, row);
+  report_scales(out, m);
+  report_edges(out, g);
+  if (!o.target.empty()) add_target(o, out.document, out.text);
   out.figures = {edge_map_figure(g)};
   finish_calibration(o.flags, common, std::move(out));
 }

@@ -62,22 +62,38 @@ DriveFit lock_of(const PlateOptions& o, const CellDescription& cell, const CellG
   }
 }
 
-void run(const PlateOptions& o, const Common& common) {
-  const CellDescription cell = cell_of(o.flags);
-  const std::optional<VibrationTable> vibration =
-      o.accelerometer.empty() ? std::nullopt : std::optional(read_vibration(o.accelerometer));
-  StackEdges edges;
-  const CellGeometry g = geometry_of(o.flags, cell, common, edges);
-  DriveFit lock = lock_of(o, cell, g);
-  lock.amplitude_error = std::hypot(lock.amplitude_error, lock.amplitude * g.stretch_error);
-  const auto scale = scale_of(cell, g);
-  const std::string data = data_hash(o.flags.stack);
+/// What the results of this kind are computed from.
+struct Measured {
+  const PlateOptions& options;
+  const CellDescription& cell;
+  const CellGeometry& geometry;
+  DriveFit lock;
+  std::optional<KnownNumber> scale;  // pixels per sigma
+  std::optional<double> rate;        // frames per second
+  std::string data;                  // hash of the stack
 
-  CalibrationResult out;
-  out.notes = lock.notes;
+  [[nodiscard]] double frequency_hz() const { return lock.omega / (2 * M_PI) * *rate; }
+  [[nodiscard]] double frequency_error_hz() const { return lock.omega_error / (2 * M_PI) * *rate; }
+};
+
+/// Frames per second; a note where the stack contradicts the rate that was stated.
+std::optional<double> rate_of(const PlateOptions& o, const CellDescription& cell, const StackEdges& edges,
+                              std::vector<std::string>& notes) {
+  const std::optional<double> stated = o.frame_rate_hz ? o.frame_rate_hz : cell.frame_rate_hz;
+  if (stated)
+    if (const auto seen = frame_rate_of({}, edges, o.flags.stack);
+        seen && std::abs(*seen / *stated - 1) > kSameRate)
+      notes.push_back(fmt::format(
+          "the stack states {:.7g} frames per second, but the given rate of {:.7g} is used", *seen, *stated));
+  return frame_rate_of(stated, edges, o.flags.stack);
+}
+
+/// Adds the quantities of camera and drive.
+void add_quantities(CalibrationResult& out, const Measured& m) {
+  const DriveFit& lock = m.lock;
   const auto add = [&](const std::string& name, double value, double error, const std::string& method) {
     out.measured.push_back(
-        {.name = name, .value = {value}, .standard_error = {error}, .method = method, .data = data});
+        {.name = name, .value = {value}, .standard_error = {error}, .method = method, .data = m.data});
   };
   const std::string harmonic = fmt::format("harmonic fit to the plate's edge in {} frames", lock.locked);
   if (lock.frames_per_cycle > 0) {
@@ -88,39 +104,36 @@ void run(const PlateOptions& o, const Common& common) {
   add("camera.period", lock.period, lock.period_error, harmonic);
   if (lock.jitter)
     add("camera.jitter", *lock.jitter, lock.jitter_error, "scatter that grows with the plate's speed");
-  if (scale) {
-    const double a = lock.amplitude / scale->value;
+  if (m.scale) {
+    const double a = lock.amplitude / m.scale->value;
     add("drive.amplitude", a,
-        a * std::hypot(lock.amplitude_error / lock.amplitude, scale->error.value_or(0) / scale->value),
-        harmonic + ", scale: " + scale->from);
-    if (!scale->error)
-      out.notes.emplace_back("the error of drive.amplitude assumes that the cell's scale is exact");
-  } else {
+        a * std::hypot(lock.amplitude_error / lock.amplitude, m.scale->error.value_or(0) / m.scale->value),
+        harmonic + ", scale: " + m.scale->from);
+  }
+  // The frame interval in t0 converts the frames per cycle to omega.
+  if (const auto t0 = m.cell.scale.t0_s(); m.rate && t0)
+    add("drive.omega", lock.omega * *m.rate * *t0, lock.omega_error * *m.rate * *t0,
+        fmt::format("{}, {:.7g} frames per second", harmonic, *m.rate));
+  if (lock.second_harmonic)
+    add("drive.second_harmonic", *lock.second_harmonic, *lock.second_harmonic_error, harmonic);
+}
+
+/// What the scale leaves open.
+void note_scale(CalibrationResult& out, const Measured& m) {
+  if (!m.scale)
     out.notes.emplace_back(
         "no scale is known, so A is given only in px: state camera.pixels_per_sigma or cell.width in "
         "CELL.toml, or run calibrate camera first");
-  }
-  // The frame interval in t0 converts the frames per cycle to omega.
-  const std::optional<double> stated = o.frame_rate_hz ? o.frame_rate_hz : cell.frame_rate_hz;
-  const std::optional<double> rate = frame_rate_of(stated, edges, o.flags.stack);
-  if (stated)
-    if (const auto seen = frame_rate_of({}, edges, o.flags.stack);
-        seen && std::abs(*seen / *stated - 1) > kSameRate)
-      out.notes.push_back(fmt::format(
-          "the stack states {:.7g} frames per second, but the given rate of {:.7g} is used", *seen, *stated));
-  const auto t0 = cell.scale.t0_s();
-  if (rate && t0)
-    add("drive.omega", lock.omega * *rate * *t0, lock.omega_error * *rate * *t0,
-        fmt::format("{}, {:.7g} frames per second", harmonic, *rate));
-  if (lock.second_harmonic)
-    add("drive.second_harmonic", *lock.second_harmonic, *lock.second_harmonic_error, harmonic);
+  else if (!m.scale->error)
+    out.notes.emplace_back("the error of drive.amplitude assumes that the cell's scale is exact");
+}
 
-  // Results that only this kind has: the motion of the plate and the phase of each frame.
-  nlohmann::json& d = out.document;
-  d["stack"] = o.flags.stack;
+/// Adds what only this kind has to the document: the motion of the plate.
+void describe_motion(nlohmann::json& d, const Measured& m) {
+  const DriveFit& lock = m.lock;
   d["plate"] = {
       {"z0_px", lock.z0},
-      {"row_px", g.plate_row - lock.z0},
+      {"row_px", m.geometry.plate_row - lock.z0},
       {"amplitude_px", lock.amplitude},
       {"amplitude_error_px", lock.amplitude_error},
       {"omega_per_frame", lock.omega},
@@ -128,14 +141,18 @@ void run(const PlateOptions& o, const Common& common) {
       {"phi", lock.phi},
       {"phi_error", lock.phi_error},
       {"rms_residual_px", lock.rms},
-      {"blur_px", g.blur_px},
-      {"rotation_deg", g.rotation_deg},
+      {"blur_px", m.geometry.blur_px},
+      {"rotation_deg", m.geometry.rotation_deg},
       {"p_sinusoidal", lock.p_sinusoidal ? finite(*lock.p_sinusoidal) : nlohmann::json()},
       {"sinusoidal", lock.p_sinusoidal ? nlohmann::json(*lock.p_sinusoidal >= 0.01) : nlohmann::json()},
       {"jitter_limit_frames", lock.jitter_limit}};
-  if (rate)
-    d["plate"]["frequency_hz"] = {{"value", lock.omega / (2 * M_PI) * *rate},
-                                  {"standard_error", lock.omega_error / (2 * M_PI) * *rate}};
+  if (m.rate)
+    d["plate"]["frequency_hz"] = {{"value", m.frequency_hz()}, {"standard_error", m.frequency_error_hz()}};
+}
+
+/// Adds the phase of each frame to the document.
+void describe_frames(nlohmann::json& d, const Measured& m) {
+  const DriveFit& lock = m.lock;
   d["frames"] = {{"locked", lock.locked},
                  {"out_of_lock", lock.out_of_lock},
                  {"unseen", lock.unseen},
@@ -146,58 +163,88 @@ void run(const PlateOptions& o, const Common& common) {
     d["per_frame"].push_back({{"frame", f},
                               {"tick", lock.frames[f].tick},
                               {"phase", lock.frames[f].cycles - std::floor(lock.frames[f].cycles)},
-                              {"height_px", finite(g.heights[f].height_px)},
-                              {"error_px", finite(g.heights[f].sigma_px)},
+                              {"height_px", finite(m.geometry.heights[f].height_px)},
+                              {"error_px", finite(m.geometry.heights[f].sigma_px)},
                               {"residual_px", finite(lock.frames[f].residual)},
                               {"lock", kLocks[static_cast<std::size_t>(lock.frames[f].lock)]}});
+}
 
-  out.text =
-      fmt::format("A = {:.4f} +- {:.4f} px about row {:.3f}; rms residual {:.3f} px, edge blur {:.2f} px\n",
-                  lock.amplitude, lock.amplitude_error, g.plate_row - lock.z0, lock.rms, g.blur_px);
-  out.text += fmt::format("frames: {} locked, {} out of lock, {} without a plate, {} dropped, {} doubled\n",
-                          lock.locked, lock.out_of_lock, lock.unseen, lock.dropped, lock.doubled);
-  if (lock.out_of_lock > 0) out.text += "out of lock: " + list_of(lock, FrameLock::out_of_lock) + "\n";
-  if (!lock.jitter) out.text += fmt::format("jitter: below {:.2g} frames\n", lock.jitter_limit);
+/// The same as text.
+std::string text_of(const Measured& m) {
+  const DriveFit& lock = m.lock;
+  std::string text = fmt::format(
+      "A = {:.4f} +- {:.4f} px about row {:.3f}; rms residual {:.3f} px, edge blur {:.2f} px\n",
+      lock.amplitude, lock.amplitude_error, m.geometry.plate_row - lock.z0, lock.rms, m.geometry.blur_px);
+  text += fmt::format("frames: {} locked, {} out of lock, {} without a plate, {} dropped, {} doubled\n",
+                      lock.locked, lock.out_of_lock, lock.unseen, lock.dropped, lock.doubled);
+  if (lock.out_of_lock > 0) text += "out of lock: " + list_of(lock, FrameLock::out_of_lock) + "\n";
+  if (!lock.jitter) text += fmt::format("jitter: below {:.2g} frames\n", lock.jitter_limit);
   if (lock.p_sinusoidal)
-    out.text += fmt::format("second harmonic: {:.2g} +- {:.1g} of A, p = {:.2g} for a pure sine\n",
-                            *lock.second_harmonic, *lock.second_harmonic_error, *lock.p_sinusoidal);
+    text += fmt::format("second harmonic: {:.2g} +- {:.1g} of A, p = {:.2g} for a pure sine\n",
+                        *lock.second_harmonic, *lock.second_harmonic_error, *lock.p_sinusoidal);
+  return text;
+}
+
+/// A omega^2 from the picture next to that of the accelerometer. \pre scale and rate are known
+void compare_acceleration(CalibrationResult& out, const Measured& m, const VibrationFit& v) {
+  const double f = m.frequency_hz(), e = m.frequency_error_hz(), w = 2 * M_PI * f;
+  const double metres = m.lock.amplitude / m.scale->value * *m.cell.scale.sigma_m, seen = metres * w * w;
+  const double error =
+      seen * std::sqrt(std::pow(m.lock.amplitude_error / m.lock.amplitude, 2) +
+                       std::pow(m.scale->error.value_or(0) / m.scale->value, 2) + std::pow(2 * e / f, 2));
+  const double z = (seen - v.acceleration) / std::hypot(error, v.acceleration_error);
+  out.document["accelerometer"]["acceleration_difference"] = {{"m_s2", seen - v.acceleration},
+                                                              {"standard_errors", finite(z)}};
+  out.text += fmt::format("  A omega^2: camera {:.5g} +- {:.2g} m/s^2, {:.1f} standard errors apart\n", seen,
+                          error, z);
+}
+
+/// Comparison with the accelerometer: frequency, and A omega^2 if the scale is known.
+void compare_with(const VibrationTable& vibration, CalibrationResult& out, const Measured& m) {
+  const VibrationFit v = fit_vibration(vibration);
+  nlohmann::json& d = out.document["accelerometer"];
+  d = {{"frequency_hz", {{"value", v.frequency_hz}, {"standard_error", v.frequency_error}}},
+       {"acceleration", {{"value", v.acceleration}, {"standard_error", v.acceleration_error}}}};
+  out.text += fmt::format("accelerometer: {:.6g} +- {:.2g} Hz, amplitude {:.5g} +- {:.2g} m/s^2\n",
+                          v.frequency_hz, v.frequency_error, v.acceleration, v.acceleration_error);
+  if (!m.rate) {
+    out.notes.emplace_back("without a frame rate (--frame-rate-hz) the accelerometer cannot be compared");
+    return;
+  }
+  const double apart = m.frequency_hz() - v.frequency_hz;
+  const double z = apart / std::hypot(m.frequency_error_hz(), v.frequency_error);
+  d["frequency_difference"] = {{"hz", apart}, {"standard_errors", finite(z)}};
+  out.text +=
+      fmt::format("  frequency: camera - accelerometer = {:.2g} Hz, {:.1f} standard errors\n", apart, z);
+  if (m.scale && m.cell.scale.sigma_m) compare_acceleration(out, m, v);
+}
+
+void run(const PlateOptions& o, const Common& common) {
+  const CellDescription cell = cell_of(o.flags);
+  const std::optional<VibrationTable> vibration =
+      o.accelerometer.empty() ? std::nullopt : std::optional(read_vibration(o.accelerometer));
+  StackEdges edges;
+  const CellGeometry g = geometry_of(o.flags, cell, common, edges);
+  Measured m{o, cell, g, lock_of(o, cell, g), scale_of(cell, g), {}, data_hash(o.flags.stack)};
+  DriveFit& lock = m.lock;
+  lock.amplitude_error = std::hypot(lock.amplitude_error, lock.amplitude * g.stretch_error);
+
+  CalibrationResult out;
+  out.notes = lock.notes;
+  note_scale(out, m);
+  m.rate = rate_of(o, cell, edges, out.notes);
+  add_quantities(out, m);
+  out.document["stack"] = o.flags.stack;
+  describe_motion(out.document, m);
+  describe_frames(out.document, m);
+  out.text = text_of(m);
   if (lock.dropped + lock.doubled > 0)
     out.notes.emplace_back(
         "frames are missing or doubled: write a list with --phases, and use it with track --phase-lock");
-  // Comparison with the accelerometer: frequency, and A omega^2 if the scale is known.
-  if (vibration) {
-    const VibrationFit v = fit_vibration(*vibration);
-    d["accelerometer"] = {
-        {"frequency_hz", {{"value", v.frequency_hz}, {"standard_error", v.frequency_error}}},
-        {"acceleration", {{"value", v.acceleration}, {"standard_error", v.acceleration_error}}}};
-    out.text += fmt::format("accelerometer: {:.6g} +- {:.2g} Hz, amplitude {:.5g} +- {:.2g} m/s^2\n",
-                            v.frequency_hz, v.frequency_error, v.acceleration, v.acceleration_error);
-    if (rate) {
-      const double f = lock.omega / (2 * M_PI) * *rate, e = lock.omega_error / (2 * M_PI) * *rate;
-      const double z = (f - v.frequency_hz) / std::hypot(e, v.frequency_error);
-      d["accelerometer"]["frequency_difference"] = {{"hz", f - v.frequency_hz},
-                                                    {"standard_errors", finite(z)}};
-      out.text += fmt::format("  frequency: camera - accelerometer = {:.2g} Hz, {:.1f} standard errors\n",
-                              f - v.frequency_hz, z);
-      if (scale && cell.scale.sigma_m) {
-        const double metres = lock.amplitude / scale->value * *cell.scale.sigma_m, w = 2 * M_PI * f;
-        const double seen = metres * w * w;
-        const double error =
-            seen * std::sqrt(std::pow(lock.amplitude_error / lock.amplitude, 2) +
-                             std::pow(scale->error.value_or(0) / scale->value, 2) + std::pow(2 * e / f, 2));
-        const double za = (seen - v.acceleration) / std::hypot(error, v.acceleration_error);
-        d["accelerometer"]["acceleration_difference"] = {{"m_s2", seen - v.acceleration},
-                                                         {"standard_errors", finite(za)}};
-        out.text += fmt::format("  A omega^2: camera {:.5g} +- {:.2g} m/s^2, {:.1f} standard errors apart\n",
-                                seen, error, za);
-      }
-    } else {
-      out.notes.emplace_back("without a frame rate (--frame-rate-hz) the accelerometer cannot be compared");
-    }
-  }
+  if (vibration) compare_with(*vibration, out, m);
   if (!o.phases.empty()) {
     write_phases(o.phases, lock);
-    d["phases"] = o.phases;
+    out.document["phases"] = o.phases;
     out.text += o.phases + "\n";
   }
   out.figures = {drive_fit_figure(lock)};

@@ -388,244 +388,324 @@ StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px
   return out;
 }
 
-CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
-  constexpr double kSteepestPlate = 0.1;
-  CellGeometry g;
-  g.size = edges.size;
-  g.blur_px = edges.blur_px;
-  // Slope of the plate: the median over frames. A row of beads above a visible plate is never the outermost
-  // line.
-  const std::size_t stride = std::max<std::size_t>(1, edges.plate.size() / kPlateFrames);
+namespace {
+
+/// Slope of the plate's edge: the median over frames. A row of beads above a visible plate is never the
+/// outermost line. Absent if the plate is not seen.
+std::optional<double> plate_slope(const StackEdges& edges, std::size_t stride) {
+  constexpr double kSteepestPlate = 0.1, kShare = 0.03;
   std::vector<double> slopes;
   for (std::size_t f = 0; f < edges.plate.size(); f += stride) {
     std::vector<Along> points;
     for (const EdgePoint& p : edges.plate[f]) points.push_back(along_of(p.at, 2));
-    if (const auto line = outermost_line(points, kSteepestPlate, 0.03)) slopes.push_back(line->slope);
+    if (const auto line = outermost_line(points, kSteepestPlate, kShare)) slopes.push_back(line->slope);
   }
-  g.has_plate = !slopes.empty();
-  const double slope = g.has_plate ? upper_median(slopes) : 0;
-  const double window = with_distortion ? 3 * kWindow_px : kWindow_px;
-  Chosen all;
-  for (std::size_t f = 0; f < edges.plate.size(); f += stride)
-    all.plate.push_back(on_plate(edges.plate[f], slope, window));
+  if (slopes.empty()) return std::nullopt;
+  return upper_median(slopes);
+}
 
-  // Plate row in each frame whose walls are used, in the ideal picture; the mean row where the plate is not
-  // detected.
-  const auto put_floors = [&](double rotation_deg, double k1) {
-    std::vector<double> floors;
-    double known = 0, sum = 0;
-    for (std::size_t w = 0; w < std::max(edges.left.size(), edges.right.size()); ++w) {
-      const std::size_t f = w * edges.stride;
-      const PlateSighting s =
-          f < edges.plate.size() ? sighting(on_plate(edges.plate[f], slope, window), rotation_deg, k1, g.size)
-                                 : PlateSighting{.height_px = kNaN};
-      floors.push_back(-s.height_px);
-      if (std::isfinite(s.height_px)) sum -= s.height_px, ++known;
+/// The edges of a cell and the parameters that are fitted to them. The steps are in the order of their use.
+class GeometryFit {
+ public:
+  GeometryFit(const StackEdges& edges, bool with_distortion)
+      : edges_(edges), size_(edges.size), window_(with_distortion ? 3 * kWindow_px : kWindow_px) {
+    choose_points();
+    choose_parameters(with_distortion);
+  }
+
+  /// Fits in rounds: after each, estimates the scatter of each edge and rejects outliers. The last round is
+  /// weighted and includes the correlation within blocks.
+  void fit() {
+    constexpr int kRounds = 4;
+    kept_ = all_;
+    for (int round = 1; round < kRounds; ++round) {
+      report_ = solve_geometry(kept_, places_, p_, size_, error_, Residuals::unweighted);
+      put_floors(value_at(p_.data(), places_.rotation), value_at(p_.data(), places_.distortion));
+      kept_ = {};
+      reject_wall_outliers(all_.left, true, kept_.left);
+      reject_wall_outliers(all_.right, false, kept_.right);
+      reject_plate_outliers();
     }
-    g.plate_row = known > 0 ? sum / known : edges.size.height - 1;
-    for (std::vector<WallRow>* wall : {&all.left, &all.right})
-      for (WallRow& row : *wall) {
-        row.floor = 0;
-        for (const std::size_t f : row.seen)
-          row.floor += (std::isfinite(floors[f]) ? floors[f] : g.plate_row) / row.frames;
-      }
-  };
-  all.left = rows_of_wall(edges.left, 0);
-  all.right = rows_of_wall(edges.right, 1);
-  put_floors(std::atan(slope) / kDegree, 0);
-  g.has_left = all.left.size() >= 8;
-  g.has_right = all.right.size() >= 8;
-  if (!g.has_left) all.left.clear();
-  if (!g.has_right) all.right.clear();
-  if (!g.has_plate && !g.has_left && !g.has_right)
+    include_correlation();
+    report_ = solve_geometry(kept_, places_, p_, size_, error_, Residuals::weighted);
+    add_systematic_errors();
+  }
+
+  /// The edges without the walls that are no lines; absent if all are.
+  [[nodiscard]] std::optional<StackEdges> without_false_walls() const {
+    const bool false_left = has_left_ && !is_line("x_left"), false_right = has_right_ && !is_line("x_right");
+    if (!false_left && !false_right) return std::nullopt;
+    StackEdges lines = edges_;
+    if (false_left) lines.left.clear();
+    if (false_right) lines.right.clear();
+    return lines;
+  }
+
+  /// The fit, and what is derived from it: residuals of the edges, then the plate's height in every frame.
+  /// \param distortion k1 that counts, 0 if it is not significant
+  [[nodiscard]] CellGeometry geometry(double distortion) const {
+    CellGeometry g;
+    g.size = size_;
+    g.blur_px = edges_.blur_px;
+    g.has_plate = has_plate_, g.has_left = has_left_, g.has_right = has_right_;
+    g.plate_row = plate_row_;
+    g.fit = report_;
+    g.distortion = distortion;
+    g.rotation_deg = has_plate_ ? report_.value("rotation") : 0;
+    add_residuals(g);
+    add_heights(g);
+    return g;
+  }
+  [[nodiscard]] const FitReport& report() const { return report_; }
+
+ private:
+  void choose_points();
+  void put_floors(double rotation_deg, double k1);
+  void choose_parameters(bool with_distortion);
+  void reject_wall_outliers(const std::vector<WallRow>& wall, bool left, std::vector<WallRow>& kept);
+  void reject_plate_outliers();
+  void include_correlation();
+  void add_systematic_errors();
+  void add_residuals(CellGeometry& g) const;
+  void add_heights(CellGeometry& g) const;
+  void add_errors_of_map(CellGeometry& g) const;
+
+  /// Whether a fitted wall is one: beads cut by the border of the frame can look like a wall, but their rims
+  /// do not form a line.
+  [[nodiscard]] bool is_line(const char* name) const {
+    constexpr double kLargest_px = 0.25;
+    return report_.standard_errors.empty() || report_.standard_error(name) < kLargest_px;
+  }
+  [[nodiscard]] std::vector<PixelPoint> plate_points(std::size_t frame) const {
+    return on_plate(edges_.plate[frame], slope_, window_);
+  }
+  [[nodiscard]] double wall_residual(const WallRow& row, bool left) const {
+    const double* values = p_.data();
+    double r = 0;
+    WallResidual{row.at, 1, row.floor, left, places_, size_}(&values, &r);
+    return r;
+  }
+  [[nodiscard]] std::vector<double> plate_residuals(const std::vector<PixelPoint>& frame) const;
+
+  const StackEdges& edges_;
+  cv::Size size_;
+  double slope_ = 0;  // of the plate
+  double window_;     // half width of the band of points that belong to the plate, px
+  bool has_plate_ = false, has_left_ = false, has_right_ = false;
+  double plate_row_ = 0;  // mean over the frames whose walls are used
+  Chosen all_, kept_;
+  Places places_;
+  std::vector<double> p_;        // the parameters
+  double error_[3] = {1, 1, 1};  // of a point on the left wall, the right wall, the plate
+  FitReport report_;
+};
+
+void GeometryFit::choose_points() {
+  constexpr std::size_t kFewestRows = 8;  // of a wall
+  const std::size_t stride = std::max<std::size_t>(1, edges_.plate.size() / kPlateFrames);
+  const std::optional<double> slope = plate_slope(edges_, stride);
+  has_plate_ = slope.has_value();
+  slope_ = slope.value_or(0);
+  for (std::size_t f = 0; f < edges_.plate.size(); f += stride) all_.plate.push_back(plate_points(f));
+  all_.left = rows_of_wall(edges_.left, 0);
+  all_.right = rows_of_wall(edges_.right, 1);
+  put_floors(std::atan(slope_) / kDegree, 0);
+  has_left_ = all_.left.size() >= kFewestRows;
+  has_right_ = all_.right.size() >= kFewestRows;
+  if (!has_left_) all_.left.clear();
+  if (!has_right_) all_.right.clear();
+  if (!has_plate_ && !has_left_ && !has_right_)
     throw InputError(
         {.file = {}, .key = "edges"},
         "neither a plate nor a wall is seen: each needs a dark border of 3 px with light next to it.");
+}
 
-  Places places;
-  std::vector<double> p;
+// Sets the plate row of each wall row: its mean over the frames in which the row is seen, in the ideal
+// picture; the mean over all frames where the plate is not detected.
+void GeometryFit::put_floors(double rotation_deg, double k1) {
+  std::vector<double> floors;
+  double known = 0, sum = 0;
+  for (std::size_t w = 0; w < std::max(edges_.left.size(), edges_.right.size()); ++w) {
+    const std::size_t f = w * edges_.stride;
+    const PlateSighting s = f < edges_.plate.size() ? sighting(plate_points(f), rotation_deg, k1, size_)
+                                                    : PlateSighting{.height_px = kNaN};
+    floors.push_back(-s.height_px);
+    if (std::isfinite(s.height_px)) sum -= s.height_px, ++known;
+  }
+  plate_row_ = known > 0 ? sum / known : edges_.size.height - 1;
+  for (std::vector<WallRow>* wall : {&all_.left, &all_.right})
+    for (WallRow& row : *wall) {
+      row.floor = 0;
+      for (const std::size_t f : row.seen)
+        row.floor += (std::isfinite(floors[f]) ? floors[f] : plate_row_) / row.frames;
+    }
+}
+
+// Parameters and start values. Without a plate there is no level, and the rotation cannot be distinguished
+// from tilts of the walls.
+void GeometryFit::choose_parameters(bool with_distortion) {
   const auto add = [&](const char* name, double start) {
-    p.push_back(start);
-    return places.add(name);
+    p_.push_back(start);
+    return places_.add(name);
   };
-  // Parameters and start values. Without a plate there is no level, and the rotation cannot be distinguished
-  // from tilts of the walls.
-  if (g.has_plate) places.rotation = add("rotation", std::atan(slope) / kDegree);
   const auto mean_x = [](const std::vector<WallRow>& wall) {
     double sum = 0;
     for (const WallRow& row : wall) sum += row.at.x_px / static_cast<double>(wall.size());
     return sum;
   };
-  if (g.has_left) {
-    places.x_left = add("x_left", mean_x(all.left));
-    places.tilt_left = add("tilt_left", 0);
+  if (has_plate_) places_.rotation = add("rotation", std::atan(slope_) / kDegree);
+  if (has_left_) {
+    places_.x_left = add("x_left", mean_x(all_.left));
+    places_.tilt_left = add("tilt_left", 0);
   }
-  if (g.has_right) {
-    places.x_right = add("x_right", mean_x(all.right));
-    places.tilt_right = add("tilt_right", 0);
+  if (has_right_) {
+    places_.x_right = add("x_right", mean_x(all_.right));
+    places_.tilt_right = add("tilt_right", 0);
   }
-  if (with_distortion) places.distortion = add("distortion", 0);
+  if (with_distortion) places_.distortion = add("distortion", 0);
+}
 
-  double error[3] = {1, 1, 1};
-  Chosen kept = all;
-  const auto residual_of = [&](const WallRow& row, bool left) {
-    const double* values = p.data();
-    double r = 0;
-    WallResidual{row.at, 1, row.floor, left, places, g.size}(&values, &r);
-    return r;
-  };
-  const auto plate_residuals = [&](const std::vector<PixelPoint>& frame) {
-    std::vector<double> r(frame.size());
-    std::vector<double> q;
-    for (const PixelPoint& at : frame) {
-      double place[2];
-      ideal(value_at(p.data(), places.rotation), value_at(p.data(), places.distortion), at.x_px, at.y_px,
-            g.size, place);
-      q.push_back(place[1]);
-    }
-    const double middle = q.empty() ? 0 : upper_median(q);
-    for (std::size_t i = 0; i < q.size(); ++i) r[i] = q[i] - middle;
-    return r;
-  };
-  // Rounds: fit, then estimate the scatter of each edge and reject outliers. The last round is weighted and
-  // includes the correlation within blocks.
-  constexpr int kRounds = 4;
-  for (int round = 0; round < kRounds; ++round) {
-    const bool last = round == kRounds - 1;
-    if (last) {
-      // Blocks are one bead wide; three parameters are fitted to each edge.
-      const auto block_of = [&](double place) { return static_cast<int>(place / edges.diameter_px); };
-      for (const bool left : {true, false}) {
-        std::vector<std::pair<int, double>> r;
-        for (const WallRow& row : left ? kept.left : kept.right)
-          r.emplace_back(block_of(row.at.y_px), residual_of(row, left) * std::sqrt(row.frames));
-        error[left ? 0 : 1] *= std::sqrt(block_factor(r, 3));
-      }
-      std::vector<std::pair<int, double>> r;
-      for (const auto& frame : kept.plate) {
-        const auto of_frame = plate_residuals(frame);
-        for (std::size_t i = 0; i < frame.size(); ++i) r.emplace_back(block_of(frame[i].x_px), of_frame[i]);
-      }
-      error[2] *= std::sqrt(block_factor(r, 3));
-    }
-    g.fit =
-        solve_geometry(kept, places, p, g.size, error, last ? Residuals::weighted : Residuals::unweighted);
-    if (last) break;
-    put_floors(value_at(p.data(), places.rotation), value_at(p.data(), places.distortion));
-    // The scatter of its points gives the error of each edge; points beyond kWorstSigma are rejected.
-    kept = {};
-    for (const bool left : {true, false}) {
-      const auto& points = left ? all.left : all.right;
-      std::vector<double> r;
-      for (const WallRow& row : points) r.push_back(residual_of(row, left) * std::sqrt(row.frames));
-      error[left ? 0 : 1] = std::max(1e-3, spread_of(r));
-      for (std::size_t i = 0; i < r.size(); ++i)
-        if (std::abs(r[i]) < kWorstSigma * error[left ? 0 : 1])
-          (left ? kept.left : kept.right).push_back(points[i]);
-    }
-    std::vector<double> pooled;
-    for (const auto& frame : all.plate)
-      for (const double r : plate_residuals(frame)) pooled.push_back(r);
-    error[2] = std::max(1e-3, spread_of(pooled));
-    for (const auto& frame : all.plate) {
-      const auto r = plate_residuals(frame);
-      kept.plate.emplace_back();
-      for (std::size_t i = 0; i < r.size(); ++i)
-        if (std::abs(r[i]) < kWorstSigma * error[2]) kept.plate.back().push_back(frame[i]);
-    }
+std::vector<double> GeometryFit::plate_residuals(const std::vector<PixelPoint>& frame) const {
+  std::vector<double> r(frame.size()), q;
+  for (const PixelPoint& at : frame) {
+    double place[2];
+    ideal(value_at(p_.data(), places_.rotation), value_at(p_.data(), places_.distortion), at.x_px, at.y_px,
+          size_, place);
+    q.push_back(place[1]);
   }
-  if (g.fit.covariance.size() > 0) {
-    // Systematic error: an offset of kEdgeModelError_px at one end of a line also changes its tilt.
-    const auto add_error = [&](int place, double more) {
-      if (place < 0) return;
-      g.fit.covariance(place, place) += more * more;
-      g.fit.standard_errors[static_cast<std::size_t>(place)] = std::sqrt(g.fit.covariance(place, place));
-    };
-    const auto span = [](const std::vector<WallRow>& wall) {
-      return wall.empty() ? 1.0 : std::max(1.0, wall.back().at.y_px - wall.front().at.y_px);
-    };
-    constexpr double e = kEdgeModelError_px;
-    add_error(places.x_left, e);
-    add_error(places.x_right, e);
-    add_error(places.tilt_left, e / span(kept.left) / kDegree);
-    add_error(places.tilt_right, e / span(kept.right) / kDegree);
-    add_error(places.rotation, e / edges.size.width / kDegree);
-    add_error(places.distortion, 4 * e / std::hypot(edges.size.width, edges.size.height));
-  }
-  // Beads cut by the border of the frame can look like a wall, but their rims do not form a line. Drop such a
-  // wall and fit again.
-  const auto is_line = [&](const char* name) {
-    constexpr double kLargest_px = 0.25;
-    return g.fit.standard_errors.empty() || g.fit.standard_error(name) < kLargest_px;
-  };
-  if ((g.has_left && !is_line("x_left")) || (g.has_right && !is_line("x_right"))) {
-    StackEdges lines = edges;
-    if (g.has_left && !is_line("x_left")) lines.left.clear();
-    if (g.has_right && !is_line("x_right")) lines.right.clear();
-    return fit_cell_geometry(lines, with_distortion);
-  }
-  if (with_distortion) {
-    g.distortion_found = g.fit.value("distortion");
-    g.distortion_error = g.fit.standard_error("distortion");
-    // An insignificant distortion would reduce the accuracy of all other parameters.
-    if (!(std::abs(*g.distortion_found) > 3 * *g.distortion_error)) {
-      CellGeometry straight = fit_cell_geometry(edges, false);
-      straight.distortion_found = g.distortion_found;
-      straight.distortion_error = g.distortion_error;
-      return straight;
-    }
-    g.distortion = *g.distortion_found;
-  }
-  g.rotation_deg = g.has_plate ? g.fit.value("rotation") : 0;
+  const double middle = q.empty() ? 0 : upper_median(q);
+  for (std::size_t i = 0; i < q.size(); ++i) r[i] = q[i] - middle;
+  return r;
+}
 
-  // Results: residuals of the edges, then the plate's height in every frame.
+// The scatter of its points gives the error of an edge; points beyond kWorstSigma are rejected.
+void GeometryFit::reject_wall_outliers(const std::vector<WallRow>& wall, bool left,
+                                       std::vector<WallRow>& kept) {
+  double& error = error_[left ? 0 : 1];
+  std::vector<double> r;
+  for (const WallRow& row : wall) r.push_back(wall_residual(row, left) * std::sqrt(row.frames));
+  error = std::max(1e-3, spread_of(r));
+  for (std::size_t i = 0; i < r.size(); ++i)
+    if (std::abs(r[i]) < kWorstSigma * error) kept.push_back(wall[i]);
+}
+
+// Likewise, with one scatter for all frames.
+void GeometryFit::reject_plate_outliers() {
+  std::vector<double> pooled;
+  for (const auto& frame : all_.plate)
+    for (const double r : plate_residuals(frame)) pooled.push_back(r);
+  error_[2] = std::max(1e-3, spread_of(pooled));
+  for (const auto& frame : all_.plate) {
+    const auto r = plate_residuals(frame);
+    kept_.plate.emplace_back();
+    for (std::size_t i = 0; i < r.size(); ++i)
+      if (std::abs(r[i]) < kWorstSigma * error_[2]) kept_.plate.back().push_back(frame[i]);
+  }
+}
+
+// Enlarges the errors by the correlation within blocks that are one bead wide.
+void GeometryFit::include_correlation() {
+  constexpr double kFittedToEdge = 3;  // parameters
+  const auto block_of = [&](double place) { return static_cast<int>(place / edges_.diameter_px); };
+  for (const bool left : {true, false}) {
+    std::vector<std::pair<int, double>> r;
+    for (const WallRow& row : left ? kept_.left : kept_.right)
+      r.emplace_back(block_of(row.at.y_px), wall_residual(row, left) * std::sqrt(row.frames));
+    error_[left ? 0 : 1] *= std::sqrt(block_factor(r, kFittedToEdge));
+  }
+  std::vector<std::pair<int, double>> r;
+  for (const auto& frame : kept_.plate) {
+    const auto of_frame = plate_residuals(frame);
+    for (std::size_t i = 0; i < frame.size(); ++i) r.emplace_back(block_of(frame[i].x_px), of_frame[i]);
+  }
+  error_[2] *= std::sqrt(block_factor(r, kFittedToEdge));
+}
+
+// Systematic error: an offset of kEdgeModelError_px at one end of a line also changes its tilt.
+void GeometryFit::add_systematic_errors() {
+  if (report_.covariance.size() == 0) return;
+  const auto add_error = [&](int place, double more) {
+    if (place < 0) return;
+    report_.covariance(place, place) += more * more;
+    report_.standard_errors[static_cast<std::size_t>(place)] = std::sqrt(report_.covariance(place, place));
+  };
+  const auto span = [](const std::vector<WallRow>& wall) {
+    return wall.empty() ? 1.0 : std::max(1.0, wall.back().at.y_px - wall.front().at.y_px);
+  };
+  constexpr double e = kEdgeModelError_px;
+  add_error(places_.x_left, e);
+  add_error(places_.x_right, e);
+  add_error(places_.tilt_left, e / span(kept_.left) / kDegree);
+  add_error(places_.tilt_right, e / span(kept_.right) / kDegree);
+  add_error(places_.rotation, e / size_.width / kDegree);
+  add_error(places_.distortion, 4 * e / std::hypot(size_.width, size_.height));
+}
+
+void GeometryFit::add_residuals(CellGeometry& g) const {
   for (const bool left : {true, false})
-    for (const WallRow& row : left ? kept.left : kept.right)
-      g.residuals.push_back({row.at, residual_of(row, left)});
-  for (const auto& frame : kept.plate) {
+    for (const WallRow& row : left ? kept_.left : kept_.right)
+      g.residuals.push_back({row.at, wall_residual(row, left)});
+  for (const auto& frame : kept_.plate) {
     const auto r = plate_residuals(frame);
     for (std::size_t i = 0; i < r.size(); ++i) g.residuals.push_back({frame[i], r[i]});
   }
+}
 
+// Height of the plate in every frame, above its mean row.
+void GeometryFit::add_heights(CellGeometry& g) const {
   double sum = 0, squares = 0, n = 0;
-  for (const auto& frame : edges.plate) {
-    g.heights.push_back(sighting(on_plate(frame, slope, window), g.rotation_deg, g.distortion, g.size));
-    if (std::isfinite(g.heights.back().height_px)) {
-      sum -= g.heights.back().height_px;
-      squares += g.heights.back().sigma_px * g.heights.back().sigma_px;
-      ++n;
-    }
+  for (std::size_t f = 0; f < edges_.plate.size(); ++f) {
+    const PlateSighting s = sighting(plate_points(f), g.rotation_deg, g.distortion, g.size);
+    g.heights.push_back(s);
+    if (!std::isfinite(s.height_px)) continue;
+    sum -= s.height_px;
+    squares += s.sigma_px * s.sigma_px;
+    ++n;
   }
-  if (n > 0) {
-    const double row = sum / n;
-    g.plate_row = row;
-    // Errors of rotation and distortion also shift and stretch the heights.
-    if (g.fit.covariance.size() > 0) {
-      const PlateSighting *low = nullptr, *high = nullptr;
-      for (const PlateSighting& s : g.heights) {
-        if (!std::isfinite(s.height_px)) continue;
-        if (!low || s.height_px < low->height_px) low = &s;
-        if (!high || s.height_px > high->height_px) high = &s;
-      }
-      const auto moved = [&](const PlateSighting& s, int place) {
-        const auto& points = edges.plate[static_cast<std::size_t>(&s - g.heights.data())];
-        const double step = g.fit.standard_errors[static_cast<std::size_t>(place)];
-        const double turn = place == places.rotation ? step : 0, bend = place == places.distortion ? step : 0;
-        return sighting(on_plate(points, slope, window), g.rotation_deg + turn, g.distortion + bend, g.size)
-                   .height_px -
-               s.height_px;
-      };
-      for (const int place : {places.rotation, places.distortion}) {
-        if (place < 0) continue;
-        const double up = moved(*high, place), down = moved(*low, place);
-        g.plate_row_error_of_map = std::hypot(g.plate_row_error_of_map, 0.5 * (up + down));
-        if (high->height_px > low->height_px)
-          g.stretch_error = std::hypot(g.stretch_error, (up - down) / (high->height_px - low->height_px));
-      }
-    }
-    g.plate_row_error = std::hypot(std::sqrt(squares) / n, g.plate_row_error_of_map);
-    for (PlateSighting& s : g.heights) s.height_px += row;
+  if (n == 0) return;
+  g.plate_row = sum / n;
+  if (g.fit.covariance.size() > 0) add_errors_of_map(g);
+  g.plate_row_error = std::hypot(std::sqrt(squares) / n, g.plate_row_error_of_map);
+  for (PlateSighting& s : g.heights) s.height_px += g.plate_row;
+}
+
+// Errors of rotation and distortion also shift and stretch the heights.
+void GeometryFit::add_errors_of_map(CellGeometry& g) const {
+  const PlateSighting *low = nullptr, *high = nullptr;
+  for (const PlateSighting& s : g.heights) {
+    if (!std::isfinite(s.height_px)) continue;
+    if (!low || s.height_px < low->height_px) low = &s;
+    if (!high || s.height_px > high->height_px) high = &s;
   }
+  const auto moved = [&](const PlateSighting& s, int place) {
+    const auto frame = static_cast<std::size_t>(&s - g.heights.data());
+    const double step = g.fit.standard_errors[static_cast<std::size_t>(place)];
+    const double turn = place == places_.rotation ? step : 0, bend = place == places_.distortion ? step : 0;
+    return sighting(plate_points(frame), g.rotation_deg + turn, g.distortion + bend, g.size).height_px -
+           s.height_px;
+  };
+  for (const int place : {places_.rotation, places_.distortion}) {
+    if (place < 0) continue;
+    const double up = moved(*high, place), down = moved(*low, place);
+    g.plate_row_error_of_map = std::hypot(g.plate_row_error_of_map, 0.5 * (up + down));
+    if (high->height_px > low->height_px)
+      g.stretch_error = std::hypot(g.stretch_error, (up - down) / (high->height_px - low->height_px));
+  }
+}
+
+}  // namespace
+
+CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
+  GeometryFit fit(edges, with_distortion);
+  fit.fit();
+  if (const auto lines = fit.without_false_walls()) return fit_cell_geometry(*lines, with_distortion);
+  if (!with_distortion) return fit.geometry(0);
+  const double found = fit.report().value("distortion"), error = fit.report().standard_error("distortion");
+  // An insignificant distortion would reduce the accuracy of all other parameters.
+  const bool significant = std::abs(found) > 3 * error;
+  CellGeometry g = significant ? fit.geometry(found) : fit_cell_geometry(edges, false);
+  g.distortion_found = found;
+  g.distortion_error = error;
   return g;
 }
 

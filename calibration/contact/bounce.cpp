@@ -179,23 +179,29 @@ std::vector<double> rough_impacts(const std::vector<BounceSample>& s, const Plat
   return {edges.begin() + 1, edges.end() - 1};
 }
 
+/// The flights and the parameters that are fitted to them.
 struct State {
   Layout layout;
   std::vector<Flight> flights;
   std::vector<double> p;
   std::vector<std::string> names;
+
+  double& z(std::size_t flight) { return p[static_cast<std::size_t>(layout.z(flight))]; }
+  double& v(std::size_t flight) { return p[static_cast<std::size_t>(layout.v(flight))]; }
+  [[nodiscard]] double z(std::size_t flight) const { return p[static_cast<std::size_t>(layout.z(flight))]; }
+  [[nodiscard]] double v(std::size_t flight) const { return p[static_cast<std::size_t>(layout.v(flight))]; }
+  [[nodiscard]] double gravity() const {
+    return layout.gravity < 0 ? layout.held_gravity : p[static_cast<std::size_t>(layout.gravity)];
+  }
+  [[nodiscard]] double drag() const { return layout.drag < 0 ? 0 : p[static_cast<std::size_t>(layout.drag)]; }
 };
 
 /// Time near `guess` at which flights i and i + 1 cross.
 double crossing(const State& s, std::size_t i, double guess) {
-  const double g =
-      s.layout.gravity < 0 ? s.layout.held_gravity : s.p[static_cast<std::size_t>(s.layout.gravity)];
-  const double d = s.layout.drag < 0 ? 0 : s.p[static_cast<std::size_t>(s.layout.drag)];
+  const double g = s.gravity(), d = s.drag();
   const auto at = [&](std::size_t f, double t) {
-    return std::pair{
-        height_of(s.p[static_cast<std::size_t>(s.layout.z(f))], s.p[static_cast<std::size_t>(s.layout.v(f))],
-                  g, d, t - s.flights[f].middle()),
-        velocity_of(s.p[static_cast<std::size_t>(s.layout.v(f))], g, d, t - s.flights[f].middle())};
+    const double since = t - s.flights[f].middle();
+    return std::pair{height_of(s.z(f), s.v(f), g, d, since), velocity_of(s.v(f), g, d, since)};
   };
   double t = guess;
   for (int k = 0; k < 20; ++k) {
@@ -209,211 +215,289 @@ double crossing(const State& s, std::size_t i, double guess) {
   return t;
 }
 
-/// Restitution at the crossing of flights i and i + 1, with its time and impact speed if pointers are given.
-double restitution_at(const State& s, std::size_t i, double guess, const PlateMotionAt& plate, double* time,
-                      double* speed) {
-  const double t = crossing(s, i, guess);
-  const double g =
-      s.layout.gravity < 0 ? s.layout.held_gravity : s.p[static_cast<std::size_t>(s.layout.gravity)];
-  const double d = s.layout.drag < 0 ? 0 : s.p[static_cast<std::size_t>(s.layout.drag)];
-  const double before =
-      velocity_of(s.p[static_cast<std::size_t>(s.layout.v(i))], g, d, t - s.flights[i].middle());
-  const double after =
-      velocity_of(s.p[static_cast<std::size_t>(s.layout.v(i + 1))], g, d, t - s.flights[i + 1].middle());
+/// The impact at the crossing of flights i and i + 1; without its error.
+BounceImpact impact_at(const State& s, std::size_t i, const PlateMotionAt& plate) {
+  const double t = crossing(s, i, s.flights[i].end);
+  const double g = s.gravity(), d = s.drag();
+  const double before = velocity_of(s.v(i), g, d, t - s.flights[i].middle());
+  const double after = velocity_of(s.v(i + 1), g, d, t - s.flights[i + 1].middle());
   const double of_plate = plate ? plate(t).velocity : 0;
-  if (time) *time = t;
-  if (speed) *speed = of_plate - before;
-  return (after - of_plate) / (of_plate - before);
+  BounceImpact impact;
+  impact.time = t;
+  impact.speed = of_plate - before;
+  impact.restitution = (after - of_plate) / (of_plate - before);
+  return impact;
 }
 
-}  // namespace
-
-BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& options) {
+/// Samples in the order of time, without those that are not numbers.
+std::vector<BounceSample> sorted_samples(std::vector<BounceSample> samples) {
   std::erase_if(samples,
                 [](const BounceSample& s) { return !std::isfinite(s.time) || !std::isfinite(s.height); });
   std::sort(samples.begin(), samples.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
-  const auto too_few = [&](std::size_t flights) -> InputError {
-    return {
-        {.file = {}, .key = "bounces"},
-        fmt::format("{} samples show {} flights of at least {} samples; two consecutive flights are needed.",
-                    samples.size(), flights, kFewestSamples)};
-  };
-  if (samples.size() < 2 * kFewestSamples) throw too_few(0);
-  const double dt = (samples.back().time - samples.front().time) / static_cast<double>(samples.size() - 1);
+  return samples;
+}
 
-  // Split the series into flights at the impacts.
-  State s;
-  std::vector<double> impacts = rough_impacts(samples, options.plate, dt);
-  std::vector<double> edges = {samples.front().time - dt};
-  edges.insert(edges.end(), impacts.begin(), impacts.end());
-  edges.push_back(samples.back().time + dt);
-  // The first flight that is too short, as when the bouncing dies out, ends the series; short flights at the
-  // beginning are skipped.
-  const auto count = [&](double a, double b) {
-    return static_cast<std::size_t>(std::count_if(samples.begin(), samples.end(), [&](const BounceSample& q) {
-      return q.time > a + 0.5 * dt && q.time < b - 0.5 * dt;
-    }));
+/// The fit of a series of bounces. The steps are in the order of their use.
+class SeriesFit {
+ public:
+  /// \throws InputError if the samples show fewer than two flights
+  SeriesFit(std::vector<BounceSample> samples, const BounceOptions& options)
+      : options_(options), samples_(sorted_samples(std::move(samples))) {
+    if (samples_.size() < 2 * kFewestSamples) throw too_few(0);
+    dt_ = (samples_.back().time - samples_.front().time) / static_cast<double>(samples_.size() - 1);
+    split_into_flights();
+    choose_parameters();
+  }
+
+  /// Rounds: the first uses Cauchy's loss from parabolas; later ones move the ends of the flights to their
+  /// crossings and reject outliers.
+  void fit() {
+    constexpr int kRounds = 3;
+    start_from_parabolas();
+    fit_robustly();
+    for (int round = 0; round < kRounds; ++round) {
+      for (std::size_t f = 0; f + 1 < s_.flights.size(); ++f) move_end_to_crossing(f);
+      fit_without_outliers();
+    }
+  }
+  /// \throws InputError if the flights do not determine the parameters
+  [[nodiscard]] BounceFit result() const;
+
+ private:
+  struct Placed {
+    const BounceSample* sample;
+    std::size_t flight;
   };
+
+  [[nodiscard]] InputError too_few(std::size_t flights) const;
+  void split_into_flights();
+  void choose_parameters();
+  void start_from_parabolas();
+  void move_end_to_crossing(std::size_t flight);
+  void set_ends(std::size_t flight, double begin, double end);
+  [[nodiscard]] std::vector<Placed> placed() const;
+  [[nodiscard]] std::vector<double> residuals(const std::vector<Placed>& in) const;
+  void add_residual(ceres::Problem& problem, const Placed& q, ceres::LossFunction* loss);
+  void fit_robustly();
+  void fit_without_outliers();
+  void add_impacts(BounceFit& out) const;
+  void add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) const;
+  [[nodiscard]] Eigen::MatrixXd slopes_of_restitution() const;
+  [[nodiscard]] bool is_in(const BounceSample& q, double begin, double end) const {
+    return q.time > begin + 0.5 * dt_ && q.time < end - 0.5 * dt_;
+  }
+
+  const BounceOptions& options_;
+  std::vector<BounceSample> samples_;
+  double dt_ = 0;  // mean interval of the samples
+  State s_;
+  FitReport report_;
+  std::size_t used_ = 0, outliers_ = 0;  // samples in the last round
+};
+
+InputError SeriesFit::too_few(std::size_t flights) const {
+  return {
+      {.file = {}, .key = "bounces"},
+      fmt::format("{} samples show {} flights of at least {} samples; two consecutive flights are needed.",
+                  samples_.size(), flights, kFewestSamples)};
+}
+
+// Splits the series at the impacts. The first flight that is too short, as when the bouncing dies out, ends
+// the series; short flights at the beginning are skipped.
+void SeriesFit::split_into_flights() {
+  const std::vector<double> impacts = rough_impacts(samples_, options_.plate, dt_);
+  std::vector<double> edges = {samples_.front().time - dt_};
+  edges.insert(edges.end(), impacts.begin(), impacts.end());
+  edges.push_back(samples_.back().time + dt_);
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    if (count(edges[i], edges[i + 1]) >= kFewestSamples)
-      s.flights.push_back({edges[i], edges[i + 1]});
-    else if (!s.flights.empty())
+    const auto count =
+        static_cast<std::size_t>(std::count_if(samples_.begin(), samples_.end(), [&](const BounceSample& q) {
+          return is_in(q, edges[i], edges[i + 1]);
+        }));
+    if (count >= kFewestSamples)
+      s_.flights.push_back({edges[i], edges[i + 1]});
+    else if (!s_.flights.empty())
       break;
   }
-  if (s.flights.size() < 2) throw too_few(s.flights.size());
+  if (s_.flights.size() < 2) throw too_few(s_.flights.size());
+}
 
-  // Parameters: gravity and drag unless fixed, then height and velocity of each flight.
-  BounceFit out;
-  s.layout.held_gravity = options.gravity.value_or(0);
-  if (!options.gravity) s.layout.gravity = static_cast<int>(s.names.size()), s.names.emplace_back("gravity");
-  if (options.drag) s.layout.drag = static_cast<int>(s.names.size()), s.names.emplace_back("drag");
-  s.layout.first = static_cast<int>(s.names.size());
-  for (std::size_t f = 0; f < s.flights.size(); ++f) {
-    s.names.push_back(fmt::format("z_{}", f + 1));
-    s.names.push_back(fmt::format("v_{}", f + 1));
+// Gravity and drag unless fixed, then height and velocity of each flight.
+void SeriesFit::choose_parameters() {
+  const auto add = [&](const char* name) {
+    s_.names.emplace_back(name);
+    return static_cast<int>(s_.names.size()) - 1;
+  };
+  s_.layout.held_gravity = options_.gravity.value_or(0);
+  if (!options_.gravity) s_.layout.gravity = add("gravity");
+  if (options_.drag) s_.layout.drag = add("drag");
+  s_.layout.first = static_cast<int>(s_.names.size());
+  for (std::size_t f = 0; f < s_.flights.size(); ++f) {
+    s_.names.push_back(fmt::format("z_{}", f + 1));
+    s_.names.push_back(fmt::format("v_{}", f + 1));
   }
+}
 
-  // Rounds: the first uses Cauchy's loss from parabolas; later ones move the ends of the flights to their
-  // crossings and reject outliers.
-  double scale = 0;
-  FitReport report;
-  for (int round = 0; round < 4; ++round) {
-    // Start values: a parabola through each flight, gravity from the curvature of the longest one.
-    if (round == 0) {
-      s.p.assign(s.names.size(), 0);
-      double longest = 0;
-      for (std::size_t f = 0; f < s.flights.size(); ++f) {
-        const Eigen::Vector3d c =
-            least_absolute(between(samples, s.flights[f].begin, s.flights[f].end), s.flights[f].middle()).c;
-        s.p[static_cast<std::size_t>(s.layout.z(f))] = c[0];
-        s.p[static_cast<std::size_t>(s.layout.v(f))] = c[1];
-        if (s.flights[f].end - s.flights[f].begin > longest && s.layout.gravity >= 0) {
-          longest = s.flights[f].end - s.flights[f].begin;
-          s.p[static_cast<std::size_t>(s.layout.gravity)] = c[2];
-        }
-      }
-    } else {
-      // Move the end of each flight to its crossing with the next one.
-      for (std::size_t f = 0; f + 1 < s.flights.size(); ++f) {
-        const double before_middle = s.flights[f].middle(), after_middle = s.flights[f + 1].middle();
-        const double t = crossing(s, f, s.flights[f].end);
-        if (!(t > before_middle && t < after_middle)) continue;
-        // Height and velocity refer to the middle of the flight: propagate them to the new middle.
-        const auto move = [&](std::size_t k, double begin, double end) {
-          const double shift = 0.5 * (begin + end) - s.flights[k].middle();
-          const double g =
-              s.layout.gravity < 0 ? s.layout.held_gravity : s.p[static_cast<std::size_t>(s.layout.gravity)];
-          double& z = s.p[static_cast<std::size_t>(s.layout.z(k))];
-          double& v = s.p[static_cast<std::size_t>(s.layout.v(k))];
-          z += v * shift - 0.5 * g * shift * shift;
-          v -= g * shift;
-          s.flights[k] = {begin, end};
-        };
-        move(f, s.flights[f].begin, t);
-        move(f + 1, t, s.flights[f + 1].end);
-      }
+// Start values: a parabola through each flight, gravity from the curvature of the longest one.
+void SeriesFit::start_from_parabolas() {
+  s_.p.assign(s_.names.size(), 0);
+  double longest = 0;
+  for (std::size_t f = 0; f < s_.flights.size(); ++f) {
+    const Flight& flight = s_.flights[f];
+    const Eigen::Vector3d c = least_absolute(between(samples_, flight.begin, flight.end), flight.middle()).c;
+    s_.z(f) = c[0];
+    s_.v(f) = c[1];
+    if (flight.end - flight.begin > longest && s_.layout.gravity >= 0) {
+      longest = flight.end - flight.begin;
+      s_.p[static_cast<std::size_t>(s_.layout.gravity)] = c[2];
     }
-    std::vector<std::pair<const BounceSample*, std::size_t>> in;
-    for (const BounceSample& q : samples)
-      for (std::size_t f = 0; f < s.flights.size(); ++f)
-        if (q.time > s.flights[f].begin + 0.5 * dt && q.time < s.flights[f].end - 0.5 * dt)
-          in.emplace_back(&q, f);
-    const auto residuals = [&] {
-      std::vector<double> r;
-      const double* values = s.p.data();
-      for (const auto& [q, f] : in) {
-        double x = 0;
-        InFlight{q->time - s.flights[f].middle(), q->height, 1, f, s.layout}(&values, &x);
-        r.push_back(x);
-      }
-      return r;
-    };
-    const auto add = [&](ceres::Problem& problem, const BounceSample& q, std::size_t f,
-                         ceres::LossFunction* loss) {
-      auto* cost = new ceres::DynamicAutoDiffCostFunction<InFlight, 8>(
-          new InFlight{q.time - s.flights[f].middle(), q.height, 1, f, s.layout});
-      cost->AddParameterBlock(static_cast<int>(s.p.size()));
-      cost->SetNumResiduals(1);
-      problem.AddResidualBlock(cost, loss, s.p.data());
-    };
-    std::vector<double> r = residuals();
-    for (double& x : r) x = std::abs(x);
-    scale = std::max(1.4826 * median_of(r), 1e-12);
-    if (round == 0) {
-      ceres::Problem problem;
-      for (const auto& [q, f] : in) add(problem, *q, f, new ceres::CauchyLoss(scale));
-      ceres::Solver::Options solver;
-      solver.linear_solver_type = ceres::DENSE_QR;
-      solver.logging_type = ceres::SILENT;
-      ceres::Solver::Summary summary;
-      ceres::Solve(solver, &problem, &summary);
+  }
+}
+
+// Moves the end of a flight, and the begin of the next, to their crossing.
+void SeriesFit::move_end_to_crossing(std::size_t f) {
+  const double before_middle = s_.flights[f].middle(), after_middle = s_.flights[f + 1].middle();
+  const double t = crossing(s_, f, s_.flights[f].end);
+  if (!(t > before_middle && t < after_middle)) return;
+  set_ends(f, s_.flights[f].begin, t);
+  set_ends(f + 1, t, s_.flights[f + 1].end);
+}
+
+// Height and velocity refer to the middle of the flight: propagates them to the new middle.
+void SeriesFit::set_ends(std::size_t f, double begin, double end) {
+  const double shift = 0.5 * (begin + end) - s_.flights[f].middle();
+  const double g = s_.gravity();
+  s_.z(f) += s_.v(f) * shift - 0.5 * g * shift * shift;
+  s_.v(f) -= g * shift;
+  s_.flights[f] = {begin, end};
+}
+
+// The samples in flights; those within half an interval of an impact are left out.
+std::vector<SeriesFit::Placed> SeriesFit::placed() const {
+  std::vector<Placed> in;
+  for (const BounceSample& q : samples_)
+    for (std::size_t f = 0; f < s_.flights.size(); ++f)
+      if (is_in(q, s_.flights[f].begin, s_.flights[f].end)) in.push_back({&q, f});
+  return in;
+}
+
+std::vector<double> SeriesFit::residuals(const std::vector<Placed>& in) const {
+  std::vector<double> r;
+  const double* values = s_.p.data();
+  for (const auto& [q, f] : in) {
+    double x = 0;
+    InFlight{q->time - s_.flights[f].middle(), q->height, 1, f, s_.layout}(&values, &x);
+    r.push_back(x);
+  }
+  return r;
+}
+
+void SeriesFit::add_residual(ceres::Problem& problem, const Placed& q, ceres::LossFunction* loss) {
+  auto* cost = new ceres::DynamicAutoDiffCostFunction<InFlight, 8>(
+      new InFlight{q.sample->time - s_.flights[q.flight].middle(), q.sample->height, 1, q.flight, s_.layout});
+  cost->AddParameterBlock(static_cast<int>(s_.p.size()));
+  cost->SetNumResiduals(1);
+  problem.AddResidualBlock(cost, loss, s_.p.data());
+}
+
+/// Robust standard deviation of residuals, at least 1e-12.
+double scale_of(std::vector<double> r) {
+  for (double& x : r) x = std::abs(x);
+  return std::max(1.4826 * upper_median(std::move(r)), 1e-12);
+}
+
+void SeriesFit::fit_robustly() {
+  const std::vector<Placed> in = placed();
+  const double scale = scale_of(residuals(in));
+  ceres::Problem problem;
+  for (const Placed& q : in) add_residual(problem, q, new ceres::CauchyLoss(scale));
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+}
+
+void SeriesFit::fit_without_outliers() {
+  const std::vector<Placed> in = placed();
+  const std::vector<double> r = residuals(in);
+  const double scale = scale_of(r);
+  ceres::Problem problem;
+  used_ = outliers_ = 0;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    if (std::abs(r[i]) > kWorstSigma * scale) {
+      ++outliers_;
       continue;
     }
-    r = residuals();
-    std::vector<double> sizes;
-    for (const double x : r) sizes.push_back(std::abs(x));
-    scale = std::max(1.4826 * median_of(sizes), 1e-12);
-    ceres::Problem problem;
-    out.samples = out.outliers = 0;
-    for (std::size_t i = 0; i < in.size(); ++i) {
-      if (std::abs(r[i]) > kWorstSigma * scale) {
-        ++out.outliers;
-        continue;
-      }
-      ++out.samples;
-      add(problem, *in[i].first, in[i].second, nullptr);
-    }
-    report = solve(problem, s.p.data(), s.names);
-    s.p = report.values;
+    ++used_;
+    add_residual(problem, in[i], nullptr);
   }
-  out.fit = report;
-  out.flights = s.flights.size();
-  out.rms = report.rms();
-  const auto error_of = [&](int place) {
-    return place < 0 || report.standard_errors.empty()
-               ? 0.0
-               : report.standard_errors[static_cast<std::size_t>(place)];
-  };
-  out.gravity =
-      s.layout.gravity < 0 ? s.layout.held_gravity : s.p[static_cast<std::size_t>(s.layout.gravity)];
-  out.gravity_error = error_of(s.layout.gravity);
-  out.drag = s.layout.drag < 0 ? 0 : s.p[static_cast<std::size_t>(s.layout.drag)];
-  out.drag_error = error_of(s.layout.drag);
-  if (report.covariance.size() == 0)
-    throw InputError({.file = {}, .key = "bounces"},
-                     fmt::format("the flights do not determine restitution: {}.", report.why_not));
+  report_ = solve(problem, s_.p.data(), s_.names);
+  s_.p = report_.values;
+}
 
-  // Restitution of each impact and its derivatives with respect to all parameters, by central differences.
-  const auto n = static_cast<Eigen::Index>(s.p.size());
-  const std::size_t n_impacts = s.flights.size() - 1;
+BounceFit SeriesFit::result() const {
+  BounceFit out;
+  out.samples = used_;
+  out.outliers = outliers_;
+  out.fit = report_;
+  out.flights = s_.flights.size();
+  out.rms = report_.rms();
+  const auto error_of = [&](int place) {
+    return place < 0 || report_.standard_errors.empty()
+               ? 0.0
+               : report_.standard_errors[static_cast<std::size_t>(place)];
+  };
+  out.gravity = s_.gravity();
+  out.gravity_error = error_of(s_.layout.gravity);
+  out.drag = s_.drag();
+  out.drag_error = error_of(s_.layout.drag);
+  if (report_.covariance.size() == 0)
+    throw InputError({.file = {}, .key = "bounces"},
+                     fmt::format("the flights do not determine restitution: {}.", report_.why_not));
+  add_impacts(out);
+  return out;
+}
+
+// Derivatives of each impact's restitution with respect to all parameters, by central differences.
+Eigen::MatrixXd SeriesFit::slopes_of_restitution() const {
+  const auto n = static_cast<Eigen::Index>(s_.p.size());
+  const std::size_t n_impacts = s_.flights.size() - 1;
   Eigen::MatrixXd slopes(static_cast<Eigen::Index>(n_impacts), n);
-  Eigen::VectorXd e(static_cast<Eigen::Index>(n_impacts));
-  for (std::size_t i = 0; i < n_impacts; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    BounceImpact impact;
-    impact.restitution = restitution_at(s, i, s.flights[i].end, options.plate, &impact.time, &impact.speed);
-    e[row] = impact.restitution;
-    for (Eigen::Index k = 0; k < n; ++k) {
-      State moved = s;
-      const double step = 0.01 * std::sqrt(report.covariance(k, k));
-      moved.p[static_cast<std::size_t>(k)] += step;
-      const double up = restitution_at(moved, i, s.flights[i].end, options.plate, nullptr, nullptr);
-      moved.p[static_cast<std::size_t>(k)] -= 2 * step;
-      const double down = restitution_at(moved, i, s.flights[i].end, options.plate, nullptr, nullptr);
-      slopes(row, k) = (up - down) / (2 * step);
-    }
-    out.impacts.push_back(impact);
-  }
-  Eigen::MatrixXd c = slopes * report.covariance * slopes.transpose();
   for (std::size_t i = 0; i < n_impacts; ++i)
-    out.impacts[i].error = std::sqrt(c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
-  // Best linear unbiased mean. If the impacts differ by more than their errors, its error is scaled up.
-  const Eigen::VectorXd one = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(n_impacts));
-  const Eigen::VectorXd w = c.ldlt().solve(one);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      State moved = s_;
+      const double step = 0.01 * std::sqrt(report_.covariance(k, k));
+      moved.p[static_cast<std::size_t>(k)] += step;
+      const double up = impact_at(moved, i, options_.plate).restitution;
+      moved.p[static_cast<std::size_t>(k)] -= 2 * step;
+      const double down = impact_at(moved, i, options_.plate).restitution;
+      slopes(static_cast<Eigen::Index>(i), k) = (up - down) / (2 * step);
+    }
+  return slopes;
+}
+
+void SeriesFit::add_impacts(BounceFit& out) const {
+  for (std::size_t i = 0; i + 1 < s_.flights.size(); ++i)
+    out.impacts.push_back(impact_at(s_, i, options_.plate));
+  const Eigen::MatrixXd slopes = slopes_of_restitution();
+  const Eigen::MatrixXd covariance = slopes * report_.covariance * slopes.transpose();
+  for (std::size_t i = 0; i < out.impacts.size(); ++i)
+    out.impacts[i].error = std::sqrt(covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
+  add_mean(out, covariance);
+}
+
+// Best linear unbiased mean. If the impacts differ by more than their errors, its error is scaled up.
+void SeriesFit::add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) const {
+  const auto n = static_cast<Eigen::Index>(out.impacts.size());
+  Eigen::VectorXd e(n);
+  for (Eigen::Index i = 0; i < n; ++i) e[i] = out.impacts[static_cast<std::size_t>(i)].restitution;
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(n);
+  const Eigen::VectorXd w = covariance.ldlt().solve(one);
   out.restitution = w.dot(e) / w.dot(one);
   const Eigen::VectorXd left = e - out.restitution * one;
-  const double chi2 = left.dot(c.ldlt().solve(left));
-  const double freedom = static_cast<double>(n_impacts) - 1;
+  const double chi2 = left.dot(covariance.ldlt().solve(left));
+  const double freedom = static_cast<double>(n) - 1;
   const double excess = freedom > 0 ? chi2 / freedom : 1;
   // Scale only beyond three standard deviations of chi^2, which itself fluctuates for few impacts.
   const bool grown = freedom > 0 && chi2 > freedom + 3 * std::sqrt(2 * freedom);
@@ -424,7 +508,14 @@ BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& op
                     "on the impact, or the "
                     "bead spins; the error is scaled up accordingly",
                     chi2, freedom));
-  return out;
+}
+
+}  // namespace
+
+BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& options) {
+  SeriesFit fit(std::move(samples), options);
+  fit.fit();
+  return fit.result();
 }
 
 }  // namespace twincell

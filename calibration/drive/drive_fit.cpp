@@ -339,139 +339,183 @@ void add_phases(DriveFit& lock, std::size_t n_frames) {
   }
 }
 
-}  // namespace
+/// The accepted attempt, with the time of each frame in frame intervals from which it was made.
+struct Timed {
+  Attempt attempt;
+  std::vector<double> ticks;
+};
 
-DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& options) {
+double followed_share(const Attempt& a) {
+  return 1 - static_cast<double>(a.off) / static_cast<double>(a.samples.size());
+}
+
+/// If frames are missing, the fit scatters widely and no single frame counts as out of lock.
+bool scatters(const Attempt& a) {
+  return a.scatter.at(0) > 0.05 * a.fitted.report.values[1];
+}
+
+/// Fits with the frames as they are, one interval apart.
+Timed first_attempt(const std::vector<double>& heights, int frames_per_cycle) {
   constexpr std::size_t kFewest = 8;
-  std::vector<double> ticks(heights.size());
-  for (std::size_t f = 0; f < ticks.size(); ++f) ticks[f] = static_cast<double>(f);
-  std::vector<Sample> samples = samples_of(heights, ticks);
+  Timed out;
+  for (std::size_t f = 0; f < heights.size(); ++f) out.ticks.push_back(static_cast<double>(f));
+  std::vector<Sample> samples = samples_of(heights, out.ticks);
   if (samples.size() < kFewest)
     throw InputError(
         {.file = {}, .key = "plate"},
         fmt::format("is seen in {} of {} frames; at least {} are needed for amplitude, period and phase.",
                     samples.size(), heights.size(), kFewest));
-  const auto start = [&](const std::vector<Sample>& s) {
-    return options.frames_per_cycle > 0 ? 2 * kPi / options.frames_per_cycle : search_omega(s);
-  };
-  Attempt a = attempt(samples, start(samples));
-  DriveFit lock;
-  const auto followed = [](const Attempt& b) {
-    return 1 - static_cast<double>(b.off) / static_cast<double>(b.samples.size());
-  };
-  // If frames are missing, the fit scatters widely and no single frame counts as out of lock.
-  const auto scatters = [](const Attempt& b) { return b.scatter.at(0) > 0.05 * b.fitted.report.values[1]; };
-  if (options.mend && (followed(a) < 0.97 || a.longest_run >= 3 || scatters(a))) {
-    // Repair dropped and doubled frames: dropped frames shorten the apparent period, so try several N_k, find
-    // the best path of phases for each, and fit again.
-    std::vector<int> candidates = {options.frames_per_cycle};
-    const double period = 2 * kPi / a.fitted.report.values[3];
-    constexpr int kMost = 24;
-    for (int n = std::max(3, static_cast<int>(0.85 * period));
-         options.frames_per_cycle == 0 && n <= static_cast<int>(1.3 * period) + 1 &&
-         candidates.size() < kMost;
-         ++n)
-      candidates.push_back(n);
-    const std::vector<double> whole = filled(heights);
-    for (const int n : candidates) try {
-        const PhaseTable table = estimate_phases({whole, {}}, {.frames_per_cycle = n, .gamma = {}});
-        if (table.dropped + table.doubled == 0) continue;
-        std::vector<double> mended(heights.size());
-        double tick = 0;
-        for (std::size_t f = 0; f < mended.size(); ++f) {
-          if (f > 0) tick += table.frames[f].interval;
-          mended[f] = tick;
-        }
-        Attempt b = attempt(samples_of(heights, mended), 2 * kPi / table.frames_per_cycle);
-        if (b.scatter.at(0) < 0.5 * a.scatter.at(0) ||
-            (b.scatter.at(0) < 2 * a.scatter.at(0) && b.off < a.off)) {
-          a = std::move(b);
-          ticks = mended;
-          lock.dropped = table.dropped;
-          lock.doubled = table.doubled;
-        }
-      } catch (const InputError&) {
-        // The path search finds no period: keep the plain fit and its out-of-lock frames.
-      }
-    if (scatters(a))
-      lock.notes.push_back(
-          fmt::format("the heights scatter by {:.2g} of A about a sine: frames may be missing; "
-                      "state --frames-per-cycle",
-                      a.scatter.at(0) / a.fitted.report.values[1]));
-  }
+  const double omega = frames_per_cycle > 0 ? 2 * kPi / frames_per_cycle : search_omega(samples);
+  out.attempt = attempt(std::move(samples), omega);
+  return out;
+}
 
-  // Results: parameters of the first frame, with errors that include recurring residuals and the model error.
-  const FitReport& report = a.fitted.report;
-  lock.fit = report;
-  const double z0 = report.values[0], amplitude = report.values[1], omega = report.values[3];
-  lock.z0 = z0;
-  lock.amplitude = amplitude;
-  lock.omega = omega;
-  const double t0 = ticks.front() - a.fitted.middle;
-  lock.phi = std::remainder(report.values[2] + omega * t0, 2 * kPi);
-  int harmonics = 0;
-  lock.cyclic_factor = cyclic_factor(a, harmonics);
+/// Frames per cycle to try in the repair: dropped frames shorten the apparent period.
+std::vector<int> candidates_for(int stated, double period) {
+  constexpr int kMost = 24;
+  std::vector<int> candidates = {stated};
+  for (int n = std::max(3, static_cast<int>(0.85 * period));
+       stated == 0 && n <= static_cast<int>(1.3 * period) + 1 && candidates.size() < kMost; ++n)
+    candidates.push_back(n);
+  return candidates;
+}
+
+/// Repairs dropped and doubled frames: for each number of frames per cycle, finds the best path of phases and
+/// fits again. The repair is kept where it follows the frames better.
+void repair_frames(const std::vector<double>& heights, int frames_per_cycle, Timed& now, DriveFit& lock) {
+  const std::vector<double> whole = filled(heights);
+  const double period = 2 * kPi / now.attempt.fitted.report.values[3];
+  for (const int n : candidates_for(frames_per_cycle, period)) try {
+      const PhaseTable table = estimate_phases({whole, {}}, {.frames_per_cycle = n, .gamma = {}});
+      if (table.dropped + table.doubled == 0) continue;
+      std::vector<double> mended(heights.size());
+      double tick = 0;
+      for (std::size_t f = 0; f < mended.size(); ++f) {
+        if (f > 0) tick += table.frames[f].interval;
+        mended[f] = tick;
+      }
+      Attempt b = attempt(samples_of(heights, mended), 2 * kPi / table.frames_per_cycle);
+      const double scatter = b.scatter.at(0), before = now.attempt.scatter.at(0);
+      if (scatter < 0.5 * before || (scatter < 2 * before && b.off < now.attempt.off)) {
+        now = {std::move(b), std::move(mended)};
+        lock.dropped = table.dropped;
+        lock.doubled = table.doubled;
+      }
+    } catch (const InputError&) {
+      // The path search finds no period: keep the plain fit and its out-of-lock frames.
+    }
+  if (scatters(now.attempt))
+    lock.notes.push_back(
+        fmt::format("the heights scatter by {:.2g} of A about a sine: frames may be missing; "
+                    "state --frames-per-cycle",
+                    now.attempt.scatter.at(0) / now.attempt.fitted.report.values[1]));
+}
+
+/// Parameters with their errors, the phase for the first frame.
+/// \param angle model error of the phase and of a harmonic, rad
+void add_parameters(DriveFit& lock, const Timed& timed, double model_error, double angle) {
+  const FitReport& report = timed.attempt.fitted.report;
   const double cyclic = std::sqrt(lock.cyclic_factor);
-  const double angle = options.model_error / amplitude;  // model error of the phase and of a harmonic, rad
-  lock.z0_error = std::hypot(cyclic * report.standard_error("z0"), options.model_error);
-  lock.amplitude_error = std::hypot(cyclic * report.standard_error("A"), options.model_error);
+  const double t0 = timed.ticks.front() - timed.attempt.fitted.middle;
+  lock.phi = std::remainder(report.values[2] + lock.omega * t0, 2 * kPi);
+  lock.z0_error = std::hypot(cyclic * report.standard_error("z0"), model_error);
+  lock.amplitude_error = std::hypot(cyclic * report.standard_error("A"), model_error);
   // Over few cycles a recurring error also looks like a drift of the phase: eps sin(omega t) regressed on A t
   // cos(omega t) over a time T gives at most 6 eps/(A omega T^2).
-  const double turned = omega * (ticks.back() - ticks.front());
-  lock.omega_error = std::hypot(report.standard_error("omega"), omega * angle * 6 / (turned * turned));
+  const double turned = lock.omega * (timed.ticks.back() - timed.ticks.front());
+  lock.omega_error = std::hypot(report.standard_error("omega"), lock.omega * angle * 6 / (turned * turned));
   if (report.covariance.size() > 0)
     lock.phi_error = std::sqrt(angle * angle + lock.cyclic_factor * report.covariance(2, 2) +
                                t0 * t0 * report.covariance(3, 3) + 2 * t0 * report.covariance(2, 3));
-  if (!(amplitude > 5 * lock.amplitude_error) || !(a.scatter.at(0) < amplitude))
-    throw InputError(
-        {.file = {}, .key = "plate"},
-        fmt::format("does not move by more than the scatter of its heights: amplitude {:.3g}, error {:.2g}, "
-                    "scatter {:.2g}.",
-                    amplitude, lock.amplitude_error, a.scatter.at(0)));
-  if (a.fitted.second && report.covariance.size() > 0) {
-    const Eigen::Vector2d h(report.values[4], report.values[5]);
-    const Eigen::Matrix2d c = lock.cyclic_factor * report.covariance.block<2, 2>(4, 4) +
-                              angle * angle * Eigen::Matrix2d::Identity();
-    lock.second_harmonic = h.norm();
-    lock.second_harmonic_error = std::sqrt(c.trace() / 2);
-    const double freedom = lock.cyclic_factor > 1 ? std::min(2.0 * harmonics, report.n_residuals - 6.0)
-                                                  : report.n_residuals - 6.0;
-    const double f = h.dot(c.ldlt().solve(h)) / 2;
-    if (freedom > 0)
-      lock.p_sinusoidal = boost::math::cdf(boost::math::complement(boost::math::fisher_f(2, freedom), f));
-    if (lock.p_sinusoidal && *lock.p_sinusoidal < kSuspicious)
-      lock.notes.push_back(
-          fmt::format("the drive is not a pure sine: second harmonic {:.2g} +- {:.1g} of A (p = {:.1g})",
-                      *lock.second_harmonic, *lock.second_harmonic_error, *lock.p_sinusoidal));
-  } else {
-    lock.notes.emplace_back("too few phases per cycle to determine a second harmonic");
-  }
+}
 
-  // Phase and lock of every frame.
-  lock.frames.resize(heights.size());
-  for (std::size_t f = 0; f < heights.size(); ++f) {
+void require_motion(const DriveFit& lock, const Attempt& a) {
+  if (lock.amplitude > 5 * lock.amplitude_error && a.scatter.at(0) < lock.amplitude) return;
+  throw InputError(
+      {.file = {}, .key = "plate"},
+      fmt::format("does not move by more than the scatter of its heights: amplitude {:.3g}, error {:.2g}, "
+                  "scatter {:.2g}.",
+                  lock.amplitude, lock.amplitude_error, a.scatter.at(0)));
+}
+
+/// Second harmonic, and the probability of one as large under a pure sine, from Fisher's F distribution.
+/// \param harmonics number of harmonics from which the factor of recurring errors was estimated
+void add_second_harmonic(DriveFit& lock, const Attempt& a, int harmonics, double angle) {
+  const FitReport& report = a.fitted.report;
+  if (!a.fitted.second || report.covariance.size() == 0) {
+    lock.notes.emplace_back("too few phases per cycle to determine a second harmonic");
+    return;
+  }
+  const Eigen::Vector2d h(report.values[4], report.values[5]);
+  const Eigen::Matrix2d c =
+      lock.cyclic_factor * report.covariance.block<2, 2>(4, 4) + angle * angle * Eigen::Matrix2d::Identity();
+  lock.second_harmonic = h.norm();
+  lock.second_harmonic_error = std::sqrt(c.trace() / 2);
+  const double freedom =
+      lock.cyclic_factor > 1 ? std::min(2.0 * harmonics, report.n_residuals - 6.0) : report.n_residuals - 6.0;
+  const double f = h.dot(c.ldlt().solve(h)) / 2;
+  if (freedom > 0)
+    lock.p_sinusoidal = boost::math::cdf(boost::math::complement(boost::math::fisher_f(2, freedom), f));
+  if (lock.p_sinusoidal && *lock.p_sinusoidal < kSuspicious)
+    lock.notes.push_back(
+        fmt::format("the drive is not a pure sine: second harmonic {:.2g} +- {:.1g} of A (p = {:.1g})",
+                    *lock.second_harmonic, *lock.second_harmonic_error, *lock.p_sinusoidal));
+}
+
+/// Phase and lock of every frame, and the rms residual of those that are locked.
+void add_frames(DriveFit& lock, const Timed& timed, double model_error) {
+  const Attempt& a = timed.attempt;
+  const std::vector<double>& ticks = timed.ticks;
+  lock.frames.resize(ticks.size());
+  for (std::size_t f = 0; f < ticks.size(); ++f) {
     lock.frames[f].tick = ticks[f];
-    lock.frames[f].cycles = (lock.phi + omega * (ticks[f] - ticks.front())) / (2 * kPi);
+    lock.frames[f].cycles = (lock.phi + lock.omega * (ticks[f] - ticks.front())) / (2 * kPi);
     lock.frames[f].residual = kNaN;
   }
   double squares = 0;
   for (std::size_t i = 0; i < a.samples.size(); ++i) {
     LockedFrame& frame = lock.frames[a.samples[i].frame];
     frame.residual = -a.residuals[i];  // the cost function has the opposite sign
-    frame.lock = a.follows(i, 2 * options.model_error) ? FrameLock::locked : FrameLock::out_of_lock;
+    frame.lock = a.follows(i, 2 * model_error) ? FrameLock::locked : FrameLock::out_of_lock;
     if (frame.lock == FrameLock::locked)
       squares += a.residuals[i] * a.residuals[i], ++lock.locked;
     else
       ++lock.out_of_lock;
   }
-  lock.unseen = static_cast<std::int64_t>(heights.size() - a.samples.size());
+  lock.unseen = static_cast<std::int64_t>(ticks.size() - a.samples.size());
   lock.rms = std::sqrt(squares / static_cast<double>(std::max<std::int64_t>(1, lock.locked)));
-  add_phases(lock, static_cast<std::size_t>(std::lround(ticks.back() - ticks.front())) + 1);
-  if (lock.frames_per_cycle > 0) {
-    // The offset refers to the middle of the stack, so it uses the error of the phase there.
+}
+
+}  // namespace
+
+DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& options) {
+  constexpr double kFollowed = 0.97;    // least share of frames that follow a fit without missing frames
+  constexpr std::size_t kShortRun = 3;  // longest run of frames that do not
+  DriveFit lock;
+  Timed timed = first_attempt(heights, options.frames_per_cycle);
+  const Attempt& a = timed.attempt;
+  if (options.mend && (followed_share(a) < kFollowed || a.longest_run >= kShortRun || scatters(a)))
+    repair_frames(heights, options.frames_per_cycle, timed, lock);
+
+  const FitReport& report = a.fitted.report;
+  lock.fit = report;
+  lock.z0 = report.values[0];
+  lock.amplitude = report.values[1];
+  lock.omega = report.values[3];
+  // Errors include recurring residuals and the model error.
+  int harmonics = 0;
+  lock.cyclic_factor = cyclic_factor(a, harmonics);
+  const double angle = options.model_error / lock.amplitude;
+  add_parameters(lock, timed, options.model_error, angle);
+  require_motion(lock, a);
+  add_second_harmonic(lock, a, harmonics, angle);
+  add_frames(lock, timed, options.model_error);
+  add_phases(lock, static_cast<std::size_t>(std::lround(timed.ticks.back() - timed.ticks.front())) + 1);
+  // The offset refers to the middle of the stack, so it uses the error of the phase there.
+  if (lock.frames_per_cycle > 0)
     lock.phase_offset_error =
-        std::hypot(angle, cyclic * report.standard_error("phi")) * lock.frames_per_cycle / (2 * kPi);
-  }
+        std::hypot(angle, std::sqrt(lock.cyclic_factor) * report.standard_error("phi")) *
+        lock.frames_per_cycle / (2 * kPi);
   add_jitter(lock, a);
   return lock;
 }

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <opencv2/core.hpp>
 
 namespace twincell {
@@ -66,6 +67,11 @@ struct RingSums {
   double seen = 0, seen_squares = 0;
   double residual_squares = 0;  ///< unweighted, residuals clipped at `huber`
 };
+
+/// Area of a ring of mean radius R and half width w, px^2: pi (R + w)^2 - pi (R - w)^2 = 4 pi R w.
+inline double ring_area(double radius, double half_width) {
+  return 4 * std::numbers::pi * radius * half_width;
+}
 
 /// Blur parameters that are fitted together with the discs.
 enum class BlurFit {

@@ -176,6 +176,15 @@ class Solver {
 
 }  // namespace
 
+void keep_cheapest(std::vector<Edge>& edges, std::size_t most) {
+  if (edges.size() <= most) return;
+  std::nth_element(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(most), edges.end(),
+                   [](const Edge& a, const Edge& b) {
+                     return a.cost < b.cost || (a.cost == b.cost && a.column < b.column);
+                   });
+  edges.resize(most);
+}
+
 Assignment assign(std::size_t rows, std::size_t columns, std::span<const Edge> edges, std::size_t work) {
   return Solver(rows, columns, edges, work).solve();
 }

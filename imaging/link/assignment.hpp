@@ -20,6 +20,9 @@ struct Edge {
   double cost = 0;  ///< finite; below 0: cheaper than leaving both unassigned
 };
 
+/// Keeps the `most` cheapest edges, in any order; of edges of equal cost those with the lower column.
+void keep_cheapest(std::vector<Edge>& edges, std::size_t most);
+
 /// The minimum-cost assignment.
 struct Assignment {
   static constexpr std::int64_t kAlone = -1;

@@ -5,6 +5,11 @@
 
 namespace twincell {
 
+// Boost.Graph's boykov_kolmogorov_max_flow was tried on an adjacency_list. On 600 random grids of 49 and 324
+// nodes, each joined to six neighbours, with capacities as doubles and as scaled integers, it chose the same.
+// It took 3.4 times the instructions at 49 nodes and 1.6 times at 324 (callgrind), because its graph is
+// allocated node by node, and a fusion has few nodes.
+
 namespace {
 constexpr double kNothing = 1e-9;  // smaller residual capacities are rounding errors and count as 0
 }

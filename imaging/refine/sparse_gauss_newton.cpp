@@ -13,6 +13,20 @@ constexpr double kRelative = 1e-2;
 
 }  // namespace
 
+Normal normal_of(const RingSums& s) {
+  Normal a;
+  std::size_t at = 0;
+  for (int m = 0; m < kFitted; ++m)
+    for (int k = 0; k <= m; ++k, ++at) a(m, k) = a(k, m) = s.jj[at];
+  return a;
+}
+
+Step right_side(const RingSums& s) {
+  Step g;
+  for (int m = 0; m < kFitted; ++m) g[m] = s.jr[static_cast<std::size_t>(m)];
+  return g;
+}
+
 std::vector<std::array<std::int32_t, 2>> near_pairs(const std::vector<Disc>& discs, double reach) {
   std::vector<std::array<std::int32_t, 2>> pairs;
   if (discs.empty()) return pairs;

@@ -22,6 +22,12 @@ namespace twincell {
 inline constexpr int kFitted = RingSums::kFitted;
 using Normal = Eigen::Matrix<double, kFitted, kFitted>;  ///< order x, y, R, a
 using Step = Eigen::Matrix<double, kFitted, 1>;
+enum FittedRow : std::uint8_t { kX, kY, kR, kA };  ///< rows of a Normal and a Step
+
+/// The normal matrix of one disc. \param s sums over its ring
+Normal normal_of(const RingSums& s);
+/// The right side of the normal equations of one disc. \param s sums over its ring
+Step right_side(const RingSums& s);
 
 /// Pairs of discs whose edges are less than `reach` apart, each once. Discs are sorted into cells, so the
 /// time is linear in their number.

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "core/error.hpp"
+#include "imaging/geometry/pixel_frame.hpp"
 
 using namespace twincell;
 
