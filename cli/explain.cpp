@@ -54,7 +54,7 @@ std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::C
   if (!plan.warnings.empty()) s += "Warnings\n";
   for (const std::string& warning : plan.warnings) s += "  " + warning + "\n";
   s += fmt::format("Randomness\n  {}\n", chance_of(scene));
-  s += fmt::format("Kernel\n  {}; {}\n", plan.law_names(), cost.kernel);
+  s += fmt::format("Solver\n  {}; {}\n", plan.law_names(), cost.solver);
   s += fmt::format("  {:.0f} bytes per bead", cost.bytes_per_bead);
   if (cost.bytes_per_pair > 0)
     s += fmt::format(", {:.0f} bytes per listed pair, {:.3g} listed pairs per bead", cost.bytes_per_pair,

@@ -26,11 +26,10 @@ constexpr double kThrowingSupport = 2;
 /// off.
 constexpr double kThrownSpeed = 0.1;
 constexpr int kFewestPhases = 8;
-constexpr int kMomentsPerCycle = 20;  ///< instants per cycle from which second differences are taken
+constexpr int kInstantsPerCycle = 20;  ///< instants per cycle from which second differences are taken
 
 /// Height of the centre of mass at one instant.
-
-struct Moment {
+struct Instant {
   std::int64_t tick = 0;  ///< cycle N_k + phase
   double time = 0, height = 0;
 };
@@ -40,9 +39,9 @@ struct Moment {
 class Parabola {
  public:
   /// \pre at least two instants with different times
-  Parabola(const std::vector<Moment>& moments, double from) : origin_(moments.front().time) {
+  Parabola(const std::vector<Instant>& instants, double from) : origin_(instants.front().time) {
     double n = 0, t = 0, tt = 0, y = 0, ty = 0;
-    for (const Moment& m : moments) {
+    for (const Instant& m : instants) {
       if (m.time < from) continue;
       const double s = m.time - origin_, v = m.height + s * s / 2;
       n += 1, t += s, tt += s * s, y += v, ty += s * v;
@@ -77,7 +76,7 @@ class BedFlight : public Observable {
   explicit BedFlight(const AnalysisContext& context)
       : info_(context.info),
         stride_(std::max<std::int64_t>(
-            1, std::llround(static_cast<double>(context.info.phases_per_cycle) / kMomentsPerCycle))) {
+            1, std::llround(static_cast<double>(context.info.phases_per_cycle) / kInstantsPerCycle))) {
     if (!info_.drive || info_.drive->amplitude == 0)
       reason_ = "the trajectory does not state its drive";
     else if (info_.drive->axis != Axis::z)
@@ -90,7 +89,7 @@ class BedFlight : public Observable {
     const Frame& frame = view.frame();
     if (!reason_.empty() || frame.phase < 0 || frame.cycle < 0) return;
     if (!rise(frame)) return;
-    const Moment now{frame.cycle * info_.phases_per_cycle + frame.phase, frame.time, height_};
+    const Instant now{frame.cycle * info_.phases_per_cycle + frame.phase, frame.time, height_};
     // Gap in the film: a flight in progress before the gap is discarded.
     if (!last_.empty() && now.tick != last_.back().tick + 1) {
       last_.clear();
@@ -100,7 +99,7 @@ class BedFlight : public Observable {
     }
     last_.push_back(now);
     if (last_.size() < static_cast<std::size_t>(2 * stride_ + 1)) return;
-    const Moment &before = last_.front(), &middle = last_[static_cast<std::size_t>(stride_)];
+    const Instant &before = last_.front(), &middle = last_[static_cast<std::size_t>(stride_)];
     const double step = (now.time - before.time) / 2;
     judge(middle, 1 + (before.height - 2 * middle.height + now.height) / (step * step));
     last_.pop_front();
@@ -137,21 +136,21 @@ class BedFlight : public Observable {
   /// The centre of mass of all detected beads would jump whenever a bead appears or disappears. \returns true
   /// if there is such a bead, or if this is the first frame
   bool rise(const Frame& frame) {
-    double moment = 0, mass = 0;
+    double moved = 0, mass = 0;
     const bool first = before_.empty();
     before_.resize(frame.position.size(), kNaN);
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       const double z = frame.present(i) ? frame.position[i].z() : kNaN;
       const double m = info_.mass.empty() ? 1 : info_.mass[i];
-      if (std::isfinite(z - before_[i])) moment += m * (z - before_[i]), mass += m;
+      if (std::isfinite(z - before_[i])) moved += m * (z - before_[i]), mass += m;
       before_[i] = z;
     }
-    if (mass > 0) height_ += moment / mass;
+    if (mass > 0) height_ += moved / mass;
     return first || mass > 0;
   }
 
   /// Processes one instant, with the support in units of the bed's weight.
-  void judge(const Moment& m, double support) {
+  void judge(const Instant& m, double support) {
     if (support < kFlyingSupport) {
       if (flight_.empty()) thrown_ = std::max(carried_[0], carried_[1]) > kThrowingSupport;
       flight_.push_back(m);
@@ -181,39 +180,39 @@ class BedFlight : public Observable {
   void land(double carried) {
     const double frame = carried - flight_.back().time, reach = static_cast<double>(stride_) * frame,
                  fine = frame / 32;
-    Parabola way(flight_, -HUGE_VAL);
-    auto take_off = taken_off(way, reach, frame);
+    Parabola path(flight_, -HUGE_VAL);
+    auto take_off = taken_off(path, reach, frame);
     if (!take_off) return;
     // At the first instants the plate may still have supported part of the weight. The second fit leaves them
     // out.
     if (flight_.end()[-2].time > *take_off) {
-      way = Parabola(flight_, *take_off);
-      take_off = taken_off(way, reach, frame);
+      path = Parabola(flight_, *take_off);
+      take_off = taken_off(path, reach, frame);
       if (!take_off) return;
     }
     // Landing: the first later instant at which the parabola is at its take-off height above the plate.
-    const double least = above(way, *take_off), latest = carried + reach;
+    const double least = above(path, *take_off), latest = carried + reach;
     double landing = std::max(*take_off + 2 * fine, flight_.back().time - reach);
-    while (landing < latest && above(way, landing) > least) landing += fine;
+    while (landing < latest && above(path, landing) > least) landing += fine;
     if (landing < latest)
-      landing = boundary(landing - fine, landing, [&](double t) { return above(way, t) > least; });
+      landing = boundary(landing - fine, landing, [&](double t) { return above(path, t) > least; });
     durations_.add(landing - *take_off);
     in_cycle_ += landing - *take_off;
     landed_ = landing;
   }
 
   /// Height of the parabola above the plate.
-  [[nodiscard]] double above(const Parabola& way, double t) const {
-    return way.height(t) - info_.drive->displacement(turns(t));
+  [[nodiscard]] double above(const Parabola& path, double t) const {
+    return path.height(t) - info_.drive->displacement(turns(t));
   }
 
   /// Take-off time of the flight. Absent if the bed cannot have left the plate.
-  [[nodiscard]] std::optional<double> taken_off(const Parabola& way, double reach, double frame) const {
+  [[nodiscard]] std::optional<double> taken_off(const Parabola& path, double reach, double frame) const {
     const double first = flight_.front().time, fine = frame / 32;
     const Drive& drive = *info_.drive;
     // A bed that rested on the plate has h' = h'' = 0 at take-off. Noise separates the two zeros, or keeps h'
     // positive so that it has no zero. The later of the two zeros is then the best estimate.
-    const auto rises = [&](double t) { return way.velocity(t) - drive.velocity(turns(t)); };
+    const auto rises = [&](double t) { return path.velocity(t) - drive.velocity(turns(t)); };
     const auto leaves = [&](double t) {
       return rises(t) > 0 && drive.omega * drive.omega * drive.displacement(turns(t)) > 1;
     };
@@ -237,10 +236,10 @@ class BedFlight : public Observable {
   std::string reason_;
   double height_ = 0;           ///< of the centre of mass, relative to the first frame
   std::vector<double> before_;  ///< height of each bead in the last frame; NaN if it was not detected
-  std::deque<Moment> last_;
+  std::deque<Instant> last_;
   std::optional<std::int64_t> since_;  ///< first tick of the current cycle
   double in_cycle_ = 0;                ///< total duration of the flights that ended in the current cycle
-  std::vector<Moment> flight_;         ///< instants of the current flight
+  std::vector<Instant> flight_;        ///< instants of the current flight
   double landed_ = -HUGE_VAL;          ///< end of the previous flight
   std::array<double, 2> carried_{};    ///< support at the last two instants on the plate
   bool thrown_ = false;                ///< the current flight began with a throw

@@ -36,7 +36,7 @@ std::string cost_json(const Scene& scene, const Cost& cost) {
   const double beads = static_cast<double>(cost.beads);
   d["beads"] = cost.beads;
   d["has_chance"] = has_chance(scene);
-  d["vectors"] = cost.kernel;
+  d["vectors"] = cost.solver;
   d["bytes_per_bead"] = cost.bytes_per_bead;
   d["bytes_per_pair"] = cost.bytes_per_pair > 0 ? nlohmann::json(cost.bytes_per_pair) : nlohmann::json();
   d["pairs_per_bead"] = cost.pairs_per_bead;

@@ -196,8 +196,7 @@ template <Velocity kVelocity, class V, class T, class X, class Force>
 /// \param locate with Velocity::full_step: the instants of entry and exit are located within their step and
 /// the impulse is counted from there, which makes every collision second order. Otherwise the force acts from
 /// the first step that finds an overlap to the last
-/// \param memory kRemembered numbers in double precision; in single precision, the increments of slow creep
-/// would be lost to the rounding of the spring's length
+/// \param memory kRemembered numbers
 template <class Laws, Velocity kVelocity, class V, int D>
 [[gnu::always_inline]] inline ContactLoad<V, D> act(const ContactKinematics<V, D>& a, const V* c, V dt,
                                                     [[maybe_unused]] bool locate, V* memory) {
@@ -208,10 +207,9 @@ template <class Laws, Velocity kVelocity, class V, int D>
   constexpr bool kLimited = Tangential::kActs || Rolling::kActs;
   constexpr int K = kTurns<D>;
   const V zero(0.0), half(0.5);
-  const V forgotten(0.0);
   const V* c_n = c + Layout<Laws>::kNormal;
   V own[Normal::kMemory + 1];  // remembered by the normal law
-  for (int k = 0; k < Normal::kMemory; ++k) own[k] = V(memory[k]);
+  for (int k = 0; k < Normal::kMemory; ++k) own[k] = memory[k];
 
   // Contact interval: with located entry and exit, find the fraction of the step in which the contact exists.
   V v_n = a.v[D - 1] * a.n[D - 1];
@@ -224,7 +222,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
   V* middle = memory + Laws::template kMemory<D>;
   if constexpr (kFull) {
     // A pair whose previous v_n was exactly 0 is treated as new; its force is the same.
-    const V before = V(middle[0]);
+    const V before = middle[0];
     was = abs(before) > zero;
     seen = at_end(was, half, v_n, before);
     interval.entering = both(now, before == zero);
@@ -265,7 +263,7 @@ template <class Laws, Velocity kVelocity, class V, int D>
       // Zero of F_n: near its end a contact pulls, so find the fraction of the interval with F_n > 0.
       const auto pulls = both(acting, interval.ended < zero);
       if (locate && any(pulls)) {
-        const V start = half * (v_n + V(middle[0]));
+        const V start = half * (v_n + middle[0]);
         const V held_before = Normal::force(c_n, fma(v_n, dt, a.overlap), start, own);
         // Change only the lanes in which F_n vanishes: a contact's force must not depend on the other
         // contacts of its packet.
@@ -290,25 +288,23 @@ template <class Laws, Velocity kVelocity, class V, int D>
     V* kept = memory + Normal::kMemory;
     if constexpr (Tangential::kHistory) {
       for (int k = 0; k < K; ++k) xi.c[k] = kept[k];
-      V n[D];
-      for (int k = 0; k < D; ++k) n[k] = a.n[k];
-      into_tangent_plane<V, D>(n, xi);
+      into_tangent_plane<V, D>(a.n, xi);
     }
     const Tangent<V, K> v_t = tangential_velocity(a, v_n);
     Tangent<V, K> seen_t = v_t;
     if constexpr (kFull) {
       Tangent<V, K> before;
-      for (int k = 0; k < K; ++k) before.c[k] = V(middle[1 + k]);
+      for (int k = 0; k < K; ++k) before.c[k] = middle[1 + k];
       flatten<V, D>(a.n, before);
       seen_t = at_end(was, half, v_t, before);
-      for (int k = 0; k < K; ++k) middle[1 + k] = select(now, v_t.c[k], forgotten);
+      for (int k = 0; k < K; ++k) middle[1 + k] = select(now, v_t.c[k], zero);
     }
     const Tangent<V, K> f_t =
         lasting<kVelocity>(v_t, seen_t, dt, interval, xi, [&](const auto& v, V limit, V step, auto& x, V at) {
           return tangential_force<Tangential>(c + Layout<Laws>::kTangential, v, limit, step, x, at);
         });
     if constexpr (Tangential::kHistory)
-      for (int k = 0; k < K; ++k) kept[k] = select(now, xi.c[k], forgotten);
+      for (int k = 0; k < K; ++k) kept[k] = select(now, xi.c[k], zero);
     if constexpr (D == 2) {
       out.f[0] = nfma(f_t.c[0], a.n[1], out.f[0]);
       out.f[1] = fma(f_t.c[0], a.n[0], out.f[1]);
@@ -332,24 +328,24 @@ template <class Laws, Velocity kVelocity, class V, int D>
     }
     if constexpr (kFull) {
       Tangent<V, K> before;
-      for (int k = 0; k < K; ++k) before.c[k] = V(middle[1 + K + k]);
+      for (int k = 0; k < K; ++k) before.c[k] = middle[1 + K + k];
       seen_w = at_end(was, half, w, before);
-      for (int k = 0; k < K; ++k) middle[1 + K + k] = select(now, w.c[k], forgotten);
+      for (int k = 0; k < K; ++k) middle[1 + K + k] = select(now, w.c[k], zero);
     }
     const Tangent<V, K> m = lasting<kVelocity>(
         w, seen_w, dt, interval, theta, [&](const auto& v, V limit, V step, auto& x, V /*overlap*/) {
           return Rolling::torque(c + Layout<Laws>::kRolling, v, limit, step, x);
         });
     for (int k = 0; k < K; ++k) {
-      kept[k] = select(now, theta.c[k], forgotten);
+      kept[k] = select(now, theta.c[k], zero);
       // The sign follows the definition of q: I dw/dt = -R q.
       out.q_i[k] = select(acting, -(m.c[k] * c[constant::kInvRadiusI]), zero);
       out.q_j[k] = select(acting, m.c[k] * c[constant::kInvRadiusJ], zero);
     }
   }
   // Memory and output: contacts that have ended forget their numbers and exert no force.
-  if constexpr (kFull) middle[0] = select(now, v_n, forgotten);
-  for (int k = 0; k < Normal::kMemory; ++k) memory[k] = select(now, own[k], forgotten);
+  if constexpr (kFull) middle[0] = select(now, v_n, zero);
+  for (int k = 0; k < Normal::kMemory; ++k) memory[k] = select(now, own[k], zero);
   for (int k = 0; k < D; ++k) out.f[k] = select(acting, out.f[k], zero);
   for (int k = 0; k < K; ++k) out.q[k] = select(acting, out.q[k], zero);
   return out;

@@ -50,10 +50,10 @@ Cluster take_out(const System& whole, const std::vector<ContactMemory>& memories
 }
 
 ClusterState after(const Cluster& cluster, std::int64_t steps,
-                   const std::function<std::unique_ptr<Solver>()>& kernel) {
+                   const std::function<std::unique_ptr<Solver>()>& make_solver) {
   ClusterState state{cluster.start, cluster.memories};
   if (steps == 0) return state;
-  const auto moving = kernel();
+  const auto moving = make_solver();
   moving->restore(cluster.memories);
   moving->advance(state.system, steps);
   state.memories = moving->contacts();
@@ -61,10 +61,10 @@ ClusterState after(const Cluster& cluster, std::int64_t steps,
 }
 
 std::optional<System> disperse(Cluster& cluster, std::int64_t contact, std::int64_t most,
-                               const std::function<std::unique_ptr<Solver>()>& kernel) {
+                               const std::function<std::unique_ptr<Solver>()>& make_solver) {
   const std::int64_t every = std::max<std::int64_t>(1, contact / 8);
   System s = cluster.start;
-  const auto moving = kernel();
+  const auto moving = make_solver();
   moving->restore(cluster.memories);
   cluster.stray.assign(s.beads.size(), 0);
   std::vector<double> fastest(s.beads.size(), 0);  // largest speed relative to free flight

@@ -32,7 +32,7 @@ struct ClusterState {
   std::vector<ContactMemory> memories;
 };
 ClusterState after(const Cluster& cluster, std::int64_t steps,
-                   const std::function<std::unique_ptr<Solver>()>& kernel);
+                   const std::function<std::unique_ptr<Solver>()>& make_solver);
 
 /// Advances a cluster until no member touches another or a wall; sets `steps` and `stray`. The state is
 /// checked at intervals of an eighth of `contact` steps.
@@ -40,6 +40,6 @@ ClusterState after(const Cluster& cluster, std::int64_t steps,
 /// \param most largest number of steps
 /// \returns the final state; nothing if the beads have not parted after `most` steps or overlap too deeply
 std::optional<System> disperse(Cluster& cluster, std::int64_t contact, std::int64_t most,
-                               const std::function<std::unique_ptr<Solver>()>& kernel);
+                               const std::function<std::unique_ptr<Solver>()>& make_solver);
 
 }  // namespace twincell::sim

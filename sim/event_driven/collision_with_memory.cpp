@@ -69,7 +69,7 @@ class CollisionWithMemory {
     }
     end.time = t;
     end.motion = motion(y);
-    if (const Moment m = look(t, y); mode_ == Mode::slide)
+    if (const Instant m = look(t, y); mode_ == Mode::slide)
       end.xi = spring_for(m, friction(m));
     else if (mode_ != Mode::loose)
       end.xi = m.x;
@@ -80,7 +80,7 @@ class CollisionWithMemory {
   CollisionForce force(const RelativeMotion& at, const Vec3& xi) {
     State y = state(at);
     put(xi, 3, y);
-    const Moment m = look(0, y);
+    const Instant m = look(0, y);
     constexpr double kAtLimit = 1 - 1e-9;
     const bool held =
         reading_ == SlipReading::spring_limited && k_t_ * xi.norm() >= kAtLimit * limit(m) && limit(m) > 0;
@@ -117,7 +117,7 @@ class CollisionWithMemory {
   static RelativeMotion motion(const State& y) { return {part(y, 0), part(y, 1), part(y, 2)}; }
 
   /// All quantities at one instant that do not depend on the mode.
-  struct Moment {
+  struct Instant {
     Vec3 r, u, s, x;
     Vec3 n, turning;  ///< normal and its rate
     double overlap, v_n, f_n;
@@ -126,8 +126,8 @@ class CollisionWithMemory {
   [[nodiscard]] double normal_force(double overlap, double v_n) const {
     return N::template force<double>(c_n_.data(), std::max(overlap, 0.0), v_n, nullptr);
   }
-  [[nodiscard]] Moment look(double t, const State& y) const {
-    Moment m;
+  [[nodiscard]] Instant look(double t, const State& y) const {
+    Instant m;
     m.r = part(y, 0), m.u = part(y, 1), m.s = part(y, 2), m.x = part(y, 3);
     const double apart = set_.wall ? m.r.dot(*set_.wall) : m.r.norm();
     m.n = set_.wall ? *set_.wall : Vec3(m.r / apart);
@@ -139,16 +139,16 @@ class CollisionWithMemory {
     m.push = set_.wall ? Vec3(set_.pull + set_.swing * std::sin(set_.omega * t)) : Vec3(Vec3::Zero());
     return m;
   }
-  [[nodiscard]] double limit(const Moment& m) const { return mu_ * std::abs(m.f_n); }
+  [[nodiscard]] double limit(const Instant& m) const { return mu_ * std::abs(m.f_n); }
   /// Forces below this count as zero. Friction without a limit (mu = 1e9, for example) is then not cut at the
   /// instant at which F_n vanishes.
   [[nodiscard]] double least() const { return kLeast * mu_ * largest_; }
-  [[nodiscard]] Vec3 sticking_force(const Moment& m) const { return -k_t_ * m.x - eta_t_ * m.v_t; }
+  [[nodiscard]] Vec3 sticking_force(const Instant& m) const { return -k_t_ * m.x - eta_t_ * m.v_t; }
   static Vec3 cut(const Vec3& f, double most) {
     const double size = f.norm();
     return size > most ? Vec3(f * (most / size)) : f;
   }
-  [[nodiscard]] Vec3 friction(const Moment& m) const {
+  [[nodiscard]] Vec3 friction(const Instant& m) const {
     switch (mode_) {
       case Mode::stick:
         return sticking_force(m);
@@ -164,22 +164,22 @@ class CollisionWithMemory {
   struct Slopes {
     Vec3 u, s;
   };
-  [[nodiscard]] Slopes slopes(const Moment& m, const Vec3& f_t) const {
+  [[nodiscard]] Slopes slopes(const Instant& m, const Vec3& f_t) const {
     return {(m.f_n * m.n + f_t) / set_.pair.m_eff + m.push, -set_.turn * m.n.cross(f_t)};
   }
   /// Time derivative of the tangential velocity, in the tangent plane.
-  [[nodiscard]] static Vec3 surface_rate(const Moment& m, const Slopes& d) {
+  [[nodiscard]] static Vec3 surface_rate(const Instant& m, const Slopes& d) {
     const Vec3 rate = d.u - m.v_n * m.turning - d.s.cross(m.n) - m.s.cross(m.turning);
     return rate - rate.dot(m.n) * m.n;
   }
   /// Rate at which the force would change if the spring only stretched.
-  [[nodiscard]] Vec3 free_rate(const Moment& m, const Slopes& d) const {
+  [[nodiscard]] Vec3 free_rate(const Instant& m, const Slopes& d) const {
     if (reading_ == SlipReading::spring_limited) return -k_t_ * m.v_t;
     return -k_t_ * m.v_t - eta_t_ * surface_rate(m, d);
   }
   /// Time derivative of F_n. The derivatives of the law are finite differences, with increments far above
   /// rounding.
-  [[nodiscard]] double normal_rate(const Moment& m, const Slopes& d) const {
+  [[nodiscard]] double normal_rate(const Instant& m, const Slopes& d) const {
     const double v_dot = d.u.dot(m.n) + m.u.dot(m.turning);
     const double dx = 1e-6 * std::max(m.overlap, 1e-9), dv = 1e-6 * std::max(std::abs(m.v_n), 1e-6);
     const double by_overlap =
@@ -190,7 +190,7 @@ class CollisionWithMemory {
   }
 
   void derive(const State& y, State& dy, double t) const {
-    const Moment m = look(t, y);
+    const Instant m = look(t, y);
     const Vec3 f_t = friction(m);
     const Slopes d = slopes(m, f_t);
     put(m.u, 0, dy), put(d.u, 1, dy), put(d.s, 2, dy);
@@ -218,7 +218,7 @@ class CollisionWithMemory {
 
   /// Becomes negative when the event happens.
   [[nodiscard]] double signal(Event e, double t, const State& y) const {
-    const Moment m = look(t, y);
+    const Instant m = look(t, y);
     switch (e) {
       case Event::parting:
         return m.v_n > 0 ? m.overlap : std::abs(m.overlap) + 1e-300;
@@ -264,7 +264,7 @@ class CollisionWithMemory {
   /// Mode after the force has reached the limit: sliding, or sticking if the limit grows faster than the
   /// force.
   Mode settle(double t, const Vec3& force, const Vec3& spring, State& y) {
-    const Moment m = look(t, y);
+    const Instant m = look(t, y);
     const Slopes d = slopes(m, force);
     const Vec3 rate = free_rate(m, d);
     const double limit_rate = mu_ * (pressed_ ? 1 : -1) * normal_rate(m, d);
@@ -274,13 +274,13 @@ class CollisionWithMemory {
     return Mode::stick;
   }
   /// The spring that gives a total tangential force `force`.
-  [[nodiscard]] Vec3 spring_for(const Moment& m, const Vec3& force) const {
+  [[nodiscard]] Vec3 spring_for(const Instant& m, const Vec3& force) const {
     if (k_t_ == 0) return Vec3::Zero();
     return -(force + (reading_ == SlipReading::spring_limited ? 0.0 : eta_t_) * m.v_t) / k_t_;
   }
   Mode entered(double t, State& y) {
     put(Vec3::Zero(), 3, y);
-    const Moment m = look(t, y);
+    const Instant m = look(t, y);
     pressed_ = m.f_n > 0 || (m.f_n == 0 && m.v_n < 0);
     const Vec3 force = sticking_force(m);
     const bool beyond = force.norm() > limit(m);
@@ -291,7 +291,7 @@ class CollisionWithMemory {
     return settle(t, cut_to, spring_for(m, cut_to), y);
   }
   Mode after_limit(double t, State& y) {
-    Moment m = look(t, y);
+    Instant m = look(t, y);
     if (mode_ == Mode::stick)
       return reading_ == SlipReading::rescale ? slide_along(sticking_force(m), y) : Mode::clip;
     if (mode_ == Mode::slide) {
@@ -304,7 +304,7 @@ class CollisionWithMemory {
   /// Mode after F_n vanishes, and with it the Coulomb limit.
   Mode after_turn(double t, State& y) {
     pressed_ = !pressed_;
-    const Moment m = look(t, y);
+    const Instant m = look(t, y);
     if (mode_ == Mode::loose || reading_ == SlipReading::clip) return mode_;
     if (mode_ == Mode::stick && sticking_force(m).norm() < least()) return mode_;
     const bool pulls = normal_force(m.overlap, m.v_n + 1e-3 * std::abs(m.v_n) + 1e-12) < 0;
@@ -317,7 +317,7 @@ class CollisionWithMemory {
   }
 
   void note(const State& y, double t, CollisionEnd& end) {
-    const Moment m = look(t, y);
+    const Instant m = look(t, y);
     largest_ = std::max(largest_, std::abs(m.f_n));
     if (m.overlap < end.deepest) return;
     end.deepest = m.overlap, end.middle = t, middle_ = y;

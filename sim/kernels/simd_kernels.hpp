@@ -34,7 +34,12 @@ double pair_kernel(const PairArgs& args) {
   constexpr int kRollAt = 2 * D, kKept = std::max(kRollAt + (kRoll ? K : 0), D + (kRoll ? 2 : 1) * K);
   constexpr int kStage = W == 1 ? 1 : 16;  // packets
   alignas(64) double stage[kStage * W * kKept];
-  std::int64_t live[kStage];
+  // Packets that may have a contact. The constants are kept as a pointer: the compiler would otherwise
+  // address each of them by base and index, which processors split in two.
+  struct Live {
+    std::int64_t packet;
+    const double* constants;
+  } live[kStage];
   const V dt(p.dt), quantum(p.quantum);
   V largest(0.0);
   for (std::int64_t begin = 0; begin < p.packets; begin += kStage) {
@@ -73,13 +78,12 @@ double pair_kernel(const PairArgs& args) {
                            s_j[m] * Lanes::load(constants + W * constant::kInvRadiusJ),
                        to + W * (kRollAt + m));
       }
-      live[n++] = k;
+      live[n++] = {k, constants};
     }
     // Compute: evaluate the laws for the packets that may have a contact.
     for (int at = 0; at < n; ++at) {
       double* numbers = stage + W * kKept * at;
-      const std::int64_t k = live[at];
-      const double* constants = p.constants + p.constants_step * k;
+      const auto [k, constants] = live[at];
       double* kept = p.memory + W * kMemory * k;
       V c[kCount], d[D];
       for (int m = 0; m < kCount; ++m) c[m] = Lanes::load(constants + W * m);
@@ -112,7 +116,7 @@ double pair_kernel(const PairArgs& args) {
     }
     // Scatter: add the rounded forces to the beads.
     for (int at = 0; at < n; ++at) {
-      const std::int64_t k = live[at];
+      const std::int64_t k = live[at].packet;
       const double* numbers = stage + W * kKept * at;
       const auto share = [&](int m) TWINCELL_LANES { return rounded(Lanes::load(numbers + W * m), quantum); };
       V f[D], q_i[K], q_j[K];
@@ -371,12 +375,17 @@ struct KernelTable {
   }
   static Kernels find(const KernelKey& key) { return key.dimension == 2 ? find_in<2>(key) : find_in<3>(key); }
   template <int D>
-  static Kernels find_in(const KernelKey& key) {
-    constexpr auto kEach = std::make_index_sequence<kNormals * kTangentials * kRollings>();
-    const std::size_t index = (key.normal * kTangentials + key.tangential) * kRollings + key.rolling;
-    return key.velocity == Velocity::full_step ? pick<D, Velocity::full_step>(index, kEach)
-                                               : pick<D, Velocity::half_step>(index, kEach);
-  }
+  static Kernels find_in(const KernelKey& key);
 };
+/// Instantiates all kernels of a dimension. It is not inline, so that a file can leave a dimension to another
+/// file (`extern template`) and two cores compile one instruction set.
+template <class Lanes>
+template <int D>
+Kernels KernelTable<Lanes>::find_in(const KernelKey& key) {
+  constexpr auto kEach = std::make_index_sequence<kNormals * kTangentials * kRollings>();
+  const std::size_t index = (key.normal * kTangentials + key.tangential) * kRollings + key.rolling;
+  return key.velocity == Velocity::full_step ? pick<D, Velocity::full_step>(index, kEach)
+                                             : pick<D, Velocity::half_step>(index, kEach);
+}
 
 }  // namespace twincell::sim

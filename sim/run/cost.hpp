@@ -14,7 +14,7 @@ namespace twincell::sim {
 struct Cost {
   Plan plan;  ///< for the beads of the start
   std::size_t beads = 0;
-  std::string kernel;         ///< Solver::description()
+  std::string solver;         ///< Solver::description()
   double bytes_per_bead = 0;  ///< memory in use for beads
   double bytes_per_pair = 0;  ///< memory in use, per listed pair or wall contact; 0 without listed contacts
   double pairs_per_bead = 0;  ///< listed contacts per bead

@@ -1,0 +1,48 @@
+#include "sim/stepping/listed_beads.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace twincell::sim {
+
+BeadOrder BeadOrder::by_cells(const std::vector<Bead>& beads, double cell) {
+  BeadOrder order;
+  order.bead.resize(beads.size());
+  std::iota(order.bead.begin(), order.bead.end(), 0);
+  std::vector<std::array<double, 3>> key(beads.size());
+  for (std::size_t b = 0; b < beads.size(); ++b) {
+    const auto whole = [&](double x) { return std::abs(x) < 1e9 ? std::floor(x / cell) : 1e9; };
+    key[b] = {whole(beads[b].z), whole(beads[b].y), whole(beads[b].x)};
+  }
+  std::stable_sort(order.bead.begin(), order.bead.end(), [&](std::int32_t a, std::int32_t b) {
+    return key[static_cast<std::size_t>(a)] < key[static_cast<std::size_t>(b)];
+  });
+  order.place.resize(beads.size());
+  for (std::size_t k = 0; k < order.bead.size(); ++k)
+    order.place[static_cast<std::size_t>(order.bead[k])] = static_cast<std::int32_t>(k);
+  return order;
+}
+
+ListedBeads::ListedBeads(const Plan& of, const Target& target)
+    : plan(of),
+      kernels(target.find(of.key)),
+      layout{static_cast<std::size_t>(target.width), static_cast<std::size_t>(of.dimension),
+             static_cast<std::size_t>(kernels.remembered)},
+      packed(plan) {}
+
+void ListedBeads::set_shared_constants() {
+  if (!packed.equal() || packed.size() == 0 || !pair_constants.empty()) return;
+  const double r = packed.radius(0);
+  pair_constants = layout.broadcast(contact_constants(plan.bead, packed.pair(0, 0), 2 * r, 1 / r, 1 / r));
+  for (std::size_t w = 0; w < plan.wall_laws.size(); ++w)
+    wall_constants.push_back(layout.broadcast(constants_at_wall(w, 0)));
+}
+
+std::vector<double> ListedBeads::constants_at_wall(std::size_t w, std::size_t place) const {
+  const double r = packed.radius(place);
+  return contact_constants(plan.wall_laws[w], packed.wall(place), r, 1 / r, 0);
+}
+
+}  // namespace twincell::sim

@@ -1,0 +1,193 @@
+#include "sim/stepping/outer_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "core/cancellation.hpp"
+#include "sim/system/cell_grid.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+using Size = std::size_t;
+
+/// Sorts by two keys, of which the first is below n: a counting sort by the first key, then a comparison sort
+/// of the few elements with equal first key by the second.
+template <class T, class First, class Second>
+std::vector<T> in_order_of(std::vector<T> given, Size n, First first, Second second) {
+  std::vector<Size> end(n + 1, 0);
+  for (const T& t : given) ++end[static_cast<Size>(first(t)) + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<T> sorted(given.size());
+  for (T& t : given) sorted[end[static_cast<Size>(first(t))]++] = std::move(t);
+  for (Size k = 0, begin = 0; k < n; begin = end[k++])
+    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
+              sorted.begin() + static_cast<std::ptrdiff_t>(end[k]),
+              [&](const T& a, const T& b) { return second(a) < second(b); });
+  return sorted;
+}
+
+}  // namespace
+
+RememberedContacts::RememberedContacts(std::vector<ContactMemory> sorted, Size beads)
+    : all(std::move(sorted)), first_(beads + 1, 0) {
+  for (const ContactMemory& m : all) ++first_[static_cast<Size>(m.i) + 1];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+}
+
+const ContactMemory* RememberedContacts::find(std::int32_t i, std::int32_t j) const {
+  const auto at = [&](Size k) { return all.begin() + static_cast<std::ptrdiff_t>(first_[k]); };
+  const auto end = at(static_cast<Size>(i) + 1);
+  const auto found =
+      std::find_if(at(static_cast<Size>(i)), end, [&](const ContactMemory& m) { return m.j == j; });
+  return found == end ? nullptr : &*found;
+}
+
+void OuterPairs::divide_into_chunks(const BeadShare& share, const std::vector<const NearPair*>& own) {
+  chunk_end.clear();
+  Size reached = 0;
+  for (Size end = share.begin; end < share.end;) {
+    end = std::min(end + kChunkBeads, share.end);
+    while (reached < own.size() && static_cast<Size>(std::min(own[reached]->i, own[reached]->j)) < end)
+      ++reached;
+    chunk_end.push_back(reached);
+  }
+}
+
+void OuterPairs::assign(const ListedBeads& beads, const BeadShare& share, const std::vector<NearPair>& found,
+                        const RememberedContacts& remembered, bool periodic) {
+  const PacketLayout& layout = beads.layout;
+  const PackedBeads& packed = beads.packed;
+  std::vector<const NearPair*> own;
+  for (const NearPair& f : found)
+    if (share.owns(f.i) || share.owns(f.j)) own.push_back(&f);
+  throw_if_cancelled();
+  divide_into_chunks(share, own);
+  pairs = own.size();
+  const Size packets = layout.packets(pairs), padded = packets * layout.width;
+  i.assign(padded, share.dummy), j.assign(padded, share.dummy);
+  near.assign(packets, 0), touching.assign(packets, 0);
+  shift.assign(periodic ? padded * layout.dimension : 0, 0);
+  memory.assign(pairs * layout.memory, 0);
+  reach.assign(packed.equal() ? 0 : padded, 0);
+  constants.clear(), remembering.clear();
+  for (Size p = 0; p < pairs; ++p) {
+    const NearPair& f = *own[p];
+    const Size a = static_cast<Size>(f.i), b = static_cast<Size>(f.j);
+    i[p] = f.i, j[p] = f.j;
+    if (periodic)
+      for (Size c = 0; c < layout.dimension; ++c)
+        shift[layout.index(p, layout.dimension, c)] =
+            f.shift[layout.dimension == 2 && c == 1 ? 2 : static_cast<int>(c)];
+    if (!packed.equal()) {
+      const double ra = packed.radius(a), rb = packed.radius(b);
+      const auto set = contact_constants(beads.plan.bead, packed.pair(a, b), ra + rb, 1 / ra, 1 / rb);
+      constants.insert(constants.end(), set.begin(), set.end());
+      reach[p] = ra + rb;
+    }
+    if (layout.memory == 0 || remembered.all.empty()) continue;
+    if (const ContactMemory* m = remembered.find(beads.order.bead[a], beads.order.bead[b])) {
+      std::copy(m->values.begin(), m->values.end(),
+                memory.begin() + static_cast<std::ptrdiff_t>(p * layout.memory));
+      remembering.push_back(static_cast<std::int32_t>(p));
+    }
+  }
+  record_i.resize(padded), record_j.resize(padded);
+  for (Size p = 0; p < padded; ++p) record_i[p] = layout.record(i[p]), record_j[p] = layout.record(j[p]);
+}
+
+void OuterList::set_limits(const System& s) {
+  // Second neighbours of a hexagonal packing are at 1.73 sigma, so a skin of a quarter diameter adds no pairs
+  // there. The diameter is the median: one bead a hundred times larger must not lengthen the lists of the
+  // small beads.
+  std::vector<double> radii;
+  for (const Bead& b : s.beads) radii.push_back(b.radius);
+  const double largest = *std::max_element(radii.begin(), radii.end());
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  usual_radius_ = *middle;
+  const double base = kListReach * 2 * usual_radius_;
+  widest_skin_ = 3 * 2 * usual_radius_;
+  for (const double period : s.period)  // a bead must not reach two images of another
+    if (period > 0) widest_skin_ = std::min(widest_skin_, 0.5 * period - 2 * largest);
+  widest_skin_ = std::max(widest_skin_, base);
+  if (skin_ == 0) skin_ = base;
+}
+
+void OuterList::distrust() {
+  approach_ = HUGE_VAL;
+}
+
+void OuterList::discard() {
+  built_.clear();
+  distrust();
+}
+
+bool OuterList::is_stale(const PackedBeads& beads, double margin) {
+  // The approach of any two beads since the build is at most the sum of the margins of the inner lists since.
+  // Displacements are measured only when this bound no longer suffices.
+  approach_ += last_margin_;
+  last_margin_ = margin;
+  return !(approach_ + margin <= skin_) && have_crossed(beads, margin);
+}
+
+/// Whether beads may have moved so far, relative to their mean displacement, that an unlisted pair is within
+/// the margin of the inner list.
+bool OuterList::have_crossed(const PackedBeads& beads, double margin) {
+  if (built_.size() != beads.size()) return true;
+  Vec3 mean = Vec3::Zero();
+  for (Size k = 0; k < beads.size(); ++k) mean += beads.position(k) - built_[k];
+  mean /= static_cast<double>(std::max<Size>(1, beads.size()));
+  double first = 0, second = 0;  // squares of the two largest displacements
+  for (Size k = 0; k < beads.size(); ++k) {
+    const double d = (beads.position(k) - built_[k] - mean).squaredNorm();
+    if (!(d <= first)) {
+      second = first;
+      first = d;
+    } else if (d > second) {
+      second = d;
+    }
+  }
+  // The comparison is negated so that a NaN position makes the list stale; the build then detects it.
+  approach_ = std::sqrt(first) + std::sqrt(second);
+  return !(approach_ + margin <= skin_);
+}
+
+/// A wide skin makes builds of the outer list rare, but the list long. The cost is least where building the
+/// list costs as much as the passes through it. Per bead the search costs some hundred times as much as a
+/// pass costs per pair. A dense bed therefore keeps only its first shell, and a dilute gas has a wide skin.
+void OuterList::adapt_skin(Size beads, Size listed) {
+  constexpr double kSearch = 400;
+  const double search = kSearch * static_cast<double>(beads),
+               passes = static_cast<double>(inner_lists_) * static_cast<double>(listed);
+  if (inner_lists_ == 0) return;
+  inner_lists_ = 0;
+  if (search > 2 * passes) skin_ *= 1.25;
+  if (passes > 2 * search) skin_ *= 0.8;
+  skin_ = std::clamp(skin_, 0.2 * usual_radius_, widest_skin_);
+}
+
+std::vector<NearPair> OuterList::search(const System& s, const BeadOrder& order) const {
+  std::vector<NearPair> found;
+  for_each_near_pair(
+      s.beads, s.dimension, s.period, skin_, [&](std::int32_t a, std::int32_t b, double, const Vec3& shift) {
+        // Bead i is the one with the lower number, whatever the order in memory, so that a
+        // remembered vector keeps its sign.
+        found.push_back({order.place[static_cast<Size>(a)], order.place[static_cast<Size>(b)], shift});
+      });
+  return in_order_of(
+      std::move(found), s.beads.size(), [](const NearPair& f) { return std::min(f.i, f.j); },
+      [](const NearPair& f) { return std::max(f.i, f.j); });
+}
+
+void OuterList::set_reference(const PackedBeads& beads) {
+  built_.resize(beads.size());
+  for (Size k = 0; k < beads.size(); ++k) built_[k] = beads.position(k);
+  approach_ = 0;
+  ++builds_;
+}
+
+}  // namespace twincell::sim
