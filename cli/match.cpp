@@ -22,47 +22,67 @@ struct MatchOptions {
   ComparingFlags flags;
 };
 
-void run(const Common& common, MatchOptions& o) {
-  resolve(o.flags, common);
-  o.twin.threads = common.n_threads();
-  const std::filesystem::path folder = o.output;
-  const TwinProvenance provenance = {.of_experiment =
-                                         [&](const CellDescription& cell) {
-                                           Provenance p = common.provenance();
-                                           p.config = cell.text;
-                                           p.inputs = {file_of_stack(o.twin.stack), o.twin.cell_file};
-                                           return p.to_json();
-                                         },
-                                     .of_simulation =
-                                         [&](const sim::Scene& scene, const std::vector<sim::Bead>& beads) {
-                                           return scene_provenance(common, scene, beads, {});
-                                         }};
-  if (const CellDescription cell = read_cell(o.twin.cell_file); !cell.included.overridden.empty())
-    note(common,
-         fmt::format("values in {} take precedence over those measured in {}: {}", o.twin.cell_file.string(),
-                     cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
-  const Twin twin = make_twin(o.twin, folder, provenance, progress_bars(common));
+TwinProvenance provenance_of(const Common& common, const TwinOptions& options) {
+  return {.of_experiment =
+              [&common, &options](const CellDescription& cell) {
+                Provenance p = common.provenance();
+                p.config = cell.text;
+                p.inputs = {file_of_stack(options.stack), options.cell_file};
+                return p.to_json();
+              },
+          .of_simulation =
+              [&common](const sim::Scene& scene, const std::vector<sim::Bead>& beads) {
+                return scene_provenance(common, scene, beads, {});
+              }};
+}
 
-  o.flags.options.experiments = {twin.experiment};
-  o.flags.options.simulations = twin.simulations;
-  o.flags.options.scratch = folder;
+/// Notes the values of the cell that replace measured ones.
+void note_overridden(const Common& common, const std::filesystem::path& cell_file) {
+  const CellDescription cell = read_cell(cell_file);
+  if (cell.included.overridden.empty()) return;
+  note(common, fmt::format("values in {} take precedence over those measured in {}: {}", cell_file.string(),
+                           cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
+}
+
+ComparingOptions configuration(const MatchOptions& o, const Common& common) {
+  ComparingOptions options = comparing_options(o.flags, common);
+  options.scratch = o.output;
+  return options;
+}
+
+nlohmann::json as_json(const Twin& twin) {
   std::vector<std::string> simulations;
   for (const auto& file : twin.simulations) simulations.push_back(file.string());
-  const nlohmann::json said = {{"experiment", twin.experiment.string()},
-                               {"scene", twin.scene.string()},
-                               {"twins", simulations},
-                               {"pixels_per_sigma", twin.pixels_per_sigma},
-                               {"drive", twin.drive.empty() ? "as the cell states it" : twin.drive},
-                               {"position_error", twin.position_error},
-                               {"beads", twin.beads},
-                               {"cycles", twin.cycles}};
-  compare_and_report(
-      common, o.flags.options, folder / "report", said,
-      (twin.drive.empty() ? "" : "drive " + twin.drive + "\n") +
-          fmt::format("{} beads in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} twins "
-                      "over {} cycles; {}\n",
-                      twin.beads, twin.pixels_per_sigma, twin.position_error, twin.simulations.size(),
-                      twin.cycles, twin.scene.string()));
+  return {{"experiment", twin.experiment.string()},
+          {"scene", twin.scene.string()},
+          {"twins", simulations},
+          {"pixels_per_sigma", twin.pixels_per_sigma},
+          {"drive", twin.drive.empty() ? "as the cell states it" : twin.drive},
+          {"position_error", twin.position_error},
+          {"beads", twin.beads},
+          {"cycles", twin.cycles}};
+}
+
+std::string as_text(const Twin& twin) {
+  return (twin.drive.empty() ? "" : "drive " + twin.drive + "\n") +
+         fmt::format(
+             "{} beads in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} twins "
+             "over {} cycles; {}\n",
+             twin.beads, twin.pixels_per_sigma, twin.position_error, twin.simulations.size(), twin.cycles,
+             twin.scene.string());
+}
+
+void run(const Common& common, const MatchOptions& o) {
+  const std::filesystem::path folder = o.output;
+  TwinOptions twins = o.twin;
+  twins.threads = common.n_threads();
+  ComparingOptions options = configuration(o, common);
+  note_overridden(common, twins.cell_file);
+  const Twin twin = make_twin(twins, folder, provenance_of(common, twins), progress_bars(common));
+  options.experiments = {twin.experiment};
+  options.simulations = twin.simulations;
+  const NotedComparison compared = compare_sides(common, options);
+  report_comparison(common, options, compared, folder / "report", as_json(twin), as_text(twin));
 }
 
 }  // namespace
