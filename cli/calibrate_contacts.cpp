@@ -66,13 +66,15 @@ void run_bounce(const BounceFlags& o, const Common& common) {
   const std::vector<BounceSample> samples = samples_of(o, drive);
   if (o.amplitude || o.omega) {
     if (!o.amplitude || !o.omega)
-      throw ConfigError({.file = {}, .key = "--amplitude"}, "and --omega must be given together.");
+      throw ConfigError({.file = {}, .key = "--drive-amplitude"},
+                        "and --drive-omega must be given together.");
     drive = Drive{.axis = Axis::z, .amplitude = *o.amplitude, .omega = *o.omega};
   }
   if (o.phase && !(drive && drive->amplitude > 0))
     throw ConfigError(
-        {.file = {}, .key = "--phase"},
-        fmt::format("is {:g}, but the plate does not vibrate; give --amplitude and --omega too.", *o.phase));
+        {.file = {}, .key = "--drive-phase"},
+        fmt::format("is {:g}, but the plate does not vibrate; give --drive-amplitude and --drive-omega too.",
+                    *o.phase));
   BounceOptions options{.gravity = o.gravity, .drag = !o.no_drag, .plate = {}};
   if (drive && drive->amplitude > 0) {
     const double phase = o.phase.value_or(0);
@@ -255,15 +257,18 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
                     "Fixed acceleration of gravity, in the units of heights and times; default: fitted")
         ->check(CLI::PositiveNumber);
     kind.add_flag("--no-drag", o->no_drag, "Do not fit the drag of the air");
-    kind.add_option("--amplitude", o->amplitude,
+    kind.add_option("--drive-amplitude", o->amplitude,
                     "Amplitude A of the vibrating plate, in the unit of the heights; default: the drive of "
                     "the trajectory, for CSV a plate at rest")
         ->check(CLI::NonNegativeNumber);
     kind.add_option(
-            "--omega", o->omega,
-            "Angular frequency omega of the vibrating plate, in rad per unit of time; with --amplitude")
+            "--drive-omega", o->omega,
+            "Angular frequency omega of the vibrating plate, in rad per unit of time; with --drive-amplitude")
         ->check(CLI::PositiveNumber);
-    kind.add_option("--phase", o->phase, "Phase of the plate at time 0, rad; default: 0");
+    former_option(kind, "--amplitude", "--drive-amplitude");
+    former_option(kind, "--omega", "--drive-omega");
+    former_option(kind, "--phase", "--drive-phase");
+    kind.add_option("--drive-phase", o->phase, "Phase of the plate at time 0, rad; default: 0");
     add_output_flags(kind, common, o->out);
     kind.callback([o, &common] { run_bounce(*o, common); });
   }

@@ -399,7 +399,7 @@ void tell_profiles(const InferFlags& o, const Question& question, const Inferenc
 
 void run_infer(const InferFlags& o, const Common& common) {
   std::vector<Sought> sought;
-  refuse_said_twice(o.assignments);
+  refuse_contradictory_assignments(o.assignments);
   for (const std::string& said : o.vary) {
     sought.push_back(sought_of(said));
     const std::string& name = sought.back().name;

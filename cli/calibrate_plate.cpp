@@ -264,7 +264,8 @@ void add_calibrate_plate(CLI::App& calibrate, Common& common) {
                   "Frames per drive cycle at which the search for the period starts; default: the value in "
                   "CELL.toml, otherwise searched for")
       ->check(CLI::Range(2, 100000));
-  verb.add_option("--frame-rate-hz,--fps", o->frame_rate_hz,
+  former_option(verb, "--fps", "--frame-rate-hz");
+  verb.add_option("--frame-rate-hz", o->frame_rate_hz,
                   "Frame rate, 1/s; default: the value in CELL.toml, otherwise that of the stack")
       ->check(CLI::PositiveNumber);
   writes(common, verb,

@@ -14,6 +14,7 @@ namespace twincell::cli {
 namespace {
 
 struct CompareOptions {
+  std::vector<std::filesystem::path> experiments, simulations, stacks, sweeps;
   std::string output;
   ComparingFlags flags;
   bool trust_stated_drive = false;
@@ -49,15 +50,29 @@ void require_drive_of_film(const std::vector<std::filesystem::path>& experiments
                         clause + "; correct the cell and track again, or give --trust-stated-drive.");
 }
 
-void run(const Common& common, CompareOptions& o) {
-  resolve(o.flags, common);
-  const ComparingOptions& options = o.flags.options;
-  if (options.experiments.empty() && options.simulations.empty() && options.sweeps.empty())
+/// \throws ConfigError if there is nothing to compare
+void require_sides(const CompareOptions& o) {
+  if (o.experiments.empty() && o.simulations.empty() && o.sweeps.empty())
     throw ConfigError({.file = {}, .key = "compare"},
                       "there is nothing to compare: give --experiment and --simulation trajectories, or the "
                       "results of a --sweep.");
-  if (!o.trust_stated_drive) require_drive_of_film(options.experiments);
-  compare_and_report(common, options, o.output, nlohmann::json::object(), "");
+}
+
+ComparingOptions configuration(const CompareOptions& o, const Common& common) {
+  ComparingOptions options = comparing_options(o.flags, common);
+  options.experiments = o.experiments;
+  options.simulations = o.simulations;
+  options.stacks = o.stacks;
+  options.sweeps = o.sweeps;
+  return options;
+}
+
+void run(const Common& common, const CompareOptions& o) {
+  const ComparingOptions options = configuration(o, common);
+  require_sides(o);
+  if (!o.trust_stated_drive) require_drive_of_film(o.experiments);
+  const NotedComparison compared = compare_sides(common, options);
+  report_comparison(common, options, compared, o.output, nlohmann::json::object(), "");
 }
 
 }  // namespace
@@ -69,12 +84,13 @@ void add_compare(CLI::App& program, Common& common) {
       "Prints the comparison and writes a report.",
       "twincell compare --experiment exp_15.h5 exp_20.h5 --simulation sim_15.h5 sim_20.h5 -o report");
   auto o = std::make_shared<CompareOptions>();
-  verb.add_option("--experiment", o->flags.options.experiments, "Trajectories of the experiments (H5MD)");
-  verb.add_option("--simulation", o->flags.options.simulations, "Trajectories of the simulations (H5MD)");
-  verb.add_option("--frames", o->flags.options.stacks,
+  verb.add_option("--experiment", o->experiments, "Trajectories of the experiments (H5MD)");
+  verb.add_option("--simulation", o->simulations, "Trajectories of the simulations (H5MD)");
+  former_option(verb, "--frames", "--stack");
+  verb.add_option("--stack", o->stacks,
                   "Stacks of the experiments, in the same order, to show in the report; default: the stacks "
                   "that were tracked, if they are still available");
-  verb.add_option("--sweep", o->flags.options.sweeps,
+  verb.add_option("--sweep", o->sweeps,
                   "Collected results of sweeps (JSON), whose points and onsets are added to the comparison");
   writes(common, verb, verb.add_option("-o,--output", o->output, "Folder for the report")->required(),
          report_folder());

@@ -9,7 +9,7 @@
 namespace twincell::cli {
 
 void add_comparing_flags(CLI::App& verb, ComparingFlags& flags) {
-  verb.add_option("--discard", flags.options.analysis.discard_cycles,
+  verb.add_option("--discard", flags.discard_cycles,
                   "Number of cycles skipped at the start of each trajectory")
       ->capture_default_str();
   verb.add_option("--s-b", flags.s_b,
@@ -17,9 +17,9 @@ void add_comparing_flags(CLI::App& verb, ComparingFlags& flags) {
                   "phases), about_rest (rms about the height at rest) or as_printed (rms of the height)")
       ->check(CLI::IsMember({"variance", "about_rest", "as_printed"}))
       ->capture_default_str();
-  verb.add_option("--cutoff", flags.options.analysis.neighbour_cutoff,
+  verb.add_option("--cutoff", flags.neighbour_cutoff,
                   "Largest distance between neighbours, sigma; default: 1.2, for experiments 1.3");
-  verb.add_option("--tolerance", flags.options.tolerance,
+  verb.add_option("--tolerance", flags.tolerance,
                   "Largest relative difference of Gamma between runs that are matched, 0 to 0.5")
       ->capture_default_str();
   verb.add_option("--camera", flags.camera_file,
@@ -30,13 +30,18 @@ void add_comparing_flags(CLI::App& verb, ComparingFlags& flags) {
                 "then remains unknown");
 }
 
-void resolve(ComparingFlags& flags, const Common& common) {
-  require_range({.file = {}, .key = "--tolerance"}, flags.options.tolerance, 0, 0.5);
-  flags.options.analysis.s_b = s_b_named(flags.s_b);
-  flags.options.film = !flags.no_film;
-  flags.options.threads = common.n_threads();
-  if (!flags.camera_file.empty()) flags.options.camera = read_camera(flags.camera_file);
-  if (flags.options.camera && common.seed) flags.options.camera->seed = *common.seed;
+ComparingOptions comparing_options(const ComparingFlags& flags, const Common& common) {
+  require_range({.file = {}, .key = "--tolerance"}, flags.tolerance, 0, 0.5);
+  ComparingOptions options;
+  options.analysis.discard_cycles = flags.discard_cycles;
+  options.analysis.neighbour_cutoff = flags.neighbour_cutoff;
+  options.analysis.s_b = s_b_named(flags.s_b);
+  options.tolerance = flags.tolerance;
+  options.film = !flags.no_film;
+  options.threads = common.n_threads();
+  if (!flags.camera_file.empty()) options.camera = read_camera(flags.camera_file);
+  if (options.camera && common.seed) options.camera->seed = *common.seed;
+  return options;
 }
 
 ProgressOf progress_bars(const Common& common) {
@@ -45,26 +50,30 @@ ProgressOf progress_bars(const Common& common) {
   };
 }
 
-void compare_and_report(const Common& common, const ComparingOptions& options,
-                        const std::filesystem::path& folder, nlohmann::json said,
-                        const std::string& said_text) {
-  std::vector<std::string> notes;
-  const Comparison comparison = compare_runs(options, progress_bars(common), notes);
-  for (const std::string& sentence : notes) note(common, sentence);
+NotedComparison compare_sides(const Common& common, const ComparingOptions& options) {
+  NotedComparison noted;
+  noted.comparison = compare_runs(options, progress_bars(common), noted.notes);
+  for (const std::string& sentence : noted.notes) note(common, sentence);
+  return noted;
+}
+
+void report_comparison(const Common& common, const ComparingOptions& options, const NotedComparison& noted,
+                       const std::filesystem::path& folder, nlohmann::json result,
+                       const std::string& result_text) {
   Provenance provenance = common.provenance();
   for (const auto* files : {&options.experiments, &options.simulations, &options.sweeps})
     provenance.inputs.insert(provenance.inputs.end(), files->begin(), files->end());
   const std::string origin = provenance.to_json();
   {
     ProgressBar progress(common, "figures");
-    write_report(folder, comparison, origin, progress);
+    write_report(folder, noted.comparison, origin, progress);
   }
   const std::string report = (folder / "report.html").string();
-  said.update(nlohmann::json::parse(comparison_json(comparison)));
-  said["notes"] = notes;
-  said["report"] = report;
-  said["provenance"] = nlohmann::json::parse(origin);
-  print_result(common, said, said_text + comparison_text(comparison) + "report: " + report + "\n");
+  result.update(nlohmann::json::parse(comparison_json(noted.comparison)));
+  result["notes"] = noted.notes;
+  result["report"] = report;
+  result["provenance"] = nlohmann::json::parse(origin);
+  print_result(common, result, result_text + comparison_text(noted.comparison) + "report: " + report + "\n");
 }
 
 }  // namespace twincell::cli

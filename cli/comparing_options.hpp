@@ -3,9 +3,12 @@
 /// What `compare` and `match` share: options of the comparison, writing of the report, printing of the
 /// result.
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/output.hpp"
 #include "twin/comparison.hpp"
@@ -16,25 +19,38 @@ class App;
 
 namespace twincell::cli {
 
+/// The flags as the command line gives them.
 struct ComparingFlags {
   std::string camera_file, s_b = "variance";
   bool no_film = false;
-  ComparingOptions options;
+  std::optional<double> neighbour_cutoff;
+  std::int64_t discard_cycles = AnalysisOptions{}.discard_cycles;
+  double tolerance = ComparingOptions{}.tolerance;
 };
 
 /// --discard, --s-b, --cutoff, --tolerance, --camera, --no-film.
 void add_comparing_flags(CLI::App& verb, ComparingFlags& flags);
 
-/// Checks the flags and sets `flags.options` from them. \throws ConfigError, InputError
-void resolve(ComparingFlags& flags, const Common& common);
+/// The options of a comparison that the flags state; the files of both sides are still to be added.
+/// \throws ConfigError, InputError
+ComparingOptions comparing_options(const ComparingFlags& flags, const Common& common);
 
 /// Returns a function with which the library makes a progress bar for each stage.
 ProgressOf progress_bars(const Common& common);
 
-/// Compares the runs, writes the report into `folder` and prints the result. \param said, said_text results
+/// A comparison with the sentences that the user should read.
+struct NotedComparison {
+  Comparison comparison;
+  std::vector<std::string> notes;
+};
+
+/// Compares the runs and prints the notes. \throws as compare_runs
+NotedComparison compare_sides(const Common& common, const ComparingOptions& options);
+
+/// Writes the report of a comparison into `folder` and prints the result. \param result, result_text results
 /// of the verb itself, printed before those of the comparison, as JSON and as text
-void compare_and_report(const Common& common, const ComparingOptions& options,
-                        const std::filesystem::path& folder, nlohmann::json said,
-                        const std::string& said_text);
+void report_comparison(const Common& common, const ComparingOptions& options, const NotedComparison& noted,
+                       const std::filesystem::path& folder, nlohmann::json result,
+                       const std::string& result_text);
 
 }  // namespace twincell::cli

@@ -53,6 +53,8 @@ std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::C
                   list_of(plan, State::approximated, "Approximated, with a known error");
   if (!plan.warnings.empty()) s += "Warnings\n";
   for (const std::string& warning : plan.warnings) s += "  " + warning + "\n";
+  const sim::StartRow& start = sim::start_row(scene.start);
+  s += fmt::format("Start\n  {}: {}\n", start.word, start.help);
   s += fmt::format("Randomness\n  {}\n", chance_of(scene));
   s += fmt::format("Solver\n  {}; {}\n", plan.law_names(), cost.solver);
   s += fmt::format("  {:.0f} bytes per bead", cost.bytes_per_bead);

@@ -97,7 +97,7 @@ void add_fit(CLI::App& program, Common& common) {
   std::string names;
   for (const Law* law : laws()) names += (names.empty() ? "" : ", ") + law->name;
   verb.add_option("table", o->table, "Table to fit (CSV with a header line)")->required();
-  verb.add_option("--law", o->law, names)->required()->type_name(kWord);
+  verb.add_option("--law", o->law, "Law to fit, docs/fitting.md: " + names)->required()->type_name(kWord);
   verb.add_option("--x", o->columns.x, "Column of the abscissa; default: the first")->type_name(kWord);
   verb.add_option("--y", o->columns.y, "Column of the ordinate; default: the second")->type_name(kWord);
   verb.add_option("--sigma", o->columns.sigma,

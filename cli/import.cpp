@@ -70,15 +70,16 @@ void add_import(CLI::App& program, Common& common) {
       ->capture_default_str();
   verb.add_option("--gravity", l.gravity, "Acceleration of gravity g")->capture_default_str();
   verb.add_option(
-          "--origin", o->origin,
+          "--cell-origin", o->origin,
           "Lower left inside corner of the cell, with the plate at its mean height: x y [z]; default: 0")
       ->expected(2, 3);
   verb.add_option("--cell-width", l.width,
                   "Distance of the side walls; default: up to the end of the box of the dump");
   verb.add_option("--drive-amplitude", l.drive.amplitude,
                   "Amplitude A of the plate; without any drive option the drive is unknown");
-  verb.add_option("--drive-omega", l.drive.omega, "Angular frequency omega of the plate");
-  verb.add_option("--drive-frequency", l.drive.frequency, "Frequency of the plate, omega/2pi");
+  verb.add_option("--drive-omega", l.drive.omega, "Angular frequency omega = 2 pi f of the plate");
+  former_option(verb, "--origin", "--cell-origin");
+  former_option(verb, "--drive-frequency", "--drive-omega, with omega = 2 pi f");
   verb.add_option("--drive-gamma", l.drive.gamma, "Drive strength Gamma = A omega^2/g");
   verb.add_option(
           "--drive-axis", l.drive_axis,

@@ -141,7 +141,7 @@ void run(LocateOptions& o, const Common& common) {
   const auto announced = static_cast<std::int64_t>(frames->announced());
   if (!o.overlay.empty() && announced > 0 && o.overlay_frame >= announced)
     throw ConfigError(
-        Where{.file = {}, .key = "--overlay-frame"},
+        Where{.file = {}, .key = "--frame"},
         fmt::format("is {}, but the stack has {} frames, counted from 0.", o.overlay_frame, announced));
   TableFile table(o.output, kHeading);
   TableFile candidates(o.candidates, kCandidateHeading);
@@ -205,7 +205,7 @@ void run(LocateOptions& o, const Common& common) {
       },
       bar);
   if (!o.overlay.empty() && !drawn)
-    throw ConfigError(Where{.file = {}, .key = "--overlay-frame"},
+    throw ConfigError(Where{.file = {}, .key = "--frame"},
                       fmt::format("is {}, but the stack has {} frames, counted from 0.", o.overlay_frame, n));
   check_flat(o.flat, locator.preprocess.bright);
   table.commit();
@@ -282,13 +282,14 @@ void add_locate(CLI::App& program, Common& common) {
          Product::table(kCandidateHeading));
   writes(common, verb,
          verb.add_option("--debug-dir", o->debug_folder,
-                         "Folder for pictures of the result of each stage in the frame --overlay-frame"),
+                         "Folder for pictures of the result of each stage in the frame --frame"),
          debug_folder());
   writes(common, verb,
          verb.add_option("--overlay", o->overlay,
-                         "Picture of the frame --overlay-frame to write (PNG), with its beads marked"),
+                         "Picture of the frame --frame to write (PNG), with its beads marked"),
          Product::picture());
-  verb.add_option("--overlay-frame", o->overlay_frame,
+  former_option(verb, "--overlay-frame", "--frame");
+  verb.add_option("--frame", o->overlay_frame,
                   "Index of the frame for --overlay and --debug-dir, from 0; default: 0")
       ->check(CLI::NonNegativeNumber);
   verb.add_option(
@@ -300,7 +301,8 @@ void add_locate(CLI::App& program, Common& common) {
       ->check(CLI::IsMember(finder_names()));
   verb.add_option("--min-score", o->locator.find.min_score,
                   "Smallest share of the edge of a circle that must be visible, 0 to 1; default: 0.04");
-  verb.add_option("--refine", o->locator.refine.method, refiners_help())
+  verb.add_option("--refine", o->locator.refine.method,
+                  "Method that finds the position of each bead to a fraction of a pixel. " + refiners_help())
       ->check(CLI::IsMember(refiner_names()));
   CLI::Option* bright =
       verb.add_flag("--bright", o->locator.preprocess.bright, "Beads are brighter than the background");

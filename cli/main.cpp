@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
@@ -44,17 +45,19 @@ std::string joined(int argc, char** argv) {
   return line;
 }
 
-bool has_verb(const CLI::App& program, const std::string& word) {
-  const auto verbs = program.get_subcommands([](const CLI::App*) { return true; });
-  return std::any_of(verbs.begin(), verbs.end(),
-                     [&](const CLI::App* verb) { return verb->get_name() == word; });
+std::vector<const CLI::App*> verbs_of(const CLI::App& group) {
+  return group.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// "Did you mean": the verb with the smallest edit distance, if it is at most 3.
-std::string nearest_verb(const CLI::App& program, const std::string& word) {
+/// "Did you mean": the command below `group` whose last word is `word`, otherwise the verb of the group with
+/// the smallest edit distance, if it is at most 3. Without the name of the program.
+std::string nearest_command(const CLI::App& group, const std::string& word) {
+  for (const CLI::App* verb : verbs_of(group))
+    for (const CLI::App* below : verbs_of(*verb))
+      if (below->get_name() == word) return verb->get_name() + " " + word;
   std::string best;
   std::size_t smallest = 4;
-  for (const CLI::App* verb : program.get_subcommands([](const CLI::App*) { return true; })) {
+  for (const CLI::App* verb : verbs_of(group)) {
     const std::size_t d = edit_distance(verb->get_name(), word);
     if (d < smallest) {
       smallest = d;
@@ -62,6 +65,26 @@ std::string nearest_verb(const CLI::App& program, const std::string& word) {
     }
   }
   return best;
+}
+
+/// Complaint about the first word of the command line that should be a verb but is none; empty if every group
+/// is followed by one of its verbs. CLI11 would ignore such a word before --help.
+std::string unknown_verb(const CLI::App& program, int argc, char** argv) {
+  const CLI::App* group = &program;
+  std::string path;
+  for (int i = 1; i < argc && argv[i][0] != '-' && !verbs_of(*group).empty(); ++i) {
+    const auto verbs = verbs_of(*group);
+    const auto verb = std::find_if(verbs.begin(), verbs.end(),
+                                   [&](const CLI::App* known) { return known->get_name() == argv[i]; });
+    if (verb == verbs.end()) {
+      const std::string near = nearest_command(*group, argv[i]);
+      return "there is no verb '" + path + argv[i] + "'" +
+             (near.empty() ? "; " + path + "--help lists them." : "; did you mean '" + path + near + "'?");
+    }
+    group = *verb;
+    path += group->get_name() + " ";
+  }
+  return {};
 }
 
 /// The verb and the existing files of a command line, for example "locate a.png". Used by error messages that
@@ -114,12 +137,8 @@ int run(int argc, char** argv) {
     std::printf("%s\n", version_json().c_str());
     return 0;
   }
-  if (argc > 1 && argv[1][0] != '-' && !has_verb(program, argv[1])) {
-    const std::string near = nearest_verb(program, argv[1]);
-    return complain(std::string("there is no verb '") + argv[1] + "'" +
-                        (near.empty() ? "; --help lists them." : "; did you mean '" + near + "'?"),
-                    ExitCode::usage);
-  }
+  if (const std::string complaint = unknown_verb(program, argc, argv); !complaint.empty())
+    return complain(complaint, ExitCode::usage);
   try {
     program.parse(argc, argv);
     if (program.get_subcommands().empty()) std::printf("%s", program.help().c_str());

@@ -25,31 +25,35 @@ struct MatchOptions {
   ComparingFlags flags;
 };
 
-/// Makes the twin of `o.twin.stack` in `folder`, and adds its trajectories to the comparison.
-Twin add_twin(const Common& common, MatchOptions& o, const std::filesystem::path& folder) {
-  const TwinProvenance provenance = {.of_experiment =
-                                         [&](const CellDescription& cell) {
-                                           Provenance p = common.provenance();
-                                           p.config = cell.text;
-                                           p.inputs = {file_of_stack(o.twin.stack), o.twin.cell_file};
-                                           return p.to_json();
-                                         },
-                                     .of_simulation =
-                                         [&](const sim::Scene& scene, const std::vector<sim::Bead>& beads) {
-                                           return scene_provenance(common, scene, beads, {});
-                                         }};
-  if (const CellDescription cell = read_cell(o.twin.cell_file); !cell.included.overridden.empty())
-    note(common,
-         fmt::format("values in {} take precedence over those measured in {}: {}", o.twin.cell_file.string(),
-                     cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
-  Twin twin = make_twin(o.twin, folder, provenance, progress_bars(common));
-  o.flags.options.experiments.push_back(twin.experiment);
-  auto& simulations = o.flags.options.simulations;
-  simulations.insert(simulations.end(), twin.simulations.begin(), twin.simulations.end());
-  return twin;
+TwinProvenance provenance_of(const Common& common, const TwinOptions& options) {
+  return {.of_experiment =
+              [&common, &options](const CellDescription& cell) {
+                Provenance p = common.provenance();
+                p.config = cell.text;
+                p.inputs = {file_of_stack(options.stack), options.cell_file};
+                return p.to_json();
+              },
+          .of_simulation =
+              [&common](const sim::Scene& scene, const std::vector<sim::Bead>& beads) {
+                return scene_provenance(common, scene, beads, {});
+              }};
 }
 
-nlohmann::json json_of(const Twin& twin) {
+/// Notes the values of the cell that replace measured ones.
+void note_overridden(const Common& common, const std::filesystem::path& cell_file) {
+  const CellDescription cell = read_cell(cell_file);
+  if (cell.included.overridden.empty()) return;
+  note(common, fmt::format("values in {} take precedence over those measured in {}: {}", cell_file.string(),
+                           cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
+}
+
+ComparingOptions configuration(const MatchOptions& o, const Common& common) {
+  ComparingOptions options = comparing_options(o.flags, common);
+  options.scratch = o.output;
+  return options;
+}
+
+nlohmann::json as_json(const Twin& twin) {
   std::vector<std::string> simulations;
   for (const auto& file : twin.simulations) simulations.push_back(file.string());
   return {{"experiment", twin.experiment.string()},
@@ -62,7 +66,7 @@ nlohmann::json json_of(const Twin& twin) {
           {"cycles", twin.cycles}};
 }
 
-std::string text_of(const Twin& twin) {
+std::string as_text(const Twin& twin) {
   return (twin.drive.empty() ? "" : "drive " + twin.drive + "\n") +
          fmt::format(
              "{} beads in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} twins "
@@ -71,30 +75,52 @@ std::string text_of(const Twin& twin) {
              twin.scene.string());
 }
 
-void run(const Common& common, MatchOptions& o) {
-  resolve(o.flags, common);
-  o.twin.threads = common.n_threads();
+/// Makes the twin of one stack in `folder` and adds its trajectories to the comparison.
+Twin add_twin(const Common& common, const TwinOptions& options, const std::filesystem::path& folder,
+              ComparingOptions& comparing) {
+  note_overridden(common, options.cell_file);
+  Twin twin = make_twin(options, folder, provenance_of(common, options), progress_bars(common));
+  comparing.experiments.push_back(twin.experiment);
+  comparing.simulations.insert(comparing.simulations.end(), twin.simulations.begin(), twin.simulations.end());
+  return twin;
+}
+
+/// Makes the twins of all stacks, each in a folder of its own if there are several.
+std::vector<Twin> make_twins(const Common& common, const MatchOptions& o, const StacksAndCells& pairs,
+                             ComparingOptions& comparing) {
   const std::filesystem::path folder = o.output;
-  const StacksAndCells pairs = pair_stacks(o.stacks_and_cells);
   const std::vector<std::string> names = names_of_stacks(pairs.stacks);
   const bool several = pairs.stacks.size() > 1;
+  if (several) claim_shared_folder(folder, twin_folder());
+  TwinOptions options = o.twin;
+  options.threads = common.n_threads();
+  std::vector<Twin> twins;
+  for (std::size_t i = 0; i < pairs.stacks.size(); ++i) {
+    options.stack = pairs.stacks[i];
+    options.cell_file = pairs.cells[i];
+    twins.push_back(add_twin(common, options, several ? folder / names[i] : folder, comparing));
+  }
+  return twins;
+}
+
+nlohmann::json as_json(const std::vector<Twin>& twins) {
+  if (twins.size() == 1) return as_json(twins.front());
+  nlohmann::json json;
+  for (const Twin& twin : twins) json["stacks"].push_back(as_json(twin));
+  return json;
+}
+
+void run(const Common& common, const MatchOptions& o) {
+  ComparingOptions options = configuration(o, common);
+  const StacksAndCells pairs = pair_stacks(o.stacks_and_cells);
   // A mistake in the last cell must not appear after the first hour.
   for (const auto& cell : pairs.cells) (void)read_cell(cell);
-  if (several) claim_shared_folder(folder, twin_folder());
-  nlohmann::json said;
+  const std::vector<Twin> twins = make_twins(common, o, pairs, options);
   std::string text;
-  for (std::size_t i = 0; i < pairs.stacks.size(); ++i) {
-    o.twin.stack = pairs.stacks[i];
-    o.twin.cell_file = pairs.cells[i];
-    const Twin twin = add_twin(common, o, several ? folder / names[i] : folder);
-    text += text_of(twin);
-    if (several)
-      said["stacks"].push_back(json_of(twin));
-    else
-      said = json_of(twin);
-  }
-  o.flags.options.scratch = folder;
-  compare_and_report(common, o.flags.options, folder / "report", said, text);
+  for (const Twin& twin : twins) text += as_text(twin);
+  const NotedComparison compared = compare_sides(common, options);
+  report_comparison(common, options, compared, std::filesystem::path(o.output) / "report", as_json(twins),
+                    text);
 }
 
 }  // namespace

@@ -22,8 +22,8 @@
 #include <thread>
 #include <vector>
 
+#include "sweep/cancellation_token.hpp"
 #include "sweep/point_run.hpp"
-#include "sweep/until.hpp"
 
 namespace twincell::cli {
 
@@ -107,7 +107,7 @@ void lead(sweep::Schedule& schedule, const sweep::Plan& plan, const sweep::Store
   std::vector<std::optional<sweep::Task>> at(static_cast<std::size_t>(ranks));
   std::future<std::string> own;
   std::atomic<bool> closing = false;
-  sweep::Until progress(closing);
+  sweep::CancellationToken progress(closing);
   double work = 0;
   const auto begin = Clock::now();
   const auto keep = [&](std::size_t rank, const std::string& result) {

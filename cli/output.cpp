@@ -123,7 +123,7 @@ std::vector<std::string> with_seed(std::vector<std::string> assignments, const C
     throw ConfigError({"", 0, 0, "--seed"},
                       fmt::format("{} is out of range; the seed of a scene must be at most {}.", *common.seed,
                                   kLargestSeed));
-  refuse_said_twice(assignments);
+  refuse_contradictory_assignments(assignments);
   for (const std::string& assignment : assignments)
     if (common.seed && assignment.starts_with("start.seed=") &&
         assignment != fmt::format("start.seed={}", *common.seed))
@@ -151,6 +151,17 @@ CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, c
       "Replace an existing output file even if it is of another kind; inputs and folders are never replaced");
   verb.parse_complete_callback([&verb, &common] { guard_outputs(verb, common); });
   return verb;
+}
+
+void former_option(CLI::App& verb, const std::string& former, const std::string& present) {
+  const std::string name = former.substr(former.rfind(',') + 1);
+  verb.add_option_function<std::vector<std::string>>(
+          former,
+          [name, present](const std::vector<std::string>&) {
+            throw ConfigError({.file = {}, .key = name},
+                              fmt::format("is a former option; write {}.", present));
+          })
+      ->group("");
 }
 
 CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product product) {

@@ -53,6 +53,12 @@ std::vector<std::string> with_seed(std::vector<std::string> assignments, const C
 CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, const std::string& summary,
                    const std::string& example);
 
+/// Declares a former spelling of an option, without a line in the help. \param former as for CLI11:
+/// "--omega",
+/// "-o,--output" \param present what to write instead; a command that uses the former spelling ends with a
+/// ConfigError that names it
+void former_option(CLI::App& verb, const std::string& former, const std::string& present);
+
 /// type_name() of an option whose value is a word of this program or a column of a table. Such a value is
 /// never an input file, even if a file of that name exists: `reproduce p1-fig3` resumes in the folder
 /// p1-fig3.

@@ -59,8 +59,8 @@ fs::path runs_of(const Reproducible& what, const ReproduceOptions& options, cons
 std::string as_text(const Reproduction& r, const fs::path& folder) {
   std::string s = r.title + "\n\n";
   for (const Target& t : r.targets) {
-    s += fmt::format("  {:<7} {}: {}\n          target {}", word_of(t.fate), t.name,
-                     t.measured.empty() ? "not measured" : t.measured, t.wanted);
+    s += fmt::format("  {:<12} {}: {}\n               target {}", word_of(t.verdict), t.name,
+                     t.measured.empty() ? "not measured" : t.measured, t.expected);
     s += (t.reason.empty() ? "" : " (" + t.reason + ")") + "\n";
   }
   s += "\nMeasured\n" + r.table;
@@ -82,9 +82,9 @@ nlohmann::json as_json(const Reproduction& r, const fs::path& folder) {
       {"conditions", r.conditions}, {"cheaper", r.cheaper},   {"output", folder.string()}};
   for (const Target& t : r.targets)
     j["targets"].push_back({{"name", t.name},
-                            {"wanted", t.wanted},
+                            {"expected", t.expected},
                             {"measured", t.measured},
-                            {"verdict", word_of(t.fate)},
+                            {"verdict", word_of(t.verdict)},
                             {"reason", t.reason}});
   return j;
 }

@@ -71,8 +71,7 @@ class SavingProgress : public Progress {
 /// The start of the bed, for the result. Near a transition, beds with the same drive but different starts can
 /// differ for hundreds of cycles.
 nlohmann::json start_of(const sim::Scene& s) {
-  static constexpr const char* kKinds[] = {"crystal_a", "crystal_b", "random", "trajectory", "table"};
-  nlohmann::json start = {{"kind", kKinds[static_cast<int>(s.start)]},
+  nlohmann::json start = {{"kind", sim::start_row(s.start).word},
                           {"seed", s.seed},
                           {"perturbation", s.perturbation},
                           {"in_motion", s.in_motion},

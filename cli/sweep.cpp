@@ -236,7 +236,7 @@ void run_plot(const SweepOptions& options, const Common& common) {
 }
 
 void run_template(const SweepOptions& options) {
-  const std::string run = fmt::format("twincell sweep run {} -o {} --threads 1 --quiet",
+  const std::string run = fmt::format("twincell sweep run {} --folder {} --threads 1 --quiet",
                                       shell_word(options.plan), shell_word(folder_of(options).string()));
   if (options.engine == "slurm")
     fmt::print(
@@ -275,12 +275,12 @@ void add_sweep(CLI::App& program, Common& common) {
     sub.add_option("plan", options->plan, "Plan file (TOML, docs/sweeps.md)")->required();
     // The folder is checked against the output rules when the sweep starts (sweep/store.cpp).
     common.outputs.push_back(
-        {sub.add_option(std::string(name) == "collect" ? "--folder" : "-o,--output,--folder", options->folder,
-                        "Folder of the sweep; default: PLAN.sweep")
+        {sub.add_option("--folder", options->folder, "Folder of the sweep; default: PLAN.sweep")
              ->check([](const std::string& said) {
                return said.empty() ? std::string("The folder of the sweep has no name.") : std::string();
              }),
          nullptr, Product::runs()});
+    if (std::string(name) != "collect") former_option(sub, "-o,--output", "--folder");
     return sub;
   };
   CLI::App& plan = add(
@@ -341,7 +341,8 @@ void add_sweep(CLI::App& program, Common& common) {
       ->required()
       ->check(CLI::IsMember({"slurm", "parallel"}));
   script.add_option("plan", options->plan, "Plan file (TOML)")->required();
-  script.add_option("-o,--output,--folder", options->folder, "Folder of the sweep; default: PLAN.sweep");
+  script.add_option("--folder", options->folder, "Folder of the sweep; default: PLAN.sweep");
+  former_option(script, "-o,--output", "--folder");
   script.add_option("--jobs", options->jobs, "Number of shards into which the sweep is divided")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

@@ -30,6 +30,14 @@ struct TrackOptions {
   FilmOptions film;
 };
 
+// The values of --phase-lock with their help.
+std::string phase_methods_help() {
+  std::string text;
+  for (const PhaseMethodRow& row : kPhaseMethods)
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", row.option, row.help);
+  return text;
+}
+
 constexpr const char* kHeading = "y,x,frame,particle,radius,tracer,phase,cycle,sigma_y,sigma_x,ambiguous\n";
 
 void write_csv(const std::string& path, const TrackedStack& stack) {
@@ -64,23 +72,25 @@ Score score_against(const TrackOptions& o, const TrackedStack& stack) {
 std::string describe(const TrackedStack& stack) {
   const PhaseTable& p = stack.phases;
   std::string text;
-  if (p.method == "none") {
+  if (p.method == PhaseMethod::none) {
     text = "phase lock: none\n";
   } else {
-    text = fmt::format("phase lock: {}, {} frames per cycle", p.method, p.frames_per_cycle);
+    text = fmt::format("phase lock: {}, {} frames per cycle", row_of(kPhaseMethods, p.method).word,
+                       p.frames_per_cycle);
     if (p.period_frames) text += fmt::format(", period {:.4f} frames", *p.period_frames);
     if (p.jitter)
-      text += fmt::format(", jitter {}{:.3f} frames", p.method == "found" ? "at most " : "", *p.jitter);
+      text += fmt::format(", jitter {}{:.3f} frames", p.method == PhaseMethod::found ? "at most " : "",
+                          *p.jitter);
     if (!p.frames.empty()) text += fmt::format(", {} frames dropped, {} taken twice", p.dropped, p.doubled);
     // No triggered camera is known to miss so many frames. A camera that runs free of the drive slips
     // continually.
     constexpr double kMostSlips = 0.1;
-    if (p.method == "found" &&
+    if (p.method == PhaseMethod::found &&
         static_cast<double>(p.dropped + p.doubled) > kMostSlips * static_cast<double>(p.frames.size()))
       text += " (so many that the camera seems to run free of the drive; the phases are then meaningless)";
     if (p.agreement)
       text += fmt::format("; phase 0 placed by the drive, correlation {:.3f}", *p.agreement);
-    else if (p.method == "found")
+    else if (p.method == PhaseMethod::found)
       text += "; phase 0 is where the bed passes its mean height upwards";
     text += '\n';
   }
@@ -221,8 +231,7 @@ void add_track(CLI::App& program, Common& common) {
                   "Frames per drive cycle; 0: not phase-locked; default: the value in CELL.toml")
       ->check(CLI::NonNegativeNumber);
   verb.add_option("--phase-lock", o->film.request.phase_lock,
-                  "Source of the drive phases: frames per drive cycle, 'found' (from the motion of the bed), "
-                  "'none', or a list of triggers (*.csv)");
+                  "Source of the drive phases. " + phase_methods_help());
   verb.add_option(
           "--drive-hz", o->film.request.drive_hz,
           "Frequency of the drive, Hz, for a list of triggers in seconds; default: the drive in CELL.toml")

@@ -6,7 +6,7 @@
 
 namespace twincell {
 
-void refuse_said_twice(const std::vector<std::string>& assignments) {
+void refuse_contradictory_assignments(const std::vector<std::string>& assignments) {
   const auto key_of = [](const std::string& assignment) {
     return assignment.substr(0, assignment.find('='));
   };

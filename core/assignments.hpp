@@ -8,6 +8,6 @@
 namespace twincell {
 
 /// \throws ConfigError if --set gives one key two different values
-void refuse_said_twice(const std::vector<std::string>& assignments);
+void refuse_contradictory_assignments(const std::vector<std::string>& assignments);
 
 }  // namespace twincell

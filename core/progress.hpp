@@ -9,9 +9,9 @@ namespace twincell {
 class Progress;
 
 /// Calls Progress::update once every kPieces units of work, for loops whose units take microseconds.
-class Heed {
+class CancellationCheck {
  public:
-  explicit Heed(Progress& progress) : progress_(progress) {}
+  explicit CancellationCheck(Progress& progress) : progress_(progress) {}
   /// Call after each unit of work. \throws as Progress::update
   void operator()();
 
@@ -34,7 +34,7 @@ class Progress {
   static Progress& none();
 };
 
-inline void Heed::operator()() {
+inline void CancellationCheck::operator()() {
   if (++done_ % kPieces == 0) progress_.update(0, 0);  // total 0: there is no bar to draw
 }
 

@@ -146,7 +146,7 @@ std::shared_ptr<Trajectory> simulate(sim::Scene scene, const std::optional<std::
 }
 
 std::vector<std::string> checked(const std::vector<std::string>& assignments) {
-  refuse_said_twice(assignments);
+  refuse_contradictory_assignments(assignments);
   return assignments;
 }
 

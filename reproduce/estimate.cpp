@@ -17,25 +17,25 @@ Estimate exact(double value) {
 }
 
 Verdict within(const Estimate& e, double low, double high) {
-  if (e.value >= low && e.value <= high) return Verdict::met;
-  if ((e.low && *e.low > high) || (e.high && *e.high < low)) return Verdict::missed;
-  return Verdict::open;
+  if (e.value >= low && e.value <= high) return Verdict::pass;
+  if ((e.low && *e.low > high) || (e.high && *e.high < low)) return Verdict::fail;
+  return Verdict::inconclusive;
 }
 
 Verdict above(const Estimate& a, const Estimate& b) {
-  if (a.low && b.high && *a.low > *b.high) return Verdict::met;
-  if (a.high && b.low && *a.high < *b.low) return Verdict::missed;
-  return Verdict::open;
+  if (a.low && b.high && *a.low > *b.high) return Verdict::pass;
+  if (a.high && b.low && *a.high < *b.low) return Verdict::fail;
+  return Verdict::inconclusive;
 }
 
 Verdict agree(const Estimate& a, const Estimate& b) {
-  if (!a.low || !a.high || !b.low || !b.high) return Verdict::open;
-  return *a.low <= *b.high && *b.low <= *a.high ? Verdict::met : Verdict::missed;
+  if (!a.low || !a.high || !b.low || !b.high) return Verdict::inconclusive;
+  return *a.low <= *b.high && *b.low <= *a.high ? Verdict::pass : Verdict::fail;
 }
 
-Verdict all_of(const std::vector<Verdict>& fates) {
-  for (const Verdict worst : {Verdict::missed, Verdict::open, Verdict::met})
-    if (std::find(fates.begin(), fates.end(), worst) != fates.end()) return worst;
+Verdict all_of(const std::vector<Verdict>& verdicts) {
+  for (const Verdict worst : {Verdict::fail, Verdict::inconclusive, Verdict::pass})
+    if (std::find(verdicts.begin(), verdicts.end(), worst) != verdicts.end()) return worst;
   return Verdict::absent;
 }
 

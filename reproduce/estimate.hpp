@@ -29,6 +29,6 @@ Verdict above(const Estimate& a, const Estimate& b);
 Verdict agree(const Estimate& a, const Estimate& b);
 /// Verdict on a statement that is true if all of its parts are: missed if one part is missed, else open if
 /// one is open, else met if one is met; absent without any of these.
-Verdict all_of(const std::vector<Verdict>& fates);
+Verdict all_of(const std::vector<Verdict>& verdicts);
 
 }  // namespace twincell::reproduce

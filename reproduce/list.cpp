@@ -12,32 +12,22 @@ const std::vector<Reproducible>& list() {
   return all;
 }
 
-std::string word_of(Verdict fate) {
-  switch (fate) {
-    case Verdict::met:
-      return "met";
-    case Verdict::missed:
-      return "MISSED";
-    case Verdict::open:
-      return "open";
-    case Verdict::absent:
-      break;
-  }
-  return "absent";
+std::string word_of(Verdict verdict) {
+  return std::string(row_of(kVerdicts, verdict).word);
 }
 
 Verdict within(const sweep::Onset& onset, double low, double high) {
   if (onset.n == 0) return Verdict::absent;
-  if (onset.value && *onset.value >= low && *onset.value <= high) return Verdict::met;
-  if ((onset.low && *onset.low > high) || (onset.high && *onset.high < low)) return Verdict::missed;
-  return Verdict::open;
+  if (onset.value && *onset.value >= low && *onset.value <= high) return Verdict::pass;
+  if ((onset.low && *onset.low > high) || (onset.high && *onset.high < low)) return Verdict::fail;
+  return Verdict::inconclusive;
 }
 
 Verdict above(const sweep::Onset& upper, const sweep::Onset& lower) {
   if (upper.n == 0 || lower.n == 0) return Verdict::absent;
-  if (evidence_above(upper, lower) >= sweep::kLikelihoodDrop) return Verdict::met;
-  if (evidence_above(lower, upper) >= sweep::kLikelihoodDrop) return Verdict::missed;
-  return Verdict::open;
+  if (evidence_above(upper, lower) >= sweep::kLikelihoodDrop) return Verdict::pass;
+  if (evidence_above(lower, upper) >= sweep::kLikelihoodDrop) return Verdict::fail;
+  return Verdict::inconclusive;
 }
 
 }  // namespace twincell::reproduce

@@ -30,10 +30,10 @@ using nlohmann::json;
 /// Steps per contact. The paper has 50, but a whole number would hide errors of contact entry.
 constexpr double kSteps = 50.37;
 
-Target near(const std::string& name, double wanted, double tolerance, double measured, const char* digits) {
+Target near(const std::string& name, double expected, double tolerance, double measured, const char* digits) {
   const auto number = [&](double v) { return fmt::format(fmt::runtime(digits), v); };
-  return {name, fmt::format("{} +- {:.2g}", number(wanted), tolerance), number(measured),
-          within(exact(measured), wanted - tolerance, wanted + tolerance), ""};
+  return {name, fmt::format("{} +- {:.2g}", number(expected), tolerance), number(measured),
+          within(exact(measured), expected - tolerance, expected + tolerance), ""};
 }
 
 // --- Appendix A ---
@@ -320,7 +320,7 @@ Reproduction run(const Request&) {
 }  // namespace
 
 Reproducible p1_appendix() {
-  return {"p1-appendix", "one contact (A) and the measures of the phases (B) against closed forms", run};
+  return {"p1-appendix", "single contact (app. A) and phase thresholds (app. B) against closed forms", run};
 }
 
 }  // namespace twincell::reproduce

@@ -34,7 +34,7 @@ std::vector<Target> targets_of(const Packings& all) {
     if (const Packing* crystal = all.crystal(o.start)) {
       const double angle = crystal->scalars.at("orientation");
       t.measured = fmt::format("{:.4f} degrees", angle);
-      t.fate = within(exact(angle), o.angle - 1, o.angle + 1);
+      t.verdict = within(exact(angle), o.angle - 1, o.angle + 1);
     }
     targets.push_back(t);
   }
@@ -44,11 +44,12 @@ std::vector<Target> targets_of(const Packings& all) {
     const Estimate difference = all.over_random(
         [](const Packing& p) { return share(p, "orientation_a") - share(p, "orientation_b"); });
     favoured.measured = fmt::format("{}, {} random", difference.text(), all.random.size());
-    favoured.fate = difference.low && *difference.low > 0     ? Verdict::met
-                    : difference.high && *difference.high < 0 ? Verdict::missed
-                                                              : Verdict::open;
-    if (favoured.fate == Verdict::open) favoured.reason = "beds differ more among each other than A from B";
-    if (favoured.fate == Verdict::missed)
+    favoured.verdict = difference.low && *difference.low > 0     ? Verdict::pass
+                       : difference.high && *difference.high < 0 ? Verdict::fail
+                                                                 : Verdict::inconclusive;
+    if (favoured.verdict == Verdict::inconclusive)
+      favoured.reason = "beds differ more among each other than A from B";
+    if (favoured.verdict == Verdict::fail)
       favoured.reason = fmt::format(
           "B grows from the side walls, which at N_l = {} are longer than the floor, from which A grows (see "
           "Fig. 1); "
@@ -59,7 +60,7 @@ std::vector<Target> targets_of(const Packings& all) {
              share(p, "grain_boundary_fraction") > 0;
     });
     both.measured = fmt::format("{} of {} beds", with, all.random.size());
-    both.fate = static_cast<std::size_t>(with) == all.random.size() ? Verdict::met : Verdict::missed;
+    both.verdict = static_cast<std::size_t>(with) == all.random.size() ? Verdict::pass : Verdict::fail;
   }
   targets.push_back(favoured);
   targets.push_back(both);
@@ -148,7 +149,7 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p1_fig2() {
-  return {"p1-fig2", "orientations A and B of the lattice at a side wall, and which random beds take", run,
+  return {"p1-fig2", "lattice orientations A and B at a side wall, and their shares in random beds", run,
           kPackingRuns};
 }
 

@@ -228,7 +228,7 @@ Target below_experiment(const std::deque<Boundary>& all, const std::vector<Filme
            ""};
   if (filmed.empty())
     t.reason = "the paper gives the experiment's numbers only as a drawing; --data takes yours";
-  std::vector<Verdict> fates;
+  std::vector<Verdict> verdicts;
   for (const Filmed& point : filmed) {
     if (point.layers < 60 || !std::isfinite(point.convection)) continue;
     const Boundary* b = find(all, static_cast<int>(std::lround(point.layers)), true, true);
@@ -236,13 +236,13 @@ Target below_experiment(const std::deque<Boundary>& all, const std::vector<Filme
     const Onset& o = b->onset();
     t.measured += fmt::format("{}N_l = {}: {}; experiment {:.4g}", t.measured.empty() ? "" : ", ", b->layers,
                               o.text(), point.convection);
-    fates.push_back(o.high && *o.high < point.convection ? Verdict::met
-                    : o.low && *o.low > point.convection ? Verdict::missed
-                                                         : Verdict::open);
+    verdicts.push_back(o.high && *o.high < point.convection ? Verdict::pass
+                       : o.low && *o.low > point.convection ? Verdict::fail
+                                                            : Verdict::inconclusive);
   }
-  if (!filmed.empty() && fates.empty())
+  if (!filmed.empty() && verdicts.empty())
     t.reason = "no N_l from 60 on has a random bed here and a point in the data";
-  t.fate = all_of(fates);
+  t.verdict = all_of(verdicts);
   return t;
 }
 
@@ -256,7 +256,7 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
                fmt::format("Gamma {:.2f} to {:.2f}", kBounceLow, kBounceHigh), "", Verdict::absent, ""};
       if (const Boundary* b = find(all, layers, random, false)) {
         t.measured = b->onset().text();
-        t.fate = within(b->onset(), kBounceLow, kBounceHigh);
+        t.verdict = within(b->onset(), kBounceLow, kBounceHigh);
       }
       targets.push_back(t);
     }
@@ -268,8 +268,9 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
       t.measured =
           fmt::format("crystal {}; random {}; 2 ln(L/L_opposite) = {:.3g}", crystal->onset().text(),
                       random->onset().text(), std::abs(evidence_above(crystal->onset(), random->onset())));
-      t.fate = above(crystal->onset(), random->onset());
-      if (t.fate == Verdict::open) t.reason = fmt::format("{:g} would decide", sweep::kLikelihoodDrop);
+      t.verdict = above(crystal->onset(), random->onset());
+      if (t.verdict == Verdict::inconclusive)
+        t.reason = fmt::format("{:g} would decide", sweep::kLikelihoodDrop);
     }
     targets.push_back(t);
   }
@@ -280,13 +281,13 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
              "the paper does not state that N_l; any of these counts"};
     for (const int layers : size.layers)
       if (const Boundary* b = find(all, layers, true, true)) {
-        const Verdict fate = within(b->onset(), std::sqrt(kLow), std::sqrt(kHigh));
+        const Verdict verdict = within(b->onset(), std::sqrt(kLow), std::sqrt(kHigh));
         if (b->onset().value)
           t.measured += fmt::format("{}N_l = {}: K_m {:.3g}", t.measured.empty() ? "" : ", ", layers,
                                     *b->onset().value * *b->onset().value);
-        if (t.fate == Verdict::absent || fate == Verdict::met ||
-            (fate == Verdict::open && t.fate == Verdict::missed))
-          t.fate = fate;
+        if (t.verdict == Verdict::absent || verdict == Verdict::pass ||
+            (verdict == Verdict::inconclusive && t.verdict == Verdict::fail))
+          t.verdict = verdict;
       }
     targets.push_back(t);
   }
@@ -299,8 +300,8 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
     } else if (low != nullptr && high != nullptr) {
       t.measured = fmt::format("N_l = {}: {}; N_l = {}: {}", low->layers, low->onset().text(), high->layers,
                                high->onset().text());
-      t.fate = above(high->onset(), low->onset());
-      if (t.fate == Verdict::open) t.reason = "the rise is smaller than what these runs can tell";
+      t.verdict = above(high->onset(), low->onset());
+      if (t.verdict == Verdict::inconclusive) t.reason = "the rise is smaller than what these runs can tell";
     }
     targets.push_back(t);
   }
@@ -312,7 +313,7 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
     } else if (const auto count = crystals->count(); count.runs > 0) {
       t.measured = fmt::format("{:.0f} of {:.0f} bead-periods, {} runs, Gamma 1.2 to 2.1", count.slips,
                                count.eligible, count.runs);
-      t.fate = count.slips == 0 ? Verdict::met : Verdict::missed;
+      t.verdict = count.slips == 0 ? Verdict::pass : Verdict::fail;
     }
     targets.push_back(t);
   }
@@ -468,7 +469,7 @@ Reproduction run(const Request& request) {
 
 Reproducible p1_fig3() {
   return {"p1-fig3",
-          "phase diagram: onsets of bouncing and convection, random and crystal, against N_l",
+          "phase diagram: onsets of bouncing and convection against N_l, random and crystal starts",
           run,
           {},
           true};

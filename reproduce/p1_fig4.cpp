@@ -13,9 +13,9 @@ namespace twincell::reproduce {
 namespace {
 
 /// Points whose bed leaves the plate. At weaker drives T_g only measures vibrations at contacts.
-std::vector<DataPoint> points_of(const StrengthSweep& ladder, double above = 0, double below = 1e300) {
+std::vector<DataPoint> points_of(const StrengthSweep& sweep, double above = 0, double below = 1e300) {
   std::vector<DataPoint> points;
-  for (const SweepPoint& r : ladder.points)
+  for (const SweepPoint& r : sweep.points)
     if (r.bouncing > 0 && r.k_m() >= above && r.k_m() <= below)
       points.push_back({r.k_m(), r.mean_temperature().value, 0, 0});
   return points;
@@ -24,32 +24,32 @@ std::vector<DataPoint> points_of(const StrengthSweep& ladder, double above = 0, 
 constexpr std::size_t kRunsForScatter = 3;  ///< runs from which the interval covers the scatter between beds
 
 /// Target that T_g* rises over all points: decades of the rise, and the points where T_g* falls.
-Target rise_of(const StrengthSweep& ladder) {
+Target rise_of(const StrengthSweep& sweep) {
   Target t{fmt::format("{}: T_g* rises monotonically, over many decades",
-                       ladder.is_random() ? "(a) random" : "(b) crystal"),
-           "from every rung to the next, 3 decades or more", "", Verdict::absent, ""};
-  if (ladder.points.size() < 3) return t;
+                       sweep.is_random() ? "(a) random" : "(b) crystal"),
+           "from every point to the next, 3 decades or more", "", Verdict::absent, ""};
+  if (sweep.points.size() < 3) return t;
   std::vector<Verdict> rises;
   std::string falls;
-  for (std::size_t i = 1; i < ladder.points.size(); ++i) {
-    const SweepPoint &below = ladder.points[i - 1], &point = ladder.points[i];
+  for (std::size_t i = 1; i < sweep.points.size(); ++i) {
+    const SweepPoint &below = sweep.points[i - 1], &point = sweep.points[i];
     const Estimate from = below.mean_temperature(), to = point.mean_temperature();
-    rises.push_back(to.value > from.value ? Verdict::met : above(to, from));
+    rises.push_back(to.value > from.value ? Verdict::pass : above(to, from));
     if (to.value <= from.value)
       falls += fmt::format("{}from {} at K_m {:.3g} to {} at {:.3g}", falls.empty() ? "" : ", ", from.text(),
                            below.k_m(), to.text(), point.k_m());
   }
-  const double decades = std::log10(ladder.points.back().mean_temperature().value /
-                                    ladder.points.front().mean_temperature().value);
+  const double decades = std::log10(sweep.points.back().mean_temperature().value /
+                                    sweep.points.front().mean_temperature().value);
   t.measured =
-      fmt::format("{:.1f} decades from K_m {:.2g} to {:.3g}; {}", decades, ladder.points.front().k_m(),
-                  ladder.points.back().k_m(), falls.empty() ? "never falls" : "falls " + falls);
-  rises.push_back(decades >= 3 ? Verdict::met : Verdict::missed);
-  t.fate = all_of(rises);
-  if (t.fate != Verdict::missed || falls.empty()) return t;
-  if (ladder.is_random() && ladder.points.front().runs < kRunsForScatter) {
-    t.fate = Verdict::open;
-    t.reason = "neighbouring rungs are different beds, and beds differ by more than the interval of one run";
+      fmt::format("{:.1f} decades from K_m {:.2g} to {:.3g}; {}", decades, sweep.points.front().k_m(),
+                  sweep.points.back().k_m(), falls.empty() ? "never falls" : "falls " + falls);
+  rises.push_back(decades >= 3 ? Verdict::pass : Verdict::fail);
+  t.verdict = all_of(rises);
+  if (t.verdict != Verdict::fail || falls.empty()) return t;
+  if (sweep.is_random() && sweep.points.front().runs < kRunsForScatter) {
+    t.verdict = Verdict::inconclusive;
+    t.reason = "neighbouring points are different beds, and beds differ by more than the interval of one run";
   } else {
     t.reason = "above Gamma = 4 a rigid inelastic bed, too, lands where it meets the plate more softly";
   }
@@ -57,8 +57,8 @@ Target rise_of(const StrengthSweep& ladder) {
 }
 
 /// Slope of ln T_g* against ln K_m in a region of the crystal.
-std::optional<Estimate> slope_of(const StrengthSweep& ladder, double above, double below) {
-  const auto points = points_of(ladder, above, below);
+std::optional<Estimate> slope_of(const StrengthSweep& sweep, double above, double below) {
+  const auto points = points_of(sweep, above, below);
   if (points.size() < 3) return std::nullopt;
   const auto fit = fitted("power", points);
   return fit ? std::optional(parameter(*fit, "alpha")) : std::nullopt;
@@ -81,15 +81,15 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const std::optional<Cu
     const Estimate x_b = parameter(*bend, "x_b");
     at.measured = fmt::format("K_m {}, slopes {} and {}", x_b.text(), parameter(*bend, "s_1").text(),
                               parameter(*bend, "s_2").text());
-    at.fate = within(x_b, 3.3 - 0.8, 3.3 + 0.8);
+    at.verdict = within(x_b, 3.3 - 0.8, 3.3 + 0.8);
     if (!(bend->p_nested < 0.05)) {
-      at.fate = Verdict::open;
+      at.verdict = Verdict::inconclusive;
       at.reason = "one straight line does as well";
     }
     if (all.random.convection) {
       same.measured =
           fmt::format("slope at K_m {}, convection from K_m {}", x_b.text(), all.random.convection->text());
-      same.fate = agree(x_b, *all.random.convection);
+      same.verdict = agree(x_b, *all.random.convection);
     }
   }
   targets.push_back(at);
@@ -98,19 +98,19 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const std::optional<Cu
   Target three{"(b) crystal: three slopes A1, A2, B", "each differs from its neighbour", "", Verdict::absent,
                ""};
   const Slopes s = slopes_of(all.crystal);
-  const auto text = [](const std::optional<Estimate>& e) { return e ? e->text() : "too few rungs"; };
+  const auto text = [](const std::optional<Estimate>& e) { return e ? e->text() : "too few points"; };
   if (s.a1 || s.a2 || s.b) {
     three.measured =
         fmt::format("A1 {}, A2 {}, B {}; A1 ends at K_m {}, B begins at K_m {}", text(s.a1), text(s.a2),
                     text(s.b), all.crystal.first_slips->text(), all.crystal.convection->text());
     const auto differ = [](const std::optional<Estimate>& a, const std::optional<Estimate>& b) {
-      if (!a || !b) return Verdict::open;
-      return agree(*a, *b) == Verdict::missed ? Verdict::met : Verdict::open;
+      if (!a || !b) return Verdict::inconclusive;
+      return agree(*a, *b) == Verdict::fail ? Verdict::pass : Verdict::inconclusive;
     };
-    three.fate = all_of({differ(s.a1, s.a2), differ(s.a2, s.b)});
-    if (three.fate == Verdict::open) three.reason = "neighbouring intervals overlap";
+    three.verdict = all_of({differ(s.a1, s.a2), differ(s.a2, s.b)});
+    if (three.verdict == Verdict::inconclusive) three.reason = "neighbouring intervals overlap";
   } else {
-    three.reason = "slips or convection not found on the ladder";
+    three.reason = "slips or convection not found in the sweep";
   }
   targets.push_back(three);
   return targets;
@@ -197,7 +197,7 @@ Figure figure_of(const StrengthSweeps& all, const std::optional<CurveFit>& bend)
 }
 
 Reproduction run(const Request& request) {
-  const StrengthSweeps all = climb(request);
+  const StrengthSweeps all = strength_sweeps(request);
   const auto points = points_of(all.random);
   const auto bend = points.size() >= 6 ? fitted("slope_break", points) : std::nullopt;
   Reproduction r = reproduction_of(all, "Fortini & Huang 2015, Fig. 4: granular temperature against K_m");
@@ -209,7 +209,7 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p1_fig4() {
-  return {"p1-fig4", "granular temperature against K_m, random and crystal", run, kLadderRuns};
+  return {"p1-fig4", "granular temperature against K_m, random and crystal starts", run, kStrengthSweepRuns};
 }
 
 }  // namespace twincell::reproduce

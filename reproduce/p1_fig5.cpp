@@ -16,9 +16,9 @@ constexpr double kNucleation = 130, kNucleationError = 20;  ///< crystal in A2
 
 /// Points with slips. Rows of beads slip together, so the scatter is not binomial and all points have equal
 /// weight.
-std::vector<DataPoint> points_of(const StrengthSweep& ladder, double above = 0, double below = 1e300) {
+std::vector<DataPoint> points_of(const StrengthSweep& sweep, double above = 0, double below = 1e300) {
   std::vector<DataPoint> points;
-  for (const SweepPoint& r : ladder.points)
+  for (const SweepPoint& r : sweep.points)
     if (r.slips > 0 && r.k_m() >= above && r.k_m() <= below) points.push_back({r.k_m(), r.p_s(), 0, 0});
   return points;
 }
@@ -42,20 +42,20 @@ Barriers barriers_of(const StrengthSweeps& all) {
 bool told(const Estimate& e) {
   return e.low && *e.low > 0;
 }
-constexpr const char* kUntold = "the interval does not leave out 0: too few rungs";
+constexpr const char* kUntold = "the interval does not leave out 0: too few points";
 
-Target barrier_target(const std::string& name, const std::optional<CurveFit>& fit, double wanted,
+Target barrier_target(const std::string& name, const std::optional<CurveFit>& fit, double expected,
                       double error, const char* none) {
-  Target t{name, fmt::format("E_b = {:g} +- {:g}", wanted, error), "", Verdict::absent, ""};
+  Target t{name, fmt::format("E_b = {:g} +- {:g}", expected, error), "", Verdict::absent, ""};
   if (!fit) {
     t.reason = none;
     return t;
   }
   const Estimate e = parameter(*fit, "E_b");
-  t.measured = fmt::format("E_b = {}, {} rungs", e.text(), fit->n_used);
-  t.fate = within(e, wanted - error, wanted + error);
-  if (t.fate == Verdict::met && !told(e)) {
-    t.fate = Verdict::open;
+  t.measured = fmt::format("E_b = {}, {} points", e.text(), fit->n_used);
+  t.verdict = within(e, expected - error, expected + error);
+  if (t.verdict == Verdict::pass && !told(e)) {
+    t.verdict = Verdict::inconclusive;
     t.reason = kUntold;
   }
   return t;
@@ -63,9 +63,9 @@ Target barrier_target(const std::string& name, const std::optional<CurveFit>& fi
 
 std::vector<Target> targets_of(const StrengthSweeps& all, const Barriers& fits) {
   std::vector<Target> targets;
-  constexpr const char* kFew = "fewer than two rungs with slips";
+  constexpr const char* kFew = "fewer than two points with slips";
   targets.push_back(barrier_target("(a) random, whole range", fits.random, kBarrier, kBarrierError, kFew));
-  if (targets.back().fate == Verdict::missed)
+  if (targets.back().verdict == Verdict::fail)
     targets.back().reason = "the paper does not state its N_l, nor how far its window reaches";
   Target one{"(a) random: one line over the whole range, no break at the onset", "no break", "",
              Verdict::absent, ""};
@@ -74,7 +74,7 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const Barriers& fits) 
     one.measured = fmt::format("best break at K_m {}, from E = {} to {}; by chance with p = {:.2g}", x.text(),
                                parameter(*fits.random_bent, "E_1").text(),
                                parameter(*fits.random_bent, "E_2").text(), fits.random_bent->p_nested);
-    one.fate = fits.random_bent->p_nested < 0.05 ? Verdict::missed : Verdict::met;
+    one.verdict = fits.random_bent->p_nested < 0.05 ? Verdict::fail : Verdict::pass;
   }
   targets.push_back(one);
   // Slips in region A1.
@@ -89,25 +89,25 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const Barriers& fits) 
         ++points;
       }
     zero.measured = fmt::format(
-        "{:.0f} of {:.0f} bead-periods on {} bouncing rungs, up to K_m {:.3g}; first "
+        "{:.0f} of {:.0f} bead-periods on {} bouncing points, up to K_m {:.3g}; first "
         "slips at K_m {:.3g}",
         slips, eligible, points, *all.crystal.first_slips->low, *all.crystal.first_slips->high);
     // At least two bouncing points: a single point could lack slips by chance.
-    zero.fate = slips == 0 && points >= 2 ? Verdict::met : Verdict::open;
+    zero.verdict = slips == 0 && points >= 2 ? Verdict::pass : Verdict::inconclusive;
   } else if (!all.crystal.points.empty()) {
     for (const SweepPoint& r : all.crystal.points)
       if (r.bouncing > 0 && r.slips > 0) {
         zero.measured = fmt::format("{:.0f} slips already at K_m {:.3g}", r.slips, r.k_m());
-        zero.fate = Verdict::missed;
+        zero.verdict = Verdict::fail;
         break;
       }
   }
   targets.push_back(zero);
   // Barriers of the crystal, and their relation to each other and to that of random beds.
-  constexpr const char* kRegion = "convection not found, or fewer than two rungs with slips in the region";
+  constexpr const char* kRegion = "convection not found, or fewer than two points with slips in the region";
   targets.push_back(barrier_target("(b) crystal, A2", fits.a2, kNucleation, kNucleationError, kRegion));
   targets.push_back(barrier_target("(b) crystal, B", fits.b, kBarrier, kBarrierError, kRegion));
-  if (targets.back().fate == Verdict::missed)
+  if (targets.back().verdict == Verdict::fail)
     targets.back().reason =
         "p_s nears 1 at strong drives, and the paper does not say how far its window reaches";
   Target order{"(b) crystal: the barrier of A2 is several times that of B", "3 times or more", "",
@@ -119,14 +119,14 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const Barriers& fits) 
     if (b.low) three_b.low = 3 * *b.low;
     if (b.high) three_b.high = 3 * *b.high;
     order.measured = fmt::format("{} and {}: {:.3g} times", a2.text(), b.text(), a2.value / b.value);
-    order.fate = above(a2, three_b);
+    order.verdict = above(a2, three_b);
   }
   if (fits.b && fits.random) {
     const Estimate b = parameter(*fits.b, "E_b"), random = parameter(*fits.random, "E_b");
     same.measured = fmt::format("crystal {}, random {}", b.text(), random.text());
-    same.fate = agree(b, random);
-    if (same.fate == Verdict::met && !(told(b) && told(random))) {
-      same.fate = Verdict::open;
+    same.verdict = agree(b, random);
+    if (same.verdict == Verdict::pass && !(told(b) && told(random))) {
+      same.verdict = Verdict::inconclusive;
       same.reason = kUntold;
     }
   }
@@ -213,14 +213,14 @@ Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
   f.plot += "unset multiplot\n";
   f.caption =
       "Slip probability against 1/K_m from random beds (a) and crystals (b), counted over all runs; open "
-      "triangles: no slip, drawn at the 95 % limit. Lines: Arrhenius laws, all rungs alike. Dashed: regions "
+      "triangles: no slip, drawn at the 95 % limit. Lines: Arrhenius laws, all points alike. Dashed: regions "
       "of "
       "Fig. 4. Form of Fortini & Huang 2015, Fig. 5.";
   return f;
 }
 
 Reproduction run(const Request& request) {
-  const StrengthSweeps all = climb(request);
+  const StrengthSweeps all = strength_sweeps(request);
   const Barriers fits = barriers_of(all);
   Reproduction r = reproduction_of(all, "Fortini & Huang 2015, Fig. 5: slip probability against 1/K_m");
   r.targets = targets_of(all, fits);
@@ -231,7 +231,8 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p1_fig5() {
-  return {"p1-fig5", "slip probability against 1/K_m and its barriers, random and crystal", run, kLadderRuns};
+  return {"p1-fig5", "slip probability against 1/K_m and its energy barriers, random and crystal starts", run,
+          kStrengthSweepRuns};
 }
 
 }  // namespace twincell::reproduce

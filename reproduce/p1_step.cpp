@@ -152,17 +152,17 @@ std::vector<Target> targets_of(const Values& values, const Size& size) {
         Target t{fmt::format("{} of {} beds does not hang on the step: {}, n = {:g}", q.name, words_of(start),
                              integrator, n),
                  fmt::format("that of split, n = {:g}", finest), "", Verdict::absent, ""};
-        std::vector<Verdict> fates;
+        std::vector<Verdict> verdicts;
         for (const double gamma : kGammas) {
           const auto here = estimate(values, {q.name, start, integrator, gamma, n}),
                      there = estimate(values, {q.name, start, "split", gamma, finest});
           if (!here || !there) continue;
-          fates.push_back(agree(*here, *there));
+          verdicts.push_back(agree(*here, *there));
           t.measured += fmt::format("{}Gamma {:g}: {} against {}", t.measured.empty() ? "" : "; ", gamma,
                                     here->text(), there->text());
         }
-        t.fate = all_of(fates);
-        if (fates.empty()) t.reason = "no run is done";
+        t.verdict = all_of(verdicts);
+        if (verdicts.empty()) t.reason = "no run is done";
         targets.push_back(t);
       }
   }
@@ -298,7 +298,7 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p1_step() {
-  return {"p1-step", "what the time step does to T_g, p_s, s_b and s_c", run};
+  return {"p1-step", "effect of the time step on T_g, p_s, s_b and s_c", run};
 }
 
 }  // namespace twincell::reproduce

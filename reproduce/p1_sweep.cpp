@@ -80,7 +80,7 @@ sweep::Plan plan_of(const Size& size, const P1Run& run, std::uint64_t seed) {
           "{}[axes]\ndrive.gamma = [{:.2f}]\nseeds = {}\n",
           seed, p1_scene(run), fmt::join(spread(gammas(run.start == "random"), size.every), ", "),
           size.seeds),
-      fmt::format("ladder, {}, {} layers", run.start, run.layers));
+      fmt::format("sweep, {}, {} layers", run.start, run.layers));
 }
 
 /// The value of a result, if it has one.
@@ -90,7 +90,7 @@ std::optional<double> value_of(const json& results, const char* name) {
   return r["value"].get<double>();
 }
 
-StrengthSweep ladder_of(const std::string& start, const sweep::Schedule& schedule) {
+StrengthSweep strength_sweep_of(const std::string& start, const sweep::Schedule& schedule) {
   std::vector<SweepRun> runs;
   for (const sweep::Curve& curve : schedule.curves())
     for (const auto& text : curve.results) {
@@ -149,30 +149,30 @@ StrengthSweep make_strength_sweep(const std::string& start, const std::vector<Sw
     point.eligible += run.eligible;
     trials.push_back({run.gamma, run.s_c > kConvectionThreshold});
   }
-  StrengthSweep ladder;
-  ladder.start = start;
-  for (const auto& [gamma, point] : points) ladder.points.push_back(point);
-  if (ladder.points.size() >= 4) {
+  StrengthSweep sweep;
+  sweep.start = start;
+  for (const auto& [gamma, point] : points) sweep.points.push_back(point);
+  if (sweep.points.size() >= 4) {
     const sweep::Onset onset =
-        estimate_onset(trials, ladder.points.front().gamma, ladder.points.back().gamma, kOnsetWidth);
+        estimate_onset(trials, sweep.points.front().gamma, sweep.points.back().gamma, kOnsetWidth);
     if (onset.value) {
       Estimate e{*onset.value * *onset.value, {}, {}};
       if (onset.low) e.low = *onset.low * *onset.low;
       if (onset.high) e.high = *onset.high * *onset.high;
-      ladder.convection = e;
+      sweep.convection = e;
     }
   }
-  const auto slipping = std::find_if(ladder.points.begin(), ladder.points.end(),
-                                     [](const SweepPoint& r) { return r.slips > 0; });
-  if (slipping != ladder.points.begin() && slipping != ladder.points.end() &&
+  const auto slipping =
+      std::find_if(sweep.points.begin(), sweep.points.end(), [](const SweepPoint& r) { return r.slips > 0; });
+  if (slipping != sweep.points.begin() && slipping != sweep.points.end() &&
       std::prev(slipping)->bouncing > 0) {
     const double low = std::prev(slipping)->k_m(), high = slipping->k_m();
-    ladder.first_slips = Estimate{std::sqrt(low * high), low, high};
+    sweep.first_slips = Estimate{std::sqrt(low * high), low, high};
   }
-  return ladder;
+  return sweep;
 }
 
-StrengthSweeps climb(const Request& request) {
+StrengthSweeps strength_sweeps(const Request& request) {
   const Size& size = size_for(request);
   const sweep::Store store(request.runs);
   const P1Run random{size.layers, "random", size.cycles}, crystal{size.layers, "crystal_a", size.cycles};
@@ -182,8 +182,8 @@ StrengthSweeps climb(const Request& request) {
   StrengthSweeps all;
   all.layers = size.layers;
   all.complete = run_here({&r, &c}, store, {request.threads, false}, *request.watch);
-  all.random = ladder_of("random", r);
-  all.crystal = ladder_of("crystal_a", c);
+  all.random = strength_sweep_of("random", r);
+  all.crystal = strength_sweep_of("crystal_a", c);
   all.conditions = p1_conditions(crystal);
   all.conditions.push_back(
       fmt::format("N_l = {} (the paper does not state that of Figs. 4 and 5); {} run{} of each start and "
@@ -209,11 +209,11 @@ StrengthSweeps climb(const Request& request) {
 
 namespace {
 
-std::string text_of(const StrengthSweeps& ladders) {
+std::string text_of(const StrengthSweeps& sweeps) {
   std::string text;
-  for (const StrengthSweep* l : {&ladders.random, &ladders.crystal}) {
+  for (const StrengthSweep* l : {&sweeps.random, &sweeps.crystal}) {
     text += fmt::format("  {}, N_l = {}\n  {:>6} {:>7} {:>5} {:>24} {:>10} {:>20}\n",
-                        l->is_random() ? "random" : "crystal", ladders.layers, "Gamma", "K_m", "runs", "T_g*",
+                        l->is_random() ? "random" : "crystal", sweeps.layers, "Gamma", "K_m", "runs", "T_g*",
                         "convecting", "slips");
     for (const SweepPoint& r : l->points)
       text += fmt::format("  {:6.2f} {:7.3f} {:5} {:>24} {:>10} {:>20}\n", r.gamma, r.k_m(), r.runs,
@@ -225,9 +225,9 @@ std::string text_of(const StrengthSweeps& ladders) {
   return text;
 }
 
-std::string json_of(const StrengthSweeps& ladders) {
+std::string json_of(const StrengthSweeps& sweeps) {
   json all = json::array();
-  for (const StrengthSweep* l : {&ladders.random, &ladders.crystal}) {
+  for (const StrengthSweep* l : {&sweeps.random, &sweeps.crystal}) {
     json points = json::array();
     for (const SweepPoint& r : l->points) {
       json temperatures = json::array();
@@ -242,8 +242,8 @@ std::string json_of(const StrengthSweeps& ladders) {
                         {"convecting", r.convecting}});
     }
     all.push_back({{"start", l->start},
-                   {"layers", ladders.layers},
-                   {"rungs", points},
+                   {"layers", sweeps.layers},
+                   {"points", points},
                    {"convection_k_m", as_json(l->convection)},
                    {"first_slips_k_m", as_json(l->first_slips)}});
   }
@@ -252,14 +252,14 @@ std::string json_of(const StrengthSweeps& ladders) {
 
 }  // namespace
 
-Reproduction reproduction_of(const StrengthSweeps& ladders, const std::string& title) {
+Reproduction reproduction_of(const StrengthSweeps& sweeps, const std::string& title) {
   Reproduction r;
   r.title = title;
-  r.complete = ladders.complete;
-  r.conditions = ladders.conditions;
-  r.cheaper = ladders.cheaper;
-  r.table = text_of(ladders);
-  r.measured = json_of(ladders);
+  r.complete = sweeps.complete;
+  r.conditions = sweeps.conditions;
+  r.cheaper = sweeps.cheaper;
+  r.table = text_of(sweeps);
+  r.measured = json_of(sweeps);
   return r;
 }
 

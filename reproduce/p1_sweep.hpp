@@ -13,7 +13,7 @@
 namespace twincell::reproduce {
 
 /// Folder of the runs that Figs. 4 and 5 share.
-inline constexpr const char* kLadderRuns = "p1-ladder";
+inline constexpr const char* kStrengthSweepRuns = "p1-strength-sweep";
 
 /// All runs at one drive strength.
 struct SweepPoint {
@@ -68,10 +68,10 @@ struct StrengthSweeps {
 
 /// Runs the sweeps, or reads the results that are in Request::runs. Small budgets mean fewer points, cycles
 /// and seeds, and lower beds.
-StrengthSweeps climb(const Request& request);
+StrengthSweeps strength_sweeps(const Request& request);
 
 /// Common output of the figures: K_m, T_g and slips of every point as text and as JSON, and the conditions.
-Reproduction reproduction_of(const StrengthSweeps& ladders, const std::string& title);
+Reproduction reproduction_of(const StrengthSweeps& sweeps, const std::string& title);
 
 /// Least-squares fit of a law; empty if the fit fails, for example for too few points.
 std::optional<CurveFit> fitted(const std::string& law, const std::vector<DataPoint>& points);

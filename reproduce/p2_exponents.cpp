@@ -27,7 +27,7 @@ struct Study {
   const char* name;
   int dimension;
   double low, high;  ///< W; NaN: only drawn in Fig. 2; kFromPeak: from W_f on
-  double wanted;     ///< exponent that the paper finds over that window
+  double expected;   ///< exponent that the paper finds over that window
 };
 
 constexpr double kDrawn = std::numeric_limits<double>::quiet_NaN();
@@ -114,7 +114,7 @@ std::string symbol(bool of_height) {
 Target target_of(const Study& study, const Exponent* e, bool of_height) {
   constexpr double kTolerance = 0.10;
   Target t{fmt::format("{}, {}D rough: {}", study.name, study.dimension, symbol(of_height)),
-           fmt::format("{:g} +- {:g}", study.wanted, kTolerance), "", Verdict::absent, ""};
+           fmt::format("{:g} +- {:g}", study.expected, kTolerance), "", Verdict::absent, ""};
   if (std::isnan(study.high)) {
     t.reason = "its window is only drawn in Fig. 2; --window LOW,HIGH tries one";
     return t;
@@ -125,7 +125,7 @@ Target target_of(const Study& study, const Exponent* e, bool of_height) {
     return t;
   }
   t.measured = e->text();
-  t.fate = within(e->alpha(), study.wanted - kTolerance, study.wanted + kTolerance);
+  t.verdict = within(e->alpha(), study.expected - kTolerance, study.expected + kTolerance);
   if (study.high > kEndOfData)
     t.reason = fmt::format("the paper's data end at W = 89.4, the window at {:g}", study.high);
   return t;
@@ -234,13 +234,14 @@ Reproduction run(const Request& request, bool of_height) {
 }  // namespace
 
 Reproducible p2_table1() {
-  return {"p2-table1",
-          "exponents of T_z with V_p over the windows of earlier experiments, or your own (runs of p2-fig2)",
-          [](const Request& request) { return run(request, false); }, "p2-runs", true};
+  return {
+      "p2-table1",
+      "exponents of T_z(V_p) in the windows of earlier experiments or in your own window (runs of p2-fig2)",
+      [](const Request& request) { return run(request, false); }, "p2-runs", true};
 }
 
 Reproducible p2_table2() {
-  return {"p2-table2", "exponents of the centre of mass's lift over those windows (runs of p2-fig2)",
+  return {"p2-table2", "exponents of the centre-of-mass lift in the same windows (runs of p2-fig2)",
           [](const Request& request) { return run(request, true); }, "p2-runs", true};
 }
 

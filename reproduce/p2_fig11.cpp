@@ -55,18 +55,18 @@ Reproduction run(const Request& request) {
   if (const auto a = t_z(gas, 2, 0), b = t_z(gas, 0, 0); a && b) {
     const Estimate q = quotient(*a, *b);
     rise.measured = q.text();
-    rise.fate = within(q, 1.45, 1.55);
+    rise.verdict = within(q, 1.45, 1.55);
   }
   Target fall{"A/d from 1 to 0.1 at fixed W, mean change", "-15 % +- 4 %", "", Verdict::absent, ""};
   if (const auto change = mean_change(gas, 2, 0)) {
     fall.measured = change->text() + " %";
-    fall.fate = within(*change, -19, -11);
+    fall.verdict = within(*change, -19, -11);
   }
   Target small{"A/d from 0.5 to 0.1 at fixed W, mean change", "3 % +- 2 % in size", "", Verdict::absent, ""};
   if (const auto change = mean_change(gas, 2, 1)) {
     small.measured = change->text() + " %";
-    small.fate = within(*change, -5, 5);
-    if (small.fate == Verdict::met && std::abs(change->value) < 1)
+    small.verdict = within(*change, -5, 5);
+    if (small.verdict == Verdict::pass && std::abs(change->value) < 1)
       small.reason = "smaller than the paper's 3 %";
   }
   r.targets = {rise, fall, small};
@@ -89,7 +89,7 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig11() {
-  return {"p2-fig11", "temperature with amplitude at fixed W", run, "p2-runs"};
+  return {"p2-fig11", "temperature against amplitude at fixed W", run, "p2-runs"};
 }
 
 }  // namespace twincell::reproduce

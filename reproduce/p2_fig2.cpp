@@ -44,16 +44,17 @@ Target shape_of(const GasSystem& system, const std::vector<GasPoint>& points) {
            ""};
   const auto peak = peak_of(points);
   if (!peak) return t;
-  std::vector<Verdict> fates = {peak->inside ? Verdict::met : Verdict::open};
+  std::vector<Verdict> verdicts = {peak->inside ? Verdict::pass : Verdict::inconclusive};
   const GasPoint *solid = point_at(points, w_of_rpm(400)), *last = point_at(points, w_of_rpm(4000));
-  if (solid != nullptr) fates.push_back(solid->solid() ? Verdict::met : Verdict::missed);
+  if (solid != nullptr) verdicts.push_back(solid->solid() ? Verdict::pass : Verdict::fail);
   const GasPoint* top = point_at(points, peak->grid);
-  if (last != nullptr && top != nullptr) fates.push_back(above(*top->get("T_bar_z"), *last->get("T_bar_z")));
+  if (last != nullptr && top != nullptr)
+    verdicts.push_back(above(*top->get("T_bar_z"), *last->get("T_bar_z")));
   t.measured =
       fmt::format("largest, {:.4g}, at W_f = {:.3g} (grid point {:.4g})", peak->height, peak->w, peak->grid);
   if (const auto w_2 = w_2_of(points))
     t.measured += fmt::format("; within 5 % of its last value from W_2 = {:.3g} on", *w_2);
-  t.fate = all_of(fates);
+  t.verdict = all_of(verdicts);
   return t;
 }
 
@@ -64,7 +65,7 @@ Target against_table_3(int dimension, const std::vector<GasPoint>& points) {
            Verdict::absent, ""};
   const auto peak = peak_of(points);
   if (!peak) return t;
-  std::vector<Verdict> fates;
+  std::vector<Verdict> verdicts;
   double low = 1e300, high = 0, sum = 0;
   std::string off;
   int solid = 0;
@@ -76,19 +77,19 @@ Target against_table_3(int dimension, const std::vector<GasPoint>& points) {
       continue;
     }
     const double curve = table_3(dimension, true, p.at), ratio = e->value / curve;
-    fates.push_back(within(*e, curve * (1 - kTolerance), curve * (1 + kTolerance)));
+    verdicts.push_back(within(*e, curve * (1 - kTolerance), curve * (1 + kTolerance)));
     low = std::min(low, ratio);
     high = std::max(high, ratio);
     sum += ratio;
     if (std::abs(ratio - 1) > kTolerance) off += fmt::format("{}{:.3g}", off.empty() ? "" : ", ", p.at);
   }
-  if (fates.empty()) return t;
+  if (verdicts.empty()) return t;
   t.measured = fmt::format("measured/Table III {:.3f} to {:.3f}, mean {:.3f} over {} points", low, high,
-                           sum / static_cast<double>(fates.size()), fates.size());
+                           sum / static_cast<double>(verdicts.size()), verdicts.size());
   if (!off.empty()) t.measured += "; off by more at W = " + off;
   if (solid > 0) t.measured += fmt::format("; {} left out where the bed is solid", solid);
-  t.fate = all_of(fates);
-  if (t.fate != Verdict::met && dimension == 2)
+  t.verdict = all_of(verdicts);
+  if (t.verdict != Verdict::pass && dimension == 2)
     t.reason = "an independent program of the same model lies 9 to 15 % above Table III at W = 35 to 89 too";
   return t;
 }
@@ -97,20 +98,20 @@ Target against_table_3(int dimension, const std::vector<GasPoint>& points) {
 Target ordered(const std::string& name, const std::vector<GasPoint>& upper,
                const std::vector<GasPoint>& lower) {
   Target t{name, "at each W >= W_f", "", Verdict::absent, ""};
-  std::vector<Verdict> fates;
+  std::vector<Verdict> verdicts;
   double least = 1e300, most = 0;
   for (const GasPoint& p : lower) {
     const GasPoint* q = point_at(upper, p.at);
     if (q == nullptr || p.at < 2.7) continue;
     const auto a = q->get("T_bar_z"), b = p.get("T_bar_z");
     if (!a || !b || q->solid() || p.solid()) continue;
-    fates.push_back(above(*a, *b));
+    verdicts.push_back(above(*a, *b));
     least = std::min(least, a->value / b->value);
     most = std::max(most, a->value / b->value);
   }
-  if (fates.empty()) return t;
-  t.measured = fmt::format("ratio {:.3g} to {:.3g} over {} points", least, most, fates.size());
-  t.fate = all_of(fates);
+  if (verdicts.empty()) return t;
+  t.measured = fmt::format("ratio {:.3g} to {:.3g} over {} points", least, most, verdicts.size());
+  t.verdict = all_of(verdicts);
   return t;
 }
 
@@ -126,7 +127,9 @@ std::vector<Target> targets_of(const Gas& gas, const Runs& runs) {
     Target t{"2D rough: W_f", "2 to 4.5", "", Verdict::absent, ""};
     if (const auto peak = peak_of(rough_2d)) {
       t.measured = fmt::format("{:.3g}, grid point {:.4g}", peak->w, peak->grid);
-      t.fate = peak->w >= 2 && peak->w <= 4.5 ? Verdict::met : peak->inside ? Verdict::missed : Verdict::open;
+      t.verdict = peak->w >= 2 && peak->w <= 4.5 ? Verdict::pass
+                  : peak->inside                 ? Verdict::fail
+                                                 : Verdict::inconclusive;
     }
     targets.push_back(t);
   }
@@ -146,26 +149,26 @@ std::vector<Target> targets_of(const Gas& gas, const Runs& runs) {
       const double ta = a->get("T_bar_z")->value, tb = b->get("T_bar_z")->value,
                    tc = c->get("T_bar_z")->value;
       t.measured = fmt::format("{:.2g}, {:.2g}, {:.3g}", ta, tb, tc);
-      t.fate = ta < 1e-4 && tb < 1e-4 && tc > 1e-3 ? Verdict::met : Verdict::missed;
+      t.verdict = ta < 1e-4 && tb < 1e-4 && tc > 1e-3 ? Verdict::pass : Verdict::fail;
     }
     targets.push_back(t);
   }
   {
     Target t{"largest mean volume fraction, at W_f, 2D", "0.2 +- 0.1", "", Verdict::absent,
              "the paper does not say up to which height; here the top of the highest bead"};
-    std::vector<Verdict> fates;
+    std::vector<Verdict> verdicts;
     for (const std::size_t k : {std::size_t{0}, std::size_t{2}}) {
       const auto peak = peak_of(gas.points(runs.systems[k]));
       const GasPoint* p = peak ? point_at(gas.points(runs.systems[k]), peak->grid) : nullptr;
       const auto phi = p != nullptr ? p->get("phi_top") : std::nullopt;
       if (!phi) continue;
-      fates.push_back(within(*phi, 0.1, 0.3));
+      verdicts.push_back(within(*phi, 0.1, 0.3));
       t.measured +=
           fmt::format("{}{} {:.3g}", t.measured.empty() ? "" : ", ", gas_systems()[k].name(), phi->value);
       if (const auto twice = p->get("phi_cm"))
         t.measured += fmt::format(" ({:.3g} up to twice the centre of mass)", twice->value);
     }
-    t.fate = all_of(fates);
+    t.verdict = all_of(verdicts);
     targets.push_back(t);
   }
   return targets;
@@ -178,8 +181,9 @@ std::string both_starts(const Gas& gas, const Runs& runs) {
     const auto a = rest != nullptr ? rest->get("T_bar_z") : std::nullopt, b = boiling.get("T_bar_z");
     if (!a || !b) continue;
     const Verdict apart = above(*a, *b);
-    s += fmt::format("  {:>9.4g} from rest {}, from a boiling bed {}: {}\n", boiling.at, a->text(), b->text(),
-                     apart == Verdict::open ? "no difference to be seen" : "the result depends on the start");
+    s += fmt::format(
+        "  {:>9.4g} from rest {}, from a boiling bed {}: {}\n", boiling.at, a->text(), b->text(),
+        apart == Verdict::inconclusive ? "no difference to be seen" : "the result depends on the start");
   }
   return s;
 }
@@ -249,8 +253,8 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig2() {
-  return {"p2-fig2", "scaled granular temperature against W, four systems, beside Table III", run, "p2-runs",
-          true};
+  return {"p2-fig2", "scaled granular temperature against W in four systems, compared with Table III", run,
+          "p2-runs", true};
 }
 
 }  // namespace twincell::reproduce

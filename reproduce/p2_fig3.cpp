@@ -112,13 +112,13 @@ Reproduction run(const Request& request) {
   };
   r.targets = {
       {"W = 1.397 < W_f: only the upper layers are mobilized", "lowest layer less than half of the highest",
-       said(0), mobile[0][0] < mobile[0][kLayers - 1] / 2 ? Verdict::met : Verdict::missed,
+       said(0), mobile[0][0] < mobile[0][kLayers - 1] / 2 ? Verdict::pass : Verdict::fail,
        "mobile: 0.2 d relative to the centre of mass within a cycle"},
       {"W = 2.739 = W_f: all layers are agitated", "every layer more than half mobile", said(2),
-       *std::min_element(mobile[2].begin(), mobile[2].end()) > 0.5 ? Verdict::met : Verdict::missed, ""},
+       *std::min_element(mobile[2].begin(), mobile[2].end()) > 0.5 ? Verdict::pass : Verdict::fail, ""},
       {"the lowest layer moves more from W to W", "rising",
        fmt::format("{:.2f}, {:.2f}, {:.2f}", mobile[0][0], mobile[1][0], mobile[2][0]),
-       mobile[0][0] < mobile[1][0] && mobile[1][0] < mobile[2][0] ? Verdict::met : Verdict::missed, ""}};
+       mobile[0][0] < mobile[1][0] && mobile[1][0] < mobile[2][0] ? Verdict::pass : Verdict::fail, ""}};
   r.measured = json_text(measured);
   r.cheaper = {fmt::format("one seed, {} cycles each", cycles),
                "the insets, T_bar_z near W = 1, are p2-fig2's points"};
@@ -129,7 +129,7 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig3() {
-  return {"p2-fig3", "snapshots below, near and at W_f, and which layers move", run};
+  return {"p2-fig3", "snapshots below, near and at W_f, and the mobile layers", run};
 }
 
 }  // namespace twincell::reproduce

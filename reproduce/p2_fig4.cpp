@@ -14,19 +14,19 @@ namespace {
 /// target also reports the ratio T_x/T_z.
 Target order_of(const GasSystem& system, const std::vector<GasPoint>& points) {
   Target t{system.name() + ": T_x < T < T_z", "for all W > 1", "", Verdict::absent, ""};
-  std::vector<Verdict> fates;
+  std::vector<Verdict> verdicts;
   double least = 1e300, most = 0;
   for (const GasPoint& p : points) {
     const auto x = p.get("T_x"), z = p.get("T_z");
     if (!x || !z || p.at < 1) continue;
     const Estimate ratio = quotient(*x, *z);
-    fates.push_back(above(*z, *x));
+    verdicts.push_back(above(*z, *x));
     least = std::min(least, ratio.value);
     most = std::max(most, ratio.value);
   }
-  if (fates.empty()) return t;
-  t.measured = fmt::format("T_x/T_z from {:.3g} to {:.3g} over {} points", least, most, fates.size());
-  t.fate = all_of(fates);
+  if (verdicts.empty()) return t;
+  t.measured = fmt::format("T_x/T_z from {:.3g} to {:.3g} over {} points", least, most, verdicts.size());
+  t.verdict = all_of(verdicts);
   return t;
 }
 
@@ -45,7 +45,7 @@ Target same_shape(const GasSystem& system, const std::vector<GasPoint>& points) 
   t.measured = fmt::format("T_bar largest at W = {:.3g}, T_bar_z at {:.3g}", top->at, peak->grid);
   // Neighbouring points of the paper's grid count as the same W.
   const bool near = std::max(top->at, peak->grid) / std::min(top->at, peak->grid) < 2.1;
-  t.fate = all_of({near ? Verdict::met : Verdict::missed, above(*top->get("T_bar"), *last->get("T_bar"))});
+  t.verdict = all_of({near ? Verdict::pass : Verdict::fail, above(*top->get("T_bar"), *last->get("T_bar"))});
   return t;
 }
 

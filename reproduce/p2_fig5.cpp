@@ -82,7 +82,7 @@ Reproduction run(const Request& request) {
     const auto [low, high] = std::minmax_element(without.begin(), without.end(), less);
     const Estimate q = quotient(high->second, low->second);
     constant.measured = fmt::format("largest over smallest {} over {} points", q.text(), without.size());
-    constant.fate = within(q, 1, 1.03);
+    constant.verdict = within(q, 1, 1.03);
   }
   Target peak{"with gravity: rises, then decays to a constant", "a maximum inside the range", "",
               Verdict::absent, ""};
@@ -91,9 +91,9 @@ Reproduction run(const Request& request) {
     peak.measured = fmt::format("largest {} at W = {:.3g}; {} at the last, W = {:.3g}", top->second.text(),
                                 top->first, with.back().second.text(), with.back().first);
     const bool inside = top != with.begin() && top + 1 != with.end();
-    peak.fate =
+    peak.verdict =
         inside ? all_of({above(top->second, with.front().second), above(top->second, with.back().second)})
-               : Verdict::open;
+               : Verdict::inconclusive;
     if (!inside) peak.reason = "the largest lies at an end of the frequencies that were run";
   }
   Target second{"with gravity: a second, smaller peak when beads strike the lid", "a second maximum", "",
@@ -101,13 +101,13 @@ Reproduction run(const Request& request) {
   if (with.size() >= 6) {
     const auto top = std::max_element(with.begin(), with.end(), less);
     auto dip = top;
-    Verdict fate = Verdict::open;
+    Verdict verdict = Verdict::inconclusive;
     for (auto p = top; p != with.end(); ++p) {
       if (p->second.value < dip->second.value) dip = p;
-      if (above(p->second, dip->second) == Verdict::met) fate = Verdict::met;
+      if (above(p->second, dip->second) == Verdict::pass) verdict = Verdict::pass;
     }
     second.measured = fmt::format("lowest after the peak {} at W = {:.3g}", dip->second.text(), dip->first);
-    second.fate = fate;
+    second.verdict = verdict;
   } else {
     second.reason = "too few frequencies at this budget";
   }

@@ -61,7 +61,7 @@ Target bitwise(const Gas& gas, const Setting& s) {
   const double alpha = 2 + std::log(values.back() / values.front()) / std::log(kPeakVelocities[2]);
   t.measured =
       fmt::format("{:.17g}, {:.17g}, {:.17g}: alpha = {:.15g}", values[0], values[1], values[2], alpha);
-  t.fate = same ? Verdict::met : Verdict::missed;
+  t.verdict = same ? Verdict::pass : Verdict::fail;
   return t;
 }
 
@@ -76,7 +76,7 @@ Target with_one_k_n(const Gas& gas, const Setting& s, std::vector<Estimate>& alp
   }
   alphas.push_back(e);
   t.measured = e.text();
-  t.fate = within(e, 1.98, 2.02);
+  t.verdict = within(e, 1.98, 2.02);
   return t;
 }
 
@@ -105,7 +105,7 @@ Reproduction run(const Request& request) {
     std::vector<Estimate> alphas;
     r.targets.push_back(with_one_k_n(gas, s, alphas));
     const auto number = static_cast<double>(k + 1);
-    if (r.targets[2 * k].fate == Verdict::met) {
+    if (r.targets[2 * k].verdict == Verdict::pass) {
       scaled.x.push_back(number);
       scaled.y.push_back({.value = 2, .low = {}, .high = {}});
     }
@@ -131,7 +131,7 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig6() {
-  return {"p2-fig6", "alpha = 2 without gravity, to the bit where k_n ~ V_p^2", run, "p2-runs"};
+  return {"p2-fig6", "exponent alpha = 2 without gravity; bitwise scaling where k_n ~ V_p^2", run, "p2-runs"};
 }
 
 }  // namespace twincell::reproduce

@@ -41,14 +41,14 @@ std::vector<Target> targets_of(const std::string& name, const Series& s) {
   Target rises{name + ": T_bar_z/dh_bar is not constant for W < 20", "rises", "", Verdict::absent, ""};
   if (first != nullptr && middle != nullptr) {
     rises.measured = fmt::format("{} at W = 2.7, {} near 20", first->text(), middle->text());
-    rises.fate = above(*middle, *first);
+    rises.verdict = above(*middle, *first);
   }
   Target constant{name + ": it becomes constant at high W", "same at W = 50 ... 89 within 10 %", "",
                   Verdict::absent, ""};
   if (high != nullptr && last != nullptr) {
     const Estimate q = quotient(*last, *high);
     constant.measured = fmt::format("{} over {}, quotient {}", last->text(), high->text(), q.text());
-    constant.fate = within(q, 0.9, 1.1);
+    constant.verdict = within(q, 0.9, 1.1);
   }
   return {rises, constant};
 }
@@ -82,7 +82,7 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig7() {
-  return {"p2-fig7", "temperature over the lift of the centre of mass against W (runs of p2-fig2)", run,
+  return {"p2-fig7", "ratio of temperature to centre-of-mass lift against W (runs of p2-fig2)", run,
           "p2-runs"};
 }
 

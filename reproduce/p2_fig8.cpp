@@ -53,7 +53,7 @@ double value_of(const CurveFit& fit, const char* name) {
 
 void add_targets(std::vector<Target>& targets, const Fitted& f, bool coefficients) {
   const Printed p = printed(f.dimension, f.algebraic);
-  Target curve{f.name() + ": the fitted curve beside the printed one", "within 10 % on [W_f, 89.4]", "",
+  Target curve{f.name() + ": the fitted curve against the printed one", "within 10 % on [W_f, 89.4]", "",
                Verdict::absent, ""};
   Target close{f.name() + ": correlation of points and curve", "at least 0.99", "", Verdict::absent, ""};
   Target signs{f.name() + ": signs of the residuals",
@@ -66,22 +66,24 @@ void add_targets(std::vector<Target>& targets, const Fitted& f, bool coefficient
       high = std::max(high, ratio);
     }
     curve.measured = fmt::format("fitted/printed from {:.3f} to {:.3f}", low, high);
-    curve.fate = low >= 0.9 && high <= 1.1 ? Verdict::met : Verdict::missed;
-    if (curve.fate == Verdict::missed && f.dimension == 2)
+    curve.verdict = low >= 0.9 && high <= 1.1 ? Verdict::pass : Verdict::fail;
+    if (curve.verdict == Verdict::fail && f.dimension == 2)
       curve.reason =
           "an independent program of the same model lies 9 to 15 % above Table III at W = 35 to 89 too";
     close.measured = fmt::format("{:.4f}, printed {:.4f}", f.fit->correlation, p.correlation);
-    close.fate = f.fit->correlation >= 0.99 ? Verdict::met : Verdict::missed;
+    close.verdict = f.fit->correlation >= 0.99 ? Verdict::pass : Verdict::fail;
     signs.measured = fmt::format("{} runs of {} + and {} -, p = {:.3g}", f.fit->runs.runs,
                                  f.fit->runs.positive, f.fit->runs.negative, f.fit->runs.p);
     const bool random = !(f.fit->runs.p < 0.05);
-    signs.fate = random == f.algebraic ? Verdict::met : f.algebraic ? Verdict::missed : Verdict::open;
-    if (signs.fate == Verdict::open) signs.reason = "so few or so noisy points do not show it";
+    signs.verdict = random == f.algebraic ? Verdict::pass
+                    : f.algebraic         ? Verdict::fail
+                                          : Verdict::inconclusive;
+    if (signs.verdict == Verdict::inconclusive) signs.reason = "so few or so noisy points do not show it";
   }
   targets.insert(targets.end(), {curve, close, signs});
   if (!coefficients) return;
-  const auto coefficient = [&](std::size_t k, const char* name, double wanted, double tolerance) {
-    Target t{fmt::format("{}: {}", f.name(), name), fmt::format("{:g} +- {:.3g}", wanted, tolerance), "",
+  const auto coefficient = [&](std::size_t k, const char* name, double expected, double tolerance) {
+    Target t{fmt::format("{}: {}", f.name(), name), fmt::format("{:g} +- {:.3g}", expected, tolerance), "",
              Verdict::absent, "coefficients are strongly correlated: compare curves"};
     if (f.fit) {
       Estimate e{.value = value_of(*f.fit, name), .low = {}, .high = {}};
@@ -90,7 +92,7 @@ void add_targets(std::vector<Target>& targets, const Fitted& f, bool coefficient
         e.high = interval->high;
       }
       t.measured = e.text();
-      t.fate = within(e, wanted - tolerance, wanted + tolerance);
+      t.verdict = within(e, expected - tolerance, expected + tolerance);
     }
     targets.push_back(t);
   };
@@ -175,7 +177,7 @@ Reproducible p2_fig8() {
 }
 
 Reproducible p2_table3() {
-  return {"p2-table3", "coefficients of those fits (runs of p2-fig2)",
+  return {"p2-table3", "coefficients of the fits of p2-fig8 (runs of p2-fig2)",
           [](const Request& request) { return run(request, true); }, "p2-runs"};
 }
 

@@ -62,7 +62,7 @@ std::optional<Estimate> at_w(const Gas& gas, std::size_t curve, double w) {
 
 Target close_to_each_other(const Gas& gas, const Panel& p) {
   Target t{"(a) k_n = 1e5, 1e6, 1e7: T_bar_z", "the same within 5 %", "", Verdict::absent, ""};
-  std::vector<Verdict> fates;
+  std::vector<Verdict> verdicts;
   double most = 0;
   for (const double w : {w_of_rpm(900), w_of_rpm(1200), w_of_rpm(2000)})
     for (const std::size_t other : {std::size_t{0}, std::size_t{2}}) {
@@ -70,31 +70,31 @@ Target close_to_each_other(const Gas& gas, const Panel& p) {
       if (!a || !b) continue;
       const Estimate q = quotient(*a, *b);
       most = std::max(most, std::abs(q.value - 1));
-      fates.push_back(within(q, 0.95, 1.05));
+      verdicts.push_back(within(q, 0.95, 1.05));
     }
-  if (fates.empty()) return t;
+  if (verdicts.empty()) return t;
   t.measured = fmt::format("largest deviation from k_n = 1e6 {:.2g} % at W = 4.5, 8, 22", 100 * most);
-  t.fate = all_of(fates);
+  t.verdict = all_of(verdicts);
   return t;
 }
 
 /// Target that T_bar_z at W = 22 is monotonic in the parameter, with separate intervals for neighbouring
 /// values.
 Target monotonic(const Gas& gas, const Panel& p, bool rising, const std::string& name,
-                 const std::string& wanted) {
-  Target t{name, wanted, "", Verdict::absent, ""};
-  std::vector<Verdict> fates;
+                 const std::string& expected) {
+  Target t{name, expected, "", Verdict::absent, ""};
+  std::vector<Verdict> verdicts;
   std::optional<Estimate> last, first;
   for (std::size_t k = 0; k < p.values.size(); ++k) {
     const auto e = at_w(gas, p.curves[k], w_of_rpm(2000));
     if (!e) continue;
     t.measured +=
         fmt::format("{}{:g}: {:.3g}", t.measured.empty() ? p.symbol + " = " : ", ", p.values[k], e->value);
-    if (last) fates.push_back(rising ? above(*e, *last) : above(*last, *e));
+    if (last) verdicts.push_back(rising ? above(*e, *last) : above(*last, *e));
     last = e;
   }
-  if (!fates.empty()) t.measured += " at W = 22.4";
-  t.fate = all_of(fates);
+  if (!verdicts.empty()) t.measured += " at W = 22.4";
+  t.verdict = all_of(verdicts);
   return t;
 }
 
@@ -152,8 +152,8 @@ Reproduction run_9(const Request& request) {
   if (n && e && mu) {
     order.measured =
         fmt::format("largest over smallest at W = 22.4: N {:.3g}, e {:.3g}, mu {:.3g}", *n, *e, *mu);
-    order.fate = *n > *mu && *e > *mu ? (*n > *e ? Verdict::met : Verdict::open) : Verdict::missed;
-    if (order.fate == Verdict::open)
+    order.verdict = *n > *mu && *e > *mu ? (*n > *e ? Verdict::pass : Verdict::inconclusive) : Verdict::fail;
+    if (order.verdict == Verdict::inconclusive)
       order.reason = "mu is least; which of N and e is more depends on how far each is varied";
   }
   r.targets.push_back(order);
@@ -211,14 +211,14 @@ Reproduction run_10(const Request& request) {
     const bool enough = s.y.size() == p.values.size();
     if (p.symbol == "e") {
       Target t{"alpha with e", "rises gently", enough ? said : "", Verdict::absent, ""};
-      if (enough) t.fate = above(s.y.back(), s.y.front());
+      if (enough) t.verdict = above(s.y.back(), s.y.front());
       r.targets.push_back(t);
     }
     if (p.symbol == "mu") {
       Target t{"alpha with mu", "marginal", enough ? said : "", Verdict::absent, ""};
       if (enough) {
         const double change = std::abs(s.y.back().value - s.y.front().value);
-        t.fate = change < 0.2 ? Verdict::met : Verdict::open;
+        t.verdict = change < 0.2 ? Verdict::pass : Verdict::inconclusive;
       }
       r.targets.push_back(t);
     }
@@ -226,15 +226,15 @@ Reproduction run_10(const Request& request) {
       Target t{"alpha with N", "falls", enough ? said : "", Verdict::absent, ""};
       Target deep{"alpha for N >= 6", "1.0 +- 0.2", "", Verdict::absent, ""};
       if (enough) {
-        t.fate = above(s.y.front(), s.y.back());
-        std::vector<Verdict> fates;
+        t.verdict = above(s.y.front(), s.y.back());
+        std::vector<Verdict> verdicts;
         for (std::size_t k = 0; k < p.values.size(); ++k)
           if (p.values[k] >= 6) {
-            fates.push_back(within(s.y[k], 0.8, 1.2));
+            verdicts.push_back(within(s.y[k], 0.8, 1.2));
             deep.measured +=
                 fmt::format("{}N = {:g}: {}", deep.measured.empty() ? "" : ", ", p.values[k], s.y[k].text());
           }
-        deep.fate = all_of(fates);
+        deep.verdict = all_of(verdicts);
         deep.reason = "2D; where W_2 lies depends on the error of the last point";
       }
       r.targets.push_back(t);
@@ -252,11 +252,13 @@ Reproduction run_10(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig9() {
-  return {"p2-fig9", "temperature with stiffness, restitution, friction and layers", run_9, "p2-runs"};
+  return {"p2-fig9", "temperature against stiffness, restitution, friction and number of layers", run_9,
+          "p2-runs"};
 }
 Reproducible p2_fig10() {
-  return {"p2-fig10", "alpha over [W_f, W_2] with restitution, friction and layers (runs of p2-fig9)", run_10,
-          "p2-runs"};
+  return {"p2-fig10",
+          "alpha over [W_f, W_2] against restitution, friction and number of layers (runs of p2-fig9)",
+          run_10, "p2-runs"};
 }
 
 }  // namespace twincell::reproduce

@@ -135,7 +135,7 @@ Reproduction begun(Gas& gas, const std::string& title) {
 }
 
 Verdict yes(bool holds) {
-  return holds ? Verdict::met : Verdict::missed;
+  return holds ? Verdict::pass : Verdict::fail;
 }
 
 // ---------------------------------------------------------------- Figs. 12 and 13
@@ -147,39 +147,43 @@ std::vector<Target> targets_12(const std::vector<double>& depths, const ProfileO
                                const std::string& said) {
   Target low{"W = 5.58: falls with height, low second peak before vanishing" + said, "every N", "",
              Verdict::absent, ""};
-  std::vector<Verdict> fates;
+  std::vector<Verdict> verdicts;
   for (std::size_t d = 0; d < depths.size(); ++d)
     if (const auto p = of(d, 0); p && p->hottest()) {
       low.measured +=
           fmt::format("{}N = {:g}: {}", low.measured.empty() ? "" : "; ", depths[d], described(*p));
-      fates.push_back(p->z[*p->hottest()] > 3 ? Verdict::missed : p->second() ? Verdict::met : Verdict::open);
+      verdicts.push_back(p->z[*p->hottest()] > 3 ? Verdict::fail
+                         : p->second()           ? Verdict::pass
+                                                 : Verdict::inconclusive);
     }
-  low.fate = all_of(fates);
-  if (low.fate == Verdict::open) low.reason = "a second peak does not stand out of the noise of its slabs";
+  low.verdict = all_of(verdicts);
+  if (low.verdict == Verdict::inconclusive)
+    low.reason = "a second peak does not stand out of the noise of its slabs";
 
   Target warm{"W = 22.35, N = 4: no second peak, hottest 7 to 10 d above the base" + said, "7 to 10", "",
               Verdict::absent, ""};
   if (const auto p = of(0, 1); p && p->hottest()) {
     const double z = p->z[*p->hottest()];
     warm.measured = described(*p);
-    warm.fate = z >= 6.5 && z <= 10.5 && !p->second() ? Verdict::met : Verdict::missed;
+    warm.verdict = z >= 6.5 && z <= 10.5 && !p->second() ? Verdict::pass : Verdict::fail;
   }
   Target back{"W = 50.3, N = 4: the second peak is back" + said, "a second peak", "", Verdict::absent, ""};
   if (const auto p = of(0, 2); p && p->hottest()) {
     back.measured = described(*p);
-    back.fate = p->second() ? Verdict::met : Verdict::open;
+    back.verdict = p->second() ? Verdict::pass : Verdict::inconclusive;
   }
   Target equal{"W = 85.01, N = 4: second peak comparable to the first" + said, "0.7 to 1.3 of it", "",
                Verdict::absent, ""};
   if (const auto p = of(0, 4); p && p->hottest()) {
     equal.measured = described(*p);
     const auto second = p->second();
-    equal.fate = !second ? Verdict::open : yes(second->over_first >= 0.7 && second->over_first <= 1.3);
+    equal.verdict =
+        !second ? Verdict::inconclusive : yes(second->over_first >= 0.7 && second->over_first <= 1.3);
   }
   Target off{"W = 50.3: hottest off the base for deep beds as well" + said, "z > 1", "", Verdict::absent, ""};
   if (const auto p = of(depths.size() - 1, 2); p && p->hottest()) {
     off.measured = fmt::format("N = {:g}: {}", depths.back(), described(*p));
-    off.fate = yes(p->z[*p->hottest()] > 1);
+    off.verdict = yes(p->z[*p->hottest()] > 1);
   }
   return {low, warm, back, equal, off};
 }
@@ -280,7 +284,7 @@ std::vector<Figure> pair_figures(const std::string& name, const Pair& pair, bool
 
 std::vector<Target> targets_14(const Pair& pair, const std::string& said) {
   Target rises{"T_z(z) rises with W" + said, "at every height below 10 d", "", Verdict::absent, ""};
-  std::vector<Verdict> fates;
+  std::vector<Verdict> verdicts;
   for (const auto* side : {&pair.smooth, &pair.rough})
     for (std::size_t k = 1; k < side->size(); ++k) {
       const auto &lower = (*side)[k - 1], &upper = (*side)[k];
@@ -290,41 +294,43 @@ std::vector<Target> targets_14(const Pair& pair, const std::string& said) {
           if (lower->z[i] == upper->z[j] && lower->z[i] > 1 && lower->z[i] < 10 &&
               std::isfinite(lower->t[i]) && std::isfinite(upper->t[j])) {
             const double gap = upper->t[j] - lower->t[i];
-            fates.push_back(
-                gap > 0 ? Verdict::met
+            verdicts.push_back(
+                gap > 0 ? Verdict::pass
                 : -gap > 3 * std::hypot(upper->error[j] * upper->t[j], lower->error[i] * lower->t[i])
-                    ? Verdict::missed
-                    : Verdict::open);
+                    ? Verdict::fail
+                    : Verdict::inconclusive);
           }
     }
-  rises.measured = fates.empty() ? ""
-                                 : fmt::format("{} pairs of slabs, {} rise", fates.size(),
-                                               std::count(fates.begin(), fates.end(), Verdict::met));
-  rises.fate = all_of(fates);
+  rises.measured = verdicts.empty()
+                       ? ""
+                       : fmt::format("{} pairs of slabs, {} rise", verdicts.size(),
+                                     std::count(verdicts.begin(), verdicts.end(), Verdict::pass));
+  rises.verdict = all_of(verdicts);
   const auto last = kFrequencies.size() - 1;
   Target smooth{"W = 85: second peak for smooth grains" + said, "yes", "", Verdict::absent, ""};
   if (const auto& p = pair.smooth[last]) {
     smooth.measured = described(*p);
-    smooth.fate = p->second() ? Verdict::met : Verdict::open;
+    smooth.verdict = p->second() ? Verdict::pass : Verdict::inconclusive;
   }
   Target rough{"no second peak for rough grains" + said, "none at any W", "", Verdict::absent, ""};
-  fates.clear();
+  verdicts.clear();
   for (std::size_t k = 0; k < pair.rough.size(); ++k)
     if (const auto& p = pair.rough[k]; p && p->hottest()) {
-      fates.push_back(p->second() ? Verdict::missed : Verdict::met);
+      verdicts.push_back(p->second() ? Verdict::fail : Verdict::pass);
       if (p->second())
         rough.measured += fmt::format("W = {:.4g}: {}. ", w_of_rpm(kFrequencies[k]), described(*p));
     }
-  if (!fates.empty() && rough.measured.empty()) rough.measured = fmt::format("none at {} W", fates.size());
-  rough.fate = all_of(fates);
+  if (!verdicts.empty() && rough.measured.empty())
+    rough.measured = fmt::format("none at {} W", verdicts.size());
+  rough.verdict = all_of(verdicts);
   Target off{"hottest off the base at high W, smooth" + said, "z > 1 at W >= 22", "", Verdict::absent, ""};
-  fates.clear();
+  verdicts.clear();
   for (std::size_t k = 1; k < pair.smooth.size(); ++k)
     if (const auto& p = pair.smooth[k]; p && p->hottest()) {
-      fates.push_back(yes(p->z[*p->hottest()] > 1));
+      verdicts.push_back(yes(p->z[*p->hottest()] > 1));
       off.measured += fmt::format("{}{}", off.measured.empty() ? "" : ", ", height(p->z[*p->hottest()]));
     }
-  off.fate = all_of(fates);
+  off.verdict = all_of(verdicts);
   return {rises, smooth, rough, off};
 }
 
@@ -356,9 +362,9 @@ Reproduction run_15(const Request& request) {
     const auto &s = pair.smooth[k], &q = pair.rough[k];
     if (s && q) {
       const double zs = s->z[s->densest()], zq = q->z[q->densest()];
-      nearer.push_back(zq > zs                                       ? Verdict::missed
-                       : q->phi[q->densest()] > s->phi[s->densest()] ? Verdict::met
-                                                                     : Verdict::open);
+      nearer.push_back(zq > zs                                       ? Verdict::fail
+                       : q->phi[q->densest()] > s->phi[s->densest()] ? Verdict::pass
+                                                                     : Verdict::inconclusive);
       rough.measured += fmt::format("{}W = {:.3g}: {:.2g} at {:g}, rough {:.2g} at {:g}",
                                     rough.measured.empty() ? "" : "; ", w_of_rpm(kFrequencies[k]),
                                     s->phi[s->densest()], zs, q->phi[q->densest()], zq);
@@ -375,9 +381,9 @@ Reproduction run_15(const Request& request) {
                                     s->z[*s->hottest()]);
     }
   }
-  rough.fate = all_of(nearer);
-  moves.fate = all_of(up);
-  apart.fate = all_of(different);
+  rough.verdict = all_of(nearer);
+  moves.verdict = all_of(up);
+  apart.verdict = all_of(different);
   r.targets = {rough, moves, apart};
   r.figures = pair_figures("p2-fig15", pair, true, kReadings[0]);
   return r;
@@ -413,7 +419,7 @@ Target trend(const std::string& name, const Series& s, bool falls) {
   if (first + 1 < s.x.size()) {
     t.measured = fmt::format("{} at W = {:.3g}, {} at {:.3g}", s.y[first].text(), s.x[first],
                              s.y.back().text(), s.x.back());
-    t.fate = falls ? above(s.y[first], s.y.back()) : above(s.y.back(), s.y[first]);
+    t.verdict = falls ? above(s.y[first], s.y.back()) : above(s.y.back(), s.y[first]);
   }
   return t;
 }
@@ -424,16 +430,18 @@ Target volume_first(const std::string& name, const Series& volume, const std::ve
            "from a smaller W on than at any height", "", Verdict::absent,
            "flat: within 5 % of the last value, errors counted"};
   const auto whole = flat_from(volume, true);
-  std::vector<Verdict> fates;
+  std::vector<Verdict> verdicts;
   std::string at_heights;
   for (const Series& s : stations)
     if (const auto local = flat_from(s, true); local && whole && std::min(volume.x.size(), s.x.size()) > 2) {
-      fates.push_back(*local > *whole ? Verdict::met : *local < *whole ? Verdict::missed : Verdict::open);
+      verdicts.push_back(*local > *whole   ? Verdict::pass
+                         : *local < *whole ? Verdict::fail
+                                           : Verdict::inconclusive);
       at_heights += fmt::format("{}{:.3g} ({})", at_heights.empty() ? "" : ", ", *local, s.title);
     }
-  if (fates.empty()) return t;
+  if (verdicts.empty()) return t;
   t.measured = fmt::format("flat from W = {:.3g} on, at heights from {}", *whole, at_heights);
-  t.fate = all_of(fates);
+  t.verdict = all_of(verdicts);
   return t;
 }
 
@@ -465,21 +473,21 @@ Reproduction run_16(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig12() {
-  return {"p2-fig12", "local temperature over height, shallow and deep beds (Figs. 12 and 13)", run_12,
+  return {"p2-fig12", "local temperature against height, shallow and deep beds (Figs. 12 and 13)", run_12,
           "p2-runs"};
 }
 Reproducible p2_fig13() {
-  return {"p2-fig13", "the same as p2-fig12, which draws Fig. 13 too", run_12, "p2-runs"};
+  return {"p2-fig13", "same as p2-fig12, which also draws Fig. 13", run_12, "p2-runs"};
 }
 Reproducible p2_fig14() {
-  return {"p2-fig14", "local temperature over height, 3D smooth and rough", run_14, "p2-runs"};
+  return {"p2-fig14", "local temperature against height, 3D smooth and rough", run_14, "p2-runs"};
 }
 Reproducible p2_fig15() {
-  return {"p2-fig15", "packing fraction over height, 3D smooth and rough (runs of p2-fig14)", run_15,
+  return {"p2-fig15", "packing fraction against height, 3D smooth and rough (runs of p2-fig14)", run_15,
           "p2-runs"};
 }
 Reproducible p2_fig16() {
-  return {"p2-fig16", "scaled local temperature at fixed heights against W (runs of p2-fig2)", run_16,
+  return {"p2-fig16", "scaled local temperature against W at fixed heights (runs of p2-fig2)", run_16,
           "p2-runs"};
 }
 

@@ -2,6 +2,7 @@
 /// \file
 /// Reproduction of a figure or table of the papers: targets, measured values, and simplifications.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -11,26 +12,29 @@
 #include <vector>
 
 #include "analysis/report/figures.hpp"
+#include "core/choice.hpp"
 #include "sweep/farm.hpp"
 
 namespace twincell::reproduce {
 
 /// Verdict on a target.
-enum class Verdict {
-  met,
-  missed,
-  open,    ///< the measurement does not decide
-  absent,  ///< not measured
-};
-/// "met", "MISSED", "open", "absent".
-std::string word_of(Verdict fate);
+enum class Verdict { pass, fail, inconclusive, absent };
+/// All verdicts with their words.
+inline constexpr std::array kVerdicts = {
+    Choice<Verdict>{Verdict::pass, "pass", "the measured value is in the target, or the stated order holds"},
+    Choice<Verdict>{Verdict::fail, "fail",
+                    "the whole interval is outside the target, or the opposite order holds"},
+    Choice<Verdict>{Verdict::inconclusive, "inconclusive", "the measurement does not decide"},
+    Choice<Verdict>{Verdict::absent, "absent", "not measured"}};
+/// The word of a verdict.
+std::string word_of(Verdict verdict);
 
 /// One number or statement of the paper, with the measured value and the verdict.
 struct Target {
   std::string name;      ///< "onset of bouncing, random, N_l = 20"
-  std::string wanted;    ///< "1.10 to 1.35"
+  std::string expected;  ///< "1.10 to 1.35"
   std::string measured;  ///< with interval
-  Verdict fate = Verdict::absent;
+  Verdict verdict = Verdict::absent;
   std::string reason;  ///< explanation of the verdict, if needed
 };
 

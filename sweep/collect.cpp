@@ -13,6 +13,8 @@
 #include "analysis/runs/pooling.hpp"
 #include "core/escape.hpp"
 #include "core/json_text.hpp"
+#include "sim/scene/scene.hpp"
+#include "sweep/conditions.hpp"
 
 namespace twincell::sweep {
 
@@ -49,8 +51,18 @@ std::vector<std::size_t> order_of(const Curve& curve) {
   return order;
 }
 
+/// Conditions of a point whose stored result has none, because it failed before the run began or an earlier
+/// version computed it: from its scene. The number of beads of a file's start is then unknown.
+json conditions_of_scene(const Plan& plan, const Point& point) {
+  const sim::Scene scene = sim::read_scene_text(point.scene, "point " + point.id, {}, plan.scene_folder);
+  std::optional<std::size_t> beads = scene.n_beads;
+  if (beads && scene.intruder) ++*beads;
+  return conditions_json(sim::conditions_of(scene, beads));
+}
+
 json point_json(const Plan& plan, const Point& point, const std::string& result) {
   json j = json::parse(result);
+  if (!j.contains("conditions")) j["conditions"] = conditions_of_scene(plan, point);
   j.erase("computed");
   j.erase("sha256");
   j["axes"] = axes_of(plan, point.values);
@@ -60,9 +72,23 @@ json point_json(const Plan& plan, const Point& point, const std::string& result)
   return j;
 }
 
-json onset_json(const Plan& plan, const Curve& curve) {
+/// N_l and start of an onset: those of its points. A value is null if the points differ in it, as N_l in a
+/// search along the number of beads, or if there is no point.
+json conditions_of_onset(const json& points) {
+  if (points.empty()) return {{"n_l", nullptr}, {"start", nullptr}};
+  json common = points.at(0).at("conditions");
+  for (const json& point : points)
+    for (const char* key : {"n_l", "start"})
+      if (common[key] != point.at("conditions").at(key)) common[key] = nullptr;
+  common.erase("gamma");
+  return common;
+}
+
+/// \param points those of the curve that are done, as point_json
+json onset_json(const Plan& plan, const Curve& curve, const json& points) {
   const Onset& o = *curve.onset;
   return {{"axes", axes_of(plan, curve.values)},
+          {"conditions", conditions_of_onset(points)},
           {"key", plan.search->key},
           {"verdict", plan.verdict->name},
           {"value", optional(o.value)},
@@ -129,13 +155,15 @@ json document_of(const Schedule& schedule) {
       {"format", "twincell sweep 1"}, {"plan", plan.text}, {"seed", plan.seed}, {"points", json::array()}};
   std::size_t open = 0;
   for (const Curve& curve : schedule.curves()) {
+    json points = json::array();
     for (const std::size_t i : order_of(curve)) {
       if (curve.results[i])
-        document["points"].push_back(point_json(plan, curve.points[i], *curve.results[i]));
+        points.push_back(point_json(plan, curve.points[i], *curve.results[i]));
       else
         ++open;
     }
-    if (curve.onset) document["onsets"].push_back(onset_json(plan, curve));
+    if (curve.onset) document["onsets"].push_back(onset_json(plan, curve, points));
+    document["points"].insert(document["points"].end(), points.begin(), points.end());
   }
   document["pooled"] = pooled_json(document["points"]);
   document["open"] = open;

@@ -10,9 +10,10 @@ namespace twincell::sweep {
 
 /// All results of a sweep as one JSON object:
 /// {"format", "plan": TOML of the plan, "seed": master seed, "points": [{"id", "axes": {key: value},
-/// "replica", "seed", and every part of the result that does not depend on where and when it was computed}],
-/// "open": number of points that are not done, "onsets": [{"axes", "key", "verdict", "value", "low", "high",
-/// "level", "method", "range", "runs", "yes", "complete", "text"}], "pooled": [{"axes", "runs", "results"}]}.
+/// "conditions": {"n_l", "gamma", "start"} (conditions.hpp), "replica", "seed", and every part of the result
+/// that does not depend on where and when it was computed}], "open": number of points that are not done,
+/// "onsets": [{"axes", "conditions": {"n_l", "start"}, "key", "verdict", "value", "low", "high", "level",
+/// "method", "range", "runs", "yes", "complete", "text"}], "pooled": [{"axes", "runs", "results"}]}.
 ///
 /// `pooled` contains, for points with two or more runs that differ only in the seed, their scalars and words,
 /// pooled by analysis/runs/pooling.hpp. The bytes depend on the plan only, not on which process computed the

@@ -17,8 +17,8 @@
 #include "core/error.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/scene/scene.hpp"
+#include "sweep/cancellation_token.hpp"
 #include "sweep/point_run.hpp"
-#include "sweep/until.hpp"
 
 namespace twincell::sweep {
 
@@ -96,7 +96,7 @@ class Farm {
       ++started_;
       ++working_;
     }
-    Until progress(closing_);
+    CancellationToken progress(closing_);
     std::unique_lock lock(mutex_);
     while (!closing_) {
       std::optional<Task> task;

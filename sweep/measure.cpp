@@ -20,12 +20,12 @@ double height_of_centre(const std::vector<sim::Bead>& beads) {
 }  // namespace
 
 Measured measure(sim::Simulation& run, AnalysisOptions options, const std::string& name, Progress& progress,
-                 const Observer& beside) {
+                 const Observer& observer) {
   Measured measured;
   std::optional<PrecisionRule> rule;
   const LiveTrajectory live(run, name, progress, [&](const Frame& frame) {
     measured.cycles = frame.cycle + 1;
-    const bool goes_on = beside.frame(frame);
+    const bool goes_on = observer.frame(frame);
     return !(rule && rule->reached(frame)) && goes_on;
   });
   const sim::Scene& scene = run.scene();
@@ -34,7 +34,7 @@ Measured measure(sim::Simulation& run, AnalysisOptions options, const std::strin
   if (!options.rest_height && scene.g() > 0 && rests && !run.system().beads.empty())
     options.rest_height = height_of_centre(run.system().beads);
   measured.rest_height = options.rest_height;
-  beside.begin(live.info());
+  observer.begin(live.info());
   measured.results = analyze(live, options);
   measured.contact_fraction = run.contact_fraction();
   if (rule) {

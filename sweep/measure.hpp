@@ -37,6 +37,6 @@ struct Observer {
 /// the bed still has more than 0.005 m g sigma of energy per bead when settling ends.
 /// \throws ConfigError, RunError, Interrupted
 Measured measure(sim::Simulation& run, AnalysisOptions options, const std::string& name, Progress& progress,
-                 const Observer& beside = {});
+                 const Observer& observer = {});
 
 }  // namespace twincell::sweep

@@ -15,6 +15,7 @@
 #include "core/json_text.hpp"
 #include "core/provenance.hpp"
 #include "sim/run/simulation.hpp"
+#include "sweep/conditions.hpp"
 #include "sweep/measure.hpp"
 #include "sweep/stop_rule.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -96,9 +97,10 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
     sim::RunState state = placed_in_turn(scene, progress);
     const std::int64_t all_cycles = scene.cycles;
     sim::Simulation run(std::move(scene), std::move(state));
+    document["conditions"] = conditions_json(run.trajectory_info().conditions);
     std::optional<StopRule> rule;
     std::unique_ptr<SharedWriter> writer;
-    const Observer beside{
+    const Observer observer{
         .begin =
             [&](const TrajectoryInfo& info) {
               if (plan.stop_early && plan.verdict) rule.emplace(*plan.verdict, info, all_cycles);
@@ -118,7 +120,7 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
             }};
     AnalysisOptions options;
     options.only = plan.results;
-    const Measured measured = measure(run, options, "point " + point.id, progress, beside);
+    const Measured measured = measure(run, options, "point " + point.id, progress, observer);
     const auto& results = measured.results;
     if (writer) on_disk([&] { writer->finish(); });
     document["results"] = nlohmann::json::parse(results_json(results));

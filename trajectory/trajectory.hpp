@@ -32,6 +32,13 @@ struct Columns {
   bool contacts = false;        ///< Frame::contacts, force, moment and rim_speed
 };
 
+/// Where a run stands in the phase diagram, as the program that made the run knew it.
+struct RunConditions {
+  std::optional<double> n_l;    ///< N_l sigma = N sigma/L_x, with N the number of beads of the first frame
+  std::optional<double> gamma;  ///< Gamma = A omega^2/g with the g of the run; absent without gravity
+  std::string start;            ///< start.kind of the scene of a simulation; empty: unknown or an experiment
+};
+
 /// Data common to all frames.
 struct TrajectoryInfo {
   std::size_t n_beads = 0;  ///< slots
@@ -41,6 +48,7 @@ struct TrajectoryInfo {
   int phases_per_cycle = 0;   ///< N_k, frames per drive cycle; 0 if not phase-locked
   int samples_per_cycle = 0;  ///< of Frame::time_mean; 0 if absent
   Scale scale;
+  RunConditions conditions;
   std::string source = "unknown";    ///< "simulation", "experiment" or "unknown"
   std::vector<double> radius;        ///< per slot, sigma; empty if absent
   std::vector<double> mass;          ///< per slot, m; empty if absent

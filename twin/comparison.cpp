@@ -21,13 +21,38 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Limits of a report page: bead positions of all snapshots together, bytes of pictures, snapshots per run.
-constexpr std::size_t kMostPositions = 400000, kMostPictureBytes = 12000000, kMostMoments = 20,
-                      kFewestMoments = 4;
+constexpr std::size_t kMostPositions = 400000, kMostPictureBytes = 12000000, kMostSnapshots = 20,
+                      kFewestSnapshots = 4;
 
-std::size_t moments_of_each(const std::vector<std::unique_ptr<H5mdReader>>& readers) {
+/// The trajectories of both sides, experiments first.
+struct Sides {
+  std::vector<std::unique_ptr<H5mdReader>> trajectories;
+  std::size_t n_experiments = 0;
+
+  [[nodiscard]] Side side_of(std::size_t i) const {
+    return i < n_experiments ? Side::experiment : Side::simulation;
+  }
+};
+
+/// Opens the trajectories. \throws ConfigError if the named stacks do not match the experiments
+Sides read_sides(const ComparingOptions& options) {
+  if (!options.stacks.empty() && options.stacks.size() != options.experiments.size())
+    throw ConfigError(
+        {.file = {}, .key = "--stack"},
+        fmt::format("{} stacks were named for {} experiments; give one for each, in their order.",
+                    options.stacks.size(), options.experiments.size()));
+  Sides sides;
+  sides.n_experiments = options.experiments.size();
+  for (const auto* files : {&options.experiments, &options.simulations})
+    for (const fs::path& file : *files) sides.trajectories.push_back(std::make_unique<H5mdReader>(file));
+  return sides;
+}
+
+/// Number of snapshots that the report can show of each run.
+std::size_t snapshots_of_each(const Sides& sides) {
   std::size_t slots = 0;
-  for (const auto& reader : readers) slots += reader->info().n_beads;
-  return std::clamp(kMostPositions / std::max<std::size_t>(1, slots), kFewestMoments, kMostMoments);
+  for (const auto& trajectory : sides.trajectories) slots += trajectory->info().n_beads;
+  return std::clamp(kMostPositions / std::max<std::size_t>(1, slots), kFewestSnapshots, kMostSnapshots);
 }
 
 /// Drops every other picture until the rest fits into `bytes`.
@@ -88,12 +113,12 @@ void show_frames(const TrajectoryInfo& info, const fs::path& stack, Run& run,
 }
 
 /// Adds the folder to the names of runs whose files have the same name: "gamma-0.9/experiment.h5".
-void tell_apart(std::vector<Run>& runs, const std::vector<std::unique_ptr<H5mdReader>>& readers) {
+void tell_apart(std::vector<Run>& runs, const Sides& sides) {
   std::map<std::string, int> count;
   for (const Run& run : runs) ++count[run.name];
   for (std::size_t i = 0; i < runs.size(); ++i)
     if (count[runs[i].name] > 1) {
-      const fs::path file = fs::absolute(readers[i]->name());
+      const fs::path file = fs::absolute(sides.trajectories[i]->name());
       runs[i].name = (file.parent_path().filename() / file.filename()).string();
     }
 }
@@ -165,53 +190,68 @@ Checks::Filmed film(const Run& experiment, Run& simulation, std::size_t index,
                                 seen.n_frames(), trajectory.n_frames(), like.origin)};
 }
 
+/// Analyses every trajectory and chooses its snapshots and camera frames for the report.
+/// \param checks receives the tracer lines of all runs
+std::vector<Run> analyse(const Sides& sides, const ComparingOptions& options, const ProgressOf& progress,
+                         std::vector<std::string>& notes, Checks& checks) {
+  std::vector<Run> runs;
+  const std::size_t most = snapshots_of_each(sides);
+  for (std::size_t i = 0; i < sides.trajectories.size(); ++i) {
+    const H5mdReader& trajectory = *sides.trajectories[i];
+    const auto bar = progress(trajectory.name());
+    Run run = analyze_run(trajectory, sides.side_of(i), options.analysis, *bar);
+    for (const std::size_t f : representative_frames(trajectory, most))
+      run.show.moments.push_back(snapshot(trajectory, f, run.cutoff));
+    if (run.side == Side::experiment)
+      show_frames(trajectory.info(), stack_behind(options, trajectory, i), run, notes);
+    for (auto& lines : tracer_lines(trajectory, i, options.analysis))
+      checks.tracers.push_back(std::move(lines));
+    runs.push_back(std::move(run));
+  }
+  tell_apart(runs, sides);
+  return runs;
+}
+
+/// Virtual experiments: the first simulation of every match that has both sides, as its experiment's camera
+/// and the tracking would show it. A simulation that cannot be filmed is left out, with a note.
+std::vector<Checks::Filmed> film_matches(const Sides& sides, const ComparingOptions& options,
+                                         const std::vector<Match>& matches, const ProgressOf& progress,
+                                         std::vector<std::string>& notes, std::vector<Run>& runs) {
+  std::vector<Checks::Filmed> filmed;
+  for (const Match& match : matches) {
+    if (match.experiments.empty() || match.simulations.empty()) continue;
+    const std::size_t e = match.experiments.front(), s = match.simulations.front();
+    const H5mdReader& experiment = *sides.trajectories[e];
+    const auto bar = progress("filming " + runs[s].name);
+    try {
+      filmed.push_back(film(runs[e], runs[s], s, *sides.trajectories[s], experiment.info(),
+                            stack_behind(options, experiment, e), options, *bar));
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Error& error) {
+      notes.push_back(fmt::format("{} could not be filmed: {}", runs[s].name, error.what()));
+    }
+  }
+  return filmed;
+}
+
+/// Drops pictures until those of all runs fit into the page, each run with the same share.
+void limit_pictures(std::vector<Run>& runs) {
+  std::size_t with_pictures = 0;
+  for (const Run& run : runs) with_pictures += run.show.pictures.empty() ? 0 : 1;
+  for (Run& run : runs) thin(run.show.pictures, kMostPictureBytes / std::max<std::size_t>(1, with_pictures));
+}
+
 }  // namespace
 
 Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress,
                         std::vector<std::string>& notes) {
-  if (!options.stacks.empty() && options.stacks.size() != options.experiments.size())
-    throw ConfigError(
-        {.file = {}, .key = "--frames"},
-        fmt::format("{} stacks were named for {} experiments; give one for each, in their order.",
-                    options.stacks.size(), options.experiments.size()));
+  const Sides sides = read_sides(options);
   Comparison c;
-  std::vector<std::unique_ptr<H5mdReader>> readers;
-  for (const auto* files : {&options.experiments, &options.simulations})
-    for (const fs::path& file : *files) readers.push_back(std::make_unique<H5mdReader>(file));
-
-  const std::size_t most = moments_of_each(readers), n_experiments = options.experiments.size();
-  for (std::size_t i = 0; i < readers.size(); ++i) {
-    const H5mdReader& trajectory = *readers[i];
-    const Side side = i < n_experiments ? Side::experiment : Side::simulation;
-    const auto bar = progress(trajectory.name());
-    Run run = analyze_run(trajectory, side, options.analysis, *bar);
-    for (const std::size_t f : representative_frames(trajectory, most))
-      run.show.moments.push_back(snapshot(trajectory, f, run.cutoff));
-    if (side == Side::experiment)
-      show_frames(trajectory.info(), stack_behind(options, trajectory, i), run, notes);
-    for (auto& lines : tracer_lines(trajectory, i, options.analysis))
-      c.checks.tracers.push_back(std::move(lines));
-    c.runs.push_back(std::move(run));
-  }
-  tell_apart(c.runs, readers);
+  c.runs = analyse(sides, options, progress, notes, c.checks);
   c.matches = match_runs(c.runs, options.tolerance);
-  for (const Match& match : c.matches) {
-    if (!options.film || match.experiments.empty() || match.simulations.empty()) continue;
-    const std::size_t e = match.experiments.front(), s = match.simulations.front();
-    const auto bar = progress("filming " + c.runs[s].name);
-    try {
-      c.checks.filmed.push_back(film(c.runs[e], c.runs[s], s, *readers[s], readers[e]->info(),
-                                     stack_behind(options, *readers[e], e), options, *bar));
-    } catch (const Interrupted&) {
-      throw;
-    } catch (const Error& error) {
-      notes.push_back(fmt::format("{} could not be filmed: {}", c.runs[s].name, error.what()));
-    }
-  }
-  std::size_t with_pictures = 0;
-  for (const Run& run : c.runs) with_pictures += run.show.pictures.empty() ? 0 : 1;
-  for (Run& run : c.runs)
-    thin(run.show.pictures, kMostPictureBytes / std::max<std::size_t>(1, with_pictures));
+  if (options.film) c.checks.filmed = film_matches(sides, options, c.matches, progress, notes, c.runs);
+  limit_pictures(c.runs);
   c.boundaries = find_boundaries(c.runs);
   for (const fs::path& file : options.sweeps) add_sweep(file, c);
   c.differences = find_differences(c.runs, c.matches, c.checks);

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 #include "core/atomic_file.hpp"
-#include "core/config.hpp"
-#include "core/json_text.hpp"
-#include "core/toml_leaves.hpp"
-#include "sim/scene/scene.hpp"
+#include "core/error.hpp"
+#include "sweep/conditions.hpp"
 
 namespace twincell {
 namespace {
@@ -18,74 +17,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The settings of a sweep's base scene that determine N_l, Gamma and start.
-struct BaseScene {
-  std::string preset, start;
-  std::vector<TomlLeaf> leaves;  ///< keys of the tables that determine N_l and Gamma, in their stated units
-};
-
-const std::vector<std::string>& placing_tables() {
-  static const std::vector<std::string> tables = {"scale.", "cell.", "beads.", "drive."};
-  return tables;
-}
-
-/// Whether a key is in a table that determines N_l or Gamma.
-bool places(const std::string& key) {
-  return std::any_of(placing_tables().begin(), placing_tables().end(),
-                     [&](const std::string& table) { return key.starts_with(table); });
-}
-
-/// Base scene: a table of the plan, or a file that is searched next to `file`, one folder above, and in the
-/// working folder.
-BaseScene base_scene(const std::string& plan, const fs::path& file) {
-  const Config config = Config::from_text(plan, file.string() + ": plan");
-  std::vector<TomlLeaf> leaves = toml_leaves(config.text(), "scene");
-  ConfigSection scene = config.root();
-  if (!leaves.empty()) {
-    scene = scene.section("scene");
-  } else {
-    const fs::path name = scene.text("scene").value_or("");
-    const fs::path folder = fs::absolute(file).parent_path();
-    for (const fs::path& place : {folder / name, folder.parent_path() / name, name})
-      if (leaves.empty() && fs::is_regular_file(place)) {
-        const Config found = Config::from_file(place);
-        leaves = toml_leaves(found.text(), "");
-        scene = found.root();
-      }
-    if (leaves.empty())
-      throw InputError(
-          {.file = file.string(), .key = "plan.scene"},
-          fmt::format("the sweep's scene {} does not exist, so N_l and Gamma are unknown.", name.string()));
-  }
-  BaseScene base{.preset = scene.text("preset").value_or(""),
-                 .start = scene.section("start").text("kind").value_or("crystal_a"),
-                 .leaves = {}};
-  for (TomlLeaf& leaf : leaves)
-    if (places(leaf.path)) base.leaves.push_back(std::move(leaf));
-  return base;
-}
-
-/// Position of a point in the phase diagram, with its start.
-struct Place {
-  double n_l = 0, gamma = 0;
-  std::string start;
-};
-
-/// Position of the base scene with the values of a point's axes.
-Place place_of(const BaseScene& base, const json& axes, const std::string& file) {
-  // Contacts do not affect the position, but a valid scene needs some.
-  std::string text = base.preset.empty() ? "contact.k_n = 1e6\ncontact.restitution = 0.9\n"
-                                         : fmt::format("preset = \"{}\"\n", base.preset);
-  for (const TomlLeaf& leaf : base.leaves) text += leaf.path + " = " + leaf.literal + "\n";
-  std::vector<std::string> assignments;
-  for (const auto& [key, value] : axes.items())
-    if (places(key)) assignments.push_back(key + "=" + json_text(value));
-  const sim::Scene scene = sim::read_scene_text(text, file + ": scene", assignments);
-  Place place;
-  place.n_l = static_cast<double>(scene.n_beads.value_or(0)) / scene.width;
-  place.gamma = scene.drive.gamma(scene.g());
-  place.start = axes.contains("start.kind") ? axes["start.kind"].get<std::string>() : base.start;
-  return place;
+/// Conditions that are stored with a point or an onset. \param what "point ID" or "an onset", for messages
+const json& conditions_of(const json& row, const std::string& what, const std::string& file) {
+  if (!row.contains("conditions"))
+    throw InputError({.file = file, .key = "conditions"},
+                     fmt::format("{} does not state its N_l, Gamma and start: an earlier version collected "
+                                 "the sweep; collect it again with `twincell sweep collect`.",
+                                 what));
+  return row.at("conditions");
 }
 
 std::optional<double> number(const json& object, const char* key) {
@@ -106,14 +45,14 @@ BedPhase phase_of(const json& results) {
   return bed_phase(scalar("s_b"), scalar("s_c"));
 }
 
-void add_points(const json& document, const BaseScene& base, const std::string& file,
-                Comparison& comparison) {
+void add_points(const json& document, const std::string& file, Comparison& comparison) {
   for (const json& point : document.at("points")) {
     const BedPhase phase = phase_of(point.value("results", json::object()));
     if (phase == BedPhase::undetermined) continue;
-    const Place place = place_of(base, point.at("axes"), file);
-    comparison.sweep.push_back(
-        {.n_l = place.n_l, .gamma = place.gamma, .start = place.start, .phase = phase});
+    const RunConditions at =
+        sweep::conditions_from_json(conditions_of(point, "point " + point.at("id").get<std::string>(), file));
+    if (!at.n_l || !at.gamma) continue;  // no place in the diagram: without gravity, for example
+    comparison.sweep.push_back({.n_l = *at.n_l, .gamma = *at.gamma, .start = at.start, .phase = phase});
   }
 }
 
@@ -122,19 +61,17 @@ bool is_gamma(const std::string& key) {
   return key == "drive.gamma" || key == "drive.peak_acceleration_g";
 }
 
-void add_onsets(const json& document, const BaseScene& base, const std::string& file,
-                Comparison& comparison) {
+void add_onsets(const json& document, const std::string& file, Comparison& comparison) {
   for (const json& onset : document.value("onsets", json::array())) {
     const BedPhase phase = phase_named(onset.value("verdict", ""));
     if (phase == BedPhase::undetermined || !is_gamma(onset.value("key", ""))) continue;
-    json axes = onset.at("axes");
-    axes[onset.at("key").get<std::string>()] =
-        onset.at("range").at(0);  // any Gamma, so that the scene is complete
-    const Place place = place_of(base, axes, file);
+    const json& at = conditions_of(onset, "an onset", file);
+    const std::optional<double> n_l = number(at, "n_l");
+    if (!n_l) continue;
     comparison.boundaries.push_back({.side = Side::simulation,
-                                     .start = place.start,
+                                     .start = at.at("start").get<std::string>(),
                                      .onset = phase,
-                                     .n_l = place.n_l,
+                                     .n_l = *n_l,
                                      .n_runs = onset.at("runs").get<std::size_t>(),
                                      .below = number(onset, "low"),
                                      .above = number(onset, "high"),
@@ -151,9 +88,8 @@ void add_sweep(const fs::path& file, Comparison& comparison) {
     throw InputError({.file = file.string()},
                      "is not a sweep's collected results (\"format\": \"twincell sweep 1\").");
   try {
-    const BaseScene base = base_scene(document.at("plan").get<std::string>(), file);
-    add_points(document, base, file.string(), comparison);
-    add_onsets(document, base, file.string(), comparison);
+    add_points(document, file.string(), comparison);
+    add_onsets(document, file.string(), comparison);
   } catch (const json::exception& e) {
     throw InputError({.file = file.string()}, fmt::format("is damaged: {}.", e.what()));
   }

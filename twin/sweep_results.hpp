@@ -9,8 +9,9 @@
 namespace twincell {
 
 /// Reads a file "twincell sweep 1" (JSON) and adds to `comparison` its points with a known phase, and its
-/// onsets of bouncing and convecting. N_l, Gamma and start come from the sweep's scene and the axes of each
-/// point. \throws InputError if the file has another format, is damaged, or its scene is not found
+/// onsets of bouncing and convecting, at the N_l, Gamma and start that the file states for each
+/// ("conditions"). \throws InputError if the file has another format, is damaged, or was collected by a
+/// version that did not store the conditions
 void add_sweep(const std::filesystem::path& file, Comparison& comparison);
 
 }  // namespace twincell

@@ -91,6 +91,96 @@ void simulate(const sim::Scene& scene, const fs::path& output, const TwinProvena
   writer.finish();
 }
 
+/// The cell of the film with everything that a twin needs.
+struct FilmedCell {
+  CellDescription cell;
+  std::string drive;  ///< the drive as measured on the plate, in a sentence; empty if the cell states it
+};
+
+/// Reads the cell and measures its drive on the plate if the cell states none.
+FilmedCell read_filmed_cell(const TwinOptions& options, const ProgressOf& progress) {
+  FilmedCell filmed{.cell = read_cell(options.cell_file), .drive = {}};
+  require_known(filmed.cell, options.cell_file);
+  (void)word_of_sides(filmed.cell, options.cell_file);
+  if (lacks_drive(filmed.cell)) {
+    const auto bar = progress("the plate's edge");
+    filmed.drive = complete_drive(filmed.cell, options.cell_file, options.stack, options.threads, *bar);
+  }
+  return filmed;
+}
+
+/// Whether a stated drive is to be checked against the frames.
+bool checks_drive(const FilmedCell& filmed, const TwinOptions& options) {
+  return filmed.drive.empty() && !options.trust_stated_drive;
+}
+
+/// \throws ConfigError if the frames show another drive than the cell states
+void require_agreement(const DriveCheck& check, const TwinOptions& options) {
+  if (!check.disagreement.empty())
+    throw ConfigError({.file = options.cell_file.string(), .key = "drive"},
+                      check.disagreement + "; correct one of them, or use --trust-stated-drive.");
+}
+
+/// Checks a stated drive against the plate in the frames.
+DriveCheck check_plate(const FilmedCell& filmed, const TwinOptions& options, const ProgressOf& progress) {
+  if (!checks_drive(filmed, options)) return {.not_comparable = "the stated drive is trusted"};
+  const auto bar = progress("the plate's edge");
+  DriveCheck check = check_by_plate(filmed.cell, options.stack, options.threads, *bar);
+  require_agreement(check, options);
+  return check;
+}
+
+LocatorOptions locator_for(const CellDescription& cell, const TwinOptions& options) {
+  LocatorOptions locator = options.locator;
+  locator.preprocess.bright |= cell.bright;
+  if (locator.diameter_px <= 0) locator.diameter_px = cell.pixels_per_sigma.value_or(0);
+  return locator;
+}
+
+/// Tracks the film into `output`. If the plate showed no drive, the bed checks the stated one before the
+/// trajectory is kept. \returns pixels per sigma
+double track_experiment(FrameSource& frames, const FilmedCell& filmed, DriveCheck check,
+                        const TwinOptions& options, const fs::path& output, const TwinProvenance& provenance,
+                        const ProgressOf& progress) {
+  const CellDescription& cell = filmed.cell;
+  const auto bar = progress("tracking");
+  const TrackedStack stack = track_stack(frames, locator_for(cell, options), options.link, cell,
+                                         options.threads, *bar, {}, output.parent_path());
+  TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
+  if (checks_drive(filmed, options) && check.by.empty()) {
+    BedSteps bed(plan.info);
+    write_trajectory(stack, plan, cell, bed);
+    check = check_by_bed(bed, plan.info, check.frame_rate_hz);
+    require_agreement(check, options);
+  }
+  if (filmed.drive.empty()) record(check, plan.info);
+  plan.info.provenance_json = provenance.of_experiment(cell);
+  H5mdWriter writer(output, plan.info);
+  write_trajectory(stack, plan, cell, writer);
+  writer.finish();
+  return plan.pixel_frame.pixels_per_sigma;
+}
+
+/// Simulates the scene once from the measured positions, and `options.twins` - 1 times from shifted ones.
+std::vector<fs::path> simulate_twins(const std::string& scene, const Twin& twin, const TwinOptions& options,
+                                     const fs::path& folder, const TwinProvenance& provenance,
+                                     const ProgressOf& progress) {
+  std::vector<fs::path> simulations;
+  for (int k = 1; k <= options.twins; ++k) {
+    std::vector<std::string> assignments = options.assignments;
+    if (k > 1) {
+      assignments.push_back(fmt::format("start.seed={}", k));
+      assignments.push_back(
+          fmt::format("start.perturbation={:.9g}", std::min(kLargestShift, twin.position_error)));
+    }
+    simulations.push_back(folder / fmt::format("simulation-{}.h5", k));
+    const auto bar = progress(fmt::format("simulating twin {}", k));
+    simulate(sim::read_scene_text(scene, twin.scene.string(), assignments, folder), simulations.back(),
+             provenance, options.threads, *bar);
+  }
+  return simulations;
+}
+
 }  // namespace
 
 std::string twin_scene(const std::string& base, const std::string& base_name, const CellDescription& cell,
@@ -137,81 +227,29 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
 
 Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinProvenance& provenance,
                const ProgressOf& progress) {
-  CellDescription cell = read_cell(options.cell_file);
-  require_known(cell, options.cell_file);
-  (void)word_of_sides(cell, options.cell_file);
-  std::string drive;
-  if (lacks_drive(cell)) {
-    const auto bar = progress("the plate's edge");
-    drive = complete_drive(cell, options.cell_file, options.stack, options.threads, *bar);
-  }
-  const std::string base = options.scene.empty() ? std::string() : read_text_file(options.scene);
+  // Read and check everything before the stack is tracked.
+  const FilmedCell filmed = read_filmed_cell(options, progress);
   Twin twin{.experiment = folder / "experiment.h5", .scene = folder / "scene.toml"};
-  twin.drive = drive;
+  twin.drive = filmed.drive;
+  const std::string base = options.scene.empty() ? std::string() : read_text_file(options.scene);
   const auto scene_text = [&](std::size_t frame, std::int64_t cycles) {
-    return twin_scene(base, options.scene.string(), cell, twin.experiment.filename(), frame, cycles);
+    return twin_scene(base, options.scene.string(), filmed.cell, twin.experiment.filename(), frame, cycles);
   };
-  // Validate the scene before the stack is read.
   (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
-
-  // Check the stated drive against the plate in the frames.
-  const auto require_agreement = [&](const DriveCheck& check) {
-    if (!check.disagreement.empty())
-      throw ConfigError({.file = options.cell_file.string(), .key = "drive"},
-                        check.disagreement + "; correct one of them, or use --trust-stated-drive.");
-  };
-  DriveCheck check{.not_comparable = "the stated drive is trusted"};
-  const bool checked = drive.empty() && !options.trust_stated_drive;
-  if (checked) {
-    const auto bar = progress("the plate's edge");
-    check = check_by_plate(cell, options.stack, options.threads, *bar);
-    require_agreement(check);
-  }
-  // Track the experiment. If the plate is not visible, the bed checks the drive before the trajectory is
-  // kept.
+  const DriveCheck check = check_plate(filmed, options, progress);
   const auto frames = open_frames(options.stack);
   claim_shared_folder(folder, twin_folder());
 
-  LocatorOptions locator = options.locator;
-  locator.preprocess.bright |= cell.bright;
-  if (locator.diameter_px <= 0) locator.diameter_px = cell.pixels_per_sigma.value_or(0);
-  {
-    const auto bar = progress("tracking");
-    const TrackedStack stack =
-        track_stack(*frames, locator, options.link, cell, options.threads, *bar, {}, folder);
-    TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
-    if (checked && check.by.empty()) {  // the plate gave no drive
-      BedSteps bed(plan.info);
-      write_trajectory(stack, plan, cell, bed);
-      check = check_by_bed(bed, plan.info, check.frame_rate_hz);
-      require_agreement(check);
-    }
-    if (drive.empty()) record(check, plan.info);
-    plan.info.provenance_json = provenance.of_experiment(cell);
-    H5mdWriter writer(twin.experiment, plan.info);
-    write_trajectory(stack, plan, cell, writer);
-    writer.finish();
-    twin.pixels_per_sigma = plan.pixel_frame.pixels_per_sigma;
-  }
-  // Write the scene and simulate, each further simulation from shifted positions.
-  const FirstPacking begin = find_first_packing(H5mdReader(twin.experiment));
-  twin.beads = begin.beads;
-  twin.cycles = begin.cycles;
-  twin.position_error = begin.position_error;
-  const std::string text = std::string(kSceneHead) + scene_text(begin.frame, begin.cycles);
-  write_text_file(twin.scene, text, Product::text("a scene", kSceneHead));
-  for (int k = 1; k <= options.twins; ++k) {
-    std::vector<std::string> assignments = options.assignments;
-    if (k > 1) {
-      assignments.push_back(fmt::format("start.seed={}", k));
-      assignments.push_back(
-          fmt::format("start.perturbation={:.9g}", std::min(kLargestShift, begin.position_error)));
-    }
-    twin.simulations.push_back(folder / fmt::format("simulation-{}.h5", k));
-    const auto bar = progress(fmt::format("simulating twin {}", k));
-    simulate(sim::read_scene_text(text, twin.scene.string(), assignments, folder), twin.simulations.back(),
-             provenance, options.threads, *bar);
-  }
+  // Experiment, scene, simulations.
+  twin.pixels_per_sigma =
+      track_experiment(*frames, filmed, check, options, twin.experiment, provenance, progress);
+  const FirstPacking first = find_first_packing(H5mdReader(twin.experiment));
+  twin.beads = first.beads;
+  twin.cycles = first.cycles;
+  twin.position_error = first.position_error;
+  const std::string scene = std::string(kSceneHead) + scene_text(first.frame, first.cycles);
+  write_text_file(twin.scene, scene, Product::text("a scene", kSceneHead));
+  twin.simulations = simulate_twins(scene, twin, options, folder, provenance, progress);
   return twin;
 }
 

@@ -278,13 +278,14 @@ class PhaseThresholds : public Observable {
   /// Detection limits of the camera, for comparison with the threshold sigma/30.
   void add_detection(std::vector<Result>& all) const {
     const std::string source = "Fortini & Huang 2015, app. B";
-    const auto beside = [](double limit) {
+    const auto against_threshold = [](double limit) {
       return fmt::format("{} sigma/30 = {:.4f}", limit <= kBouncingThreshold ? "below" : "above",
                          kBouncingThreshold);
     };
     if (const auto scale = context_.info.scale.pixels_per_sigma) {
       Result r{.name = "half_pixel", .values = {0.5 / *scale}, .unit = "sigma", .n = 1, .n_of = "scale"};
-      r.convention = fmt::format("half a pixel at {:.4g} pixels per sigma; {}", *scale, beside(r.value()));
+      r.convention =
+          fmt::format("half a pixel at {:.4g} pixels per sigma; {}", *scale, against_threshold(r.value()));
       r.no_interval = "the scale is taken as given";
       r.source = source;
       all.push_back(std::move(r));
@@ -310,7 +311,7 @@ class PhaseThresholds : public Observable {
         "s_b_noise", floor,
         fmt::format("s_b of a bed at rest from the camera's noise alone, sigma_z/sqrt(N_t N_f) with {} "
                     "tracers and {} cycles; {}",
-                    n_tracers_, used, beside(floor)));
+                    n_tracers_, used, against_threshold(floor)));
     noise_result("s_j_noise", noise(), "contribution of the noise alone to s_j, added in quadrature");
   }
 
@@ -439,15 +440,15 @@ class PhaseThresholds : public Observable {
       all.push_back(absent_result("tracer_heights", context_.no_tracers, source));
       return;
     }
-    Result who{.name = "tracers",
-               .values = {context_.tracers.begin(), context_.tracers.end()},
-               .shape = {n_tracers_},
-               .unit = "id",
-               .n = n_tracers_,
-               .n_of = "tracers"};
-    who.convention = context_.tracer_choice;
-    who.source = source;
-    all.push_back(std::move(who));
+    Result tracers{.name = "tracers",
+                   .values = {context_.tracers.begin(), context_.tracers.end()},
+                   .shape = {n_tracers_},
+                   .unit = "id",
+                   .n = n_tracers_,
+                   .n_of = "tracers"};
+    tracers.convention = context_.tracer_choice;
+    tracers.source = source;
+    all.push_back(std::move(tracers));
     if (line_.n() == 0) {
       const std::string none = why_no_cycles();
       all.push_back(absent_result("tracer_heights",
@@ -505,23 +506,13 @@ class PhaseThresholds : public Observable {
 }  // namespace
 
 std::string phase_name(BedPhase phase) {
-  switch (phase) {
-    case BedPhase::co_moving:
-      return "co-moving";
-    case BedPhase::bouncing:
-      return "bouncing";
-    case BedPhase::convecting:
-      return "convecting";
-    case BedPhase::undetermined:
-      break;
-  }
-  return "undetermined";
+  return std::string(row_of(kBedPhases, phase).word);
 }
 
 BedPhase phase_named(const std::string& name) {
-  for (const BedPhase phase : {BedPhase::co_moving, BedPhase::bouncing, BedPhase::convecting})
-    if (name == phase_name(phase)) return phase;
-  return BedPhase::undetermined;
+  const auto row =
+      std::find_if(kBedPhases.begin(), kBedPhases.end(), [&](const auto& r) { return r.word == name; });
+  return row == kBedPhases.end() ? BedPhase::undetermined : row->value;
 }
 
 BedPhase bed_phase(double s_b, double s_c) {

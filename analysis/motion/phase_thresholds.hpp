@@ -2,9 +2,11 @@
 /// \file
 /// Phase of the bed from s_b and s_c and their thresholds (Fortini & Huang 2015, app. B).
 
+#include <array>
 #include <string>
 
 #include "analysis/observable/observable.hpp"
+#include "core/choice.hpp"
 
 namespace twincell {
 
@@ -15,7 +17,16 @@ inline constexpr double kConvectionThreshold = 1;
 
 /// Phases of the bed.
 enum class BedPhase { undetermined, co_moving, bouncing, convecting };
-/// Name of a phase: "undetermined", "co-moving", "bouncing", "convecting".
+/// All phases with their words.
+inline constexpr std::array kBedPhases = {
+    Choice<BedPhase>{BedPhase::undetermined, "undetermined", "the measurement does not decide"},
+    Choice<BedPhase>{BedPhase::co_moving, "co-moving", "the bed stays on the plate: s_b <= sigma/30"},
+    Choice<BedPhase>{
+        BedPhase::bouncing, "bouncing",
+        "the bed leaves the plate, its beads keep their neighbours: s_b > sigma/30, s_c <= sigma"},
+    Choice<BedPhase>{BedPhase::convecting, "convecting",
+                     "the bed leaves the plate and convects: s_b > sigma/30, s_c > sigma"}};
+/// The word of a phase.
 std::string phase_name(BedPhase phase);
 /// Inverse of phase_name; undetermined for any other text.
 BedPhase phase_named(const std::string& name);

@@ -116,19 +116,7 @@ Growth growth(const TracerLine& line, std::size_t first, std::size_t last) {
 }
 
 std::string drift_name(Drift drift) {
-  switch (drift) {
-    case Drift::still:
-      return "still";
-    case Drift::annealed:
-      return "annealed";
-    case Drift::drifting:
-      return "drifting";
-    case Drift::mixing:
-      return "mixing";
-    case Drift::undetermined:
-      break;
-  }
-  return "undetermined";
+  return std::string(row_of(kDrifts, drift).word);
 }
 
 DriftVerdict judge_drift(const TracerLine& line, double noise) {

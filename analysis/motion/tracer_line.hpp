@@ -2,12 +2,14 @@
 /// \file
 /// The line of tracers from cycle to cycle: how far it spreads, and whether it keeps spreading.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/statistics/statistics.hpp"
+#include "core/choice.hpp"
 
 namespace twincell {
 
@@ -45,14 +47,17 @@ struct Growth {
 Growth growth(const TracerLine& line, std::size_t first, std::size_t last);
 
 /// Motion of a line of tracers over a run.
-enum class Drift {
-  undetermined,
-  still,     ///< the line does not move
-  annealed,  ///< the line moved at first and came to rest: initial packing rearranged, no convection
-  drifting,  ///< the tracers move, and s_j^2 still grows
-  mixing,    ///< the tracers move, and s_j^2 no longer grows: it has reached the limit set by the bed
-};
-/// Name of a drift: "undetermined", "still", "annealed", "drifting", "mixing".
+enum class Drift { undetermined, still, annealed, drifting, mixing };
+/// All drifts with their words.
+inline constexpr std::array kDrifts = {
+    Choice<Drift>{Drift::undetermined, "undetermined", "the measurement does not decide"},
+    Choice<Drift>{Drift::still, "still", "the line does not move"},
+    Choice<Drift>{Drift::annealed, "annealed",
+                  "the line moved at first and came to rest: initial packing rearranged, no convection"},
+    Choice<Drift>{Drift::drifting, "drifting", "the tracers move, and s_j^2 still grows"},
+    Choice<Drift>{Drift::mixing, "mixing",
+                  "the tracers move, and s_j^2 no longer grows: it has reached the limit set by the bed"}};
+/// The word of a drift.
 std::string drift_name(Drift drift);
 
 /// The verdict on the drift, with its reason.

@@ -90,7 +90,7 @@ std::string conclusion(const Comparison& c) {
   std::vector<std::string> differ;
   std::size_t paired = 0, same = 0;
   for (const Match& match : matches) {
-    const std::string word = verdict(runs, match);
+    const std::string word = verdict_word(runs, match);
     if (!match.experiments.empty() && !match.simulations.empty()) ++paired;
     if (word == "same") ++same;
     if (word == "differ")
@@ -234,7 +234,7 @@ std::string verdict_table(const std::vector<Run>& runs, const std::vector<Match>
   for (const Match& match : matches) {
     const std::size_t first =
         match.experiments.empty() ? match.simulations.front() : match.experiments.front();
-    const std::string word = verdict(runs, match);
+    const std::string word = verdict_word(runs, match);
     table.row(fmt::format(" data-run=\"{}\"{}", first, word == "differ" ? " class=\"differ\"" : ""));
     table.cell(match.gamma);
     table.cell(runs[first].k_m);
@@ -527,7 +527,7 @@ std::string comparison_text(const Comparison& c) {
         c.runs[match.experiments.empty() ? match.simulations.front() : match.experiments.front()];
     text += fmt::format("{:>7.3f}  {:>7.3f}  {:>6.2f}  {:<22}  {:<22}  {}\n", match.gamma, any.k_m, any.n_l,
                         phases_of(c.runs, match.experiments), phases_of(c.runs, match.simulations),
-                        verdict(c.runs, match));
+                        verdict_word(c.runs, match));
   }
   for (const PhaseBoundary& b : c.boundaries)
     text += fmt::format("onset of {}, {}, N_l = {:.3g}: Gamma {}\n", phase_name(b.onset), boundary_of(b),
@@ -561,7 +561,7 @@ std::string comparison_json(const Comparison& c) {
     document["matches"].push_back({{"gamma", match.gamma},
                                    {"experiments", names(match.experiments)},
                                    {"simulations", names(match.simulations)},
-                                   {"verdict", verdict(c.runs, match)}});
+                                   {"verdict", verdict_word(c.runs, match)}});
   document["boundaries"] = boundaries_json(c.boundaries);
   document["differences"] = differences_json(c.differences, c.matches);
   return json_text(document);

@@ -156,7 +156,7 @@ std::string report_data(const Comparison& comparison) {
     document["matches"].push_back({{"gamma", match.gamma},
                                    {"experiments", match.experiments},
                                    {"simulations", match.simulations},
-                                   {"verdict", verdict(comparison.runs, match)}});
+                                   {"verdict", verdict_word(comparison.runs, match)}});
   for (const PhaseBoundary& b : comparison.boundaries) {
     const auto gamma = b.gamma();
     const auto half = b.half_width();

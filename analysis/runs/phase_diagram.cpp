@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "analysis/motion/tracers.hpp"
-#include "core/config.hpp"
 
 namespace twincell {
 namespace {
@@ -27,19 +25,6 @@ std::size_t find_phase_0(const TrajectorySource& trajectory, std::size_t start, 
 
 }  // namespace
 
-std::string start_of(const TrajectoryInfo& info) {
-  const auto provenance = nlohmann::json::parse(info.provenance_json, nullptr, false);
-  if (info.source != "simulation" || !provenance.is_object() || !provenance.contains("config") ||
-      !provenance.at("config").is_string())
-    return {};
-  const std::string text = provenance.at("config").get<std::string>();
-  try {
-    return Config::from_text(text, "scene").root().section("start").text("kind").value_or("");
-  } catch (const ConfigError&) {  // a damaged record places no run
-    return {};
-  }
-}
-
 std::string side_name(Side side) {
   return side == Side::experiment ? "experiment" : "simulation";
 }
@@ -52,12 +37,12 @@ Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOpt
                      "the trajectory does not state its drive, so that it has no Gamma");
   Run run;
   run.side = side;
-  run.start = start_of(info);
+  run.start = info.conditions.start;
   run.name = std::filesystem::path(trajectory.name()).filename().string();
   run.results = analyze(trajectory, options, progress);
   run.phase = phase_named(find_result(run.results, "phase").text);
   run.cutoff = neighbour_cutoff(info, options);
-  run.gamma = info.drive->gamma();
+  run.gamma = info.conditions.gamma.value_or(info.drive->gamma());
   run.k_m = info.drive->k_m();
   run.omega = info.drive->omega;
   run.box = info.box;
@@ -68,7 +53,7 @@ Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOpt
   run.last = snapshot(trajectory, find_phase_0(trajectory, run.n_frames - 1, false), run.cutoff);
   run.tracers = choose_tracers(info, run.first.frame, {options.tracers, options.tracer_band}).slots;
   run.n_beads = run.first.frame.n_present();
-  run.n_l = static_cast<double>(run.n_beads) / info.box.size().x();
+  run.n_l = info.conditions.n_l.value_or(static_cast<double>(run.n_beads) / info.box.size().x());
   return run;
 }
 
@@ -110,13 +95,18 @@ BedPhase common_phase(const std::vector<Run>& runs, const std::vector<std::size_
   return agree ? phase : BedPhase::undetermined;
 }
 
-std::string verdict(const std::vector<Run>& runs, const Match& match) {
-  if (match.simulations.empty()) return "only experiment";
-  if (match.experiments.empty()) return "only simulation";
+MatchVerdict verdict(const std::vector<Run>& runs, const Match& match) {
+  if (match.simulations.empty()) return MatchVerdict::only_experiment;
+  if (match.experiments.empty()) return MatchVerdict::only_simulation;
   const BedPhase experiment = common_phase(runs, match.experiments),
                  simulation = common_phase(runs, match.simulations);
-  if (experiment == BedPhase::undetermined || simulation == BedPhase::undetermined) return "undetermined";
-  return experiment == simulation ? "same" : "differ";
+  if (experiment == BedPhase::undetermined || simulation == BedPhase::undetermined)
+    return MatchVerdict::undetermined;
+  return experiment == simulation ? MatchVerdict::same : MatchVerdict::differ;
+}
+
+std::string verdict_word(const std::vector<Run>& runs, const Match& match) {
+  return std::string(row_of(kMatchVerdicts, verdict(runs, match)).word);
 }
 
 }  // namespace twincell

@@ -2,6 +2,7 @@
 /// \file
 /// Phase diagram: runs of experiment and simulation, ordered and matched by drive strength.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "analysis/motion/snapshots.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/order/order.hpp"
+#include "core/choice.hpp"
 
 namespace twincell {
 
@@ -57,9 +59,6 @@ struct Run {
   Show show;
 };
 
-/// Kind of start of a simulation, from the scene in its provenance; empty if unknown.
-std::string start_of(const TrajectoryInfo& info);
-
 /// Analyses a trajectory and places it in the phase diagram. \throws InputError if it has no drive; otherwise
 /// as `analyze`
 Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOptions& options = {},
@@ -79,7 +78,18 @@ std::vector<Match> match_runs(const std::vector<Run>& runs, double tolerance = 0
 /// Common phase of several runs (seeds); undetermined if they disagree or if there are no runs.
 BedPhase common_phase(const std::vector<Run>& runs, const std::vector<std::size_t>& members);
 
-/// Verdict on the phases of a match: "same", "differ", "only experiment", "only simulation", "undetermined".
-std::string verdict(const std::vector<Run>& runs, const Match& match);
+/// Verdict on the phases of a match.
+enum class MatchVerdict { same, differ, only_experiment, only_simulation, undetermined };
+/// All verdicts with their words.
+inline constexpr std::array kMatchVerdicts = {
+    Choice<MatchVerdict>{MatchVerdict::same, "same", "experiment and simulation have the same phase"},
+    Choice<MatchVerdict>{MatchVerdict::differ, "differ", "experiment and simulation have different phases"},
+    Choice<MatchVerdict>{MatchVerdict::only_experiment, "only experiment", "no simulation has this Gamma"},
+    Choice<MatchVerdict>{MatchVerdict::only_simulation, "only simulation", "no experiment has this Gamma"},
+    Choice<MatchVerdict>{MatchVerdict::undetermined, "undetermined",
+                         "the runs of one side disagree or have no phase"}};
+MatchVerdict verdict(const std::vector<Run>& runs, const Match& match);
+/// The word of the verdict on a match.
+std::string verdict_word(const std::vector<Run>& runs, const Match& match);
 
 }  // namespace twincell

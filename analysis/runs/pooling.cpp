@@ -309,7 +309,7 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
     numbers("the cell's width", p.box.size().x(), q.box.size().x(), kSameDrive);
     numbers("the number of beads", static_cast<double>(ends[0].first.n_present()),
             static_cast<double>(ends[i].first.n_present()), kSameBeads);
-    words("start:", start_of(p), start_of(q));
+    words("start:", p.conditions.start, q.conditions.start);
     // Repeats: first and last frames that agree in every coordinate are those of the same run.
     for (std::size_t k = 0; k < i; ++k) {
       const auto same = [](const Frame& f, const Frame& g) {

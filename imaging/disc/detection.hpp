@@ -2,8 +2,11 @@
 /// \file
 /// Proposals and detections of discs in a frame.
 
+#include <array>
 #include <cstdint>
 #include <string_view>
+
+#include "core/choice.hpp"
 
 namespace twincell {
 
@@ -18,15 +21,27 @@ struct Proposal {
 /// Whether a candidate is a bead, and if not, the reason.
 enum class Verdict : std::uint8_t {
   bead,
-  in_wall,        ///< its centre is in a dark region too large for a bead
-  bright_inside,  ///< a void, or a transparent bead
-  pale,           ///< the fitted darkness is too small
-  unseen,         ///< almost none of its edge is visible
-  wrong_radius,   ///< its size is not one of the requested sizes
-  unexplained,    ///< a disc does not explain the picture around its edge
-  overlaps,       ///< it overlaps a disc that explains the picture better
-  outside,        ///< its centre is outside the frame
+  in_wall,
+  bright_inside,
+  pale,
+  unseen,
+  wrong_radius,
+  unexplained,
+  overlaps,
+  outside
 };
+/// All verdicts with their words.
+inline constexpr std::array kVerdicts = {
+    Choice<Verdict>{Verdict::bead, "bead", "a bead"},
+    Choice<Verdict>{Verdict::in_wall, "in a wall", "its centre is in a dark region too large for a bead"},
+    Choice<Verdict>{Verdict::bright_inside, "bright inside", "a void, or a transparent bead"},
+    Choice<Verdict>{Verdict::pale, "pale", "the fitted darkness is too small"},
+    Choice<Verdict>{Verdict::unseen, "unseen", "almost none of its edge is visible"},
+    Choice<Verdict>{Verdict::wrong_radius, "wrong radius", "its size is not one of the requested sizes"},
+    Choice<Verdict>{Verdict::unexplained, "unexplained",
+                    "a disc does not explain the picture around its edge"},
+    Choice<Verdict>{Verdict::overlaps, "overlaps", "it overlaps a disc that explains the picture better"},
+    Choice<Verdict>{Verdict::outside, "outside", "its centre is outside the frame"}};
 /// The verdict in words, for output.
 std::string_view word_of(Verdict verdict);
 

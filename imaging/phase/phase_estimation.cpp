@@ -421,7 +421,7 @@ PhaseTable estimate_phases(const BedMotion& motion, const PhaseEstimationOptions
   const auto period = static_cast<std::int64_t>(best->step_wave.size());
   const Heights heights = heights_of(*best, motion.heights);
   PhaseTable table;
-  table.method = "found";
+  table.method = PhaseMethod::found;
   table.frames_per_cycle = static_cast<int>(period);
   measure_clock(heights, best->ticks, table);
 

@@ -11,7 +11,7 @@ FramePhase PhaseTable::at(std::int64_t frame) const {
 
 PhaseTable fixed_phases(const PhaseLock& lock) {
   PhaseTable table;
-  table.method = lock.locked() ? "fixed" : "none";
+  table.method = lock.locked() ? PhaseMethod::fixed : PhaseMethod::none;
   table.frames_per_cycle = lock.frames_per_cycle;
   table.first_phase = lock.first_phase;
   return table;

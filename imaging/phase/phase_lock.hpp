@@ -5,11 +5,14 @@
 /// Three methods determine it, one file each: a whole number of frames per cycle (here), a list of triggers
 /// (trigger_list.hpp), and the bed's own periodic motion (phase_estimation.hpp). All return a PhaseTable.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/choice.hpp"
 #include "core/error.hpp"
 
 namespace twincell {
@@ -49,9 +52,25 @@ struct FramePhase {
                             ///< again, 1 + n if n frames were dropped in between
 };
 
+/// Source of the phases of a stack.
+enum class PhaseMethod { none, fixed, found, triggers };
+/// A source of phases: its word in results, and what selects it on the command line.
+struct PhaseMethodRow {
+  PhaseMethod value;
+  std::string_view word;
+  std::string_view option;  ///< value of --phase-lock
+  std::string_view help;
+};
+/// All sources of phases.
+inline constexpr std::array kPhaseMethods = {
+    PhaseMethodRow{PhaseMethod::none, "none", "none", "no phases"},
+    PhaseMethodRow{PhaseMethod::fixed, "fixed", "N", "N frames per cycle, every frame taken"},
+    PhaseMethodRow{PhaseMethod::found, "found", "found", "phases from the bed's own motion"},
+    PhaseMethodRow{PhaseMethod::triggers, "triggers", "LIST.csv", "a list of trigger times or phases"}};
+
 /// The phases of a stack, with their quality measures and defects.
 struct PhaseTable {
-  std::string method = "none";          ///< "none", "fixed", "triggers" or "found"
+  PhaseMethod method = PhaseMethod::none;
   int frames_per_cycle = 0;             ///< N_k; 0: not locked
   int first_phase = 0;                  ///< of frame 0
   std::optional<double> period_frames;  ///< the period as measured, frames

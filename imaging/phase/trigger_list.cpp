@@ -95,7 +95,7 @@ PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double
                          int frames_per_cycle) {
   const std::vector<double> cycles = read_cycles(file, drive_hz);
   PhaseTable table;
-  table.method = "triggers";
+  table.method = PhaseMethod::triggers;
   std::vector<double> steps;
   for (std::size_t f = 1; f < cycles.size(); ++f) steps.push_back(cycles[f] - cycles[f - 1]);
   const double step = steps.empty() ? 0 : upper_median(std::move(steps));

@@ -23,7 +23,9 @@ namespace twincell {
 Refined refine_by_edges(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
                         const RefineOptions& options = {});
 
-inline constexpr Refiner kEdgeRefiner{
-    .word = "edges", .help = "circles through the edges", .model = DiscModel::circle, .fit = refine_by_edges};
+inline constexpr Refiner kEdgeRefiner{.word = "edges",
+                                      .help = "fits a circle to the edge points of each disc",
+                                      .model = DiscModel::circle,
+                                      .fit = refine_by_edges};
 
 }  // namespace twincell

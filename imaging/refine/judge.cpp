@@ -66,10 +66,7 @@ void flag_tracers(std::vector<Detection>& beads, double below) {
 }  // namespace
 
 std::string_view word_of(Verdict verdict) {
-  constexpr std::array<std::string_view, 9> kWords = {"bead",        "in a wall", "bright inside",
-                                                      "pale",        "unseen",    "wrong radius",
-                                                      "unexplained", "overlaps",  "outside"};
-  return kWords[static_cast<std::size_t>(verdict)];
+  return row_of(kVerdicts, verdict).word;
 }
 
 Judged judge(std::vector<Detection> candidates, double radius_px, int width, int height,

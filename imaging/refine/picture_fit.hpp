@@ -35,9 +35,13 @@ Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, do
 Refined refine_fast(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
                     const RefineOptions& options);
 
-inline constexpr Refiner kExactRefiner{
-    .word = "exact", .help = "fit of the picture", .model = DiscModel::plain, .fit = refine};
-inline constexpr Refiner kFastRefiner{
-    .word = "fast", .help = "its first step", .model = DiscModel::plain, .fit = refine_fast};
+inline constexpr Refiner kExactRefiner{.word = "exact",
+                                       .help = "fits all discs to the pixels of the frame at once",
+                                       .model = DiscModel::plain,
+                                       .fit = refine};
+inline constexpr Refiner kFastRefiner{.word = "fast",
+                                      .help = "takes only the first step of that fit",
+                                      .model = DiscModel::plain,
+                                      .fit = refine_fast};
 
 }  // namespace twincell

@@ -30,7 +30,7 @@ Refined refine_by_profile(const Prepared& image, const std::vector<Proposal>& pr
                           const RefineOptions& options);
 
 inline constexpr Refiner kProfileRefiner{.word = "profile",
-                                         .help = "fit with the radial profile that the discs share",
+                                         .help = "fits all discs with one shared radial profile",
                                          .model = DiscModel::shared_profile,
                                          .fit = refine_by_profile};
 

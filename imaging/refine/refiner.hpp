@@ -57,7 +57,7 @@ struct Refiner {
 
 /// The names of all refiners; the first is the default.
 std::vector<std::string> refiner_names();
-/// Help text: "exact: fit of the picture; fast: ...".
+/// Help text: "exact: ...; fast: ...".
 std::string refiners_help();
 /// \throws ConfigError naming the option and the known names if no refiner has that name
 const Refiner& refiner_named(const std::string& word);

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "core/choice.hpp"
 #include "imaging/refine/edge_fit.hpp"
 #include "imaging/refine/picture_fit.hpp"
@@ -20,10 +18,7 @@ std::vector<std::string> refiner_names() {
 }
 
 std::string refiners_help() {
-  std::string text;
-  for (const Refiner& r : kRefiners)
-    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", r.word, r.help);
-  return text;
+  return help_of(kRefiners);
 }
 
 const Refiner& refiner_named(const std::string& word) {

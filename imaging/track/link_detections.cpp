@@ -57,20 +57,27 @@ BedMotion bed_motion(const DetectionStore& located, const LinkOptions& link, dou
 
 PhaseTable determine_phases(const DetectionStore& located, const LinkOptions& link,
                             const CellDescription& cell, const PhaseSource& source) {
-  if (source.triggers) {
-    PhaseTable table = read_triggers(*source.triggers, source.drive_hz, cell.phase_lock.frames_per_cycle);
-    if (table.frames.size() != located.size())
-      throw InputError(Where{.file = source.triggers->string(), .key = {}},
-                       "has " + std::to_string(table.frames.size()) + " lines for " +
-                           std::to_string(located.size()) +
-                           " frames; every frame of the stack needs its line.");
-    return table;
+  switch (source.method) {
+    case PhaseMethod::none:
+      return fixed_phases({});
+    case PhaseMethod::fixed:
+      return fixed_phases(cell.phase_lock);
+    case PhaseMethod::found: {
+      PhaseEstimationOptions options{.frames_per_cycle = cell.phase_lock.frames_per_cycle, .gamma = {}};
+      if (const auto drive = cell.drive()) options.gamma = drive->gamma();
+      return estimate_phases(bed_motion(located, link, cell.pixels_per_sigma.value_or(link.diameter_px)),
+                             options);
+    }
+    case PhaseMethod::triggers:
+      break;
   }
-  if (!source.find) return fixed_phases(cell.phase_lock);
-  PhaseEstimationOptions options{.frames_per_cycle = cell.phase_lock.frames_per_cycle, .gamma = {}};
-  if (const auto drive = cell.drive()) options.gamma = drive->gamma();
-  return estimate_phases(bed_motion(located, link, cell.pixels_per_sigma.value_or(link.diameter_px)),
-                         options);
+  PhaseTable table = read_triggers(source.triggers, source.drive_hz, cell.phase_lock.frames_per_cycle);
+  if (table.frames.size() != located.size())
+    throw InputError(Where{.file = source.triggers.string(), .key = {}},
+                     "has " + std::to_string(table.frames.size()) + " lines for " +
+                         std::to_string(located.size()) +
+                         " frames; every frame of the stack needs its line.");
+  return table;
 }
 
 }  // namespace

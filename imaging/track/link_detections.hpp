@@ -15,11 +15,11 @@
 
 namespace twincell {
 
-/// Source of a stack's phases. With neither `find` nor `triggers`: the cell's frames per cycle.
+/// Source of a stack's phases, with the arguments of a list of triggers (trigger_list.hpp).
 struct PhaseSource {
-  bool find = false;                              ///< from the bed's own motion (phase_estimation.hpp)
-  std::optional<std::filesystem::path> triggers;  ///< from a list (trigger_list.hpp)
-  std::optional<double> drive_hz;                 ///< frequency of the drive, for a list in seconds
+  PhaseMethod method = PhaseMethod::fixed;  ///< fixed: the cell's frames per cycle, if it states them
+  std::filesystem::path triggers = {};      ///< the list
+  std::optional<double> drive_hz = {};      ///< frequency of the drive, for a list in seconds
 };
 
 /// Summary of a track at the end of the stack.

@@ -69,8 +69,8 @@ TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOp
                          const CellDescription& cell, int threads, Progress& progress,
                          const PhaseSource& source, const std::filesystem::path& folder) {
   // An unreadable list of triggers is rejected before the work, not after it.
-  if (source.triggers)
-    (void)read_triggers(*source.triggers, source.drive_hz, cell.phase_lock.frames_per_cycle);
+  if (source.method == PhaseMethod::triggers)
+    (void)read_triggers(source.triggers, source.drive_hz, cell.phase_lock.frames_per_cycle);
   FramesAhead frames(stack);
   const LocatorOptions locator = configure_locator(frames, given).locator;
   const Detections detected = detect(frames, locator, cell, threads, progress, folder);

@@ -10,46 +10,53 @@
 
 namespace twincell {
 
+namespace {
+
+// The source of phases that --phase-lock selects (kPhaseMethods): one of its words, a number of frames per
+// cycle, or a list of triggers.
+PhaseMethod phase_method(const std::string& option) {
+  if (option.empty()) return PhaseMethod::fixed;
+  for (const PhaseMethodRow& row : kPhaseMethods)
+    if (option == row.option && row.option == row.word) return row.value;
+  if (option.ends_with(".csv")) return PhaseMethod::triggers;
+  int n = 0;
+  const char* end = option.data() + option.size();
+  if (const auto [last, error] = std::from_chars(option.data(), end, n); error == std::errc() && last == end)
+    return PhaseMethod::fixed;
+  throw ConfigError(
+      Where{.file = {}, .key = "phase-lock"},
+      "'" + option +
+          "' is neither a number of frames per cycle, 'found', 'none', nor a list of triggers (*.csv).");
+}
+
+}  // namespace
+
 PhaseSource phase_source(const TrackRequest& o, CellDescription& cell) {
-  PhaseSource source{.find = false, .triggers = {}, .drive_hz = o.drive_hz};
-  const bool list = o.phase_lock.ends_with(".csv");
+  PhaseSource source{.method = phase_method(o.phase_lock), .triggers = {}, .drive_hz = o.drive_hz};
   const Where drive_hz{.file = {}, .key = "--drive-hz"};
-  if (o.drive_hz && !list)
+  if (o.drive_hz && source.method != PhaseMethod::triggers)
     throw ConfigError(drive_hz,
                       fmt::format("is {:g}, but it is used only with a list of triggers (--phase-lock "
                                   "FILE.csv); the drive of the cell is set by drive.frequency_hz.",
                                   *o.drive_hz));
-  if (o.phase_lock.empty()) return source;
-  int n = 0;
-  const char* end = o.phase_lock.data() + o.phase_lock.size();
-  if (const auto [last, error] = std::from_chars(o.phase_lock.data(), end, n);
-      error == std::errc() && last == end) {
-    cell.phase_lock.frames_per_cycle = n;
-    if (cell.phase_lock.first_phase >= n) cell.phase_lock.first_phase = 0;
+  if (source.method == PhaseMethod::none) cell.phase_lock = {};
+  if (source.method == PhaseMethod::fixed && !o.phase_lock.empty()) {
+    cell.phase_lock.frames_per_cycle = std::stoi(o.phase_lock);
+    if (cell.phase_lock.first_phase >= cell.phase_lock.frames_per_cycle) cell.phase_lock.first_phase = 0;
     cell.phase_lock.check(Where{.file = {}, .key = "phase-lock"});
-  } else if (o.phase_lock == "found") {
-    source.find = true;
-  } else if (o.phase_lock == "none") {
-    cell.phase_lock = {};
-  } else if (list) {
-    source.triggers = o.phase_lock;
-    const auto drive = cell.drive();
-    const auto t0 = cell.scale.t0_s();
-    if (drive && t0) {
-      constexpr double kSame = 1e-3;
-      const double stated = drive->omega / (2 * M_PI * *t0);
-      if (o.drive_hz && std::abs(*o.drive_hz / stated - 1) > kSame)
-        throw ConfigError(drive_hz,
-                          fmt::format("is {:g}, but the drive in {} is {:.6g} Hz; correct one of the two.",
-                                      *o.drive_hz, o.cell_file, stated));
-      if (!source.drive_hz) source.drive_hz = stated;
-    }
-  } else {
-    throw ConfigError(
-        Where{.file = {}, .key = "phase-lock"},
-        "'" + o.phase_lock +
-            "' is neither a number of frames per cycle, 'found', 'none', nor a list of triggers (*.csv).");
   }
+  if (source.method != PhaseMethod::triggers) return source;
+  source.triggers = o.phase_lock;
+  const auto drive = cell.drive();
+  const auto t0 = cell.scale.t0_s();
+  if (!drive || !t0) return source;
+  constexpr double kSame = 1e-3;
+  const double stated = drive->omega / (2 * M_PI * *t0);
+  if (o.drive_hz && std::abs(*o.drive_hz / stated - 1) > kSame)
+    throw ConfigError(drive_hz,
+                      fmt::format("is {:g}, but the drive in {} is {:.6g} Hz; correct one of the two.",
+                                  *o.drive_hz, o.cell_file, stated));
+  if (!source.drive_hz) source.drive_hz = stated;
   return source;
 }
 
@@ -64,7 +71,7 @@ CellDescription resolve_cell(const TrackRequest& o) {
   assign("cell.height", o.height);
   assign("drive.gamma", o.gamma);
   assign("drive.amplitude", o.amplitude);
-  refuse_said_twice(assignments);
+  refuse_contradictory_assignments(assignments);
   CellDescription cell = read_cell(o.cell_file, assignments);
   if (o.pixels_per_sigma) cell.pixels_per_sigma = o.pixels_per_sigma;
   if (o.origin) cell.origin = PixelPoint{(*o.origin)[0], (*o.origin)[1]};

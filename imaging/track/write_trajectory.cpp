@@ -51,7 +51,7 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
 std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell) {
   // Phases: only the measured quantities are present.
   const PhaseTable& phases = stack.phases;
-  nlohmann::json lock = {{"way", phases.method}};
+  nlohmann::json lock = {{"method", row_of(kPhaseMethods, phases.method).word}};
   if (phases.locked()) lock["frames_per_cycle"] = phases.frames_per_cycle;
   if (phases.locked()) lock["first_phase"] = phases.first_phase;
   if (phases.period_frames) lock["period_frames"] = *phases.period_frames;

@@ -3,6 +3,7 @@
 #include "core/json_text.hpp"
 #include "sim/accuracy/step_error.hpp"
 #include "sim/scene/resource_demand.hpp"
+#include "sim/scene/starts.hpp"
 #include "sim/start/start.hpp"
 #include "sim/stepping/solver.hpp"
 
@@ -35,6 +36,7 @@ std::string cost_json(const Scene& scene, const Cost& cost) {
   nlohmann::json d = as_json(plan);
   const double beads = static_cast<double>(cost.beads);
   d["beads"] = cost.beads;
+  d["start"] = start_row(scene.start).word;
   d["has_chance"] = has_chance(scene);
   d["vectors"] = cost.solver;
   d["bytes_per_bead"] = cost.bytes_per_bead;

@@ -237,8 +237,7 @@ std::vector<DeckBead> beads_of_frame(const Scene& scene, const TrajectoryInfo& i
   if (info.box.dimension != scene.dimension)
     refuse(scene, "cell.dimension",
            fmt::format("{}, but {} has {}.", scene.dimension, name, info.box.dimension));
-  const bool equal = scene.spread == SizeSpread::none && !scene.intruder && scene.start != StartKind::table &&
-                     scene.start != StartKind::trajectory;
+  const bool equal = scene.spread == SizeSpread::none && !scene.intruder && !start_row(scene.start).from_file;
   const Vec3 corner(info.box.lower.x(), scene.dimension == 3 ? info.box.lower.y() : 0, 0);
   std::vector<DeckBead> beads;
   for (std::size_t i = 0; i < frame.position.size(); ++i) {

@@ -31,11 +31,11 @@ bool touches(const System& s, const Bead& b, const Wall& wall) {
 }
 
 std::int64_t beads_in_contact(const System& s, Progress& progress) {
-  Heed heed(progress);
+  CancellationCheck check(progress);
   std::vector<char> touching(s.beads.size(), 0);
   for_each_near_pair(s.beads, s.dimension, s.period, 0,
                      [&](std::int32_t i, std::int32_t j, double, const Vec3&) {
-                       heed();
+                       check();
                        touching[static_cast<std::size_t>(i)] = touching[static_cast<std::size_t>(j)] = 1;
                      });
   for (const Wall& wall : s.walls)
@@ -270,6 +270,7 @@ TrajectoryInfo Simulation::trajectory_info() const {
   info.drive = scene_.drive;
   info.phases_per_cycle = scene_.phases;
   info.scale = scene_.scale;
+  info.conditions = conditions_of(scene_, system_.beads.size());
   info.source = "simulation";
   for (const Bead& b : system_.beads) {
     info.radius.push_back(b.radius);

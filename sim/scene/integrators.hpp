@@ -43,7 +43,9 @@ const Integrator& integrator_named(const std::string& word);
 /// time.stepping: how time is advanced.
 enum class Stepping { automatic, steps, event_driven };
 inline constexpr std::array kSteppings = {
-    Choice<Stepping>{Stepping::automatic, "auto"},  // event-driven where this is exact and faster
-    Choice<Stepping>{Stepping::steps, "steps"}, Choice<Stepping>{Stepping::event_driven, "event-driven"}};
+    Choice<Stepping>{Stepping::automatic, "auto",
+                     "event-driven where this is exact and faster, otherwise steps"},
+    Choice<Stepping>{Stepping::steps, "steps", "one time step for all beads"},
+    Choice<Stepping>{Stepping::event_driven, "event-driven", "ballistic paths between contacts"}};
 
 }  // namespace twincell::sim

@@ -132,7 +132,7 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
     add("unequal beads", State::on, fmt::format("radii spread by {:g} of {:g}", s.spread_width, s.radius));
   else if (s.intruder)
     add("unequal beads", State::on, fmt::format("an intruder of radius {:g}", s.intruder->radius));
-  else if (s.start == StartKind::table || s.start == StartKind::trajectory)
+  else if (start_row(s.start).from_file)
     add("unequal beads", State::on,
         "if the file contains unequal beads; equal beads share one set of constants");
   else
@@ -398,7 +398,7 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   refuse_to_drop(s, plan);
 
   // Sizes: only beads from a file can differ from those that the scene states.
-  const bool from_file = s.start == StartKind::table || s.start == StartKind::trajectory;
+  const bool from_file = start_row(s.start).from_file;
   std::vector<BeadScale> sizes;
   if (from_file)
     for (const Bead& b : beads) sizes.push_back({b.radius, b.mass});

@@ -16,8 +16,7 @@ std::string bytes_text(double bytes) {
 ResourceDemand resource_demand(const Scene& s, const Plan& plan, std::size_t beads) {
   const auto n = static_cast<double>(beads);
   const bool flat = s.dimension == 2;
-  const bool unlike = s.spread != SizeSpread::none || s.intruder || s.start == StartKind::table ||
-                      s.start == StartKind::trajectory;
+  const bool unlike = s.spread != SizeSpread::none || s.intruder || start_row(s.start).from_file;
   // Velocities at whole steps need the contact velocities of the previous step in addition to the spring.
   const double before = plan.key.velocity == Velocity::full_step ? 8 * (flat ? 2 : 4) : 0;
   const double pairs = flat ? 3 : 6, bytes_of_pair = (flat ? 50 : 65) + before + (unlike ? 35 : 0);

@@ -53,6 +53,14 @@ class Voids {
   std::vector<VoidKey>& told_;
 };
 
+/// "\"linear\"", "\"linear\" or \"hertz\"", "\"a\", \"b\" or \"c\"".
+std::string any_of_words(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t k = 0; k < words.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == words.size() ? " or " : ", ") + fmt::format("\"{}\"", words[k]);
+  return text;
+}
+
 template <class Enum>
 Enum read_word(const Section& s, const std::string& key, const std::vector<std::string>& words,
                Enum otherwise) {
@@ -193,14 +201,6 @@ void refuse_former_key(const Section& s, const std::string& key, const std::stri
   if (s.has(key)) throw ConfigError(s.where(key), fmt::format("is a former key; write {}.", now));
 }
 
-/// "\"linear\"", "\"linear\" or \"hertz\"", "\"a\", \"b\" or \"c\"".
-std::string any_of_words(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t k = 0; k < words.size(); ++k)
-    text += (k == 0 ? "" : k + 1 == words.size() ? " or " : ", ") + fmt::format("\"{}\"", words[k]);
-  return text;
-}
-
 /// Refuses law keys that the chosen laws do not read, because their values would be ignored.
 void refuse_unread(const Section& table, const ContactChoice& laws, Voids& voids) {
   const std::vector<std::string> read = keys_of(laws.normal, laws.tangential, laws.rolling);
@@ -298,8 +298,9 @@ DriveSpec read_drive(const Section& s, Scene& scene) {
 }
 
 void read_start(const Section& s, const std::filesystem::path& folder, Scene& scene, Voids& voids) {
-  scene.start =
-      read_word(s, "kind", {"crystal_a", "crystal_b", "random", "trajectory", "table"}, scene.start);
+  if (const auto kind = s.word("kind", words_of(kStarts)))
+    scene.start = row_named(kStarts, *kind, "start.kind", "start").value;
+  const StartRow& row = start_row(scene.start);
   scene.seed = static_cast<std::uint64_t>(s.integer_in("seed", 0, kLargestSeed).value_or(1));
   if (const auto v = s.text("from"); v && !v->empty()) scene.from = folder / *v;
   scene.frame = static_cast<std::size_t>(s.integer_in("frame", 0, std::int64_t{1} << 40).value_or(0));
@@ -309,31 +310,39 @@ void read_start(const Section& s, const std::filesystem::path& folder, Scene& sc
   scene.settle_limit = s.number_in("settle_limit", 0, 1e6).value_or(scene.settle_limit);
   scene.relax = s.boolean("relax").value_or(scene.relax);
   scene.in_motion = s.boolean("in_motion").value_or(scene.in_motion);
-  const bool trajectory = scene.start == StartKind::trajectory, table = scene.start == StartKind::table;
-  if (trajectory && scene.from.empty())
-    throw ConfigError(s.where("from"), "a start from a trajectory needs the name of its file.");
-  if (table && scene.from.empty())
-    throw ConfigError(s.where("from"), "a start from a table needs the name of its file.");
-  if (!trajectory && !table)
-    voids.refuse(s, {"from"}, "a file is named, but start.kind is neither \"trajectory\" nor \"table\".");
-  if (!trajectory && !table)
-    voids.refuse(
-        s, {"in_motion"},
-        "keeps the motion of a file's beads, but start.kind is neither \"trajectory\" nor \"table\".");
+  if (row.from_file && scene.from.empty())
+    throw ConfigError(s.where("from"),
+                      fmt::format("a start from a {} needs the name of its file.", row.word));
+  const auto only_for = [&](bool StartRow::*property) {
+    std::vector<std::string> words;
+    for (const StartRow& start : kStarts)
+      if (start.*property) words.emplace_back(start.word);
+    return any_of_words(words);
+  };
+  if (!row.from_file) {
+    voids.refuse(s, {"from"},
+                 fmt::format("a file is named, but start.kind is not {}.", only_for(&StartRow::from_file)));
+    voids.refuse(s, {"in_motion"},
+                 fmt::format("keeps the motion of a file's beads, but start.kind is not {}.",
+                             only_for(&StartRow::from_file)));
+  }
   if (scene.in_motion) {
     voids.refuse(s, {"rest_energy", "settle_limit"},
                  "applies to a bed that settles, but start.in_motion keeps it moving.");
     voids.refuse(s, {"relax"}, "moves beads, but start.in_motion continues from their positions.");
   }
-  if (!trajectory) voids.refuse(s, {"frame"}, "a frame is named, but start.kind is not \"trajectory\".");
-  if (scene.start != StartKind::random)
+  if (!row.has_frames)
+    voids.refuse(s, {"frame"},
+                 fmt::format("a frame is named, but start.kind is not {}.", only_for(&StartRow::has_frames)));
+  if (!row.draws)
     voids.refuse(s, {"velocity_scale"},
-                 "sets the speeds of a random start, but start.kind is not \"random\".");
+                 fmt::format("sets the speeds of a random start, but start.kind is not {}.",
+                             only_for(&StartRow::draws)));
 }
 
 /// Beads of a table have the sizes of its column, or all the same size.
 void refuse_void_spread(const Section& beads, const Scene& scene, Voids& voids) {
-  if (scene.start == StartKind::table && scene.spread != SizeSpread::none)
+  if (start_row(scene.start).sets_radii && scene.spread != SizeSpread::none)
     voids.refuse(beads, {"spread", "spread_width"},
                  "radii are not drawn for the beads of a table; its column \"radius\" contains them.");
 }
@@ -441,7 +450,7 @@ void check_sizes(const Scene& s, const Section& cell, const Section& beads) {
 void check_intruder(const Scene& s, const Section& beads) {
   if (!s.intruder) return;
   const Section table = beads.section("intruder");
-  if (s.start == StartKind::trajectory || s.start == StartKind::table)
+  if (start_row(s.start).from_file)
     throw ConfigError(table.where(""),
                       "a file contains all beads, including the intruder; remove this table.");
   const Vec3 r(s.intruder->x, s.intruder->y, s.intruder->z);
@@ -524,7 +533,7 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   check_laws(laws.normal, laws.tangential, laws.rolling, laws.bead);
   for (const auto& [wall, table] : laws.wall) check_laws(laws.normal, laws.tangential, laws.rolling, table);
   scene.drive = solve_drive(spec, g, drive.where(""), scene.drive.axis);
-  const bool from_file = scene.start == StartKind::trajectory || scene.start == StartKind::table;
+  const bool from_file = start_row(scene.start).from_file;
   if (!scene.n_beads && !from_file)
     throw ConfigError(beads.where("count"), "the number of beads is missing.");
   // Checks that involve several tables.
@@ -645,6 +654,13 @@ std::vector<Wall> Scene::walls() const {
   }
   if (lid) all.push_back({-Vec3::UnitZ(), -height.value_or(0), lid_moves, "lid"});
   return all;
+}
+
+RunConditions conditions_of(const Scene& scene, std::optional<std::size_t> beads) {
+  RunConditions conditions{.n_l = {}, .gamma = {}, .start = std::string(start_row(scene.start).word)};
+  if (beads) conditions.n_l = static_cast<double>(*beads) / scene.width;
+  if (scene.g() > 0) conditions.gamma = scene.drive.gamma(scene.g());
+  return conditions;
 }
 
 std::vector<std::string> preset_names() {

@@ -15,8 +15,10 @@
 #include "core/config.hpp"
 #include "sim/laws/parameters.hpp"
 #include "sim/scene/integrators.hpp"
+#include "sim/scene/starts.hpp"
 #include "sim/system/system.hpp"
 #include "trajectory/drive.hpp"
+#include "trajectory/trajectory.hpp"
 #include "trajectory/units.hpp"
 
 namespace twincell::sim {
@@ -55,9 +57,6 @@ inline constexpr double kFewestSteps = 6, kFewSteps = 20;
 
 /// Largest seed. Up to this bound every language that reads a provenance represents integers exactly.
 inline constexpr std::int64_t kLargestSeed = std::int64_t{1} << 53;
-
-/// Initial positions of the beads.
-enum class StartKind { crystal_a, crystal_b, random, trajectory, table };
 
 /// Stop criterion of a driven bed: the 95 % interval of a mean is narrow enough. Scene::cycles is then the
 /// upper limit of the run.
@@ -173,6 +172,11 @@ Scene read_scene(const std::filesystem::path& path, const std::vector<std::strin
 Scene read_scene_text(const std::string& text, const std::string& name,
                       const std::vector<std::string>& assignments = {},
                       const std::filesystem::path& folder = {});
+
+/// Where a run of the scene with this number of beads stands in the phase diagram: N_l sigma = N sigma/L_x,
+/// Gamma = A omega^2/g (absent without gravity), and the word of the start. \param beads absent: N_l is
+/// absent
+RunConditions conditions_of(const Scene& scene, std::optional<std::size_t> beads);
 
 std::vector<std::string> preset_names();
 

@@ -92,27 +92,13 @@ std::vector<double> draw_radii(const Scene& scene, std::size_t n) {
 }
 
 bool has_chance(const Scene& scene) {
-  if (scene.start == StartKind::random || scene.perturbation != 0) return true;
-  return scene.spread != SizeSpread::none && scene.spread_width > 0 && scene.start != StartKind::table;
+  const StartRow& start = start_row(scene.start);
+  if (start.draws || scene.perturbation != 0) return true;
+  return scene.spread != SizeSpread::none && scene.spread_width > 0 && !start.sets_radii;
 }
 
 Start make_start(const Scene& scene, Progress& progress) {
-  const auto place = [&] {
-    switch (scene.start) {
-      case StartKind::crystal_a:
-        return crystal_a(scene, progress);
-      case StartKind::crystal_b:
-        return crystal_b(scene, progress);
-      case StartKind::random:
-        return random_deposit(scene, progress);
-      case StartKind::trajectory:
-        return from_trajectory(scene, progress);
-      case StartKind::table:
-        break;
-    }
-    return from_table(scene, progress);
-  };
-  Start start = place();
+  Start start = start_row(scene.start).make(scene, progress);
   if (scene.relax) {
     // Coincident centres have no direction of separation, and a bead beyond a wall belongs to another cell.
     constexpr double kRefused = 0.99, kTolerated = 1e-6;
@@ -127,9 +113,9 @@ Start make_start(const Scene& scene, Progress& progress) {
   if (scene.perturbation == 0) return start;
   std::mt19937_64 engine = engine_of(scene, Stream::perturbation);
   const auto shift = [&] { return scene.perturbation * (2 * uniform(engine) - 1); };
-  Heed heed(progress);
+  CancellationCheck check(progress);
   for (Bead& b : start.beads) {
-    heed();
+    check();
     b.x += shift();
     if (scene.dimension == 3) b.y += shift();
     b.z += shift();

@@ -238,7 +238,7 @@ class BeadTable {
 }  // namespace
 
 Start from_table(const Scene& scene, Progress& progress) {
-  Heed heed(progress);
+  CancellationCheck check(progress);
   const std::string text = read_table_text(scene.from);
   std::optional<BeadTable> table;
   Start start;
@@ -248,7 +248,7 @@ Start from_table(const Scene& scene, Progress& progress) {
     std::string_view line = std::string_view(text).substr(begin, end - begin);
     begin = end + 1;
     ++line_number;
-    heed();
+    check();
     if (line.empty()) continue;
     if (!table)
       table.emplace(scene, split(line), line_number);

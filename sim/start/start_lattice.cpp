@@ -17,7 +17,7 @@ namespace {
 template <class Level>
 Start fill_lattice(const Scene& scene, const std::vector<double>& radii, double d, Progress& progress,
                    Level level) {
-  Heed heed(progress);
+  CancellationCheck check(progress);
   const auto walls = scene.walls();
   const auto period = scene.period();
   // Twenty beads of diameter 1 must fit into a width of 20 despite rounding.
@@ -35,7 +35,7 @@ Start fill_lattice(const Scene& scene, const std::vector<double>& radii, double 
   for (std::size_t k = 0, empty = 0; start.beads.size() < radii.size(); ++k) {
     const std::size_t before = start.beads.size();
     level(k, [&](double x, double y, double z) {
-      heed();
+      check();
       const double radius = radii[start.beads.size()];
       if (const Vec3 r(x, y, z); free(radius, r)) start.beads.push_back(bead_at(scene, radius, r));
       return start.beads.size() < radii.size();

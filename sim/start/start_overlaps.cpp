@@ -61,7 +61,7 @@ void move(Bead& b, const Vec3& by) {
 
 double relax_overlaps(std::vector<Bead>& beads, const Scene& scene, double tolerance, int max_sweeps,
                       Progress& progress) {
-  Heed heed(progress);
+  CancellationCheck check(progress);
   constexpr double kLargestPush = 0.01;
   const auto walls = scene.walls();
   const auto period = scene.period();
@@ -69,9 +69,9 @@ double relax_overlaps(std::vector<Bead>& beads, const Scene& scene, double toler
   double worst = 0;
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     worst = 0;
-    heed();
+    check();
     for (const auto& [i, j] : near.of(beads)) {
-      heed();
+      check();
       Bead &a = beads[static_cast<std::size_t>(i)], &b = beads[static_cast<std::size_t>(j)];
       Vec3 apart = centre_of(a) - centre_of(b);
       apart += nearest_shift(apart, period);
@@ -117,7 +117,7 @@ void require_periods(const std::vector<Bead>& beads, const Scene& scene) {
 
 void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bound, Progress& progress,
                    const Vec3& plate) {
-  Heed heed(progress);
+  CancellationCheck check(progress);
   const Where where = scene.where("start");
   constexpr double kFar = 1e9;  // largest permitted height of a cell
   auto walls = scene.walls();
@@ -126,7 +126,7 @@ void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bo
   for (std::size_t i = 0; i < beads.size(); ++i) {
     // Each bead: finite numbers, position, walls.
     const Bead& b = beads[i];
-    heed();
+    check();
     if (!std::isfinite(b.x + b.y + b.z + b.vx + b.vy + b.vz + b.spin + b.spin_x + b.spin_z))
       throw ConfigError(where, fmt::format("bead {} has no finite position or velocity.", i));
     if (centre_of(b).cwiseAbs().maxCoeff() > kFar)
@@ -149,7 +149,7 @@ void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bo
   for_each_near_pair(
       beads, scene.dimension, scene.period(), 0,
       [&](std::int32_t i, std::int32_t j, double gap, const Vec3&) {
-        heed();
+        check();
         const double allowed =
             bound * 2 *
             std::min(beads[static_cast<std::size_t>(i)].radius, beads[static_cast<std::size_t>(j)].radius);

@@ -59,12 +59,12 @@ Start random_deposit(const Scene& scene, Progress& progress) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t i, std::size_t j) { return radii[i] > radii[j]; });
-  Heed heed(progress);
+  CancellationCheck check(progress);
   long tries_left = 2000L * static_cast<long>(n) + 100000;
   for (const std::size_t i : order) {
     const double radius = radii[i];
     for (bool placed = false; !placed;) {
-      heed();
+      check();
       if (--tries_left < 0)
         throw ConfigError(scene.where("beads.count"),
                           fmt::format("{} beads cannot be placed at random in {}.", n, describe_cell(scene)));

@@ -228,8 +228,7 @@ TEST(Compare, Refusals) {
   EXPECT_EQ(run_program({"compare", "-q", "-o", folder / "report"}).code, 2);
   EXPECT_EQ(run_program({"compare", "-q", "--simulation", file}).code, 2);
   EXPECT_EQ(
-      run_program({"compare", "-q", "--simulation", file, "-o", folder / "report", "--frames", file}).code,
-      2);
+      run_program({"compare", "-q", "--simulation", file, "-o", folder / "report", "--stack", file}).code, 2);
   EXPECT_EQ(run_program({"compare", "-q", "--simulation", file, "-o", folder / "report", "--camera",
                          folder / "no.toml"})
                 .code,

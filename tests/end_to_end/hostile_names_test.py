@@ -132,7 +132,7 @@ class Session:
         put(b".plan.toml", (scene + "[axes]\ndrive.gamma = [1.2, 1.4]\nstart.kind = [\"crystal_a\", \"crystal_b\"]\n")
             .encode())
         for verb in ("plan", "run", "status"):
-            self.run("sweep", verb, n + b".plan.toml", "-o", n + b".swept", "--json", "-q")
+            self.run("sweep", verb, n + b".plan.toml", "--folder", n + b".swept", "--json", "-q")
         self.run("sweep", "collect", n + b".plan.toml", "--folder", n + b".swept", "-o", n + b".results.json", "--json",
                  "-q")
         # What a scheduler would run, with a program in twincell's place that does nothing.
@@ -142,7 +142,7 @@ class Session:
             (stubs / program).write_text("#!/bin/sh\nexit 0\n")
             (stubs / program).chmod(0o755)
         for engine in ("slurm", "parallel"):
-            script = self.run("sweep", "template", engine, n + b".plan.toml", "-o", n + b".swept")
+            script = self.run("sweep", "template", engine, n + b".plan.toml", "--folder", n + b".swept")
             done = subprocess.run(["bash", "-c", script], cwd=self.folder, stderr=subprocess.PIPE,
                                   env={**os.environ, "PATH": f"{stubs}:{os.environ['PATH']}"})
             if done.returncode != 0:

@@ -105,8 +105,8 @@ std::vector<Verb> verbs() {
       {"match", {"match", "frames", "frames/CELL.toml"}, "-o", true},
       {"cost", {"cost", "sim", "--quick"}, "-o", true},
       {"reproduce", {"reproduce", "p1-appendix"}, "-o", true},
-      {"sweep run", {"sweep", "run", "plan.toml"}, "-o", true},
-      {"sweep plan", {"sweep", "plan", "plan.toml"}, "-o", true},
+      {"sweep run", {"sweep", "run", "plan.toml"}, "--folder", true},
+      {"sweep plan", {"sweep", "plan", "plan.toml"}, "--folder", true},
       {"calibrate plate", {"calibrate", "plate", "frames", "--cell", "frames/CELL.toml"}, "-o", false},
       {"calibrate plate figures",
        {"calibrate", "plate", "frames", "--cell", "frames/CELL.toml"},
@@ -178,7 +178,7 @@ TEST(Outputs, NoVerbHarmsWhatItDidNotMake) {
 // refused.
 TEST(Outputs, StandardOutputTakesTextAlone) {
   const Sandbox sandbox;
-  EXPECT_EQ(run_program({"sweep", "run", "plan.toml", "-o", "swept", "-q"}).code, 0);
+  EXPECT_EQ(run_program({"sweep", "run", "plan.toml", "--folder", "swept", "-q"}).code, 0);
   const auto before = Sandbox::contents();
   const std::string frames = "frames", cell = "frames/CELL.toml";
   const Ran table = run_program({"locate", frames, "-o", "-"});
@@ -222,7 +222,7 @@ TEST(Outputs, StandardOutputTakesTextAlone) {
 TEST(Outputs, ATableBesideTheCollectedFileIsHeldToTheSameRules) {
   const Sandbox sandbox;
   write("plan.toml", "scene = \"scene.toml\"\n[axes]\nstart.kind = [\"random\"]\nseeds = 2\n");
-  EXPECT_EQ(run_program({"sweep", "run", "plan.toml", "-o", "swept", "-q"}).code, 0);
+  EXPECT_EQ(run_program({"sweep", "run", "plan.toml", "--folder", "swept", "-q"}).code, 0);
   const std::vector<std::string> collect = {"sweep", "collect", "plan.toml", "--folder",
                                             "swept", "-o",      "r.json"};
   for (const char* table : {"r.csv", "r.pooled.csv"}) {

@@ -1,4 +1,4 @@
-// At any budget, `reproduce` reports the wanted value, the measured value, and where it used cheaper
+// At any budget, `reproduce` reports the expected value, the measured value, and where it used cheaper
 // settings.
 
 #include <gtest/gtest.h>
@@ -31,9 +31,9 @@ TEST(Reproduce, ASmallBudgetEndsInTimeAndNamesEveryTarget) {
     const std::string name = target["name"], verdict = target["verdict"];
     bouncing += name.find("onset of bouncing, ") == 0 ? 1 : 0;
     slips += name.find("slips") == 0 ? 1 : 0;
-    EXPECT_TRUE(verdict == "met" || verdict == "MISSED" || verdict == "open" || verdict == "absent")
+    EXPECT_TRUE(verdict == "pass" || verdict == "fail" || verdict == "inconclusive" || verdict == "absent")
         << verdict;
-    EXPECT_FALSE(target["wanted"].get<std::string>().empty());
+    EXPECT_FALSE(target["expected"].get<std::string>().empty());
     if (target["measured"].get<std::string>().empty()) {
       EXPECT_EQ(verdict, "absent") << name;
     }
@@ -70,9 +70,9 @@ nlohmann::json reproduced(const std::string& name, const std::string& out,
   EXPECT_FALSE(document["targets"].empty());
   for (const auto& target : document["targets"]) {
     const std::string verdict = target["verdict"];
-    EXPECT_TRUE(verdict == "met" || verdict == "MISSED" || verdict == "open" || verdict == "absent")
+    EXPECT_TRUE(verdict == "pass" || verdict == "fail" || verdict == "inconclusive" || verdict == "absent")
         << verdict;
-    EXPECT_FALSE(target["wanted"].get<std::string>().empty());
+    EXPECT_FALSE(target["expected"].get<std::string>().empty());
     EXPECT_TRUE(verdict == "absent" || !target["measured"].get<std::string>().empty()) << target["name"];
   }
   EXPECT_NE(document["conditions"].dump().find("k_n = 1e+06"), std::string::npos);
@@ -96,7 +96,7 @@ nlohmann::json target_of(const nlohmann::json& document, const std::string& name
 TEST(Reproduce, TableOneHoldsWhatThePaperPrints) {
   const TemporaryFolder folder;
   const auto document = reproduced("p1-table1", folder / "t", {});
-  for (const auto& target : document["targets"]) EXPECT_EQ(target["verdict"], "met") << target["name"];
+  for (const auto& target : document["targets"]) EXPECT_EQ(target["verdict"], "pass") << target["name"];
   EXPECT_EQ(target_of(document, "tangential stiffness, bead-wall")["measured"], "10000");
   EXPECT_EQ(target_of(document, "static friction, bead-bead")["measured"], "0.6");
 }
@@ -105,7 +105,7 @@ TEST(Reproduce, TheAppendixMeetsItsClosedForms) {
   const TemporaryFolder folder;
   const auto document =
       reproduced("p1-appendix", folder / "a", {"p1-appendix-a", "p1-appendix-b", "p1-fig6"});
-  for (const auto& target : document["targets"]) EXPECT_EQ(target["verdict"], "met") << target["name"];
+  for (const auto& target : document["targets"]) EXPECT_EQ(target["verdict"], "pass") << target["name"];
   EXPECT_EQ(target_of(document, "bead-wall, e_n by eq. A5")["measured"], "0.854468");
   EXPECT_EQ(target_of(document, "steps a period at n = 50")["measured"], "141333");
 }
@@ -116,17 +116,17 @@ TEST(Reproduce, WhatTheStepDoesIsSaidForEveryQuantityAndStart) {
   EXPECT_FALSE(document["complete"]);
   for (const char* quantity : {"T_g", "p_s", "s_b", "s_c"})
     for (const char* start : {"crystal", "random"})
-      EXPECT_EQ(target_of(document, std::string(quantity) + " of " + start + " beds")["wanted"],
+      EXPECT_EQ(target_of(document, std::string(quantity) + " of " + start + " beds")["expected"],
                 "that of split, n = 6.37");
 }
 
 TEST(Reproduce, InitialBedsAndTheirOrientations) {
   const TemporaryFolder folder;
   const auto beds = reproduced("p1-fig1", folder / "one", {"p1-fig1"});
-  EXPECT_EQ(target_of(beds, "q6 inside the crystal")["verdict"], "met");
+  EXPECT_EQ(target_of(beds, "q6 inside the crystal")["verdict"], "pass");
   // The same beds again, with the second crystal, for which the first call had no time left.
   const auto again = reproduced("p1-fig2", folder / "two", {"p1-fig2"});
-  EXPECT_EQ(target_of(again, "close-packed rows of the crystal in orientation A")["verdict"], "met");
+  EXPECT_EQ(target_of(again, "close-packed rows of the crystal in orientation A")["verdict"], "pass");
   EXPECT_TRUE(fs::exists(fs::path(folder / "p1-packings") / "points"));
 }
 
@@ -137,7 +137,7 @@ TEST(Reproduce, TemperatureAndSlipsShareTheirRuns) {
   const auto fig5 = reproduced("p1-fig5", folder / "five", {"p1-fig5"});
   const auto points = [](const nlohmann::json& document) {
     std::size_t n = 0;
-    for (const auto& ladder : document["measured"]) n += ladder["rungs"].size();
+    for (const auto& sweep : document["measured"]) n += sweep["points"].size();
     return n;
   };
   EXPECT_GE(points(fig4), 1U);

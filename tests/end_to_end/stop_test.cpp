@@ -62,7 +62,7 @@ TEST_F(Stop, EveryLongWorkEndsWithinASecond) {
       {"track", "frames", "-o", "out/t.h5"},
       {"calibrate", "beads", "frames", "-o", "out/c.toml"},
       {"reproduce", "p1-appendix", "-o", "out/r"},
-      {"sweep", "plan", "plan.toml", "-o", "out/sweep"},
+      {"sweep", "plan", "plan.toml", "--folder", "out/sweep"},
       {"explain", "s.toml", "--set", "beads.layers=900000"},
       {"simulate", "s.toml", "-o", "out/o.h5", "--set", "beads.layers=900000", "--set", "start.kind=random"},
       {"simulate", "s.toml", "-o", "out/o.h5", "--set", "time.cycles=20000"},

@@ -46,7 +46,7 @@ class Sweeps : public ::testing::Test {
   [[nodiscard]] std::string at(const std::string& name) const { return folder_ / name; }
   static Ran run(const std::string& plan, const std::string& into,
                  const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words{"sweep", "run", plan, "-o", into, "-q"};
+    std::vector<std::string> words{"sweep", "run", plan, "--folder", into, "-q"};
     words.insert(words.end(), more.begin(), more.end());
     return run_program(words);
   }
@@ -114,7 +114,7 @@ TEST_F(Sweeps, RanksOfMpiGiveTheSameBytes) {
   ASSERT_EQ(run(grid_, at("one"), {"--threads", "1"}).code, kDone);
   const std::string line =
       "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n 3 " +
-      std::string(TWINCELL_PROGRAM) + " sweep run " + grid_ + " -o " + at("ranks") + " -q --mpi >" +
+      std::string(TWINCELL_PROGRAM) + " sweep run " + grid_ + " --folder " + at("ranks") + " -q --mpi >" +
       at("log") + " 2>&1";
   const int status = std::system(line.c_str());
   if (bytes_of(at("log")).find("built without MPI") != std::string::npos) GTEST_SKIP() << "built without MPI";
@@ -135,7 +135,7 @@ TEST_F(Sweeps, TheTemplatesOfGnuParallelAndOfSlurmGiveTheSameBytes) {
   ASSERT_EQ(run(grid_, at("one"), {"--threads", "1"}).code, kDone);
   const std::string one = collected(grid_, at("one"));
   const auto script = [&](const char* engine, const std::string& folder) {
-    const Ran ran = run_program({"sweep", "template", engine, grid_, "-o", folder, "--jobs", "3"});
+    const Ran ran = run_program({"sweep", "template", engine, grid_, "--folder", folder, "--jobs", "3"});
     EXPECT_EQ(ran.code, kDone) << ran.err;
     return ran.out;
   };
@@ -173,7 +173,7 @@ TEST_F(Sweeps, KilledAgainAndAgainNothingIsLostAndNothingDoneTwice) {
   int killed = 0;
   for (int k = 0; k < 200; ++k) {
     const auto before = results();
-    RunningProgram program({"sweep", "run", grid_, "-o", at("k"), "-q", "--threads", "2"});
+    RunningProgram program({"sweep", "run", grid_, "--folder", at("k"), "-q", "--threads", "2"});
     std::this_thread::sleep_for(undisturbed * (10 + random() % 50) / 100);
     program.signal(SIGKILL);
     const Ran ran = program.wait();
@@ -190,8 +190,8 @@ TEST_F(Sweeps, KilledAgainAndAgainNothingIsLostAndNothingDoneTwice) {
 }
 
 TEST_F(Sweeps, TwoProcessesInOneFolderShareTheWork) {
-  RunningProgram first({"sweep", "run", grid_, "-o", at("both"), "-q", "--threads", "1"}),
-      second({"sweep", "run", grid_, "-o", at("both"), "-q", "--threads", "1"});
+  RunningProgram first({"sweep", "run", grid_, "--folder", at("both"), "-q", "--threads", "1"}),
+      second({"sweep", "run", grid_, "--folder", at("both"), "-q", "--threads", "1"});
   EXPECT_EQ(first.wait().code, kDone);
   EXPECT_EQ(second.wait().code, kDone);
   ASSERT_EQ(run(grid_, at("one")).code, kDone);
@@ -340,7 +340,7 @@ TEST_F(Sweeps, SeedsArePooledAsAnalyzePoolsThem) {
 TEST_F(Sweeps, SeedsThatChangeNothingAreRunOnceAndSaid) {
   const auto planned = [&](const std::string& axes) {
     write(at("p.toml"), std::string(kScene) + "start.kind = \"crystal_a\"\n" + axes);
-    return run_program({"sweep", "plan", at("p.toml"), "-o", at("planned"), "--json"});
+    return run_program({"sweep", "plan", at("p.toml"), "--folder", at("planned"), "--json"});
   };
   const Ran seeds = planned("[axes]\ndrive.gamma = 1.6\nseeds = 3\n");
   ASSERT_EQ(seeds.code, kDone) << seeds.err;
@@ -410,7 +410,7 @@ TEST_F(Sweeps, AnAxisDisplacesWhatTheSceneSaysInOtherWords) {
                            "drive.gamma = 1.2\n[axes]\ndrive.k_m = [2.25]\nbeads.count = [12]\n");
   write(at("gamma.toml"), "results = [\"s_b\"]\n" + std::string(kScene) + "[axes]\ndrive.gamma = [1.5]\n");
   const auto scene_in = [&](const std::string& plan) {
-    const Ran ran = run_program({"sweep", "plan", at(plan), "-o", at(plan) + ".d", "-q"});
+    const Ran ran = run_program({"sweep", "plan", at(plan), "--folder", at(plan) + ".d", "-q"});
     EXPECT_EQ(ran.code, kDone) << ran.err;
     return bytes_of(fs::directory_iterator(at(plan) + ".d/points")->path() / "point.json");
   };
@@ -423,10 +423,10 @@ TEST_F(Sweeps, AnAxisDisplacesWhatTheSceneSaysInOtherWords) {
 }
 
 TEST_F(Sweeps, PlanAndStatusSayHowFarItIs) {
-  EXPECT_EQ(run_program({"sweep", "status", grid_, "-o", at("p")}).code, kInput);
-  ASSERT_EQ(run_program({"sweep", "plan", grid_, "-o", at("p"), "-q"}).code, kDone);
+  EXPECT_EQ(run_program({"sweep", "status", grid_, "--folder", at("p")}).code, kInput);
+  ASSERT_EQ(run_program({"sweep", "plan", grid_, "--folder", at("p"), "-q"}).code, kDone);
   const auto status = [&] {
-    const Ran ran = run_program({"sweep", "status", grid_, "-o", at("p"), "--json"});
+    const Ran ran = run_program({"sweep", "status", grid_, "--folder", at("p"), "--json"});
     EXPECT_EQ(ran.code, kDone) << ran.err;
     return nlohmann::json::parse(ran.out);
   };

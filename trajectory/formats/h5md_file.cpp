@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/atomic_file.hpp"
+#include "core/config.hpp"
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
 #include "core/hdf5_self_contained.hpp"
@@ -32,6 +34,20 @@ const char* word_of(Boundary b) {
       break;
   }
   return "open";
+}
+
+/// start.kind of a simulation's file by a version that did not store /twincell/conditions: from the scene in
+/// its provenance, where an absent key means the default, crystal_a. Empty if unknown.
+std::string start_of_earlier_file(const std::string& provenance_json) {
+  const auto provenance = nlohmann::json::parse(provenance_json, nullptr, false);
+  if (!provenance.is_object() || !provenance.contains("config") || !provenance.at("config").is_string())
+    return {};
+  try {
+    const Config scene = Config::from_text(provenance.at("config").get<std::string>(), "scene");
+    return scene.root().section("start").text("kind").value_or("crystal_a");
+  } catch (const ConfigError&) {  // a damaged record states no start
+    return {};
+  }
 }
 
 /// Creates a time-dependent H5MD element that shares step and time with position by hard links.
@@ -166,6 +182,13 @@ void H5mdWriter::Impl::create_parameters() {
   h5::write_attribute(ours.get(), "schema_version", kSchemaVersion);
   h5::write_attribute(ours.get(), "source", info.source);
   if (!info.tracking_json.empty()) h5::write_text(ours.get(), "tracking", info.tracking_json);
+  const RunConditions& at = info.conditions;
+  if (at.n_l || at.gamma || !at.start.empty()) {
+    const h5::Handle conditions = h5::create_group(ours.get(), "conditions");
+    if (at.n_l) h5::write_scalar(conditions.get(), "n_l", *at.n_l);
+    if (at.gamma) h5::write_scalar(conditions.get(), "gamma", *at.gamma);
+    if (!at.start.empty()) h5::write_text(conditions.get(), "start", at.start);
+  }
   if (info.columns.contacts) {
     const h5::Handle contacts = h5::create_group(ours.get(), "contacts");
     contact_count = h5::Series(contacts.get(), "count", H5T_STD_I64LE, {}, 1024);
@@ -305,6 +328,7 @@ struct H5mdReader::Impl {
   void read_box(const std::string& group);
   bool is_planar() const;
   void read_parameters();
+  void read_conditions();
   void require_ranges() const;
 };
 
@@ -605,6 +629,26 @@ void H5mdReader::Impl::read_parameters() {
   scale("pixels_per_sigma", info.scale.pixels_per_sigma);
   if (h5::exists(file.get(), "parameters/provenance"))
     h5::read_text(file.get(), "parameters/provenance", info.provenance_json);
+  read_conditions();
+}
+
+void H5mdReader::Impl::read_conditions() {
+  if (!h5::exists(file.get(), "twincell/conditions")) {
+    if (info.source == "simulation") info.conditions.start = start_of_earlier_file(info.provenance_json);
+    return;
+  }
+  const h5::Handle group = open_object(file.get(), "twincell/conditions");
+  const auto number = [&](const char* name, std::optional<double>& out) {
+    double value = 0;
+    if (!h5::exists(group.get(), name) || !h5::read_scalar(group.get(), name, value)) return;
+    if (!std::isfinite(value) || value < 0)
+      refuse(std::string("twincell/conditions/") + name,
+             fmt::format("is {:g}; it must be finite and not negative.", value));
+    out = value;
+  };
+  number("n_l", info.conditions.n_l);
+  number("gamma", info.conditions.gamma);
+  h5::read_text(group.get(), "start", info.conditions.start);
 }
 
 H5mdReader::H5mdReader(const fs::path& path) : impl_(std::make_unique<Impl>()) {

@@ -377,7 +377,7 @@ struct LammpsDump::Impl {
     if (!o.tracer_type) info.tracer.clear();
     if (o.tracer_type && columns.type == kAbsent) refuse("--tracer-type", "the dump has no column 'type'.");
     if (!(info.box.upper.minCoeff() > 0))
-      refuse("--origin", "the origin is above or to the right of the dump's box.");
+      refuse("--cell-origin", "the origin is above or to the right of the dump's box.");
   }
 
   [[nodiscard]] std::size_t slot_of(const DumpReader& reader, const Atom& a) const {

@@ -60,7 +60,7 @@ TEST(Scene, ComplaintsNameLineKeyValueAndBound) {
   expect_complaint(kGood + "[start]\nkind = \"table\"\n",
                    "start.from: a start from a table needs the name of its file");
   expect_complaint(kGood + "[start]\nfrom = \"a.h5\"\n",
-                   "start.from: a file is named, but start.kind is neither");
+                   "start.from: a file is named, but start.kind is not");
   expect_complaint(kGood + "[start]\nframe = 3\n", "start.frame: a frame is named, but start.kind is not");
   expect_complaint("preset = \"fortini\"\n", "'fortini' is not one of fortini-huang-2015");
   expect_complaint("[drive]\nomega = 1.0\ngamma = 1.0\n", "beads.count: the number of beads is missing");

@@ -244,7 +244,7 @@ TEST_F(Dump, OptionsThatDoNotFitAreRefused) {
   options = reduced();
   options.origin = Vec3(0, 11, 0);
   EXPECT_EQ(refusal(text, options),
-            "options: --origin: the origin is above or to the right of the dump's box.");
+            "options: --cell-origin: the origin is above or to the right of the dump's box.");
 }
 
 // Bytes changed, removed and duplicated anywhere: the dump is refused with a line number or read as finite

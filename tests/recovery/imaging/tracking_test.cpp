@@ -85,14 +85,14 @@ TEST(Tracking, FoundPhasesUncertaintiesAndTracersAreInTheFile) {
   const TemporaryFolder folder;
   DetectionStore store(folder / "");
   fill(store, 300, 12, {101}, {202});
-  track_to(folder / "t.h5", store, cell(), {.find = true, .triggers = {}, .drive_hz = {}}, folder / "");
+  track_to(folder / "t.h5", store, cell(), {.method = PhaseMethod::found}, folder / "");
   EXPECT_TRUE(validate_h5md(folder / "t.h5").empty());
   const H5mdReader reader(folder / "t.h5");
   EXPECT_EQ(reader.n_frames(), 299U) << "a frame taken twice is written once";
   EXPECT_EQ(reader.info().n_beads, 120U);
   EXPECT_EQ(reader.info().phases_per_cycle, kPhases);
   const auto said = nlohmann::json::parse(reader.info().tracking_json);
-  EXPECT_EQ(said["phase_lock"]["way"], "found");
+  EXPECT_EQ(said["phase_lock"]["method"], "found");
   EXPECT_EQ(said["phase_lock"]["dropped"], 1);
   EXPECT_EQ(said["phase_lock"]["doubled"], 1);
   EXPECT_EQ(said["links"]["made"], 120 * 299);
@@ -124,8 +124,8 @@ TEST(Tracking, AFrameTakenTwiceIsFoundWhereverItIs) {
     const TemporaryFolder folder;
     DetectionStore store(folder / "");
     fill(store, 4 * kMany, 12, {}, {at}, {.gamma = 1.5, .phases = kMany, .noise = 1});
-    const LinkedDetections stack = link_detections(
-        store, {.diameter_px = 15}, cell(), {.find = true, .triggers = {}, .drive_hz = {}}, folder / "");
+    const LinkedDetections stack =
+        link_detections(store, {.diameter_px = 15}, cell(), {.method = PhaseMethod::found}, folder / "");
     const PhaseTable& p = stack.phases;
     found += p.doubled == 1 && p.dropped == 0 && p.frames.at(static_cast<std::size_t>(at)).interval == 0;
   }

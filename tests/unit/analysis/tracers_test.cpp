@@ -102,10 +102,10 @@ TEST(MatchRuns, ByGammaWithinTheToleranceAndByLayers) {
   const auto matches = match_runs(runs, 0.02);
   ASSERT_EQ(matches.size(), 4U);
   EXPECT_EQ(matches[0].experiments, std::vector<std::size_t>{4});
-  EXPECT_EQ(verdict(runs, matches[0]), "only experiment");
+  EXPECT_EQ(verdict_word(runs, matches[0]), "only experiment");
   EXPECT_EQ(matches[1].simulations, (std::vector<std::size_t>{1, 2}));
   EXPECT_EQ(matches[1].experiments, std::vector<std::size_t>{0});
-  EXPECT_EQ(verdict(runs, matches[1]), "undetermined");            // the two seeds disagree
+  EXPECT_EQ(verdict_word(runs, matches[1]), "undetermined");       // the two seeds disagree
   EXPECT_EQ(matches[2].simulations, std::vector<std::size_t>{3});  // different number of layers
   EXPECT_EQ(matches[3].simulations, std::vector<std::size_t>{5});  // differs by 2.7 %
 }

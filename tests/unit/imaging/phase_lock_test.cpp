@@ -76,7 +76,7 @@ TEST(PhaseLock, FramesToPhasesAndCycles) {
   EXPECT_THROW((PhaseLock{20, 20}.check({})), ConfigError);
   EXPECT_THROW((PhaseLock{-1, 0}.check({})), ConfigError);
   const PhaseTable table = fixed_phases(lock);
-  EXPECT_EQ(table.method, "fixed");
+  EXPECT_EQ(table.method, PhaseMethod::fixed);
   EXPECT_EQ(table.at(7).phase, 0);
   EXPECT_EQ(table.at(7).cycle, 1);
   EXPECT_FALSE(table.jitter.has_value()) << "nothing was measured";

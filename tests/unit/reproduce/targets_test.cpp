@@ -44,13 +44,13 @@ TEST(Targets, ABedThatRearrangedOnceCameToRest) {
 }
 
 TEST(Targets, AValueInsideIsMetAnIntervalOutsideIsMissed) {
-  EXPECT_EQ(within(onset(1.2, 1.15, 1.25), 1.1, 1.35), Verdict::met);
-  EXPECT_EQ(within(onset(1.5, 1.4, 1.6), 1.1, 1.35), Verdict::missed);
-  EXPECT_EQ(within(onset(1.0, 0.9, 1.05), 1.1, 1.35), Verdict::missed);
-  EXPECT_EQ(within(onset(1.4, 1.3, 1.5), 1.1, 1.35), Verdict::open);
-  EXPECT_EQ(within(onset({}, 1.4, {}), 1.1, 1.35), Verdict::missed);
-  EXPECT_EQ(within(onset({}, 1.2, {}), 1.1, 1.35), Verdict::open);
-  EXPECT_EQ(within(onset({}, {}, {}), 1.1, 1.35), Verdict::open);
+  EXPECT_EQ(within(onset(1.2, 1.15, 1.25), 1.1, 1.35), Verdict::pass);
+  EXPECT_EQ(within(onset(1.5, 1.4, 1.6), 1.1, 1.35), Verdict::fail);
+  EXPECT_EQ(within(onset(1.0, 0.9, 1.05), 1.1, 1.35), Verdict::fail);
+  EXPECT_EQ(within(onset(1.4, 1.3, 1.5), 1.1, 1.35), Verdict::inconclusive);
+  EXPECT_EQ(within(onset({}, 1.4, {}), 1.1, 1.35), Verdict::fail);
+  EXPECT_EQ(within(onset({}, 1.2, {}), 1.1, 1.35), Verdict::inconclusive);
+  EXPECT_EQ(within(onset({}, {}, {}), 1.1, 1.35), Verdict::inconclusive);
   EXPECT_EQ(within(sweep::Onset{}, 1.1, 1.35), Verdict::absent);
 }
 
@@ -66,14 +66,14 @@ sweep::Onset step_at(double mu, int n) {
 }
 
 TEST(Targets, OneOnsetIsAboveAnotherWhenTheOppositeIsExcluded) {
-  EXPECT_EQ(above(step_at(3, 4), step_at(2, 4)), Verdict::met);
-  EXPECT_EQ(above(step_at(2, 4), step_at(3, 4)), Verdict::missed);
-  EXPECT_EQ(above(step_at(2.05, 4), step_at(2, 4)), Verdict::open);
-  EXPECT_EQ(above(step_at(2.3, 1), step_at(2, 1)), Verdict::open);
+  EXPECT_EQ(above(step_at(3, 4), step_at(2, 4)), Verdict::pass);
+  EXPECT_EQ(above(step_at(2, 4), step_at(3, 4)), Verdict::fail);
+  EXPECT_EQ(above(step_at(2.05, 4), step_at(2, 4)), Verdict::inconclusive);
+  EXPECT_EQ(above(step_at(2.3, 1), step_at(2, 1)), Verdict::inconclusive);
   EXPECT_EQ(above(step_at(3, 4), sweep::Onset{}), Verdict::absent);
   // An onset above the range is greater than one inside it.
   const std::vector<sweep::Trial> never(10, sweep::Trial{4.9, false});
-  EXPECT_EQ(above(estimate_onset(never, 1, 5, 0.2), step_at(2, 4)), Verdict::met);
+  EXPECT_EQ(above(estimate_onset(never, 1, 5, 0.2), step_at(2, 4)), Verdict::pass);
 }
 
 TEST(Targets, EvidenceIsZeroForWhatFitsBestAndGrowsWithRuns) {
@@ -83,20 +83,20 @@ TEST(Targets, EvidenceIsZeroForWhatFitsBestAndGrowsWithRuns) {
 
 TEST(Targets, AnEstimateIsMetMissedOrLeftOpen) {
   const Estimate known{7, 6.5, 7.5};
-  EXPECT_EQ(within(known, 6, 8), Verdict::met);
-  EXPECT_EQ(within(known, 8, 9), Verdict::missed);
-  EXPECT_EQ(within(known, 7.2, 9), Verdict::open);
-  EXPECT_EQ(within(Estimate{7, {}, {}}, 8, 9), Verdict::open);
-  EXPECT_EQ(within(exact(7), 8, 9), Verdict::missed);
-  EXPECT_EQ(above(known, Estimate{5, 4, 6}), Verdict::met);
-  EXPECT_EQ(above(Estimate{5, 4, 6}, known), Verdict::missed);
-  EXPECT_EQ(above(known, Estimate{6, 5, 7}), Verdict::open);
-  EXPECT_EQ(agree(known, Estimate{8, 7.2, 9}), Verdict::met);
-  EXPECT_EQ(agree(known, Estimate{8, 7.6, 9}), Verdict::missed);
-  EXPECT_EQ(agree(known, Estimate{8, 7.6, {}}), Verdict::open);
-  EXPECT_EQ(all_of({Verdict::met, Verdict::met}), Verdict::met);
-  EXPECT_EQ(all_of({Verdict::met, Verdict::open}), Verdict::open);
-  EXPECT_EQ(all_of({Verdict::open, Verdict::missed}), Verdict::missed);
+  EXPECT_EQ(within(known, 6, 8), Verdict::pass);
+  EXPECT_EQ(within(known, 8, 9), Verdict::fail);
+  EXPECT_EQ(within(known, 7.2, 9), Verdict::inconclusive);
+  EXPECT_EQ(within(Estimate{7, {}, {}}, 8, 9), Verdict::inconclusive);
+  EXPECT_EQ(within(exact(7), 8, 9), Verdict::fail);
+  EXPECT_EQ(above(known, Estimate{5, 4, 6}), Verdict::pass);
+  EXPECT_EQ(above(Estimate{5, 4, 6}, known), Verdict::fail);
+  EXPECT_EQ(above(known, Estimate{6, 5, 7}), Verdict::inconclusive);
+  EXPECT_EQ(agree(known, Estimate{8, 7.2, 9}), Verdict::pass);
+  EXPECT_EQ(agree(known, Estimate{8, 7.6, 9}), Verdict::fail);
+  EXPECT_EQ(agree(known, Estimate{8, 7.6, {}}), Verdict::inconclusive);
+  EXPECT_EQ(all_of({Verdict::pass, Verdict::pass}), Verdict::pass);
+  EXPECT_EQ(all_of({Verdict::pass, Verdict::inconclusive}), Verdict::inconclusive);
+  EXPECT_EQ(all_of({Verdict::inconclusive, Verdict::fail}), Verdict::fail);
   EXPECT_EQ(all_of({}), Verdict::absent);
 }
 
@@ -114,18 +114,18 @@ std::vector<SweepRun> paper_like_crystal() {
   return runs;
 }
 
-TEST(Targets, TheLadderFindsTheRegionsAndBarriersThatWerePutIn) {
+TEST(Targets, TheSweepFindsTheRegionsAndBarriersThatWerePutIn) {
   auto runs = paper_like_crystal();
   std::reverse(runs.begin(), runs.end());  // the order of the runs must not matter
-  const StrengthSweep ladder = make_strength_sweep("crystal_a", runs);
-  ASSERT_TRUE(ladder.first_slips && ladder.convection);
-  EXPECT_NEAR(*ladder.first_slips->low, 2.4 * 2.4, 1e-12);
-  EXPECT_NEAR(*ladder.first_slips->high, 2.5 * 2.5, 1e-12);
-  EXPECT_GT(ladder.convection->value, 2.9 * 2.9);
-  EXPECT_LT(ladder.convection->value, 3.1 * 3.1);
+  const StrengthSweep sweep = make_strength_sweep("crystal_a", runs);
+  ASSERT_TRUE(sweep.first_slips && sweep.convection);
+  EXPECT_NEAR(*sweep.first_slips->low, 2.4 * 2.4, 1e-12);
+  EXPECT_NEAR(*sweep.first_slips->high, 2.5 * 2.5, 1e-12);
+  EXPECT_GT(sweep.convection->value, 2.9 * 2.9);
+  EXPECT_LT(sweep.convection->value, 3.1 * 3.1);
   std::vector<DataPoint> a2, b;
-  for (const SweepPoint& r : ladder.points)
-    if (r.slips > 0) (r.k_m() < ladder.convection->value ? a2 : b).push_back({r.k_m(), r.p_s(), 0, 0});
+  for (const SweepPoint& r : sweep.points)
+    if (r.slips > 0) (r.k_m() < sweep.convection->value ? a2 : b).push_back({r.k_m(), r.p_s(), 0, 0});
   const auto steep = fitted("arrhenius", a2), flat = fitted("arrhenius", b);
   ASSERT_TRUE(steep && flat);
   EXPECT_NEAR(parameter(*steep, "E_b").value, 130, 1e-3);
@@ -133,7 +133,7 @@ TEST(Targets, TheLadderFindsTheRegionsAndBarriersThatWerePutIn) {
   EXPECT_FALSE(fitted("arrhenius", {a2.front()}));
 }
 
-TEST(Targets, ALadderWithSlipsFromTheFirstBouncingRungHasNoRegionA1) {
+TEST(Targets, ASweepWithSlipsFromTheFirstBouncingPointHasNoRegionA1) {
   auto runs = paper_like_crystal();
   for (SweepRun& run : runs)
     if (run.gamma > 1.16) run.slips = std::max(run.slips, 1.0);

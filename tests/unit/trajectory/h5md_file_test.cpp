@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
+#include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace twincell {
@@ -59,6 +60,50 @@ void write(const fs::path& path, int frames) {
   H5mdWriter writer(path, experiment_info());
   for (int f = 0; f < frames; ++f) writer.append(frame_number(f));
   writer.finish();
+}
+
+/// The conditions that a reader finds in a file of this metadata.
+RunConditions conditions_through_file(const TrajectoryInfo& info) {
+  const TemporaryFolder folder;
+  H5mdWriter writer(folder / "run.h5", info);
+  writer.append(frame_number(0));
+  writer.finish();
+  return H5mdReader(folder / "run.h5").info().conditions;
+}
+
+TEST(H5mdFile, TheConditionsOfARunAreStored) {
+  TrajectoryInfo info = experiment_info();
+  info.conditions = {.n_l = 20.05, .gamma = 1.8, .start = "crystal_a"};
+  const RunConditions read = conditions_through_file(info);
+  EXPECT_EQ(read.n_l, 20.05);
+  EXPECT_EQ(read.gamma, 1.8);
+  EXPECT_EQ(read.start, "crystal_a");
+  // Each of them can be absent.
+  const RunConditions none = conditions_through_file(experiment_info());
+  EXPECT_FALSE(none.n_l || none.gamma);
+  EXPECT_EQ(none.start, "");
+}
+
+TEST(H5mdFile, TheStartOfAnEarlierSimulationComesFromItsScene) {
+  TrajectoryInfo info = experiment_info();
+  info.source = "simulation";
+  info.provenance_json = R"({"config": "[start]\nkind = \"random\"\n"})";
+  EXPECT_EQ(conditions_through_file(info).start, "random");
+  info.provenance_json = R"({"config": "[start\n"})";
+  EXPECT_EQ(conditions_through_file(info).start, "") << "a damaged record states no start";
+  // Stored conditions are not overruled by a text.
+  info.provenance_json = R"({"config": "[start]\nkind = \"random\"\n"})";
+  info.conditions.start = "table";
+  EXPECT_EQ(conditions_through_file(info).start, "table");
+}
+
+TEST(H5mdFile, ImpossibleConditionsAreRefused) {
+  TrajectoryInfo info = experiment_info();
+  info.conditions = {.n_l = -1, .gamma = 1.8, .start = {}};
+  expect_refusal<InputError>([&] { (void)conditions_through_file(info); }, "twincell/conditions/n_l", "-1");
+  info.conditions = {.n_l = 1, .gamma = std::nan(""), .start = {}};
+  expect_refusal<InputError>([&] { (void)conditions_through_file(info); }, "twincell/conditions/gamma",
+                             "not negative");
 }
 
 TEST(H5mdFile, WhatIsWrittenIsReadBitForBit) {

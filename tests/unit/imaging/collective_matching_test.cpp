@@ -1,11 +1,11 @@
+#include "imaging/link/collective_matching.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
 #include <iostream>
 #include <vector>
-
-#include "imaging/link/collective_matching.hpp"
 
 using namespace twincell;
 

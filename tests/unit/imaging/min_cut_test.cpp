@@ -1,3 +1,5 @@
+#include "imaging/link/min_cut.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -5,8 +7,6 @@
 #include <cstdint>
 #include <random>
 #include <vector>
-
-#include "imaging/link/min_cut.hpp"
 
 using namespace twincell;
 

@@ -1,13 +1,13 @@
 // Beads in straight relative motion with periodic images: the first touch, against a search over all images
 // one by one.
 
+#include "sim/event_driven/ballistic_paths.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <random>
-
-#include "sim/event_driven/ballistic_paths.hpp"
 
 namespace twincell::sim {
 namespace {

@@ -1,10 +1,10 @@
 // Which event comes first, and which beads search again after a bead has changed its path.
 
+#include "sim/event_driven/event_queue.hpp"
+
 #include <gtest/gtest.h>
 
 #include <random>
-
-#include "sim/event_driven/event_queue.hpp"
 
 namespace twincell::sim {
 namespace {

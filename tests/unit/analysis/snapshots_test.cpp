@@ -1,7 +1,7 @@
 // Which frames of a run are kept for display.
-#include <gtest/gtest.h>
-
 #include "analysis/motion/snapshots.hpp"
+
+#include <gtest/gtest.h>
 
 namespace twincell {
 namespace {
@@ -25,7 +25,7 @@ MemoryTrajectory film(int cycles, int phases, int extra = 0, int first_phase = 0
 
 }  // namespace
 
-TEST(Moments, HalfAtPhaseZeroHalfInTheLastWholeCycle) {
+TEST(Snapshots, HalfAtPhaseZeroHalfInTheLastWholeCycle) {
   const auto chosen = representative_frames(film(100, 10, 3), 20);
   ASSERT_EQ(chosen.size(), 20U);
   EXPECT_EQ(chosen.front(), 0U);
@@ -39,12 +39,12 @@ TEST(Moments, HalfAtPhaseZeroHalfInTheLastWholeCycle) {
   EXPECT_EQ(last_cycle, 10U);
 }
 
-TEST(Moments, FewFramesAreAllKeptAndNoneTwice) {
+TEST(Snapshots, FewFramesAreAllKeptAndNoneTwice) {
   const auto chosen = representative_frames(film(2, 5), 20);
   EXPECT_EQ(chosen, (std::vector<std::size_t>{0, 5, 6, 7, 8, 9}));
 }
 
-TEST(Moments, WithoutPhasesEvenlySpread) {
+TEST(Snapshots, WithoutPhasesEvenlySpread) {
   MemoryTrajectory t = film(10, 10);
   t.info().columns.phase = false;
   const auto chosen = representative_frames(t, 5);

@@ -11,9 +11,9 @@
 namespace twincell::sweep {
 
 /// Progress that throws Interrupted once `closing` is set, which ends the running point.
-class Until : public Progress {
+class CancellationToken : public Progress {
  public:
-  explicit Until(const std::atomic<bool>& closing) : closing_(closing) {}
+  explicit CancellationToken(const std::atomic<bool>& closing) : closing_(closing) {}
   void update(std::int64_t, std::int64_t) override {
     if (closing_) throw Interrupted(ExitCode::interrupted);
   }

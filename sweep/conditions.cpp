@@ -1,0 +1,35 @@
+#include "sweep/conditions.hpp"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace twincell::sweep {
+
+namespace {
+
+using nlohmann::json;
+
+json number_or_null(const std::optional<double>& value) {
+  return value ? json(*value) : json(nullptr);
+}
+
+std::optional<double> optional_number(const json& value) {
+  return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+}
+
+}  // namespace
+
+json conditions_json(const RunConditions& conditions) {
+  return {{"n_l", number_or_null(conditions.n_l)},
+          {"gamma", number_or_null(conditions.gamma)},
+          {"start", conditions.start}};
+}
+
+RunConditions conditions_from_json(const json& conditions) {
+  return {.n_l = optional_number(conditions.at("n_l")),
+          .gamma = optional_number(conditions.at("gamma")),
+          .start = conditions.at("start").get<std::string>()};
+}
+
+}  // namespace twincell::sweep
