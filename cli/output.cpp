@@ -116,14 +116,17 @@ Provenance Common::provenance() const {
   return p;
 }
 
+std::string assigned_key(const std::string& assignment) {
+  const std::string key = assignment.substr(0, assignment.find('='));
+  const auto first = key.find_first_not_of(" \t"), last = key.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : key.substr(first, last - first + 1);
+}
+
 void refuse_said_twice(const std::vector<std::string>& assignments) {
-  const auto key_of = [](const std::string& assignment) {
-    return assignment.substr(0, assignment.find('='));
-  };
   for (std::size_t k = 0; k < assignments.size(); ++k)
     for (std::size_t m = 0; m < k; ++m)
-      if (key_of(assignments[m]) == key_of(assignments[k]) && assignments[m] != assignments[k])
-        throw ConfigError({"--set", 0, 0, key_of(assignments[k])},
+      if (assigned_key(assignments[m]) == assigned_key(assignments[k]) && assignments[m] != assignments[k])
+        throw ConfigError({"--set", 0, 0, assigned_key(assignments[k])},
                           fmt::format("is set twice, \"{}\" and \"{}\"; set it only once.", assignments[m],
                                       assignments[k]));
 }
@@ -136,7 +139,7 @@ std::vector<std::string> with_seed(std::vector<std::string> assignments, const C
                                   kLargestSeed));
   refuse_said_twice(assignments);
   for (const std::string& assignment : assignments)
-    if (common.seed && assignment.starts_with("start.seed=") &&
+    if (common.seed && assigned_key(assignment) == "start.seed" &&
         assignment != fmt::format("start.seed={}", *common.seed))
       throw ConfigError({"--set", 0, 0, "start.seed"},
                         fmt::format("contradicts --seed {}; give only one of the two.", *common.seed));

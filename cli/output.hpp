@@ -44,6 +44,8 @@ struct Common {
   [[nodiscard]] Provenance provenance() const;
 };
 
+/// The key of an assignment "section.key=value", without blanks around it.
+std::string assigned_key(const std::string& assignment);
 /// \throws ConfigError if --set gives one key two different values
 void refuse_said_twice(const std::vector<std::string>& assignments);
 

@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "calibration/drive/plate_drive.hpp"
+#include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
@@ -235,7 +236,7 @@ void run(TrackOptions& o, const Common& common) {
   DriveCheck check{.not_comparable = "the stated drive is trusted"};
   if (!o.trust_stated_drive && plan.info.drive) {
     ProgressBar edge(common, "the plate's edge");
-    check = check_by_plate(cell, o.stack, common.n_threads(), edge);
+    check = check_by_plate(cell, o.stack, common.n_threads(), edge, !source.find && !source.triggers);
     if (check.by.empty() && cell.pixels_per_sigma) {
       BedSteps bed(plan.info);
       write_trajectory(stack, plan, cell, bed);
@@ -317,7 +318,7 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--pixels-per-sigma", o->pixels_per_sigma,
                   "Camera pixels per bead diameter; default: the scale in CELL.toml, otherwise the located "
                   "bead diameter")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--origin-px", o->origin,
                   "Lower left inside corner of the cell, with the plate at its mean height: x y, px")
       ->expected(2);
@@ -328,23 +329,23 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--cell-width", o->width,
                   "Distance of the side walls, sigma; if CELL.toml has a [scale], use --set "
                   "cell.width_sigma= or cell.width_mm= instead")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--cell-height", o->height,
                   "Height of the cell, sigma; if CELL.toml has a [scale], use --set with a unit instead")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--frames-per-cycle", o->frames_per_cycle,
                   "Frames per drive cycle; 0: not phase-locked; default: the value in CELL.toml")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 100000));
   verb.add_option("--phase-lock", o->phase_lock,
                   "Source of the drive phases: frames per drive cycle, 'found' (from the motion of the bed), "
                   "'none', or a list of triggers (*.csv)");
   verb.add_option(
           "--drive-hz", o->drive_hz,
           "Frequency of the drive, Hz, for a list of triggers in seconds; default: the drive in CELL.toml")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--first-phase", o->first_phase,
                   "Phase of the first frame, 0 to frames per cycle - 1; default: the value in CELL.toml")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_above());
   verb.add_option("--drive-gamma", o->gamma, "Drive strength Gamma = A omega^2/g; with --drive-amplitude");
   verb.add_option("--drive-amplitude", o->amplitude,
                   "Amplitude A of the drive, sigma; if CELL.toml has a [scale], use --set "
@@ -367,7 +368,7 @@ void add_track(CLI::App& program, Common& common) {
                 "Do not check the stated drive against the motion of the plate or the bed in the frames");
   verb.add_option("--shortest", o->shortest,
                   "Smallest number of frames in which a track must be seen to be written; default: 1")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   writes(common, verb,
          verb.add_option("--csv", o->csv, "Table of tracks to write (CSV, trackpy's columns and more)"),
          Product::table(kHeading));

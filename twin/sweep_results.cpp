@@ -9,6 +9,7 @@
 #include "core/atomic_file.hpp"
 #include "core/config.hpp"
 #include "core/json_text.hpp"
+#include "core/json_view.hpp"
 #include "core/toml_leaves.hpp"
 #include "sim/scene/scene.hpp"
 
@@ -38,7 +39,7 @@ bool places(const std::string& key) {
 /// Base scene: a table of the plan, or a file that is searched next to `file`, one folder above, and in the
 /// working folder.
 BaseScene base_scene(const std::string& plan, const fs::path& file) {
-  const Config config = Config::from_text(plan, file.string() + ": plan");
+  const Config config = Config::from_text(plan, "plan");
   std::vector<TomlLeaf> leaves = toml_leaves(config.text(), "scene");
   ConfigSection scene = config.root();
   if (!leaves.empty()) {
@@ -71,47 +72,73 @@ struct Place {
   std::string start;
 };
 
+/// Runs `work` on the sweep's scene, which is part of the input here. \throws InputError for a scene error
+template <class Work>
+auto of_scene(const JsonView& at, Work work) {
+  try {
+    return work();
+  } catch (const ConfigError& e) {
+    std::string why = e.what();
+    while (why.ends_with('.')) why.pop_back();
+    at.refuse(fmt::format("does not describe a scene ({})", why));
+  }
+}
+
+/// Axis `key` of a point or onset; its value must be a number, a text or a boolean.
+std::string assignment(const std::string& key, const JsonView& value) {
+  const json& v = value.value();
+  if (!v.is_number() && !v.is_string() && !v.is_boolean())
+    value.refuse("is not one value of a key of the scene");
+  return key + "=" + (v.is_string() ? toml_quoted(v.get<std::string>()) : json_text(v));
+}
+
 /// Position of the base scene with the values of a point's axes.
-Place place_of(const BaseScene& base, const json& axes, const std::string& file) {
+/// \param more further assignments
+Place place_of(const BaseScene& base, const JsonView& axes, std::vector<std::string> assignments = {}) {
   // Contacts do not affect the position, but a valid scene needs some.
   std::string text = base.preset.empty() ? "contact.k_n = 1e6\ncontact.restitution = 0.9\n"
-                                         : fmt::format("preset = \"{}\"\n", base.preset);
+                                         : fmt::format("preset = {}\n", toml_quoted(base.preset));
   for (const TomlLeaf& leaf : base.leaves) text += leaf.path + " = " + leaf.literal + "\n";
-  std::vector<std::string> assignments;
-  for (const auto& [key, value] : axes.items())
-    if (places(key)) assignments.push_back(key + "=" + json_text(value));
-  const sim::Scene scene = sim::read_scene_text(text, file + ": scene", assignments);
+  for (const auto& [key, value] : axes.members())
+    if (places(key)) assignments.push_back(assignment(key, value));
+  const sim::Scene scene = of_scene(axes, [&] { return sim::read_scene_text(text, "scene", assignments); });
   Place place;
   place.n_l = static_cast<double>(scene.n_beads.value_or(0)) / scene.width;
   place.gamma = scene.drive.gamma(scene.g());
-  place.start = axes.contains("start.kind") ? axes["start.kind"].get<std::string>() : base.start;
+  const auto start = axes.find("start.kind");
+  place.start = start ? start->text() : base.start;
   return place;
 }
 
-std::optional<double> number(const json& object, const char* key) {
-  return object.contains(key) && object[key].is_number() ? std::optional(object[key].get<double>())
-                                                         : std::nullopt;
+/// A member that may be absent or null.
+std::optional<double> number(const JsonView& object, const char* key) {
+  const auto member = object.find(key);
+  return member && !member->value().is_null() ? std::optional(member->number()) : std::nullopt;
+}
+
+/// Value of a result; nullopt if the point does not have it.
+std::optional<JsonView> value_of(const std::optional<JsonView>& results, const char* name) {
+  const auto result = results ? results->find(name) : std::nullopt;
+  auto value = result ? result->find("value") : std::nullopt;
+  return value && !value->value().is_null() ? value : std::nullopt;
 }
 
 /// Phase from the analysis, or from s_b and s_c if the plan's `results` omit the phase.
-BedPhase phase_of(const json& results) {
-  const auto value = [&](const char* name) {
-    return results.value(name, json::object()).value("value", json());
-  };
-  if (const json phase = value("phase"); phase.is_string()) return phase_named(phase.get<std::string>());
+BedPhase phase_of(const std::optional<JsonView>& results) {
+  if (const auto phase = value_of(results, "phase")) return phase_named(phase->text());
   const auto scalar = [&](const char* name) {
-    const json v = value(name);
-    return v.is_number() ? v.get<double>() : std::nan("");
+    const auto value = value_of(results, name);
+    return value ? value->number() : std::nan("");
   };
   return bed_phase(scalar("s_b"), scalar("s_c"));
 }
 
-void add_points(const json& document, const BaseScene& base, const std::string& file,
-                Comparison& comparison) {
-  for (const json& point : document.at("points")) {
-    const BedPhase phase = phase_of(point.value("results", json::object()));
+void add_points(const JsonView& document, const BaseScene& base, Comparison& comparison) {
+  for (const JsonView& point : document.at("points").elements()) {
+    const JsonView axes = point.at("axes");
+    const BedPhase phase = phase_of(point.find("results"));
     if (phase == BedPhase::undetermined) continue;
-    const Place place = place_of(base, point.at("axes"), file);
+    const Place place = place_of(base, axes);
     comparison.sweep.push_back(
         {.n_l = place.n_l, .gamma = place.gamma, .start = place.start, .phase = phase});
   }
@@ -122,20 +149,21 @@ bool is_gamma(const std::string& key) {
   return key == "drive.gamma" || key == "drive.peak_acceleration_g";
 }
 
-void add_onsets(const json& document, const BaseScene& base, const std::string& file,
-                Comparison& comparison) {
-  for (const json& onset : document.value("onsets", json::array())) {
-    const BedPhase phase = phase_named(onset.value("verdict", ""));
-    if (phase == BedPhase::undetermined || !is_gamma(onset.value("key", ""))) continue;
-    json axes = onset.at("axes");
-    axes[onset.at("key").get<std::string>()] =
-        onset.at("range").at(0);  // any Gamma, so that the scene is complete
-    const Place place = place_of(base, axes, file);
+void add_onsets(const JsonView& document, const BaseScene& base, Comparison& comparison) {
+  const auto onsets = document.find("onsets");
+  if (!onsets) return;
+  for (const JsonView& onset : onsets->elements()) {
+    const BedPhase phase = phase_named(onset.at("verdict").text());
+    const std::string key = onset.at("key").text();
+    if (phase == BedPhase::undetermined || !is_gamma(key)) continue;
+    // Any Gamma, so that the scene is complete.
+    const Place place =
+        place_of(base, onset.at("axes"), {assignment(key, onset.at("range").elements(2).front())});
     comparison.boundaries.push_back({.side = Side::simulation,
                                      .start = place.start,
                                      .onset = phase,
                                      .n_l = place.n_l,
-                                     .n_runs = onset.at("runs").get<std::size_t>(),
+                                     .n_runs = static_cast<std::size_t>(onset.at("runs").integer(0)),
                                      .below = number(onset, "low"),
                                      .above = number(onset, "high"),
                                      .sweep = true,
@@ -146,17 +174,14 @@ void add_onsets(const json& document, const BaseScene& base, const std::string& 
 }  // namespace
 
 void add_sweep(const fs::path& file, Comparison& comparison) {
-  const json document = json::parse(read_text_file(file), nullptr, false);
-  if (!document.is_object() || document.value("format", "") != "twincell sweep 1")
+  const JsonView document = JsonView::parse(read_text_file(file), file.string());
+  if (!document.value().is_object() || document.value().value("format", json()) != "twincell sweep 1")
     throw InputError({.file = file.string()},
                      "is not a sweep's collected results (\"format\": \"twincell sweep 1\").");
-  try {
-    const BaseScene base = base_scene(document.at("plan").get<std::string>(), file);
-    add_points(document, base, file.string(), comparison);
-    add_onsets(document, base, file.string(), comparison);
-  } catch (const json::exception& e) {
-    throw InputError({.file = file.string()}, fmt::format("is damaged: {}.", e.what()));
-  }
+  const JsonView plan = document.at("plan");
+  const BaseScene base = of_scene(plan, [&] { return base_scene(plan.text(), file); });
+  add_points(document, base, comparison);
+  add_onsets(document, base, comparison);
 }
 
 }  // namespace twincell
