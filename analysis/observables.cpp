@@ -12,11 +12,12 @@
 #include "core/cancellation.hpp"
 
 // The list: an observable is NAME.cpp in a room of analysis/, which defines NAME_observable.
-#define TWINCELL_OBSERVABLES(EACH)                                                                          \
-  EACH(phase_thresholds)                                                                                    \
-  EACH(slip)                                                                                                \
-  EACH(granular_temperature) EACH(bond_order) EACH(orientation) EACH(grains) EACH(defects) EACH(convection) \
-      EACH(profiles) EACH(volume_fraction) EACH(centre_of_mass) EACH(bed_flight)
+#define TWINCELL_OBSERVABLES(EACH)                                                              \
+  EACH(phase_thresholds)                                                                        \
+  EACH(slip)                                                                                    \
+  EACH(granular_temperature)                                                                    \
+  EACH(bond_order) EACH(orientation) EACH(grains) EACH(defects) EACH(convection) EACH(profiles) \
+      EACH(volume_fraction) EACH(centre_of_mass) EACH(bed_flight)
 
 namespace twincell {
 
@@ -216,7 +217,7 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
       observables.push_back(entry->make(context));
 
   Frame frame;
-  std::int64_t first_cycle = -1;
+  std::int64_t first_cycle = -1, cycles = 0;  // cycles: after the skipped ones
   std::size_t used = 0;
   // The number of frames is queried each time: a run that is analysed while it is simulated may end early.
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
@@ -228,6 +229,7 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
       if (first_cycle < 0) first_cycle = frame.cycle;
       const std::int64_t since = frame.cycle - first_cycle - options.discard_cycles;
       if (since < 0) continue;
+      cycles = std::max(cycles, since + 1);
       if (options.cycles > 0 && since >= options.cycles) break;
     }
     ++used;
@@ -237,6 +239,10 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
   if (used == 0)
     throw ConfigError({.file = trajectory.name(), .key = "discard"},
                       fmt::format("leaving out {} cycles leaves no frame", options.discard_cycles));
+  if (cycles < options.cycles)
+    throw ConfigError({.file = trajectory.name(), .key = "cycles"},
+                      fmt::format("{} cycles were requested, but the trajectory has {}{}", options.cycles,
+                                  cycles, options.discard_cycles > 0 ? " after the skipped ones" : ""));
 
   // Results: only those requested, because an observable may have more.
   std::vector<Result> results;

@@ -12,6 +12,7 @@
 #include "calibration/camera/target_fit.hpp"
 #include "calibration/drive/drive_fit.hpp"
 #include "cli/calibrate.hpp"
+#include "cli/numbers.hpp"
 #include "cli/stack_info.hpp"
 #include "core/error.hpp"
 #include "imaging/stack/open_frames.hpp"
@@ -287,10 +288,10 @@ void add_calibrate_camera(CLI::App& calibrate, Common& common) {
   verb.add_option("--target-grid", o->grid, "Number of inner corners, or dots, of --target along x and y")
       ->expected(2);
   verb.add_option("--target-spacing", o->spacing, "Distance between neighbouring points of --target, sigma")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--focal-px", o->focal_px,
                   "Focal length, px; converts the change of scale across --target to the tilt of the camera")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.callback([o, &common] { run(*o, common); });
 }
 

@@ -15,6 +15,7 @@
 #include "calibration/contact/walton.hpp"
 #include "calibration/fit/table.hpp"
 #include "cli/calibrate.hpp"
+#include "cli/numbers.hpp"
 #include "cli/stack_info.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
@@ -29,7 +30,7 @@ namespace {
 struct BounceFlags {
   CalibrateFlags out;
   std::string source;
-  std::size_t bead = 0;
+  std::optional<std::size_t> bead;  ///< default: 0
   std::optional<double> gravity, amplitude, omega, phase;
   bool no_drag = false;
 };
@@ -38,16 +39,22 @@ std::vector<BounceSample> samples_of(const BounceFlags& o, std::optional<Drive>&
   std::vector<BounceSample> samples;
   if (is_trajectory(o.source)) {
     const H5mdReader trajectory(o.source);
-    if (o.bead >= trajectory.info().n_beads)
-      throw ConfigError({.file = {}, .key = "--bead"}, fmt::format("is {}; {} has beads 0 to {}.", o.bead,
-                                                                   o.source, trajectory.info().n_beads - 1));
+    const std::size_t bead = o.bead.value_or(0), n = trajectory.info().n_beads;
+    if (n == 0) throw InputError({.file = o.source, .key = {}}, "has no beads.");
+    if (bead >= n)
+      throw ConfigError({.file = {}, .key = "--bead"},
+                        fmt::format("is {}; {} has beads 0 to {}.", bead, o.source, n - 1));
     drive = trajectory.info().drive;
     Frame frame;
     for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
       trajectory.read(f, frame);
-      if (frame.present(o.bead)) samples.push_back({frame.time, frame.position[o.bead].z()});
+      if (frame.present(bead)) samples.push_back({frame.time, frame.position[bead].z()});
     }
   } else {
+    if (o.bead)
+      throw ConfigError(
+          {.file = {}, .key = "--bead"},
+          fmt::format("is {}, but {} is no trajectory (H5MD) and has only one bead.", *o.bead, o.source));
     const Table table = read_table(o.source);
     const auto &t = table.column("time"), &z = table.column("height");
     for (std::size_t i = 0; i < t.size(); ++i) {
@@ -252,19 +259,19 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
                               "twincell calibrate contacts bounce bounce.csv --gravity 1");
     kind.add_option("source", o->source, "CSV with columns time and height, or a trajectory (H5MD)")
         ->required();
-    kind.add_option("--bead", o->bead, "Index of the bead in the trajectory, from 0")->capture_default_str();
+    kind.add_option("--bead", o->bead, "Index of the bead in the trajectory, from 0; default: 0");
     kind.add_option("--gravity", o->gravity,
                     "Fixed acceleration of gravity, in the units of heights and times; default: fitted")
-        ->check(CLI::PositiveNumber);
+        ->check(above_zero());
     kind.add_flag("--no-drag", o->no_drag, "Do not fit the drag of the air");
     kind.add_option("--drive-amplitude", o->amplitude,
                     "Amplitude A of the vibrating plate, in the unit of the heights; default: the drive of "
                     "the trajectory, for CSV a plate at rest")
-        ->check(CLI::NonNegativeNumber);
+        ->check(zero_or_above());
     kind.add_option(
             "--drive-omega", o->omega,
             "Angular frequency omega of the vibrating plate, in rad per unit of time; with --drive-amplitude")
-        ->check(CLI::PositiveNumber);
+        ->check(above_zero());
     former_option(kind, "--amplitude", "--drive-amplitude");
     former_option(kind, "--omega", "--drive-omega");
     former_option(kind, "--phase", "--drive-phase");
@@ -285,7 +292,7 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
         ->capture_default_str();
     kind.add_option("--least-speed", o->options.least_speed,
                     "Smallest speed of approach, sigma/t0; slower impacts are left out")
-        ->check(CLI::NonNegativeNumber)
+        ->check(zero_or_above())
         ->capture_default_str();
     kind.add_option("--shape", o->shape,
                     "Shape of the beads, which sets their moment of inertia: disc (default) or sphere")
@@ -302,11 +309,11 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
     kind.add_option("--restitution", o->restitution,
                     "Coefficient of restitution e_n, above 0, at most 1; with --contact-time");
     kind.add_option("--contact-time", o->contact_time, "Contact time t_c, t0; with --restitution");
-    kind.add_option("--k-n", o->k_n, "Stiffness k_n, m g/sigma; with --gamma-n")->check(CLI::PositiveNumber);
+    kind.add_option("--k-n", o->k_n, "Stiffness k_n, m g/sigma; with --gamma-n")->check(above_zero());
     kind.add_option("--gamma-n", o->gamma_n, "Damping rate gamma_n, 1/t0; with --k-n")
-        ->check(CLI::NonNegativeNumber);
+        ->check(zero_or_above());
     kind.add_option("--m-eff", o->m_eff, "Effective mass, m; 0.5: two beads; 1: bead and wall")
-        ->check(CLI::PositiveNumber)
+        ->check(above_zero())
         ->capture_default_str();
     kind.callback([o, &common] { run_numbers(*o, common); });
   }

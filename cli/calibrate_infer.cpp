@@ -125,13 +125,7 @@ std::vector<Observed> observe(const TrajectorySource& trajectory, const std::vec
   AnalysisOptions options;
   options.discard_cycles = discard;
   options.only = names;
-  std::vector<Result> results;
-  try {
-    results = analyze(trajectory, options);
-  } catch (const ConfigError& e) {
-    // The message of analyze() names its own option, so it is reported under --observables.
-    throw ConfigError({.file = {}, .key = "--observables"}, e.what());
-  }
+  const std::vector<Result> results = analyze(trajectory, options);
   std::vector<Observed> all;
   for (const std::string& name : names) {
     const Result& r = find_result(results, name);
@@ -397,6 +391,26 @@ void tell_profiles(const InferFlags& o, const Question& question, const Inferenc
   }
 }
 
+/// \throws ConfigError for an observable that does not exist or is named twice: its value would count as two
+/// measurements
+void check_observables(const std::vector<std::string>& names) {
+  const auto refuse = [](const std::string& complaint) {
+    throw ConfigError({.file = {}, .key = "--observables"}, complaint);
+  };
+  const std::vector<std::string> known = result_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] == "onset")
+      refuse(
+          "'onset' cannot be computed from one film; give the measured onset with --onset "
+          "bouncing=GAMMA+-ERROR.");
+    if (std::find(known.begin(), known.end(), names[k]) == known.end())
+      refuse(fmt::format("there is no result called '{}'; the results are {}.", names[k],
+                         fmt::join(known, ", ")));
+    for (std::size_t m = 0; m < k; ++m)
+      if (names[m] == names[k]) refuse(fmt::format("names {} twice.", names[k]));
+  }
+}
+
 void run_infer(const InferFlags& o, const Common& common) {
   std::vector<Sought> sought;
   refuse_contradictory_assignments(o.assignments);
@@ -407,7 +421,7 @@ void run_infer(const InferFlags& o, const Common& common) {
       if (sought[k].name == name)
         throw ConfigError({.file = {}, .key = "--vary"}, fmt::format("names {} twice.", name));
     for (const std::string& assignment : o.assignments)
-      if (assignment.starts_with(name + "="))
+      if (assigned_key(assignment) == name)
         throw ConfigError({.file = {}, .key = "--vary"},
                           fmt::format("varies {}, which --set {} fixes.", name, assignment));
   }
@@ -415,13 +429,24 @@ void run_infer(const InferFlags& o, const Common& common) {
     throw ConfigError({.file = {}, .key = "--vary"},
                       fmt::format("names {} parameters; at most 3 can be inferred.", sought.size()));
   std::vector<MeasuredOnset> onsets;
-  for (const std::string& said : o.onsets) onsets.push_back(onset_of(said));
+  for (const std::string& said : o.onsets) {
+    onsets.push_back(onset_of(said));
+    for (std::size_t k = 0; k + 1 < onsets.size(); ++k)
+      if (onsets[k].phase == onsets.back().phase)
+        throw ConfigError({.file = {}, .key = "--onset"},
+                          fmt::format("names the {} twice; give the mean of the two.", onsets.back().name()));
+  }
+  // These keys are set for every run: the seed always, Gamma in the search for an onset.
+  for (const Sought& s : sought)
+    if (s.name == "start.seed" ||
+        (!onsets.empty() && (s.name == "drive.gamma" || s.name.starts_with("drive.peak_acceleration"))))
+      throw ConfigError(
+          {.file = {}, .key = "--vary"},
+          fmt::format("varies {}, which {}.", s.name,
+                      s.name == "start.seed" ? "differs in every run anyway" : "--onset searches"));
   if (o.measured.empty() && onsets.empty())
     throw ConfigError({.file = {}, .key = "--onset"}, "or a trajectory of the experiment is required.");
-  if (std::find(o.observables.begin(), o.observables.end(), "onset") != o.observables.end())
-    throw ConfigError({.file = {}, .key = "--observables"},
-                      "'onset' cannot be computed from one film; give the measured onset with --onset "
-                      "bouncing=GAMMA+-ERROR.");
+  if (!o.measured.empty()) check_observables(o.observables);
   const std::vector<Observed> measured = o.measured.empty() ? std::vector<Observed>{} : of_film(o);
   Runs runs(o, common, sought, measured, onsets);
   runs.simulate();
@@ -468,6 +493,7 @@ void add_calibrate_infer(CLI::App& contacts, Common& common) {
       ->capture_default_str();
   kind.add_option("--discard", o->discard,
                   "Number of cycles skipped at the start, in the film and in the simulations")
+      ->check(CLI::Range(0, 1 << 30))
       ->capture_default_str();
   kind.add_option("--set", o->assignments,
                   "Set a key of the scene, as section.key=value; overrides the file; may be repeated")

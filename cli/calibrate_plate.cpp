@@ -11,6 +11,7 @@
 #include "calibration/drive/drive_fit.hpp"
 #include "calibration/drive/drive_fit_figure.hpp"
 #include "cli/calibrate.hpp"
+#include "cli/numbers.hpp"
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "imaging/stack/frame_source.hpp"
@@ -267,7 +268,7 @@ void add_calibrate_plate(CLI::App& calibrate, Common& common) {
   former_option(verb, "--fps", "--frame-rate-hz");
   verb.add_option("--frame-rate-hz", o->frame_rate_hz,
                   "Frame rate, 1/s; default: the value in CELL.toml, otherwise that of the stack")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   writes(common, verb,
          verb.add_option("--phases", o->phases,
                          "List of the phase of each frame to write (CSV), for track --phase-lock"),

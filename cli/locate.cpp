@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
@@ -291,7 +292,7 @@ void add_locate(CLI::App& program, Common& common) {
   former_option(verb, "--overlay-frame", "--frame");
   verb.add_option("--frame", o->overlay_frame,
                   "Index of the frame for --overlay and --debug-dir, from 0; default: 0")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_above());
   verb.add_option(
           "--diameter", o->diameters,
           "Bead diameter, px, or up to 8 different diameters; default: determined from the first frame")

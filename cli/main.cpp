@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
 #include "core/config.hpp"
@@ -132,6 +133,7 @@ int run(int argc, char** argv) {
       "4 finished but a quality gate failed, 5 partial result that can be resumed, 130/143 stopped by a "
       "signal.");
   for (const AddVerb add : kVerbs) add(program, common);
+  check_numbers(program);
 
   if (argc == 3 && std::string(argv[1]) == "--version" && std::string(argv[2]) == "--json") {
     std::printf("%s\n", version_json().c_str());

@@ -82,9 +82,9 @@ void serve(const sweep::Plan& plan, const sweep::Store& store, bool keep_traject
     if (tag == kEnd) return;
     const auto j = nlohmann::json::parse(message);
     sweep::Point point;
-    point.id = j["id"];
-    point.seed = j["seed"];
-    point.scene = j["scene"];
+    point.id = j.at("id");
+    point.seed = j.at("seed");
+    point.scene = j.at("scene");
     send(computed(plan, store, point, keep_trajectories, progress), 0, kResult);
   }
 }

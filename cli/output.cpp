@@ -125,7 +125,7 @@ std::vector<std::string> with_seed(std::vector<std::string> assignments, const C
                                   kLargestSeed));
   refuse_contradictory_assignments(assignments);
   for (const std::string& assignment : assignments)
-    if (common.seed && assignment.starts_with("start.seed=") &&
+    if (common.seed && assigned_key(assignment) == "start.seed" &&
         assignment != fmt::format("start.seed={}", *common.seed))
       throw ConfigError({"--set", 0, 0, "start.seed"},
                         fmt::format("contradicts --seed {}; give only one of the two.", *common.seed));

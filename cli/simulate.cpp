@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
@@ -159,7 +160,7 @@ bool is_finished(const sim::Scene& scene, const SimulateOptions& options) {
     return false;
   const auto provenance =
       nlohmann::json::parse(H5mdReader(options.output).info().provenance_json, nullptr, false);
-  if (!provenance.is_object() || provenance.value("config", "") != scene.resolved)
+  if (!provenance.is_object() || provenance.value("config", nlohmann::json()) != scene.resolved)
     throw ConfigError(
         {options.output, 0, 0, "--resume"},
         "the output belongs to another scene, and there is no checkpoint next to it to resume from.");
@@ -288,7 +289,7 @@ void add_simulate(CLI::App& program, Common& common) {
   verb.add_option("--checkpoint-every", options->checkpoint_every,
                   "Time between checkpoints in OUTPUT.checkpoint/, s; 0: only at SIGINT and SIGTERM; "
                   "default: no checkpoints, with --resume every 600 s")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_above());
   verb.add_flag("--resume", options->resume,
                 "Continue the run in OUTPUT.checkpoint/, or start it if there is none; saves a checkpoint "
                 "every 600 s unless --checkpoint-every is given");

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "calibration/drive/track_film.hpp"
+#include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
@@ -212,7 +213,7 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--pixels-per-sigma", o->film.request.pixels_per_sigma,
                   "Camera pixels per bead diameter; default: the scale in CELL.toml, otherwise the located "
                   "bead diameter")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--origin-px", o->film.request.origin,
                   "Lower left inside corner of the cell, with the plate at its mean height: x y, px")
       ->expected(2);
@@ -223,22 +224,22 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--cell-width", o->film.request.width,
                   "Distance of the side walls, sigma; if CELL.toml has a [scale], use --set "
                   "cell.width_sigma= or cell.width_mm= instead")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--cell-height", o->film.request.height,
                   "Height of the cell, sigma; if CELL.toml has a [scale], use --set with a unit instead")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--frames-per-cycle", o->film.request.frames_per_cycle,
                   "Frames per drive cycle; 0: not phase-locked; default: the value in CELL.toml")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 100000));
   verb.add_option("--phase-lock", o->film.request.phase_lock,
                   "Source of the drive phases. " + phase_methods_help());
   verb.add_option(
           "--drive-hz", o->film.request.drive_hz,
           "Frequency of the drive, Hz, for a list of triggers in seconds; default: the drive in CELL.toml")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--first-phase", o->film.request.first_phase,
                   "Phase of the first frame, 0 to frames per cycle - 1; default: the value in CELL.toml")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_above());
   verb.add_option("--drive-gamma", o->film.request.gamma,
                   "Drive strength Gamma = A omega^2/g; with --drive-amplitude");
   verb.add_option("--drive-amplitude", o->film.request.amplitude,
@@ -263,7 +264,7 @@ void add_track(CLI::App& program, Common& common) {
                 "Do not check the stated drive against the motion of the plate or the bed in the frames");
   verb.add_option("--shortest", o->film.shortest,
                   "Smallest number of frames in which a track must be seen to be written; default: 1")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   writes(common, verb,
          verb.add_option("--csv", o->csv, "Table of tracks to write (CSV, trackpy's columns and more)"),
          Product::table(kHeading));

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -24,14 +25,36 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Syncs a file, or the entries of a folder, to disk; false on an I/O error or a full disk. A file system
-/// without sync (some network file systems) counts as synced.
-bool sync_to_disk(const fs::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return true;
-  const bool refused = ::fsync(file) != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT);
+/// Syncs a file, or the entries of a folder, to disk. \return 0, or the error number of an I/O error or a
+/// full disk. A file system without sync (some network file systems) counts as synced.
+int sync_to_disk(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (file < 0) return 0;
+  const int why = ::fsync(file) == 0 ? 0 : errno;
   ::close(file);
-  return !refused;
+  return why == EIO || why == ENOSPC || why == EDQUOT ? why : 0;
+}
+
+void require_on_disk(const fs::path& path) {
+  if (const int why = sync_to_disk(path); why != 0)
+    throw RunError(path.string() + ": it could not be written to disk (" + std::strerror(why) + ").");
+}
+
+/// Syncs all files and folders below a folder, and the folder. \throws RunError naming the first that fails
+void require_tree_on_disk(const fs::path& folder) {
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (!entry.is_symlink() && (entry.is_regular_file() || entry.is_directory()))
+      paths.push_back(entry.path());
+  // Start writing all files before the first sync waits; a folder of many frames is then written in one go
+  // rather than file by file.
+  for (const fs::path& path : paths)
+    if (const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW); file >= 0) {
+      (void)::sync_file_range(file, 0, 0, SYNC_FILE_RANGE_WRITE);
+      ::close(file);
+    }
+  for (const fs::path& path : paths) require_on_disk(path);
+  require_on_disk(folder);
 }
 
 /// Whether a new file may be placed at `name` in a folder: there is no such file or it is listed and
@@ -110,7 +133,7 @@ void AtomicPath::commit() {
     place_file(final_);
   open_ = false;
   forget_temporary(part_);
-  sync_to_disk(final_.parent_path());
+  (void)sync_to_disk(final_.parent_path());
 }
 
 void AtomicPath::commit_as(const fs::path& other_name) {
@@ -136,8 +159,7 @@ void AtomicPath::give_way(const fs::path& target, const std::string& obstacle) {
 }
 
 void AtomicPath::place_file(const fs::path& target) {
-  if (!sync_to_disk(part_))
-    throw RunError(part_.string() + ": it could not be written to disk (" + std::strerror(errno) + ").");
+  require_on_disk(part_);
   std::error_code ec;
   if (fs::exists(fs::symlink_status(target, ec)) &&
       (!fs::is_regular_file(target, ec) || !may_replace(target, product_)))
@@ -164,12 +186,14 @@ void AtomicPath::place_folder(const fs::path& target) {
     throw RunError(given_.string() + ": the finished output cannot be renamed to this path (" + ec.message() +
                    ").");
   };
+  require_tree_on_disk(part_);
   Manifest fresh = Manifest::of(part_, product_.name);
   std::error_code ec;
   const auto old = Manifest::read(target);
   if (!old) {
     // The target is absent or empty; anything else has appeared during the run.
     fresh.write(part_);
+    require_on_disk(part_);  // the manifest's name
     fs::rename(part_, target, ec);
     if (ec == std::errc::directory_not_empty || ec == std::errc::file_exists ||
         ec == std::errc::not_a_directory)
@@ -180,6 +204,7 @@ void AtomicPath::place_folder(const fs::path& target) {
   if (!product_.shared && only_listed(target, *old)) {
     // All files in it are ours: exchange the two folders in one step.
     fresh.write(part_);
+    require_on_disk(part_);
     if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) {
       remove_listed(part_, *old);
       return;
@@ -203,7 +228,12 @@ void AtomicPath::place_folder(const fs::path& target) {
     else if (old->unchanged(target, name))
       fs::remove(target / name, ec);
   }
+  // The new names must reach the disk before the manifest stops listing the old files.
+  std::set<fs::path> folders = {target};
+  for (const auto& [name, hashes] : fresh.files) folders.insert((target / name).parent_path());
+  for (const fs::path& folder : folders) require_on_disk(folder);
   fresh.write(target);
+  (void)sync_to_disk(target);
   fs::remove_all(part_, ec);
 }
 
@@ -222,6 +252,7 @@ std::string read_text_file(const fs::path& path, std::uintmax_t most) {
   const auto refuse = [&](const std::string& complaint) {
     throw InputError({path.string(), 0, 0, ""}, complaint);
   };
+  if (path.empty()) refuse("the name of a file to read is empty.");
   struct File {
     int number;
     ~File() {

@@ -1,8 +1,9 @@
 #pragma once
 /// \file
 /// Atomic output: write to a temporary name in the output's folder and rename at the end, so that an output
-/// is complete or absent. A file is synced to disk before the rename, so that this also applies after a power
-/// failure. output_rules.hpp states what an output may replace.
+/// is complete or absent. A file, or every file and folder of a folder output, is synced to disk before the
+/// rename, so that this also applies after a power failure. output_rules.hpp states what an output may
+/// replace.
 
 #include <cstdint>
 #include <filesystem>

@@ -33,11 +33,14 @@ struct ConfigSection::Shared {
 
 namespace {
 
-/// Name of a TOML type for error messages.
+/// Name of a TOML type for error messages, with its article.
 std::string kind_of(const toml::node& node) {
+  if (node.is_integer()) return "an integer";
+  if (node.is_floating_point()) return "a number with a decimal point";
+  if (node.is_array()) return "a list";
   std::ostringstream text;
   text << node.type();
-  return text.str();
+  return "a " + text.str();
 }
 
 }  // namespace
@@ -101,7 +104,7 @@ template <class T>
 std::optional<T> value_of(const toml::node* node, const Where& where, const char* wanted) {
   if (node == nullptr) return std::nullopt;
   std::optional<T> value = node->value_exact<T>();
-  if (!value) throw ConfigError(where, fmt::format("{} is needed, not a {}.", wanted, kind_of(*node)));
+  if (!value) throw ConfigError(where, fmt::format("{} is needed, not {}.", wanted, kind_of(*node)));
   return value;
 }
 }  // namespace
@@ -196,7 +199,7 @@ std::optional<std::string> ConfigSection::word(const std::string& key,
 ConfigSection ConfigSection::section(const std::string& key) const {
   const toml::node* node = has(key) ? find(shared_->table, full(key)) : nullptr;
   if (node != nullptr && !node->is_table())
-    throw ConfigError(where(key), fmt::format("a table is needed, not a {}.", kind_of(*node)));
+    throw ConfigError(where(key), fmt::format("a table is needed, not {}.", kind_of(*node)));
   return {shared_, full(key)};
 }
 
@@ -287,7 +290,10 @@ Config Config::from_text(const std::string& text, const std::string& name) {
 }
 
 Config Config::from_file(const std::filesystem::path& path) {
-  return from_text(read_text_file(path, kLargestConfig), path.string());
+  const std::string text = read_text_file(path, kLargestConfig);
+  if (text.find('\0') != std::string::npos)
+    throw InputError({.file = path.string()}, "is not a TOML file, because it holds zero bytes.");
+  return from_text(text, path.string());
 }
 
 namespace {

@@ -65,9 +65,9 @@ class ConfigSection {
 /// A whole configuration.
 class Config {
  public:
-  /// \throws InputError if the file cannot be read, is not a regular file or is larger than kLargestConfig;
-  /// ConfigError "file:line:column: …" if it is not TOML, or if tables and lists are nested more than 100
-  /// levels deep
+  /// \throws InputError if the file cannot be read, is not a regular file, contains zero bytes or is larger
+  /// than kLargestConfig; ConfigError "file:line:column: …" if it is not TOML, or if tables and lists are
+  /// nested more than 100 levels deep
   static Config from_file(const std::filesystem::path& path);
   static Config from_text(const std::string& text, const std::string& name);
 

@@ -27,6 +27,8 @@ std::string read_table_text(const std::filesystem::path& file) {
   const bool marked = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
   if (marked && text.find('\0') != std::string::npos)
     throw InputError({.file = file.string(), .key = {}}, "is UTF-16 text; save it as UTF-8.");
+  if (text.find('\0') != std::string::npos)
+    throw InputError({.file = file.string(), .key = {}}, "is not a text file, because it holds zero bytes.");
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {

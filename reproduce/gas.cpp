@@ -42,10 +42,10 @@ const std::vector<GasSize>& sizes() {
 
 Estimate estimate_of(const json& result) {
   Estimate e{.value = result["value"].get<double>(), .low = {}, .high = {}};
-  if (result.contains("interval")) {
-    e.low = result["interval"]["low"].get<double>();
-    e.high = result["interval"]["high"].get<double>();
-  }
+  const json interval = result.value("interval", json::object());
+  // An end that is not finite is null.
+  if (const json low = interval.value("low", json()); low.is_number()) e.low = low.get<double>();
+  if (const json high = interval.value("high", json()); high.is_number()) e.high = high.get<double>();
   return e;
 }
 
@@ -159,8 +159,8 @@ void Gas::read(Runs& runs) const {
       p.cycles = result.value("n_cycles", std::int64_t{0});
       p.contact_fraction = result.value("contact_fraction", 0.0);
       if (result.contains("until")) {
-        p.until = result["until"]["text"].get<std::string>();
-        p.precise = result["until"]["reached"].get<bool>();
+        p.until = result.at("until").at("text").get<std::string>();
+        p.precise = result.at("until").at("reached").get<bool>();
       }
       const json results = result.value("results", json::object());  // items() of a temporary would dangle
       for (const auto& [name, value] : results.items()) {

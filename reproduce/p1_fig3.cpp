@@ -174,7 +174,7 @@ struct Crystals {
         if (!result) continue;
         const json r = json::parse(*result).value("results", json::object());
         const json slips = r.value("slips", json::object());
-        if (!slips.contains("value")) continue;
+        if (!slips.value("value", json()).is_number()) continue;
         ++all.runs;
         all.slips += slips["value"].get<double>();
         all.eligible += slips.value("n", 0.0);

@@ -100,10 +100,12 @@ StrengthSweep strength_sweep_of(const std::string& start, const sweep::Schedule&
                  s_c = value_of(results, "s_c"), slips = value_of(results, "slips");
       if (!t_g || !s_b || !s_c) continue;
       Estimate temperature{*t_g, {}, {}};
-      if (const json& t = results["T_g"]; t.contains("interval")) {
-        temperature.low = t["interval"]["low"].get<double>();
-        temperature.high = t["interval"]["high"].get<double>();
-      }
+      const json interval = results.at("T_g").value("interval", json::object());
+      // An end that is not finite is null.
+      if (const json low = interval.value("low", json()); low.is_number())
+        temperature.low = low.get<double>();
+      if (const json high = interval.value("high", json()); high.is_number())
+        temperature.high = high.get<double>();
       runs.push_back({std::stod(curve.values.front()), temperature, *s_b, *s_c, slips.value_or(0),
                       slips ? results["slips"].value("n", 0.0) : 0});
     }

@@ -13,6 +13,7 @@
 #include "analysis/runs/pooling.hpp"
 #include "core/escape.hpp"
 #include "core/json_text.hpp"
+#include "core/json_view.hpp"
 #include "sim/scene/scene.hpp"
 #include "sweep/conditions.hpp"
 
@@ -121,7 +122,8 @@ std::vector<Group> groups_of(const json& points) {
     axes.erase("start.seed");
     const auto [place, is_new] = number.emplace(json_text(axes), groups.size());
     if (is_new) groups.push_back({axes, {}});
-    std::vector<Result> run = results_from_json(json_text(point["results"]));
+    std::vector<Result> run =
+        results_from_json(JsonView::parse(json_text(point["results"]), "the collected results"));
     std::erase_if(run, [](const Result& r) { return !r.shape.empty(); });
     groups[place->second].runs.push_back(std::move(run));
   }

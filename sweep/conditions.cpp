@@ -14,8 +14,8 @@ json number_or_null(const std::optional<double>& value) {
   return value ? json(*value) : json(nullptr);
 }
 
-std::optional<double> optional_number(const json& value) {
-  return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+std::optional<double> optional_number(const JsonView& value) {
+  return value.value().is_null() ? std::nullopt : std::optional(value.number());
 }
 
 }  // namespace
@@ -26,10 +26,10 @@ json conditions_json(const RunConditions& conditions) {
           {"start", conditions.start}};
 }
 
-RunConditions conditions_from_json(const json& conditions) {
+RunConditions conditions_from_json(const JsonView& conditions) {
   return {.n_l = optional_number(conditions.at("n_l")),
           .gamma = optional_number(conditions.at("gamma")),
-          .start = conditions.at("start").get<std::string>()};
+          .start = conditions.at("start").text()};
 }
 
 }  // namespace twincell::sweep

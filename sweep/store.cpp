@@ -10,8 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "analysis/observable/results.hpp"
 #include "core/atomic_file.hpp"
 #include "core/json_text.hpp"
+#include "core/json_view.hpp"
 #include "core/output_rules.hpp"
 #include "core/sha256.hpp"
 
@@ -33,12 +35,31 @@ std::string sum_of(nlohmann::json document) {
   return sum.hex();
 }
 
-/// Whether a document is the complete result of this point. Results of earlier versions have no checksum.
-bool is_sound(const nlohmann::json& document, const Point& point) {
-  if (!document.is_object() || !document.contains("id") || document["id"] != point.id) return false;
-  if (!document.contains("computed") || !document["computed"].is_object()) return false;
-  if (document.contains(kSum)) return document[kSum] == sum_of(document);
-  return document.contains("failed") || (document.contains("results") && document["results"].is_object());
+/// Checks that a document is the complete result of this point. Its readers rely on these keys and types.
+/// Results of earlier versions have no checksum. \throws InputError naming the key
+void require_result(const JsonView& result, const Point& point) {
+  if (const JsonView id = result.at("id"); id.text() != point.id)
+    id.refuse(fmt::format("is '{}', but the folder is that of point '{}'", id.text(), point.id));
+  const JsonView computed = result.at("computed");
+  (void)computed.members();
+  if (const auto seconds = computed.find("seconds")) (void)seconds->number_or_nan();
+  if (const auto sum = result.find(kSum); sum && sum->text() != sum_of(result.value()))
+    sum->refuse("does not fit the content");
+  if (const auto failed = result.find("failed"))
+    (void)failed->text();
+  else
+    (void)result.at("results");
+  if (const auto results = result.find("results")) (void)results_from_json(*results);
+  if (const auto answer = result.find("answer"); answer && !answer->value().is_null())
+    (void)answer->boolean();
+  if (const auto cycles = result.find("n_cycles")) (void)cycles->integer(0);
+  for (const char* key : {"contact_fraction", "rest_height"})
+    if (const auto number = result.find(key)) (void)number->number_or_nan();
+  if (const auto until = result.find("until")) {
+    (void)until->at("reached").boolean();
+    (void)until->at("text").text();
+  }
+  if (const auto stopped = result.find("stopped")) (void)stopped->text();
 }
 
 template <class Work>
@@ -96,11 +117,10 @@ std::optional<std::string> Store::result(const Point& point) const {
   std::error_code ec;
   if (!fs::exists(file, ec)) return std::nullopt;
   std::string text = read_text_file(file);
-  const auto document = nlohmann::json::parse(text, nullptr, false);
-  if (!is_sound(document, point))
-    throw InputError(
-        {file.string(), 0, 0, ""},
-        "the result is damaged; remove the file, and the same command computes the point again.");
+  require_result(JsonView::parse(text, file.string(),
+                                 "the result is damaged: remove the file, and the same command computes the "
+                                 "point again"),
+                 point);
   return text;
 }
 

@@ -31,6 +31,10 @@ const std::array kGroups = {
     Group{{"contact.wall.restitution", "contact.wall.gamma_n", "contact.wall.c_n"}, 1},
 };
 
+/// The quantities of the camera's covariance.
+constexpr std::array kOfCamera = {"camera.pixels_per_sigma", "camera.origin_px", "camera.rotation_deg",
+                                  "camera.distortion"};
+
 /// TOML literal "[15, 16]" or "15"; integers without a decimal point, "nan" for a missing number.
 std::string literal(const std::vector<double>& v, bool whole) {
   std::vector<std::string> items;
@@ -224,6 +228,11 @@ Included include_calibration(Config& config, const std::filesystem::path& config
   } catch (const InputError&) {
     throw InputError(table.where("from"), fmt::format("'{}' cannot be read.", out.file.string()));
   }
+  // The covariance is that of the measured camera. It does not apply if the configuration states one of its
+  // numbers itself.
+  if (std::none_of(kOfCamera.begin(), kOfCamera.end(),
+                   [&](const char* name) { return states(config, name); }))
+    out.camera = measured.camera;
   Config lower = Config::from_file(out.file);
   for (const Quantity& q : quantities()) {
     if (!measured.find(q.name) || !(includer == Includer::cell ? q.in_cell : q.in_scene)) continue;
@@ -241,10 +250,6 @@ Included include_calibration(Config& config, const std::filesystem::path& config
       out.taken.push_back(q.name);
     }
   }
-  const auto none = std::none_of(out.overridden.begin(), out.overridden.end(), [](const std::string& name) {
-    return name.starts_with("camera.") && name != "camera.frames_per_cycle" && name != "camera.first_phase";
-  });
-  if (none) out.camera = measured.camera;
   config.erase("calibration");
   return out;
 }

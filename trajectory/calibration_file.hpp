@@ -74,8 +74,7 @@ struct Included {
   std::filesystem::path file;                ///< empty: the configuration includes no file
   std::vector<std::string> taken;            ///< quantities that were copied into the configuration
   std::vector<std::string> overridden;       ///< quantities that the configuration sets itself
-  std::optional<MeasuredCovariance> camera;  ///< absent if the configuration overrides a camera quantity
-                                             ///< other than frames_per_cycle and first_phase
+  std::optional<MeasuredCovariance> camera;  ///< absent if the configuration states one of its quantities
 };
 
 /// Kind of configuration that includes a calibration.

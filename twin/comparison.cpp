@@ -7,7 +7,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "analysis/runs/pooling.hpp"
 #include "core/atomic_file.hpp"
+#include "core/json_view.hpp"
 #include "imaging/camera/noise_matched_camera.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/stack/representative_frames.hpp"
@@ -83,21 +85,24 @@ fs::path stack_behind(const ComparingOptions& options, const TrajectorySource& t
 /// Adds the camera's scale and the frames at the snapshots of an experiment.
 void show_frames(const TrajectoryInfo& info, const fs::path& stack, Run& run,
                  std::vector<std::string>& notes) {
-  const auto tracking = nlohmann::json::parse(info.tracking_json, nullptr, false);
-  if (!tracking.is_object() || !tracking.contains("camera"))
-    return;  // not made by `track`, or by an older version of it
+  if (info.tracking_json.empty()) return;  // not made by `track`
   double rotation_deg = 0, distortion = 0;
   try {
-    const auto& camera = tracking.at("camera");
-    run.show.camera = {.pixels_per_sigma = camera.at("pixels_per_sigma"),
-                       .origin_x = camera.at("origin_px").at(0),
-                       .origin_y = camera.at("origin_px").at(1),
-                       .width = camera.at("width_px"),
-                       .height = camera.at("height_px")};
-    rotation_deg = camera.value("rotation_deg", 0.0);
-    distortion = camera.value("distortion", 0.0);
-  } catch (const nlohmann::json::exception&) {
-    notes.push_back(run.name + ": the record of the camera is damaged, so its frames are not shown.");
+    const auto camera = JsonView::parse(info.tracking_json, run.name).find("camera");
+    if (!camera) return;  // an older version of `track`
+    constexpr double kLargest_px = 1e9;
+    const auto origin = camera->at("origin_px").elements(2);
+    run.show.camera = {.pixels_per_sigma = camera->at("pixels_per_sigma").number_in(1e-3, kLargest_px),
+                       .origin_x = origin[0].number_in(-kLargest_px, kLargest_px),
+                       .origin_y = origin[1].number_in(-kLargest_px, kLargest_px),
+                       .width = static_cast<int>(camera->at("width_px").integer(1, 1 << 30)),
+                       .height = static_cast<int>(camera->at("height_px").integer(1, 1 << 30))};
+    if (const auto turned = camera->find("rotation_deg")) rotation_deg = turned->number_in(-180, 180);
+    if (const auto bent = camera->find("distortion")) distortion = bent->number_in(-1, 1);
+  } catch (const InputError& e) {
+    run.show.camera.reset();
+    notes.push_back(
+        fmt::format("the record of the camera is damaged, so its frames are not shown: {}", e.what()));
     return;
   }
   if (stack.empty()) return;
@@ -121,6 +126,25 @@ void tell_apart(std::vector<Run>& runs, const Sides& sides) {
       const fs::path file = fs::absolute(sides.trajectories[i]->name());
       runs[i].name = (file.parent_path().filename() / file.filename()).string();
     }
+}
+
+/// \throws ConfigError if two runs of one side are the same run: their scatter would come out too small
+void refuse_repeated_runs(const std::vector<Run>& runs) {
+  for (const Side side : {Side::experiment, Side::simulation}) {
+    std::vector<std::vector<Result>> results;
+    std::vector<const Run*> of_side;
+    for (const Run& run : runs)
+      if (run.side == side) {
+        results.push_back(run.results);
+        of_side.push_back(&run);
+      }
+    const std::vector<std::size_t> first = repeated_runs(results);
+    for (std::size_t i = 0; i < first.size(); ++i)
+      if (first[i] != i)
+        throw ConfigError({.file = {}, .key = "--" + side_name(side)},
+                          fmt::format("{} and {} are the same run, to the last digit; give it only once.",
+                                      of_side[first[i]]->name, of_side[i]->name));
+  }
 }
 
 /// Temporary folder that is removed on destruction.
@@ -155,8 +179,8 @@ LikeCamera camera_of(const TrajectoryInfo& experiment, const fs::path& stack) {
   if (experiment.scale.pixels_per_sigma) camera.pixels_per_sigma = *experiment.scale.pixels_per_sigma;
   if (stack.empty()) return {camera, ", the camera's default noise"};
   const auto tracking = nlohmann::json::parse(experiment.tracking_json, nullptr, false);
-  const bool bright =
-      tracking.is_object() && tracking.value("/camera/bright"_json_pointer, nlohmann::json()) == true;
+  const nlohmann::json::json_pointer bright_key("/camera/bright");
+  const bool bright = tracking.contains(bright_key) && tracking.at(bright_key) == true;
   try {
     camera = with_noise_of(*open_frames(stack), camera.pixels_per_sigma, bright, camera);
   } catch (const InputError&) {  // show_frames() has already reported the missing frames
@@ -249,6 +273,7 @@ Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progr
   const Sides sides = read_sides(options);
   Comparison c;
   c.runs = analyse(sides, options, progress, notes, c.checks);
+  refuse_repeated_runs(c.runs);
   c.matches = match_runs(c.runs, options.tolerance);
   if (options.film) c.checks.filmed = film_matches(sides, options, c.matches, progress, notes, c.runs);
   limit_pictures(c.runs);

@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/json_view.hpp"
 #include "sweep/conditions.hpp"
 
 namespace twincell {
@@ -17,40 +18,44 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Conditions that are stored with a point or an onset. \param what "point ID" or "an onset", for messages
-const json& conditions_of(const json& row, const std::string& what, const std::string& file) {
-  if (!row.contains("conditions"))
-    throw InputError({.file = file, .key = "conditions"},
-                     fmt::format("{} does not state its N_l, Gamma and start: an earlier version collected "
-                                 "the sweep; collect it again with `twincell sweep collect`.",
-                                 what));
-  return row.at("conditions");
+/// Conditions that are stored with a point or an onset.
+RunConditions conditions_of(const JsonView& row) {
+  const auto conditions = row.find("conditions");
+  if (!conditions)
+    row.refuse(
+        "does not state its N_l, Gamma and start: an earlier version collected the sweep; collect it again "
+        "with `twincell sweep collect`");
+  return sweep::conditions_from_json(*conditions);
 }
 
-std::optional<double> number(const json& object, const char* key) {
-  return object.contains(key) && object[key].is_number() ? std::optional(object[key].get<double>())
-                                                         : std::nullopt;
+/// A member that may be absent or null.
+std::optional<double> number(const JsonView& object, const char* key) {
+  const auto member = object.find(key);
+  return member && !member->value().is_null() ? std::optional(member->number()) : std::nullopt;
+}
+
+/// Value of a result; nullopt if the point does not have it.
+std::optional<JsonView> value_of(const std::optional<JsonView>& results, const char* name) {
+  const auto result = results ? results->find(name) : std::nullopt;
+  auto value = result ? result->find("value") : std::nullopt;
+  return value && !value->value().is_null() ? value : std::nullopt;
 }
 
 /// Phase from the analysis, or from s_b and s_c if the plan's `results` omit the phase.
-BedPhase phase_of(const json& results) {
-  const auto value = [&](const char* name) {
-    return results.value(name, json::object()).value("value", json());
-  };
-  if (const json phase = value("phase"); phase.is_string()) return phase_named(phase.get<std::string>());
+BedPhase phase_of(const std::optional<JsonView>& results) {
+  if (const auto phase = value_of(results, "phase")) return phase_named(phase->text());
   const auto scalar = [&](const char* name) {
-    const json v = value(name);
-    return v.is_number() ? v.get<double>() : std::nan("");
+    const auto value = value_of(results, name);
+    return value ? value->number() : std::nan("");
   };
   return bed_phase(scalar("s_b"), scalar("s_c"));
 }
 
-void add_points(const json& document, const std::string& file, Comparison& comparison) {
-  for (const json& point : document.at("points")) {
-    const BedPhase phase = phase_of(point.value("results", json::object()));
+void add_points(const JsonView& document, Comparison& comparison) {
+  for (const JsonView& point : document.at("points").elements()) {
+    const BedPhase phase = phase_of(point.find("results"));
     if (phase == BedPhase::undetermined) continue;
-    const RunConditions at =
-        sweep::conditions_from_json(conditions_of(point, "point " + point.at("id").get<std::string>(), file));
+    const RunConditions at = conditions_of(point);
     if (!at.n_l || !at.gamma) continue;  // no place in the diagram: without gravity, for example
     comparison.sweep.push_back({.n_l = *at.n_l, .gamma = *at.gamma, .start = at.start, .phase = phase});
   }
@@ -61,18 +66,20 @@ bool is_gamma(const std::string& key) {
   return key == "drive.gamma" || key == "drive.peak_acceleration_g";
 }
 
-void add_onsets(const json& document, const std::string& file, Comparison& comparison) {
-  for (const json& onset : document.value("onsets", json::array())) {
-    const BedPhase phase = phase_named(onset.value("verdict", ""));
-    if (phase == BedPhase::undetermined || !is_gamma(onset.value("key", ""))) continue;
-    const json& at = conditions_of(onset, "an onset", file);
-    const std::optional<double> n_l = number(at, "n_l");
-    if (!n_l) continue;
+void add_onsets(const JsonView& document, Comparison& comparison) {
+  const auto onsets = document.find("onsets");
+  if (!onsets) return;
+  for (const JsonView& onset : onsets->elements()) {
+    const BedPhase phase = phase_named(onset.at("verdict").text());
+    const std::string key = onset.at("key").text();
+    if (phase == BedPhase::undetermined || !is_gamma(key)) continue;
+    const RunConditions at = conditions_of(onset);
+    if (!at.n_l) continue;
     comparison.boundaries.push_back({.side = Side::simulation,
-                                     .start = at.at("start").get<std::string>(),
+                                     .start = at.start,
                                      .onset = phase,
-                                     .n_l = *n_l,
-                                     .n_runs = onset.at("runs").get<std::size_t>(),
+                                     .n_l = *at.n_l,
+                                     .n_runs = static_cast<std::size_t>(onset.at("runs").integer(0)),
                                      .below = number(onset, "low"),
                                      .above = number(onset, "high"),
                                      .sweep = true,
@@ -83,16 +90,12 @@ void add_onsets(const json& document, const std::string& file, Comparison& compa
 }  // namespace
 
 void add_sweep(const fs::path& file, Comparison& comparison) {
-  const json document = json::parse(read_text_file(file), nullptr, false);
-  if (!document.is_object() || document.value("format", "") != "twincell sweep 1")
+  const JsonView document = JsonView::parse(read_text_file(file), file.string());
+  if (!document.value().is_object() || document.value().value("format", json()) != "twincell sweep 1")
     throw InputError({.file = file.string()},
                      "is not a sweep's collected results (\"format\": \"twincell sweep 1\").");
-  try {
-    add_points(document, file.string(), comparison);
-    add_onsets(document, file.string(), comparison);
-  } catch (const json::exception& e) {
-    throw InputError({.file = file.string()}, fmt::format("is damaged: {}.", e.what()));
-  }
+  add_points(document, comparison);
+  add_onsets(document, comparison);
 }
 
 }  // namespace twincell

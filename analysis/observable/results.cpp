@@ -9,6 +9,7 @@
 #include "core/atomic_file.hpp"
 #include "core/hdf5.hpp"
 #include "core/json_text.hpp"
+#include "core/json_view.hpp"
 
 namespace twincell {
 namespace {
@@ -100,33 +101,63 @@ void write_result(hid_t results, const Result& r) {
   if (!r.of_runs.empty()) h5::write_dataset(group.get(), "runs", r.of_runs.data(), {r.of_runs.size()});
 }
 
-Result from_json(const std::string& name, const nlohmann::json& j) {
-  if (j.contains("absent")) return absent_result(name, j["absent"], j.value("source", ""));
-  const auto numbers = [](const nlohmann::json& list) {
-    std::vector<double> values;
-    for (const auto& v : list) values.push_back(v.is_number() ? v.get<double>() : std::nan(""));
-    return values;
-  };
-  const nlohmann::json& value = j.at("value");
+/// Text of an optional member; empty if it is absent.
+std::string text_of(const JsonView& object, const char* key) {
+  const auto member = object.find(key);
+  return member ? member->text() : std::string();
+}
+
+std::vector<double> numbers_of(const JsonView& list) {
+  std::vector<double> values;
+  for (const JsonView& v : list.elements()) values.push_back(v.number_or_nan());
+  return values;
+}
+
+std::vector<std::size_t> shape_of(const JsonView& list, std::size_t count) {
+  std::vector<std::size_t> shape;
+  std::size_t product = 1;
+  for (const JsonView& extent : list.elements()) {
+    shape.push_back(static_cast<std::size_t>(extent.integer(0, 1LL << 31)));
+    if (shape.size() > 8 || (product *= std::max<std::size_t>(shape.back(), 1)) > (std::size_t{1} << 31))
+      list.refuse("is the shape of more values than any result has");
+  }
+  std::size_t values = 1;
+  for (const std::size_t extent : shape) values *= extent;
+  if (shape.empty() || values != count)
+    list.refuse(
+        fmt::format("is the shape of {} values, but the result has {}", shape.empty() ? 1 : values, count));
+  return shape;
+}
+
+Result from_json(const std::string& name, const JsonView& j) {
+  if (const auto why = j.find("absent")) {
+    if (why->text().empty()) why->refuse("is empty; a reason is needed");
+    return absent_result(name, why->text(), text_of(j, "source"));
+  }
+  const JsonView value = j.at("value");
+  const auto n = j.find("n");
   Result r{.name = name,
-           .values = value.is_array() ? numbers(value) : numbers({value}),
-           .shape = j.value("shape", std::vector<std::size_t>{}),
-           .unit = j.value("unit", ""),
-           .n = j.value("n", std::size_t{0}),
-           .n_of = j.value("n_of", ""),
-           .no_interval = j.value("no_interval", ""),
-           .convention = j.value("convention", ""),
-           .source = j.value("source", "")};
-  if (value.is_string()) {
-    r.text = value;
-    r.values.clear();
+           .unit = text_of(j, "unit"),
+           .n = n ? static_cast<std::size_t>(n->integer(0)) : 0,
+           .n_of = text_of(j, "n_of"),
+           .no_interval = text_of(j, "no_interval"),
+           .convention = text_of(j, "convention"),
+           .source = text_of(j, "source")};
+  if (value.value().is_string()) {
+    r.text = value.text();
+    if (r.text.empty()) value.refuse("is empty; a word is needed");
+  } else if (value.value().is_array()) {
+    r.values = numbers_of(value);
+    r.shape = shape_of(j.at("shape"), r.values.size());
+  } else {
+    r.values = {value.number_or_nan()};
   }
-  if (j.contains("interval")) {
-    const auto& i = j["interval"];
-    const auto ends = numbers({i.at("low"), i.at("high")});
-    r.interval = Interval{ends[0], ends[1], i.value("level", 0.95), i.value("method", "")};
+  if (const auto interval = j.find("interval")) {
+    const auto level = interval->find("level");
+    r.interval = Interval{interval->at("low").number_or_nan(), interval->at("high").number_or_nan(),
+                          level ? level->number_in(0, 1) : 0.95, text_of(*interval, "method")};
   }
-  if (j.contains("runs")) r.of_runs = numbers(j["runs"]);
+  if (const auto runs = j.find("runs")) r.of_runs = numbers_of(*runs);
   return r;
 }
 
@@ -167,10 +198,9 @@ std::string results_json(const std::vector<Result>& results) {
   return json_text(document);
 }
 
-std::vector<Result> results_from_json(const std::string& text) {
+std::vector<Result> results_from_json(const JsonView& document) {
   std::vector<Result> results;
-  const auto document = nlohmann::json::parse(text);
-  for (const auto& [name, j] : document.items()) results.push_back(from_json(name, j));
+  for (const auto& [name, j] : document.members()) results.push_back(from_json(name, j));
   return results;
 }
 

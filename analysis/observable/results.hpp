@@ -10,6 +10,8 @@
 
 namespace twincell {
 
+class JsonView;
+
 /// Text table: value, interval, unit and count of each scalar, then how each result is computed. For an array
 /// the table gives its shape and range.
 std::string results_text(const std::vector<Result>& results);
@@ -24,8 +26,10 @@ std::string results_text(const std::vector<Result>& results);
 /// NaN becomes null. Pooled scalars (pooling.hpp) also have "runs", the value of each run.
 std::string results_json(const std::vector<Result>& results);
 
-/// Inverse of results_json, in alphabetical order of the names. \pre `text` is the output of results_json
-std::vector<Result> results_from_json(const std::string& text);
+/// Inverse of results_json, in alphabetical order of the names. "value" or "absent" is required, with an
+/// array also "shape". \throws InputError as JsonView, also for a shape that does not fit the number of
+/// values
+std::vector<Result> results_from_json(const JsonView& results);
 
 /// Writes an HDF5 file with one group per result below /results, and the text /provenance. A group has the
 /// dataset `value` and the members of results_json as attributes, or the attribute `absent`. The file appears

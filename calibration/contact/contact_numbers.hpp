@@ -27,7 +27,7 @@ inline SpringDashpot spring_of(double restitution, double contact_time, double m
   require_range({.file = {}, .key = "restitution"}, restitution, 0, 1, true);
   require_range({.file = {}, .key = "contact time"}, contact_time, 0, {}, true);
   require_range({.file = {}, .key = "m_eff"}, m_eff, 0, {}, true);
-  const double w = std::numbers::pi / contact_time, beta = -std::log(restitution) / contact_time;
+  const double w = std::numbers::pi / contact_time, beta = std::log(1 / restitution) / contact_time;
   return {.k_n = m_eff * (w * w + beta * beta), .gamma_n = 2 * beta, .c_n = 2 * beta * m_eff};
 }
 

@@ -158,6 +158,29 @@ void compare_omega(DriveCheck& check, const std::string& what, const DriveFit& s
                     error, stated);
 }
 
+/// The period is known in frames, without a frame rate and a scale.
+void compare_period(DriveCheck& check, const std::string& what, const DriveFit& seen, int stated) {
+  if (stated <= 0 || !check.disagreement.empty()) return;
+  if (std::abs(seen.period - stated) > std::max(kErrors * seen.period_error, kShare * stated))
+    check.disagreement = fmt::format(
+        "{} moves with a period of {:.4g} +- {:.2g} frames, but the cell states {} frames per cycle", what,
+        seen.period, seen.period_error, stated);
+}
+
+/// Motion of the plate. A fit that begins at a wrong number of frames per cycle may fail, so that a second
+/// one searches for the period. It needs the stated position of the plate, because without the plate in the
+/// picture it would find a period in the noise of another edge.
+DriveFit motion_of_plate(const CellDescription& cell, const StackEdges& edges) {
+  try {
+    return plate_in_picture(cell, edges).second;
+  } catch (const InputError&) {
+    if (!cell.phase_lock.locked() || !cell.origin) throw;
+    CellDescription free = cell;
+    free.phase_lock = {};
+    return plate_in_picture(free, edges).second;
+  }
+}
+
 }  // namespace
 
 void record(const DriveCheck& check, TrajectoryInfo& info) {
@@ -172,7 +195,7 @@ void record(const DriveCheck& check, TrajectoryInfo& info) {
 }
 
 DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::path& stack, int threads,
-                          Progress& progress) {
+                          Progress& progress, bool fixed_phases) {
   DriveCheck check;
   const auto drive = cell.drive();
   if (!drive || !cell.pixels_per_sigma) {
@@ -189,12 +212,13 @@ DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::pa
                                             diameter_for_edges(stack, cell.bright, scale), threads, progress);
   check.frame_rate_hz = frame_rate_of(cell.frame_rate_hz, edges, stack);
   try {
-    const DriveFit seen = plate_in_picture(cell, edges).second;
+    const DriveFit seen = motion_of_plate(cell, edges);
     check.by = "plate";
     check.amplitude = seen.amplitude / scale;
     check.amplitude_error = seen.amplitude_error / scale;
     const std::string what = "the plate in the frames";
     compare_amplitude(check, what, drive->amplitude, kShare, scale);
+    if (fixed_phases) compare_period(check, what, seen, cell.phase_lock.frames_per_cycle);
     compare_omega(check, what, seen, drive->omega, cell.scale.t0_s());
   } catch (const InputError& e) {  // no plate in the picture, or it does not move
     check.not_comparable = e.what();

@@ -40,11 +40,12 @@ struct DriveCheck {
 void record(const DriveCheck& check, TrajectoryInfo& info);
 
 /// Compares the stated drive with the plate's edge in the first three cycles, at least 40 frames: the
-/// amplitude, and omega if frame rate and scale are known. A difference counts if it exceeds five standard
-/// errors, 3 % and 0.3 px (omega: five standard errors and 3 %). \pre the cell states drive and scale,
-/// otherwise nothing is compared
+/// amplitude, the period in frames, and omega if frame rate and scale are known. A difference counts if it
+/// exceeds five standard errors, 3 % and 0.3 px (period and omega: five standard errors and 3 %). \param
+/// fixed_phases whether the phases of the frames follow from the stated frames per cycle; otherwise the
+/// period is not compared \pre the cell states drive and scale, otherwise nothing is compared
 DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::path& stack, int threads,
-                          Progress& progress);
+                          Progress& progress, bool fixed_phases = true);
 
 /// Compares the stated drive with the lower surface of the bed while the bed rests on the plate
 /// (bed_drive.hpp), for films that do not show the plate. A difference of amplitude counts if it exceeds five

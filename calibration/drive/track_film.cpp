@@ -31,7 +31,7 @@ TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>()>& open
   if (!options.trust_stated_drive && plan.info.drive) {
     if (!film.empty()) {
       const auto edge = progress("the plate's edge");
-      check = check_by_plate(cell, film, options.threads, *edge);
+      check = check_by_plate(cell, film, options.threads, *edge, source.method == PhaseMethod::fixed);
     }
     if (check.by.empty() && cell.pixels_per_sigma) {
       BedSteps bed(plan.info);

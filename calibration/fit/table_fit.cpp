@@ -29,6 +29,9 @@ std::vector<DataPoint> points_of(const Table& table, FitColumns& o) {
       throw InputError({.file = table.file, .key = {}}, "a fit needs two columns; the table has one");
     o.y = table.names[1];
   }
+  if (o.x == o.y)
+    throw ConfigError({.file = {}, .key = "--y"},
+                      fmt::format("names the column '{}', which is also that of --x.", o.y));
   const auto &x = table.column(o.x), &y = table.column(o.y);
   std::vector<DataPoint> points(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) points[i] = {x[i], y[i], 0, 0};

@@ -224,6 +224,7 @@ Rendered render(const TrajectorySource& trajectory, const CameraOptions& options
     }
     progress.update(static_cast<std::int64_t>(std::min(n, from + batch)), static_cast<std::int64_t>(n));
   }
+  if (n == 0) throw InputError({.file = trajectory.name()}, "the trajectory contains no frame.");
   if (done.frames == 0) throw RunError("every frame was dropped: nothing is left to write.");
   // Descriptions: CELL.toml and CAMERA.toml, with which the stack can be tracked like an experiment.
   if (place) {

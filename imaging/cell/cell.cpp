@@ -19,6 +19,7 @@ PixelFrame CellDescription::pixel_frame(cv::Size picture, double scale_px, Pixel
 
 CellDescription read_cell(const std::filesystem::path& path, const std::vector<std::string>& assignments) {
   constexpr std::int64_t kMostPhases = 100000;
+  constexpr double kLongest = 1e6;  // sigma, as in a scene; a trajectory file holds no longer cells
   Config config = path.empty() ? Config::from_text("", "the command line") : Config::from_file(path);
   // Assignments are applied before units are converted, so that an assigned spelling replaces another
   // spelling of the same quantity in the file.
@@ -32,8 +33,11 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
 
   const ConfigSection camera = root.section("camera");
   cell.pixels_per_sigma = camera.number_in("pixels_per_sigma", 1, 1e4);
-  if (const auto origin = camera.numbers("origin_px", 2))
+  if (const auto origin = camera.numbers("origin_px", 2)) {
+    constexpr double kFarthest_px = 1e6;
+    for (const double x : *origin) require_range(camera.where("origin_px"), x, -kFarthest_px, kFarthest_px);
     cell.origin = PixelPoint{(*origin)[0], (*origin)[1]};
+  }
   cell.phase_lock.frames_per_cycle =
       static_cast<int>(camera.integer_in("frames_per_cycle", 0, kMostPhases).value_or(0));
   cell.phase_lock.first_phase =
@@ -50,8 +54,8 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
   for (const auto& [section, key] : {std::pair{box, "depth"}, std::pair{root, "beads"}})
     if (section.has(key))
       throw ConfigError(section.where(key), "is a key of a scene; a cell description does not have it.");
-  cell.width = box.number_in("width", 0, std::nullopt, true);
-  cell.height = box.number_in("height", 0, std::nullopt, true);
+  cell.width = box.number_in("width", 0, kLongest, true);
+  cell.height = box.number_in("height", 0, kLongest, true);
   if (const auto sides = box.word("sides", {"walls", "periodic", "open"}))
     cell.sides = *sides == "walls"      ? Boundary::wall
                  : *sides == "periodic" ? Boundary::periodic
@@ -62,7 +66,13 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
     cell.side_tilt = {(*tilt)[0], (*tilt)[1]};
   }
 
-  cell.drive_spec = read_drive_spec(root.section("drive"));
+  const ConfigSection drive = root.section("drive");
+  cell.drive_spec = read_drive_spec(drive);
+  // The signs are checked here as well as in solve_drive(), which does not know the lines of the file.
+  constexpr double kLargest = 1e8;
+  for (const char* key : {"amplitude", "gamma", "k_m", "peak_velocity"})
+    (void)drive.number_in(key, 0, kLargest);
+  for (const char* key : {"omega", "frequency"}) (void)drive.number_in(key, 0, kLargest, true);
   const ConfigSection scale = root.section("scale");
   cell.scale.sigma_m = scale.number_in("sigma_m", 0, std::nullopt, true);
   cell.scale.gravity_m_s2 = scale.number_in("gravity_m_s2", 0, std::nullopt, true);

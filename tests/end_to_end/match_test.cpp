@@ -76,6 +76,77 @@ fs::path with_amplitude(const fs::path& stack, const std::string& line_of_amplit
   return path;
 }
 
+/// Drives of a cell in laboratory units, for a film with A = 0.9 sigma and omega = 1/t0, of beads of 2 mm: t0
+/// = sqrt(2 mm / 9.81 m/s^2) = 14.28 ms, so that f = 1/(2 pi t0) = 11.15 Hz.
+const double kT0_s = std::sqrt(0.002 / 9.81), kHertz = 1 / (2 * std::acos(-1.0) * kT0_s);
+struct StatedDrive {
+  std::string lines;     ///< of the table [drive]
+  std::string disagree;  ///< what is said of it; empty: it agrees
+};
+std::vector<StatedDrive> stated_drives() {
+  const auto drive = [](const std::string& amplitude, const char* key, double value) {
+    return amplitude + "\n" + key + " = " + fmt::format("{:.12g}", value) + "\n";
+  };
+  const std::string a = "amplitude_sigma = 0.9";
+  return {{drive(a, "frequency_hz", kHertz), ""},
+          {drive("amplitude_mm = 1.8", "omega_rad_s", 1 / kT0_s), ""},
+          {drive(a, "frequency_hz", 1.02 * kHertz), ""},
+          {drive(a, "frequency_hz", 1.06 * kHertz), "states 1.06"},
+          {drive(a, "frequency_hz", 2 * kHertz), "states 2"},
+          {drive(a, "frequency_hz", kHertz / 2), "states 0.5"},
+          {drive(a, "frequency_per_t0", kHertz), "states 70.04"},                   // hertz, but per t0
+          {drive(a, "frequency_hz", 1 / (2 * std::acos(-1.0))), "states 0.01428"},  // per t0, but hertz
+          {drive(a, "omega_rad_s", kHertz), "states 0.1592"},                       // hertz, but rad/s
+          {drive("amplitude_mm = 0.9", "frequency_hz", kHertz), "A = "}};           // sigma, but millimetres
+}
+
+/// CELL.toml of a stack in laboratory units, with the frame rate and another drive.
+fs::path laboratory_cell(const fs::path& stack, const fs::path& path, const std::string& drive) {
+  std::ifstream in(stack / "CELL.toml");
+  std::ofstream out(path);
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("amplitude", 0) == 0 || line.rfind("omega", 0) == 0) continue;
+    if (line.rfind("width", 0) == 0) line.replace(0, 5, "width_sigma");
+    if (line.rfind("height", 0) == 0) line.replace(0, 6, "height_sigma");
+    out << line << "\n";
+    if (line == "[camera]") out << "frame_rate_hz = " << fmt::format("{:.12g}", 20 * kHertz) << "\n";
+    if (line == "[drive]") out << drive;
+  }
+  out << "[scale]\nsigma_mm = 2.0\ngravity_m_s2 = 9.81\n";
+  return path;
+}
+
+/// `track` reports that a drive does not fit the film, and keeps it; `compare` and `match` refuse it.
+void expect_the_drive_checked(const fs::path& stack, const StatedDrive& stated, const std::string& by) {
+  SCOPED_TRACE(by + ": " + stated.lines);
+  const TemporaryFolder folder;
+  const fs::path cell = laboratory_cell(stack, folder / "cell.toml", stated.lines);
+  const Ran tracked = run_program({"track", stack, "--cell", cell, "-o", folder / "kept.h5"});
+  ASSERT_EQ(tracked.code, 0) << tracked.err;
+  const Ran compared = run_program(
+      {"compare", "--experiment", folder / "kept.h5", "-o", folder / "report", "-q", "--no-film"});
+  if (stated.disagree.empty()) {
+    EXPECT_EQ(tracked.err.find("does not fit the film"), std::string::npos) << tracked.err;
+    EXPECT_EQ(compared.code, 0) << compared.err;
+    return;
+  }
+  const Ran matched = run_program({"match", stack, cell, "-o", folder / "twin", "--twins", "1", "--no-film",
+                                   "--set", "time.steps_per_contact=20", "-q"});
+  EXPECT_NE(tracked.err.find("does not fit the film"), std::string::npos) << tracked.err;
+  EXPECT_EQ(compared.code, 2) << compared.err;
+  EXPECT_EQ(matched.code, 2) << matched.err;
+  EXPECT_FALSE(fs::exists(folder / "report"));
+  EXPECT_FALSE(fs::exists(folder / "twin/experiment.h5"));
+  for (const std::string& said : {tracked.err, compared.err, matched.err}) {
+    EXPECT_NE(said.find(by), std::string::npos) << said;
+    EXPECT_NE(said.find(stated.disagree), std::string::npos) << said;
+    EXPECT_NE(said.find("--trust-stated-drive"), std::string::npos) << said;
+    if (const auto omega = said.find("omega = "); stated.disagree != "A = ") {
+      ASSERT_NE(omega, std::string::npos) << said;
+      EXPECT_NEAR(std::stod(said.substr(omega + 8)), 1, 0.01) << said;
+    }
+  }
+}
 }  // namespace
 
 TEST(Match, GivesTheTwinOfAFilmedCell) {
@@ -230,6 +301,60 @@ TEST(Match, AStatedDriveIsHeldAgainstTheBedWhereThePlateIsNotInThePicture) {
     EXPECT_EQ(unknown.code, 3) << unknown.err;
     EXPECT_NE(unknown.err.find("cannot be seen on the plate"), std::string::npos) << unknown.err;
   }
+}
+
+TEST(Match, AStatedFrequencyIsHeldAgainstThePlate) {
+  for (const StatedDrive& stated : stated_drives())
+    expect_the_drive_checked(kStack, stated, "the plate in the frames");
+}
+
+TEST(Match, ADriveInLaboratoryUnitsIsHeldAgainstTheBed) {
+  const TemporaryFolder folder;
+  const fs::path stack = film_above_plate(folder, 0.9, 1);
+  const auto all = stated_drives();
+  for (const std::size_t k : {0U, 9U}) expect_the_drive_checked(stack, all[k], "the bed on its plate");
+}
+
+// 20 frames per cycle are true. Neither a frame rate nor a scale is needed to see another number.
+TEST(Match, StatedFramesPerCycleAreHeldAgainstThePlate) {
+  for (const int stated : {10, 40, 21}) {
+    const TemporaryFolder folder;
+    const fs::path cell = folder / "cell.toml";
+    std::ifstream in(kStack / "CELL.toml");
+    std::ofstream out(cell);
+    for (std::string line; std::getline(in, line);)
+      out << (line.rfind("frames_per_cycle", 0) == 0 ? "frames_per_cycle = " + std::to_string(stated) : line)
+          << "\n";
+    out.close();
+    const Ran tracked = run_program({"track", kStack, "--cell", cell, "-o", folder / "kept.h5"});
+    EXPECT_EQ(tracked.code, 0) << tracked.err;
+    const Ran compared =
+        run_program({"compare", "--experiment", folder / "kept.h5", "-o", folder / "report", "-q"});
+    const Ran matched =
+        run_program({"match", kStack, cell, "-o", folder / "twin", "--twins", "1", "--no-film", "-q"});
+    EXPECT_EQ(compared.code, 2) << compared.err;
+    EXPECT_EQ(matched.code, 2) << matched.err;
+    for (const std::string& said : {tracked.err, compared.err, matched.err}) {
+      const auto period = said.find("a period of ");
+      ASSERT_NE(period, std::string::npos) << said;
+      EXPECT_NEAR(std::stod(said.substr(period + 12)), 20, 0.1) << said;
+      EXPECT_NE(said.find("states " + std::to_string(stated) + " frames per cycle"), std::string::npos)
+          << said;
+    }
+  }
+}
+
+TEST(Match, AMisstatedFrequencyMayBeTrusted) {
+  const TemporaryFolder folder;
+  const fs::path cell = laboratory_cell(kStack, folder / "cell.toml", stated_drives()[4].lines);
+  const Ran tracked = run_program({"track", kStack, "--cell", cell, "-o", folder / "kept.h5"});
+  ASSERT_EQ(tracked.code, 0) << tracked.err;
+  const Ran compared = run_program({"compare", "--experiment", folder / "kept.h5", "-o", folder / "report",
+                                    "-q", "--no-film", "--trust-stated-drive"});
+  EXPECT_EQ(compared.code, 0) << compared.err;
+  const Ran matched = run_program({"match", kStack, cell, "-o", folder / "twin", "--twins", "1", "--no-film",
+                                   "--set", "time.steps_per_contact=20", "-q", "--trust-stated-drive"});
+  EXPECT_EQ(matched.code, 0) << matched.err;
 }
 
 TEST(Match, CompareChecksADriveThatNoTrackingHasChecked) {

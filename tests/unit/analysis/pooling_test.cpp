@@ -9,6 +9,7 @@
 
 #include "analysis/observable/results.hpp"
 #include "core/error.hpp"
+#include "core/json_view.hpp"
 #include "tests/support/validation.hpp"
 
 namespace twincell {
@@ -160,7 +161,7 @@ TEST(Results, ComeBackFromJson) {
                                  Result{.name = "phase", .text = "bouncing", .n = 3, .n_of = "cycles"},
                                  Result{.name = "s_j", .values = {1, NAN, 3, 4}, .shape = {2, 2}}};
   const std::string text = results_json(results);
-  EXPECT_EQ(results_json(results_from_json(text)), text);
+  EXPECT_EQ(results_json(results_from_json(JsonView::parse(text, "results.json"))), text);
 }
 
 }  // namespace twincell

@@ -48,7 +48,7 @@ TEST(SweepConditions, ARunStoresWhereItStands) {
   const Plan plan = read_plan_text(kPlan, "plan.toml");
   const Point point = make_point(plan, combinations(plan.axes).front(), {}, 0);
   const std::string result = run_point(plan, point, {}, Progress::none());
-  const RunConditions at = conditions_from_json(json::parse(result).at("conditions"));
+  const RunConditions at = conditions_from_json(JsonView::parse(result, "result").at("conditions"));
   EXPECT_DOUBLE_EQ(at.n_l.value(), 3);
   EXPECT_DOUBLE_EQ(at.gamma.value(), 1.5);
   EXPECT_EQ(at.start, "crystal_a");
@@ -70,10 +70,10 @@ TEST(SweepConditions, AnEarlierResultIsCompletedFromItsScene) {
 TEST(SweepConditions, AbsentNumbersAreNull) {
   const json absent = conditions_json({.n_l = {}, .gamma = {}, .start = "table"});
   EXPECT_TRUE(absent["n_l"].is_null() && absent["gamma"].is_null());
-  const RunConditions back = conditions_from_json(absent);
+  const RunConditions back = conditions_from_json(JsonView::parse(absent.dump(), "absent"));
   EXPECT_FALSE(back.n_l || back.gamma);
   EXPECT_EQ(back.start, "table");
-  EXPECT_THROW((void)conditions_from_json(json{{"n_l", 1}}), json::exception);
+  EXPECT_THROW((void)conditions_from_json(JsonView::parse(R"({"n_l": 1})", "partial")), InputError);
 }
 
 }  // namespace

@@ -135,6 +135,28 @@ TEST(CalibrationFile, ACellTakesWhatItDoesNotState) {
             (std::vector<std::string>{"camera.pixels_per_sigma", "drive.amplitude"}));
 }
 
+// The covariance belongs to the four numbers of the camera's map, not to the phases of the frames.
+TEST(CalibrationFile, TheCovarianceHoldsUntilANumberOfItsOwnIsReplaced) {
+  const TemporaryFolder folder;
+  Calibration c = some();
+  c.put(
+      {.name = "camera.origin_px", .value = {1, 2}, .standard_error = {0.1, 0.1}, .method = {}, .data = {}});
+  c.put(number("camera.first_phase", 3, 0));
+  c.put(number("camera.phase_offset", 0.25, 0.01));
+  c.camera = MeasuredCovariance{{"a", "b", "c", "d", "e"}, std::vector<double>(25, 0.5)};
+  put_file(folder / "c.toml", calibration_text(c, ""));
+  const auto keeps = [&](const std::string& line) {
+    put_file(folder / "CELL.toml", "[camera]\n" + line + "\n[calibration]\nfrom = \"c.toml\"\n");
+    return read_cell(folder / "CELL.toml").included.camera.has_value();
+  };
+  for (const char* other :
+       {"", "phase_offset = 0.1", "frames_per_cycle = 20", "first_phase = 1", "bright = true"})
+    EXPECT_TRUE(keeps(other)) << other;
+  for (const char* own : {"pixels_per_sigma = 12.0", "origin_px = [5.0, 6.0]", "distortion = 0.001",
+                          "rotation_deg = 0.3"})  // the file measures no rotation, but its covariance has one
+    EXPECT_FALSE(keeps(own)) << own;
+}
+
 TEST(CalibrationFile, ASceneTakesContactsOverItsPreset) {
   const TemporaryFolder folder;
   put_file(folder / "c.toml", calibration_text(some(), ""));
