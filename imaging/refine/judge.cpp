@@ -48,17 +48,47 @@ void forbid_overlaps(std::vector<Detection>& beads, double max_overlap) {
     if (beads[c.better].verdict == Verdict::bead) beads[c.lesser].verdict = Verdict::overlaps;
 }
 
+/// Number of the smallest values that are a population of their own; 0 if none are. Below an exponential tail
+/// of scale s, the gaps above the i smallest values, times i, are independent and exponential with scale s
+/// (Renyi, Acta Math. Hung. 4, 191 (1953)). So with e the sum of i times gap over the m gaps between gap k
+/// and the median, gap k exceeds g with the probability (1 + k g/e)^-m. Tails of log-concave distributions
+/// are lighter. The gap is accepted if this is below kFalseAlarm/(k (k + 1)), of which the sum over all k is
+/// kFalseAlarm. \param sorted ascending; \param limit only values below it may be split off
+std::size_t separate_population(const std::vector<double>& sorted, double limit) {
+  constexpr double kFalseAlarm = 1e-3;   // per frame
+  constexpr double kLeastScale = 0.005;  // as real pictures have
+  const std::size_t middle = sorted.size() / 2;
+  std::size_t split = 0;
+  double sum = 0;
+  for (std::size_t k = middle; k > 0; --k) {
+    const auto m = static_cast<double>(middle - k), below = static_cast<double>(k);
+    const double gap = below * (sorted[k] - sorted[k - 1]);
+    if (sorted[k - 1] < limit && split == 0) {
+      const double x = gap / std::max(sum, kLeastScale * std::max(1.0, m));
+      if (std::pow(1 + x, -m) * below * (below + 1) < kFalseAlarm) split = k;
+    }
+    sum += gap;
+  }
+  return split;
+}
+
 void flag_tracers(std::vector<Detection>& beads, double below) {
   if (beads.empty()) return;
   std::vector<double> interior;
   interior.reserve(beads.size());
   for (const Detection& b : beads) interior.push_back(b.interior);
-  const double typical = upper_median(interior), limit = below * typical;
+  const double typical = upper_median(interior);
+  double limit = below * typical;
+  std::vector<double> sorted = interior;
+  std::sort(sorted.begin(), sorted.end());
+  // The limit lies below the other beads, and in or above the gap.
+  const std::size_t split = separate_population(sorted, limit);
+  if (split > 0) limit = std::min(limit, sorted[split]);
   for (double& v : interior) v = std::abs(v - typical);
   constexpr double kLeastScatter = 0.005;
   const double scatter = std::max(kLeastScatter, 1.4826 * upper_median(std::move(interior)));
   for (Detection& b : beads) {
-    b.tracer = b.interior < limit;
+    b.tracer = split > 0 && b.interior < limit;
     b.tracer_margin = std::abs(b.interior - limit) / scatter;
   }
 }

@@ -15,7 +15,7 @@ struct JudgeOptions {
   double min_interior = 0.35;          ///< median darkness inside R/2
   double min_score = 0.5;              ///< Detection::score
   double max_overlap = 0.25;  ///< largest overlap of two discs, in radii; beyond it the worse is dropped
-  double tracer_below = 0.8;  ///< a bead is a tracer if interior is below this fraction of the median
+  double tracer_below = 0.8;  ///< a tracer's interior is below this fraction of the median
 };
 
 /// The candidates, sorted into beads and rejected discs.
@@ -25,8 +25,10 @@ struct Judged {
 };
 
 /// Rejects candidates that cannot be an opaque disc (wrong radius, bright inside, unexplained ring, overlap
-/// with a better one) and centres outside the frame. Flags tracers and discs that are cut by the frame. Pure.
-/// \param width, height of the frame, px
+/// with a better one) and centres outside the frame. Flags discs that are cut by the frame, and tracers:
+/// beads with interiors below tracer_below of the median, if a gap separates them from the rest that one
+/// population with a log-concave distribution shows in at most one of a thousand frames. Pure. \param width,
+/// height of the frame, px
 Judged judge(std::vector<Detection> candidates, double radius_px, int width, int height,
              const JudgeOptions& options);
 

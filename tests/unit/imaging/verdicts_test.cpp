@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "imaging/benchmark/picture.hpp"
 #include "imaging/refine/judge.hpp"
@@ -27,6 +29,53 @@ Verdict judged(const Detection& b) {
   const Judged j = judge({b}, 7.5, 200, 100, {});
   EXPECT_EQ(j.beads.size() + j.dropped.size(), 1U);
   return (j.beads.empty() ? j.dropped : j.beads).at(0).verdict;
+}
+
+/// Number of tracers among beads with these interiors.
+std::size_t tracers(const std::vector<double>& interiors) {
+  std::vector<Detection> beads;
+  for (std::size_t k = 0; k < interiors.size(); ++k) {
+    beads.push_back(good(20 + 20 * static_cast<double>(k), 50));
+    beads.back().interior = interiors[k];
+  }
+  const int width = 40 + 20 * static_cast<int>(interiors.size());
+  const Judged j = judge(beads, 7.5, width, 100, {});
+  EXPECT_EQ(j.beads.size(), interiors.size());
+  return static_cast<std::size_t>(
+      std::count_if(j.beads.begin(), j.beads.end(), [](const Detection& b) { return b.tracer; }));
+}
+
+// One population: at most one frame in a thousand has tracers, as documented. The frames have the scatter of
+// translucent discs, so that many beads lie below 0.8 of the median; the exponential tail is the worst case.
+TEST(Judge, OnePopulationHasNoTracers) {
+  constexpr int kFrames = 4000, kBeads = 200;
+  for (const bool exponential : {false, true}) {
+    std::mt19937_64 random(exponential ? 2 : 1);
+    int alarms = 0, beyond = 0;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      std::vector<double> interiors;
+      for (int k = 0; k < kBeads; ++k) {
+        const double off = exponential ? std::exponential_distribution<double>(20)(random)
+                                       : std::abs(std::normal_distribution<double>(0, 0.1)(random));
+        interiors.push_back(std::max(0.36, 0.95 + (k % 2 == 0 ? off : -off)));
+        beyond += interiors.back() < 0.76 ? 1 : 0;
+      }
+      alarms += tracers(interiors) > 0 ? 1 : 0;
+    }
+    EXPECT_GT(beyond, kFrames);            // the old rule, 0.8 of the median, flagged these
+    EXPECT_LE(alarms, 10) << exponential;  // 4 expected at most, and 3 standard deviations
+  }
+}
+
+TEST(Judge, TwoPopulationsAreTold) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (const std::size_t few : {1U, 5U, 40U}) {
+    std::vector<double> interiors;
+    for (std::size_t k = 0; k < 100; ++k)
+      interiors.push_back((k < few ? 0.55 : 0.95) + 0.02 * normal(random));
+    EXPECT_EQ(tracers(interiors), few);
+  }
 }
 
 TEST(Judge, OneBeadOneVerdict) {

@@ -1,0 +1,148 @@
+// A zoo of pictures as found in papers on shaken and sheared beads, located without any option (kinds.hpp,
+// painter.hpp). Each picture has a floor: what the locator reached when the line was written. A picture that
+// fails is listed as failing, and the list must be right in both directions.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/in_parallel.hpp"
+#include "imaging/benchmark/score.hpp"
+#include "imaging/settings/configure_locator.hpp"
+#include "imaging/track/locate_stack.hpp"
+#include "imaging/track/overlay.hpp"
+#include "tests/zoo/imaging/kinds.hpp"
+
+namespace twincell::zoo {
+namespace {
+
+constexpr double kGoal = 0.99;   // of recall and precision
+constexpr double kSame = 0.005;  // a bead or two: compilers round differently
+constexpr std::array kDiameters = {8.0, 14.0, 20.0, 40.0};
+
+/// What was reached in a picture of each of kDiameters. Both above kGoal: the picture passes, and must not
+/// get worse. Otherwise it fails, and the mark must be changed when it passes.
+struct Mark {
+  double recall, precision, rms_px;
+};
+const std::map<std::string, std::array<Mark, 4>> kMarks = {
+    {"opaque", {{{1, 1, 0.014}, {1, 1, 0.01}, {1, 1, 0.008}, {1, 1, 0.005}}}},
+    {"translucent", {{{0, 1, 0}, {1, 1, 0.015}, {1, 1, 0.01}, {1, 1, 0.005}}}},
+    {"clear", {{{1, 1, 0.012}, {1, 1, 0.008}, {1, 1, 0.007}, {1, 1, 0.004}}}},
+    {"steel", {{{1, 1, 0.554}, {1, 1, 0.674}, {1, 1, 0.693}, {1, 1, 0.794}}}},
+    {"photoelastic", {{{0.303, 1, 0.686}, {0.586, 1, 0.203}, {0.688, 1, 0.207}, {0.681, 1, 0.037}}}},
+    {"fluorescent", {{{1, 1, 0.011}, {1, 1, 0.011}, {1, 1, 0.007}, {1, 1, 0.005}}}},
+    {"two layers",
+     {{{0.865, 0.996, 0.212}, {0.869, 0.825, 0.862}, {0.731, 1, 0.325}, {0.868, 0.979, 2.391}}}},
+    {"water line", {{{1, 1, 0.02}, {1, 1, 0.013}, {0, 0, 0}, {1, 1, 0.006}}}},
+    {"round cell", {{{1, 0.876, 0.018}, {1, 0.93, 0.017}, {1, 0.993, 0.013}, {1, 0.984, 0.006}}}},
+    {"ruler, text", {{{1, 0.986, 0.017}, {1, 0.986, 0.013}, {1, 1, 0.01}, {1, 1, 0.009}}}},
+    {"uneven light", {{{1, 1, 0.044}, {1, 1, 0.037}, {1, 1, 0.031}, {1, 1, 0.038}}}},
+    {"tape", {{{1, 0.916, 0.015}, {1, 0.919, 0.01}, {1, 0.99, 0.009}, {1, 1, 0.005}}}},
+};
+
+/// A stack of one picture in memory.
+class OnePicture : public FrameSource {
+ public:
+  explicit OnePicture(cv::Mat picture) : picture_(std::move(picture)) {}
+  bool next(cv::Mat& frame) override {
+    frame = picture_;
+    picture_ = cv::Mat();
+    return !frame.empty();
+  }
+  [[nodiscard]] std::size_t announced() const override { return 1; }
+  [[nodiscard]] std::string current() const override { return "picture"; }
+
+ private:
+  cv::Mat picture_;
+};
+
+struct Seen {
+  Score score;
+  std::size_t tracers = 0;
+  std::string settings;  // or the refusal
+  bool refused = false;
+};
+
+Seen look(const Exhibit& exhibit, const std::string& keep) {
+  OnePicture stack(exhibit.picture);
+  FramesAhead ahead(stack);
+  LocatorOptions open;
+  open.polarity_known = false;
+  Seen seen;
+  Scorer scorer;
+  std::vector<FoundBead> found;
+  try {
+    const LocatorOptions settled = configure_locator(ahead, open).locator;
+    seen.settings = fmt::format("{} {} {:.1f}", settled.refine.method,
+                                settled.preprocess.bright ? "bright" : "dark", settled.diameter_px);
+    for (const double other : settled.other_diameters_px) seen.settings += fmt::format(" {:.1f}", other);
+    locate_stack(ahead, settled, 1, [&](std::int64_t, const cv::Mat& grey, const Located& located) {
+      for (const Detection& b : located.beads) {
+        found.push_back({b.x, b.y, -1});
+        seen.tracers += b.tracer ? 1 : 0;
+      }
+      if (!keep.empty()) write_overlay(keep + ".overlay.png", grey, located.beads);
+    });
+  } catch (const InputError& e) {
+    seen.refused = true;
+    seen.settings = std::string("refused: ") + e.what();
+  }
+  if (!keep.empty()) write_png(keep + ".png", exhibit.picture);
+  scorer.add(exhibit.truth, found);
+  seen.score = scorer.score();
+  return seen;
+}
+
+TEST(Zoo, IsLocatedWithoutOptions) {
+  struct Job {
+    const Kind* kind;
+    double diameter;
+    Seen seen;
+  };
+  std::vector<Job> jobs;
+  for (const Kind& kind : kinds())
+    for (const double diameter : kDiameters) jobs.push_back({&kind, diameter, {}});
+  const char* keep = std::getenv("TWINCELL_FAILED_FRAMES");
+  const std::clock_t start = std::clock();
+  in_parallel(jobs.size(), 2, [&](std::size_t k) {
+    Job& job = jobs[k];
+    std::string file = fmt::format("{}_{}", job.kind->name, job.diameter);
+    std::replace(file.begin(), file.end(), ' ', '_');
+    job.seen = look(job.kind->make(job.diameter), keep != nullptr ? std::string(keep) + "/" + file : "");
+  });
+  std::size_t good = 0;
+  for (const Job& job : jobs) {
+    const Score& s = job.seen.score;
+    const bool passes = s.recall() >= kGoal && s.precision() >= kGoal;
+    good += passes ? 1 : 0;
+    std::printf("%-13s %2g px: %3zu beads, recall %.3f, precision %.3f, rms %.3f px, %zu tracers; %s%s\n",
+                job.kind->name.c_str(), job.diameter, s.truths, s.recall(), s.precision(), s.rms,
+                job.seen.tracers, job.seen.settings.c_str(), passes ? "" : "  FAILS");
+    SCOPED_TRACE(fmt::format("{}, {} px", job.kind->name, job.diameter));
+    const auto size = static_cast<std::size_t>(std::find(kDiameters.begin(), kDiameters.end(), job.diameter) -
+                                               kDiameters.begin());
+    const Mark& mark = kMarks.at(job.kind->name).at(size);
+    EXPECT_GE(s.truths, 38U);  // enough for the marks
+    EXPECT_EQ(passes, mark.recall >= kGoal && mark.precision >= kGoal);
+    EXPECT_GE(s.recall(), mark.recall - kSame);
+    EXPECT_GE(s.precision(), mark.precision - kSame);
+    if (!passes) continue;
+    EXPECT_LE(s.rms, 1.1 * mark.rms_px + 0.001);
+    EXPECT_GE(s.rms, 0.9 * mark.rms_px - 0.001);
+  }
+  std::printf(
+      "recall and precision of at least %g in %zu of %zu pictures (goal: 46); %.0f s of processor time\n",
+      kGoal, good, jobs.size(), static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+}
+
+}  // namespace
+}  // namespace twincell::zoo
