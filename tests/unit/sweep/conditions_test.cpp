@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/error.hpp"
+#include "core/json_view.hpp"
 #include "sweep/collect.hpp"
 #include "sweep/plan.hpp"
 #include "sweep/point_run.hpp"
