@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/comparing_options.hpp"
+#include "cli/locating_options.hpp"
+#include "cli/phase_options.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
 #include "imaging/stack/open_frames.hpp"
@@ -18,6 +20,8 @@ namespace {
 
 struct MatchOptions {
   TwinOptions twin;
+  PhaseFlags phase;
+  LocatingFlags locating;
   std::string output;
   ComparingFlags flags;
 };
@@ -26,22 +30,34 @@ void run(const Common& common, MatchOptions& o) {
   resolve(o.flags, common);
   o.twin.threads = common.n_threads();
   const std::filesystem::path folder = o.output;
-  const TwinProvenance provenance = {.of_experiment =
-                                         [&](const CellDescription& cell) {
-                                           Provenance p = common.provenance();
-                                           p.config = cell.text;
-                                           p.inputs = {file_of_stack(o.twin.stack), o.twin.cell_file};
-                                           return p.to_json();
-                                         },
-                                     .of_simulation =
-                                         [&](const sim::Scene& scene, const std::vector<sim::Bead>& beads) {
-                                           return scene_provenance(common, scene, beads, {});
-                                         }};
-  if (const CellDescription cell = read_cell(o.twin.cell_file); !cell.included.overridden.empty())
+  const TwinProvenance provenance = {
+      .of_experiment =
+          [&](const CellDescription& cell) {
+            Provenance p = common.provenance();
+            p.config = cell.text;
+            p.inputs = {file_of_stack(o.twin.stack), o.twin.cell_file};
+            for (const std::string& file : {o.locating.mask, o.locating.background})
+              if (!file.empty()) p.inputs.emplace_back(file);
+            return p.to_json();
+          },
+      .of_simulation =
+          [&](const sim::Scene& scene, const std::vector<sim::Bead>& beads) {
+            return scene_provenance(common, scene, beads, {});
+          }};
+  CellDescription cell = read_cell(o.twin.cell_file);
+  o.twin.phases = phase_source(o.phase, cell, o.twin.cell_file.string());
+  o.twin.phase_lock = lock_of_chosen(cell.phase_lock, frames_of(o.locating));
+  o.twin.locator = locator_of(o.locating, cell.pixels_per_sigma, cell.bright);
+  o.twin.region = region_of(o.locating);
+  o.twin.open_stack = [&] {
+    return open_for_locating(o.twin.stack.string(), o.locating, o.twin.locator, common);
+  };
+  if (!cell.included.overridden.empty())
     note(common,
          fmt::format("values in {} take precedence over those measured in {}: {}", o.twin.cell_file.string(),
                      cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
   const Twin twin = make_twin(o.twin, folder, provenance, progress_bars(common));
+  if (!twin.phases.warning.empty()) note(common, twin.phases.warning + ".");
 
   o.flags.options.experiments = {twin.experiment};
   o.flags.options.simulations = twin.simulations;
@@ -53,12 +69,13 @@ void run(const Common& common, MatchOptions& o) {
                                {"twins", simulations},
                                {"pixels_per_sigma", twin.pixels_per_sigma},
                                {"drive", twin.drive.empty() ? "as the cell states it" : twin.drive},
+                               {"phase_lock", json_of(twin.phases)},
                                {"position_error", twin.position_error},
                                {"beads", twin.beads},
                                {"cycles", twin.cycles}};
   compare_and_report(
       common, o.flags.options, folder / "report", said,
-      (twin.drive.empty() ? "" : "drive " + twin.drive + "\n") +
+      (twin.drive.empty() ? "" : "drive " + twin.drive + "\n") + phases_in_words(twin.phases) +
           fmt::format("{} beads in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} twins "
                       "over {} cycles; {}\n",
                       twin.beads, twin.pixels_per_sigma, twin.position_error, twin.simulations.size(),
@@ -97,14 +114,17 @@ void add_match(CLI::App& program, Common& common) {
                   "the uncertainty of its position")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  verb.add_option("--diameter", o->twin.locator.diameter_px,
-                  "Bead diameter, px; default: the scale in CELL.toml, otherwise estimated")
-      ->check(CLI::Range(3.0, 400.0));
+  add_locating_flags(verb, o->locating);
   verb.add_flag(
       "--trust-stated-drive", o->twin.trust_stated_drive,
-      "Use the drive that the cell states, even if the plate or the bed in the film moves differently");
+      "Use the drive and the frames per cycle that the cell states, even if the plate or the bed in the film "
+      "moves differently");
+  verb.add_option("--range", o->twin.link.range_diameters,
+                  "Largest distance of a bead from its predicted position, bead diameters, above 0, at most "
+                  "10; default: 2");
   verb.add_option("--memory", o->twin.link.memory,
                   "Number of frames for which a bead may be missing, 0 to 1000; default: 3");
+  add_phase_flags(verb, o->phase);
   add_comparing_flags(verb, o->flags);
   verb.callback([&common, o] { run(common, *o); });
 }

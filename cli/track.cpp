@@ -7,14 +7,15 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <memory>
 #include <optional>
 
 #include "calibration/drive/plate_drive.hpp"
+#include "cli/locating_options.hpp"
 #include "cli/output.hpp"
+#include "cli/phase_options.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
@@ -30,63 +31,16 @@ namespace {
 
 struct TrackOptions {
   std::string stack, output, cell_file, csv, truth;
-  std::vector<double> scored_rows, origin, diameters;
+  std::vector<double> scored_rows, origin;
   std::vector<std::string> assignments;
-  std::string phase_lock;
-  std::optional<double> drive_hz;
+  PhaseFlags phase;
   std::optional<double> pixels_per_sigma, gamma, amplitude, width, height;
   std::optional<int> frames_per_cycle, first_phase;
   int shortest = 1;
   bool trust_stated_drive = false;
-  LocatorOptions locator;
-  std::string flat;
+  LocatingFlags locating;
   LinkOptions link;
 };
-
-// Source of the phases according to --phase-lock: N, found, none, or a list of triggers. N and none are
-// stored in `cell`.
-PhaseSource phase_source(const TrackOptions& o, CellDescription& cell) {
-  PhaseSource source{.find = false, .triggers = {}, .drive_hz = o.drive_hz};
-  const bool list = o.phase_lock.ends_with(".csv");
-  const Where drive_hz{.file = {}, .key = "--drive-hz"};
-  if (o.drive_hz && !list)
-    throw ConfigError(drive_hz,
-                      fmt::format("is {:g}, but it is used only with a list of triggers (--phase-lock "
-                                  "FILE.csv); the drive of the cell is set by drive.frequency_hz.",
-                                  *o.drive_hz));
-  if (o.phase_lock.empty()) return source;
-  int n = 0;
-  const char* end = o.phase_lock.data() + o.phase_lock.size();
-  if (const auto [last, error] = std::from_chars(o.phase_lock.data(), end, n);
-      error == std::errc() && last == end) {
-    cell.phase_lock.frames_per_cycle = n;
-    if (cell.phase_lock.first_phase >= n) cell.phase_lock.first_phase = 0;
-    cell.phase_lock.check(Where{.file = {}, .key = "phase-lock"});
-  } else if (o.phase_lock == "found") {
-    source.find = true;
-  } else if (o.phase_lock == "none") {
-    cell.phase_lock = {};
-  } else if (list) {
-    source.triggers = o.phase_lock;
-    const auto drive = cell.drive();
-    const auto t0 = cell.scale.t0_s();
-    if (drive && t0) {
-      constexpr double kSame = 1e-3;
-      const double stated = drive->omega / (2 * M_PI * *t0);
-      if (o.drive_hz && std::abs(*o.drive_hz / stated - 1) > kSame)
-        throw ConfigError(drive_hz,
-                          fmt::format("is {:g}, but the drive in {} is {:.6g} Hz; correct one of the two.",
-                                      *o.drive_hz, o.cell_file, stated));
-      if (!source.drive_hz) source.drive_hz = stated;
-    }
-  } else {
-    throw ConfigError(
-        Where{.file = {}, .key = "phase-lock"},
-        "'" + o.phase_lock +
-            "' is neither a number of frames per cycle, 'found', 'none', nor a list of triggers (*.csv).");
-  }
-  return source;
-}
 
 // The cell description of the file, with the options of the command line taking precedence.
 CellDescription resolve_cell(const TrackOptions& o) {
@@ -127,7 +81,7 @@ CellDescription resolve_cell(const TrackOptions& o) {
 
 constexpr const char* kHeading = "y,x,frame,particle,radius,tracer,phase,cycle,sigma_y,sigma_x,ambiguous\n";
 
-void write_csv(const std::string& path, const TrackedStack& stack) {
+void write_csv(const std::string& path, const TrackedStack& stack, const FrameRange& range) {
   AtomicPath file(path, Product::table(kHeading));
   {
     std::ofstream out(file.part());
@@ -135,50 +89,31 @@ void write_csv(const std::string& path, const TrackedStack& stack) {
     for (std::size_t f = 0; f < stack.frames.size(); ++f) {
       const FramePhase at = stack.phases.at(static_cast<std::int64_t>(f));
       for (const TrackedBead& b : stack.frames[f])
-        out << fmt::format("{:.4f},{:.4f},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{}\n", b.y_px, b.x_px, f,
-                           b.track, b.radius_px, b.tracer ? 1 : 0, at.phase, at.cycle, b.sigma_y_px,
-                           b.sigma_x_px, b.ambiguous ? 1 : 0);
+        out << fmt::format("{:.4f},{:.4f},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{}\n", b.y_px, b.x_px,
+                           range.number(static_cast<std::int64_t>(f)), b.track, b.radius_px, b.tracer ? 1 : 0,
+                           at.phase, at.cycle, b.sigma_y_px, b.sigma_x_px, b.ambiguous ? 1 : 0);
     }
     if (!out.flush()) throw RunError(path + ": writing the table failed.");
   }
   file.commit();
 }
 
-Score score_against(const TrackOptions& o, const TrackedStack& stack) {
+Score score_against(const TrackOptions& o, const TrackedStack& stack, const FrameRange& range) {
   const auto truth = read_truth(o.truth);
   Scorer scorer(o.scored_rows.size() == 2 ? ScoredRows{o.scored_rows[0], o.scored_rows[1]} : ScoredRows{});
-  for (std::size_t f = 0; f < std::min(truth.size(), stack.frames.size()); ++f) {
+  for (std::size_t f = 0; f < stack.frames.size(); ++f) {
+    const auto number = static_cast<std::size_t>(range.number(static_cast<std::int64_t>(f)));
+    if (number >= truth.size()) break;
     std::vector<FoundBead> found;
     for (const TrackedBead& b : stack.frames[f]) found.push_back({b.x_px, b.y_px, b.track});
-    scorer.add(truth[f], found);
+    scorer.add(truth[number], found);
   }
   return scorer.score();
 }
 
 // The printed summary of the phases, the links and the tracers.
 std::string describe(const TrackedStack& stack) {
-  const PhaseTable& p = stack.phases;
-  std::string text;
-  if (p.method == "none") {
-    text = "phase lock: none\n";
-  } else {
-    text = fmt::format("phase lock: {}, {} frames per cycle", p.method, p.frames_per_cycle);
-    if (p.period_frames) text += fmt::format(", period {:.4f} frames", *p.period_frames);
-    if (p.jitter)
-      text += fmt::format(", jitter {}{:.3f} frames", p.method == "found" ? "at most " : "", *p.jitter);
-    if (!p.frames.empty()) text += fmt::format(", {} frames dropped, {} taken twice", p.dropped, p.doubled);
-    // No triggered camera is known to miss so many frames. A camera that runs free of the drive slips
-    // continually.
-    constexpr double kMostSlips = 0.1;
-    if (p.method == "found" &&
-        static_cast<double>(p.dropped + p.doubled) > kMostSlips * static_cast<double>(p.frames.size()))
-      text += " (so many that the camera seems to run free of the drive; the phases are then meaningless)";
-    if (p.agreement)
-      text += fmt::format("; phase 0 placed by the drive, correlation {:.3f}", *p.agreement);
-    else if (p.method == "found")
-      text += "; phase 0 is where the bed passes its mean height upwards";
-    text += '\n';
-  }
+  std::string text = phases_in_words(stack.phases);
   const LinkReport& l = stack.links;
   text += fmt::format(
       "links: {} made, {} bridge a gap, {} ambiguous; {} births, {} losses; largest sub-network {}; {} "
@@ -213,23 +148,24 @@ void run(TrackOptions& o, const Common& common) {
   if (!cell.included.overridden.empty())
     note(common, fmt::format("values in {} take precedence over those measured in {}: {}", o.cell_file,
                              cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
-  const PhaseSource source = phase_source(o, cell);
+  PhaseSource source = phase_source(o.phase, cell, o.cell_file);
+  source.trusted = o.trust_stated_drive;
   (void)cell.drive();  // refuse a contradictory drive before the work starts
-  o.locator.preprocess.bright |= cell.bright;
-  if (o.diameters.empty()) {
-    o.locator.diameter_px = cell.pixels_per_sigma.value_or(0);
-  } else {
-    o.locator.diameter_px = o.diameters.front();
-    o.locator.other_diameters_px.assign(o.diameters.begin() + 1, o.diameters.end());
-  }
+  const LocatorOptions locator =
+      locator_of(o.locating, cell.pixels_per_sigma,
+                 o.cell_file.empty() ? std::nullopt : std::optional<bool>(cell.bright));
+  const FrameRange range = frames_of(o.locating);
+  cell.phase_lock = lock_of_chosen(cell.phase_lock, range);
+  const Region region = region_of(o.locating);
   // Locate and link all frames.
-  const auto frames = open_flattened(o.stack, o.flat, common);
+  const auto frames = open_for_locating(o.stack, o.locating, locator, common);
   const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
   const std::filesystem::path folder = parent.empty() ? "." : parent;
   ProgressBar bar(common, "track");
   const TrackedStack stack =
-      track_stack(*frames, o.locator, o.link, cell, common.n_threads(), bar, source, folder);
-  check_flat(o.flat, stack.locator.preprocess.bright);
+      track_stack(*frames, locator, o.link, cell, common.n_threads(), bar, source, folder, region);
+  check_locating(o.locating, stack.locator.preprocess.bright);
+  if (!stack.phases.warning.empty()) note(common, stack.phases.warning + ".");
   TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, o.shortest);
   // Check the stated drive against the motion of the plate, or of the bed if the plate is not visible.
   DriveCheck check{.not_comparable = "the stated drive is trusted"};
@@ -238,7 +174,7 @@ void run(TrackOptions& o, const Common& common) {
     check = check_by_plate(cell, o.stack, common.n_threads(), edge);
     if (check.by.empty() && cell.pixels_per_sigma) {
       BedSteps bed(plan.info);
-      write_trajectory(stack, plan, cell, bed);
+      write_trajectory(stack, plan, bed);
       check = check_by_bed(bed, plan.info, check.frame_rate_hz);
     }
     if (!check.disagreement.empty())
@@ -250,11 +186,13 @@ void run(TrackOptions& o, const Common& common) {
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
   provenance.inputs.push_back(file_of_stack(o.stack));
+  for (const std::string& file : {o.locating.mask, o.locating.background})
+    if (!file.empty()) provenance.inputs.emplace_back(file);
   plan.info.provenance_json = provenance.to_json();
   H5mdWriter writer(o.output, plan.info);
-  write_trajectory(stack, plan, cell, writer);
+  write_trajectory(stack, plan, writer);
   writer.finish();
-  if (!o.csv.empty()) write_csv(o.csv, stack);
+  if (!o.csv.empty()) write_csv(o.csv, stack, range);
 
   if (!cell.pixels_per_sigma)
     note(common, fmt::format("no scale was given: sigma is the bead diameter of {:.3f} px.",
@@ -275,6 +213,7 @@ void run(TrackOptions& o, const Common& common) {
                              {"outside_cell", stack.outside_cell},
                              {"wrong_radius", stack.wrong_radius}};
   document.update(nlohmann::json::parse(plan.info.tracking_json));
+  if (const nlohmann::json said = restrictions(o.locating); !said.is_null()) document["restrictions"] = said;
   std::string text = fmt::format(
       "{} frames, {} beads located, {} tracks ({} written), {} detections outside the cell left out\n",
       stack.frames.size(), beads, stack.n_tracks, plan.info.n_beads, stack.outside_cell);
@@ -286,7 +225,7 @@ void run(TrackOptions& o, const Common& common) {
         stack.wrong_radius);
   text += describe(stack);
   if (!o.truth.empty()) {
-    const Score s = score_against(o, stack);
+    const Score s = score_against(o, stack, range);
     document["truth"] = {{"recall", s.recall()},
                          {"precision", s.precision()},
                          {"rms_px", s.rms},
@@ -335,13 +274,7 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--frames-per-cycle", o->frames_per_cycle,
                   "Frames per drive cycle; 0: not phase-locked; default: the value in CELL.toml")
       ->check(CLI::NonNegativeNumber);
-  verb.add_option("--phase-lock", o->phase_lock,
-                  "Source of the drive phases: frames per drive cycle, 'found' (from the motion of the bed), "
-                  "'none', or a list of triggers (*.csv)");
-  verb.add_option(
-          "--drive-hz", o->drive_hz,
-          "Frequency of the drive, Hz, for a list of triggers in seconds; default: the drive in CELL.toml")
-      ->check(CLI::PositiveNumber);
+  add_phase_flags(verb, o->phase);
   verb.add_option("--first-phase", o->first_phase,
                   "Phase of the first frame, 0 to frames per cycle - 1; default: the value in CELL.toml")
       ->check(CLI::NonNegativeNumber);
@@ -349,22 +282,15 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--drive-amplitude", o->amplitude,
                   "Amplitude A of the drive, sigma; if CELL.toml has a [scale], use --set "
                   "drive.amplitude_sigma= or drive.amplitude_mm= instead");
-  verb.add_option("--diameter", o->diameters,
-                  "Bead diameter, px, or up to 8 different diameters; default: the scale in CELL.toml, "
-                  "otherwise determined from the first frame")
-      ->check(CLI::Range(3.0, 400.0))
-      ->expected(1, 8);
-  verb.add_option("--locator", o->locator.finder, "Method that finds candidates for beads; default: vote")
-      ->check(CLI::IsMember(finder_names()));
-  verb.add_flag("--bright", o->locator.preprocess.bright, "Beads are brighter than the background");
-  add_flat_option(verb, o->flat);
+  add_locating_flags(verb, o->locating);
   verb.add_option("--range", o->link.range_diameters,
                   "Largest distance of a bead from its predicted position, bead diameters, above 0, at most "
                   "10; default: 2");
   verb.add_option("--memory", o->link.memory,
                   "Number of frames for which a bead may be missing, 0 to 1000; default: 3");
   verb.add_flag("--trust-stated-drive", o->trust_stated_drive,
-                "Do not check the stated drive against the motion of the plate or the bed in the frames");
+                "Do not check the stated drive and frames per cycle against the motion of the plate or the "
+                "bed in the frames");
   verb.add_option("--shortest", o->shortest,
                   "Smallest number of frames in which a track must be seen to be written; default: 1")
       ->check(CLI::PositiveNumber);

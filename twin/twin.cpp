@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calibration/drive/plate_drive.hpp"
 #include "core/atomic_file.hpp"
@@ -138,12 +139,15 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
 Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinProvenance& provenance,
                const ProgressOf& progress) {
   CellDescription cell = read_cell(options.cell_file);
+  if (options.phase_lock) cell.phase_lock = *options.phase_lock;
+  // Phases from the bed or a list need no lock to the drive.
+  const bool phases_elsewhere = options.phases.find || options.phases.triggers;
   require_known(cell, options.cell_file);
   (void)word_of_sides(cell, options.cell_file);
   std::string drive;
-  if (lacks_drive(cell)) {
+  if (lacks_drive(cell, !phases_elsewhere)) {
     const auto bar = progress("the plate's edge");
-    drive = complete_drive(cell, options.cell_file, options.stack, options.threads, *bar);
+    drive = complete_drive(cell, !phases_elsewhere, options.cell_file, options.stack, options.threads, *bar);
   }
   const std::string base = options.scene.empty() ? std::string() : read_text_file(options.scene);
   Twin twin{.experiment = folder / "experiment.h5", .scene = folder / "scene.toml"};
@@ -151,8 +155,15 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   const auto scene_text = [&](std::size_t frame, std::int64_t cycles) {
     return twin_scene(base, options.scene.string(), cell, twin.experiment.filename(), frame, cycles);
   };
-  // Validate the scene before the stack is read.
+  // Validate the scene before the stack is read. Where the stack determines the phases, their number is not
+  // known yet.
+  constexpr int kSomePhases = 20;
+  const int stated_phases =
+      std::exchange(cell.phase_lock.frames_per_cycle,
+                    cell.phase_lock.locked() ? cell.phase_lock.frames_per_cycle : kSomePhases);
   (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
+
+  cell.phase_lock.frames_per_cycle = stated_phases;
 
   // Check the stated drive against the plate in the frames.
   const auto require_agreement = [&](const DriveCheck& check) {
@@ -169,7 +180,7 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   }
   // Track the experiment. If the plate is not visible, the bed checks the drive before the trajectory is
   // kept.
-  const auto frames = open_frames(options.stack);
+  const auto frames = options.open_stack ? options.open_stack() : open_frames(options.stack);
   claim_shared_folder(folder, twin_folder());
 
   LocatorOptions locator = options.locator;
@@ -177,19 +188,23 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   if (locator.diameter_px <= 0) locator.diameter_px = cell.pixels_per_sigma.value_or(0);
   {
     const auto bar = progress("tracking");
-    const TrackedStack stack =
-        track_stack(*frames, locator, options.link, cell, options.threads, *bar, {}, folder);
+    PhaseSource phases = options.phases;
+    phases.trusted = options.trust_stated_drive;
+    const TrackedStack stack = track_stack(*frames, locator, options.link, cell, options.threads, *bar,
+                                           phases, folder, options.region);
+    cell.phase_lock.frames_per_cycle = stack.phases.frames_per_cycle;
+    twin.phases = stack.phases;
     TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
     if (checked && check.by.empty()) {  // the plate gave no drive
       BedSteps bed(plan.info);
-      write_trajectory(stack, plan, cell, bed);
+      write_trajectory(stack, plan, bed);
       check = check_by_bed(bed, plan.info, check.frame_rate_hz);
       require_agreement(check);
     }
     if (drive.empty()) record(check, plan.info);
     plan.info.provenance_json = provenance.of_experiment(cell);
     H5mdWriter writer(twin.experiment, plan.info);
-    write_trajectory(stack, plan, cell, writer);
+    write_trajectory(stack, plan, writer);
     writer.finish();
     twin.pixels_per_sigma = plan.pixel_frame.pixels_per_sigma;
   }

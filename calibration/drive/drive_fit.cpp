@@ -13,7 +13,7 @@
 #include "analysis/statistics/statistics.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
-#include "imaging/phase/phase_estimation.hpp"
+#include "imaging/phase/sine_slips.hpp"
 
 namespace twincell {
 namespace {
@@ -241,22 +241,6 @@ std::vector<Sample> samples_of(const std::vector<double>& heights, const std::ve
   return samples;
 }
 
-/// Heights with gaps interpolated linearly, because the path search needs every frame.
-std::vector<double> filled(std::vector<double> h) {
-  std::size_t last = h.size();
-  for (std::size_t f = 0; f < h.size(); ++f) {
-    if (!std::isfinite(h[f])) continue;
-    const std::size_t from = last == h.size() ? 0 : last + 1;
-    for (std::size_t g = from; g < f; ++g)
-      h[g] = last == h.size()
-                 ? h[f]
-                 : h[last] + (h[f] - h[last]) * static_cast<double>(g - last) / static_cast<double>(f - last);
-    last = f;
-  }
-  for (std::size_t g = last + 1; last < h.size() && g < h.size(); ++g) h[g] = h[last];
-  return h;
-}
-
 /// Power of the residuals at the drive's third and higher harmonics, relative to white noise; at least 1.
 /// Errors that recur every cycle are not noise: beads that hide the plate at the same phase of each cycle
 /// cause them, and no number of cycles averages them away. \param harmonics set to the number of harmonics
@@ -359,9 +343,23 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
   const auto followed = [](const Attempt& b) {
     return 1 - static_cast<double>(b.off) / static_cast<double>(b.samples.size());
   };
-  // If frames are missing, the fit scatters widely and no single frame counts as out of lock.
-  const auto scatters = [](const Attempt& b) { return b.scatter.at(0) > 0.05 * b.fitted.report.values[1]; };
-  if (options.mend && (followed(a) < 0.97 || a.longest_run >= 3 || scatters(a))) {
+  // If frames are missing, the fit scatters, but no single frame counts as out of lock.
+  constexpr double kMuch = 0.05, kLittle = 0.01;  // of A
+  const auto scatters = [](const Attempt& b, double share) {
+    return b.scatter.at(0) > share * b.fitted.report.values[1];
+  };
+  // Residuals of missing frames persist from frame to frame; those of jitter do not.
+  const auto persist = [](const Attempt& b) {
+    constexpr double kCorrelated = 0.5;
+    double own = 0, next = 0;
+    for (std::size_t i = 0; i < b.residuals.size(); ++i) {
+      own += b.residuals[i] * b.residuals[i];
+      if (i > 0) next += b.residuals[i] * b.residuals[i - 1];
+    }
+    return next > kCorrelated * own;
+  };
+  if (options.mend && (options.frames_per_cycle > 0 || followed(a) < 0.97 || a.longest_run >= 3 ||
+                       (scatters(a, kLittle) && persist(a)))) {
     // Repair dropped and doubled frames: dropped frames shorten the apparent period, so try several N_k, find
     // the best path of phases for each, and fit again.
     std::vector<int> candidates = {options.frames_per_cycle};
@@ -372,28 +370,20 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
          candidates.size() < kMost;
          ++n)
       candidates.push_back(n);
-    const std::vector<double> whole = filled(heights);
-    for (const int n : candidates) try {
-        const PhaseTable table = estimate_phases({whole, {}}, {.frames_per_cycle = n, .gamma = {}});
-        if (table.dropped + table.doubled == 0) continue;
-        std::vector<double> mended(heights.size());
-        double tick = 0;
-        for (std::size_t f = 0; f < mended.size(); ++f) {
-          if (f > 0) tick += table.frames[f].interval;
-          mended[f] = tick;
-        }
-        Attempt b = attempt(samples_of(heights, mended), 2 * kPi / table.frames_per_cycle);
-        if (b.scatter.at(0) < 0.5 * a.scatter.at(0) ||
-            (b.scatter.at(0) < 2 * a.scatter.at(0) && b.off < a.off)) {
-          a = std::move(b);
-          ticks = mended;
-          lock.dropped = table.dropped;
-          lock.doubled = table.doubled;
-        }
-      } catch (const InputError&) {
-        // The path search finds no period: keep the plain fit and its out-of-lock frames.
+    for (const int n : candidates) {
+      const std::optional<SineSlips> slips = fit_sine_with_slips(heights, n);
+      if (!slips || slips->dropped + slips->doubled == 0) continue;
+      std::vector<double> mended(slips->ticks.begin(), slips->ticks.end());
+      Attempt b = attempt(samples_of(heights, mended), 2 * kPi / n);
+      if (b.scatter.at(0) < 0.5 * a.scatter.at(0) ||
+          (b.scatter.at(0) < 2 * a.scatter.at(0) && b.off < a.off)) {
+        a = std::move(b);
+        ticks = std::move(mended);
+        lock.dropped = slips->dropped;
+        lock.doubled = slips->doubled;
       }
-    if (scatters(a))
+    }
+    if (scatters(a, kMuch))
       lock.notes.push_back(
           fmt::format("the heights scatter by {:.2g} of A about a sine: frames may be missing; "
                       "state --frames-per-cycle",

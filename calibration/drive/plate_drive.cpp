@@ -59,11 +59,11 @@ std::pair<CellGeometry, DriveFit> plate_in_picture(const CellDescription& cell, 
 
 }  // namespace
 
-bool lacks_drive(const CellDescription& cell) {
-  return !is_whole(cell.drive_spec) || !cell.phase_lock.locked();
+bool lacks_drive(const CellDescription& cell, bool phases) {
+  return !is_whole(cell.drive_spec) || (phases && !cell.phase_lock.locked());
 }
 
-std::string complete_drive(CellDescription& cell, const std::filesystem::path& cell_file,
+std::string complete_drive(CellDescription& cell, bool phases, const std::filesystem::path& cell_file,
                            const std::filesystem::path& stack, int threads, Progress& progress) {
   const auto where = [&](const char* key) { return Where{.file = cell_file.string(), .key = key}; };
   const double diameter = diameter_for_edges(stack, cell.bright, cell.pixels_per_sigma.value_or(0));
@@ -98,7 +98,7 @@ std::string complete_drive(CellDescription& cell, const std::filesystem::path& c
                           lock.omega_error * *rate * *t0);
     }
   }
-  if (!cell.phase_lock.locked()) {
+  if (phases && !cell.phase_lock.locked()) {
     if (lock.frames_per_cycle == 0)
       throw ConfigError(
           where("camera.frames_per_cycle"),
