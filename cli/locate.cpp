@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/locating_options.hpp"
 #include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
@@ -23,6 +24,7 @@
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/track/debug_pictures.hpp"
 #include "imaging/track/locate_stack.hpp"
+#include "imaging/track/motion_in_exposure.hpp"
 #include "imaging/track/overlay.hpp"
 
 namespace twincell::cli {
@@ -31,11 +33,9 @@ namespace {
 
 struct LocateOptions {
   std::string stack, output, overlay, truth, candidates, debug_folder;
-  std::vector<double> scored_rows, diameters;
-  std::int64_t overlay_frame = 0;
-  bool dark = false;
-  LocatorOptions locator;
-  std::string flat;
+  std::vector<double> scored_rows;
+  std::int64_t overlay_frame = -1;  // -1: the first that is read
+  LocatingRequest locating;
 };
 
 // Headings of the tables. kHeading has trackpy's columns in trackpy's order, then the additional columns.
@@ -138,53 +138,53 @@ void run(LocateOptions& o, const Common& common) {
   if (o.scored_rows.size() == 2) rows = {o.scored_rows[0], o.scored_rows[1]};
   Scorer scorer(rows);
 
-  const auto frames = open_flattened(o.stack, o.flat, common);
-  const auto announced = static_cast<std::int64_t>(frames->announced());
+  const LocatorOptions given = locator_of(o.locating);
+  const Region region = region_of(o.locating);
+  const FrameRange range = frames_of(o.locating);
+  if (o.overlay_frame < 0) o.overlay_frame = range.first;
+  const auto frames = open_for_locating(o.stack, o.locating, given, common);
+  const std::int64_t announced = range.number(static_cast<std::int64_t>(frames->announced()));
   if (!o.overlay.empty() && announced > 0 && o.overlay_frame >= announced)
-    throw ConfigError(
-        Where{.file = {}, .key = "--frame"},
-        fmt::format("is {}, but the stack has {} frames, counted from 0.", o.overlay_frame, announced));
+    throw ConfigError(Where{.file = {}, .key = "--frame"},
+                      fmt::format("is {}, but the frames that are read end before {}, counted from 0.",
+                                  o.overlay_frame, announced));
   TableFile table(o.output, kHeading);
   TableFile candidates(o.candidates, kCandidateHeading);
   nlohmann::json document = {{"stack", o.stack}, {"output", o.output}, {"frames", nlohmann::json::array()}};
   std::string text;
   bool drawn = false;
   ProgressBar bar(common, "locate");
-  if (!o.diameters.empty()) {
-    o.locator.diameter_px = o.diameters.front();
-    o.locator.other_diameters_px.assign(o.diameters.begin() + 1, o.diameters.end());
-  }
-  const std::string refine = o.locator.refine.method;
-  const bool find_diameter = o.locator.diameter_px <= 0;
-  const bool find_polarity = !o.dark && !o.locator.preprocess.bright;
-  o.locator.polarity_known = !find_polarity;
+  const std::string refine = given.refine.method;
+  const bool find_diameter = given.diameter_px <= 0, find_polarity = !given.polarity_known;
   constexpr std::int64_t kShown = 20;  // frames with a line of their own
+  std::vector<std::pair<std::string, std::string>> lines;
   std::map<Verdict, std::size_t> left_out;
   std::size_t beads = 0, bare = 0;  // frames without a bead
   // Settings that the user did not give are determined from the first frames.
-  FramesAhead ahead(*frames);
-  const auto [locator, settings_frame] = configure_locator(ahead, o.locator);
+  RegionFrames seen(*frames, region);
+  FramesAhead ahead(seen);
+  const auto [locator, settings_index] = configure_locator(ahead, given);
+  const std::int64_t settings_frame = range.number(settings_index);
+  MotionInExposure motion;
   const std::int64_t n = locate_stack(
       ahead, locator, common.n_threads(),
-      [&](std::int64_t frame, const cv::Mat& grey, const Located& located) {
+      [&](std::int64_t index, const cv::Mat& grey, const Located& as_located) {
+        const std::int64_t frame = range.number(index);
+        const Located located = in_whole_picture(as_located, region);
         for (const Detection& b : located.beads) table << row(b, frame);
         for (const std::vector<Detection>* list : {&located.beads, &located.dropped})
           for (const Detection& b : *list) candidates << candidate_row(b, frame);
         nlohmann::json f = {{"frame", frame}, {"beads", located.beads.size()}, {"blur_px", located.blur_px}};
         std::string line = fmt::format("frame {}: {} beads, edge blur {:.2f} px", frame, located.beads.size(),
                                        located.blur_px);
-        if (located.path_px != std::array<double, 2>{}) {
-          f["path_px"] = located.path_px;
-          line += fmt::format(", moved by {:.2f} px during the exposure",
-                              std::hypot(located.path_px[0], located.path_px[1]));
-        }
-        line += ';';
+        motion.add(located);
+        std::string stages;
         for (const StageReport& stage : located.stages) {
           f["stages"][stage.stage] = {{"ms", 1000 * stage.seconds}, {"beads", stage.beads}};
-          line += fmt::format(" {} {:.1f} ms", stage.stage, 1000 * stage.seconds);
-          if (stage.stage != "prepare") line += fmt::format(" ({})", stage.beads);
+          stages += fmt::format(" {} {:.1f} ms", stage.stage, 1000 * stage.seconds);
+          if (stage.stage != "prepare") stages += fmt::format(" ({})", stage.beads);
         }
-        if (frame < kShown) text += line + "\n";
+        if (index < kShown) lines.emplace_back(line, stages);
         std::map<Verdict, std::size_t> reasons;
         for (const Detection& b : located.dropped) ++reasons[b.verdict];
         f["dropped"] = in_words(reasons);
@@ -198,7 +198,7 @@ void run(LocateOptions& o, const Common& common) {
           scorer.add((*truth)[static_cast<std::size_t>(frame)], found);
         }
         if (!o.overlay.empty() && frame == o.overlay_frame) {
-          write_overlay(o.overlay, grey, located.beads);
+          write_overlay(o.overlay, grey, as_located.beads);
           drawn = true;
         }
         if (!o.debug_folder.empty() && frame == o.overlay_frame)
@@ -207,10 +207,28 @@ void run(LocateOptions& o, const Common& common) {
       bar);
   if (!o.overlay.empty() && !drawn)
     throw ConfigError(Where{.file = {}, .key = "--frame"},
-                      fmt::format("is {}, but the stack has {} frames, counted from 0.", o.overlay_frame, n));
-  check_flat(o.flat, locator.preprocess.bright);
+                      fmt::format("is {}, but not among the {} frames that are read.", o.overlay_frame, n));
+  check_flat(o.locating.flat, locator.preprocess.bright);
   table.commit();
   candidates.commit();
+  // Motion during the exposure needs the beads of the next frame, so it is told after all frames.
+  for (std::int64_t index = 0; index < n; ++index) {
+    const auto at = static_cast<std::size_t>(index);
+    if (motion.claimed(at)) document["frames"][at]["path_px"] = motion.path(at);
+    if (index >= kShown) continue;
+    text += lines[at].first;
+    if (motion.claimed(at))
+      text += fmt::format(", moved by {:.2f} px during the exposure",
+                          std::hypot(motion.path(at)[0], motion.path(at)[1]));
+    text += ";" + lines[at].second + "\n";
+  }
+  if (const std::size_t unproven = motion.unproven(); unproven > 0)
+    text += fmt::format(
+        "in {} frames the edges are blurred more along one direction than across it, though the beads do not "
+        "move "
+        "that far from frame to frame, or there is only one frame: no motion is concluded from it\n",
+        unproven);
+  if (const nlohmann::json said = restrictions(o.locating); !said.is_null()) document["restrictions"] = said;
   // Report the settings that were determined from the frames, with the options that set them.
   document["diameter_px"] = locator.diameter_px;
   if (!locator.other_diameters_px.empty()) document["other_diameters_px"] = locator.other_diameters_px;
@@ -290,27 +308,11 @@ void add_locate(CLI::App& program, Common& common) {
                          "Picture of the frame --frame to write (PNG), with its beads marked"),
          Product::picture());
   former_option(verb, "--overlay-frame", "--frame");
-  verb.add_option("--frame", o->overlay_frame,
-                  "Index of the frame for --overlay and --debug-dir, from 0; default: 0")
-      ->check(zero_or_above());
   verb.add_option(
-          "--diameter", o->diameters,
-          "Bead diameter, px, or up to 8 different diameters; default: determined from the first frame")
-      ->check(CLI::Range(3.0, 400.0))
-      ->expected(1, 8);
-  verb.add_option("--locator", o->locator.finder, "Method that finds candidates for beads; default: vote")
-      ->check(CLI::IsMember(finder_names()));
-  verb.add_option("--min-score", o->locator.find.min_score,
-                  "Smallest share of the edge of a circle that must be visible, 0 to 1; default: 0.04");
-  verb.add_option("--refine", o->locator.refine.method,
-                  "Method that finds the position of each bead to a fraction of a pixel. " + refiners_help())
-      ->check(CLI::IsMember(refiner_names()));
-  CLI::Option* bright =
-      verb.add_flag("--bright", o->locator.preprocess.bright, "Beads are brighter than the background");
-  verb.add_flag("--dark", o->dark,
-                "Beads are darker than the background; default: determined from the first frame")
-      ->excludes(bright);
-  add_flat_option(verb, o->flat);
+          "--frame", o->overlay_frame,
+          "Number of the frame for --overlay and --debug-dir, from 0; default: the first that is read")
+      ->check(zero_or_above());
+  add_locating_options(verb, o->locating);
   verb.add_option("--truth", o->truth,
                   "Score the result against the ground truth: truth.csv, or a folder of truth_NN.csv");
   verb.add_option("--scored-rows", o->scored_rows,

@@ -8,10 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/comparing_options.hpp"
+#include "cli/locating_options.hpp"
+#include "cli/phase_options.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
 #include "core/output_rules.hpp"
 #include "imaging/stack/open_frames.hpp"
+#include "imaging/track/track_request.hpp"
 #include "twin/cell_names.hpp"
 #include "twin/twin.hpp"
 
@@ -21,16 +24,21 @@ namespace {
 struct MatchOptions {
   TwinOptions twin;
   std::vector<std::filesystem::path> stacks_and_cells;
+  PhaseRequest phase;
+  LocatingRequest locating;
   std::string output;
   ComparingFlags flags;
 };
 
-TwinProvenance provenance_of(const Common& common, const TwinOptions& options) {
+TwinProvenance provenance_of(const Common& common, const TwinOptions& options,
+                             const LocatingRequest& locating) {
   return {.of_experiment =
-              [&common, &options](const CellDescription& cell) {
+              [&common, &options, &locating](const CellDescription& cell) {
                 Provenance p = common.provenance();
                 p.config = cell.text;
                 p.inputs = {file_of_stack(options.stack), options.cell_file};
+                for (const std::string& file : {locating.mask, locating.background})
+                  if (!file.empty()) p.inputs.emplace_back(file);
                 return p.to_json();
               },
           .of_simulation =
@@ -61,13 +69,14 @@ nlohmann::json as_json(const Twin& twin) {
           {"twins", simulations},
           {"pixels_per_sigma", twin.pixels_per_sigma},
           {"drive", twin.drive.empty() ? "as the cell states it" : twin.drive},
+          {"phase_lock", json_of(twin.phases)},
           {"position_error", twin.position_error},
           {"beads", twin.beads},
           {"cycles", twin.cycles}};
 }
 
 std::string as_text(const Twin& twin) {
-  return (twin.drive.empty() ? "" : "drive " + twin.drive + "\n") +
+  return (twin.drive.empty() ? "" : "drive " + twin.drive + "\n") + phases_in_words(twin.phases) +
          fmt::format(
              "{} beads in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} twins "
              "over {} cycles; {}\n",
@@ -75,11 +84,26 @@ std::string as_text(const Twin& twin) {
              twin.scene.string());
 }
 
+/// The options of a twin with what the command line and the cell say about beads and phases.
+TwinOptions configure_twin(const MatchOptions& o, TwinOptions options, const Common& common) {
+  CellDescription cell = read_cell(options.cell_file);
+  options.phases = phase_source(o.phase, cell, options.cell_file.string());
+  options.phase_lock = lock_of_chosen(cell.phase_lock, frames_of(o.locating));
+  options.locator = locator_of(o.locating, cell.pixels_per_sigma, cell.bright);
+  options.region = region_of(o.locating);
+  options.open_stack = [&o, &common, stack = options.stack.string(), locator = options.locator] {
+    return open_for_locating(stack, o.locating, locator, common);
+  };
+  return options;
+}
+
 /// Makes the twin of one stack in `folder` and adds its trajectories to the comparison.
-Twin add_twin(const Common& common, const TwinOptions& options, const std::filesystem::path& folder,
-              ComparingOptions& comparing) {
-  note_overridden(common, options.cell_file);
-  Twin twin = make_twin(options, folder, provenance_of(common, options), progress_bars(common));
+Twin add_twin(const Common& common, const MatchOptions& o, const TwinOptions& of_stack,
+              const std::filesystem::path& folder, ComparingOptions& comparing) {
+  note_overridden(common, of_stack.cell_file);
+  const TwinOptions options = configure_twin(o, of_stack, common);
+  Twin twin = make_twin(options, folder, provenance_of(common, options, o.locating), progress_bars(common));
+  if (!twin.phases.warning.empty()) note(common, twin.phases.warning + ".");
   comparing.experiments.push_back(twin.experiment);
   comparing.simulations.insert(comparing.simulations.end(), twin.simulations.begin(), twin.simulations.end());
   return twin;
@@ -98,7 +122,7 @@ std::vector<Twin> make_twins(const Common& common, const MatchOptions& o, const 
   for (std::size_t i = 0; i < pairs.stacks.size(); ++i) {
     options.stack = pairs.stacks[i];
     options.cell_file = pairs.cells[i];
-    twins.push_back(add_twin(common, options, several ? folder / names[i] : folder, comparing));
+    twins.push_back(add_twin(common, o, options, several ? folder / names[i] : folder, comparing));
   }
   return twins;
 }
@@ -159,14 +183,17 @@ void add_match(CLI::App& program, Common& common) {
                   "the uncertainty of its position")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  verb.add_option("--diameter", o->twin.locator.diameter_px,
-                  "Bead diameter, px; default: the scale in CELL.toml, otherwise estimated")
-      ->check(CLI::Range(3.0, 400.0));
+  add_locating_options(verb, o->locating);
   verb.add_flag(
       "--trust-stated-drive", o->twin.trust_stated_drive,
-      "Use the drive that the cell states, even if the plate or the bed in the film moves differently");
+      "Use the drive and the frames per cycle that the cell states, even if the plate or the bed in the film "
+      "moves differently");
+  verb.add_option("--range", o->twin.link.range_diameters,
+                  "Largest distance of a bead from its predicted position, bead diameters, above 0, at most "
+                  "10; default: 2");
   verb.add_option("--memory", o->twin.link.memory,
                   "Number of frames for which a bead may be missing, 0 to 1000; default: 3");
+  add_phase_options(verb, o->phase);
   add_comparing_flags(verb, o->flags);
   verb.callback([&common, o] { run(common, *o); });
 }

@@ -3,14 +3,12 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <bit>
 #include <cmath>
 
 #include "cli/output.hpp"
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
-#include "imaging/preprocess/open_flattened.hpp"
 #include "imaging/stack/open_frames.hpp"
 
 namespace twincell::cli {
@@ -76,17 +74,6 @@ std::unique_ptr<FrameSource> open_stack(const std::filesystem::path& stack, cons
   auto frames = open_frames(stack);
   for (const std::string& sentence : frames->info().notes) note(common, stack.string() + ": " + sentence);
   return frames;
-}
-
-std::unique_ptr<FrameSource> open_flattened(const std::filesystem::path& stack, const std::string& flat,
-                                            const Common& common) {
-  return flattened_by(open_stack(stack, common), stack, flat);
-}
-
-void add_flat_option(CLI::App& verb, std::string& flat) {
-  verb.add_option("--flat", flat,
-                  "Divide every frame by a flat field: a stack of the cell without beads, or 'stack' for the "
-                  "light between the back-lit beads of the stack itself; default: no flat field");
 }
 
 bool is_trajectory(const std::filesystem::path& file) {

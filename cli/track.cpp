@@ -10,8 +10,10 @@
 #include <optional>
 
 #include "calibration/drive/track_film.hpp"
+#include "cli/locating_options.hpp"
 #include "cli/numbers.hpp"
 #include "cli/output.hpp"
+#include "cli/phase_options.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
@@ -31,17 +33,9 @@ struct TrackOptions {
   FilmOptions film;
 };
 
-// The values of --phase-lock with their help.
-std::string phase_methods_help() {
-  std::string text;
-  for (const PhaseMethodRow& row : kPhaseMethods)
-    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", row.option, row.help);
-  return text;
-}
-
 constexpr const char* kHeading = "y,x,frame,particle,radius,tracer,phase,cycle,sigma_y,sigma_x,ambiguous\n";
 
-void write_csv(const std::string& path, const TrackedStack& stack) {
+void write_csv(const std::string& path, const TrackedStack& stack, const FrameRange& range) {
   AtomicPath file(path, Product::table(kHeading));
   {
     std::ofstream out(file.part());
@@ -49,52 +43,31 @@ void write_csv(const std::string& path, const TrackedStack& stack) {
     for (std::size_t f = 0; f < stack.frames.size(); ++f) {
       const FramePhase at = stack.phases.at(static_cast<std::int64_t>(f));
       for (const TrackedBead& b : stack.frames[f])
-        out << fmt::format("{:.4f},{:.4f},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{}\n", b.y_px, b.x_px, f,
-                           b.track, b.radius_px, b.tracer ? 1 : 0, at.phase, at.cycle, b.sigma_y_px,
-                           b.sigma_x_px, b.ambiguous ? 1 : 0);
+        out << fmt::format("{:.4f},{:.4f},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{}\n", b.y_px, b.x_px,
+                           range.number(static_cast<std::int64_t>(f)), b.track, b.radius_px, b.tracer ? 1 : 0,
+                           at.phase, at.cycle, b.sigma_y_px, b.sigma_x_px, b.ambiguous ? 1 : 0);
     }
     if (!out.flush()) throw RunError(path + ": writing the table failed.");
   }
   file.commit();
 }
 
-Score score_against(const TrackOptions& o, const TrackedStack& stack) {
+Score score_against(const TrackOptions& o, const TrackedStack& stack, const FrameRange& range) {
   const auto truth = read_truth(o.truth);
   Scorer scorer(o.scored_rows.size() == 2 ? ScoredRows{o.scored_rows[0], o.scored_rows[1]} : ScoredRows{});
-  for (std::size_t f = 0; f < std::min(truth.size(), stack.frames.size()); ++f) {
+  for (std::size_t f = 0; f < stack.frames.size(); ++f) {
+    const auto number = static_cast<std::size_t>(range.number(static_cast<std::int64_t>(f)));
+    if (number >= truth.size()) break;
     std::vector<FoundBead> found;
     for (const TrackedBead& b : stack.frames[f]) found.push_back({b.x_px, b.y_px, b.track});
-    scorer.add(truth[f], found);
+    scorer.add(truth[number], found);
   }
   return scorer.score();
 }
 
 // The printed summary of the phases, the links and the tracers.
 std::string describe(const TrackedStack& stack) {
-  const PhaseTable& p = stack.phases;
-  std::string text;
-  if (p.method == PhaseMethod::none) {
-    text = "phase lock: none\n";
-  } else {
-    text = fmt::format("phase lock: {}, {} frames per cycle", row_of(kPhaseMethods, p.method).word,
-                       p.frames_per_cycle);
-    if (p.period_frames) text += fmt::format(", period {:.4f} frames", *p.period_frames);
-    if (p.jitter)
-      text += fmt::format(", jitter {}{:.3f} frames", p.method == PhaseMethod::found ? "at most " : "",
-                          *p.jitter);
-    if (!p.frames.empty()) text += fmt::format(", {} frames dropped, {} taken twice", p.dropped, p.doubled);
-    // No triggered camera is known to miss so many frames. A camera that runs free of the drive slips
-    // continually.
-    constexpr double kMostSlips = 0.1;
-    if (p.method == PhaseMethod::found &&
-        static_cast<double>(p.dropped + p.doubled) > kMostSlips * static_cast<double>(p.frames.size()))
-      text += " (so many that the camera seems to run free of the drive; the phases are then meaningless)";
-    if (p.agreement)
-      text += fmt::format("; phase 0 placed by the drive, correlation {:.3f}", *p.agreement);
-    else if (p.method == PhaseMethod::found)
-      text += "; phase 0 is where the bed passes its mean height upwards";
-    text += '\n';
-  }
+  std::string text = phases_in_words(stack.phases);
   const LinkReport& l = stack.links;
   text += fmt::format(
       "links: {} made, {} bridge a gap, {} ambiguous; {} births, {} losses; largest sub-network {}; {} "
@@ -127,10 +100,13 @@ void run(TrackOptions& o, const Common& common) {
   const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
   o.film.folder = parent.empty() ? "." : parent;
   o.film.threads = common.n_threads();
-  TrackedFilm film = track_film([&] { return open_flattened(o.stack, o.film.flat, common); }, o.stack, o.film,
-                                [&](const std::string& stage) -> std::unique_ptr<Progress> {
-                                  return std::make_unique<ProgressBar>(common, stage);
-                                });
+  const auto open = [&](const LocatorOptions& locator) {
+    return open_for_locating(o.stack, o.film.locating, locator, common);
+  };
+  TrackedFilm film =
+      track_film(open, o.stack, o.film, [&](const std::string& stage) -> std::unique_ptr<Progress> {
+        return std::make_unique<ProgressBar>(common, stage);
+      });
   const CellDescription& cell = film.cell;
   const TrackedStack& stack = film.stack;
   TrackPlan& plan = film.plan;
@@ -141,15 +117,19 @@ void run(TrackOptions& o, const Common& common) {
   if (!film.check.disagreement.empty())
     note(common,
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
+  if (!stack.phases.warning.empty()) note(common, stack.phases.warning + ".");
+  const FrameRange range = frames_of(o.film.locating);
   // Write the trajectory, then the table.
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
   provenance.inputs.push_back(file_of_stack(o.stack));
+  for (const std::string& file : {o.film.locating.mask, o.film.locating.background})
+    if (!file.empty()) provenance.inputs.emplace_back(file);
   plan.info.provenance_json = provenance.to_json();
   H5mdWriter writer(o.output, plan.info);
-  write_trajectory(stack, plan, cell, writer);
+  write_trajectory(stack, plan, writer);
   writer.finish();
-  if (!o.csv.empty()) write_csv(o.csv, stack);
+  if (!o.csv.empty()) write_csv(o.csv, stack, range);
 
   if (!cell.pixels_per_sigma)
     note(common, fmt::format("no scale was given: sigma is the bead diameter of {:.3f} px.",
@@ -170,6 +150,8 @@ void run(TrackOptions& o, const Common& common) {
                              {"outside_cell", stack.outside_cell},
                              {"wrong_radius", stack.wrong_radius}};
   document.update(nlohmann::json::parse(plan.info.tracking_json));
+  if (const nlohmann::json said = restrictions(o.film.locating); !said.is_null())
+    document["restrictions"] = said;
   std::string text = fmt::format(
       "{} frames, {} beads located, {} tracks ({} written), {} detections outside the cell left out\n",
       stack.frames.size(), beads, stack.n_tracks, plan.info.n_beads, stack.outside_cell);
@@ -181,7 +163,7 @@ void run(TrackOptions& o, const Common& common) {
         stack.wrong_radius);
   text += describe(stack);
   if (!o.truth.empty()) {
-    const Score s = score_against(o, stack);
+    const Score s = score_against(o, stack, range);
     document["truth"] = {{"recall", s.recall()},
                          {"precision", s.precision()},
                          {"rms_px", s.rms},
@@ -231,12 +213,7 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--frames-per-cycle", o->film.request.frames_per_cycle,
                   "Frames per drive cycle; 0: not phase-locked; default: the value in CELL.toml")
       ->check(CLI::Range(0, 100000));
-  verb.add_option("--phase-lock", o->film.request.phase_lock,
-                  "Source of the drive phases. " + phase_methods_help());
-  verb.add_option(
-          "--drive-hz", o->film.request.drive_hz,
-          "Frequency of the drive, Hz, for a list of triggers in seconds; default: the drive in CELL.toml")
-      ->check(above_zero());
+  add_phase_options(verb, o->film.request.phase);
   verb.add_option("--first-phase", o->film.request.first_phase,
                   "Phase of the first frame, 0 to frames per cycle - 1; default: the value in CELL.toml")
       ->check(zero_or_above());
@@ -245,23 +222,15 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--drive-amplitude", o->film.request.amplitude,
                   "Amplitude A of the drive, sigma; if CELL.toml has a [scale], use --set "
                   "drive.amplitude_sigma= or drive.amplitude_mm= instead");
-  verb.add_option("--diameter", o->film.diameters,
-                  "Bead diameter, px, or up to 8 different diameters; default: the scale in CELL.toml, "
-                  "otherwise determined from the first frame")
-      ->check(CLI::Range(3.0, 400.0))
-      ->expected(1, 8);
-  verb.add_option("--locator", o->film.locator.finder,
-                  "Method that finds candidates for beads; default: vote")
-      ->check(CLI::IsMember(finder_names()));
-  verb.add_flag("--bright", o->film.locator.preprocess.bright, "Beads are brighter than the background");
-  add_flat_option(verb, o->film.flat);
+  add_locating_options(verb, o->film.locating);
   verb.add_option("--range", o->film.link.range_diameters,
                   "Largest distance of a bead from its predicted position, bead diameters, above 0, at most "
                   "10; default: 2");
   verb.add_option("--memory", o->film.link.memory,
                   "Number of frames for which a bead may be missing, 0 to 1000; default: 3");
   verb.add_flag("--trust-stated-drive", o->film.trust_stated_drive,
-                "Do not check the stated drive against the motion of the plate or the bed in the frames");
+                "Do not check the stated drive and frames per cycle against the motion of the plate or the "
+                "bed in the frames");
   verb.add_option("--shortest", o->film.shortest,
                   "Smallest number of frames in which a track must be seen to be written; default: 1")
       ->check(above_zero());

@@ -13,6 +13,7 @@
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/locate_stack.hpp"
+#include "imaging/track/motion_in_exposure.hpp"
 #include "imaging/track/write_trajectory.hpp"
 #include "python/frames.hpp"
 #include "python/trajectory.hpp"
@@ -56,7 +57,6 @@ struct Beads {
 struct FrameReport {
   std::size_t beads;
   double blur_px;
-  std::array<double, 2> path_px;
   std::map<Verdict, std::size_t> dropped;
 };
 
@@ -83,41 +83,66 @@ std::vector<double> numbers(const py::object& said) {
   return said.cast<std::vector<double>>();
 }
 
-std::unique_ptr<FrameSource> flattened_stack(const py::object& stack, const std::string& flat) {
+std::unique_ptr<FrameSource> prepared_stack(const py::object& stack, const LocatingRequest& request,
+                                            const LocatorOptions& locator) {
   std::string name;
   auto frames = source_of(stack, name);
-  if (flat == "stack" && name.empty())
+  if (request.flat == "stack" && name.empty())
     throw ConfigError({.file = {}, .key = "flat"},
                       "'stack' reads the stack twice, so it needs the name of a stack instead of arrays.");
   const py::gil_scoped_release release;
-  return flattened_by(std::move(frames), name, flat);
+  return prepare_frames(std::move(frames), name, request, locator);
 }
 
-py::object locate_beads_of(const py::object& stack, const py::object& diameter, const std::string& finder,
-                           double min_score, const std::string& refine, bool bright, bool dark,
-                           const std::string& flat, int threads, const py::object& callback) {
+/// The options of beads and part of a stack, which `locate` and `track` share.
+LocatingRequest locating_request(const py::object& diameter, const std::string& finder, double min_score,
+                                 const std::string& refine, bool bright, bool dark, const std::string& flat,
+                                 const std::string& background, const std::string& roi,
+                                 const std::string& mask, const std::string& frames) {
   if (bright && dark)
     throw ConfigError({.file = {}, .key = "bright"},
                       "and dark exclude each other; give only one of the two.");
-  LocatorOptions given;
-  given.finder = finder;
-  given.find.min_score = min_score;
-  given.refine.method = refine;
+  if (!flat.empty() && !background.empty())
+    throw ConfigError({.file = {}, .key = "flat"},
+                      "and background exclude each other; give only one of the two.");
+  LocatingRequest request;
+  request.locator.finder = finder;
+  request.locator.find.min_score = min_score;
+  request.locator.refine.method = refine;
   (void)refiner_named(refine);
-  given.preprocess.bright = bright;
-  given.polarity_known = bright || dark;
-  set_diameters(given, numbers(diameter));
+  request.locator.preprocess.bright = bright;
+  request.diameters = numbers(diameter);
+  LocatorOptions checked;
+  set_diameters(checked, request.diameters);
+  request.dark = dark;
+  request.flat = flat;
+  request.background = background;
+  request.roi = roi;
+  request.mask = mask;
+  request.frames = frames;
+  return request;
+}
+
+py::object locate_beads_of(const py::object& stack, const LocatingRequest& request, int threads,
+                           const py::object& callback) {
+  const LocatorOptions given = locator_of(request);
+  const Region region = region_of(request);
+  const FrameRange range = frames_of(request);
   const int n_threads = threads_of(threads);
-  const auto frames = flattened_stack(stack, flat);
+  const auto frames = prepared_stack(stack, request, given);
   Beads beads;
   std::vector<FrameReport> reports;
+  MotionInExposure motion;
   std::map<Verdict, std::size_t> left_out;
   const LocatorConfiguration found = unlocked(callback, [&](Progress& progress) {
-    FramesAhead ahead(*frames);
+    RegionFrames seen(*frames, region);
+    FramesAhead ahead(seen);
     LocatorConfiguration configuration = configure_locator(ahead, given);
     locate_stack(
         ahead, configuration.locator, n_threads,
-        [&](std::int64_t frame, const cv::Mat&, const Located& located) {
+        [&](std::int64_t index, const cv::Mat&, const Located& as_located) {
+          const std::int64_t frame = range.number(index);
+          const Located located = in_whole_picture(as_located, region);
           for (const Detection& b : located.beads) {
             for (std::size_t c = 0; c < std::size(kColumns); ++c)
               if (kColumns[c].of != nullptr) beads.columns[c].push_back(kColumns[c].of(b));
@@ -125,7 +150,8 @@ py::object locate_beads_of(const py::object& stack, const py::object& diameter, 
             beads.tracer.push_back(b.tracer ? 1 : 0);
             beads.edge.push_back(b.edge ? 1 : 0);
           }
-          FrameReport report{located.beads.size(), located.blur_px, located.path_px, {}};
+          motion.add(located);
+          FrameReport report{located.beads.size(), located.blur_px, {}};
           for (const Detection& b : located.dropped) ++report.dropped[b.verdict];
           for (const auto& [why, count] : report.dropped) left_out[why] += count;
           reports.push_back(std::move(report));
@@ -133,7 +159,7 @@ py::object locate_beads_of(const py::object& stack, const py::object& diameter, 
         progress);
     return configuration;
   });
-  check_flat(flat, found.locator.preprocess.bright);
+  check_flat(request.flat, found.locator.preprocess.bright);
 
   py::dict columns;
   for (std::size_t c = 0; c < std::size(kColumns); ++c) {
@@ -153,14 +179,18 @@ py::object locate_beads_of(const py::object& stack, const py::object& diameter, 
   settings["min_score"] = found.locator.find.min_score;
   settings["refine"] = found.locator.refine.method;
   settings[found.locator.preprocess.bright ? "bright" : "dark"] = true;
-  settings["flat"] = flat;
+  settings["flat"] = request.flat;
+  settings["background"] = request.background;
+  settings["roi"] = request.roi;
+  settings["mask"] = request.mask;
+  settings["frames"] = request.frames;
   py::list per_frame;
   for (std::size_t f = 0; f < reports.size(); ++f) {
     py::dict one;
-    one["frame"] = f;
+    one["frame"] = range.number(static_cast<std::int64_t>(f));
     one["beads"] = reports[f].beads;
     one["blur_px"] = reports[f].blur_px;
-    one["path_px"] = reports[f].path_px;
+    if (motion.claimed(f)) one["path_px"] = motion.path(f);
     one["dropped"] = in_words(reports[f].dropped);
     per_frame.append(one);
   }
@@ -192,9 +222,9 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
   };
   TrackedFilm film = unlocked(callback, [&](Progress& progress) {
     return track_film(
-        [&] {
+        [&](const LocatorOptions& locator) {
           const py::gil_scoped_acquire lock;
-          return flattened_stack(stack, call.film.flat);
+          return prepared_stack(stack, call.film.locating, locator);
         },
         name, call.film, [&](const std::string&) { return std::make_unique<Forwarded>(progress); });
   });
@@ -205,14 +235,16 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
   std::shared_ptr<Trajectory> trajectory;
   if (call.output) {
     H5mdWriter writer(*call.output, film.plan.info);
-    write_trajectory(film.stack, film.plan, film.cell, writer);
+    write_trajectory(film.stack, film.plan, writer);
     writer.finish();
     trajectory = std::make_shared<Trajectory>(*call.output);
   } else {
     SharedFrames memory(film.plan.info);
-    write_trajectory(film.stack, film.plan, film.cell, memory);
+    write_trajectory(film.stack, film.plan, memory);
     trajectory = std::make_shared<Trajectory>(std::move(memory));
   }
+  if (!film.stack.phases.warning.empty())
+    PyErr_WarnEx(PyExc_UserWarning, (film.stack.phases.warning + ".").c_str(), 2);
   if (!film.check.disagreement.empty())
     PyErr_WarnEx(PyExc_UserWarning,
                  ("the stated drive does not fit the film: " + film.check.disagreement + ".").c_str(), 2);
@@ -224,11 +256,22 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
 void bind_locating(py::module_& module) {
   const LocatorOptions locator;
   const LinkOptions link;
-  module.def("locate", &locate_beads_of, py::arg("stack"), py::kw_only(), py::arg("diameter") = py::none(),
-             py::arg("locator") = locator.finder, py::arg("min_score") = locator.find.min_score,
-             py::arg("refine") = locator.refine.method, py::arg("bright") = false, py::arg("dark") = false,
-             py::arg("flat") = "", py::arg("threads") = 0, py::arg("callback") = py::none(),
-             header_text("imaging/track/locate_stack.hpp", "locate_stack"));
+  module.def(
+      "locate",
+      [](const py::object& stack, const py::object& diameter, const std::string& finder, double min_score,
+         const std::string& refine, bool bright, bool dark, const std::string& flat,
+         const std::string& background, const std::string& roi, const std::string& mask,
+         const std::string& frames, int threads, const py::object& callback) {
+        return locate_beads_of(stack,
+                               locating_request(diameter, finder, min_score, refine, bright, dark, flat,
+                                                background, roi, mask, frames),
+                               threads, callback);
+      },
+      py::arg("stack"), py::kw_only(), py::arg("diameter") = py::none(), py::arg("locator") = locator.finder,
+      py::arg("min_score") = locator.find.min_score, py::arg("refine") = locator.refine.method,
+      py::arg("bright") = false, py::arg("dark") = false, py::arg("flat") = "", py::arg("background") = "",
+      py::arg("roi") = "", py::arg("mask") = "", py::arg("frames") = "", py::arg("threads") = 0,
+      py::arg("callback") = py::none(), header_text("imaging/track/locate_stack.hpp", "locate_stack"));
   module.def(
       "track",
       [](const py::object& stack, const std::optional<std::filesystem::path>& output,
@@ -238,8 +281,10 @@ void bind_locating(py::module_& module) {
          std::optional<int> frames_per_cycle, const py::object& phase_lock, std::optional<double> drive_hz,
          std::optional<int> first_phase, std::optional<double> drive_gamma,
          std::optional<double> drive_amplitude, const py::object& diameter, const std::string& finder,
-         bool bright, const std::string& flat, double range, int memory, bool trust_stated_drive,
-         int shortest, int threads, const py::object& callback) {
+         double min_score, const std::string& refine, bool bright, bool dark, const std::string& flat,
+         const std::string& background, const std::string& roi, const std::string& mask,
+         const std::string& frames, double range, int memory, bool trust_stated_drive, int shortest,
+         int threads, const py::object& callback) {
         TrackCall call;
         call.output = output;
         call.film.request = {
@@ -253,16 +298,12 @@ void bind_locating(py::module_& module) {
             .amplitude = drive_amplitude,
             .frames_per_cycle = frames_per_cycle,
             .first_phase = first_phase,
-            .phase_lock = phase_lock.is_none() ? "" : py::str(phase_lock).cast<std::string>(),
-            .drive_hz = drive_hz};
-        call.film.diameters = numbers(diameter);
-        LocatorOptions checked;
-        set_diameters(checked, call.film.diameters);
-        call.film.locator.finder = finder;
-        call.film.locator.preprocess.bright = bright;
+            .phase = {.phase_lock = phase_lock.is_none() ? "" : py::str(phase_lock).cast<std::string>(),
+                      .drive_hz = drive_hz}};
+        call.film.locating = locating_request(diameter, finder, min_score, refine, bright, dark, flat,
+                                              background, roi, mask, frames);
         call.film.link.range_diameters = range;
         call.film.link.memory = memory;
-        call.film.flat = flat;
         require_range({.file = {}, .key = "shortest"}, shortest, 1, std::nullopt);
         call.film.shortest = shortest;
         call.film.trust_stated_drive = trust_stated_drive;
@@ -276,8 +317,10 @@ void bind_locating(py::module_& module) {
       py::arg("phase_lock") = py::none(), py::arg("drive_hz") = py::none(),
       py::arg("first_phase") = py::none(), py::arg("drive_gamma") = py::none(),
       py::arg("drive_amplitude") = py::none(), py::arg("diameter") = py::none(),
-      py::arg("locator") = locator.finder, py::arg("bright") = false, py::arg("flat") = "",
-      py::arg("range") = link.range_diameters, py::arg("memory") = link.memory,
+      py::arg("locator") = locator.finder, py::arg("min_score") = locator.find.min_score,
+      py::arg("refine") = locator.refine.method, py::arg("bright") = false, py::arg("dark") = false,
+      py::arg("flat") = "", py::arg("background") = "", py::arg("roi") = "", py::arg("mask") = "",
+      py::arg("frames") = "", py::arg("range") = link.range_diameters, py::arg("memory") = link.memory,
       py::arg("trust_stated_drive") = false, py::arg("shortest") = 1, py::arg("threads") = 0,
       py::arg("callback") = py::none(), header_text("calibration/drive/track_film.hpp", "track_film"));
 }

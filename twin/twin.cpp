@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calibration/drive/plate_drive.hpp"
 #include "core/atomic_file.hpp"
@@ -100,13 +101,27 @@ struct FilmedCell {
 /// Reads the cell and measures its drive on the plate if the cell states none.
 FilmedCell read_filmed_cell(const TwinOptions& options, const ProgressOf& progress) {
   FilmedCell filmed{.cell = read_cell(options.cell_file), .drive = {}};
+  if (options.phase_lock) filmed.cell.phase_lock = *options.phase_lock;
   require_known(filmed.cell, options.cell_file);
   (void)word_of_sides(filmed.cell, options.cell_file);
-  if (lacks_drive(filmed.cell)) {
+  // Phases from the bed or a list need no lock to the drive.
+  const bool locked = options.phases.method == PhaseMethod::fixed;
+  if (lacks_drive(filmed.cell, locked)) {
     const auto bar = progress("the plate's edge");
-    filmed.drive = complete_drive(filmed.cell, options.cell_file, options.stack, options.threads, *bar);
+    filmed.drive =
+        complete_drive(filmed.cell, locked, options.cell_file, options.stack, options.threads, *bar);
   }
   return filmed;
+}
+
+/// Checks the twin's scene before the stack is read. Where the stack determines the phases, their number is
+/// not known yet; any number serves.
+void check_scene(CellDescription& cell, const std::function<void()>& read_scene) {
+  constexpr int kSomePhases = 20;
+  const int stated = cell.phase_lock.frames_per_cycle;
+  if (!cell.phase_lock.locked()) cell.phase_lock.frames_per_cycle = kSomePhases;
+  read_scene();
+  cell.phase_lock.frames_per_cycle = stated;
 }
 
 /// Whether a stated drive is to be checked against the frames.
@@ -125,7 +140,8 @@ void require_agreement(const DriveCheck& check, const TwinOptions& options) {
 DriveCheck check_plate(const FilmedCell& filmed, const TwinOptions& options, const ProgressOf& progress) {
   if (!checks_drive(filmed, options)) return {.not_comparable = "the stated drive is trusted"};
   const auto bar = progress("the plate's edge");
-  DriveCheck check = check_by_plate(filmed.cell, options.stack, options.threads, *bar);
+  DriveCheck check = check_by_plate(filmed.cell, options.stack, options.threads, *bar,
+                                    options.phases.method == PhaseMethod::fixed);
   require_agreement(check, options);
   return check;
 }
@@ -138,27 +154,31 @@ LocatorOptions locator_for(const CellDescription& cell, const TwinOptions& optio
 }
 
 /// Tracks the film into `output`. If the plate showed no drive, the bed checks the stated one before the
-/// trajectory is kept. \returns pixels per sigma
-double track_experiment(FrameSource& frames, const FilmedCell& filmed, DriveCheck check,
-                        const TwinOptions& options, const fs::path& output, const TwinProvenance& provenance,
-                        const ProgressOf& progress) {
-  const CellDescription& cell = filmed.cell;
+/// trajectory is kept. Completes the frames per cycle of the cell, and scale and phases of the twin.
+void track_experiment(FrameSource& frames, FilmedCell& filmed, DriveCheck check, const TwinOptions& options,
+                      const TwinProvenance& provenance, const ProgressOf& progress, Twin& twin) {
+  CellDescription& cell = filmed.cell;
   const auto bar = progress("tracking");
-  const TrackedStack stack = track_stack(frames, locator_for(cell, options), options.link, cell,
-                                         options.threads, *bar, {}, output.parent_path());
+  PhaseSource phases = options.phases;
+  phases.trusted = options.trust_stated_drive;
+  const TrackedStack stack =
+      track_stack(frames, locator_for(cell, options), options.link, cell, options.threads, *bar, phases,
+                  twin.experiment.parent_path(), options.region);
+  cell.phase_lock.frames_per_cycle = stack.phases.frames_per_cycle;
+  twin.phases = stack.phases;
   TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
   if (checks_drive(filmed, options) && check.by.empty()) {
     BedSteps bed(plan.info);
-    write_trajectory(stack, plan, cell, bed);
+    write_trajectory(stack, plan, bed);
     check = check_by_bed(bed, plan.info, check.frame_rate_hz);
     require_agreement(check, options);
   }
   if (filmed.drive.empty()) record(check, plan.info);
   plan.info.provenance_json = provenance.of_experiment(cell);
-  H5mdWriter writer(output, plan.info);
-  write_trajectory(stack, plan, cell, writer);
+  H5mdWriter writer(twin.experiment, plan.info);
+  write_trajectory(stack, plan, writer);
   writer.finish();
-  return plan.pixel_frame.pixels_per_sigma;
+  twin.pixels_per_sigma = plan.pixel_frame.pixels_per_sigma;
 }
 
 /// Simulates the scene once from the measured positions, and `options.twins` - 1 times from shifted ones.
@@ -228,21 +248,22 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
 Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinProvenance& provenance,
                const ProgressOf& progress) {
   // Read and check everything before the stack is tracked.
-  const FilmedCell filmed = read_filmed_cell(options, progress);
+  FilmedCell filmed = read_filmed_cell(options, progress);
   Twin twin{.experiment = folder / "experiment.h5", .scene = folder / "scene.toml"};
   twin.drive = filmed.drive;
   const std::string base = options.scene.empty() ? std::string() : read_text_file(options.scene);
   const auto scene_text = [&](std::size_t frame, std::int64_t cycles) {
     return twin_scene(base, options.scene.string(), filmed.cell, twin.experiment.filename(), frame, cycles);
   };
-  (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
+  check_scene(filmed.cell, [&] {
+    (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
+  });
   const DriveCheck check = check_plate(filmed, options, progress);
-  const auto frames = open_frames(options.stack);
+  const auto frames = options.open_stack ? options.open_stack() : open_frames(options.stack);
   claim_shared_folder(folder, twin_folder());
 
   // Experiment, scene, simulations.
-  twin.pixels_per_sigma =
-      track_experiment(*frames, filmed, check, options, twin.experiment, provenance, progress);
+  track_experiment(*frames, filmed, check, options, provenance, progress, twin);
   const FirstPacking first = find_first_packing(H5mdReader(twin.experiment));
   twin.beads = first.beads;
   twin.cycles = first.cycles;

@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,9 @@
 #include "imaging/cell/cell.hpp"
 #include "imaging/link/link.hpp"
 #include "imaging/locate/locator.hpp"
+#include "imaging/preprocess/region.hpp"
+#include "imaging/stack/frame_source.hpp"
+#include "imaging/track/link_detections.hpp"
 #include "sim/scene/scene.hpp"
 #include "twin/comparison.hpp"
 
@@ -26,10 +31,15 @@ struct TwinOptions {
   /// Number of simulations. The first starts exactly from the measured positions. In each of the others every
   /// bead is shifted at random, with the simulation's own seed, by the uncertainty of the measured positions.
   int twins = 3;
-  LocatorOptions locator;
+  LocatorOptions locator;  ///< complete but for what configure_locator finds
+  Region region;           ///< part of the picture that is searched
+  /// Opens the stack to be tracked; empty: the whole stack, as it is.
+  std::function<std::unique_ptr<FrameSource>()> open_stack;
   LinkOptions link;
   int threads = 1;
-  bool trust_stated_drive = false;  ///< do not check the stated drive against the frames
+  bool trust_stated_drive = false;      ///< do not check the stated drive and phase lock against the frames
+  PhaseSource phases;                   ///< source of the phases, if not the cell's frames per cycle
+  std::optional<PhaseLock> phase_lock;  ///< replaces that of the cell
 };
 
 /// Provenance texts of the files, which the command-line program supplies.
@@ -52,6 +62,7 @@ struct Twin {
   std::size_t beads = 0;        ///< beads in that frame
   std::int64_t cycles = 0;      ///< cycles of the simulations
   std::string drive;            ///< measured drive in a sentence; empty if the cell states the drive
+  PhaseTable phases;            ///< of the stack
 };
 
 /// Scene of the twin as TOML: `base` (text of a scene, or empty) with width, sides, drive and scale of the

@@ -60,13 +60,14 @@ void film_and_track(const TrajectorySource& simulation, const CameraOptions& cam
   locator.diameter_px = *cell.pixels_per_sigma;
   locator.preprocess.bright = cell.bright;
   const auto source = open_frames(frames);
-  const TrackedStack stack = track_stack(*source, locator, {}, cell, threads, progress, {}, film.part());
+  const TrackedStack stack =
+      track_stack(*source, locator, {}, cell, threads, progress, {.trusted = true}, film.part());
   TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
   // If the simulation marks no tracers, the film has no darker beads; the analysis then chooses the tracers
   // of both by the same rule.
   if (simulation.info().tracer.empty()) plan.info.tracer.clear();
   H5mdWriter writer(tracked, plan.info);
-  write_trajectory(stack, plan, cell, writer);
+  write_trajectory(stack, plan, writer);
   writer.finish();
   add_pictures(simulation, frames, cell, stack, show);
 }

@@ -13,7 +13,7 @@
 #include "analysis/statistics/statistics.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
-#include "imaging/phase/phase_estimation.hpp"
+#include "imaging/phase/sine_slips.hpp"
 
 namespace twincell {
 namespace {
@@ -241,22 +241,6 @@ std::vector<Sample> samples_of(const std::vector<double>& heights, const std::ve
   return samples;
 }
 
-/// Heights with gaps interpolated linearly, because the path search needs every frame.
-std::vector<double> filled(std::vector<double> h) {
-  std::size_t last = h.size();
-  for (std::size_t f = 0; f < h.size(); ++f) {
-    if (!std::isfinite(h[f])) continue;
-    const std::size_t from = last == h.size() ? 0 : last + 1;
-    for (std::size_t g = from; g < f; ++g)
-      h[g] = last == h.size()
-                 ? h[f]
-                 : h[last] + (h[f] - h[last]) * static_cast<double>(g - last) / static_cast<double>(f - last);
-    last = f;
-  }
-  for (std::size_t g = last + 1; last < h.size() && g < h.size(); ++g) h[g] = h[last];
-  return h;
-}
-
 /// Power of the residuals at the drive's third and higher harmonics, relative to white noise; at least 1.
 /// Errors that recur every cycle are not noise: beads that hide the plate at the same phase of each cycle
 /// cause them, and no number of cycles averages them away. \param harmonics set to the number of harmonics
@@ -349,9 +333,20 @@ double followed_share(const Attempt& a) {
   return 1 - static_cast<double>(a.off) / static_cast<double>(a.samples.size());
 }
 
-/// If frames are missing, the fit scatters widely and no single frame counts as out of lock.
-bool scatters(const Attempt& a) {
-  return a.scatter.at(0) > 0.05 * a.fitted.report.values[1];
+/// If frames are missing, the fit scatters, but no single frame counts as out of lock. \param share of A
+bool scatters(const Attempt& a, double share) {
+  return a.scatter.at(0) > share * a.fitted.report.values[1];
+}
+
+/// Residuals of missing frames persist from frame to frame; those of jitter do not.
+bool residuals_persist(const Attempt& a) {
+  constexpr double kCorrelated = 0.5;
+  double own = 0, next = 0;
+  for (std::size_t i = 0; i < a.residuals.size(); ++i) {
+    own += a.residuals[i] * a.residuals[i];
+    if (i > 0) next += a.residuals[i] * a.residuals[i - 1];
+  }
+  return next > kCorrelated * own;
 }
 
 /// Fits with the frames as they are, one interval apart.
@@ -383,28 +378,21 @@ std::vector<int> candidates_for(int stated, double period) {
 /// Repairs dropped and doubled frames: for each number of frames per cycle, finds the best path of phases and
 /// fits again. The repair is kept where it follows the frames better.
 void repair_frames(const std::vector<double>& heights, int frames_per_cycle, Timed& now, DriveFit& lock) {
-  const std::vector<double> whole = filled(heights);
   const double period = 2 * kPi / now.attempt.fitted.report.values[3];
-  for (const int n : candidates_for(frames_per_cycle, period)) try {
-      const PhaseTable table = estimate_phases({whole, {}}, {.frames_per_cycle = n, .gamma = {}});
-      if (table.dropped + table.doubled == 0) continue;
-      std::vector<double> mended(heights.size());
-      double tick = 0;
-      for (std::size_t f = 0; f < mended.size(); ++f) {
-        if (f > 0) tick += table.frames[f].interval;
-        mended[f] = tick;
-      }
-      Attempt b = attempt(samples_of(heights, mended), 2 * kPi / table.frames_per_cycle);
-      const double scatter = b.scatter.at(0), before = now.attempt.scatter.at(0);
-      if (scatter < 0.5 * before || (scatter < 2 * before && b.off < now.attempt.off)) {
-        now = {std::move(b), std::move(mended)};
-        lock.dropped = table.dropped;
-        lock.doubled = table.doubled;
-      }
-    } catch (const InputError&) {
-      // The path search finds no period: keep the plain fit and its out-of-lock frames.
+  for (const int n : candidates_for(frames_per_cycle, period)) {
+    const std::optional<SineSlips> slips = fit_sine_with_slips(heights, n);
+    if (!slips || slips->dropped + slips->doubled == 0) continue;
+    std::vector<double> mended(slips->ticks.begin(), slips->ticks.end());
+    Attempt b = attempt(samples_of(heights, mended), 2 * kPi / n);
+    const double scatter = b.scatter.at(0), before = now.attempt.scatter.at(0);
+    if (scatter < 0.5 * before || (scatter < 2 * before && b.off < now.attempt.off)) {
+      now = {std::move(b), std::move(mended)};
+      lock.dropped = slips->dropped;
+      lock.doubled = slips->doubled;
     }
-  if (scatters(now.attempt))
+  }
+  constexpr double kMuch = 0.05;  // of A
+  if (scatters(now.attempt, kMuch))
     lock.notes.push_back(
         fmt::format("the heights scatter by {:.2g} of A about a sine: frames may be missing; "
                     "state --frames-per-cycle",
@@ -494,7 +482,9 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
   DriveFit lock;
   Timed timed = first_attempt(heights, options.frames_per_cycle);
   const Attempt& a = timed.attempt;
-  if (options.mend && (followed_share(a) < kFollowed || a.longest_run >= kShortRun || scatters(a)))
+  constexpr double kLittle = 0.01;  // of A
+  if (options.mend && (options.frames_per_cycle > 0 || followed_share(a) < kFollowed ||
+                       a.longest_run >= kShortRun || (scatters(a, kLittle) && residuals_persist(a))))
     repair_frames(heights, options.frames_per_cycle, timed, lock);
 
   const FitReport& report = a.fitted.report;

@@ -59,11 +59,11 @@ std::pair<CellGeometry, DriveFit> plate_in_picture(const CellDescription& cell, 
 
 }  // namespace
 
-bool lacks_drive(const CellDescription& cell) {
-  return !is_whole(cell.drive_spec) || !cell.phase_lock.locked();
+bool lacks_drive(const CellDescription& cell, bool phases) {
+  return !is_whole(cell.drive_spec) || (phases && !cell.phase_lock.locked());
 }
 
-std::string complete_drive(CellDescription& cell, const std::filesystem::path& cell_file,
+std::string complete_drive(CellDescription& cell, bool phases, const std::filesystem::path& cell_file,
                            const std::filesystem::path& stack, int threads, Progress& progress) {
   const auto where = [&](const char* key) { return Where{.file = cell_file.string(), .key = key}; };
   const double diameter = diameter_for_edges(stack, cell.bright, cell.pixels_per_sigma.value_or(0));
@@ -98,7 +98,7 @@ std::string complete_drive(CellDescription& cell, const std::filesystem::path& c
                           lock.omega_error * *rate * *t0);
     }
   }
-  if (!cell.phase_lock.locked()) {
+  if (phases && !cell.phase_lock.locked()) {
     if (lock.frames_per_cycle == 0)
       throw ConfigError(
           where("camera.frames_per_cycle"),
@@ -167,6 +167,19 @@ void compare_period(DriveCheck& check, const std::string& what, const DriveFit& 
         seen.period, seen.period_error, stated);
 }
 
+/// The stated frame rate and frames per cycle give a frequency by themselves, whatever the frames show. The
+/// playback rate of a video is not the camera's, so only a stated rate counts.
+void compare_frame_rate(DriveCheck& check, const CellDescription& cell, double stated) {
+  const auto t0 = cell.scale.t0_s();
+  if (!cell.frame_rate_hz || !t0 || !cell.phase_lock.locked() || !check.disagreement.empty()) return;
+  const double omega = 2 * M_PI * *cell.frame_rate_hz * *t0 / cell.phase_lock.frames_per_cycle;
+  if (std::abs(omega - stated) > kShare * stated)
+    check.disagreement = fmt::format(
+        "{:g} frames per second and {} frames per cycle give omega = {:.4g} per t0, but the cell states "
+        "{:.4g}",
+        *cell.frame_rate_hz, cell.phase_lock.frames_per_cycle, omega, stated);
+}
+
 /// Motion of the plate. A fit that begins at a wrong number of frames per cycle may fail, so that a second
 /// one searches for the period. It needs the stated position of the plate, because without the plate in the
 /// picture it would find a period in the noise of another edge.
@@ -223,6 +236,7 @@ DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::pa
   } catch (const InputError& e) {  // no plate in the picture, or it does not move
     check.not_comparable = e.what();
   }
+  if (fixed_phases) compare_frame_rate(check, cell, drive->omega);
   return check;
 }
 

@@ -13,17 +13,18 @@
 
 namespace twincell {
 
-/// Whether the cell description lacks the amplitude or frequency of the drive, or the frames per cycle.
-bool lacks_drive(const CellDescription& cell);
+/// Whether the cell description lacks the amplitude or frequency of the drive, or, if `phases` are wanted,
+/// the frames per cycle.
+bool lacks_drive(const CellDescription& cell, bool phases = true);
 
 /// Completes the drive of the cell from the plate's edge in every frame (cell_geometry.hpp, drive_fit.hpp). A
 /// comes from the plate's amplitude and the scale. omega comes from the frame rate and t0, unless the cell
 /// states omega, a frequency or a strength that gives it. Frames per cycle, first phase and offset come from
-/// the fit. Values that the cell states are kept.
+/// the fit if `phases` are wanted. Values that the cell states are kept.
 /// \return the measured values as one sentence
 /// \throws ConfigError naming the key that is still missing and why it could not be measured; InputError if
 /// no moving plate is detected
-std::string complete_drive(CellDescription& cell, const std::filesystem::path& cell_file,
+std::string complete_drive(CellDescription& cell, bool phases, const std::filesystem::path& cell_file,
                            const std::filesystem::path& stack, int threads, Progress& progress);
 
 /// Result of comparing the stated drive with the film.
@@ -43,7 +44,9 @@ void record(const DriveCheck& check, TrajectoryInfo& info);
 /// amplitude, the period in frames, and omega if frame rate and scale are known. A difference counts if it
 /// exceeds five standard errors, 3 % and 0.3 px (period and omega: five standard errors and 3 %). \param
 /// fixed_phases whether the phases of the frames follow from the stated frames per cycle; otherwise the
-/// period is not compared \pre the cell states drive and scale, otherwise nothing is compared
+/// period is not compared. Also compares omega with the stated frame rate divided by the stated frames per
+/// cycle, with or without a plate in the picture \pre the cell states drive and scale, otherwise nothing is
+/// compared
 DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::path& stack, int threads,
                           Progress& progress, bool fixed_phases = true);
 

@@ -4,27 +4,27 @@
 
 namespace twincell {
 
-TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>()>& open,
+TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>(const LocatorOptions&)>& open,
                        const std::filesystem::path& film, const FilmOptions& options,
                        const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress) {
-  CellDescription cell = resolve_cell(options.request);
-  const PhaseSource source = phase_source(options.request, cell);
+  const TrackRequest& request = options.request;
+  CellDescription cell = resolve_cell(request);
+  PhaseSource source = phase_source(request.phase, cell, request.cell_file);
+  source.trusted = options.trust_stated_drive;
   (void)cell.drive();  // refuse a contradictory drive before the work starts
-  LocatorOptions locator = options.locator;
-  locator.preprocess.bright |= cell.bright;
-  if (options.diameters.empty()) {
-    locator.diameter_px = cell.pixels_per_sigma.value_or(0);
-  } else {
-    locator.diameter_px = options.diameters.front();
-    locator.other_diameters_px.assign(options.diameters.begin() + 1, options.diameters.end());
-  }
+  cell.phase_lock = lock_of_chosen(cell.phase_lock, frames_of(options.locating));
+  const LocatorOptions locator =
+      locator_of(options.locating, cell.pixels_per_sigma,
+                 request.cell_file.empty() ? std::nullopt : std::optional<bool>(cell.bright));
+  const Region region = region_of(options.locating);
   // Locate and link all frames.
-  const auto frames = open();
+  const auto frames = open(locator);
   TrackedStack stack = [&] {
     const auto bar = progress("track");
-    return track_stack(*frames, locator, options.link, cell, options.threads, *bar, source, options.folder);
+    return track_stack(*frames, locator, options.link, cell, options.threads, *bar, source, options.folder,
+                       region);
   }();
-  check_flat(options.flat, stack.locator.preprocess.bright);
+  check_flat(options.locating.flat, stack.locator.preprocess.bright);
   TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, options.shortest);
   // Check the stated drive against the motion of the plate, or of the bed if the plate is not visible.
   DriveCheck check{.not_comparable = "the stated drive is trusted"};
@@ -33,9 +33,9 @@ TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>()>& open
       const auto edge = progress("the plate's edge");
       check = check_by_plate(cell, film, options.threads, *edge, source.method == PhaseMethod::fixed);
     }
-    if (check.by.empty() && cell.pixels_per_sigma) {
+    if (check.by.empty() && check.disagreement.empty() && cell.pixels_per_sigma) {
       BedSteps bed(plan.info);
-      write_trajectory(stack, plan, cell, bed);
+      write_trajectory(stack, plan, bed);
       check = check_by_bed(bed, plan.info, check.frame_rate_hz);
     }
   }

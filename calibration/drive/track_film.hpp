@@ -10,6 +10,7 @@
 
 #include "calibration/drive/plate_drive.hpp"
 #include "core/progress.hpp"
+#include "imaging/track/locating_request.hpp"
 #include "imaging/track/track.hpp"
 #include "imaging/track/track_request.hpp"
 #include "imaging/track/write_trajectory.hpp"
@@ -19,17 +20,15 @@ namespace twincell {
 /// Options of track_film.
 struct FilmOptions {
   TrackRequest request;
-  LocatorOptions locator;         ///< its diameters are those of `diameters`
-  std::vector<double> diameters;  ///< px, up to 8; empty: from the scale of the cell, else from the frames
+  LocatingRequest locating;  ///< beads, and the part of the film that is searched
   LinkOptions link;
-  std::string flat;                 ///< open_flattened.hpp; the stack is already flattened
   int shortest = 1;                 ///< frames of the shortest track that is written
-  bool trust_stated_drive = false;  ///< do not check the stated drive against the frames
+  bool trust_stated_drive = false;  ///< do not check the stated drive and phase lock against the frames
   int threads = 1;
   std::filesystem::path folder = {};  ///< for temporary files, as in track_stack
 };
 
-/// A tracked film. Its trajectory is written by write_trajectory(stack, plan, cell, sink).
+/// A tracked film. Its trajectory is written by write_trajectory(stack, plan, sink).
 struct TrackedFilm {
   CellDescription cell;
   TrackedStack stack;
@@ -39,12 +38,13 @@ struct TrackedFilm {
 
 /// Locates, links, and checks the stated drive against the motion of the plate, or of the bed if the plate is
 /// not visible. The result of the check is recorded in the plan.
-/// \param open opens the frames, after the cell is known to be valid
+/// \param open opens the frames (prepare_frames), after the cell is known to be valid; its argument is the
+/// options with which the beads are located
 /// \param film file or folder of the frames, which is read again for the plate; empty for frames in memory,
 /// whose drive is checked against the bed only
 /// \param progress makes the progress of the stages "track" and "the plate's edge"
 /// \throws ConfigError, InputError as resolve_cell, phase_source, track_stack
-TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>()>& open,
+TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>(const LocatorOptions&)>& open,
                        const std::filesystem::path& film, const FilmOptions& options,
                        const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress);
 

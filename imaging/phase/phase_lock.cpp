@@ -14,6 +14,7 @@ PhaseTable fixed_phases(const PhaseLock& lock) {
   table.method = lock.locked() ? PhaseMethod::fixed : PhaseMethod::none;
   table.frames_per_cycle = lock.frames_per_cycle;
   table.first_phase = lock.first_phase;
+  table.offset = lock.offset;
   return table;
 }
 

@@ -82,6 +82,11 @@ struct PhaseTable {
   std::int64_t dropped = 0;         ///< frames that are missing
   std::int64_t doubled = 0;         ///< frames that repeat the previous instant
   std::vector<FramePhase> frames;   ///< empty: frame f follows PhaseLock{frames_per_cycle, first_phase}
+  double offset = 0;                ///< frame intervals by which every frame was taken later than its phase
+  std::string
+      checked_by;  ///< for a fixed lock: "the plate", "the time stamps" or "the bed"; empty: unchecked
+  std::string not_checked;  ///< why a fixed lock could not be checked
+  std::string warning;      ///< how a fixed lock contradicts the stack; empty: it does not
 
   [[nodiscard]] bool locked() const { return frames_per_cycle > 0; }
   [[nodiscard]] FramePhase at(std::int64_t frame) const;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <complex>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -108,13 +110,19 @@ PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double
   }
   table.frames_per_cycle = frames_per_cycle;
   const double n = frames_per_cycle;
-  const auto first_cycle = static_cast<std::int64_t>(std::floor(std::round(cycles.front() * n) / n));
-  double squares = 0;
+  // A delay that all frames share is no jitter: their mean position between two phases, on the circle.
+  std::complex<double> around;
+  for (const double c : cycles) around += std::polar(1.0, 2 * std::numbers::pi * c * n);
+  table.offset = std::arg(around) / (2 * std::numbers::pi);
+  const auto ticks_at = [&](double c) { return std::round(c * n - table.offset); };
+  const auto first_cycle = static_cast<std::int64_t>(std::floor(ticks_at(cycles.front()) / n));
+  double squares = 0, sum = 0;
   std::int64_t before = 0;
   for (std::size_t f = 0; f < cycles.size(); ++f) {
-    const auto tick = static_cast<std::int64_t>(std::llround(cycles[f] * n)) - first_cycle * frames_per_cycle;
-    const double late = cycles[f] * n - std::round(cycles[f] * n);
+    const auto tick = static_cast<std::int64_t>(ticks_at(cycles[f])) - first_cycle * frames_per_cycle;
+    const double late = cycles[f] * n - table.offset - ticks_at(cycles[f]);
     squares += late * late;
+    sum += late;
     const std::int64_t passed = f == 0 ? 1 : tick - before;
     table.frames.push_back({static_cast<std::int32_t>(tick % frames_per_cycle), tick / frames_per_cycle,
                             static_cast<double>(passed)});
@@ -125,7 +133,10 @@ PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double
   if (const double elapsed = cycles.back() - cycles.front(); elapsed > 0)
     table.period_frames = std::round(elapsed * n) / elapsed;
   table.first_phase = table.frames.front().phase;
-  table.jitter = std::sqrt(squares / static_cast<double>(cycles.size()));
+  // The mean on the circle is the arithmetic mean to second order only.
+  const double mean = sum / static_cast<double>(cycles.size());
+  table.offset += mean;
+  table.jitter = std::sqrt(std::max(0.0, squares / static_cast<double>(cycles.size()) - mean * mean));
   return table;
 }
 

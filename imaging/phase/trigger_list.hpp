@@ -17,11 +17,12 @@
 
 namespace twincell {
 
-/// Reads a list and rounds each frame to the nearest of N_k phases. If two frames have the same phase of the
-/// same cycle, the second counts as doubled. Skipped phases count as dropped frames.
-/// \param drive_hz frequency of the drive, required by `time_s`
-/// \param frames_per_cycle N_k; 0: one over the median step in cycles, rounded
-/// \throws InputError naming file and line if the list cannot be read, if times decrease or are all the same,
+/// Reads a list and rounds each frame to the nearest of N_k phases. The delay that the frames have in common
+/// (their mean position between two phases, on the circle) is PhaseTable::offset and no jitter. If two frames
+/// have the same phase of the same cycle, the second counts as doubled. Skipped phases count as dropped
+/// frames. \param drive_hz frequency of the drive, required by `time_s` \param frames_per_cycle N_k; 0: one
+/// over the median step in cycles, rounded \throws InputError naming file and line if the list cannot be
+/// read, if times decrease or are all the same,
 ///     if a value is not a number, or if both time_s and cycles are present; as check_column_names
 /// \throws ConfigError if the frequency is required but absent
 PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double> drive_hz,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/median.hpp"
 #include "imaging/preprocess/preprocess.hpp"
 
 namespace twincell {
@@ -38,19 +39,26 @@ cv::Mat1f smoothed(const cv::Mat1f& values) {
   throw InputError(Where{.file = source.current(), .key = {}}, why);
 }
 
+/// How a flat field changes a frame.
+enum class Correction { divide, subtract };
+
 class Flattened : public FrameSource {
  public:
-  Flattened(std::unique_ptr<FrameSource> frames, cv::Mat1f flat)
-      : frames_(std::move(frames)), flat_(std::move(flat)) {}
+  Flattened(std::unique_ptr<FrameSource> frames, cv::Mat1f flat, Correction correction)
+      : frames_(std::move(frames)), flat_(std::move(flat)), correction_(correction) {}
   bool next(cv::Mat& frame) override {
     cv::Mat raw;
     if (!frames_->next(raw)) return false;
     if (raw.size() != flat_.size())
-      refuse(*frames_, fmt::format("is {} x {} px, but the flat field is {} x {} px.", raw.cols, raw.rows,
+      refuse(*frames_, fmt::format("is {} x {} px, but the {} is {} x {} px.", raw.cols, raw.rows,
+                                   correction_ == Correction::divide ? "flat field" : "background",
                                    flat_.cols, flat_.rows));
     // A new matrix, because the caller may keep the previous one.
     frame = cv::Mat();
-    cv::divide(raw, flat_, frame, 1, CV_32F);
+    if (correction_ == Correction::divide)
+      cv::divide(raw, flat_, frame, 1, CV_32F);
+    else
+      cv::subtract(raw, flat_, frame, cv::noArray(), CV_32F);
     return true;
   }
   [[nodiscard]] std::size_t announced() const override { return frames_->announced(); }
@@ -61,20 +69,27 @@ class Flattened : public FrameSource {
  private:
   std::unique_ptr<FrameSource> frames_;
   cv::Mat1f flat_;
+  Correction correction_;
 };
+
+cv::Mat1d sum_of(FrameSource& stack, int& frames) {
+  cv::Mat1d sum;
+  frames = 0;
+  for (cv::Mat frame; stack.next(frame); ++frames) {
+    cv::Mat1d levels;
+    frame.convertTo(levels, CV_64F);
+    sum = sum.empty() ? levels : cv::Mat1d(sum + levels);
+  }
+  if (frames == 0) refuse(stack, "contains no frames.");
+  return sum;
+}
 
 }  // namespace
 
 cv::Mat1f flat_of_blank(FrameSource& blank) {
   constexpr double kTypical = 0.9, kWall = 0.2;
-  cv::Mat1d sum;
   int frames = 0;
-  for (cv::Mat frame; blank.next(frame); ++frames) {
-    cv::Mat1d levels;
-    frame.convertTo(levels, CV_64F);
-    sum = sum.empty() ? levels : cv::Mat1d(sum + levels);
-  }
-  if (frames == 0) refuse(blank, "contains no frames.");
+  const cv::Mat1d sum = sum_of(blank, frames);
   std::vector<double> sorted(sum.begin(), sum.end());
   const auto at = static_cast<std::ptrdiff_t>(kTypical * static_cast<double>(sorted.size() - 1));
   std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
@@ -112,7 +127,21 @@ cv::Mat1f flat_of_stack(FrameSource& first, FrameSource& second) {
 }
 
 std::unique_ptr<FrameSource> flattened(std::unique_ptr<FrameSource> frames, cv::Mat1f flat) {
-  return std::make_unique<Flattened>(std::move(frames), std::move(flat));
+  return std::make_unique<Flattened>(std::move(frames), std::move(flat), Correction::divide);
+}
+
+cv::Mat1f mean_of(FrameSource& stack) {
+  int frames = 0;
+  const cv::Mat1d sum = sum_of(stack, frames);
+  cv::Mat1f mean;
+  sum.convertTo(mean, CV_32F, 1.0 / frames);
+  return mean;
+}
+
+std::unique_ptr<FrameSource> without_background(std::unique_ptr<FrameSource> frames,
+                                                const cv::Mat1f& background) {
+  const float level = upper_median(std::vector<float>(background.begin(), background.end()));
+  return std::make_unique<Flattened>(std::move(frames), cv::Mat1f(background - level), Correction::subtract);
 }
 
 }  // namespace twincell

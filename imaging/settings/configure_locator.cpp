@@ -21,6 +21,14 @@ LocatorOptions with(const FoundSettings& found, LocatorOptions options) {
   return options;
 }
 
+/// Whether all pixels are equal. A search for discs in such a frame, or in one of a few pixels, takes as long
+/// as in any other and finds nothing.
+bool is_blank(const cv::Mat& frame) {
+  double low = 0, high = 0;
+  cv::minMaxLoc(frame, &low, &high);
+  return low == high;
+}
+
 /// Examines frames 0, 1, 2, 4, ... until one shows a bead with the settings found in it. The frames are few,
 /// because the search in one frame takes as long as locating many frames.
 LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
@@ -29,6 +37,7 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
   for (std::size_t k = 0; k <= kLast; k = std::max<std::size_t>(2 * k, k + 1)) {
     const cv::Mat* frame = frames.look(k);
     if (frame == nullptr) break;
+    if (is_blank(*frame)) continue;
     const auto found = find_settings(*frame, given);
     if (!found) continue;
     LocatorOptions settled = with(*found, given);

@@ -1,6 +1,7 @@
 #include "imaging/track/link_detections.hpp"
 
 #include <cmath>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -18,16 +19,43 @@ PixelPoint place_of(const TrackedBead& b) {
   return {b.x_px, b.y_px};
 }
 
-// Motion of the bed without known phases: the sum of the mean steps, and the log-odds that a frame repeats
-// the previous one.
+/// Motion of the bed, from the linked frames: the sum of the mean steps, and the log-odds that a frame
+/// repeats the previous one.
+class MotionOfBed {
+ public:
+  explicit MotionOfBed(double unit_px) : unit_px_(unit_px) {}
+  /// \param ids tracks of the beads \param step mean step of the linked beads
+  void add(std::span<const TrackedBead> beads, std::span<const std::int64_t> ids, PixelPoint step) {
+    now_.clear();
+    steps_.clear();
+    for (std::size_t k = 0; k < beads.size(); ++k) {
+      const TrackedBead& b = now_[ids[k]] = beads[k];
+      const auto old = before_.find(ids[k]);
+      if (old == before_.end()) continue;
+      const TrackedBead& a = old->second;
+      steps_.push_back(std::hypot((b.x_px - a.x_px) / std::hypot(a.sigma_x_px, b.sigma_x_px),
+                                  (b.y_px - a.y_px) / std::hypot(a.sigma_y_px, b.sigma_y_px)));
+    }
+    std::swap(before_, now_);
+    height_ -= motion_.heights.empty() ? 0 : step.y_px / unit_px_;
+    motion_.heights.push_back(height_);
+    motion_.repeats.push_back(log_odds_of_repeat(steps_));
+  }
+  [[nodiscard]] const BedMotion& motion() const { return motion_; }
+
+ private:
+  double unit_px_, height_ = 0;
+  BedMotion motion_;
+  std::unordered_map<std::int64_t, TrackedBead> before_, now_;
+  std::vector<double> steps_;
+};
+
+// Motion of the bed without known phases.
 BedMotion bed_motion(const DetectionStore& located, const LinkOptions& link, double unit_px) {
   Linker linker(link);
-  BedMotion motion;
+  MotionOfBed motion(unit_px);
   std::vector<PixelPoint> places;
   std::vector<std::uint8_t> tracers;
-  std::unordered_map<std::int64_t, TrackedBead> before, now;
-  std::vector<double> steps;
-  double height = 0;
   for (std::size_t f = 0; f < located.size(); ++f) {
     const std::vector<TrackedBead> beads = located[f];
     places.clear();
@@ -37,36 +65,30 @@ BedMotion bed_motion(const DetectionStore& located, const LinkOptions& link, dou
       tracers.push_back(b.tracer ? 1 : 0);
     }
     const std::vector<std::int64_t> ids = linker.next(places, {}, tracers);
-    now.clear();
-    steps.clear();
-    for (std::size_t k = 0; k < beads.size(); ++k) {
-      const TrackedBead& b = now[ids[k]] = beads[k];
-      const auto old = before.find(ids[k]);
-      if (old == before.end()) continue;
-      const TrackedBead& a = old->second;
-      steps.push_back(std::hypot((b.x_px - a.x_px) / std::hypot(a.sigma_x_px, b.sigma_x_px),
-                                 (b.y_px - a.y_px) / std::hypot(a.sigma_y_px, b.sigma_y_px)));
-    }
-    std::swap(before, now);
-    height -= f > 0 ? linker.mean_step().y_px / unit_px : 0;
-    motion.heights.push_back(height);
-    motion.repeats.push_back(log_odds_of_repeat(steps));
+    motion.add(beads, ids, linker.mean_step());
   }
-  return motion;
+  return motion.motion();
+}
+
+double unit_of(const CellDescription& cell, const LinkOptions& link) {
+  return cell.pixels_per_sigma.value_or(link.diameter_px);
 }
 
 PhaseTable determine_phases(const DetectionStore& located, const LinkOptions& link,
-                            const CellDescription& cell, const PhaseSource& source) {
+                            const CellDescription& cell, const PhaseSource& source,
+                            const LockEvidence& evidence) {
   switch (source.method) {
     case PhaseMethod::none:
       return fixed_phases({});
     case PhaseMethod::fixed:
+      if (cell.phase_lock.locked() && !source.trusted) return check_lock(cell.phase_lock, evidence);
       return fixed_phases(cell.phase_lock);
     case PhaseMethod::found: {
       PhaseEstimationOptions options{.frames_per_cycle = cell.phase_lock.frames_per_cycle, .gamma = {}};
       if (const auto drive = cell.drive()) options.gamma = drive->gamma();
-      return estimate_phases(bed_motion(located, link, cell.pixels_per_sigma.value_or(link.diameter_px)),
-                             options);
+      PhaseTable table = estimate_phases(bed_motion(located, link, unit_of(cell, link)), options);
+      table.offset = cell.phase_lock.offset;
+      return table;
     }
     case PhaseMethod::triggers:
       break;
@@ -91,11 +113,12 @@ std::vector<std::int64_t> LinkedDetections::broken_tracers() const {
   return broken;
 }
 
-LinkedDetections link_detections(const DetectionStore& located, LinkOptions link, const CellDescription& cell,
-                                 const PhaseSource& source, const std::filesystem::path& folder,
-                                 Progress& progress) {
-  LinkedDetections stack{.frames = DetectionStore(folder), .tracks = {}, .phases = {}, .links = {}};
-  stack.phases = determine_phases(located, link, cell, source);
+namespace {
+
+/// Links the frames with the phases of `stack`. \param motion collects the motion of the bed; null: not
+/// needed
+void link_frames(const DetectionStore& located, LinkOptions link, const CellDescription& cell,
+                 LinkedDetections& stack, MotionOfBed* motion, Progress& progress) {
   if (const auto drive = cell.drive(); drive && stack.phases.locked() && cell.pixels_per_sigma) {
     const double dt = drive->period() / stack.phases.frames_per_cycle;
     link.fall_px = dt * dt * *cell.pixels_per_sigma;
@@ -125,6 +148,7 @@ LinkedDetections link_detections(const DetectionStore& located, LinkOptions link
     const FrameAhead ahead{next.places, next.time, next.tracers};
     const std::vector<std::int64_t> ids =
         linker.next(frame.places, frame.time, frame.tracers, f + 1 < located.size() ? &ahead : nullptr);
+    if (motion != nullptr) motion->add(beads, ids, linker.mean_step());
     stack.tracks.resize(static_cast<std::size_t>(linker.n_tracks()));
     for (std::size_t k = 0; k < beads.size(); ++k) {
       beads[k].track = ids[k];
@@ -142,7 +166,25 @@ LinkedDetections link_detections(const DetectionStore& located, LinkOptions link
   }
   stack.n_tracks = linker.n_tracks();
   stack.links = linker.total();
-  return stack;
+}
+
+}  // namespace
+
+LinkedDetections link_detections(const DetectionStore& located, LinkOptions link, const CellDescription& cell,
+                                 const PhaseSource& source, const std::filesystem::path& folder,
+                                 Progress& progress, const LockEvidence& evidence) {
+  const auto linked = [&](PhaseTable phases, MotionOfBed* motion) {
+    LinkedDetections stack{.frames = DetectionStore(folder), .tracks = {}, .phases = {}, .links = {}};
+    stack.phases = std::move(phases);
+    link_frames(located, link, cell, stack, motion, progress);
+    return stack;
+  };
+  const PhaseTable phases = determine_phases(located, link, cell, source, evidence);
+  if (phases.not_checked.empty()) return linked(phases, nullptr);
+  MotionOfBed motion(unit_of(cell, link));
+  LinkedDetections stack = linked(phases, &motion);
+  check_lock_by_bed(stack.phases, motion.motion());
+  return stack.phases.frames.empty() ? std::move(stack) : linked(stack.phases, nullptr);
 }
 
 }  // namespace twincell

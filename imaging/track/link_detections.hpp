@@ -10,6 +10,7 @@
 #include "core/progress.hpp"
 #include "imaging/cell/cell.hpp"
 #include "imaging/link/link.hpp"
+#include "imaging/phase/lock_check.hpp"
 #include "imaging/phase/phase_lock.hpp"
 #include "imaging/track/detection_store.hpp"
 
@@ -20,6 +21,7 @@ struct PhaseSource {
   PhaseMethod method = PhaseMethod::fixed;  ///< fixed: the cell's frames per cycle, if it states them
   std::filesystem::path triggers = {};      ///< the list
   std::optional<double> drive_hz = {};      ///< frequency of the drive, for a list in seconds
+  bool trusted = false;                     ///< a stated number of frames per cycle is not checked
 };
 
 /// Summary of a track at the end of the stack.
@@ -46,13 +48,16 @@ struct LinkedDetections {
   [[nodiscard]] std::vector<std::int64_t> broken_tracers() const;
 };
 
-/// Determines the phase of each frame, then links. A frame taken twice is linked with interval 0.
+/// Determines the phase of each frame, then links. A frame taken twice is linked with interval 0. A stated
+/// number of frames per cycle is checked (lock_check.hpp): by plate and time stamps before linking, otherwise
+/// by the bed's motion after it; if frames are missing, the beads are linked anew with the corrected phases.
 /// \param cell drive, frames per cycle and scale give the linker the fall of a bead per frame interval
 /// \param folder folder for the beads on disk, about 64 bytes per bead and frame; empty: the folder for
 ///     temporary files
-/// \throws InputError if a list of triggers does not have a line for each frame
+/// \param evidence plate and time stamps of the frames, for a stated number of frames per cycle
+/// \throws InputError if a list of triggers does not have a line for each frame; ConfigError as check_lock
 LinkedDetections link_detections(const DetectionStore& located, LinkOptions link, const CellDescription& cell,
                                  const PhaseSource& source, const std::filesystem::path& folder,
-                                 Progress& progress = Progress::none());
+                                 Progress& progress = Progress::none(), const LockEvidence& evidence = {});
 
 }  // namespace twincell

@@ -1,8 +1,11 @@
 #include "imaging/track/track.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "imaging/cell/plate_row.hpp"
 #include "imaging/phase/trigger_list.hpp"
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/track/locate_stack.hpp"
@@ -20,25 +23,57 @@ bool outside(const CellDescription& cell, cv::Size picture, const Detection& b) 
 /// The beads of all frames that are inside the cell, and the counts of excluded ones.
 struct Detections {
   DetectionStore frames;
-  cv::Size picture;
   std::size_t outside_cell = 0, wrong_radius = 0;
   bool cut_by_frame = false;  ///< at least one bead is cut by the frame
 };
 
+/// A stack that keeps the size of its frames, and the evidence for their phases, as they are read.
+class Witnessed : public FrameSource {
+ public:
+  Witnessed(FrameSource& frames, bool bright) : frames_(frames), bright_(bright) {}
+  bool next(cv::Mat& frame) override {
+    if (!frames_.next(frame)) return false;
+    size_ = frame.size();
+    if (const auto time = frames_.time_s()) evidence_.times_s.push_back(*time);
+    evidence_.plate_px.push_back(plate_height_px(frame, bright_));
+    return true;
+  }
+  [[nodiscard]] std::size_t announced() const override { return frames_.announced(); }
+  [[nodiscard]] std::string current() const override { return frames_.current(); }
+  [[nodiscard]] StackInfo info() const override { return frames_.info(); }
+  [[nodiscard]] std::optional<double> time_s() const override { return frames_.time_s(); }
+  /// Of the frames read so far. \post the time stamps are as many as the frames, or none
+  [[nodiscard]] LockEvidence evidence() const {
+    LockEvidence all = evidence_;
+    if (all.times_s.size() != all.plate_px.size()) all.times_s.clear();
+    return all;
+  }
+  [[nodiscard]] const cv::Size& size() const { return size_; }
+
+ private:
+  FrameSource& frames_;
+  bool bright_;
+  cv::Size size_;
+  LockEvidence evidence_;
+};
+
 Detections detect(FramesAhead& frames, const LocatorOptions& locator, const CellDescription& cell,
-                  int threads, Progress& progress, const std::filesystem::path& folder) {
-  Detections all{.frames = DetectionStore(folder), .picture = {}};
+                  const Region& region, const cv::Size& picture, int threads, Progress& progress,
+                  const std::filesystem::path& folder) {
+  Detections all{.frames = DetectionStore(folder)};
   std::vector<TrackedBead> beads;
   locate_stack(
       frames, locator, threads,
-      [&](std::int64_t, const cv::Mat& grey, const Located& found) {
-        all.picture = grey.size();
+      [&](std::int64_t, const cv::Mat&, const Located& found) {
         all.wrong_radius += static_cast<std::size_t>(
             std::count_if(found.dropped.begin(), found.dropped.end(),
                           [](const Detection& b) { return b.verdict == Verdict::wrong_radius; }));
         beads.clear();
-        for (const Detection& b : found.beads) {
-          if (outside(cell, grey.size(), b)) {
+        for (Detection b : found.beads) {
+          b.x += region.corner().x;
+          b.y += region.corner().y;
+          if (region.cuts(b.x, b.y, b.radius)) continue;
+          if (outside(cell, picture, b)) {
             ++all.outside_cell;
             continue;
           }
@@ -67,22 +102,27 @@ double smallest_diameter(const LocatorOptions& locator) {
 
 TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOptions link,
                          const CellDescription& cell, int threads, Progress& progress,
-                         const PhaseSource& source, const std::filesystem::path& folder) {
+                         const PhaseSource& source, const std::filesystem::path& folder,
+                         const Region& region) {
   // An unreadable list of triggers is rejected before the work, not after it.
   if (source.method == PhaseMethod::triggers)
     (void)read_triggers(source.triggers, source.drive_hz, cell.phase_lock.frames_per_cycle);
-  FramesAhead frames(stack);
+  Witnessed witnessed(stack, given.preprocess.bright);
+  RegionFrames seen(witnessed, region);
+  FramesAhead frames(seen);
   const LocatorOptions locator = configure_locator(frames, given).locator;
-  const Detections detected = detect(frames, locator, cell, threads, progress, folder);
+  const Detections detected =
+      detect(frames, locator, cell, region, witnessed.size(), threads, progress, folder);
   // If the frame cuts beads, others enter and leave.
   link.closed = cell.sides == Boundary::wall && !detected.cut_by_frame;
   link.diameter_px = smallest_diameter(locator);
-  return {link_detections(detected.frames, link, cell, source, folder),
-          locator,
-          detected.picture.width,
-          detected.picture.height,
-          detected.outside_cell,
-          detected.wrong_radius};
+  return {
+      link_detections(detected.frames, link, cell, source, folder, Progress::none(), witnessed.evidence()),
+      locator,
+      witnessed.size().width,
+      witnessed.size().height,
+      detected.outside_cell,
+      detected.wrong_radius};
 }
 
 }  // namespace twincell

@@ -9,6 +9,7 @@
 #include "imaging/cell/cell.hpp"
 #include "imaging/link/link.hpp"
 #include "imaging/locate/locator.hpp"
+#include "imaging/preprocess/region.hpp"
 #include "imaging/stack/frame_source.hpp"
 #include "imaging/track/link_detections.hpp"
 
@@ -29,9 +30,14 @@ struct TrackedStack : LinkedDetections {
 ///     the fall of a bead per frame interval
 /// \param folder folder for the beads on disk, about 64 bytes per bead and frame; empty: the folder for
 ///     temporary files
-/// \throws InputError if a list of triggers does not have a line for each frame
+/// \param region part of the picture that is searched; positions remain those of the whole picture. Discs cut
+///     by the mask are left out. The plate is sought in the whole picture
+/// \throws InputError if a list of triggers does not have a line for each frame; ConfigError as check_lock
+/// and
+///     Region::check
 TrackedStack track_stack(FrameSource& frames, const LocatorOptions& locator, LinkOptions link,
                          const CellDescription& cell, int threads, Progress& progress = Progress::none(),
-                         const PhaseSource& source = {}, const std::filesystem::path& folder = {});
+                         const PhaseSource& source = {}, const std::filesystem::path& folder = {},
+                         const Region& region = {});
 
 }  // namespace twincell

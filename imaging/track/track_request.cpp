@@ -31,7 +31,7 @@ PhaseMethod phase_method(const std::string& option) {
 
 }  // namespace
 
-PhaseSource phase_source(const TrackRequest& o, CellDescription& cell) {
+PhaseSource phase_source(const PhaseRequest& o, CellDescription& cell, const std::string& cell_file) {
   PhaseSource source{.method = phase_method(o.phase_lock), .triggers = {}, .drive_hz = o.drive_hz};
   const Where drive_hz{.file = {}, .key = "--drive-hz"};
   if (o.drive_hz && source.method != PhaseMethod::triggers)
@@ -55,7 +55,7 @@ PhaseSource phase_source(const TrackRequest& o, CellDescription& cell) {
   if (o.drive_hz && std::abs(*o.drive_hz / stated - 1) > kSame)
     throw ConfigError(drive_hz,
                       fmt::format("is {:g}, but the drive in {} is {:.6g} Hz; correct one of the two.",
-                                  *o.drive_hz, o.cell_file, stated));
+                                  *o.drive_hz, cell_file, stated));
   if (!source.drive_hz) source.drive_hz = stated;
   return source;
 }
@@ -94,6 +94,20 @@ CellDescription resolve_cell(const TrackRequest& o) {
   }
   cell.phase_lock.check(Where{.file = {}, .key = "first-phase"});
   return cell;
+}
+
+PhaseLock lock_of_chosen(PhaseLock lock, const FrameRange& range) {
+  if (!lock.locked() || range.all()) return lock;
+  if (lock.frames_per_cycle % range.step != 0)
+    throw ConfigError(
+        Where{.file = {}, .key = "--frames"},
+        fmt::format("takes every frame number {}, which does not divide the {} frames per cycle.", range.step,
+                    lock.frames_per_cycle));
+  const std::int64_t first = (lock.first_phase + range.first) % lock.frames_per_cycle;
+  lock.frames_per_cycle = static_cast<int>(lock.frames_per_cycle / range.step);
+  lock.first_phase = static_cast<int>(first / range.step);
+  lock.offset = (lock.offset + static_cast<double>(first % range.step)) / static_cast<double>(range.step);
+  return lock;
 }
 
 }  // namespace twincell

@@ -10,9 +10,16 @@
 #include <vector>
 
 #include "imaging/cell/cell.hpp"
+#include "imaging/stack/chosen_frames.hpp"
 #include "imaging/track/link_detections.hpp"
 
 namespace twincell {
+
+/// The options that state the source of the phases.
+struct PhaseRequest {
+  std::string phase_lock;          ///< frames per cycle, "found", "none", or a list of triggers (*.csv)
+  std::optional<double> drive_hz;  ///< frequency of the drive, for a list of triggers in seconds
+};
 
 /// The options of `track` that describe the cell. Absent values are those of the file.
 struct TrackRequest {
@@ -24,8 +31,7 @@ struct TrackRequest {
   std::optional<double> gamma, amplitude;       ///< of the drive; amplitude in sigma
   std::optional<int> frames_per_cycle;          ///< 0: not phase-locked
   std::optional<int> first_phase;               ///< phase of the first frame
-  std::string phase_lock;          ///< frames per cycle, "found", "none", or a list of triggers (*.csv)
-  std::optional<double> drive_hz;  ///< frequency of the drive, for a list of triggers in seconds
+  PhaseRequest phase;
 };
 
 /// The cell description of the file, with the other members taking precedence. Two quantities determine the
@@ -34,7 +40,12 @@ struct TrackRequest {
 CellDescription resolve_cell(const TrackRequest& request);
 
 /// Source of the phases according to `phase_lock`: N, found, none, or a list of triggers. N and none are
-/// stored in `cell`. \throws ConfigError
-PhaseSource phase_source(const TrackRequest& request, CellDescription& cell);
+/// stored in `cell`. \param cell_file for messages \throws ConfigError for another word, or a frequency that
+/// is not used or contradicts the cell
+PhaseSource phase_source(const PhaseRequest& request, CellDescription& cell, const std::string& cell_file);
+
+/// The phase lock of the chosen frames of a stack with the given lock. \throws ConfigError if the step does
+/// not divide the frames per cycle
+PhaseLock lock_of_chosen(PhaseLock lock, const FrameRange& range);
 
 }  // namespace twincell

@@ -83,7 +83,10 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
       tracers["broken"].push_back({{"slot", slot},
                                    {"first", stack.tracks[static_cast<std::size_t>(t)].first},
                                    {"last", stack.tracks[static_cast<std::size_t>(t)].last}});
-  if (cell.phase_lock.offset != 0) lock["offset_frames"] = cell.phase_lock.offset;
+  if (phases.offset != 0) lock["offset_frames"] = phases.offset;
+  if (!phases.checked_by.empty()) lock["checked_by"] = phases.checked_by;
+  if (!phases.not_checked.empty()) lock["not_checked"] = phases.not_checked;
+  if (!phases.warning.empty()) lock["warning"] = phases.warning;
   // Document: the camera is the map by which pixels became lengths.
   nlohmann::json document = {{"phase_lock", lock},
                              {"links",
@@ -115,8 +118,7 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
   return json_text(document);
 }
 
-void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell,
-                      TrajectorySink& sink) {
+void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, TrajectorySink& sink) {
   const TrajectoryInfo& info = plan.info;
   const double nan = std::numeric_limits<double>::quiet_NaN(), scale = plan.pixel_frame.pixels_per_sigma;
   Frame frame;
@@ -129,7 +131,7 @@ void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, const Ce
     frame.cycle = at.cycle;
     frame.time = static_cast<double>(f);
     if (info.drive && stack.phases.locked()) {
-      const double fraction = (at.phase + cell.phase_lock.offset) / stack.phases.frames_per_cycle;
+      const double fraction = (at.phase + stack.phases.offset) / stack.phases.frames_per_cycle;
       frame.time = (static_cast<double>(at.cycle) + fraction) * info.drive->period();
       frame.plate_height = info.drive->displacement(fraction - std::floor(fraction));
     }

@@ -32,7 +32,6 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
 /// Writes the frames one by one. Time is in t0 if the drive and N_k are known (one period per N_k frames),
 /// otherwise it is the frame number. Velocity is absent. The plate height is present if the drive and the
 /// phases are known. A frame that was taken twice is written once.
-void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell,
-                      TrajectorySink& sink);
+void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, TrajectorySink& sink);
 
 }  // namespace twincell

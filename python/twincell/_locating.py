@@ -5,7 +5,7 @@ from . import _core
 
 
 def locate(stack, *, diameter=None, locator="vote", min_score=0.04, refine="exact", bright=False, dark=False,
-           flat="", threads=0, callback=None):
+           flat="", background="", roi="", mask="", frames="", threads=0, callback=None):
     """The beads of a picture, a sequence of pictures or a stack as a DataFrame in the columns of trackpy.
 
     stack: the name of a stack, Frames, an array (rows, columns) or (frames, rows, columns), or any iterable over
@@ -21,7 +21,7 @@ def locate(stack, *, diameter=None, locator="vote", min_score=0.04, refine="exac
 
     columns, report = _core.locate(
         stack, diameter=diameter, locator=locator, min_score=min_score, refine=refine, bright=bright, dark=dark,
-        flat=flat, threads=threads, callback=callback)
+        flat=flat, background=background, roi=roi, mask=mask, frames=frames, threads=threads, callback=callback)
     table = pd.DataFrame(columns)
     table["tracer"] = table["tracer"].astype(bool)
     table["edge"] = table["edge"].astype(bool)

@@ -55,7 +55,7 @@ MemoryTrajectory track(const std::filesystem::path& folder, int threads) {
   const TrackedStack stack = track_stack(*frames, locator, {}, cell, threads);
   const TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
   MemoryTrajectory result(plan.info);
-  write_trajectory(stack, plan, cell, result);
+  write_trajectory(stack, plan, result);
   return result;
 }
 

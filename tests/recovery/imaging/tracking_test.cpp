@@ -75,7 +75,7 @@ void track_to(const std::filesystem::path& path, const DetectionStore& store, co
   const TrackedStack stack{link_detections(store, {.diameter_px = 15}, c, source, folder), {}, 200, 640};
   const TrackPlan plan = plan_trajectory(stack, c, 15, 1);
   H5mdWriter writer(path, plan.info);
-  write_trajectory(stack, plan, c, writer);
+  write_trajectory(stack, plan, writer);
   writer.finish();
 }
 

@@ -106,7 +106,23 @@ TEST(TriggerList, PhasesJitterDroppedAndDoubled) {
   EXPECT_EQ(intervals, (std::vector<double>{1, 1, 1, 1, 1, 2, 1, 0, 1}));
   EXPECT_EQ(t.dropped, 1);
   EXPECT_EQ(t.doubled, 1);
-  EXPECT_NEAR(t.jitter.value(), std::sqrt((0.1 * 0.1 + 0.04 * 0.04) / 9), 1e-9);
+  // Lateness of the frames: 0.1, 0.04 and seven times 0, of which the mean is no jitter.
+  EXPECT_NEAR(t.offset, 0.14 / 9, 1e-4);
+  EXPECT_NEAR(t.jitter.value(), std::sqrt((0.1 * 0.1 + 0.04 * 0.04) / 9 - std::pow(0.14 / 9, 2)), 1e-6);
+}
+
+TEST(TriggerList, ACommonDelayIsAnOffsetAndNoJitter) {
+  for (const double late : {0.3, 0.49, 0.5, -0.2}) {
+    const TemporaryFolder folder;
+    std::string text = "cycles\n";
+    // Alternately 0.01 frames early and late.
+    for (int f = 0; f < 60; ++f)
+      text += std::to_string((100 + f + late + (f % 2 == 0 ? 0.01 : -0.01)) / 20.0) + "\n";
+    const PhaseTable t = read_triggers(write_list(folder, text), std::nullopt, 20);
+    EXPECT_NEAR(std::remainder(t.offset - late, 1), 0, 1e-4) << late;
+    EXPECT_NEAR(t.jitter.value(), 0.01, 1e-4) << late;
+    EXPECT_EQ(t.dropped + t.doubled, 0) << late;
+  }
 }
 
 TEST(TriggerList, RefusesWhatIsNone) {

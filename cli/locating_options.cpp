@@ -1,0 +1,59 @@
+// Options of the verbs that locate beads.
+
+#include "cli/locating_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "cli/output.hpp"
+#include "cli/stack_info.hpp"
+#include "imaging/refine/refiner.hpp"
+
+namespace twincell::cli {
+
+void add_locating_options(CLI::App& verb, LocatingRequest& request) {
+  verb.add_option(
+          "--diameter", request.diameters,
+          "Bead diameter, px, or up to 8 different diameters; default: the scale in CELL.toml if there "
+          "is one, otherwise determined from the first frame")
+      ->check(CLI::Range(3.0, 400.0))
+      ->expected(1, 8);
+  verb.add_option("--locator", request.locator.finder,
+                  "Method that finds candidates for beads; default: vote")
+      ->check(CLI::IsMember(finder_names()));
+  verb.add_option("--min-score", request.locator.find.min_score,
+                  "Smallest share of the edge of a circle that must be visible, 0 to 1; default: 0.04");
+  verb.add_option("--refine", request.locator.refine.method,
+                  "Method that finds the position of each bead to a fraction of a pixel. " + refiners_help())
+      ->check(CLI::IsMember(refiner_names()));
+  CLI::Option* bright =
+      verb.add_flag("--bright", request.locator.preprocess.bright, "Beads are brighter than the background");
+  verb.add_flag(
+          "--dark", request.dark,
+          "Beads are darker than the background; default: as CELL.toml states if there is one, otherwise "
+          "determined from the first frame")
+      ->excludes(bright);
+  CLI::Option* flat = verb.add_option("--flat", request.flat,
+                                      "Divide every frame by a flat field: a stack of the cell without "
+                                      "beads, or 'stack' for the light between "
+                                      "the back-lit beads of the stack itself; default: no flat field");
+  verb.add_option("--background", request.background,
+                  "Picture of the cell without beads: every frame is divided by it, or with --bright it is "
+                  "subtracted; default: none")
+      ->excludes(flat);
+  verb.add_option(
+      "--roi", request.roi,
+      "Part of the picture that is searched: left,top,width,height, px; coordinates remain those of "
+      "the whole picture; default: all of it");
+  verb.add_option("--mask", request.mask,
+                  "Picture of the size of the frames that is 0 where no bead is searched; default: none");
+  verb.add_option("--frames", request.frames,
+                  "Frames that are read: A:B or A:B:STEP, from frame A, counted from 0, to the one before B; "
+                  "default: all");
+}
+
+std::unique_ptr<FrameSource> open_for_locating(const std::string& stack, const LocatingRequest& request,
+                                               const LocatorOptions& locator, const Common& common) {
+  return prepare_frames(open_stack(stack, common), stack, request, locator);
+}
+
+}  // namespace twincell::cli

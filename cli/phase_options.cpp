@@ -1,0 +1,77 @@
+// Options of the verbs that determine the drive phase of each frame.
+
+#include "cli/phase_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "cli/numbers.hpp"
+#include "core/choice.hpp"
+
+namespace twincell::cli {
+
+namespace {
+
+// The values of --phase-lock with their help.
+std::string phase_methods_help() {
+  std::string text;
+  for (const PhaseMethodRow& row : kPhaseMethods)
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", row.option, row.help);
+  return text;
+}
+
+}  // namespace
+
+void add_phase_options(CLI::App& verb, PhaseRequest& request) {
+  verb.add_option("--phase-lock", request.phase_lock, "Source of the drive phases. " + phase_methods_help());
+  verb.add_option(
+          "--drive-hz", request.drive_hz,
+          "Frequency of the drive, Hz, for a list of triggers in seconds; default: the drive in CELL.toml")
+      ->check(above_zero());
+}
+
+std::string phases_in_words(const PhaseTable& p) {
+  std::string text;
+  if (p.method == PhaseMethod::none) {
+    text = "phase lock: none\n";
+  } else {
+    text = fmt::format("phase lock: {}, {} frames per cycle", row_of(kPhaseMethods, p.method).word,
+                       p.frames_per_cycle);
+    if (p.period_frames) text += fmt::format(", period {:.4f} frames", *p.period_frames);
+    if (!p.checked_by.empty()) text += ", checked by " + p.checked_by;
+    if (!p.not_checked.empty()) text += " (not checked: " + p.not_checked + ")";
+    if (p.offset != 0 && p.method == PhaseMethod::triggers)
+      text += fmt::format(", all {:+.3f} frames after their phases", p.offset);
+    if (p.jitter)
+      text += fmt::format(", jitter {}{:.3f} frames", p.method == PhaseMethod::found ? "at most " : "",
+                          *p.jitter);
+    if (!p.frames.empty()) text += fmt::format(", {} frames dropped, {} taken twice", p.dropped, p.doubled);
+    // No triggered camera is known to miss so many frames. A camera that runs free of the drive slips
+    // continually.
+    constexpr double kMostSlips = 0.1;
+    if (p.method == PhaseMethod::found &&
+        static_cast<double>(p.dropped + p.doubled) > kMostSlips * static_cast<double>(p.frames.size()))
+      text += " (so many that the camera seems to run free of the drive; the phases are then meaningless)";
+    if (p.agreement)
+      text += fmt::format("; phase 0 placed by the drive, correlation {:.3f}", *p.agreement);
+    else if (p.method == PhaseMethod::found)
+      text += "; phase 0 is where the bed passes its mean height upwards";
+    text += '\n';
+  }
+  return text;
+}
+
+nlohmann::json json_of(const PhaseTable& p) {
+  nlohmann::json lock = {{"method", row_of(kPhaseMethods, p.method).word}};
+  if (p.locked()) lock["frames_per_cycle"] = p.frames_per_cycle;
+  lock["dropped"] = p.dropped;
+  lock["doubled"] = p.doubled;
+  if (!p.checked_by.empty()) lock["checked_by"] = p.checked_by;
+  if (!p.not_checked.empty()) lock["not_checked"] = p.not_checked;
+  if (!p.warning.empty()) lock["warning"] = p.warning;
+  return lock;
+}
+
+}  // namespace twincell::cli

@@ -1,0 +1,24 @@
+#pragma once
+/// \file
+/// Options of the verbs that determine the drive phase of each frame: track and match.
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "imaging/phase/phase_lock.hpp"
+#include "imaging/track/track_request.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace twincell::cli {
+
+/// Adds --phase-lock and --drive-hz.
+void add_phase_options(CLI::App& verb, PhaseRequest& request);
+
+/// The phases of a stack for the user, as one line of text and as JSON.
+std::string phases_in_words(const PhaseTable& phases);
+nlohmann::json json_of(const PhaseTable& phases);
+
+}  // namespace twincell::cli

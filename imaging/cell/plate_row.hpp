@@ -1,0 +1,18 @@
+#pragma once
+/// \file
+/// Height of the plate in one frame, quickly, to a fraction of a pixel. It suffices to see which phase of the
+/// drive a frame shows; cell_edges.hpp measures the plate exactly, and takes as long as locating the beads.
+
+#include <opencv2/core.hpp>
+
+namespace twincell {
+
+/// Height of the plate's edge above the lowest row of the picture, px; NaN if the picture does not end in a
+/// plate. In each column the edge is the first crossing of the level half way between plate and light, seen
+/// from below. Beads that touch the plate delay the crossing and never advance it, so the plate is the lower
+/// fifth of the columns.
+/// \param grey CV_8U, CV_16U or CV_32F
+/// \param bright the plate is brighter than the background
+double plate_height_px(const cv::Mat& grey, bool bright);
+
+}  // namespace twincell

@@ -1,0 +1,215 @@
+#include "imaging/phase/lock_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/error.hpp"
+#include "core/median.hpp"
+#include "imaging/phase/sine_slips.hpp"
+
+namespace twincell {
+
+namespace {
+
+constexpr double kMostSlips = 0.1;  // of the frames
+constexpr const char* kCure =
+    "use --phase-lock found, or a list of the phases (calibrate plate --phases LIST.csv, then --phase-lock "
+    "LIST.csv), or correct the frames per cycle";
+
+[[noreturn]] void refuse(const PhaseTable& table, const std::string& why) {
+  throw ConfigError(Where{.file = {}, .key = "frames_per_cycle"},
+                    fmt::format("is {}, but {}; {}.", table.frames_per_cycle, why, kCure));
+}
+
+/// Sets the phases of all frames from their ticks since frame 0.
+void set_phases(PhaseTable& table, std::span<const std::int64_t> ticks) {
+  const std::int64_t n = table.frames_per_cycle;
+  table.frames.clear();
+  table.dropped = table.doubled = 0;
+  for (std::size_t f = 0; f < ticks.size(); ++f) {
+    const std::int64_t at = ticks[f] + table.first_phase, by = f == 0 ? 1 : ticks[f] - ticks[f - 1];
+    table.frames.push_back({static_cast<std::int32_t>(at % n), at / n, static_cast<double>(by)});
+    table.doubled += by == 0 ? 1 : 0;
+    table.dropped += std::max<std::int64_t>(by - 1, 0);
+  }
+}
+
+/// Accepts ticks in which frames are missing or doubled, unless they are too many. \param witness "the plate"
+void accept(PhaseTable& table, std::span<const std::int64_t> ticks, const std::string& witness) {
+  set_phases(table, ticks);
+  const auto slips = static_cast<std::size_t>(std::count_if(
+      table.frames.begin(), table.frames.end(), [](const FramePhase& f) { return f.interval != 1; }));
+  const auto first = std::find_if(table.frames.begin(), table.frames.end(),
+                                  [](const FramePhase& f) { return f.interval != 1; }) -
+                     table.frames.begin();
+  if (static_cast<double>(slips) > kMostSlips * static_cast<double>(ticks.size()))
+    refuse(table, fmt::format("by {} {} of {} frames do not follow the frame before them, the first at frame "
+                              "{}",
+                              witness, slips, ticks.size(), first));
+  table.warning = fmt::format(
+      "by {}, not every frame follows the frame before it: {}; the phases of all later "
+      "frames are corrected (--trust-stated-drive keeps the stated lock)",
+      witness, slips_in_words(table.frames));
+}
+
+/// \returns whether the plate could tell; `why_not` if it could not
+bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> plate, std::string& why_not) {
+  constexpr double kSeen = 0.6, kLeast_px = 1, kMostScatter = 0.15, kOff = 0.6;
+  const auto n = static_cast<std::size_t>(table.frames_per_cycle);
+  const auto seen = std::count_if(plate.begin(), plate.end(), [](double z) { return std::isfinite(z); });
+  if (static_cast<double>(seen) < kSeen * static_cast<double>(plate.size()) || seen == 0) {
+    why_not = "the plate is not in the picture";
+    return false;
+  }
+  if (table.frames_per_cycle < 3 || plate.size() < n) {
+    why_not = fmt::format("{} frames are less than a cycle", plate.size());
+    if (table.frames_per_cycle < 3) why_not = "a cycle has fewer than three frames";
+    return false;
+  }
+  const auto moves = [&](double amplitude, double scatter) {
+    return amplitude >= kLeast_px && scatter <= kMostScatter * amplitude;
+  };
+  const std::optional<SineSlips> fit = fit_sine_with_slips(plate, table.frames_per_cycle);
+  const bool slips = fit && fit->dropped + fit->doubled > 0;
+  // If the lock does not fit as it is, another period may fit better than slips: each slip costs what
+  // twelve nats of deviation do.
+  if (!fit || slips || !moves(fit->amplitude, fit->scatter)) {
+    constexpr double kSlip = 12, kLeastScatter = 0.02, kSamePeriod = 0.5;
+    const std::optional<FreeSine> free = fit_free_sine(plate);
+    const auto cost = [&](double scatter, double amplitude, double number) {
+      return static_cast<double>(plate.size()) * std::log(std::max(scatter / amplitude, kLeastScatter)) +
+             kSlip * number;
+    };
+    if (free && moves(free->amplitude, free->scatter)) {
+      const double drift =
+          std::abs(static_cast<double>(n) / free->period - 1) * static_cast<double>(plate.size());
+      const bool better = !fit || !moves(fit->amplitude, fit->scatter) ||
+                          cost(free->scatter, free->amplitude, 0) <
+                              cost(fit->scatter, fit->amplitude,
+                                   static_cast<double>(std::count_if(
+                                       fit->ticks.begin() + 1, fit->ticks.end(),
+                                       [&, before = std::int64_t{0}](std::int64_t t) mutable {
+                                         const bool slip = t != before + 1;
+                                         before = t;
+                                         return slip;
+                                       })));
+      if (better && drift > kSamePeriod)
+        refuse(table, fmt::format("the plate in the frames repeats itself after {:.4g} frames, so that the "
+                                  "phases are wrong by half a frame from frame {} on",
+                                  free->period,
+                                  static_cast<std::int64_t>(std::llround(
+                                      0.5 / std::abs(static_cast<double>(n) / free->period - 1)))));
+    }
+  }
+  if (!fit || !moves(fit->amplitude, fit->scatter)) {
+    why_not = "no edge at the bottom of the picture moves as a plate";
+    return false;
+  }
+  table.checked_by = "the plate";
+  if (slips) accept(table, fit->ticks, "the plate in the frames");
+  // Phase of the first frame.
+  const double cycle = table.frames_per_cycle;
+  const double off = std::remainder(fit->phase * cycle - table.first_phase - lock.offset, cycle);
+  if (std::abs(off) > kOff) {
+    const long shown =
+        ((std::lround(fit->phase * cycle - lock.offset) % table.frames_per_cycle) + table.frames_per_cycle) %
+        table.frames_per_cycle;
+    table.warning += fmt::format(
+        "{}the plate shows the first frame at phase {} of {}, but the stated first phase is {} "
+        "(--first-phase)",
+        table.warning.empty() ? "" : "; ", shown, table.frames_per_cycle, table.first_phase);
+  }
+  return true;
+}
+
+bool by_times(PhaseTable& table, std::span<const double> times, std::string& why_not) {
+  constexpr double kWhole = 0.25;
+  if (times.size() < 3) {
+    why_not += " and the stack has no time stamps";
+    return false;
+  }
+  std::vector<double> steps;
+  for (std::size_t f = 1; f < times.size(); ++f) steps.push_back(times[f] - times[f - 1]);
+  const double usual = upper_median(steps);
+  std::vector<std::int64_t> ticks = {0};
+  bool slips = false;
+  for (const double step : steps) {
+    const double by = usual > 0 ? step / usual : -1;
+    if (!(by > -kWhole) || std::abs(by - std::round(by)) > kWhole || by > 1e9) {
+      why_not += " and the time stamps are irregular";
+      return false;
+    }
+    slips = slips || std::llround(by) != 1;
+    ticks.push_back(ticks.back() + std::llround(by));
+  }
+  table.checked_by = "the time stamps";
+  if (slips) accept(table, ticks, "the time stamps of the camera");
+  return true;
+}
+
+}  // namespace
+
+std::string slips_in_words(std::span<const FramePhase> frames) {
+  constexpr int kMostNamed = 8;
+  std::string dropped, doubled;
+  int named = 0;
+  for (std::size_t f = 1; f < frames.size(); ++f) {
+    const double by = frames[f].interval;
+    if (by == 1) continue;
+    if (++named > kMostNamed) break;
+    if (by > 1)
+      dropped += fmt::format("{}{:.0f} before frame {}", dropped.empty() ? "" : ", ", by - 1, f);
+    else
+      doubled += fmt::format("{}{}", doubled.empty() ? "" : ", ", f);
+  }
+  std::string text;
+  if (!dropped.empty()) text = "missing: " + dropped;
+  if (!doubled.empty()) text += (text.empty() ? "" : "; ") + ("taken twice: frame " + doubled);
+  return named > kMostNamed ? text + ", ..." : text;
+}
+
+PhaseTable check_lock(const PhaseLock& lock, const LockEvidence& evidence) {
+  PhaseTable table = fixed_phases(lock);
+  std::string why_not;
+  if (by_plate(table, lock, evidence.plate_px, why_not) || by_times(table, evidence.times_s, why_not))
+    return table;
+  table.not_checked = why_not;
+  return table;
+}
+
+void check_lock_by_bed(PhaseTable& table, const BedMotion& motion) {
+  constexpr double kCertain = 1.0 / 3;  // jitter of the bed's cycles, frames
+  constexpr double kAgree = 0.15;       // the same after slips
+  constexpr double kLeastRise = 0.02;   // of the bed, bead diameters
+  constexpr std::size_t kCycles = 3;
+  const auto cannot = [&](const std::string& why) { table.not_checked += ", and " + why; };
+  const auto n = static_cast<std::size_t>(table.frames_per_cycle);
+  if (motion.heights.size() < kCycles * n)
+    return cannot(fmt::format("{} frames are less than three cycles of the bed", motion.heights.size()));
+  const auto [low, high] = std::minmax_element(motion.heights.begin(), motion.heights.end());
+  if (!(*high - *low > kLeastRise)) return cannot("the bed is at rest");
+  PhaseTable found;
+  try {
+    found = estimate_phases(motion, {.frames_per_cycle = table.frames_per_cycle, .gamma = {}});
+  } catch (const InputError&) {
+    return cannot("the bed's motion does not repeat itself after so many frames");
+  }
+  if (!(found.jitter.value_or(1) < kCertain))
+    return cannot(fmt::format("the bed's cycles differ by up to {:.2g} frames", found.jitter.value_or(1)));
+  const bool slips = found.dropped + found.doubled > 0;
+  // Cycles that differ look like slips that come and go. After true slips the cycles agree closely.
+  if (slips && !(found.jitter.value_or(1) < kAgree))
+    return cannot("the bed's cycles differ as if frames were missing (compare --phase-lock found)");
+  table.checked_by = "the bed";
+  table.not_checked.clear();
+  if (!slips) return;
+  std::vector<std::int64_t> ticks = {0};
+  for (std::size_t f = 1; f < found.frames.size(); ++f)
+    ticks.push_back(ticks.back() + std::llround(found.frames[f].interval));
+  accept(table, ticks, "the motion of the bed");
+}
+
+}  // namespace twincell

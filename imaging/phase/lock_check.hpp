@@ -1,0 +1,45 @@
+#pragma once
+/// \file
+/// Check of a stated phase lock ("N frames per cycle, none missing") against what the stack shows.
+///
+/// Three witnesses, in this order: the plate in the frames (sine_slips.hpp), the time stamps of the camera,
+/// and the motion of the bed (phase_estimation.hpp). The first that can tell decides. Missing and doubled
+/// frames are corrected in the phases and reported; a lock that does not fit at all is refused.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "imaging/phase/phase_estimation.hpp"
+#include "imaging/phase/phase_lock.hpp"
+
+namespace twincell {
+
+/// Evidence from the frames themselves, gathered while they are located. Empty: not available.
+struct LockEvidence {
+  std::vector<double> plate_px;  ///< [frames] height of the plate, NaN where not seen (plate_row.hpp)
+  std::vector<double> times_s;   ///< [frames] time stamps of the camera
+};
+
+/// The phases of a lock, checked against plate and time stamps. PhaseTable::checked_by states the witness;
+/// if it is empty, neither could tell, and PhaseTable::not_checked states why. If frames are missing or
+/// doubled, PhaseTable::frames holds the corrected phases and PhaseTable::warning names the frames.
+/// The plate can tell if it is seen in 60 % of the frames, moves by at least 1 px, and follows a sine to 15 %
+/// of its amplitude. Time stamps can tell if the intervals are whole multiples of their median to a quarter.
+/// \pre lock.locked()
+/// \throws ConfigError naming the frame and the cure if the plate moves with another period, or if more than
+///     one frame in ten would be missing or doubled
+PhaseTable check_lock(const PhaseLock& lock, const LockEvidence& evidence);
+
+/// The same by the motion of the bed, for a table that is not checked yet. The bed can tell if it moves,
+/// repeats itself for three cycles, and its cycles agree to a third of a frame interval, or to 0.15 frame
+/// intervals once missing frames are put in.
+/// \throws ConfigError as check_lock
+void check_lock_by_bed(PhaseTable& table, const BedMotion& motion);
+
+/// The frames before which frames are missing, with their number, and the doubled frames, as text: "1 before
+/// frame 30, 2 before frame 61; frame 80 is taken twice". At most eight are named.
+std::string slips_in_words(std::span<const FramePhase> frames);
+
+}  // namespace twincell

@@ -1,0 +1,42 @@
+#pragma once
+/// \file
+/// A plate that moves as a sine, filmed with a whole number of frames per cycle: the frames that are missing
+/// or were taken twice.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace twincell {
+
+/// z(t) = mean + amplitude sin(2 pi (t/N + phase)), with t the tick of the frame. Lengths are in the unit of
+/// the heights.
+struct SineSlips {
+  double mean = 0, amplitude = 0;
+  double phase = 0;    ///< at frame 0, cycles, in [0, 1)
+  double scatter = 0;  ///< of the heights about the sine, robust (1.48 times the median deviation)
+  std::vector<std::int64_t> ticks;  ///< [frames] frame intervals since frame 0; whole numbers
+  std::int64_t dropped = 0, doubled = 0;
+  std::size_t seen = 0;  ///< finite heights
+};
+
+/// Fits the sine and the ticks. The sine comes first from the part of 0.6 cycles that it fits best, then from
+/// all frames. The ticks are the most likely path (Viterbi): a frame advances by one tick or, at a cost, by
+/// none or by up to N - 1. If no height is farther from the sine than a quarter of its largest step between
+/// frames, no frame is missing, and no path is searched. Memory: frames times N times 2 bytes if it is.
+/// \param heights one per frame, NaN where unknown
+/// \param frames_per_cycle N, 3 or more
+/// \returns nothing for fewer than eight heights or less than one cycle
+std::optional<SineSlips> fit_sine_with_slips(std::span<const double> heights, int frames_per_cycle);
+
+/// The sine without slips whose period fits the heights best.
+struct FreeSine {
+  double period = 0;  ///< frames
+  double amplitude = 0, scatter = 0;
+};
+/// Fits it to the first 2000 frames by a search over all periods from 2 frames to the length of the stack.
+/// \returns nothing for fewer than eight heights
+std::optional<FreeSine> fit_free_sine(std::span<const double> heights);
+
+}  // namespace twincell

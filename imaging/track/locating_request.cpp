@@ -1,0 +1,100 @@
+#include "imaging/track/locating_request.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/error.hpp"
+#include "imaging/preprocess/flat_field.hpp"
+#include "imaging/preprocess/open_flattened.hpp"
+#include "imaging/stack/open_frames.hpp"
+
+namespace twincell {
+
+namespace {
+
+cv::Rect read_roi(const std::string& text) {
+  int numbers[4] = {};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int i = 0; i < 4; ++i) {
+    const auto [last, error] = std::from_chars(at, end, numbers[i]);
+    const bool stops_right = i < 3 ? last != end && *last == ',' : last == end;
+    if (error != std::errc() || !stops_right || numbers[i] < (i < 2 ? 0 : 1))
+      throw ConfigError(
+          Where{.file = {}, .key = "--roi"},
+          fmt::format("is '{}', but must be left,top,width,height in whole px, the first two 0 or "
+                      "more, the others at least 1.",
+                      text));
+    at = last + 1;
+  }
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+cv::Mat1b read_mask(const std::string& file) {
+  cv::Mat picture;
+  if (!open_frames(file)->next(picture))
+    throw InputError(Where{.file = file, .key = {}}, "holds no picture.");
+  return picture != 0;
+}
+
+}  // namespace
+
+LocatorOptions locator_of(const LocatingRequest& request, std::optional<double> scale_px,
+                          std::optional<bool> bright) {
+  LocatorOptions locator = request.locator;
+  if (request.diameters.empty()) {
+    locator.diameter_px = scale_px.value_or(0);
+  } else {
+    locator.diameter_px = request.diameters.front();
+    locator.other_diameters_px.assign(request.diameters.begin() + 1, request.diameters.end());
+  }
+  if (!request.dark) locator.preprocess.bright |= bright.value_or(false);
+  locator.polarity_known = request.dark || request.locator.preprocess.bright || bright.has_value();
+  return locator;
+}
+
+Region region_of(const LocatingRequest& request) {
+  Region region;
+  if (!request.roi.empty()) region.roi = read_roi(request.roi);
+  if (!request.mask.empty()) region.mask = read_mask(request.mask);
+  return region;
+}
+
+nlohmann::json restrictions(const LocatingRequest& request) {
+  nlohmann::json said;
+  for (const auto& [name, value] : {std::pair{"roi", &request.roi}, std::pair{"mask", &request.mask},
+                                    std::pair{"frames", &request.frames}, std::pair{"flat", &request.flat},
+                                    std::pair{"background", &request.background}})
+    if (!value->empty()) said[name] = *value;
+  return said;
+}
+
+FrameRange frames_of(const LocatingRequest& request) {
+  return request.frames.empty() ? FrameRange{} : read_frame_range(request.frames, "--frames");
+}
+
+std::unique_ptr<FrameSource> prepare_frames(std::unique_ptr<FrameSource> frames, const std::string& stack,
+                                            const LocatingRequest& request, const LocatorOptions& locator) {
+  frames = chosen_frames(std::move(frames), frames_of(request));
+  if (request.background.empty()) return flattened_by(std::move(frames), stack, request.flat);
+  const auto picture = open_frames(request.background);
+  return locator.preprocess.bright ? without_background(std::move(frames), mean_of(*picture))
+                                   : flattened(std::move(frames), flat_of_blank(*picture));
+}
+
+Located in_whole_picture(Located located, const Region& region) {
+  if (region.whole()) return located;
+  for (std::vector<Detection>* list : {&located.beads, &located.dropped}) {
+    for (Detection& d : *list) {
+      d.x += region.corner().x;
+      d.y += region.corner().y;
+    }
+    std::erase_if(*list, [&](const Detection& d) { return region.cuts(d.x, d.y, d.radius); });
+  }
+  return located;
+}
+
+}  // namespace twincell

@@ -1,0 +1,195 @@
+// A stated phase lock against plate, time stamps and bed: dropped and doubled frames are found where they
+// are, intact stacks are left alone, and what cannot be checked is said.
+#include "imaging/phase/lock_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "core/error.hpp"
+#include "imaging/phase/sine_slips.hpp"
+
+using namespace twincell;
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+struct Film {
+  int frames_per_cycle = 20, frames = 100, first_phase = 0;
+  double period = 20;     ///< of the drive, frames
+  double amplitude = 12;  ///< px
+  double noise = 0.3, jitter = 0;
+  std::vector<int> drop, twice = {};  ///< numbers in the film without faults
+};
+
+/// Ticks of the frames that are left.
+std::vector<std::int64_t> ticks_of(const Film& film) {
+  std::vector<std::int64_t> ticks;
+  for (int f = 0; f < film.frames; ++f) {
+    if (std::find(film.drop.begin(), film.drop.end(), f) != film.drop.end()) continue;
+    ticks.push_back(f);
+    if (std::find(film.twice.begin(), film.twice.end(), f) != film.twice.end()) ticks.push_back(f);
+  }
+  return ticks;
+}
+
+std::vector<double> plate_of(const Film& film, unsigned seed) {
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> heights;
+  for (const std::int64_t t : ticks_of(film))
+    heights.push_back(
+        40 + film.noise * normal(generator) +
+        film.amplitude *
+            std::sin(kTurn * (static_cast<double>(t + film.first_phase) + film.jitter * normal(generator)) /
+                     film.period));
+  return heights;
+}
+
+/// A bed that an inelastic plate throws; `spread`: scatter of its flights from cycle to cycle, cycles.
+BedMotion bed_of(const Film& film, double gamma, double spread, unsigned seed) {
+  constexpr int kFine = 500;
+  static std::map<double, std::vector<double>> beds;
+  if (!beds.contains(gamma)) beds[gamma] = inelastic_bed(gamma, kFine);
+  const std::vector<double>& fine = beds[gamma];
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> late(1000);
+  for (double& l : late) l = spread * normal(generator);
+  BedMotion motion;
+  for (const std::int64_t t : ticks_of(film)) {
+    const double cycles = static_cast<double>(t + film.first_phase) / film.period;
+    const double at = cycles - std::floor(cycles) + late[static_cast<std::size_t>(cycles)];
+    const auto i = static_cast<std::size_t>((at - std::floor(at)) * kFine) % kFine;
+    motion.heights.push_back(fine[i] + 0.002 * normal(generator));
+  }
+  return motion;
+}
+
+/// Number of frames whose phase and cycle are those of the film without faults.
+std::size_t right(const PhaseTable& table, const Film& film) {
+  const std::vector<std::int64_t> ticks = ticks_of(film);
+  std::size_t n = 0;
+  for (std::size_t f = 0; f < ticks.size(); ++f) {
+    const FramePhase at = table.at(static_cast<std::int64_t>(f));
+    n += at.cycle * film.frames_per_cycle + at.phase == ticks[f] + film.first_phase ? 1 : 0;
+  }
+  return n;
+}
+
+PhaseTable checked(const Film& film, unsigned seed) {
+  return check_lock({film.frames_per_cycle, film.first_phase},
+                    {.plate_px = plate_of(film, seed), .times_s = {}});
+}
+
+}  // namespace
+
+TEST(LockCheck, ThePlateShowsWhereFramesAreMissing) {
+  // Everywhere in a cycle, also at the plate's turning points, and several in a row and in one film.
+  for (int at = 20; at < 60; ++at)
+    for (int row = 1; row <= 3; ++row) {
+      Film film{.first_phase = 7, .drop = {}};
+      for (int k = 0; k < row; ++k) film.drop.push_back(at + k);
+      const PhaseTable table = checked(film, static_cast<unsigned>(at));
+      EXPECT_EQ(table.dropped, row) << at;
+      EXPECT_EQ(table.doubled, 0) << at;
+      EXPECT_EQ(table.checked_by, "the plate");
+      // Next to a turning point the frame may be one early or late.
+      EXPECT_GE(right(table, film), ticks_of(film).size() - 3) << at;
+      EXPECT_NE(table.warning.find(std::to_string(row) + " before frame "), std::string::npos)
+          << table.warning;
+    }
+  const Film many{.drop = {17, 40, 61}};
+  EXPECT_EQ(checked(many, 1).dropped, 3);
+  EXPECT_GE(right(checked(many, 1), many), ticks_of(many).size() - 3);
+  const Film twice{.drop = {}, .twice = {33}};
+  EXPECT_EQ(checked(twice, 1).doubled, 1);
+}
+
+TEST(LockCheck, IntactStacksAreLeftAlone) {
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    const int n = std::array{12, 20, 48, 80}[seed % 4];
+    const PhaseTable table = checked({.frames_per_cycle = n,
+                                      .frames = 6 * n,
+                                      .period = static_cast<double>(n),
+                                      .amplitude = std::array{4.0, 12.0, 30.0}[seed % 3],
+                                      .noise = 0.3,
+                                      .jitter = std::array{0.0, 0.1, 0.2}[seed / 4 % 3],
+                                      .drop = {}},
+                                     seed);
+    EXPECT_EQ(table.checked_by, "the plate") << seed;
+    EXPECT_TRUE(table.frames.empty()) << seed << ": " << table.warning;
+    EXPECT_EQ(table.warning, "") << seed;
+  }
+}
+
+TEST(LockCheck, AnotherPeriodIsRefusedWithTheFrameAndTheCure) {
+  try {
+    (void)checked({.period = 24, .drop = {}}, 1);
+    FAIL() << "accepted";
+  } catch (const ConfigError& e) {
+    const std::string said = e.what();
+    EXPECT_NE(said.find("repeats itself after 24.0"), std::string::npos) << said;
+    EXPECT_NE(said.find("from frame 3 on"), std::string::npos) << said;  // 0.5/(1 - 20/24)
+    EXPECT_NE(said.find("--phase-lock found"), std::string::npos) << said;
+  }
+}
+
+TEST(LockCheck, AnotherFirstPhaseIsNamed) {
+  const PhaseTable table =
+      check_lock({20, 3}, {.plate_px = plate_of({.first_phase = 9, .drop = {}}, 1), .times_s = {}});
+  EXPECT_NE(table.warning.find("at phase 9 of 20, but the stated first phase is 3"), std::string::npos)
+      << table.warning;
+}
+
+TEST(LockCheck, TimeStampsShowGapsWhereThereIsNoPlate) {
+  LockEvidence evidence;
+  const Film film{.drop = {30, 31, 70}};
+  for (const std::int64_t t : ticks_of(film)) evidence.times_s.push_back(0.002 * static_cast<double>(t));
+  const PhaseTable table = check_lock({20, 0}, evidence);
+  EXPECT_EQ(table.checked_by, "the time stamps");
+  EXPECT_EQ(table.dropped, 3);
+  EXPECT_EQ(right(table, film), 97U);
+  evidence.times_s[50] += 0.001;
+  EXPECT_EQ(check_lock({20, 0}, evidence).checked_by, "") << "half an interval is no whole number";
+}
+
+TEST(LockCheck, TheBedShowsWhereFramesAreMissing) {
+  for (const double gamma : {0.9, 1.6, 2.5})
+    for (int at = 25; at < 65; at += 3) {
+      const Film film{.frames = 120, .drop = {at}};
+      PhaseTable table = check_lock({20, 0}, {});
+      check_lock_by_bed(table, bed_of(film, gamma, 0, static_cast<unsigned>(at)));
+      EXPECT_EQ(table.checked_by, "the bed") << table.not_checked;
+      EXPECT_EQ(table.dropped, 1) << gamma << ' ' << at;
+      EXPECT_GE(right(table, film), ticks_of(film).size() - 4) << gamma << ' ' << at;
+    }
+}
+
+TEST(LockCheck, TheBedRaisesNoFalseAlarm) {
+  int told = 0;
+  for (unsigned seed = 0; seed < 20; ++seed)
+    for (const double spread : {0.0, 0.01, 0.05}) {
+      PhaseTable table = check_lock({20, 0}, {});
+      check_lock_by_bed(table, bed_of({.frames = 120, .drop = {}}, 1.6, spread, seed));
+      EXPECT_TRUE(table.frames.empty()) << seed << ' ' << spread << ": " << table.warning;
+      told += table.checked_by.empty() ? 0 : 1;
+    }
+  EXPECT_GE(told, 20) << "a bed that repeats itself exactly can always tell";
+}
+
+TEST(LockCheck, WhatCannotBeCheckedIsSaid) {
+  PhaseTable table = check_lock({20, 0}, {});
+  check_lock_by_bed(table, {.heights = std::vector<double>(100, 3.0), .repeats = {}});
+  EXPECT_EQ(table.checked_by, "");
+  EXPECT_NE(table.not_checked.find("the bed is at rest"), std::string::npos) << table.not_checked;
+  table = check_lock({20, 0}, {});
+  check_lock_by_bed(table, {.heights = std::vector<double>(50, 3.0), .repeats = {}});
+  EXPECT_NE(table.not_checked.find("less than three cycles"), std::string::npos) << table.not_checked;
+}
