@@ -180,7 +180,8 @@ void walk(const std::vector<std::string>& verb, std::set<std::string>& options) 
     for (std::sregex_iterator n(names.begin(), names.end(), name); n != end; ++n) options.insert((*n)[1]);
   }
   if (list == std::string::npos) return;
-  const std::string verbs = help.substr(list + below.size());
+  const std::size_t begin = list + below.size();
+  const std::string verbs = help.substr(begin, help.find("\n\n", begin) - begin);
   static const std::regex entry(R"((?:^|\n)  ([a-z]+)\s)");
   for (std::sregex_iterator v(verbs.begin(), verbs.end(), entry), end; v != end; ++v) {
     std::vector<std::string> deeper = verb;

@@ -52,7 +52,7 @@ TEST(Starts, KeysOfAnotherStartAreRefusedWithTheStartsThatReadThem) {
 }
 
 TEST(Starts, TheManualDescribesEveryStart) {
-  const std::string manual = read_text_file(std::string(TWINCELL_SOURCE_DIR) + "/docs/scene.md");
+  const std::string manual = read_text_file(TWINCELL_SOURCE_DIR "/docs/scene.md");
   for (const StartRow& start : kStarts)
     EXPECT_NE(manual.find(fmt::format("`\"{}\"`: {}", start.word, start.help)), std::string::npos)
         << "docs/scene.md lacks: `\"" << start.word << "\"`: " << start.help;

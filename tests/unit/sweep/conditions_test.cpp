@@ -29,7 +29,7 @@ scale.sigma_mm = 2
 scale.gravity_m_s2 = 9.81
 time.discard = 0
 time.cycles = 1
-drive.omega = 1.0
+drive.omega_per_t0 = 1.0
 [axes]
 drive.peak_acceleration_g = [1.5]
 start.kind = ["crystal_a"]
