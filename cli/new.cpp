@@ -12,6 +12,7 @@
 #include <set>
 
 #include "cli/comparing_options.hpp"
+#include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
@@ -189,7 +190,7 @@ void add_new(CLI::App& program, Common& common) {
       add_verb(program, common, "new",
                "Measure what a stack shows of its cell (beads, walls, plate, scale, origin, drive, "
                "phases), ask for the rest, and write CELL.toml with a picture of what was measured.",
-               "twincell new frames/ -o CELL.toml --sigma-mm 2 --frequency-hz 20");
+               "twincell new frames/ -o CELL.toml --sigma-mm 2 --drive-hz 20");
   auto o = std::make_shared<NewOptions>();
   verb.add_option(
       "stacks", o->stacks,
@@ -206,17 +207,18 @@ void add_new(CLI::App& program, Common& common) {
   verb.add_option("--diameter", o->diameter_px, "Bead diameter, px; default: found in the first frames")
       ->check(CLI::Range(3.0, 400.0));
   const auto answer = [&](const char* name, std::optional<double>& value, const char* what) {
-    verb.add_option(name, value, what)->check(CLI::PositiveNumber);
+    verb.add_option(name, value, what)->check(above_zero());
   };
   answer("--sigma-mm", o->answers.sigma_mm, "Bead diameter, mm");
-  answer("--width-mm", o->answers.width_mm, "Distance of the side walls, mm");
-  answer("--frequency-hz", o->answers.frequency_hz,
+  answer("--cell-width-mm", o->answers.width_mm, "Distance of the side walls, mm");
+  answer("--drive-hz", o->answers.frequency_hz,
          "Frequency of the shaker, Hz; default: frame rate over the period of the plate");
-  answer("--gamma", o->answers.gamma, "Peak acceleration of the plate over g; needs no bead diameter in mm");
-  answer("--frame-rate-hz,--fps", o->answers.frame_rate_hz,
+  answer("--drive-gamma", o->answers.gamma,
+         "Peak acceleration of the plate over g; needs no bead diameter in mm");
+  answer("--frame-rate-hz", o->answers.frame_rate_hz,
          "Frame rate of the camera, 1/s; default: that of the stack");
   verb.add_option("--gravity-m-s2", o->answers.gravity_m_s2, "Gravity, m/s^2")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   verb.callback([&common, o] { run(common, *o); });
 }

@@ -16,6 +16,7 @@
 #include "core/json_view.hpp"
 #include "core/output_rules.hpp"
 #include "core/sha256.hpp"
+#include "sweep/conditions.hpp"
 
 namespace twincell::sweep {
 
@@ -53,6 +54,7 @@ void require_result(const JsonView& result, const Point& point) {
   if (const auto answer = result.find("answer"); answer && !answer->value().is_null())
     (void)answer->boolean();
   if (const auto cycles = result.find("n_cycles")) (void)cycles->integer(0);
+  if (const auto conditions = result.find("conditions")) (void)conditions_from_json(*conditions);
   for (const char* key : {"contact_fraction", "rest_height"})
     if (const auto number = result.find(key)) (void)number->number_or_nan();
   if (const auto until = result.find("until")) {

@@ -18,14 +18,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Conditions that are stored with a point or an onset.
-RunConditions conditions_of(const JsonView& row) {
+/// Conditions that are stored with a point or an onset. Those of an onset have no Gamma.
+JsonView conditions_of(const JsonView& row) {
   const auto conditions = row.find("conditions");
   if (!conditions)
     row.refuse(
         "does not state its N_l, Gamma and start: an earlier version collected the sweep; collect it again "
         "with `twincell sweep collect`");
-  return sweep::conditions_from_json(*conditions);
+  return *conditions;
 }
 
 /// A member that may be absent or null.
@@ -55,7 +55,7 @@ void add_points(const JsonView& document, Comparison& comparison) {
   for (const JsonView& point : document.at("points").elements()) {
     const BedPhase phase = phase_of(point.find("results"));
     if (phase == BedPhase::undetermined) continue;
-    const RunConditions at = conditions_of(point);
+    const RunConditions at = sweep::conditions_from_json(conditions_of(point));
     if (!at.n_l || !at.gamma) continue;  // no place in the diagram: without gravity, for example
     comparison.sweep.push_back({.n_l = *at.n_l, .gamma = *at.gamma, .start = at.start, .phase = phase});
   }
@@ -73,12 +73,13 @@ void add_onsets(const JsonView& document, Comparison& comparison) {
     const BedPhase phase = phase_named(onset.at("verdict").text());
     const std::string key = onset.at("key").text();
     if (phase == BedPhase::undetermined || !is_gamma(key)) continue;
-    const RunConditions at = conditions_of(onset);
-    if (!at.n_l) continue;
+    const JsonView at = conditions_of(onset);
+    const std::optional<double> n_l = number(at, "n_l");
+    if (!n_l) continue;
     comparison.boundaries.push_back({.side = Side::simulation,
-                                     .start = at.start,
+                                     .start = at.at("start").value().is_null() ? "" : at.at("start").text(),
                                      .onset = phase,
-                                     .n_l = *at.n_l,
+                                     .n_l = *n_l,
                                      .n_runs = static_cast<std::size_t>(onset.at("runs").integer(0)),
                                      .below = number(onset, "low"),
                                      .above = number(onset, "high"),

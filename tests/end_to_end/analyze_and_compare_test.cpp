@@ -179,7 +179,7 @@ TEST(Compare, OneReportWithEverythingInIt) {
                                       "report.html", "results.json", "runs.csv", "series_s_j.csv",
                                       "series_s_k.csv", "twincell-manifest.json"}));
   for (const char* ending : {".gp", ".dat", ".svg", ".png", ".pdf"})
-    EXPECT_EQ(files_called(report / "figures", ending), 8) << ending;
+    EXPECT_EQ(files_called(report / "figures", ending), 9) << ending;
   for (const auto& entry : fs::directory_iterator(report / "figures"))
     if (entry.path().extension() == ".svg") {
       EXPECT_TRUE(well_formed(read_text_file(entry.path()))) << entry.path();

@@ -183,7 +183,7 @@ TEST_F(DamagedRecords, CollectedResults) {
   other.erase("points");
   put_file(at("points.json"), other.dump());
   other = whole;
-  other["onsets"][0]["axes"]["beads.count"] = "many";
+  other["onsets"][0]["conditions"]["n_l"] = "many";
   put_file(at("count.json"), other.dump());
   {
     const MemoryTrajectory bed =
@@ -195,7 +195,7 @@ TEST_F(DamagedRecords, CollectedResults) {
   for (const auto& [name, key] : {std::pair<std::string, std::string>{"text.json", "is not JSON"},
                                   {"other.json", "twincell sweep 1"},
                                   {"points.json", "points: is missing"},
-                                  {"count.json", "onsets[0].axes: does not describe a scene"}})
+                                  {"count.json", "onsets[0].conditions.n_l: is a text; a number is needed"}})
     expect_one_sentence(
         {"compare", "--simulation", at("sim.h5"), "--sweep", at(name), "-o", at("report"), "-q"},
         {name, key});

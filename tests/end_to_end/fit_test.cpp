@@ -66,8 +66,8 @@ TEST(Fit, Refusals) {
   refused({"fit", table, "--law", "line", "-q", "-o", folder / "no/fit"}, 2, "no");
   put_file(folder / "zeros.csv", "x,y\n1,0\n2,0\n3,0\n");
   refused({"fit", folder / "zeros.csv", "--law", "power", "-q"}, 3, "3 zero");
-  refused({"fit", folder / "zeros.csv", "--law", "arrhenius", "--y", "x", "--trials", "x", "-q"}, 3,
-          "row 2 contains 2");
+  refused({"fit", folder / "zeros.csv", "--law", "arrhenius", "--x", "y", "--y", "x", "--trials", "x", "-q"},
+          3, "row 2 contains 2");
   put_file(folder / "bad.csv", "x,y\n1,2\n3,four\n");
   refused({"fit", folder / "bad.csv", "--law", "line", "-q"}, 3, "bad.csv:3");
   put_file(folder / "short.csv", "x,y\n1,2\n3\n");

@@ -156,7 +156,7 @@ TEST(GasFigures, ShareTheirRunsAndTakeTheUsersData) {
   EXPECT_TRUE(fs::is_directory(folder / "p2-runs/points"));
   for (const json* d : {&table, &figure})
     for (const json& target : (*d)["targets"]) {
-      EXPECT_FALSE(target["wanted"].get<std::string>().empty());
+      EXPECT_FALSE(target.at("expected").get<std::string>().empty());
       if (target["measured"].get<std::string>().empty()) {
         EXPECT_EQ(target["verdict"], "absent") << target;
       }

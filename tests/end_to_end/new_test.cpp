@@ -79,7 +79,7 @@ TEST(New, TheShippedStacksGiveTheNumbersOfTheirHandWrittenCells) {
   for (const char* gamma : {"0.9", "1.6", "2.5"}) {
     const fs::path stack = kDemo / (std::string("gamma-") + gamma),
                    cell = folder / (std::string(gamma) + ".toml");
-    const nlohmann::json d = run_json({"new", stack, "-o", cell, "--gamma", gamma})["cells"][0];
+    const nlohmann::json d = run_json({"new", stack, "-o", cell, "--drive-gamma", gamma})["cells"][0];
     EXPECT_TRUE(d["open"].empty() && d["not_measured"].empty()) << d.dump(1);
     const CellDescription hand = read_cell(stack / "CELL.toml"), found = read_cell(cell);
     const auto error = [&](const char* key, std::size_t k = 0) {
@@ -105,7 +105,7 @@ TEST(New, TrackingWithTheWrittenCellGivesTheSameResults) {
   const TemporaryFolder folder;
   const fs::path cell = folder / "new.toml", stack = kDemo / "gamma-1.6", hand = folder / "hand.toml";
   fs::copy_file(stack / "CELL.toml", hand);
-  ASSERT_EQ(run_program({"new", stack, "-o", cell, "--gamma", "1.6", "-q"}).code, 0);
+  ASSERT_EQ(run_program({"new", stack, "-o", cell, "--drive-gamma", "1.6", "-q"}).code, 0);
   const auto [s_b, s_c] = order_of(folder, stack, cell);
   const auto [s_b_hand, s_c_hand] = order_of(folder, stack, hand);
   // The scales differ by 2e-5, and so do all lengths; 0.1 % leaves room for the origin's 0.002 px.
@@ -140,11 +140,11 @@ TEST(New, AnEditedCellIsNotReplacedWithoutForce) {
   const fs::path cell = folder / "CELL.toml", stack = copy_of(folder, "gamma-0.9", 20);
   ASSERT_EQ(run_program({"new", stack, "-o", cell, "-q"}).code, 0);
   const std::string before = text_of(cell);
-  const Ran ran = run_program({"new", stack, "-o", cell, "-q", "--gamma", "0.9"});
+  const Ran ran = run_program({"new", stack, "-o", cell, "-q", "--drive-gamma", "0.9"});
   EXPECT_EQ(ran.code, 2);
   EXPECT_NE(ran.err.find("CELL.toml"), std::string::npos) << ran.err;
   EXPECT_EQ(text_of(cell), before);
-  EXPECT_EQ(run_program({"new", stack, "-o", cell, "-q", "--gamma", "0.9", "--force"}).code, 0);
+  EXPECT_EQ(run_program({"new", stack, "-o", cell, "-q", "--drive-gamma", "0.9", "--force"}).code, 0);
   EXPECT_NE(text_of(cell), before);
 }
 
@@ -155,7 +155,7 @@ TEST(New, SeveralStacksGetACellEachInOneFolder) {
   EXPECT_EQ(wrong.code, 2);
   EXPECT_NE(wrong.err.find("2 stacks"), std::string::npos) << wrong.err;
   const nlohmann::json d =
-      run_json({"new", a, b, "-o", folder / "cells", "--sigma-mm", "2", "--frequency-hz", "11.15"});
+      run_json({"new", a, b, "-o", folder / "cells", "--sigma-mm", "2", "--drive-hz", "11.15"});
   ASSERT_EQ(d["cells"].size(), 2U);
   // 2 mm and 11.15 Hz are omega = 1.0003 /t0: Gamma is A omega^2.
   EXPECT_NEAR(read_cell(folder / "cells/copy-of-gamma-0.9.toml").drive()->gamma(), 0.9, 0.003);
@@ -177,7 +177,7 @@ TEST(New, AFrameOfAnotherSizeEndsTheStackThere) {
   const fs::path stack = copy_of(folder, "gamma-0.9", 30, [](const cv::Mat& frame, int f) {
     return f == 25 ? frame(cv::Rect(0, 0, 100, 100)).clone() : frame;
   });
-  const Ran ran = run_program({"new", stack, "-o", folder / "CELL.toml", "--gamma", "0.9"});
+  const Ran ran = run_program({"new", stack, "-o", folder / "CELL.toml", "--drive-gamma", "0.9"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_NE(ran.err.find("only the first 25 frames are used"), std::string::npos) << ran.err;
   EXPECT_NE(ran.err.find("frame_00025.png"), std::string::npos) << ran.err;

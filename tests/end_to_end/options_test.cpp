@@ -18,6 +18,7 @@ namespace {
 const std::map<std::string, std::string> kQuantities = {
     {"accelerometer", "measurement of an accelerometer"},
     {"accuracy", "requested accuracy"},
+    {"background", "picture of the cell without beads"},
     {"backlight", "grey level of the light"},
     {"bead", "index of a bead"},
     {"bead-mass", "mass of a bead in the dump"},
@@ -82,6 +83,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"json", "result as JSON"},
     {"k-n", "stiffness"},
     {"keep-trajectories", "store trajectories of points"},
+    {"keys", "list of the keys of a cell"},
     {"lamp-drift", "change of the light over the film"},
     {"lamp-flicker", "change of the light between frames"},
     {"law", "law to fit"},
@@ -90,6 +92,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"locator", "finder of candidates"},
     {"m-eff", "effective mass"},
     {"margin", "width of the wall shown, px"},
+    {"mask", "picture of the part that is searched"},
     {"max-height", "height shown"},
     {"memory", "frames for which a bead may be missing"},
     {"min-score", "visible share of an edge"},
@@ -103,6 +106,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"onset", "measured onset"},
     {"origin-px", "corner of the cell in the frame, px"},
     {"output", "output of the verb"},
+    {"over", "axes of a plot"},
     {"overlay", "frame with marked beads"},
     {"phase-lock", "source of the phases"},
     {"phase-of-step-zero", "phase of the dump's first step"},
@@ -116,8 +120,10 @@ const std::map<std::string, std::string> kQuantities = {
     {"relax", "push overlaps apart"},
     {"rest-height", "height of the bed at rest"},
     {"restitution", "coefficient of restitution"},
+    {"result", "result of a plot"},
     {"resume", "continue a run"},
     {"right-tilt", "tilt of the right wall"},
+    {"roi", "part of the picture that is searched"},
     {"rotation", "rotation of the frame"},
     {"runs", "number of simulations, or folder of shared runs"},
     {"s-b", "form of s_b"},
@@ -160,7 +166,7 @@ const std::map<std::string, std::string> kQuantities = {
 };
 
 /// Endings of options that exist in several units, as the keys of scenes and cells do.
-constexpr const char* kUnits[] = {"-mm", "-sigma", "-us", "-t0"};
+constexpr const char* kUnits[] = {"-mm", "-m-s2", "-sigma", "-us", "-t0"};
 
 std::string help_of(std::vector<std::string> words) {
   words.emplace_back("--help");

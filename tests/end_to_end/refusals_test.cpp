@@ -169,13 +169,15 @@ TEST_F(Refusals, Bounce) {
           {b + "@t.h5 --gravity 1e999", kUsage, {"--gravity", "'1e999'"}},
           {b + "@t.h5 --gravity 9,81", kUsage, {"--gravity", "9.81", "decimal point"}},
           {b + "@t.h5 --gravity 9.81m", kUsage, {"--gravity", "'9.81m'"}},
-          {b + "@t.h5 --amplitude nan --omega 1", kUsage, {"--amplitude", "'nan'"}},
-          {b + "@t.h5 --amplitude -1 --omega 1", kUsage, {"--amplitude", "0 or above"}},
-          {b + "@t.h5 --amplitude 1 --omega 0", kUsage, {"--omega", "above 0"}},
-          {b + "@t.h5 --amplitude 1", kUsage, {"--amplitude", "--omega", "together"}},
-          {b + "@t.h5 --omega 1", kUsage, {"--omega", "together"}},
-          {b + "@fall.csv --phase 1", kUsage, {"--phase", "does not vibrate"}},
-          {b + "@fall.csv --amplitude 1 --omega 1 --phase nan", kUsage, {"--phase", "'nan'"}},
+          {b + "@t.h5 --drive-amplitude nan --drive-omega 1", kUsage, {"--drive-amplitude", "'nan'"}},
+          {b + "@t.h5 --drive-amplitude -1 --drive-omega 1", kUsage, {"--drive-amplitude", "0 or above"}},
+          {b + "@t.h5 --drive-amplitude 1 --drive-omega 0", kUsage, {"--drive-omega", "above 0"}},
+          {b + "@t.h5 --drive-amplitude 1", kUsage, {"--drive-amplitude", "--drive-omega", "together"}},
+          {b + "@t.h5 --drive-omega 1", kUsage, {"--drive-omega", "together"}},
+          {b + "@fall.csv --drive-phase 1", kUsage, {"--drive-phase", "does not vibrate"}},
+          {b + "@fall.csv --drive-amplitude 1 --drive-omega 1 --drive-phase nan",
+           kUsage,
+           {"--drive-phase", "'nan'"}},
           {b + "@fall.csv", kInput, {"fall.csv", "two consecutive flights"}},
           {b + "@back.csv", kInput, {"back.csv", "row 2", "must increase"}},
           {b + "@g.csv", kUsage, {"g.csv", "no column \"time\""}},
@@ -300,7 +302,7 @@ TEST_F(Refusals, NumbersInOptions) {
        {"export @s.toml --to lammps -o @new --from @t.h5 --frame -1", kUsage, {"--frame", "'-1'"}},
        {"match @mixed @s.toml -o @new --twins 0", kUsage, {"--twins", "1 to 1000"}},
        {"reproduce p1-fig1 -o @new --budget nan", kUsage, {"--budget", "'nan'"}},
-       {"sweep run @s.toml -o @new --shard 0/2", kUsage, {"s.toml", "scene"}}});
+       {"sweep run @s.toml --folder @new --shard 0/2", kUsage, {"s.toml", "scene"}}});
 }
 
 TEST_F(Refusals, FilesOfAnotherKind) {
@@ -329,7 +331,7 @@ TEST_F(Refusals, FilesOfAnotherKind) {
     table.push_back({verb + " @empty" + out, kUsage, {"empty", "drive"}});
   }
   for (const std::string verb : {"sweep run", "sweep plan", "sweep status", "sweep collect"})
-    table.push_back({verb + " @t.h5 -o @new", kInput, {"t.h5", "not a TOML file"}});
+    table.push_back({verb + " @t.h5 --folder @new", kInput, {"t.h5", "not a TOML file"}});
   // A text, and a folder, where a trajectory is meant.
   for (const std::string verb : {"analyze", "validate", "info"})
     table.push_back({verb + " @text.h5", kInput, {"text.h5"}});
@@ -338,8 +340,8 @@ TEST_F(Refusals, FilesOfAnotherKind) {
   // A trajectory where frames are meant, and reverse.
   for (const std::string verb : {"locate -o @new.csv", "calibrate camera", "calibrate plate"})
     table.push_back({verb + " @t.h5", kInput, {"t.h5", "is a trajectory"}});
-  table.push_back({"match @mixed @t.h5 -o @new", kInput, {"t.h5", "not a TOML file"}});
-  table.push_back({"match @t.h5 @folder -o @new", kInput, {"folder"}});
+  table.push_back({"match @mixed @t.h5 -o @new", kUsage, {"CELL.toml", "does not exist"}});
+  table.push_back({"match @t.h5 @folder -o @new", kUsage, {"CELL.toml", "does not exist"}});
   expect(table);
 }
 

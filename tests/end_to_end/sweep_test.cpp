@@ -88,12 +88,12 @@ TEST_F(Sweeps, ASweepEndsInItsPictureAndPlotDrawsOtherResults) {
   // s_c of two drives and two starts, the random one with the interval of its two seeds.
   EXPECT_NE(drawn.find("1.05 "), std::string::npos) << drawn;
   EXPECT_NE(drawn.find("1.6 "), std::string::npos) << drawn;
-  const Ran plot = run_program({"sweep", "plot", grid_, "-o", at("one"), "--figures", at("s_b"), "--result",
-                                "s_b", "--over", "drive.gamma", "start.kind"});
+  const Ran plot = run_program({"sweep", "plot", grid_, "--folder", at("one"), "--figures", at("s_b"),
+                                "--result", "s_b", "--over", "drive.gamma", "start.kind"});
   ASSERT_EQ(plot.code, kDone) << plot.err;
   EXPECT_NE(bytes_of(at("s_b/sweep.gp")).find("start.kind = \"random\""), std::string::npos);
   EXPECT_NE(bytes_of(at("s_b/sweep.dat")), drawn);
-  const Ran wrong = run_program({"sweep", "plot", grid_, "-o", at("one"), "--result", "s_d"});
+  const Ran wrong = run_program({"sweep", "plot", grid_, "--folder", at("one"), "--result", "s_d"});
   EXPECT_EQ(wrong.code, kUsage);
   EXPECT_NE(wrong.err.find("it has s_b, s_c"), std::string::npos) << wrong.err;
 }

@@ -46,7 +46,7 @@ def test_fit_refuses_with_the_sentence_of_the_program(table):
 def test_sweep_is_the_verb_to_the_bit(scene_file, tmp_path):
     plan = tmp_path / "plan.toml"
     plan.write_text(f'scene = "{scene_file}"\n[axes]\ndrive.gamma = [1.2, 1.8]\n')
-    done = program("sweep", "run", plan, "-o", tmp_path / "verb", "-q")
+    done = program("sweep", "run", plan, "--folder", tmp_path / "verb", "-q")
     assert done.returncode == 0, done.stderr
     verb = document("sweep", "collect", plan, "--folder", tmp_path / "verb", "-o", tmp_path / "verb.json")
     seen = []

@@ -66,7 +66,7 @@ TEST(SweepResults, AFileWithoutConditionsIsToBeCollectedAgain) {
             [{"axes": {}, "key": "drive.gamma", "verdict": "bouncing", "runs": 3}]})"}) {
     put_file(folder / "results.json", text);
     Comparison c;
-    expect_refusal<InputError>([&] { add_sweep(folder / "results.json", c); }, "results.json: conditions",
+    expect_refusal<InputError>([&] { add_sweep(folder / "results.json", c); }, "does not state its N_l, Gamma and start",
                                "collect it again with `twincell sweep collect`");
   }
 }
