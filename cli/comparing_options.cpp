@@ -73,7 +73,8 @@ void report_comparison(const Common& common, const ComparingOptions& options, co
   result["notes"] = noted.notes;
   result["report"] = report;
   result["provenance"] = nlohmann::json::parse(origin);
-  print_result(common, result, result_text + comparison_text(noted.comparison) + "report: " + report + "\n");
+  print_result(common, result,
+               comparison_summary(noted.comparison) + result_text + "report: " + report + "\n");
 }
 
 }  // namespace twincell::cli

@@ -48,7 +48,7 @@ struct NotedComparison {
 NotedComparison compare_sides(const Common& common, const ComparingOptions& options);
 
 /// Writes the report of a comparison into `folder` and prints the result. \param result, result_text results
-/// of the verb itself, printed before those of the comparison, as JSON and as text
+/// of the verb itself, printed after those of the comparison, as JSON and as text
 void report_comparison(const Common& common, const ComparingOptions& options, const NotedComparison& noted,
                        const std::filesystem::path& folder, nlohmann::json result,
                        const std::string& result_text);

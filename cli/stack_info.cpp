@@ -110,6 +110,7 @@ nlohmann::json describe_stack(const std::filesystem::path& stack) {
   if (whole_numbers) d["first_frame"]["bits"] = std::bit_width(static_cast<unsigned>(v.largest));
   d["first_frame"]["share_at_max"] = static_cast<double>(v.at_largest) / static_cast<double>(v.n);
   if (info.frame_rate_hz) d["frame_rate_hz"] = *info.frame_rate_hz;
+  if (info.playback) d["playback"] = true;
   if (info.stamped_rate_hz) d["stamped_rate_hz"] = *info.stamped_rate_hz;
   if (info.exposure_s) d["exposure_s"] = *info.exposure_s;
   if (info.first_number) d["first_number"] = *info.first_number;
@@ -136,7 +137,9 @@ std::string stack_as_text(const nlohmann::json& d) {
   s += fmt::format("\n  first frame {:g} to {:g}, mean {:.2f}\n", first["min"].get<double>(),
                    first["max"].get<double>(), first["mean"].get<double>());
   if (d.contains("frame_rate_hz"))
-    s += fmt::format("  rate        {:g} frames/s as stated by the file\n", d["frame_rate_hz"].get<double>());
+    s += fmt::format("  rate        {:g} frames/s {}\n", d["frame_rate_hz"].get<double>(),
+                     d.contains("playback") ? "of playback; state the camera's rate as camera.frame_rate_hz"
+                                            : "as stated by the file");
   if (d.contains("stamped_rate_hz"))
     s += fmt::format("  rate        {:.6g} frames/s from the time stamps\n",
                      d["stamped_rate_hz"].get<double>());

@@ -148,11 +148,8 @@ void survey_edges(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
   const StackEdges edges = read_stack_edges(frames, s.bright, diameter, options.threads, *bar);
   s.n_frames = frames.read();
   s.unreadable = frames.unreadable();
-  const bool video = s.info.format.starts_with("video");
-  if (const auto rate = frame_rate_of({}, edges, s.stack))
-    (video && edges.time_s.empty() ? s.playback_hz : s.frame_rate_hz) = rate;
-  else if (s.info.frame_rate_hz)
-    (video ? s.playback_hz : s.frame_rate_hz) = s.info.frame_rate_hz;
+  s.frame_rate_hz = frame_rate_of({}, edges, s.stack);
+  if (s.info.playback) s.playback_hz = s.info.frame_rate_hz;
   try {
     s.geometry = fit_cell_geometry(edges);
   } catch (const InputError&) {

@@ -67,10 +67,10 @@ std::string real_differences(const Comparison& c) {
     if (d.is_real()) names.push_back(fmt::format("{} at Gamma {:.3g}", d.quantity, c.matches[d.match].gamma));
   if (c.differences.empty()) return {};
   if (names.empty())
-    return fmt::format(" None of the {} compared numbers differs really.", c.differences.size());
+    return fmt::format("None of the {} compared numbers differs really.", c.differences.size());
   const std::size_t n = names.size();
   if (n > kMostNamed) names.resize(kMostNamed);
-  return fmt::format(" {} of the {} compared numbers differ{} really: {}{}.", n, c.differences.size(),
+  return fmt::format("{} of the {} compared numbers differ{} really: {}{}.", n, c.differences.size(),
                      n == 1 ? "s" : "", fmt::join(names, ", "), n > kMostNamed ? ", ..." : "");
 }
 
@@ -83,10 +83,10 @@ std::string conclusion_of_sweep(const Comparison& c) {
 }
 
 /// Concluding sentences: where the sides agree and where they differ.
-std::string conclusion(const Comparison& c) {
+std::vector<std::string> conclusion_sentences(const Comparison& c) {
   const std::vector<Run>& runs = c.runs;
   const std::vector<Match>& matches = c.matches;
-  if (runs.empty() && (!c.sweep.empty() || !c.boundaries.empty())) return conclusion_of_sweep(c);
+  if (runs.empty() && (!c.sweep.empty() || !c.boundaries.empty())) return {conclusion_of_sweep(c)};
   std::vector<std::string> differ;
   std::size_t paired = 0, same = 0;
   for (const Match& match : matches) {
@@ -97,13 +97,19 @@ std::string conclusion(const Comparison& c) {
       differ.push_back(fmt::format("Gamma {:.3g} ({} in the experiment, {} in the simulation)", match.gamma,
                                    phases_of(runs, match.experiments), phases_of(runs, match.simulations)));
   }
-  if (paired == 0) return "No drive strength was run on both sides.";
-  std::string text = fmt::format("Same phase on both sides at {} of {} drive strengths.", same, paired);
-  if (!differ.empty()) text += fmt::format(" They differ at {}.", fmt::join(differ, "; "));
+  if (paired == 0) return {"No drive strength was run on both sides."};
+  std::vector<std::string> text = {
+      fmt::format("Same phase on both sides at {} of {} drive strengths.", same, paired)};
+  if (!differ.empty()) text.push_back(fmt::format("They differ at {}.", fmt::join(differ, "; ")));
   if (const std::size_t open = paired - same - differ.size(); open > 0)
-    text += fmt::format(" Undetermined at {}.", open);
-  if (const std::string onsets = onset_sentences(c.boundaries); !onsets.empty()) text += " " + onsets;
-  return text + real_differences(c);
+    text.push_back(fmt::format("Undetermined at {}.", open));
+  for (std::string& onset : onset_sentences(c.boundaries)) text.push_back(std::move(onset));
+  if (const std::string real = real_differences(c); !real.empty()) text.push_back(real);
+  return text;
+}
+
+std::string conclusion(const Comparison& c) {
+  return fmt::format("{}", fmt::join(conclusion_sentences(c), " "));
 }
 
 nlohmann::json or_null(double v) {
@@ -517,7 +523,10 @@ nlohmann::json boundaries_json(const std::vector<PhaseBoundary>& boundaries) {
 
 }  // namespace
 
-std::string comparison_text(const Comparison& c) {
+namespace {
+
+/// Phases of both sides at each drive strength, and the onsets.
+std::string phases_text(const Comparison& c) {
   std::string text;
   if (!c.matches.empty())
     text = fmt::format("{:>7}  {:>7}  {:>6}  {:<22}  {:<22}  {}\n", "Gamma", "K_m", "N_l", "experiment",
@@ -532,7 +541,18 @@ std::string comparison_text(const Comparison& c) {
   for (const PhaseBoundary& b : c.boundaries)
     text += fmt::format("onset of {}, {}, N_l = {:.3g}: Gamma {}\n", phase_name(b.onset), boundary_of(b),
                         b.n_l, boundary_text(b));
-  return text + differences_text(c.differences, c.matches) + conclusion(c) + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string comparison_text(const Comparison& c) {
+  return conclusion(c) + "\n" + phases_text(c) + differences_text(c.differences, c.matches);
+}
+
+std::string comparison_summary(const Comparison& c) {
+  return fmt::format("{}\n", fmt::join(conclusion_sentences(c), "\n")) + phases_text(c) +
+         real_differences_text(c.differences, c.matches);
 }
 
 std::string comparison_json(const Comparison& c) {

@@ -11,9 +11,12 @@
 
 namespace twincell {
 
-/// The comparison as text for a terminal: phases of both sides at each drive strength, the drive strengths at
-/// which they differ, the phase boundaries, and the differences with their attribution.
+/// The comparison as text: the conclusion, the phases of both sides at each drive strength, the phase
+/// boundaries, and all differences with their attribution.
 std::string comparison_text(const Comparison& comparison);
+
+/// As comparison_text for a terminal: one sentence a line, and of the differences only the real ones.
+std::string comparison_summary(const Comparison& comparison);
 
 /// The comparison as the text of one JSON object: {"conclusion": "…", "runs": […], "matches": […],
 /// "boundaries": […], "differences": […]}.

@@ -267,4 +267,26 @@ std::string differences_text(const std::vector<Difference>& differences, const s
   return text;
 }
 
+std::string real_differences_text(const std::vector<Difference>& differences,
+                                  const std::vector<Match>& matches) {
+  if (differences.empty()) return {};
+  std::string rows;
+  std::size_t others = 0;
+  for (const Difference& d : differences) {
+    if (!d.is_real()) {
+      ++others;
+      continue;
+    }
+    rows +=
+        fmt::format("{:>7.3f}  {:<24}{:>12.4g}{:>12.4g}{:>12.3g}\n           {}\n", matches[d.match].gamma,
+                    d.quantity, d.experiment.value, d.simulation.value, d.difference(), d.attribution());
+  }
+  if (!rows.empty())
+    rows = fmt::format("{:>7}  {:<24}{:>12}{:>12}{:>12}\n", "Gamma", "real difference", "experiment",
+                       "simulation", "difference") +
+           rows;
+  return rows +
+         fmt::format("{} other numbers agree within their errors (differences.csv in the report).\n", others);
+}
+
 }  // namespace twincell

@@ -85,4 +85,9 @@ std::vector<Difference> find_differences(const std::vector<Run>& runs, const std
 /// The differences as a table for a terminal.
 std::string differences_text(const std::vector<Difference>& differences, const std::vector<Match>& matches);
 
+/// As differences_text, only the real ones, each in two lines of at most 100 columns; then the number of the
+/// others. Empty if there are no differences.
+std::string real_differences_text(const std::vector<Difference>& differences,
+                                  const std::vector<Match>& matches);
+
 }  // namespace twincell

@@ -23,12 +23,12 @@ std::string name_of(const PhaseBoundary& b) {
 }
 }  // namespace
 
-std::string onset_sentences(const std::vector<PhaseBoundary>& boundaries) {
+std::vector<std::string> onset_sentences(const std::vector<PhaseBoundary>& boundaries) {
   constexpr double kSameLayers = 0.1;
   const auto same_layers = [](const PhaseBoundary& a, const PhaseBoundary& b) {
     return std::abs(a.n_l - b.n_l) <= kSameLayers * a.n_l;
   };
-  std::string text;
+  std::vector<std::string> sentences;
   for (const PhaseBoundary& e : boundaries) {
     if (e.side != Side::experiment) continue;
     bool twins = false;  // the experiment's own twins come before the beds of a sweep
@@ -41,15 +41,14 @@ std::string onset_sentences(const std::vector<PhaseBoundary>& boundaries) {
       if (agreement == OnsetAgreement::unknown) continue;
       const bool open = (!e.above && !s.above) || (!e.below && !s.below);
       const bool compatible = agreement == OnsetAgreement::compatible;
-      text += fmt::format("{}Onset of {}: Gamma {} in the experiment and {} in the {}, {}.",
-                          text.empty() ? "" : " ", phase_name(e.onset), boundary_text(e), boundary_text(s),
-                          name_of(s),
-                          open         ? "not bracketed on either side"
-                          : compatible ? "compatible"
-                                       : "different");
+      sentences.push_back(fmt::format("Onset of {}: Gamma {} in the experiment and {} in the {}, {}.",
+                                      phase_name(e.onset), boundary_text(e), boundary_text(s), name_of(s),
+                                      open         ? "not bracketed on either side"
+                                      : compatible ? "compatible"
+                                                   : "different"));
     }
   }
-  return text;
+  return sentences;
 }
 
 }  // namespace twincell

@@ -19,8 +19,7 @@ enum class OnsetAgreement {
 OnsetAgreement agreement_of(const PhaseBoundary& a, const PhaseBoundary& b);
 
 /// One sentence for each onset that experiment and simulation (or, without one, a sweep) both have at one N_l
-/// (within 10 %), with both intervals and their agreement; joined by spaces. Empty if no onset has both
-/// sides.
-std::string onset_sentences(const std::vector<PhaseBoundary>& boundaries);
+/// (within 10 %), with both intervals and their agreement. Empty if no onset has both sides.
+std::vector<std::string> onset_sentences(const std::vector<PhaseBoundary>& boundaries);
 
 }  // namespace twincell

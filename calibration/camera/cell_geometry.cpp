@@ -346,7 +346,8 @@ std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdg
   if (stated) return stated;
   const auto& t = edges.time_s;
   if (t.size() > 1 && t.back() > t.front()) return static_cast<double>(t.size() - 1) / (t.back() - t.front());
-  return open_frames(stack)->info().frame_rate_hz;
+  const StackInfo info = open_frames(stack)->info();
+  return info.playback ? std::nullopt : info.frame_rate_hz;
 }
 
 StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px, int threads,

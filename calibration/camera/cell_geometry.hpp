@@ -44,7 +44,7 @@ struct StackEdges {
 /// px.
 double diameter_for_edges(const std::filesystem::path& stack, bool bright, double known_px);
 /// Frames per second: as the user states them, else from the camera's time stamps, else from the stack's
-/// metadata. Empty if no source gives a frame rate.
+/// metadata. The playback rate of a video does not count. Empty if no source gives a frame rate.
 std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdges& edges,
                                     const std::filesystem::path& stack);
 /// Finds the edges in every frame; reads the stack once. \throws InputError as FrameSource

@@ -17,6 +17,7 @@ struct StackInfo {
   int width = 0, height = 0;                  ///< px; 0: unknown until the first frame is read
   std::optional<int> bits;                    ///< pixel values are in 0 .. 2^bits - 1, as the file states
   std::optional<double> frame_rate_hz;        ///< as the file states
+  bool playback = false;                      ///< that rate is the one of playing a video, not of filming
   std::optional<double> stamped_rate_hz;      ///< from the time stamps of the first and the last frame
   std::optional<std::int64_t> first_number;   ///< the camera's number of the first frame; 0 is the trigger
   std::optional<double> exposure_s;           ///< of the first frame, s

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+#include <set>
 
 #include "core/atomic_file.hpp"
 #include "tests/support/program.hpp"
@@ -341,6 +343,44 @@ TEST(Match, StatedFramesPerCycleAreHeldAgainstThePlate) {
     EXPECT_NE(matched.err.find("states " + std::to_string(stated) + " frames per cycle"), std::string::npos)
         << matched.err;
   }
+}
+
+// The film is played at 25 frames per second and was taken at 223. Only a stated rate counts.
+TEST(Match, ThePlaybackRateOfAVideoIsNotTheCamerasRate) {
+  const TemporaryFolder folder;
+  const fs::path video = folder / "film.mkv";
+  {
+    std::set<fs::path> pictures;
+    for (const auto& entry : fs::directory_iterator(kStack))
+      if (entry.path().extension() == ".png") pictures.insert(entry.path());
+    const cv::Mat first = cv::imread(pictures.begin()->string(), cv::IMREAD_GRAYSCALE);
+    cv::VideoWriter out(video.string(), cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 25, first.size(), false);
+    ASSERT_TRUE(out.isOpened());
+    for (const fs::path& picture : pictures) out.write(cv::imread(picture.string(), cv::IMREAD_GRAYSCALE));
+  }
+  const std::string right = stated_drives()[0].lines;
+  const fs::path cell = laboratory_cell(kStack, folder / "cell.toml", right);
+  fs::path bare = folder / "bare.toml";  // without the frame rate
+  {
+    std::ifstream in(cell);
+    std::ofstream out(bare);
+    for (std::string line; std::getline(in, line);)
+      if (line.rfind("frame_rate_hz", 0) != 0) out << line << "\n";
+  }
+  const Ran tracked = run_program({"track", video, "--cell", bare, "-o", folder / "t.h5"});
+  EXPECT_EQ(tracked.code, 0) << tracked.err;
+  EXPECT_EQ(tracked.err.find("does not fit"), std::string::npos) << tracked.err;
+  const fs::path driveless = laboratory_cell(kStack, folder / "driveless.toml", "");
+  fs::path unknown = folder / "unknown.toml";  // neither drive nor frame rate
+  {
+    std::ifstream in(driveless);
+    std::ofstream out(unknown);
+    for (std::string line; std::getline(in, line);)
+      if (line.rfind("frame_rate_hz", 0) != 0) out << line << "\n";
+  }
+  const Ran matched = run_program({"match", video, unknown, "-o", folder / "twin", "-q"});
+  EXPECT_EQ(matched.code, 2) << matched.err;
+  EXPECT_NE(matched.err.find("camera.frame_rate_hz"), std::string::npos) << matched.err;
 }
 
 TEST(Match, AMisstatedFrequencyMayBeTrusted) {

@@ -140,6 +140,7 @@ class Piped final : public FrameSource {
     info_.height = facts.height;
     info_.bits = bits;
     if (facts.frame_rate_hz > 0) info_.frame_rate_hz = facts.frame_rate_hz;
+    info_.playback = true;
     if (!facts.pixels.starts_with("gray"))
       info_.notes.emplace_back("a video in colour: its grey values are not those the camera measured.");
     const std::string grey = bits == 8 ? "gray" : fmt::format("gray{}le", bits);

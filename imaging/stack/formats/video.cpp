@@ -42,6 +42,7 @@ class Video final : public FrameSource {
     info_.bits = 8;
     if (const double rate = capture_.get(cv::CAP_PROP_FPS); rate > 0 && rate < 1e9)
       info_.frame_rate_hz = rate;
+    info_.playback = true;
     stated_ = static_cast<std::size_t>(std::max(0.0, capture_.get(cv::CAP_PROP_FRAME_COUNT)));
     info_.notes.push_back(fmt::format(
         "a video is read with 8 bits whatever its bit depth, and its grey values are not those the camera "

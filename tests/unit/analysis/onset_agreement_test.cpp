@@ -1,7 +1,12 @@
 // Sentences on onsets of both sides.
 #include "analysis/runs/onset_agreement.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
 
 namespace twincell {
 namespace {
@@ -9,6 +14,10 @@ namespace {
 PhaseBoundary onset(Side side, std::optional<double> below, std::optional<double> above, double n_l = 10) {
   return {
       .side = side, .onset = BedPhase::convecting, .n_l = n_l, .n_runs = 3, .below = below, .above = above};
+}
+
+std::string said(const std::vector<PhaseBoundary>& boundaries) {
+  return fmt::format("{}", fmt::join(onset_sentences(boundaries), " "));
 }
 
 TEST(OnsetAgreement, IntervalsWithACommonPointAreCompatible) {
@@ -24,29 +33,28 @@ TEST(OnsetAgreement, IntervalsWithACommonPointAreCompatible) {
 
 TEST(OnsetAgreement, TheSentenceStatesBothIntervals) {
   EXPECT_EQ(
-      onset_sentences({onset(Side::experiment, 1.6, 2.5), onset(Side::simulation, 2.6, {})}),
+      said({onset(Side::experiment, 1.6, 2.5), onset(Side::simulation, 2.6, {})}),
       "Onset of convecting: Gamma 2.05 ± 0.45 in the experiment and above 2.6 in the simulation, different.");
 }
 
 TEST(OnsetAgreement, LimitsOnTheSameSideAgreeOnNothing) {
   PhaseBoundary twins = onset(Side::simulation, 1.6, {});
   twins.start = "trajectory";
-  EXPECT_EQ(onset_sentences({onset(Side::experiment, 1.6, {}), twins}),
+  EXPECT_EQ(said({onset(Side::experiment, 1.6, {}), twins}),
             "Onset of convecting: Gamma above 1.6 in the experiment and above 1.6 in the twins, not "
             "bracketed on either side.");
 }
 
 TEST(OnsetAgreement, BedsOfOtherHeightsAreNotCompared) {
-  EXPECT_EQ(onset_sentences({onset(Side::experiment, 1.6, 2.5), onset(Side::simulation, 2.6, 3, 20)}), "");
+  EXPECT_EQ(said({onset(Side::experiment, 1.6, 2.5), onset(Side::simulation, 2.6, 3, 20)}), "");
 }
 
 TEST(OnsetAgreement, ASweepIsUsedWithoutTwins) {
   PhaseBoundary sweep = onset(Side::simulation, 2, 2.2);
   sweep.sweep = true;
-  EXPECT_NE(onset_sentences({onset(Side::experiment, 1.6, 2.5), sweep}).find("in the sweep, compatible"),
+  EXPECT_NE(said({onset(Side::experiment, 1.6, 2.5), sweep}).find("in the sweep, compatible"),
             std::string::npos);
-  EXPECT_EQ(onset_sentences({onset(Side::experiment, 1.6, 2.5), sweep, onset(Side::simulation, 2.6, 3)})
-                .find("sweep"),
+  EXPECT_EQ(said({onset(Side::experiment, 1.6, 2.5), sweep, onset(Side::simulation, 2.6, 3)}).find("sweep"),
             std::string::npos);
 }
 
