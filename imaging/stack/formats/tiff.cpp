@@ -216,9 +216,13 @@ StackInfo describe(const Walked& walked) {
   info.format = fmt::format("TIFF, {} bit", walked.bits);
   info.width = static_cast<int>(walked.width);
   info.height = static_cast<int>(walked.height);
-  if (const auto rate = imagej(walked.description, "fps"); rate && *rate > 0) info.frame_rate_hz = rate;
-  if (const auto step = imagej(walked.description, "finterval"); step && *step > 0)
+  // ImageJ's "finterval" is the time between frames; its "fps" is the speed of playing the stack.
+  if (const auto step = imagej(walked.description, "finterval"); step && *step > 0) {
     info.frame_rate_hz = 1 / *step;
+  } else if (const auto rate = imagej(walked.description, "fps"); rate && *rate > 0) {
+    info.frame_rate_hz = rate;
+    info.playback = true;
+  }
   if (const auto channels = imagej(walked.description, "channels"); channels && *channels > 1)
     info.notes.push_back(fmt::format(
         "the ImageJ stack has {} channels, whose planes follow one another as frames.", *channels));

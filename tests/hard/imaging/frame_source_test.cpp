@@ -133,6 +133,14 @@ TEST(SpoiltFrames, MixedSizesAreNamedWithTheirFiles) {
   expect_words(refusal(folder.path()), {"f3.png", "9 x 6", "f1.png", "8 x 6"});
 }
 
+// Grey values of 8 and of 16 bits are on different scales.
+TEST(SpoiltFrames, MixedTypesAreNamedWithTheirFiles) {
+  const TemporaryFolder folder;
+  write(folder / "f1.png", pattern<uchar>(8, 6));
+  write(folder / "f2.png", pattern<ushort>(8, 6));
+  expect_words(refusal(folder.path()), {"f2.png", "16-bit values", "f1.png", "8-bit values", "one type"});
+}
+
 TEST(SpoiltFrames, TextThatCallsItselfAPicture) {
   const TemporaryFolder folder;
   for (const char* name :

@@ -175,6 +175,13 @@ TEST(TiffStack, AnImageJStackOnOnePage) {
       expect_stack(file, 32, 20, 5, bits, values(bits));
       EXPECT_EQ(open_frames(file)->info().frame_rate_hz, 500);
     }
+  // "fps" is the speed at which ImageJ plays the stack; "finterval" is the camera's.
+  put(file, tiff_file({.pages = 5, .description = "ImageJ=1.53t\nimages=5\nfps=7\n"}, values(16)));
+  EXPECT_EQ(open_frames(file)->info().frame_rate_hz, 7);
+  EXPECT_TRUE(open_frames(file)->info().playback);
+  put(file, tiff_file({.pages = 5, .description = "ImageJ=1.53t\nfps=7\nfinterval=0.002\n"}, values(16)));
+  EXPECT_EQ(open_frames(file)->info().frame_rate_hz, 500);
+  EXPECT_FALSE(open_frames(file)->info().playback);
   // An ordinary stack with ImageJ's description is read page by page.
   put(file, tiff_file({.pages = 5, .description = words}, values(16)));
   expect_stack(file, 32, 20, 5, 16, values(16));
