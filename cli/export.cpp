@@ -1,39 +1,46 @@
 // twincell export SCENE.toml --to lammps: writes the scene as the input of another program.
+// twincell export TRAJECTORY --to xyz|…: writes a trajectory in the format of another program.
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 
 #include "cli/output.hpp"
+#include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
 #include "core/escape.hpp"
+#include "core/output_rules.hpp"
 #include "sim/lammps/export_lammps.hpp"
+#include "trajectory/foreign/export_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
 
 namespace {
 
+constexpr const char* kDeck = "lammps";  ///< the word of --to for a scene
+
 Product deck_folder() {
   return Product::whole_folder("a LAMMPS deck");
 }
 
 struct ExportOptions {
-  std::string scene, format, output, from;
+  std::string input, format, output, from, units = "sigma";
   std::size_t frame = 0;
   std::vector<std::string> assignments;
 };
 
-void run(const ExportOptions& o, const Common& common) {
+void export_scene(const ExportOptions& o, const Common& common) {
   std::vector<std::string> assignments = with_seed(o.assignments, common);
-  sim::Scene scene = sim::read_scene(o.scene, assignments);
+  sim::Scene scene = sim::read_scene(o.input, assignments);
   std::string otherwise;
   if (!scene.integrator_stated) {
     const double own = scene.steps_per_contact;
     assignments.emplace_back("time.integrator=verlet");
-    scene = sim::read_scene(o.scene, assignments);
+    scene = sim::read_scene(o.input, assignments);
     otherwise = fmt::format(
         "time.integrator is not set: the deck uses \"verlet\", LAMMPS's own integrator, at {:g} steps per "
         "contact, and simulate uses \"{}\" at {:g}; with --set time.integrator=verlet both use the same.",
@@ -55,20 +62,90 @@ void run(const ExportOptions& o, const Common& common) {
                            deck.import_command));
 }
 
+void export_beads(const ExportOptions& o, const Common& common) {
+  const auto refuse = [](const char* option, const char* why) { throw ConfigError({"", 0, 0, option}, why); };
+  if (!o.assignments.empty()) refuse("--set", "applies to a scene; the input is a trajectory.");
+  if (!o.from.empty()) refuse("--from", "applies to a scene; the input is a trajectory.");
+  const ForeignFormat& format = foreign_format(o.format, "--to");
+  if (format.create == nullptr) refuse("--to", "this format is only read.");
+  const Product product =
+      format.folder ? Product::whole_folder(fmt::format("a folder of {} files", format.word))
+                    : Product{.name = fmt::format("a file in the format {}", format.word), .mark = {}};
+  const std::filesystem::path output = require_output(o.output, product);
+  const H5mdReader trajectory(o.input);
+  const ExportUnits units =
+      o.units == "mm" ? ExportUnits::laboratory(trajectory.info(), "--units") : ExportUnits::reduced();
+  AtomicPath written(o.output, product);
+  ProgressBar progress(common, "writing");
+  const std::size_t frames =
+      export_trajectory(trajectory, format, units, written.part(), output.stem().string(), progress);
+  written.commit();
+  print_result(common,
+               {{"output", o.output},
+                {"format", format.word},
+                {"frames", frames},
+                {"beads", trajectory.info().n_beads},
+                {"length_unit", units.length_unit},
+                {"time_unit", units.time_unit}},
+               fmt::format("{} frames of {} beads, lengths in {}, times in {}\n{}\n", frames,
+                           trajectory.info().n_beads, units.length_unit, units.time_unit, o.output));
+}
+
+void run(const ExportOptions& o, const Common& common) {
+  std::error_code error;
+  if (!std::filesystem::exists(o.input, error))
+    throw InputError({o.input, 0, 0, ""}, "the file does not exist.");
+  const bool beads = is_trajectory(o.input);
+  if (!beads && o.format != kDeck)
+    throw ConfigError(
+        {o.input, 0, 0, "--to"},
+        fmt::format("only a trajectory (H5MD) is written as {}; a scene is written as {}.", o.format, kDeck));
+  if (beads && o.format == kDeck)
+    throw ConfigError(
+        {o.input, 0, 0, "--to"},
+        fmt::format("{} is for a scene, whose start may be a frame of this trajectory (--from); "
+                    "for the beads of a trajectory: {}.",
+                    kDeck, written_formats()));
+  if (beads)
+    export_beads(o, common);
+  else
+    export_scene(o, common);
+}
+
 }  // namespace
 
 void add_export(CLI::App& program, Common& common) {
   auto o = std::make_shared<ExportOptions>();
   CLI::App& verb = add_verb(program, common, "export",
-                            "Export a scene as the input of another program. Writes a folder with the input "
-                            "deck, and prints the commands that run it and import its result.",
-                            "twincell export scene.toml --to lammps -o deck/");
-  verb.add_option("scene", o->scene, "Scene file (TOML, docs/scene.md)")->required();
-  verb.add_option("--to", o->format, "Program for which the deck is written")
+                            "Export a trajectory in the format of another program, or a scene as a LAMMPS "
+                            "deck, with the commands that run it and import its result.",
+                            "twincell export run.h5 --to xyz -o run.xyz");
+  verb.add_option("input", o->input, "Trajectory (H5MD) or scene file (TOML, docs/scene.md)")->required();
+  std::string formats, words = kDeck;
+  for (const ForeignFormat* format : foreign_formats())
+    if (format->create != nullptr) {
+      formats += fmt::format("; {}: {}", format->word, format->help);
+      words += fmt::format(", {}", format->word);
+    }
+  verb.add_option("--to", o->format,
+                  fmt::format("Format (docs/formats.md). lammps: deck of a scene{}", formats))
       ->required()
-      ->check(CLI::IsMember({"lammps"}));
-  writes(common, verb, verb.add_option("-o,--output", o->output, "Folder for the deck")->required(),
-         deck_folder());
+      ->option_text("WORD")
+      ->check([words](const std::string& said) {
+        return fmt::format(", {},", words).find(fmt::format(", {},", said)) == std::string::npos
+                   ? fmt::format("There is no format '{}'; there are: {}.", said, words)
+                   : std::string();
+      });
+  // What may be replaced depends on the format; run() checks it.
+  common.outputs.push_back(
+      {verb.add_option("-o,--output", o->output, "File to write; for lammps and vtk: folder")->required(),
+       nullptr, deck_folder()});
+  verb.add_option(
+          "--units", o->units,
+          "Units of a trajectory; sigma: bead diameter and t0 = sqrt(sigma/g); mm: mm and s, where the "
+          "trajectory states its scale")
+      ->check(CLI::IsMember({"sigma", "mm"}))
+      ->capture_default_str();
   verb.add_option("--set", o->assignments,
                   "Set a key of the scene, as section.key=value; overrides the file; may be repeated")
       ->take_all();

@@ -1,4 +1,4 @@
-// twincell import dump.lammpstrj: converts the output of another program to a trajectory.
+// twincell import FILE: converts the output of another program to a trajectory.
 
 #include <fmt/format.h>
 
@@ -8,39 +8,57 @@
 
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "core/error.hpp"
+#include "trajectory/foreign/foreign_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
-#include "trajectory/formats/lammps_dump.hpp"
 
 namespace twincell::cli {
 
 namespace {
 
 struct ImportOptions {
-  std::string dump, output;
+  std::string file, output, format;
   std::vector<double> origin;
-  LammpsDumpOptions lammps;
+  std::vector<std::string> columns;
+  ForeignOptions foreign;
 };
 
 void run(ImportOptions& o, const Common& common) {
-  for (std::size_t k = 0; k < o.origin.size(); ++k) o.lammps.origin[static_cast<int>(k)] = o.origin[k];
+  for (std::size_t k = 0; k < o.origin.size(); ++k) o.foreign.origin[static_cast<int>(k)] = o.origin[k];
+  const ForeignFormat& format =
+      o.format.empty() ? format_of_file(o.file) : foreign_format(o.format, "--format");
+  if (format.open == nullptr)
+    throw ConfigError({"", 0, 0, "--format"},
+                      fmt::format("this format is only written; there are: {}.", read_formats()));
+  for (const std::string& pair : o.columns) {
+    const std::size_t equals = pair.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == pair.size())
+      throw ConfigError({"", 0, 0, "--columns"}, fmt::format("'{}' is not QUANTITY=NAME.", pair));
+    if (!o.foreign.table_columns.emplace(pair.substr(0, equals), pair.substr(equals + 1)).second)
+      throw ConfigError({"", 0, 0, "--columns"}, fmt::format("'{}' is named twice.", pair.substr(0, equals)));
+  }
+  const bool is_table = format.word == std::string_view("csv");
+  if (!is_table && (!o.columns.empty() || o.foreign.y_up))
+    throw ConfigError({"", 0, 0, o.foreign.y_up ? "--y-up" : "--columns"},
+                      "applies to tables (--format csv).");
   ProgressBar reading(common, "reading");
-  const LammpsDump dump(o.dump, o.lammps, reading);
-  TrajectoryInfo info = dump.info();
+  const ForeignTrajectory source(o.file, format, o.foreign, reading);
+  TrajectoryInfo info = source.info();
   Provenance provenance = common.provenance();
-  provenance.inputs.emplace_back(o.dump);
+  provenance.inputs.emplace_back(o.file);
   provenance.threads = 1;
   info.provenance_json = provenance.to_json();
   H5mdWriter writer(o.output, info);
   ProgressBar writing(common, "writing");
-  dump.copy_to(writer, writing);
+  source.copy_to(writer, writing);
   writer.finish();
   if (!info.drive) note(common, "no drive was given: the phases and the height of the plate are absent.");
   print_result(common,
                {{"output", o.output},
-                {"frames", dump.n_frames()},
+                {"frames", source.n_frames()},
                 {"beads", info.n_beads},
                 {"missing_beads", info.columns.identity}},
-               fmt::format("{} frames of {} beads{}\n{}\n", dump.n_frames(), info.n_beads,
+               fmt::format("{} frames of {} beads{}\n{}\n", source.n_frames(), info.n_beads,
                            info.columns.identity ? ", not all of them in every frame" : "", o.output));
 }
 
@@ -50,22 +68,37 @@ void add_import(CLI::App& program, Common& common) {
   auto o = std::make_shared<ImportOptions>();
   CLI::App& verb =
       add_verb(program, common, "import",
-               "Convert a text dump of LAMMPS to a trajectory. Writes the trajectory file, in units of the "
-               "bead diameter and g.",
+               "Convert the beads of another program, such as a LAMMPS dump or a table of trackpy, to a "
+               "trajectory. Writes the trajectory file, in units of the bead diameter and g.",
                "twincell import dump.lammpstrj -o lammps.h5 --timestep 4.4e-5 --drive-amplitude 2 "
                "--drive-omega 1 --frames-per-cycle 20");
-  LammpsDumpOptions& l = o->lammps;
-  verb.add_option("dump", o->dump, "Text dump of LAMMPS")->required();
+  ForeignOptions& l = o->foreign;
+  verb.add_option("file", o->file, "File of the other program")->required();
+  std::string formats;
+  for (const ForeignFormat* format : foreign_formats())
+    if (format->open != nullptr)
+      formats += fmt::format("{}{}: {}", formats.empty() ? "" : "; ", format->word, format->help);
+  verb.add_option(
+          "--format", o->format,
+          fmt::format("Format (docs/formats.md). {}. Default: by the ending of the name, else lammps-dump",
+                      formats))
+      ->option_text("WORD");
+  verb.add_option(
+          "--columns", o->columns,
+          "Names of the columns of a table where they differ, as QUANTITY=NAME: frame, particle, x, y, z, "
+          "time, radius, diameter, tracer, bead_mass, vx, vy, vz, sigma_x, sigma_y, sigma_z")
+      ->option_text("QUANTITY=NAME ...");
+  verb.add_flag("--y-up", l.y_up, "y of a table increases upwards; default: downwards, as in a picture");
   writes(common, verb,
          verb.add_option("-o,--output", o->output, "Trajectory file to write (H5MD)")->required(),
          Product::trajectory());
   verb.add_option("--dimension", l.dimension,
-                  "Dimension of the dump; 2: the plane (x, y) with y upwards; 3: z upwards")
+                  "Dimension of the system; 2: the plane (x, y) with y upwards; 3: z upwards")
       ->check(CLI::IsMember({2, 3}))
       ->capture_default_str();
   verb.add_option("--timestep", l.timestep,
-                  "Length of a step, in the time unit of the dump; required unless the dump contains ITEM: "
-                  "TIME. All lengths and times below are in the units of the dump.");
+                  "Length of a step, in the time unit of the file; required unless the file contains times. "
+                  "All lengths and times below are in the units of the file.");
   verb.add_option("--sigma", l.sigma, "Bead diameter, the unit of length of the trajectory")
       ->capture_default_str();
   verb.add_option("--gravity", l.gravity, "Acceleration of gravity g")->capture_default_str();
@@ -74,7 +107,7 @@ void add_import(CLI::App& program, Common& common) {
           "Lower left inside corner of the cell, with the plate at its mean height: x y [z]; default: 0")
       ->expected(2, 3);
   verb.add_option("--cell-width", l.width,
-                  "Distance of the side walls; default: up to the end of the box of the dump");
+                  "Distance of the side walls; default: up to the end of the box of the file");
   verb.add_option("--drive-amplitude", l.drive.amplitude,
                   "Amplitude A of the plate; without any drive option the drive is unknown");
   verb.add_option("--drive-omega", l.drive.omega, "Angular frequency omega = 2 pi f of the plate");
@@ -96,7 +129,7 @@ void add_import(CLI::App& program, Common& common) {
       ->capture_default_str();
   verb.add_option("--bead-mass", l.bead_mass,
                   "Bead mass m, the unit of the column mass; default: masses are not read");
-  verb.add_option("--tracer-type", l.tracer_type, "Atom type that marks tracers; default: no tracers");
+  verb.add_option("--tracer-type", l.tracer_type, "Type that marks tracers; default: no tracers");
   verb.callback([o, &common] { run(*o, common); });
 }
 

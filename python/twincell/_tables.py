@@ -7,10 +7,11 @@ from . import _core
 
 
 def _to_dataframe(self):
-    """One row per bead and frame in which it is present, in the columns of trackpy: x, y, frame, particle.
+    """One row per bead and frame in which it is present, in the columns of trackpy: frame, particle, x, y.
 
-    x and z are in bead diameters, z up; y is -z, so that it increases downwards as in trackpy's pictures. Further columns: time,
-    and those that the trajectory has: depth, phase, cycle, radius, tracer, vx, vz, sigma_x, sigma_z.
+    The columns are those of `twincell export --to csv`: lengths in bead diameters, y downwards from the mean height of the
+    plate, as in trackpy's pictures; in three dimensions z is the depth. Further columns: step, time, and those that the
+    trajectory has: phase, cycle, radius, bead_mass, tracer, vx, vy, sigma_x, sigma_y, in three dimensions also vz, sigma_z.
     """
     import pandas as pd
 
@@ -19,24 +20,27 @@ def _to_dataframe(self):
     for t in range(len(self)):
         r = self.positions[t]
         here = np.flatnonzero(np.isfinite(r[:, 0]))
-        part = {"x": r[here, 0], "y": -r[here, 2], "z": r[here, 2], "frame": np.full(here.size, t),
-                "particle": here, "step": np.full(here.size, step[t]), "time": np.full(here.size, time[t])}
-        if self.box.dimension == 3:
-            part["depth"] = r[here, 1]
+        deep = self.box.dimension == 3  # with a column z, trackpy links in three dimensions
+        part = {"frame": np.full(here.size, t), "particle": here, "x": r[here, 0], "y": 0 - r[here, 2]}
+        if deep:
+            part["z"] = r[here, 1]
+        part |= {"step": np.full(here.size, step[t]), "time": np.full(here.size, time[t])}
         if phase is not None:
             part |= {"phase": np.full(here.size, phase[t]), "cycle": np.full(here.size, cycle[t])}
         if self.radii is not None:
             part["radius"] = self.radii[here]
+        if self.masses is not None:
+            part["bead_mass"] = self.masses[here]
         if self.tracers is not None:
             part["tracer"] = self.tracers[here].astype(bool)
         if self.velocities is not None:
             v = self.velocities[t]
-            part |= {"vx": v[here, 0], "vz": v[here, 2]}
+            part |= {"vx": v[here, 0], "vy": 0 - v[here, 2]} | ({"vz": v[here, 1]} if deep else {})
         if self.position_sigma is not None:
             s = self.position_sigma[t]
-            part |= {"sigma_x": s[here, 0], "sigma_z": s[here, 2]}
+            part |= {"sigma_x": s[here, 0], "sigma_y": s[here, 2]} | ({"sigma_z": s[here, 1]} if deep else {})
         parts.append(pd.DataFrame(part))
-    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=["x", "y", "z", "frame", "particle"])
+    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=["frame", "particle", "x", "y"])
 
 
 def _to_mdanalysis(self):

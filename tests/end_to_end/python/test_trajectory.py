@@ -84,6 +84,16 @@ def test_missing_beads_are_absent():
     assert table.query("frame == 1").particle.tolist() == [0, 2]
 
 
+def test_the_table_is_that_of_the_verb(sim_file, tmp_path):
+    pd = pytest.importorskip("pandas")
+    assert program("export", sim_file, "--to", "csv", "-o", tmp_path / "t.csv", "-q").returncode == 0
+    verb = pd.read_csv(tmp_path / "t.csv", float_precision="round_trip")
+    mine = twincell.Trajectory.open(sim_file).to_dataframe()
+    assert list(mine.columns) == list(verb.columns)
+    for name in verb.columns:
+        assert np.array_equal(mine[name].to_numpy(dtype=float), verb[name].to_numpy(dtype=float)), name
+
+
 def test_analyze_is_the_verb_to_the_bit(sim_file):
     verb = document("analyze", sim_file, "--discard", 1, "--neighbours", "voronoi")["results"]
     mine = twincell.analyze(sim_file, discard=1, neighbours="voronoi")

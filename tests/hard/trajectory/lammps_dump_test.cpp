@@ -1,8 +1,6 @@
 // Third-party LAMMPS dumps: columns and ids in any order, missing beads, coordinates scaled, wrapped or not;
 // and files that are not dumps.
 
-#include "trajectory/formats/lammps_dump.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +11,7 @@
 #include "core/error.hpp"
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trajectory/foreign/foreign_trajectory.hpp"
 
 namespace twincell {
 namespace {
@@ -27,24 +26,24 @@ std::string frame_text(long step, const std::string& flags, const std::string& c
       step, atoms.size(), flags, columns, fmt::join(atoms, "\n"), atoms.empty() ? "" : "\n");
 }
 
-LammpsDumpOptions reduced() {
-  LammpsDumpOptions options;
+ForeignOptions reduced() {
+  ForeignOptions options;
   options.timestep = 0.01;
   return options;
 }
 
 class Dump : public ::testing::Test {
  protected:
-  MemoryTrajectory read(const std::string& text, const LammpsDumpOptions& options = reduced()) {
+  MemoryTrajectory read(const std::string& text, const ForeignOptions& options = reduced()) {
     put_file(file(), text);
-    const LammpsDump dump(file(), options);
+    const ForeignTrajectory dump(file(), foreign_format("lammps-dump", ""), options);
     MemoryTrajectory trajectory(dump.info());
     dump.copy_to(trajectory);
     EXPECT_EQ(trajectory.n_frames(), dump.n_frames());
     return trajectory;
   }
   /// The message with which `text` is refused, without the folder's name.
-  std::string refusal(const std::string& text, const LammpsDumpOptions& options = reduced()) {
+  std::string refusal(const std::string& text, const ForeignOptions& options = reduced()) {
     try {
       read(text, options);
     } catch (const InputError& e) {
@@ -118,7 +117,7 @@ TEST_F(Dump, AllWaysToSayWhereABeadIs) {
 }
 
 TEST_F(Dump, ThreeDimensionsKeepTheirAxes) {
-  LammpsDumpOptions options = reduced();
+  ForeignOptions options = reduced();
   options.dimension = 3;
   options.origin = Vec3(1, -2, -0.5);
   options.bead_mass = 2;
@@ -136,7 +135,7 @@ TEST_F(Dump, ThreeDimensionsKeepTheirAxes) {
 
 // 2 mm beads in metres and seconds, 50 Hz, 4 frames a cycle, a wall that oscillates from step 0 on.
 TEST_F(Dump, LaboratoryUnitsAndPhases) {
-  LammpsDumpOptions options;
+  ForeignOptions options;
   options.timestep = 1e-5;
   options.sigma = 2e-3;
   options.gravity = 9.81;
@@ -172,7 +171,7 @@ TEST_F(Dump, LaboratoryUnitsAndPhases) {
 TEST_F(Dump, TimeMayStandInTheDump) {
   const std::string text =
       "ITEM: UNITS\nlj\nITEM: TIME\n0.75\n" + frame_text(3, "ff ff pp", "id x y", {"1 1 1"});
-  LammpsDumpOptions options;
+  ForeignOptions options;
   EXPECT_EQ(read(text, options).frames()[0].time, 0.75);
   EXPECT_EQ(refusal(frame_text(3, "ff ff pp", "id x y", {"1 1 1"}), options).rfind("options: --timestep", 0),
             0U);
@@ -223,7 +222,7 @@ TEST_F(Dump, MalformedOnesAreRefusedByLine) {
 TEST_F(Dump, OptionsThatDoNotFitAreRefused) {
   const std::string text =
       frame_text(0, "ff ff pp", "id x y", {"1 1 1"}) + frame_text(77, "ff ff pp", "id x y", {});
-  LammpsDumpOptions options = reduced();
+  ForeignOptions options = reduced();
   options.phases_per_cycle = 4;
   EXPECT_EQ(refusal(text, options),
             "options: --frames-per-cycle: has no meaning without the drive, whose period is then unknown.");
@@ -234,7 +233,7 @@ TEST_F(Dump, OptionsThatDoNotFitAreRefused) {
   options.phases_per_cycle = 100;
   EXPECT_EQ(refusal(text, options), "accepted");
   options.tracer_type = 1;
-  EXPECT_EQ(refusal(text, options), "options: --tracer-type: the dump has no column 'type'.");
+  EXPECT_EQ(refusal(text, options), "options: --tracer-type: the file has no types of beads.");
   options = reduced();
   options.drive_axis = Axis::y;
   EXPECT_EQ(refusal(text, options), "options: --drive-axis: a 2D system has no y axis.");
@@ -244,7 +243,7 @@ TEST_F(Dump, OptionsThatDoNotFitAreRefused) {
   options = reduced();
   options.origin = Vec3(0, 11, 0);
   EXPECT_EQ(refusal(text, options),
-            "options: --cell-origin: the origin is above or to the right of the dump's box.");
+            "options: --cell-origin: the origin is above or to the right of the file's box.");
 }
 
 // Bytes changed, removed and duplicated anywhere: the dump is refused with a line number or read as finite

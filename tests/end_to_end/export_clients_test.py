@@ -1,0 +1,179 @@
+"""Other people's readers open what `twincell export` writes and see the numbers of the trajectory.
+
+usage: export_clients_test.py TWINCELL SOURCE_DIR FOLDER CLIENT
+
+CLIENT is mdanalysis, lammps, pandas, ase, gsd or vtk. Exit code 77 means that the client is not installed.
+"""
+
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+SKIPPED = 77
+SCENE = "data_samples/fortini-huang-crystal/scene.toml"
+
+
+def run(*command, folder, code=0):
+    done = subprocess.run([str(c) for c in command], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == code, f"{command}: exit code {done.returncode}\n{done.stdout}\n{done.stderr}"
+    return done
+
+
+def trajectory(twincell, source, folder):
+    """A crystal of 60 beads over one cycle, and its numbers: time, positions (x, z up), velocities, radius."""
+    run(twincell, "simulate", source / SCENE, "--set", "beads.count=60", "--set", "cell.width=6", "--set", "time.discard=0",
+        "--set", "time.cycles=1", "-o", "run.h5", "-q", folder=folder)
+    with h5py.File(folder / "run.h5") as file:
+        group = file["particles/trajectory"]
+        return {"time": group["position/time"][()], "step": group["position/step"][()],
+                "x": group["position/value"][:, :, 0], "z": group["position/value"][:, :, 2],
+                "vx": group["velocity/value"][:, :, 0], "vz": group["velocity/value"][:, :, 2]}
+
+
+def export(twincell, word, output, folder):
+    run(twincell, "export", "run.h5", "--to", word, "-o", output, folder=folder)
+    return folder / output
+
+
+def same(what, seen, expected, tolerance):
+    worst = np.max(np.abs(np.asarray(seen, dtype=float) - expected))
+    assert worst <= tolerance, f"{what} differs by {worst:g}"
+    print(f"{what}: {np.size(expected)} numbers, largest difference {worst:.1e}")
+
+
+def mdanalysis(twincell, folder, truth):
+    import MDAnalysis
+
+    xyz = MDAnalysis.Universe(str(export(twincell, "xyz", "run.xyz", folder)))
+    assert len(xyz.trajectory) == len(truth["time"])
+    same("XYZ x", [ts.positions[:, 0].copy() for ts in xyz.trajectory], truth["x"], 1e-6)
+    same("XYZ y", [ts.positions[:, 1].copy() for ts in xyz.trajectory], truth["z"], 1e-5)
+    dump = MDAnalysis.Universe(str(export(twincell, "lammps-dump", "run.lammpstrj", folder)), format="LAMMPSDUMP",
+                               topology_format="LAMMPSDUMP")
+    low = -1.5  # MDAnalysis shifts positions by the lower corner of the box: here A below the plate's mean height
+    same("dump x", [ts.positions[:, 0].copy() for ts in dump.trajectory], truth["x"], 1e-5)
+    same("dump y", [ts.positions[:, 1].copy() + low for ts in dump.trajectory], truth["z"], 1e-5)
+
+
+def lammps(twincell, folder, truth):
+    program = shutil.which("lmp")
+    if not program:
+        sys.exit(SKIPPED)
+    export(twincell, "lammps-dump", "run.lammpstrj", folder)
+    last = truth["step"][-1]
+    (folder / "in.read").write_text(
+        "dimension 2\nunits lj\natom_style sphere\nboundary f f p\nregion box block -10 20 -10 50 -0.5 0.5\n"
+        "create_box 2 box\npair_style zero 2.0\npair_coeff * *\n"
+        f"read_dump run.lammpstrj {last} x y vx vy box yes add yes\n"
+        "write_dump all custom again.dump id x y vx vy modify sort id format float %.17g\n")
+    run(program, "-in", "in.read", "-log", "none", folder=folder)
+    rows = np.loadtxt((folder / "again.dump").read_text().splitlines()[9:])
+    for name, column in {"x": 1, "z": 2, "vx": 3, "vz": 4}.items():
+        same(f"LAMMPS {name}", rows[:, column], truth[name][-1], 1e-12)
+
+
+def pandas(twincell, folder, truth):
+    import pandas
+
+    table = pandas.read_csv(export(twincell, "csv", "run.csv", folder), float_precision="round_trip")
+    assert list(table.columns[:4]) == ["frame", "particle", "x", "y"] and "z" not in table.columns
+    shape = truth["x"].shape
+    table = table.sort_values(["frame", "particle"])
+    same("CSV x", table["x"].to_numpy().reshape(shape), truth["x"], 0)
+    same("CSV y", -table["y"].to_numpy().reshape(shape), truth["z"], 0)
+    same("CSV vy", -table["vy"].to_numpy().reshape(shape), truth["vz"], 0)
+    same("CSV time", table["time"].to_numpy().reshape(shape)[:, 0], truth["time"], 0)
+
+
+def ase(twincell, folder, truth):
+    try:
+        from ase.io import read
+    except ImportError:
+        sys.exit(SKIPPED)
+    frames = read(export(twincell, "xyz", "run.xyz", folder), index=":")
+    same("ASE x", [f.positions[:, 0] for f in frames], truth["x"], 1e-13)
+    same("ASE y", [f.positions[:, 1] for f in frames], truth["z"], 1e-13)
+    same("ASE velo", [f.arrays["velo"][:, 0] for f in frames], truth["vx"], 1e-13)
+    same("ASE time", [f.info["Time"] for f in frames], truth["time"], 1e-13)
+    dump = read(export(twincell, "lammps-dump", "run.lammpstrj", folder), index=":", format="lammps-dump-text")
+    same("ASE dump x", [f.positions[:, 0] for f in dump], truth["x"], 1e-13)
+
+
+def gsd(twincell, folder, truth):
+    try:
+        import gsd.hoomd
+    except ImportError:
+        sys.exit(SKIPPED)
+    export(twincell, "gsd", "run.gsd", folder)
+    with gsd.hoomd.open(str(folder / "run.gsd"), "rb") as frames:
+        assert len(frames) == len(truth["time"])
+        assert frames[0].configuration.dimensions == 2 and frames[0].particles.types == ["bead", "tracer"]
+        centre = [f.log["configuration/centre"][0] for f in frames]
+        same("GSD x", [f.particles.position[:, 0] + c[0] for f, c in zip(frames, centre)], truth["x"], 2e-6)
+        same("GSD y", [f.particles.position[:, 1] + c[1] for f, c in zip(frames, centre)], truth["z"], 4e-6)
+        same("GSD vx", [f.particles.velocity[:, 0] for f in frames], truth["vx"], 1e-6)
+        same("GSD step", [f.configuration.step for f in frames], truth["step"], 0)
+        same("GSD diameter", frames[0].particles.diameter, np.ones(60), 1e-6)
+    # And what that library writes is imported.
+    other = gsd.hoomd.Snapshot()
+    other.particles.N = 2
+    other.particles.position = [[-1, -2, 0], [1.5, 2.25, 0]]
+    other.particles.velocity = [[0.5, 0, 0], [0, 0.25, 0]]
+    other.configuration.box = [8, 6, 0, 0, 0, 0]
+    other.configuration.dimensions = 2
+    with gsd.hoomd.open(str(folder / "other.gsd"), "wb") as file:
+        for step in (10, 20):
+            other.configuration.step = step
+            file.append(other)
+    run(twincell, "import", "other.gsd", "-o", "other.h5", "--timestep", 0.5, "--cell-origin", -4, -3, "-q", folder=folder)
+    with h5py.File(folder / "other.h5") as file:
+        group = file["particles/trajectory/position"]
+        same("imported x", group["value"][1, :, 0], [3, 5.5], 1e-12)
+        same("imported z", group["value"][1, :, 2], [1, 5.25], 1e-12)
+        same("imported time", group["time"][()], [5, 10], 1e-12)
+
+
+def vtk(twincell, folder, truth):
+    try:
+        import vtkmodules.vtkIOXML as reading
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+    except ImportError:
+        sys.exit(SKIPPED)
+    import xml.etree.ElementTree as ElementTree
+
+    listed = ElementTree.parse(export(twincell, "vtk", "run", folder) / "run.pvd").getroot().findall("Collection/DataSet")
+    assert len(listed) == len(truth["time"])
+    same("PVD time", [float(d.get("timestep")) for d in listed], truth["time"], 0)
+    for frame, entry in enumerate(listed):
+        reader = reading.vtkXMLPolyDataReader()
+        reader.SetFileName(str(folder / "run" / entry.get("file")))
+        reader.Update()
+        data = reader.GetOutput()
+        assert data.GetNumberOfPoints() == data.GetNumberOfVerts() == 60
+        points = vtk_to_numpy(data.GetPoints().GetData())
+        assert np.array_equal(points[:, 0], truth["x"][frame]) and np.array_equal(points[:, 1], truth["z"][frame])
+        arrays = {data.GetPointData().GetArrayName(i) for i in range(data.GetPointData().GetNumberOfArrays())}
+        assert {"id", "radius", "mass", "tracer", "velocity", "spin"} <= arrays, arrays
+        velocity = vtk_to_numpy(data.GetPointData().GetArray("velocity"))
+        assert np.array_equal(velocity[:, 1], truth["vz"][frame])
+        assert data.GetFieldData().GetArray("TimeValue").GetValue(0) == truth["time"][frame]
+    print(f"VTK: {len(listed)} files equal to the bit")
+
+
+def main():
+    twincell, source, folder, client = sys.argv[1:]
+    folder = pathlib.Path(folder) / f"export_{client}"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    truth = trajectory(pathlib.Path(twincell), pathlib.Path(source), folder)
+    assert truth["x"].shape[1] == 60 and not math.isnan(truth["x"].sum())
+    {"mdanalysis": mdanalysis, "lammps": lammps, "pandas": pandas, "ase": ase, "gsd": gsd, "vtk": vtk}[client](
+        twincell, folder, truth)
+
+
+main()

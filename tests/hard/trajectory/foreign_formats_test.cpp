@@ -1,0 +1,279 @@
+// Every format of another program: what is written is read back, and what is damaged is refused with one
+// sentence.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "tests/support/put_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "trajectory/foreign/export_trajectory.hpp"
+#include "trajectory/foreign/foreign_trajectory.hpp"
+
+namespace twincell {
+namespace {
+
+const Vec3 kNowhere = Vec3::Constant(std::nan(""));
+
+/// Three beads in three frames; bead 1 is missing from the second frame, bead 2 crosses the period of x.
+MemoryTrajectory three_beads(int dimension) {
+  TrajectoryInfo info;
+  info.n_beads = 3;
+  info.columns = {.velocity = true, .spin = true, .identity = true, .phase = true, .plate_height = true};
+  info.box.dimension = dimension;
+  info.box.lower = Vec3(0, dimension == 2 ? -0.5 : 0, 0);
+  info.box.upper = Vec3(8, dimension == 2 ? 0.5 : 6, 10);
+  info.box.boundary = {Boundary::periodic, dimension == 2 ? Boundary::open : Boundary::wall, Boundary::wall};
+  info.drive = Drive{.axis = Axis::z, .amplitude = 0.5, .omega = 2};
+  info.phases_per_cycle = 4;
+  info.radius = {0.5, 0.25, 0.5};
+  info.mass = {1, 0.125, 1};
+  info.tracer = {0, 1, 0};
+  MemoryTrajectory t(info);
+  const double depth = dimension == 2 ? 0 : 1;
+  for (int f = 0; f < 3; ++f) {
+    Frame frame;
+    frame.step = 100 * f;
+    frame.time = f * info.drive->period() / 4;
+    frame.phase = f;
+    frame.cycle = 0;
+    frame.plate_height = info.drive->displacement(f / 4.0);
+    frame.position = {Vec3(1.1, 2 * depth, 0.1 * f + 0.5), Vec3(4.25, 3 * depth, 3.3),
+                      Vec3(7.5 + f * 0.4, depth, 1.75)};
+    frame.velocity = {Vec3(0.1, 0.5 * depth, 0.2), Vec3(-1, depth, 0.25), Vec3(0.3, -depth, 0)};
+    frame.spin = {Vec3(depth, -1, 2 * depth), Vec3(0, 0.5, 0), Vec3(0, 0.125, 0)};
+    frame.id = {0, 1, 2};
+    if (f == 1) {
+      frame.position[1] = frame.velocity[1] = frame.spin[1] = kNowhere;
+      frame.id[1] = -1;
+    }
+    t.append(frame);
+  }
+  return t;
+}
+
+class ForeignFormats : public ::testing::Test {
+ protected:
+  MemoryTrajectory read(const std::string& word, const ForeignOptions& options) {
+    const ForeignTrajectory source(file(), foreign_format(word, ""), options);
+    MemoryTrajectory t(source.info());
+    source.copy_to(t);
+    return t;
+  }
+  /// The message with which `text` is refused, without the folder's name.
+  std::string refusal(const std::string& word, const std::string& text,
+                      ForeignOptions options = {.timestep = 1}) {
+    put_file(file(), text);
+    try {
+      read(word, options);
+    } catch (const Error& e) {
+      const std::string said = e.what(), folder = folder_.path().string() + "/";
+      return said.starts_with(folder) ? said.substr(folder.size()) : said;
+    }
+    return "accepted";
+  }
+  [[nodiscard]] std::filesystem::path file() const { return folder_ / "f"; }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+ForeignOptions options_of(const MemoryTrajectory& t) {
+  ForeignOptions options;
+  options.dimension = t.info().box.dimension;
+  options.drive.amplitude = 0.5;
+  options.drive.omega = 2;
+  options.phases_per_cycle = 4;
+  options.bead_mass = 1;
+  options.tracer_type = 2;
+  options.timestep = t.frames()[1].time / 100;
+  return options;
+}
+
+void expect_vector(const Vec3& a, const Vec3& b, double tolerance, int dimension, const std::string& what) {
+  for (int k = 0; k < 3; ++k) {
+    if (dimension == 2 && k == 1) continue;
+    EXPECT_NEAR(a[k], b[k], tolerance) << what << " along " << "xyz"[k];
+  }
+}
+
+TEST_F(ForeignFormats, WhatIsWrittenIsReadBack) {
+  for (const ForeignFormat* format : foreign_formats()) {
+    if (format->create == nullptr || format->open == nullptr) continue;
+    const bool is_table = format->word == "csv";
+    const double tolerance = format->word == "gsd" ? 1e-6 : 1e-14;  // single precision
+    for (const int dimension : {2, 3}) {
+      SCOPED_TRACE(fmt::format("{} in {}D", format->word, dimension));
+      const MemoryTrajectory out = three_beads(dimension);
+      EXPECT_EQ(export_trajectory(out, *format, ExportUnits::reduced(), file(), "f"), 3U);
+      ForeignOptions options = options_of(out);
+      if (is_table) options.timestep.reset();  // has times
+      const MemoryTrajectory in = read(std::string(format->word), options);
+      ASSERT_EQ(in.n_frames(), 3U);
+      ASSERT_EQ(in.info().n_beads, 3U);
+      EXPECT_EQ(in.info().source, is_table ? "unknown" : "simulation");
+      EXPECT_EQ(in.info().tracer, out.info().tracer);
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(in.info().radius[i], out.info().radius[i], tolerance);
+        EXPECT_NEAR(in.info().mass[i], out.info().mass[i], tolerance);
+      }
+      if (!is_table) {  // a table has no box
+        EXPECT_EQ(in.info().box.boundary[0], Boundary::periodic);
+        EXPECT_EQ(in.info().box.boundary[2], Boundary::wall);
+        EXPECT_NEAR(in.info().box.upper.x(), 8, 8 * tolerance);
+        EXPECT_NEAR(in.info().box.upper.z(), 10, 20 * tolerance);
+        if (dimension == 2) {
+          EXPECT_NEAR(in.info().box.size().y(), 1, tolerance);
+        }
+      }
+      for (std::size_t f = 0; f < 3; ++f) {
+        const Frame &a = in.frames()[f], &b = out.frames()[f];
+        EXPECT_NEAR(a.time, b.time, 1e-13);
+        EXPECT_EQ(a.phase, b.phase);
+        EXPECT_NEAR(a.plate_height, b.plate_height, 1e-13);
+        for (std::size_t i = 0; i < 3; ++i) {
+          ASSERT_EQ(a.present(i), b.present(i)) << "bead " << i << " of frame " << f;
+          if (!b.present(i)) continue;
+          const std::string what = fmt::format("bead {} of frame {}", i, f);
+          expect_vector(a.position[i], b.position[i], 10 * tolerance, dimension, "position of " + what);
+          expect_vector(a.velocity[i], b.velocity[i], tolerance, dimension, "velocity of " + what);
+          if (in.info().columns.spin) {
+            EXPECT_LT((a.spin[i] - b.spin[i]).norm(), tolerance) << "spin of " + what;
+          }
+        }
+      }
+      // LAMMPS and XYZ carry the spin, the others do not (docs/formats.md).
+      EXPECT_EQ(in.info().columns.spin, format->word == "xyz" || format->word == "lammps-dump");
+    }
+  }
+}
+
+TEST_F(ForeignFormats, LaboratoryUnits) {
+  MemoryTrajectory t = three_beads(2);
+  EXPECT_THROW((void)ExportUnits::laboratory(t.info(), "--units"), ConfigError);
+  t.info().scale = {.sigma_m = 0.002, .gravity_m_s2 = 9.81};
+  const ExportUnits units = ExportUnits::laboratory(t.info(), "--units");
+  const Snapshot s = snapshot_of(t.frames()[1], t.info(), units);
+  EXPECT_NEAR(s.beads[0].position.x(), 2.2, 1e-12);                                 // 1.1 sigma of 2 mm
+  EXPECT_NEAR(s.beads[0].velocity.x(), 0.1 * std::sqrt(9.81 * 0.002) * 1e3, 1e-9);  // v0 = sqrt(g sigma)
+  EXPECT_NEAR(*s.time, t.frames()[1].time * std::sqrt(0.002 / 9.81), 1e-15);
+}
+
+TEST_F(ForeignFormats, ExtendedXyzOfOtherPrograms) {
+  // ASE: no identity, keys in any order, a key without a value, quotes of either kind.
+  put_file(file(),
+           "2\nProperties=pos:R:3:species:S:1:velo:R:3 energy=-1.5 converged Lattice='8 0 0 0 9 0 0 0 1' "
+           "pbc=\"T F F\" "
+           "Time=0.5\n1 2 0 Si 0.5 0.25 0\n7.9 3 0 Si 0 0 0\n\n");
+  const MemoryTrajectory t = read("xyz", {});
+  ASSERT_EQ(t.n_frames(), 1U);
+  EXPECT_EQ(t.frames()[0].time, 0.5);
+  EXPECT_EQ(t.frames()[0].position[1], Vec3(7.9, 0, 3));
+  EXPECT_EQ(t.frames()[0].velocity[0], Vec3(0.5, 0, 0.25));
+  EXPECT_EQ(t.info().box.upper, Vec3(8, 1, 9));
+  EXPECT_EQ(t.info().box.boundary[0], Boundary::periodic);
+  EXPECT_TRUE(t.info().radius.empty());
+}
+
+TEST_F(ForeignFormats, DamagedXyz) {
+  const std::string head = "Lattice=\"8 0 0 0 9 0 0 0 1\" Properties=pos:R:3";
+  EXPECT_EQ(refusal("xyz", "many\n"), "f:1: 'many' is not a whole number.");
+  EXPECT_EQ(refusal("xyz", "-1\n"), "f:1: the number of beads is needed, '-1' was found.");
+  EXPECT_EQ(refusal("xyz", ""), "f: the file holds no frame.");
+  EXPECT_EQ(refusal("xyz", "2\n" + head + "\n1 2 0\n"), "f:3: the file ends within a frame, before bead 2.");
+  EXPECT_EQ(refusal("xyz", "9000000000000000000\n" + head + "\n1 2 0\n"),
+            "f:3: the file ends within a frame, before bead 2.");
+  EXPECT_EQ(refusal("xyz", "1\n" + head + "\n1 2\n"), "f:3: 3 columns are needed, 2 were found.");
+  EXPECT_EQ(refusal("xyz", "1\n" + head + "\n1 nan 0\n"), "f:3: 'nan' is not a finite number.");
+  EXPECT_EQ(refusal("xyz", "1\nLattice=\"8 1 0 0 9 0 0 0 1\" Properties=pos:R:3\n1 1 0\n"),
+            "f:2: the box is not a cuboid along the axes.");
+  EXPECT_EQ(refusal("xyz", "1\nLattice=\"8 0 0 0 0 0 0 0 1\" Properties=pos:R:3\n1 1 0\n"),
+            "f:2: the box is empty: an edge of Lattice is not positive.");
+  EXPECT_EQ(refusal("xyz", "1\nProperties=pos:R:99999999999999999999\n1 1 0\n"),
+            "f:2: '99999999999999999999' is not a whole number.");
+  EXPECT_EQ(refusal("xyz", "1\nProperties=pos:R\n1 1 0\n"),
+            "f:2: Properties needs name:type:count for each property.");
+  EXPECT_EQ(refusal("xyz", "1\nProperties=id:I:1\n1\n"), "f:2: there is no property pos:R:3.");
+  EXPECT_EQ(refusal("xyz", "2\n" + head + ":id:I:1\n1 2 0 7\n1 3 0 7\n"),
+            "f:4: the bead with id 7 occurs twice in a frame.");
+}
+
+TEST_F(ForeignFormats, ATableOfTrackpy) {
+  // pandas writes an index without a name, and particles as real numbers; y increases downwards.
+  put_file(
+      file(),
+      ",y,x,mass,size,ecc,signal,raw_mass,ep,frame,particle\n"
+      "0,90.5,10.25,1,2,3,4,5,0.1,0,0.0\n1,80.0,30.0,1,2,3,4,5,,0,1.0\n2,90.0,12.0,1,2,3,4,5,0.1,2,0.0\n");
+  ForeignOptions options;
+  options.timestep = 0.01;
+  options.sigma = 20;
+  options.gravity = 2000;  // t0 = 0.1
+  options.origin = Vec3(0, 100, 0);
+  const MemoryTrajectory t = read("csv", options);
+  ASSERT_EQ(t.n_frames(), 2U);
+  EXPECT_EQ(t.frames()[1].step, 2);
+  EXPECT_NEAR(t.frames()[1].time, 0.2, 1e-15);
+  EXPECT_NEAR(t.frames()[0].position[0].x(), 10.25 / 20, 1e-15);
+  EXPECT_NEAR(t.frames()[0].position[0].z(), 9.5 / 20, 1e-15);  // 9.5 px above the origin
+  EXPECT_FALSE(t.frames()[1].present(1));
+}
+
+TEST_F(ForeignFormats, ColumnsOfATableAreNamed) {
+  put_file(file(), "t,bead,X,Y\n5,3,1.5,2.5\n");
+  ForeignOptions options;
+  options.timestep = 1;
+  options.y_up = true;
+  options.table_columns = {{"frame", "t"}, {"particle", "bead"}, {"x", "X"}, {"y", "Y"}};
+  const MemoryTrajectory t = read("csv", options);
+  EXPECT_EQ(t.frames().at(0).position[0], Vec3(1.5, 0, 2.5));
+  options.table_columns["x"] = "Z";
+  EXPECT_EQ(refusal("csv", "t,bead,X,Y\n5,3,1.5,2.5\n", options),
+            "f:1: Z: this column is missing; there are: t, bead, X, Y.");
+  options.table_columns = {{"speed", "X"}};
+  EXPECT_NE(refusal("csv", "t,bead,X,Y\n5,3,1.5,2.5\n", options).find("there is no quantity 'speed'"),
+            std::string::npos);
+}
+
+TEST_F(ForeignFormats, DamagedTables) {
+  const std::string head = "frame,particle,x,y\n";
+  EXPECT_EQ(refusal("csv", "frame,x,y\n0,1,2\n"),
+            "f:1: there is no column 'particle'; --columns particle=NAME states another name. There are: "
+            "frame, x, y.");
+  EXPECT_EQ(refusal("csv", head), "f: the table has no row.");
+  EXPECT_EQ(refusal("csv", head + "0,1,2\n"), "f:2: 4 fields are needed, 3 were found.");
+  EXPECT_EQ(refusal("csv", head + "0,1,2,\n"), "f:2: y: '' is not a finite number.");
+  EXPECT_EQ(refusal("csv", head + "0,1.5,2,3\n"), "f:2: particle: 1.5 is not a whole number.");
+  EXPECT_EQ(refusal("csv", head + "0,1,2,inf\n"), "f:2: y: 'inf' is not a finite number.");
+  EXPECT_EQ(refusal("csv", head + "0,1,2,3\n0,1,2,3\n"), "f:3: the bead with id 1 occurs twice in a frame.");
+  EXPECT_EQ(refusal("csv", "frame,particle,x,y,time\n0,1,2,3,0\n0,2,2,3,1\n"),
+            "f:3: the time differs from that of line 2, which has the same frame.");
+  EXPECT_EQ(refusal("csv", "frame;particle;x;y\n0;1;2;3\n"),
+            "f:1: the fields are separated by semicolons; use commas, and decimal points in numbers.");
+}
+
+TEST_F(ForeignFormats, AGsdFileCutAnywhereIsRefused) {
+  export_trajectory(three_beads(2), foreign_format("gsd", ""), ExportUnits::reduced(), file(), "f");
+  const std::string whole = read_text_file(file());
+  EXPECT_EQ(refusal("gsd", whole), "accepted");
+  for (std::size_t n = 0; n < whole.size(); n += 37)
+    EXPECT_NE(refusal("gsd", whole.substr(0, n)), "accepted") << n << " of " << whole.size() << " bytes";
+}
+
+// A flipped byte may change a number; it must never end the reader otherwise than by a sentence.
+TEST_F(ForeignFormats, AGsdFileWithAFlippedByteIsReadOrRefused) {
+  export_trajectory(three_beads(2), foreign_format("gsd", ""), ExportUnits::reduced(), file(), "f");
+  const std::string whole = read_text_file(file());
+  std::size_t refused = 0;
+  for (std::size_t n = 0; n < whole.size(); n += 5) {
+    std::string damaged = whole;
+    damaged[n] = static_cast<char>(damaged[n] ^ 0xFF);
+    refused += refusal("gsd", damaged) != "accepted" ? 1 : 0;
+  }
+  EXPECT_GT(refused, 20U);
+}
+
+}  // namespace
+}  // namespace twincell

@@ -1,0 +1,264 @@
+// A table with one row per bead and frame, in trackpy's columns: x, y, frame, particle. y increases
+// downwards, as in a picture. Source: trackpy manual, "Walkthrough", and trackpy.linking.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/error.hpp"
+#include "core/table_text.hpp"
+#include "trajectory/foreign/format.hpp"
+#include "trajectory/foreign/text_file.hpp"
+
+namespace twincell {
+
+namespace {
+
+/// Quantities that are read, by the names of their columns.
+constexpr std::array<const char*, 16> kQuantities = {
+    "frame",  "particle",  "x",  "y",  "z",  "time",    "radius",  "diameter",
+    "tracer", "bead_mass", "vx", "vy", "vz", "sigma_x", "sigma_y", "sigma_z"};
+
+std::vector<std::string_view> fields_of(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (std::size_t at = 0;;) {
+    const std::size_t comma = line.find(',', at);
+    std::string_view field = line.substr(at, comma == std::string_view::npos ? comma : comma - at);
+    while (!field.empty() && (field.front() == ' ' || field.front() == '"')) field.remove_prefix(1);
+    while (!field.empty() && (field.back() == ' ' || field.back() == '"')) field.remove_suffix(1);
+    fields.push_back(field);
+    if (comma == std::string_view::npos) return fields;
+    at = comma + 1;
+  }
+}
+
+class TableReader final : public SnapshotReader {
+ public:
+  TableReader(const std::filesystem::path& file, const ReadOptions& options)
+      : SnapshotReader(file), options_(options), text_(read_table_text(file)) {
+    std::size_t at = 0;
+    place_columns(line_from(at));
+    long line = 1;
+    while (at < text_.size()) {
+      ++line;
+      const std::string_view row = line_from(at);
+      if (row.find_first_not_of(" ,") != std::string_view::npos) read_row(row, line);
+    }
+    if (rows_.empty()) fail_at(0, "the table has no row.");
+    std::stable_sort(rows_.begin(), rows_.end(),
+                     [](const Row& a, const Row& b) { return a.frame < b.frame; });
+  }
+
+  bool next(Snapshot& s) override {
+    if (next_ == rows_.size()) return false;
+    s = Snapshot{};
+    s.step = rows_[next_].frame;
+    s.line = rows_[next_].bead.line;
+    s.time = rows_[next_].time;
+    for (; next_ < rows_.size() && rows_[next_].frame == s.step; ++next_) {
+      if (rows_[next_].time != s.time)
+        fail_at(rows_[next_].bead.line,
+                fmt::format("the time differs from that of line {}, which has the same frame.", s.line));
+      s.beads.push_back(rows_[next_].bead);
+    }
+    for (const SnapshotBead& bead : s.beads)
+      for (int k = 0; k < options_.dimension; ++k) {
+        s.lower[k] = std::min(s.lower[k], bead.position[k] - bead.radius);
+        s.upper[k] = std::max(s.upper[k], bead.position[k] + bead.radius);
+      }
+    if (options_.dimension == 2) s.upper.z() = s.lower.z() + 1;
+    return true;
+  }
+  [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
+  // In three dimensions y is vertical as in a picture, and z is the depth.
+  [[nodiscard]] Vec3 upright(const Vec3& v) const override {
+    const double height = options_.y_up ? v.y() : -v.y() + 0.0;
+    return options_.dimension == 3 ? Vec3(v.x(), v.z(), height) : Vec3(v.x(), height, v.z());
+  }
+  [[nodiscard]] std::int64_t size() const override { return static_cast<std::int64_t>(rows_.size()); }
+  [[nodiscard]] std::int64_t done() const override { return static_cast<std::int64_t>(next_); }
+
+ private:
+  struct Row {
+    std::int64_t frame = 0;
+    std::optional<double> time;
+    SnapshotBead bead;
+  };
+
+  std::string_view line_from(std::size_t& at) const {
+    const std::size_t end = std::min(text_.find('\n', at), text_.size());
+    const std::string_view line(text_.data() + at, end - at);
+    at = end + 1;
+    return line;
+  }
+
+  void place_columns(std::string_view header) {
+    const auto fields = fields_of(header);
+    const std::vector<std::string> names(fields.begin(), fields.end());
+    check_column_names(names, {.file = file().string(), .line = 1, .key = {}});
+    n_columns_ = names.size();
+    const auto find = [&](const std::string& name) -> std::optional<std::size_t> {
+      const auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end()) return {};
+      return static_cast<std::size_t>(found - names.begin());
+    };
+    for (const auto& [quantity, name] : options_.columns) {
+      if (std::find(kQuantities.begin(), kQuantities.end(), quantity) == kQuantities.end())
+        throw ConfigError({"", 0, 0, "--columns"}, fmt::format("there is no quantity '{}'; there are: {}.",
+                                                               quantity, fmt::join(kQuantities, ", ")));
+      if (!find(name))
+        throw InputError({.file = file().string(), .line = 1, .key = name},
+                         fmt::format("this column is missing; there are: {}.", fmt::join(names, ", ")));
+    }
+    for (std::size_t q = 0; q < kQuantities.size(); ++q) {
+      const auto renamed = options_.columns.find(kQuantities[q]);
+      at_[q] = find(renamed == options_.columns.end() ? kQuantities[q] : renamed->second);
+    }
+    for (const char* needed : {"frame", "particle", "x", "y"})
+      if (!column(needed))
+        fail_at(1,
+                fmt::format("there is no column '{}'; --columns {}=NAME states another name. There are: {}.",
+                            needed, needed, fmt::join(names, ", ")));
+    if (options_.dimension == 3 && !column("z")) fail_at(1, "there is no column 'z' (--dimension 3).");
+    has_.radius = column("radius") || column("diameter");
+    has_.mass = column("bead_mass").has_value();
+    has_.type = column("tracer").has_value();
+    has_.uncertainty = column("sigma_x") && column("sigma_y");
+    has_.velocity = {column("vx").has_value(), column("vy").has_value(), column("vz").has_value()};
+  }
+
+  [[nodiscard]] std::optional<std::size_t> column(std::string_view quantity) const {
+    const auto q = std::find(kQuantities.begin(), kQuantities.end(), quantity);
+    return at_[static_cast<std::size_t>(q - kQuantities.begin())];
+  }
+
+  void read_row(std::string_view line, long number) {
+    const auto fields = fields_of(line);
+    if (fields.size() != n_columns_)
+      fail_at(number, fmt::format("{} fields are needed, {} were found.", n_columns_, fields.size()));
+    const auto real = [&](const char* quantity, double absent, bool may_be_nan = false) {
+      const auto at = column(quantity);
+      if (!at) return absent;
+      const std::string_view field = fields[*at];
+      if (may_be_nan && field.empty()) return std::numeric_limits<double>::quiet_NaN();
+      double value = 0;
+      const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+      if (error != std::errc() || end != field.data() + field.size() || !(may_be_nan || std::isfinite(value)))
+        throw InputError({.file = file().string(), .line = number, .key = quantity},
+                         fmt::format("'{}' is not a finite number.", field.substr(0, 60)));
+      return value;
+    };
+    const auto whole = [&](const char* quantity) {
+      const double value = real(quantity, 0);
+      if (value != std::floor(value) || std::abs(value) > 9e15)
+        throw InputError({.file = file().string(), .line = number, .key = quantity},
+                         fmt::format("{:g} is not a whole number.", value));
+      return static_cast<std::int64_t>(value);
+    };
+    Row row;
+    row.frame = whole("frame");
+    if (column("time")) row.time = real("time", 0);
+    row.bead.line = number;
+    row.bead.id = whole("particle");
+    const bool deep = options_.dimension == 3;
+    row.bead.position = upright(Vec3(real("x", 0), real("y", 0), deep ? real("z", 0) : 0));
+    row.bead.velocity = upright(Vec3(real("vx", 0), real("vy", 0), real("vz", 0)));
+    const Vec3 u(real("sigma_x", 0, true), real("sigma_y", 0, true), real("sigma_z", 0, true));
+    row.bead.uncertainty = upright(u).cwiseAbs();  // has no direction
+    row.bead.radius = real("radius", 0.5 * real("diameter", 0));
+    if (has_.radius && !(row.bead.radius > 0)) fail_at(number, "a bead has no size.");
+    row.bead.mass = real("bead_mass", 0);
+    if (has_.mass && !(row.bead.mass > 0)) fail_at(number, "a bead has no mass.");
+    row.bead.type = 1;
+    if (const auto at = column("tracer")) {
+      const std::string_view word = fields[*at];
+      const bool yes = word == "True" || word == "true" || word == "1";
+      if (!yes && word != "False" && word != "false" && word != "0")
+        throw InputError({.file = file().string(), .line = number, .key = "tracer"},
+                         fmt::format("'{}' is neither 0 nor 1.", word.substr(0, 60)));
+      row.bead.type = yes ? 2 : 1;
+    }
+    rows_.push_back(row);
+  }
+
+  ReadOptions options_;
+  std::string text_;
+  std::array<std::optional<std::size_t>, kQuantities.size()> at_{};
+  std::size_t n_columns_ = 0, next_ = 0;
+  SnapshotColumns has_;
+  std::vector<Row> rows_;
+};
+
+class TableWriter final : public SnapshotWriter {
+ public:
+  TableWriter(const std::filesystem::path& part, const WriteOptions& options)
+      : out_(part), has_(options.columns), is_3d_(options.dimension == 3) {}
+
+  void append(const Snapshot& s) override {
+    if (n_frames_ == 0) write_header();
+    auto text = std::back_inserter(out_.text());
+    const auto add = [&](const Vec3& v, double sign) {  // y vertical, z depth
+      fmt::format_to(text, ",{},{}", v.x(), sign * (is_3d_ ? v.z() : v.y()) + 0.0);
+      if (is_3d_) fmt::format_to(text, ",{}", v.y());
+    };
+    for (const SnapshotBead& bead : s.beads) {
+      fmt::format_to(text, "{},{}", n_frames_, bead.id);
+      add(bead.position, -1);
+      fmt::format_to(text, ",{},{}", s.step, s.time.value_or(0));
+      if (has_.phase) fmt::format_to(text, ",{},{}", s.phase.value_or(-1), s.cycle.value_or(-1));
+      if (has_.radius) fmt::format_to(text, ",{}", bead.radius);
+      if (has_.mass) fmt::format_to(text, ",{}", bead.mass);
+      if (has_.type) fmt::format_to(text, ",{}", bead.type == 2 ? 1 : 0);
+      if (has_.velocity[0]) add(bead.velocity, -1);
+      if (has_.uncertainty) add(bead.uncertainty, 1);
+      out_.text() += '\n';
+    }
+    ++n_frames_;
+    out_.flush_if_large();
+  }
+  void finish() override { out_.close(); }
+
+ private:
+  void write_header() {
+    std::string& text = out_.text();
+    const auto add = [&](const char* name) {
+      for (const char* axis : {"x", "y", "z"})
+        if (is_3d_ || *axis != 'z') text += fmt::format(",{}{}", name, axis);
+    };
+    text += "frame,particle";
+    add("");
+    text += ",step,time";
+    if (has_.phase) text += ",phase,cycle";
+    if (has_.radius) text += ",radius";
+    if (has_.mass) text += ",bead_mass";
+    if (has_.type) text += ",tracer";
+    if (has_.velocity[0]) add("v");
+    if (has_.uncertainty) add("sigma_");
+    text += '\n';
+  }
+
+  TextOutput out_;
+  SnapshotColumns has_;
+  bool is_3d_;
+  std::int64_t n_frames_ = 0;
+};
+
+}  // namespace
+
+extern const ForeignFormat bead_table_format;
+const ForeignFormat bead_table_format = {
+    .word = "csv",
+    .extensions = ".csv",
+    .help = "table with trackpy's columns frame, particle, x, y (y downwards): trackpy, pandas, spreadsheets",
+    .open = [](const std::filesystem::path& file, const ReadOptions& options)
+        -> std::unique_ptr<SnapshotReader> { return std::make_unique<TableReader>(file, options); },
+    .create = [](const std::filesystem::path& part, const WriteOptions& options)
+        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<TableWriter>(part, options); },
+    .source = "unknown"};
+
+}  // namespace twincell

@@ -1,0 +1,117 @@
+#include "trajectory/foreign/export_trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.hpp"
+
+namespace twincell {
+
+namespace {
+
+/// Converts a vector from the axes of Box to those of Snapshot.
+Vec3 turned(const Vec3& v, int dimension) {
+  return dimension == 2 ? Vec3(v.x(), v.z(), -v.y() + 0.0) : v;
+}
+
+SnapshotColumns columns_of(const TrajectoryInfo& info) {
+  SnapshotColumns has;
+  has.type = !info.tracer.empty();
+  has.radius = !info.radius.empty();
+  has.mass = !info.mass.empty();
+  has.uncertainty = info.columns.position_sigma;
+  has.phase = info.columns.phase;
+  has.velocity.fill(info.columns.velocity);
+  has.spin.fill(info.columns.spin);
+  return has;
+}
+
+void set_box(Snapshot& s, const TrajectoryInfo& info, const ExportUnits& units) {
+  const Box& box = info.box;
+  Vec3 lower = box.lower, upper = box.upper;
+  if (info.drive && !box.periodic(info.drive->axis)) {
+    const int axis = static_cast<int>(info.drive->axis);
+    lower[axis] -= info.drive->amplitude;
+  }
+  const auto is_periodic = [&](Axis axis) { return box.periodic(axis); };
+  if (box.dimension == 2) {
+    // The plane of the beads lies in the middle of the gap.
+    const double half_gap = 0.5 * (upper.y() - lower.y());
+    s.lower = Vec3(lower.x(), lower.z(), -half_gap);
+    s.upper = Vec3(upper.x(), upper.z(), half_gap);
+    s.periodic = {is_periodic(Axis::x), is_periodic(Axis::z), false};
+  } else {
+    s.lower = lower;
+    s.upper = upper;
+    s.periodic = {is_periodic(Axis::x), is_periodic(Axis::y), is_periodic(Axis::z)};
+  }
+  s.lower *= units.length;
+  s.upper *= units.length;
+}
+
+}  // namespace
+
+ExportUnits ExportUnits::laboratory(const TrajectoryInfo& info, const std::string& option) {
+  const auto t0 = info.scale.t0_s();
+  if (!t0)
+    throw ConfigError({"", 0, 0, option},
+                      "the trajectory does not state the bead diameter in mm and g; sigma and t0 can be "
+                      "written.");
+  return {.length = *info.scale.sigma_m * 1e3, .time = *t0, .length_unit = "mm", .time_unit = "s"};
+}
+
+Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units) {
+  const int dimension = info.box.dimension;
+  Snapshot s;
+  s.step = frame.step;
+  s.time = frame.time * units.time;
+  if (info.columns.phase && frame.phase >= 0) s.phase = frame.phase;
+  if (info.columns.phase && frame.cycle >= 0) s.cycle = frame.cycle;
+  if (std::isfinite(frame.plate_height)) s.plate_height = frame.plate_height * units.length;
+  set_box(s, info, units);
+  for (std::size_t i = 0; i < info.n_beads; ++i) {
+    if (!frame.present(i) || !frame.position[i].allFinite()) continue;
+    SnapshotBead bead;
+    bead.id = static_cast<std::int64_t>(i);
+    bead.type = !info.tracer.empty() && info.tracer[i] != 0 ? 2 : 1;
+    bead.radius = info.radius.empty() ? 0 : info.radius[i] * units.length;
+    bead.mass = info.mass.empty() ? 0 : info.mass[i];
+    bead.position = turned(frame.position[i], dimension) * units.length;
+    if (info.columns.velocity)
+      bead.velocity = turned(frame.velocity[i], dimension) * (units.length / units.time);
+    if (info.columns.spin) bead.spin = turned(frame.spin[i], dimension) / units.time;
+    if (info.columns.position_sigma) {
+      const Vec3& u = frame.position_sigma[i];
+      bead.uncertainty = (dimension == 2 ? Vec3(u.x(), u.z(), 0) : u) * units.length;
+    }
+    for (int k = 0; k < dimension; ++k)
+      if (!s.periodic[static_cast<std::size_t>(k)]) {
+        s.lower[k] = std::min(s.lower[k], bead.position[k]);
+        s.upper[k] = std::max(s.upper[k], bead.position[k]);
+      }
+    s.beads.push_back(bead);
+  }
+  return s;
+}
+
+std::size_t export_trajectory(const TrajectorySource& source, const ForeignFormat& format,
+                              const ExportUnits& units, const std::filesystem::path& part,
+                              const std::string& stem, Progress& progress) {
+  const TrajectoryInfo& info = source.info();
+  const auto writer = format.create(part, {.dimension = info.box.dimension,
+                                           .columns = columns_of(info),
+                                           .length_unit = units.length_unit,
+                                           .time_unit = units.time_unit,
+                                           .stem = stem});
+  Frame frame;
+  for (std::size_t t = 0; t < source.n_frames(); ++t) {
+    source.read(t, frame);
+    writer->append(snapshot_of(frame, info, units));
+    progress.update(static_cast<std::int64_t>(t + 1), static_cast<std::int64_t>(source.n_frames()));
+  }
+  writer->finish();
+  return source.n_frames();
+}
+
+}  // namespace twincell

@@ -1,0 +1,36 @@
+#pragma once
+/// \file
+/// Writes a trajectory in the format of another program.
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include "core/progress.hpp"
+#include "trajectory/foreign/format.hpp"
+#include "trajectory/trajectory.hpp"
+
+namespace twincell {
+
+/// Units in which a trajectory is exported.
+struct ExportUnits {
+  double length = 1, time = 1;  ///< of sigma and of t0
+  std::string length_unit = "sigma", time_unit = "t0";
+
+  static ExportUnits reduced() { return {}; }
+  /// mm and s. \throws ConfigError at `option` if the trajectory does not state its scale
+  static ExportUnits laboratory(const TrajectoryInfo& info, const std::string& option);
+};
+
+/// The frame as a snapshot: axes of Snapshot, beads that are present, id = slot, type 1 or, for tracers, 2.
+/// The box is that of the cell, lower by the amplitude of the drive along its axis, and wider where the
+/// centre of a bead lies beyond it.
+Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units);
+
+/// Writes all frames to `part`, a file or a folder. \returns the number of frames
+/// \throws RunError if it cannot be written
+std::size_t export_trajectory(const TrajectorySource& source, const ForeignFormat& format,
+                              const ExportUnits& units, const std::filesystem::path& part,
+                              const std::string& stem, Progress& progress = Progress::none());
+
+}  // namespace twincell

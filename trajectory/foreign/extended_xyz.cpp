@@ -1,0 +1,280 @@
+// Extended XYZ: per frame the number of beads, a line of key=value pairs, and one line per bead whose columns
+// the key Properties names. Sources: ASE, ase.io.extxyz; OVITO manual, "XYZ file reader".
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "core/error.hpp"
+#include "trajectory/foreign/format.hpp"
+#include "trajectory/foreign/text_file.hpp"
+
+namespace twincell {
+
+namespace {
+
+/// Values of the pairs of the second line. A value may stand in quotes, a key without a value is "T".
+std::map<std::string, std::string> pairs_of(std::string_view line) {
+  std::map<std::string, std::string> pairs;
+  for (std::size_t at = 0; at < line.size();) {
+    at = line.find_first_not_of(" \t\r", at);
+    if (at == std::string_view::npos) break;
+    const std::size_t end = line.find_first_of("= \t\r", at);
+    const std::string key(line.substr(at, end == std::string_view::npos ? end : end - at));
+    if (end == std::string_view::npos || line[end] != '=') {
+      pairs.insert_or_assign(key, std::string(1, 'T'));
+      at = end;
+      continue;
+    }
+    std::size_t from = end + 1;
+    const bool quoted = from < line.size() && (line[from] == '"' || line[from] == '\'');
+    const std::size_t to = quoted ? line.find(line[from], from + 1) : line.find_first_of(" \t\r", from);
+    if (quoted) ++from;
+    pairs[key] = std::string(line.substr(std::min(from, line.size()),
+                                         to == std::string_view::npos ? to : to - std::min(from, to)));
+    at = to == std::string_view::npos ? to : to + 1;
+  }
+  return pairs;
+}
+
+class XyzReader final : public SnapshotReader {
+ public:
+  XyzReader(const std::filesystem::path& file, const ReadOptions& options)
+      : SnapshotReader(file), in_(file), dimension_(options.dimension) {}
+
+  bool next(Snapshot& s) override {
+    do {
+      if (!in_.next()) return false;
+    } while (in_.line().find_first_not_of(" \t\r") == std::string::npos);
+    s = Snapshot{};
+    s.line = in_.number();
+    s.step = n_frames_++;
+    split_words(in_.line(), words_);
+    const std::int64_t n = words_.size() == 1 ? whole(words_[0]) : -1;
+    if (n < 0) fail(fmt::format("the number of beads is needed, '{}' was found.", in_.line().substr(0, 60)));
+    if (!in_.next()) fail("the file ends within a frame.");
+    read_head(s);
+    for (std::int64_t i = 0; i < n; ++i) read_bead(i, s);
+    if (!has_box_) enclose(s);
+    return true;
+  }
+  [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
+  [[nodiscard]] std::int64_t size() const override { return in_.size(); }
+  [[nodiscard]] std::int64_t done() const override { return in_.done(); }
+
+ private:
+  struct Property {
+    std::string name;
+    char type;
+    std::size_t first, count;
+  };
+
+  [[noreturn]] void fail(const std::string& complaint) const { fail_at(in_.number(), complaint); }
+  [[nodiscard]] std::int64_t whole(std::string_view word) const {
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size())
+      fail(fmt::format("'{}' is not a whole number.", word.substr(0, 60)));
+    return value;
+  }
+  [[nodiscard]] double number(std::string_view word) const {
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+      fail(fmt::format("'{}' is not a finite number.", word.substr(0, 60)));
+    return value;
+  }
+
+  void read_head(Snapshot& s) {
+    const auto pairs = pairs_of(in_.line());
+    const auto value = [&](std::initializer_list<const char*> names) -> const std::string* {
+      for (const char* name : names)
+        if (const auto found = pairs.find(name); found != pairs.end()) return &found->second;
+      return nullptr;
+    };
+    if (const std::string* time = value({"Time", "time"})) s.time = number(*time);
+    if (const std::string* step = value({"Timestep", "timestep", "Step", "step"})) s.step = whole(*step);
+    read_box(s, value({"Lattice"}), value({"Origin", "origin"}), value({"pbc"}));
+    const std::string* properties = value({"Properties"});
+    place_columns(properties ? *properties : "species:S:1:pos:R:3");
+  }
+
+  void read_box(Snapshot& s, const std::string* lattice, const std::string* origin, const std::string* pbc) {
+    has_box_ = lattice != nullptr;
+    if (!lattice) return;
+    split_words(*lattice, words_);
+    if (words_.size() != 9) fail("Lattice needs nine numbers.");
+    for (int k = 0; k < 9; ++k) {
+      const double entry = number(words_[static_cast<std::size_t>(k)]);
+      if (k % 4 == 0)
+        s.upper[k / 4] = entry;
+      else if (entry != 0)
+        fail("the box is not a cuboid along the axes.");
+    }
+    if (!(s.upper.minCoeff() > 0)) fail("the box is empty: an edge of Lattice is not positive.");
+    if (origin) {
+      split_words(*origin, words_);
+      if (words_.size() != 3) fail("Origin needs three numbers.");
+      for (int k = 0; k < 3; ++k) s.lower[k] = number(words_[static_cast<std::size_t>(k)]);
+    }
+    s.upper += s.lower;
+    if (!pbc) return;
+    split_words(*pbc, words_);
+    if (words_.size() != 3) fail("pbc needs three words, T or F.");
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (words_[k] != "T" && words_[k] != "F")
+        fail(fmt::format("pbc has '{}'; T or F is needed.", words_[k]));
+      s.periodic[k] = words_[k] == "T";
+    }
+  }
+
+  void place_columns(const std::string& text) {
+    if (text == placed_) return;
+    if (!placed_.empty()) fail("the columns are not those of the first frame.");
+    placed_ = text;
+    std::vector<std::string> parts(1);
+    for (const char c : text)
+      if (c == ':')
+        parts.emplace_back();
+      else
+        parts.back() += c;
+    if (parts.size() % 3 != 0) fail("Properties needs name:type:count for each property.");
+    for (std::size_t i = 0; i < parts.size(); i += 3) {
+      const std::int64_t count = whole(parts[i + 2]);
+      if (parts[i + 1].size() != 1 || std::string("SRIL").find(parts[i + 1]) == std::string::npos ||
+          count < 1 || count > 1000)
+        fail(fmt::format("the property '{}' has no known type or count.", parts[i].substr(0, 60)));
+      properties_.push_back({parts[i], parts[i + 1][0], n_words_, static_cast<std::size_t>(count)});
+      n_words_ += static_cast<std::size_t>(count);
+    }
+    const auto place = [&](std::initializer_list<const char*> names, std::size_t count,
+                           bool numbers = true) -> const Property* {
+      for (const char* name : names)
+        for (const Property& p : properties_)
+          if (p.name == name && p.count == count && (!numbers || p.type == 'R' || p.type == 'I')) return &p;
+      return nullptr;
+    };
+    position_ = place({"pos"}, 3);
+    if (!position_) fail("there is no property pos:R:3.");
+    id_ = place({"id", "particle"}, 1);
+    radius_ = place({"radius"}, 1);
+    mass_ = place({"mass", "masses"}, 1);
+    type_ = place({"type"}, 1);
+    velocity_ = place({"velo", "vel", "velocities"}, 3);
+    spin_ = place({"omega", "angular_velocity"}, 3);
+    has_.radius = radius_ != nullptr;
+    has_.mass = mass_ != nullptr;
+    has_.type = type_ != nullptr;
+    has_.velocity.fill(velocity_ != nullptr);
+    has_.spin.fill(spin_ != nullptr);
+  }
+
+  void read_bead(std::int64_t i, Snapshot& s) {
+    if (!in_.next()) fail(fmt::format("the file ends within a frame, before bead {}.", i + 1));
+    split_words(in_.line(), words_);
+    if (words_.size() != n_words_)
+      fail(fmt::format("{} columns are needed, {} were found.", n_words_, words_.size()));
+    const auto one = [&](const Property* p) { return number(words_[p->first]); };
+    const auto three = [&](const Property* p) {
+      return Vec3(number(words_[p->first]), number(words_[p->first + 1]), number(words_[p->first + 2]));
+    };
+    SnapshotBead bead;
+    bead.line = in_.number();
+    bead.id = id_ ? whole(words_[id_->first]) : i;
+    if (type_) bead.type = static_cast<long>(whole(words_[type_->first]));
+    if (radius_) bead.radius = one(radius_);
+    if (radius_ && !(bead.radius > 0)) fail("a bead has no size.");
+    if (mass_) bead.mass = one(mass_);
+    if (mass_ && !(bead.mass > 0)) fail("a bead has no mass.");
+    bead.position = three(position_);
+    if (velocity_) bead.velocity = three(velocity_);
+    if (spin_) bead.spin = three(spin_);
+    s.beads.push_back(bead);
+  }
+
+  /// Without Lattice, the box encloses the beads.
+  void enclose(Snapshot& s) const {
+    for (const SnapshotBead& bead : s.beads)
+      for (int k = 0; k < dimension_; ++k) {
+        s.lower[k] = std::min(s.lower[k], bead.position[k] - bead.radius);
+        s.upper[k] = std::max(s.upper[k], bead.position[k] + bead.radius);
+      }
+    if (dimension_ == 2) s.upper.z() = s.lower.z() + 1;
+  }
+
+  LineReader in_;
+  int dimension_;
+  std::vector<std::string_view> words_;
+  std::string placed_;
+  std::vector<Property> properties_;
+  std::size_t n_words_ = 0;
+  const Property *position_ = nullptr, *id_ = nullptr, *radius_ = nullptr, *mass_ = nullptr, *type_ = nullptr,
+                 *velocity_ = nullptr, *spin_ = nullptr;
+  SnapshotColumns has_;
+  bool has_box_ = false;
+  std::int64_t n_frames_ = 0;
+};
+
+/// The species is X, ASE's symbol of no element; tracers have type 2.
+class XyzWriter final : public SnapshotWriter {
+ public:
+  XyzWriter(const std::filesystem::path& part, const WriteOptions& options)
+      : out_(part), has_(options.columns), options_(options) {}
+
+  void append(const Snapshot& s) override {
+    auto text = std::back_inserter(out_.text());
+    const Vec3 size = s.upper - s.lower;
+    fmt::format_to(text, "{}\nLattice=\"{} 0 0 0 {} 0 0 0 {}\" Origin=\"{} {} {}\" pbc=\"{} {} {}\"",
+                   s.beads.size(), size[0], size[1], size[2], s.lower[0], s.lower[1], s.lower[2],
+                   s.periodic[0] ? 'T' : 'F', s.periodic[1] ? 'T' : 'F', s.periodic[2] ? 'T' : 'F');
+    if (s.time) fmt::format_to(text, " Time={}", *s.time);
+    fmt::format_to(text, " Timestep={}", s.step);
+    if (s.phase) fmt::format_to(text, " phase={}", *s.phase);
+    if (s.cycle) fmt::format_to(text, " cycle={}", *s.cycle);
+    if (s.plate_height) fmt::format_to(text, " plate_height={}", *s.plate_height);
+    fmt::format_to(text, " length_unit={} time_unit={} Properties=species:S:1:pos:R:3:id:I:1",
+                   options_.length_unit, options_.time_unit);
+    if (has_.radius) out_.text() += ":radius:R:1";
+    if (has_.mass) out_.text() += ":mass:R:1";
+    if (has_.type) out_.text() += ":type:I:1";
+    if (has_.velocity[0]) out_.text() += ":velo:R:3";
+    if (has_.spin[2]) out_.text() += ":omega:R:3";
+    out_.text() += '\n';
+    const auto add = [&](const Vec3& v) { fmt::format_to(text, " {} {} {}", v[0], v[1], v[2]); };
+    for (const SnapshotBead& bead : s.beads) {
+      out_.text() += 'X';
+      add(bead.position);  // first, where readers of plain XYZ expect it
+      fmt::format_to(text, " {}", bead.id);
+      if (has_.radius) fmt::format_to(text, " {}", bead.radius);
+      if (has_.mass) fmt::format_to(text, " {}", bead.mass);
+      if (has_.type) fmt::format_to(text, " {}", bead.type);
+      if (has_.velocity[0]) add(bead.velocity);
+      if (has_.spin[2]) add(bead.spin);
+      out_.text() += '\n';
+    }
+    out_.flush_if_large();
+  }
+  void finish() override { out_.close(); }
+
+ private:
+  TextOutput out_;
+  SnapshotColumns has_;
+  WriteOptions options_;
+};
+
+}  // namespace
+
+extern const ForeignFormat extended_xyz_format;
+const ForeignFormat extended_xyz_format = {
+    .word = "xyz",
+    .extensions = ".xyz .extxyz",
+    .help = "extended XYZ: OVITO, ASE, MDAnalysis",
+    .open = [](const std::filesystem::path& file, const ReadOptions& options)
+        -> std::unique_ptr<SnapshotReader> { return std::make_unique<XyzReader>(file, options); },
+    .create = [](const std::filesystem::path& part, const WriteOptions& options)
+        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<XyzWriter>(part, options); }};
+
+}  // namespace twincell

@@ -1,0 +1,277 @@
+#include "trajectory/foreign/foreign_trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "core/error.hpp"
+
+namespace twincell {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& option, const std::string& why) {
+  throw ConfigError({"", 0, 0, option}, why);
+}
+
+/// Reads the next snapshot and sorts its beads by id. \throws InputError if an id occurs twice
+bool next_sorted(SnapshotReader& reader, Snapshot& s) {
+  if (!reader.next(s)) return false;
+  std::stable_sort(s.beads.begin(), s.beads.end(),
+                   [](const SnapshotBead& a, const SnapshotBead& b) { return a.id < b.id; });
+  const auto twice =
+      std::adjacent_find(s.beads.begin(), s.beads.end(),
+                         [](const SnapshotBead& a, const SnapshotBead& b) { return a.id == b.id; });
+  if (twice != s.beads.end())
+    reader.fail_at(std::next(twice)->line,
+                   fmt::format("the bead with id {} occurs twice in a frame.", twice->id));
+  return true;
+}
+
+}  // namespace
+
+void SnapshotReader::fail_at(long line, const std::string& complaint) const {
+  throw InputError({file_.string(), line, 0, ""}, complaint);
+}
+
+struct ForeignTrajectory::Impl {
+  std::filesystem::path path;
+  const ForeignFormat* format = nullptr;
+  ForeignOptions o;
+  TrajectoryInfo info;
+  std::size_t n_frames = 0;
+  std::vector<std::int64_t> ids;  ///< of the slots, ascending
+  double t0 = 1;
+  std::int64_t first_cycle = 0;
+
+  /// Converts a vector from the axes of Snapshot to those of Box. In 2D, y of the snapshot is our z, and -z
+  /// is our y.
+  [[nodiscard]] Vec3 turned(const Vec3& v) const {
+    return o.dimension == 2 ? Vec3(v.x(), -v.z() + 0.0, v.y()) : v;
+  }
+
+  [[nodiscard]] std::unique_ptr<SnapshotReader> open() const {
+    return format->open(path, {.dimension = o.dimension, .columns = o.table_columns, .y_up = o.y_up});
+  }
+
+  void check_options() {
+    const auto positive = [](const char* option, double value) {
+      require_range({"", 0, 0, option}, value, 0.0, std::nullopt, true);
+    };
+    positive("--sigma", o.sigma);
+    positive("--gravity", o.gravity);
+    if (o.timestep) positive("--timestep", *o.timestep);
+    if (o.width) positive("--cell-width", *o.width);
+    if (o.bead_mass) positive("--bead-mass", *o.bead_mass);
+    if (o.dimension == 2 && o.drive_axis == Axis::y) refuse("--drive-axis", "a 2D system has no y axis.");
+    require_range({"", 0, 0, "--phase-of-step-zero"}, o.phase_of_step_zero, 0.0, 1.0);
+    t0 = std::sqrt(o.sigma / o.gravity);
+    const auto scaled = [](std::optional<double> value, double unit) {
+      return value ? std::optional(*value / unit) : std::nullopt;
+    };
+    const DriveSpec spec = {.amplitude = scaled(o.drive.amplitude, o.sigma),
+                            .omega = scaled(o.drive.omega, 1 / t0),
+                            .frequency = scaled(o.drive.frequency, 1 / t0),
+                            .gamma = o.drive.gamma,
+                            .k_m = o.drive.k_m,
+                            .peak_velocity = scaled(o.drive.peak_velocity, o.sigma / t0)};
+    if (spec.amplitude || spec.omega || spec.frequency || spec.gamma || spec.k_m || spec.peak_velocity)
+      info.drive = solve_drive(spec, 1, {"", 0, 0, "--drive"}, o.drive_axis);
+    if (o.phases_per_cycle > 0 && !info.drive)
+      refuse("--frames-per-cycle", "has no meaning without the drive, whose period is then unknown.");
+  }
+
+  /// First pass: checks a snapshot against the options and the first snapshot, and extends the box.
+  void learn(const SnapshotReader& reader, const Snapshot& s, const Snapshot& first) {
+    if (!o.timestep && !s.time)
+      refuse("--timestep", fmt::format("{} does not state the length of a step.", path.string()));
+    for (int k = 0; k < 3; ++k) {
+      const auto a = static_cast<std::size_t>(k);
+      if (s.periodic[a] != first.periodic[a] ||
+          (s.periodic[a] && (s.lower[k] != first.lower[k] || s.upper[k] != first.upper[k])))
+        reader.fail_at(s.line, "the box is not periodic as it was in the first frame.");
+    }
+    for (const SnapshotBead& a : s.beads) {
+      constexpr double kFlat = 1e-9;
+      if (o.dimension == 2 && std::abs(a.position.z()) > kFlat * o.sigma)
+        reader.fail_at(a.line, fmt::format("bead {} is at z = {:g}, not in the plane z = 0; is this a "
+                                           "three-dimensional system (--dimension 3)?",
+                                           a.id, a.position.z()));
+    }
+    const Vec3 upper = turned(s.upper - o.origin) / o.sigma;
+    info.box.upper = n_frames == 0 ? upper : Vec3(info.box.upper.cwiseMax(upper));
+  }
+
+  /// Number of phases since the start of the cycle that contains step 0.
+  /// \throws InputError if the snapshot is between two phases
+  [[nodiscard]] std::int64_t phase_count(const SnapshotReader& reader, const Snapshot& s) const {
+    constexpr double kBetween = 0.05;
+    const double phases = cycles(s) * o.phases_per_cycle, nearest = std::round(phases);
+    if (std::abs(phases - nearest) > kBetween || std::abs(phases) > 1e15)
+      reader.fail_at(s.line,
+                     fmt::format("step {} is at {:.4f} cycles, not at one of {} phases of a cycle; check the "
+                                 "time step, the drive and the frames per cycle.",
+                                 s.step, cycles(s), o.phases_per_cycle));
+    return static_cast<std::int64_t>(nearest);
+  }
+  [[nodiscard]] double time(const Snapshot& s) const {
+    return (o.timestep ? static_cast<double>(s.step) * *o.timestep : s.time.value_or(0)) / t0;
+  }
+  [[nodiscard]] double cycles(const Snapshot& s) const {
+    return time(s) / info.drive->period() + o.phase_of_step_zero;
+  }
+
+  /// End of the first pass: sets columns, box and boundaries.
+  void complete(const Snapshot& first, const SnapshotColumns& columns) {
+    info.n_beads = ids.size();
+    info.source = format->source;
+    const auto all = [&](const std::array<bool, 3>& of) {
+      return of[0] && of[1] && (o.dimension == 2 || of[2]);
+    };
+    info.columns.velocity = all(columns.velocity);
+    info.columns.spin = o.dimension == 2 ? columns.spin[2] : all(columns.spin);
+    info.columns.position_sigma = columns.uncertainty;
+    info.columns.phase = o.phases_per_cycle > 0;
+    info.columns.plate_height = info.drive.has_value();
+    info.phases_per_cycle = o.phases_per_cycle;
+    info.box.dimension = o.dimension;
+    const auto edge = [&](std::size_t k) { return first.periodic[k] ? Boundary::periodic : Boundary::wall; };
+    info.box.boundary = {edge(0), o.dimension == 2 ? Boundary::open : edge(1),
+                         o.dimension == 2 ? edge(1) : edge(2)};
+    if (o.width) info.box.upper.x() = *o.width / o.sigma;
+    if (o.dimension == 2) info.box.upper.y() = (first.upper.z() - first.lower.z()) / o.sigma;
+    if (!columns.radius) info.radius.clear();
+    if (!columns.mass || !o.bead_mass) info.mass.clear();
+    if (!o.tracer_type) info.tracer.clear();
+    if (o.tracer_type && !columns.type) refuse("--tracer-type", "the file has no types of beads.");
+    if (!(info.box.upper.minCoeff() > 0))
+      refuse("--cell-origin", "the origin is above or to the right of the file's box.");
+  }
+
+  [[nodiscard]] std::size_t slot_of(const SnapshotReader& reader, const SnapshotBead& a) const {
+    const auto at = std::lower_bound(ids.begin(), ids.end(), a.id);
+    if (at == ids.end() || *at != a.id) reader.fail_at(a.line, "the file changed while it was read.");
+    return static_cast<std::size_t>(at - ids.begin());
+  }
+
+  /// Second pass: converts a snapshot to a frame with slots, unwrapped coordinates and reduced units.
+  void fill(const SnapshotReader& reader, const Snapshot& s, std::vector<Vec3>& last, Frame& frame) const {
+    frame.step = s.step;
+    frame.time = time(s);
+    if (info.drive) {
+      double fraction = cycles(s) - std::floor(cycles(s));
+      if (o.phases_per_cycle > 0) {
+        const std::int64_t n = phase_count(reader, s), per_cycle = o.phases_per_cycle;
+        frame.phase = static_cast<std::int32_t>((n % per_cycle + per_cycle) % per_cycle);
+        frame.cycle = (n - frame.phase) / per_cycle - first_cycle;
+        fraction = static_cast<double>(frame.phase) / o.phases_per_cycle;
+      }
+      frame.plate_height = info.drive->displacement(fraction);
+    }
+    const Vec3 nowhere = Vec3::Constant(std::nan(""));
+    frame.position.assign(ids.size(), nowhere);
+    frame.velocity.assign(info.columns.velocity ? ids.size() : 0, nowhere);
+    frame.spin.assign(info.columns.spin ? ids.size() : 0, nowhere);
+    frame.position_sigma.assign(info.columns.position_sigma ? ids.size() : 0, nowhere);
+    frame.id.assign(info.columns.identity ? ids.size() : 0, -1);
+    for (const SnapshotBead& a : s.beads) {
+      const std::size_t slot = slot_of(reader, a);
+      Vec3 r = a.position;
+      for (int k = 0; k < 3; ++k) {
+        const auto axis = static_cast<std::size_t>(k);
+        if (!s.periodic[axis] || !reader.columns().wrapped[axis]) continue;
+        const double length = s.upper[k] - s.lower[k];
+        if (std::isfinite(last[slot][k])) r[k] -= length * std::round((r[k] - last[slot][k]) / length);
+      }
+      last[slot] = r;
+      frame.position[slot] = turned(r - o.origin) / o.sigma;
+      if (o.dimension == 2) frame.position[slot].y() = 0;
+      if (info.columns.velocity) frame.velocity[slot] = turned(a.velocity) * (t0 / o.sigma);
+      if (info.columns.spin) frame.spin[slot] = turned(a.spin) * t0;
+      if (info.columns.position_sigma) {
+        const Vec3& u = a.uncertainty;  // has no sign
+        frame.position_sigma[slot] = (o.dimension == 2 ? Vec3(u.x(), std::nan(""), u.y()) : u) / o.sigma;
+      }
+      if (info.columns.identity) frame.id[slot] = static_cast<std::int64_t>(slot);
+    }
+  }
+};
+
+ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const ForeignFormat& format,
+                                     const ForeignOptions& options, Progress& progress)
+    : impl_(std::make_unique<Impl>()) {
+  Impl& d = *impl_;
+  d.path = path;
+  d.format = &format;
+  d.o = options;
+  d.check_options();
+  const auto source = d.open();
+  SnapshotReader& reader = *source;
+  d.o.origin = reader.upright(d.o.origin);
+  struct Bead {
+    double radius, mass;
+    bool tracer;
+  };
+  std::map<std::int64_t, Bead> seen;
+  std::size_t fewest = 0;
+  Snapshot s, first;
+  while (next_sorted(reader, s)) {
+    if (d.n_frames == 0) {
+      first = s;
+      fewest = s.beads.size();
+      d.info.box.lower = Vec3::Zero();
+    }
+    d.learn(reader, s, first);
+    if (d.n_frames > 0 && s.step <= first.step)
+      reader.fail_at(s.line, fmt::format("step {} comes after step {}.", s.step, first.step));
+    first.step = s.step;
+    if (d.o.phases_per_cycle > 0) {
+      const std::int64_t n = d.phase_count(reader, s), per_cycle = d.o.phases_per_cycle;
+      if (d.n_frames == 0) d.first_cycle = (n - (n % per_cycle + per_cycle) % per_cycle) / per_cycle;
+    }
+    for (const SnapshotBead& a : s.beads)
+      seen.emplace(a.id, Bead{a.radius / d.o.sigma, a.mass / d.o.bead_mass.value_or(1),
+                              d.o.tracer_type && a.type == *d.o.tracer_type});
+    fewest = std::min(fewest, s.beads.size());
+    ++d.n_frames;
+    progress.update(reader.done(), reader.size());
+  }
+  if (d.n_frames == 0) throw InputError({path.string(), 0, 0, ""}, "the file holds no frame.");
+  for (const auto& [id, bead] : seen) {
+    d.ids.push_back(id);
+    d.info.radius.push_back(bead.radius);
+    d.info.mass.push_back(bead.mass);
+    d.info.tracer.push_back(bead.tracer ? 1 : 0);
+  }
+  d.info.columns.identity = fewest < d.ids.size();
+  d.complete(first, reader.columns());
+}
+
+ForeignTrajectory::~ForeignTrajectory() = default;
+
+const TrajectoryInfo& ForeignTrajectory::info() const {
+  return impl_->info;
+}
+
+std::size_t ForeignTrajectory::n_frames() const {
+  return impl_->n_frames;
+}
+
+void ForeignTrajectory::copy_to(TrajectorySink& sink, Progress& progress) const {
+  const auto source = impl_->open();
+  SnapshotReader& reader = *source;
+  Snapshot s;
+  Frame frame;
+  std::vector<Vec3> last(impl_->ids.size(), Vec3::Constant(std::nan("")));
+  while (next_sorted(reader, s)) {
+    impl_->fill(reader, s, last, frame);
+    sink.append(frame);
+    progress.update(reader.done(), reader.size());
+  }
+}
+
+}  // namespace twincell

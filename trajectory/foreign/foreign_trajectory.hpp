@@ -1,0 +1,62 @@
+#pragma once
+/// \file
+/// Converts files of other programs to trajectories, and trajectories to snapshots in their units and axes.
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/progress.hpp"
+#include "trajectory/drive.hpp"
+#include "trajectory/foreign/format.hpp"
+#include "trajectory/trajectory.hpp"
+
+namespace twincell {
+
+/// Information that a file does not contain. Lengths and times are in the file's own units.
+struct ForeignOptions {
+  int dimension = 2;               ///< 2: the file's plane (x, y), y up; 3: z up
+  std::optional<double> timestep;  ///< length of a step; required unless the file has times
+  double sigma = 1;                ///< bead diameter, the trajectory's unit of length
+  double gravity = 1;              ///< g; t0 = sqrt(sigma/g) is the trajectory's unit of time
+  Vec3 origin = Vec3::Zero();      ///< lower left inside corner of the cell, plate at its mean height
+  std::optional<double> width;     ///< between the side walls; absent: up to the end of the file's box
+  DriveSpec drive;                 ///< drive of the plate; empty: unknown
+  Axis drive_axis = Axis::z;       ///< in the axes of Box
+  int phases_per_cycle = 0;  ///< N_k; 0: not phase-locked. If set, each frame must be at k/N_k of a cycle
+  double phase_of_step_zero = 0;    ///< fraction of a cycle; a `wiggle` wall starts at the bottom: 0.75
+  std::optional<double> bead_mass;  ///< unit of the column mass; without it the column is ignored
+  std::optional<long> tracer_type;  ///< type that marks tracers
+  std::map<std::string, std::string> table_columns;  ///< ReadOptions::columns
+  bool y_up = false;                                 ///< ReadOptions::y_up
+};
+
+/// A file of another program, read in two passes: the first collects beads, box and columns, the second
+/// copies the frames. Memory use does not grow with the number of frames, except for tables.
+///
+/// A bead that is absent from a frame has an empty slot there. Coordinates that are wrapped, without a number
+/// of periods, are unwrapped by the shortest displacement from frame to frame.
+class ForeignTrajectory {
+ public:
+  /// \throws InputError naming file and line for anything malformed; ConfigError for options that are missing
+  /// or contradict the file
+  ForeignTrajectory(const std::filesystem::path& path, const ForeignFormat& format,
+                    const ForeignOptions& options, Progress& progress = Progress::none());
+  ~ForeignTrajectory();
+  ForeignTrajectory(const ForeignTrajectory&) = delete;
+  ForeignTrajectory& operator=(const ForeignTrajectory&) = delete;
+
+  [[nodiscard]] const TrajectoryInfo& info() const;
+  [[nodiscard]] std::size_t n_frames() const;
+  /// Appends all frames to `sink` in order.
+  void copy_to(TrajectorySink& sink, Progress& progress = Progress::none()) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace twincell

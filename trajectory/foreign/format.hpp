@@ -1,0 +1,59 @@
+#pragma once
+/// \file
+/// Formats of other programs in which trajectories are written and from which they are read. A format is one
+/// file in this folder and one word in formats.cpp. docs/formats.md states what each of them carries.
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trajectory/foreign/snapshot.hpp"
+
+namespace twincell {
+
+/// How a file is read that does not say it itself.
+struct ReadOptions {
+  int dimension = 2;
+  /// Names of the columns of a table: quantity -> name in the file, where they differ.
+  std::map<std::string, std::string> columns;
+  bool y_up = false;  ///< y of a table increases upwards; otherwise downwards
+};
+
+/// What a writer knows before the first snapshot.
+struct WriteOptions {
+  int dimension = 2;
+  SnapshotColumns columns;
+  std::string length_unit, time_unit;  ///< "sigma", "t0" or "mm", "s"
+  std::string stem;                    ///< name of the output without its extension
+};
+
+/// A format of another program.
+struct ForeignFormat {
+  std::string_view word;        ///< of --to and --from
+  std::string_view extensions;  ///< by which a file is recognised, separated by blanks; the first is written
+  std::string_view help;        ///< one line: what it is and which programs read it
+  /// Null: the format is only written.
+  std::unique_ptr<SnapshotReader> (*open)(const std::filesystem::path& file, const ReadOptions& options);
+  /// Null: the format is only read.
+  std::unique_ptr<SnapshotWriter> (*create)(const std::filesystem::path& part, const WriteOptions& options);
+  bool folder = false;                ///< the output is a folder with a file for each frame
+  const char* source = "simulation";  ///< TrajectoryInfo::source of what is read
+};
+
+/// All formats, in the order of the help.
+const std::vector<const ForeignFormat*>& foreign_formats();
+
+/// The words of the formats that are written, or of those that are read, separated by ", ".
+std::string written_formats();
+std::string read_formats();
+
+/// The format with this word. \throws ConfigError at `option` with all words if there is none
+const ForeignFormat& foreign_format(const std::string& word, const std::string& option);
+
+/// The format that is read and has this file's extension; LAMMPS's dump for any other.
+const ForeignFormat& format_of_file(const std::filesystem::path& file);
+
+}  // namespace twincell

@@ -1,0 +1,293 @@
+// Text dumps of LAMMPS: `dump custom`, `dump atom`. Source: LAMMPS manual, `dump` and `read_dump` commands.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+#include "trajectory/foreign/format.hpp"
+#include "trajectory/foreign/text_file.hpp"
+
+namespace twincell {
+
+namespace {
+
+constexpr int kAbsent = -1;
+
+/// Column and convention of one coordinate.
+struct Coordinate {
+  int column = kAbsent;
+  bool scaled = false, wrapped = false;
+  int image = kAbsent;  ///< column of ix, iy or iz
+};
+
+struct ColumnPlaces {
+  std::size_t count = 0;
+  int id = kAbsent, type = kAbsent, radius = kAbsent, mass = kAbsent;
+  bool is_diameter = false;
+  std::array<Coordinate, 3> position;
+  std::array<int, 3> velocity{kAbsent, kAbsent, kAbsent}, spin{kAbsent, kAbsent, kAbsent};
+};
+
+/// Columns and ids may be in any order. Required are `id` and per axis one of xu, xsu, x, xs (s: scaled by
+/// the box, u: unwrapped); optional are vx …, omegax …, radius or diameter, mass, type, ix ….
+class DumpReader final : public SnapshotReader {
+ public:
+  explicit DumpReader(const std::filesystem::path& path)
+      : SnapshotReader(path), in_(path), line_(in_.line()) {}
+
+  bool next(Snapshot& s) override {
+    bool begun = false;
+    s.time.reset();
+    s.beads.clear();
+    std::optional<std::size_t> announced;
+    bool step_known = false, box_known = false;
+    while (in_.next()) {
+      begun = true;
+      line_.erase(line_.find_last_not_of(" \t\r") + 1);
+      if (line_.rfind("ITEM: ", 0) != 0)
+        fail(in_.number() == 1 ? "'ITEM: TIMESTEP' is missing; this is not a text dump of LAMMPS."
+                               : fmt::format("'ITEM:' is missing, '{}' was found.", excerpt()));
+      const std::string section = line_.substr(6);
+      if (section == "UNITS") {
+        need_line("the units");
+      } else if (section == "TIMESTEP") {
+        need_line("the step");
+        s.line = in_.number();
+        s.step = whole(only_word());
+        step_known = true;
+      } else if (section == "TIME") {
+        need_line("the time");
+        s.time = number(only_word());
+      } else if (section == "NUMBER OF ATOMS") {
+        need_line("the number of atoms");
+        const std::int64_t n = whole(only_word());
+        if (n < 0) fail(fmt::format("{} atoms are announced.", n));
+        announced = static_cast<std::size_t>(n);
+      } else if (section.rfind("BOX BOUNDS", 0) == 0) {
+        read_box(section.substr(10), s);
+        box_known = true;
+      } else if (section.rfind("ATOMS", 0) == 0) {
+        if (!step_known) fail("atoms come before 'ITEM: TIMESTEP'.");
+        if (!announced) fail("atoms come before 'ITEM: NUMBER OF ATOMS'.");
+        if (!box_known) fail("atoms come before 'ITEM: BOX BOUNDS'.");
+        place_columns(section.substr(5));
+        read_atoms(*announced, s);
+        return true;
+      } else {
+        fail(fmt::format("the section '{}' is unknown.", excerpt()));
+      }
+    }
+    if (begun) fail("the file ends within a frame.");
+    return false;
+  }
+
+  [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
+  [[nodiscard]] std::int64_t size() const override { return in_.size(); }
+  [[nodiscard]] std::int64_t done() const override { return in_.done(); }
+
+ private:
+  [[noreturn]] void fail(const std::string& complaint) const { fail_at(in_.number(), complaint); }
+
+  void need_line(const char* what) {
+    if (!in_.next()) fail(fmt::format("the file ends where {} should be.", what));
+  }
+  [[nodiscard]] std::string excerpt() const { return line_.substr(0, 60); }
+
+  std::string_view only_word() {
+    split_words(line_, words_);
+    if (words_.size() != 1) fail(fmt::format("one number is needed, '{}' was found.", excerpt()));
+    return words_[0];
+  }
+  [[nodiscard]] std::int64_t whole(std::string_view word) const {
+    std::int64_t value = 0;
+    const auto [end, ec] = std::from_chars(word.begin(), word.end(), value);
+    if (ec != std::errc() || end != word.end()) fail(fmt::format("'{}' is not a whole number.", word));
+    return value;
+  }
+  [[nodiscard]] double number(std::string_view word) const {
+    double value = 0;
+    const auto [end, ec] = std::from_chars(word.begin(), word.end(), value);
+    if (ec != std::errc() || end != word.end() || !std::isfinite(value))
+      fail(fmt::format("'{}' is not a finite number.", word));
+    return value;
+  }
+
+  void read_box(const std::string& flags, Snapshot& s) {
+    split_words(flags, words_);
+    if (words_.size() != 3 && !words_.empty())
+      fail("the box is not a cuboid along the axes (triclinic boxes are not read).");
+    for (std::size_t k = 0; k < 3; ++k) s.periodic[k] = !words_.empty() && words_[k] == "pp";
+    for (int k = 0; k < 3; ++k) {
+      need_line("the bounds of the box");
+      split_words(line_, words_);
+      if (words_.size() != 2) fail(fmt::format("two bounds are needed, '{}' was found.", excerpt()));
+      s.lower[k] = number(words_[0]);
+      s.upper[k] = number(words_[1]);
+      if (!(s.lower[k] < s.upper[k]))
+        fail(fmt::format("the box is empty: {:g} is not below {:g}.", s.lower[k], s.upper[k]));
+    }
+  }
+
+  void place_columns(const std::string& header) {
+    if (columns_.count > 0 && header == header_) return;
+    if (!header_.empty()) fail("the columns are not those of the first frame.");
+    header_ = header;
+    split_words(header, words_);
+    std::map<std::string_view, int> at;
+    for (const std::string_view word : words_)
+      if (!at.emplace(word, static_cast<int>(at.size())).second)
+        fail(fmt::format("the column '{}' occurs twice.", word));
+    const auto place = [&](const std::string& name) {
+      const auto found = at.find(name);
+      return found == at.end() ? kAbsent : found->second;
+    };
+    columns_.count = words_.size();
+    columns_.id = place("id");
+    if (columns_.id == kAbsent) fail("there is no column 'id', without which beads cannot be identified.");
+    columns_.type = place("type");
+    columns_.mass = place("mass");
+    columns_.radius = place("radius");
+    if (columns_.radius == kAbsent) {
+      columns_.radius = place("diameter");
+      columns_.is_diameter = true;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string axis(1, "xyz"[k]);
+      columns_.velocity[k] = place("v" + axis);
+      columns_.spin[k] = place("omega" + axis);
+      // Use the first column that is present: unwrapped coordinates are preferred.
+      for (const Coordinate c :
+           {Coordinate{place(axis + "u"), false, false}, Coordinate{place(axis + "su"), true, false},
+            Coordinate{place(axis), false, true}, Coordinate{place(axis + "s"), true, true}})
+        if (c.column != kAbsent && columns_.position[k].column == kAbsent) columns_.position[k] = c;
+      if (columns_.position[k].wrapped) columns_.position[k].image = place("i" + axis);
+      if (columns_.position[k].column == kAbsent && k < 2)
+        fail(fmt::format("there is no column for the positions along {0} ({0}, {0}u, {0}s or {0}su).", axis));
+      has_.velocity[k] = columns_.velocity[k] != kAbsent;
+      has_.spin[k] = columns_.spin[k] != kAbsent;
+      has_.wrapped[k] = columns_.position[k].wrapped && columns_.position[k].image == kAbsent;
+    }
+    has_.type = columns_.type != kAbsent;
+    has_.radius = columns_.radius != kAbsent;
+    has_.mass = columns_.mass != kAbsent;
+  }
+
+  void read_atoms(std::size_t announced, Snapshot& s) {
+    const auto at = [&](int column) { return words_[static_cast<std::size_t>(column)]; };
+    for (std::size_t i = 0; i < announced; ++i) {
+      need_line("an atom");
+      split_words(line_, words_);
+      if (words_.size() != columns_.count)
+        fail(fmt::format("{} columns are needed, {} were found.", columns_.count, words_.size()));
+      SnapshotBead a;
+      a.line = in_.number();
+      a.id = whole(at(columns_.id));
+      if (columns_.type != kAbsent) a.type = static_cast<long>(whole(at(columns_.type)));
+      if (columns_.radius != kAbsent) {
+        a.radius = number(at(columns_.radius)) / (columns_.is_diameter ? 2 : 1);
+        if (!(a.radius > 0)) fail("a bead has no size.");
+      }
+      if (columns_.mass != kAbsent) {
+        a.mass = number(at(columns_.mass));
+        if (!(a.mass > 0)) fail("a bead has no mass.");
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int axis = static_cast<int>(k);
+        const Coordinate& c = columns_.position[k];
+        const double length = s.upper[axis] - s.lower[axis];
+        a.position[axis] = c.column == kAbsent ? 0 : number(at(c.column));
+        if (c.scaled) a.position[axis] = s.lower[axis] + a.position[axis] * length;
+        if (c.image != kAbsent) a.position[axis] += static_cast<double>(whole(at(c.image))) * length;
+        if (columns_.velocity[k] != kAbsent) a.velocity[axis] = number(at(columns_.velocity[k]));
+        if (columns_.spin[k] != kAbsent) a.spin[axis] = number(at(columns_.spin[k]));
+      }
+      s.beads.push_back(a);
+    }
+  }
+
+  LineReader in_;
+  std::string& line_;
+  std::string header_;
+  std::vector<std::string_view> words_;
+  ColumnPlaces columns_;
+  SnapshotColumns has_;
+};
+
+/// Per frame: step, number of beads, box, and one line per bead. ITEM: UNITS and ITEM: TIME are left out,
+/// because MDAnalysis 2.4 rejects them; the time is step times the time step.
+class DumpWriter final : public SnapshotWriter {
+ public:
+  DumpWriter(const std::filesystem::path& part, const WriteOptions& options)
+      : out_(part), has_(options.columns), is_2d_(options.dimension == 2) {}
+
+  void append(const Snapshot& s) override {
+    std::string& text = out_.text();
+    fmt::format_to(std::back_inserter(text),
+                   "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS", s.step, s.beads.size());
+    const bool counts_periods = s.periodic[0] || s.periodic[1] || s.periodic[2];
+    // LAMMPS requires that a two-dimensional system is periodic along z.
+    for (std::size_t k = 0; k < 3; ++k) text += s.periodic[k] || (is_2d_ && k == 2) ? " pp" : " ff";
+    for (int k = 0; k < 3; ++k) fmt::format_to(std::back_inserter(text), "\n{} {}", s.lower[k], s.upper[k]);
+    text += "\nITEM: ATOMS id type";
+    if (has_.radius) text += " radius";
+    if (has_.mass) text += " mass";
+    text += " x y z";
+    if (counts_periods) text += " ix iy iz";
+    if (has_.velocity[0]) text += " vx vy vz";
+    if (has_.spin[2]) text += " omegax omegay omegaz";
+    text += '\n';
+    for (const SnapshotBead& bead : s.beads) write(bead, s, counts_periods);
+    out_.flush_if_large();
+  }
+  void finish() override { out_.close(); }
+
+ private:
+  void write(const SnapshotBead& bead, const Snapshot& s, bool counts_periods) {
+    std::string& text = out_.text();
+    fmt::format_to(std::back_inserter(text), "{} {}", bead.id + 1, bead.type);  // LAMMPS counts from 1
+    if (has_.radius) fmt::format_to(std::back_inserter(text), " {}", bead.radius);
+    if (has_.mass) fmt::format_to(std::back_inserter(text), " {}", bead.mass);
+    Vec3 r = bead.position;
+    Eigen::Vector3i periods = Eigen::Vector3i::Zero();
+    for (int k = 0; k < 3; ++k)
+      if (s.periodic[static_cast<std::size_t>(k)]) {
+        const double length = s.upper[k] - s.lower[k];
+        periods[k] = static_cast<int>(std::floor((r[k] - s.lower[k]) / length));
+        r[k] -= periods[k] * length;
+      }
+    add(r);
+    if (counts_periods)
+      fmt::format_to(std::back_inserter(text), " {} {} {}", periods[0], periods[1], periods[2]);
+    if (has_.velocity[0]) add(bead.velocity);
+    if (has_.spin[2]) add(bead.spin);
+    text += '\n';
+  }
+  void add(const Vec3& v) { fmt::format_to(std::back_inserter(out_.text()), " {} {} {}", v[0], v[1], v[2]); }
+
+  TextOutput out_;
+  SnapshotColumns has_;
+  bool is_2d_;
+};
+
+}  // namespace
+
+extern const ForeignFormat lammps_dump_format;
+const ForeignFormat lammps_dump_format = {
+    .word = "lammps-dump",
+    .extensions = ".lammpstrj .dump",
+    .help = "text dump of LAMMPS: LAMMPS (read_dump), OVITO, MDAnalysis, ASE, VMD",
+    .open = [](const std::filesystem::path& file, const ReadOptions&) -> std::unique_ptr<SnapshotReader> {
+      return std::make_unique<DumpReader>(file);
+    },
+    .create = [](const std::filesystem::path& part, const WriteOptions& options)
+        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<DumpWriter>(part, options); }};
+
+}  // namespace twincell

@@ -1,0 +1,91 @@
+#pragma once
+/// \file
+/// A frame in the units and axes of another program, and the interfaces that read and write such frames.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trajectory/box.hpp"
+
+namespace twincell {
+
+/// A bead of a snapshot.
+struct SnapshotBead {
+  std::int64_t id = 0;
+  long line = 0;  ///< of the file that it was read from, from 1; 0: a binary file
+  long type = 0;
+  double radius = 0, mass = 0;
+  Vec3 position = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero();
+  Vec3 uncertainty = Vec3::Zero();  ///< standard uncertainty of the position
+};
+
+/// A frame in the units and axes of another program. A two-dimensional system is in its plane (x, y), y up;
+/// in a three-dimensional one z is up.
+struct Snapshot {
+  std::int64_t step = 0;
+  long line = 0;  ///< of the file where the frame begins
+  std::optional<double> time;
+  std::optional<int> phase;            ///< k, only when written
+  std::optional<std::int64_t> cycle;   ///< j, only when written
+  std::optional<double> plate_height;  ///< only when written
+  std::array<bool, 3> periodic{};
+  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
+  std::vector<SnapshotBead> beads;
+};
+
+/// The quantities that the snapshots of a file have, besides id and position.
+struct SnapshotColumns {
+  bool type = false, radius = false, mass = false, uncertainty = false;
+  bool phase = false;  ///< only when written
+  std::array<bool, 3> velocity{}, spin{};
+  /// Coordinates that are wrapped into the period and come without the number of periods.
+  std::array<bool, 3> wrapped{};
+};
+
+/// Reads the snapshots of a file one after another.
+class SnapshotReader {
+ public:
+  explicit SnapshotReader(const std::filesystem::path& file) : file_(file) {}
+  SnapshotReader(const SnapshotReader&) = delete;
+  SnapshotReader& operator=(const SnapshotReader&) = delete;
+  virtual ~SnapshotReader() = default;
+
+  /// Reads the next snapshot. \returns false at the end of the file
+  /// \throws InputError naming file and line for anything malformed
+  virtual bool next(Snapshot& s) = 0;
+  /// Known once the first snapshot has been read.
+  [[nodiscard]] virtual const SnapshotColumns& columns() const = 0;
+  /// A vector of the file in the axes of Snapshot.
+  [[nodiscard]] virtual Vec3 upright(const Vec3& v) const { return v; }
+  /// Bytes of the file, and how many of them have been read.
+  [[nodiscard]] virtual std::int64_t size() const = 0;
+  [[nodiscard]] virtual std::int64_t done() const = 0;
+  /// \throws InputError with the file's name and `line`; line 0: of the file as a whole
+  [[noreturn]] void fail_at(long line, const std::string& complaint) const;
+
+ protected:
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+
+ private:
+  std::filesystem::path file_;
+};
+
+/// Writes snapshots to a file, or to a folder with one file for each.
+class SnapshotWriter {
+ public:
+  SnapshotWriter() = default;
+  SnapshotWriter(const SnapshotWriter&) = delete;
+  SnapshotWriter& operator=(const SnapshotWriter&) = delete;
+  virtual ~SnapshotWriter() = default;
+
+  /// \throws RunError if the snapshot cannot be stored
+  virtual void append(const Snapshot& s) = 0;
+  /// Writes what follows the last snapshot and closes. \throws RunError as append
+  virtual void finish() = 0;
+};
+
+}  // namespace twincell
