@@ -121,21 +121,18 @@ void add_export(CLI::App& program, Common& common) {
                             "deck, with the commands that run it and import its result.",
                             "twincell export run.h5 --to xyz -o run.xyz");
   verb.add_option("input", o->input, "Trajectory (H5MD) or scene file (TOML, docs/scene.md)")->required();
-  std::string formats, words = kDeck;
+  std::string formats;
+  std::vector<std::string> words = {kDeck};
   for (const ForeignFormat* format : foreign_formats())
     if (format->create != nullptr) {
       formats += fmt::format("; {}: {}", format->word, format->help);
-      words += fmt::format(", {}", format->word);
+      words.emplace_back(format->word);
     }
   verb.add_option("--to", o->format,
                   fmt::format("Format (docs/formats.md). lammps: deck of a scene{}", formats))
       ->required()
-      ->option_text("WORD")
-      ->check([words](const std::string& said) {
-        return fmt::format(", {},", words).find(fmt::format(", {},", said)) == std::string::npos
-                   ? fmt::format("There is no format '{}'; there are: {}.", said, words)
-                   : std::string();
-      });
+      ->check(CLI::IsMember(words))
+      ->option_text("WORD");
   // What may be replaced depends on the format; run() checks it.
   common.outputs.push_back(
       {verb.add_option("-o,--output", o->output, "File to write; for lammps and vtk: folder")->required(),

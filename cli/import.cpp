@@ -27,9 +27,6 @@ void run(ImportOptions& o, const Common& common) {
   for (std::size_t k = 0; k < o.origin.size(); ++k) o.foreign.origin[static_cast<int>(k)] = o.origin[k];
   const ForeignFormat& format =
       o.format.empty() ? format_of_file(o.file) : foreign_format(o.format, "--format");
-  if (format.open == nullptr)
-    throw ConfigError({"", 0, 0, "--format"},
-                      fmt::format("this format is only written; there are: {}.", read_formats()));
   for (const std::string& pair : o.columns) {
     const std::size_t equals = pair.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == pair.size())
@@ -75,13 +72,17 @@ void add_import(CLI::App& program, Common& common) {
   ForeignOptions& l = o->foreign;
   verb.add_option("file", o->file, "File of the other program")->required();
   std::string formats;
+  std::vector<std::string> words;
   for (const ForeignFormat* format : foreign_formats())
-    if (format->open != nullptr)
+    if (format->open != nullptr) {
       formats += fmt::format("{}{}: {}", formats.empty() ? "" : "; ", format->word, format->help);
+      words.emplace_back(format->word);
+    }
   verb.add_option(
           "--format", o->format,
           fmt::format("Format (docs/formats.md). {}. Default: by the ending of the name, else lammps-dump",
                       formats))
+      ->check(CLI::IsMember(words))
       ->option_text("WORD");
   verb.add_option(
           "--columns", o->columns,

@@ -12,6 +12,7 @@
 #include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "cli/version.hpp"
 #include "core/config.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
@@ -26,9 +27,10 @@ using namespace twincell::cli;
 
 // Order of the list in --help: the verbs that a new user needs come first.
 constexpr AddVerb kVerbs[] = {
-    add_new,     add_locate,   add_track,     add_explain,   add_simulate, add_render,  add_analyze,
-    add_measure, add_sweep,    add_reproduce, add_calibrate, add_match,    add_compare, add_fit,
-    add_info,    add_validate, add_export,    add_import,    add_cost,
+    add_new,     add_locate,  add_track, add_explain,    add_simulate,  add_render,
+    add_analyze, add_measure, add_sweep, add_reproduce,  add_calibrate, add_match,
+    add_compare, add_fit,     add_info,  add_validate,   add_export,    add_import,
+    add_cost,    add_help,    add_man,   add_completion,
 };
 
 int complain(const std::string& sentence, ExitCode code) {
@@ -88,6 +90,37 @@ std::string unknown_verb(const CLI::App& program, int argc, char** argv) {
   return {};
 }
 
+/// Complaint about an option that no verb of the command line has, with the nearest one it has; empty if
+/// there is none.
+std::string unknown_option(const CLI::App& program, int argc, char** argv) {
+  const CLI::App* verb = &program;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto verbs = verbs_of(*verb);
+    const auto below = std::find_if(verbs.begin(), verbs.end(),
+                                    [&](const CLI::App* known) { return known->get_name() == word; });
+    if (below != verbs.end()) verb = *below;
+    if (word == "--") break;
+    if (!word.starts_with("--")) continue;
+    const std::string name = word.substr(0, word.find('='));
+    std::string best;
+    std::size_t smallest = 4;
+    bool known = false;
+    for (const CLI::Option* option : verb->get_options())
+      for (const std::string& other : option->get_lnames()) {
+        const std::size_t d = edit_distance("--" + other, name);
+        known = known || d == 0;
+        if (d >= smallest || option->get_group().empty()) continue;
+        smallest = d;
+        best = "--" + other;
+      }
+    if (!known)
+      return "there is no option '" + name + "'" +
+             (best.empty() ? "; --help shows the options." : "; did you mean '" + best + "'?");
+  }
+  return {};
+}
+
 /// The verb and the existing files of a command line, for example "locate a.png". Used by error messages that
 /// do not know which file they are about.
 std::string subject(int argc, char** argv) {
@@ -125,7 +158,7 @@ int run(int argc, char** argv) {
       "Twincell analyses camera frames of shaken beads and simulations of the same cell in the same way, and "
       "compares the two.",
       "twincell");
-  program.set_version_flag("--version", [] { return version_line(); });
+  program.set_version_flag("--version", [] { return version_text(); });
   program.require_subcommand(0, 1);
   program.footer(
       "Exit codes: 0 done, 1 failed while running, 2 error in usage or configuration, 3 input unreadable or "
@@ -139,7 +172,8 @@ int run(int argc, char** argv) {
     std::printf("%s\n", version_json().c_str());
     return 0;
   }
-  if (const std::string complaint = unknown_verb(program, argc, argv); !complaint.empty())
+  const int skipped = argc > 1 && std::string(argv[1]) == "help" ? 1 : 0;  // its words are verbs too
+  if (const std::string complaint = unknown_verb(program, argc - skipped, argv + skipped); !complaint.empty())
     return complain(complaint, ExitCode::usage);
   try {
     program.parse(argc, argv);
@@ -148,6 +182,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& wanted) {  // --help, --version
     return program.exit(wanted);
   } catch (const CLI::ParseError& e) {
+    // An option that is misspelled is the cause, also where CLI11 misses the right one first.
+    if (const std::string complaint = unknown_option(program, argc, argv); !complaint.empty())
+      return complain(complaint, ExitCode::usage);
     return complain(std::string(e.what()) + (std::string(e.what()).ends_with('.') ? "" : ".") +
                         " (--help shows the options.)",
                     ExitCode::usage);

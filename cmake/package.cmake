@@ -1,0 +1,16 @@
+# ./run package: a Debian package of the program, its libraries, headers, manual pages, completion, docs and examples. The
+# Python module is not in it: `./run python` builds it against the user's interpreter.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME twincell)
+set(CPACK_PACKAGE_CONTACT "Twincell contributors <twincell@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};${PROJECT_NAME};Unspecified;/")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS gnuplot-nox)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS ffmpeg)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS lammps)
+include(CPack)

@@ -1,0 +1,100 @@
+"""Help, version, misspelled words, manual pages and completion of the program.
+
+usage: command_line_test.py TWINCELL FOLDER
+"""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+program, folder = sys.argv[1], pathlib.Path(sys.argv[2]) / "command_line"
+
+
+def run(*words, code=0):
+    done = subprocess.run([program, *words], capture_output=True, text=True)
+    assert done.returncode == code, f"{words}: exit code {done.returncode}: {done.stderr}"
+    return done
+
+
+def verbs():
+    """Every verb, and the verbs of each group, from the lists in --help."""
+    def below(path):
+        text = run(*path, "--help").stdout
+        listed = text.partition("\nSubcommands:\n")[2].partition("\n\n")[0]
+        return [path + [name] for name in re.findall(r"^  ([a-z]+) ", listed, re.M)]
+    found = []
+    level = below([])
+    while level:
+        found += level
+        level = [deeper for path in level for deeper in below(path)]
+    return found
+
+
+def test_help():
+    for path in ([], ["track"], ["sweep", "run"]):
+        assert run("help", *path).stdout == run(*path, "--help").stdout, path
+
+
+def test_version():
+    lines = run("--version").stdout.splitlines()
+    assert re.fullmatch(r"twincell \d+\.\d+\.\d+ \(.+\)", lines[0]), lines
+    for library in ("OpenCV", "HDF5", "Ceres", "Eigen"):
+        assert re.search(library + r" \d+\.\d+", lines[2]), lines
+
+
+def test_misspelled_words():
+    for words, sentence in {
+        ("help", "trck"): "there is no verb 'trck'; did you mean 'track'?",
+        ("sweep", "rnu"): "there is no verb 'sweep rnu'; did you mean 'sweep run'?",
+        ("track", "x", "--diametr=3"): "there is no option '--diametr'; did you mean '--diameter'?",
+        ("simulate", "--quite"): "there is no option '--quite'; did you mean '--quiet'?",
+        ("locate", "x", "--zzzzzzzz"): "there is no option '--zzzzzzzz'; --help shows the options.",
+    }.items():
+        assert run(*words, code=2).stderr == f"twincell: {sentence}\n", words
+
+
+def test_manual():
+    run("man", "-q", "-o", str(folder / "man1"))
+    names = {page.stem for page in (folder / "man1").glob("*.1")}
+    assert names == {"twincell"} | {"-".join(["twincell", *path]) for path in verbs()}
+    page = (folder / "man1/twincell-track.1").read_text()
+    assert "\\-\\-diameter" in page and ".SH SYNOPSIS" in page
+    groff = shutil.which("groff")
+    for name in sorted(names) if groff else []:
+        done = subprocess.run([groff, "-man", "-ww", "-z", folder / f"man1/{name}.1"], capture_output=True, text=True)
+        assert done.returncode == 0 and not done.stderr, f"{name}: {done.stderr}"
+
+
+def test_completion():
+    script = run("completion", "bash").stdout
+    (folder / "completion.bash").write_text(script)
+    def complete(*words):
+        typed = " ".join(f"'{word}'" for word in ("twincell", *words))
+        return subprocess.run(["bash", "-c", f"source '{folder / 'completion.bash'}'; COMP_WORDS=({typed}); "
+                               f"COMP_CWORD={len(words)}; _twincell; echo \"${{COMPREPLY[@]}}\""],
+                              capture_output=True, text=True, check=True).stdout.split()
+    assert complete("tr") == ["track"]
+    assert complete("sweep", "r") == ["run"]
+    assert complete("calibrate", "contacts", "bo") == ["bounce"]
+    assert set(complete("export", "run.h5", "--to", "")) >= {"lammps", "xyz", "gsd", "csv"}
+    assert complete("track", "--phase-l") == ["--phase-lock"]
+    assert complete("completion", "z") == ["zsh"]
+    for shell in ("zsh", "fish"):
+        (folder / shell).write_text(run("completion", shell).stdout)
+        if shutil.which(shell):
+            subprocess.run([shell, "-n", folder / shell], check=True)
+    run("completion", "tcsh", code=2)
+
+
+def test_a_reader_that_stops_is_no_error():
+    done = subprocess.run(f"'{program}' help reproduce | head -n 1", shell=True, capture_output=True, text=True)
+    assert done.returncode == 0 and not done.stderr and len(done.stdout.splitlines()) == 1
+
+
+shutil.rmtree(folder, ignore_errors=True)
+folder.mkdir(parents=True)
+for test in [value for name, value in list(globals().items()) if name.startswith("test_")]:
+    test()
+    print(test.__name__)
