@@ -190,7 +190,7 @@ void cover_heights_and_volume_fractions() {
   const auto make = [](int cycles, Random& random) { return gas(cycles, random, 3, false); };
   AnalysisOptions options;
   options.rest_height = 4;
-  Truth truth = long_run(make, 20000, {"phi_top", "phi_cm"}, options, 3);
+  Truth truth = long_run(make, 20000, {"phi_top", "phi_cm", "a2_x", "a2_z"}, options, 3);
   truth["h_cm"] = 5;
   truth["delta_h_cm"] = truth["delta_h_bar"] = 1;
   cover("heights that are correlated", make, 40, truth, options, 4);
@@ -503,7 +503,13 @@ TEST(Coverage, OfEveryResultThatHasAnInterval) {
                                          "T_z_frames_z",
                                          "T_z_volume",
                                          "h_cm_k",
-                                         "h_cm_j"};
+                                         "h_cm_j",
+                                         "g_r",
+                                         "g_r_distance",
+                                         "g_peak",
+                                         "g_peak_distance",
+                                         "msd",
+                                         "msd_lag"};
   for (const std::string& name : result_names())
     EXPECT_NE(without.contains(name), counted().contains(name)) << name;
 }

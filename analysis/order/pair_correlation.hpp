@@ -1,0 +1,32 @@
+#pragma once
+/// \file
+/// Pair correlation function of the beads.
+
+#include "analysis/observable/observable.hpp"
+
+namespace twincell {
+
+inline constexpr double kPairCorrelationRange = 4;     ///< sigma, largest distance of g(r)
+inline constexpr double kPairCorrelationWidth = 0.05;  ///< sigma, width of a bin
+
+/// Pair correlation function g(r): mean number of beads per area (3D: volume) at distance r from a bead,
+/// divided by the mean number density of the bed.
+///
+///     g(r) = sum over frames and reference beads of n(r) / (rho V_bin),   V_bin = pi (r_2^2 - r_1^2), in 3D
+///     4 pi/3 (r_2^3 - r_1^3)
+///
+/// The bed ends at walls, at the plate and at its surface. A reference bead of a bin is therefore one that is
+/// farther than the bin's outer radius from the edges of a window (border correction, Ripley 1988). Along an
+/// axis without period, the window lies between the 0.5 and the 99.5 percentile of the centres, widened by
+/// half a bead diameter on both sides; a single bead that flies does not move it. rho is the number of beads
+/// in the window over its area (volume), in each frame. Results:
+///
+/// - g_r: [bins] mean over frames with reference beads; NaN in bins that no frame has
+/// - g_r_distance: [bins] centres of the bins, sigma
+/// - g_peak: scalar, the largest g(r)
+/// - g_peak_distance: scalar, centre of its bin, sigma
+///
+/// B. D. Ripley, Statistical Inference for Spatial Processes, Cambridge 1988, ch. 3.
+extern const ObservableEntry pair_correlation_observable;
+
+}  // namespace twincell

@@ -1,0 +1,192 @@
+// g(r), mean squared displacement and a2 of beds whose values are known in closed form.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "analysis/gas/velocity_distribution.hpp"
+#include "analysis/motion/mean_squared_displacement.hpp"
+#include "analysis/order/pair_correlation.hpp"
+#include "trajectory/trajectory.hpp"
+
+using namespace twincell;
+
+namespace {
+
+using Random = std::mt19937_64;
+
+void validate_close(const std::string& what, double measured, double expected, double tolerance) {
+  EXPECT_NEAR(measured, expected, tolerance) << what;
+}
+
+MemoryTrajectory empty(int dimension, const Vec3& size, bool periodic) {
+  TrajectoryInfo info;
+  info.columns.velocity = info.columns.phase = true;
+  info.phases_per_cycle = 1;
+  info.box.dimension = dimension;
+  info.box.upper = size;
+  const Boundary edge = periodic ? Boundary::periodic : Boundary::wall;
+  info.box.boundary = {edge, dimension == 2 ? Boundary::open : edge, edge};
+  return MemoryTrajectory(info);
+}
+
+void add(MemoryTrajectory& t, std::vector<Vec3> position, std::vector<Vec3> velocity = {}) {
+  Frame frame;
+  frame.cycle = static_cast<std::int64_t>(t.n_frames());
+  frame.phase = 0;
+  frame.step = frame.cycle;
+  frame.velocity = velocity.empty() ? std::vector<Vec3>(position.size(), Vec3::Zero()) : std::move(velocity);
+  frame.position = std::move(position);
+  t.info().n_beads = frame.position.size();
+  t.append(frame);
+}
+
+std::vector<double> values_of(const MemoryTrajectory& t, const std::string& name) {
+  AnalysisOptions options;
+  options.only = {name};
+  return find_result(analyze(t, options), name).values;
+}
+
+/// Mean of g(r) over the bins from `from` to `to`, each weighted by its content.
+double mean_g(const MemoryTrajectory& t, double from, double to) {
+  const auto g = values_of(t, "g_r");
+  double sum = 0, all = 0;
+  for (std::size_t b = 0; b < g.size(); ++b) {
+    const double r = (static_cast<double>(b) + 0.5) * kPairCorrelationWidth;
+    if (r < from || r > to) continue;
+    const double weight = t.info().box.dimension == 2 ? r : r * r;
+    sum += weight * g[b];
+    all += weight;
+  }
+  return sum / all;
+}
+
+MemoryTrajectory ideal_gas(int dimension, bool periodic) {
+  const Vec3 size = dimension == 2 ? Vec3(20, 1, 30) : Vec3(12, 11, 13);
+  MemoryTrajectory t = empty(dimension, size, periodic);
+  Random random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int f = 0; f < 60; ++f) {
+    std::vector<Vec3> beads;
+    for (int i = 0; i < 600; ++i)
+      beads.emplace_back(share(random) * size.x(), dimension == 2 ? 0 : share(random) * size.y(),
+                         share(random) * size.z());
+    add(t, beads);
+  }
+  return t;
+}
+
+}  // namespace
+
+TEST(PairCorrelation, OfPointsWithoutInteractionIsOne) {
+  for (const int dimension : {2, 3})
+    for (const bool periodic : {false, true}) {
+      const MemoryTrajectory t = ideal_gas(dimension, periodic);
+      // Points reach the walls, beads do not: the window is wider than the space of the points by half a
+      // diameter at each end, less the tails of 3 of 600 points, which reach 4/601 of the width on average.
+      double expected = 1;
+      for (int axis = 0; axis < 3 && !periodic; ++axis)
+        if (dimension == 3 || axis != 1) {
+          const double width = t.info().box.size()[axis];
+          expected *= (width * (1 - 8.0 / 601) + 1) / width;
+        }
+      for (const auto& [from, to] : {std::pair{0.0, 1.0}, std::pair{1.0, 2.5}, std::pair{2.5, 4.0}}) {
+        const double g = mean_g(t, from, to);
+        // 60 frames of 600 beads: 1e4 pairs and more in each range
+        validate_close("g(r) of an ideal gas", g, expected, 0.03);
+      }
+    }
+}
+
+TEST(PairCorrelation, CountsTheShellsOfATriangularLattice) {
+  constexpr int kColumns = 12, kRows = 14;
+  constexpr double kSpacing = 1.02;
+  const double height = kSpacing * std::sqrt(3.0) / 2;
+  MemoryTrajectory t = empty(2, Vec3(kColumns * kSpacing, 1, kRows * height), true);
+  std::vector<Vec3> beads;
+  for (int row = 0; row < kRows; ++row)
+    for (int column = 0; column < kColumns; ++column)
+      beads.emplace_back((column + 0.5 * (row % 2)) * kSpacing, 0, row * height);
+  add(t, beads);
+  const double density = 2 / (std::sqrt(3.0) * kSpacing * kSpacing);
+  const auto shell = [&](double r) {  // beads between 0.9 and 1.1 r
+    const auto g = values_of(t, "g_r");
+    double n = 0;
+    for (std::size_t b = 0; b < g.size(); ++b) {
+      const double inner = static_cast<double>(b) * kPairCorrelationWidth,
+                   outer = inner + kPairCorrelationWidth;
+      if (inner > 0.93 * r && outer < 1.07 * r)
+        n += g[b] * density * std::numbers::pi * (outer * outer - inner * inner);
+    }
+    return n;
+  };
+  validate_close("neighbours at a", shell(kSpacing), 6, 1e-9);
+  validate_close("neighbours at sqrt(3) a", shell(std::sqrt(3.0) * kSpacing), 6, 1e-9);
+  validate_close("neighbours at sqrt(7) a", shell(std::sqrt(7.0) * kSpacing), 12, 1e-9);
+  EXPECT_NEAR(values_of(t, "g_peak_distance")[0], kSpacing, kPairCorrelationWidth / 2);
+}
+
+TEST(PairCorrelation, OfABedOnWallsHasTheSameShells) {
+  // The same lattice between walls: the reference beads are those inside.
+  constexpr double kSpacing = 1.02;
+  const double height = kSpacing * std::sqrt(3.0) / 2;
+  MemoryTrajectory t = empty(2, Vec3(20 * kSpacing, 1, 40), false);
+  std::vector<Vec3> beads;
+  for (int row = 0; row < 22; ++row)
+    for (int column = 0; column < 20; ++column)
+      beads.emplace_back((column + 0.25 + 0.5 * (row % 2)) * kSpacing, 0, 0.5 + row * height);
+  beads.emplace_back(10, 0, 35);  // one bead flies
+  add(t, beads);
+  const auto g = values_of(t, "g_r");
+  const double density = 2 / (std::sqrt(3.0) * kSpacing * kSpacing);
+  double n = 0;
+  for (std::size_t b = 18; b < 23; ++b) {
+    const double inner = static_cast<double>(b) * kPairCorrelationWidth,
+                 outer = inner + kPairCorrelationWidth;
+    n += g[b] * density * std::numbers::pi * (outer * outer - inner * inner);
+  }
+  validate_close("neighbours in a bed with walls", n, 6, 0.2);  // by the density of the window, 3 %
+}
+
+TEST(MeanSquaredDisplacement, OfARandomWalkGrowsWithTimeAndOfStreamsWithItsSquare) {
+  constexpr double kStep = 0.1;
+  Random random(7);
+  std::normal_distribution<double> step(0, kStep);
+  MemoryTrajectory walk = empty(2, Vec3(50, 1, 50), false), stream = walk;
+  std::vector<Vec3> a(400, Vec3(25, 0, 25)), b = a;
+  for (int f = 0; f < 120; ++f) {
+    for (Vec3& r : a) r += Vec3(step(random) + 0.03, 0, step(random));  // the drift is taken off
+    for (std::size_t i = 0; i < b.size(); ++i) b[i] += Vec3(i % 2 == 0 ? 0.01 : -0.01, 0, 0.02);
+    add(walk, a);
+    add(stream, b);
+  }
+  const auto of_walk = values_of(walk, "msd"), of_stream = values_of(stream, "msd");
+  ASSERT_EQ(of_walk.size(), kLongestLag);
+  for (const std::size_t lag : {1U, 4U, 16U, 32U}) {
+    const auto m = static_cast<double>(lag);
+    validate_close("msd of a random walk over 2 d D t", of_walk[lag - 1] / (2 * kStep * kStep * m), 1, 0.06);
+    // n/(n - 1): the mean displacement of 400 beads is estimated
+    validate_close("msd of two streams over (v t)^2", of_stream[lag - 1] / (1e-4 * m * m), 400.0 / 399, 1e-9);
+  }
+}
+
+TEST(VelocityDistribution, OfFewBeadsHasNoBias) {
+  Random random(11);
+  std::normal_distribution<double> gauss(3, 0.5);
+  std::uniform_real_distribution<double> flat(-1, 1);
+  MemoryTrajectory t = empty(2, Vec3(10, 1, 10), false), many = t;
+  for (int f = 0; f < 20000; ++f) {
+    std::vector<Vec3> v;
+    for (int i = 0; i < 10; ++i) v.emplace_back(gauss(random), 0, flat(random));
+    add(t, std::vector<Vec3>(v.size(), Vec3(1, 0, 1)), v);
+  }
+  for (int f = 0; f < 60; ++f) {
+    std::vector<Vec3> v;
+    for (int i = 0; i < 5000; ++i) v.emplace_back(gauss(random), 0, flat(random));
+    add(many, std::vector<Vec3>(v.size(), Vec3(1, 0, 1)), v);
+  }
+  validate_close("a2 of ten Gaussian velocities", values_of(t, "a2_x")[0], 0, 0.01);
+  validate_close("a2 of Gaussian velocities", values_of(many, "a2_x")[0], 0, 0.01);
+  validate_close("a2 of a uniform distribution", values_of(many, "a2_z")[0], -0.4, 0.005);
+}
