@@ -52,8 +52,8 @@ void add_import(CLI::App& program, Common& common) {
       add_verb(program, common, "import",
                "Convert a text dump of LAMMPS to a trajectory. Writes the trajectory file, in units of the "
                "bead diameter and g.",
-               "twincell import dump.lammpstrj -o lammps.h5 --timestep 4.4e-5 --drive-amplitude 2 "
-               "--drive-omega 1 --frames-per-cycle 20");
+               "twincell import dump.lammpstrj -o lammps.h5 --timestep 4.44556610e-5 "
+               "--drive-amplitude 1.5 --drive-omega 1 --frames-per-cycle 4");
   LammpsDumpOptions& l = o->lammps;
   verb.add_option("dump", o->dump, "Text dump of LAMMPS")->required();
   writes(common, verb,
