@@ -71,7 +71,8 @@ std::string real_differences(const Comparison& c) {
   const std::size_t n = names.size();
   if (n > kMostNamed) names.resize(kMostNamed);
   return fmt::format("{} of the {} compared numbers differ{} really: {}{}.", n, c.differences.size(),
-                     n == 1 ? "s" : "", fmt::join(names, ", "), n > kMostNamed ? ", ..." : "");
+                     n == 1 ? "s" : "", fmt::join(names, ", "),
+                     n > kMostNamed ? fmt::format(" and {} more", n - kMostNamed) : "");
 }
 
 std::string conclusion_of_sweep(const Comparison& c) {
@@ -539,11 +540,11 @@ std::string cell_words(const Comparison& c) {
 
 /// The conclusion as the box that opens the page. Its class says by colour whether the sides agree.
 std::string verdict_box(const Comparison& c) {
-  bool differ = false, same = false;
+  bool differ = false, same = !c.matches.empty();
   for (const Match& match : c.matches) {
     const std::string word = verdict_word(c.runs, match);
     differ = differ || word == "differ";
-    same = same || word == "same";
+    same = same && (word == "same" || match.experiments.empty() || match.simulations.empty());
   }
   std::string html = fmt::format("<div class=\"verdict {}\" id=\"verdict\">\n", differ ? "differ"
                                                                                 : same ? "same"
