@@ -110,7 +110,7 @@ void add_analyze(CLI::App& program, Common& common) {
       program, common, "analyze",
       "Compute the observables of a trajectory: phase, s_b, s_c, order, defects, slip, convection, profiles "
       "and granular temperature, with confidence intervals. Prints them; -o also writes them to a file.",
-      "twincell analyze sim.h5 --discard 10 -o results.h5");
+      "twincell analyze sim.h5 --discard 2 -o results.h5");
   auto options = std::make_shared<AnalyzeOptions>();
   verb.add_option("trajectory", options->trajectories,
                   "Trajectory (H5MD); several that differ only by chance (seeds, repeats) are pooled, with "

@@ -256,7 +256,7 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
     CLI::App& kind = add_verb(verb, common, "bounce",
                               "Measure the restitution e_n between bead and plate from a bouncing bead. "
                               "Prints every impact; -o also writes e_n to a calibration file.",
-                              "twincell calibrate contacts bounce bounce.csv --gravity 1");
+                              "twincell calibrate contacts bounce bounce.csv --gravity 9.81");
     kind.add_option("source", o->source, "CSV with columns time and height, or a trajectory (H5MD)")
         ->required();
     kind.add_option("--bead", o->bead, "Index of the bead in the trajectory, from 0; default: 0");
@@ -284,7 +284,7 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
     CLI::App& kind = add_verb(verb, common, "collisions",
                               "Measure e_n, mu and beta_0 from collisions of two beads. Prints the values; "
                               "-o also writes them to a calibration file.",
-                              "twincell calibrate contacts collisions film.h5 -o cell.calibration.toml");
+                              "twincell calibrate contacts collisions sim.h5 -o cell.calibration.toml");
     kind.add_option("trajectory", o->trajectory,
                     "Trajectory (H5MD) with closely spaced frames: several per mean free flight")
         ->required();

@@ -82,7 +82,9 @@ void add_compare(CLI::App& program, Common& common) {
       program, common, "compare",
       "Compare experiments with simulations: phase diagram, phase boundaries, differences and their sources. "
       "Prints the comparison and writes a report.",
-      "twincell compare --experiment exp_15.h5 exp_20.h5 --simulation sim_15.h5 sim_20.h5 -o report");
+      "twincell compare --experiment twin/experiment.h5 --simulation twin/simulation-1.h5 "
+      "twin/simulation-2.h5 "
+      "-o report");
   auto o = std::make_shared<CompareOptions>();
   verb.add_option("--experiment", o->experiments, "Trajectories of the experiments (H5MD)");
   verb.add_option("--simulation", o->simulations, "Trajectories of the simulations (H5MD)");

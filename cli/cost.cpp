@@ -361,7 +361,7 @@ void add_cost(CLI::App& program, Common& common) {
   CLI::App& verb = add_verb(program, common, "cost",
                             "Measure accuracy against computing time of the simulator, the locator or the "
                             "calibration. Prints a table; -o also writes it to a folder, with a figure.",
-                            "twincell cost sim --accuracy 1e-3 -o cost");
+                            "twincell cost sim --quick --accuracy 1e-3 -o cost");
   verb.add_option("what", options->what,
                   "What to measure. sim: integrators, steps per contact, stiffness; gas: time steps and "
                   "event-driven motion for the temperature of a gas; locate: finders, fit, noise, pixels per "

@@ -67,8 +67,8 @@ void add_import(CLI::App& program, Common& common) {
       add_verb(program, common, "import",
                "Convert the beads of another program, such as a LAMMPS dump or a table of trackpy, to a "
                "trajectory. Writes the trajectory file, in units of the bead diameter and g.",
-               "twincell import dump.lammpstrj -o lammps.h5 --timestep 4.4e-5 --drive-amplitude 2 "
-               "--drive-omega 1 --frames-per-cycle 20");
+               "twincell import dump.lammpstrj -o lammps.h5 --timestep 4.44556610e-5 "
+               "--drive-amplitude 1.5 --drive-omega 1 --frames-per-cycle 4");
   ForeignOptions& l = o->foreign;
   verb.add_option("file", o->file, "File of the other program")->required();
   std::string formats;

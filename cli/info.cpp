@@ -124,7 +124,7 @@ void add_info(CLI::App& program, Common& common) {
   CLI::App& verb = add_verb(program, common, "info",
                             "Print the content of a trajectory or a stack of frames: size, times, drive, "
                             "scale, grey values and origin.",
-                            "twincell info sim.h5; twincell info run.cine");
+                            "twincell info sim.h5\n  twincell info frames/");
   verb.add_option("file", options->file,
                   "Trajectory (H5MD), or a stack: folder of pictures, TIFF, camera file, HDF5 stack or video "
                   "(docs/frames.md)")

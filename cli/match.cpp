@@ -156,7 +156,7 @@ void add_match(CLI::App& program, Common& common) {
       "compare both sides in one phase diagram. Writes the trajectories, the scenes and a report into "
       "a folder.",
       "twincell match frames/ CELL.toml -o twin/\n"
-      "  twincell match gamma-0.9/ gamma-1.6/ gamma-2.5/ cells/ -o twins/");
+      "  twincell match gamma-0.9/ gamma-1.6/ -o twins/");
   auto o = std::make_shared<MatchOptions>();
   verb.add_option(
           "stacks_and_cells", o->stacks_and_cells,

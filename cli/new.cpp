@@ -190,7 +190,7 @@ void add_new(CLI::App& program, Common& common) {
       add_verb(program, common, "new",
                "Measure what a stack shows of its cell (beads, walls, plate, scale, origin, drive, "
                "phases), ask for the rest, and write CELL.toml with a picture of what was measured.",
-               "twincell new frames/ -o CELL.toml --sigma-mm 2 --drive-hz 20");
+               "twincell new frames/ -o CELL.toml --sigma-mm 2 --drive-hz 11.15");
   auto o = std::make_shared<NewOptions>();
   verb.add_option(
       "stacks", o->stacks,

@@ -80,7 +80,7 @@ void add_render(CLI::App& program, Common& common) {
   CLI::App& verb = add_verb(program, common, "render",
                             "Render a trajectory with the synthetic camera. Writes frames with their ground "
                             "truth into a folder, or a film, or both.",
-                            "twincell render sim.h5 -o frames/ --exposure-t0 0.05 --movie film.mp4");
+                            "twincell render sim.h5 -o filmed/ --exposure-t0 0.05 --movie film.mp4");
   verb.add_option("trajectory", o->trajectory, "Trajectory file (H5MD)")->required();
   writes(common, verb,
          verb.add_option("-o,--output", o->job.folder,

@@ -276,7 +276,7 @@ void add_simulate(CLI::App& program, Common& common) {
       add_verb(program, common, "simulate",
                "Run a scene and write its trajectory. Prints the drive, the time step, the effects that are "
                "on or off, and the speed of the run.",
-               "twincell simulate scene.toml -o sim.h5 --set drive.gamma=1.8 --set time.cycles=50");
+               "twincell simulate scene.toml -o sim.h5 --set drive.gamma=1.8 --set time.cycles=10");
   verb.add_option("scene", options->scene, "Scene file (TOML, docs/scene.md)")->required();
   writes(common, verb,
          verb.add_option("-o,--output", options->output, "Trajectory file to write (H5MD)")->required(),

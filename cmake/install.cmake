@@ -25,3 +25,10 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/CITATION.cff
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+# What `twincell example` copies; the other samples need the source.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/data_samples/example DESTINATION ${CMAKE_INSTALL_DATADIR}/twincell/data_samples)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/data_samples/demo/gamma-0.9 ${PROJECT_SOURCE_DIR}/data_samples/demo/gamma-1.6
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/twincell/data_samples/demo)
+install(FILES ${PROJECT_SOURCE_DIR}/data_samples/demo/twin.toml DESTINATION ${CMAKE_INSTALL_DATADIR}/twincell/data_samples/demo)
+install(FILES ${PROJECT_SOURCE_DIR}/data_samples/vibrated-gas/own.csv
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/twincell/data_samples/vibrated-gas)

@@ -9,7 +9,9 @@
   // Okabe and Ito's colours; every colour has a shape or a dash of its own as well.
   const phaseColour = {'co-moving': '#0072B2', bouncing: '#E69F00', convecting: '#D55E00', undetermined: '#9A9A9A'};
   const phaseSymbol = {'co-moving': 'circle', bouncing: 'square', convecting: 'triangle-up', undetermined: 'x-thin'};
-  const sideColour = {experiment: '#222222', simulation: '#0072B2'};
+  // Colours of the theme, from page.css: light, dark, or as the system says.
+  const themed = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
+  const sideColour = {};
   const structures = [['undefined', '#FFFFFF', 'under 2 bonds'], ['hexagonal', '#009E73', 'hexagonal'],
                       ['square', '#D55E00', 'square'], ['other', '#E8E0C8', 'other']];
   const coordinations = {0: ['#FFFFFF', 'at a surface'], 5: ['#0072B2', '5 neighbours'], 6: ['#E8E0C8', '6'], 7: ['#D55E00', '7'], other: ['#CC79A7', 'other']};
@@ -20,16 +22,17 @@
   }
 
   // ---- graphs ----
-  const base = {font: {family: 'system-ui, "Segoe UI", Helvetica, Arial, sans-serif', size: 13, color: '#1c1c1c'},
-                margin: {l: 58, r: 12, t: 10, b: 46}, paper_bgcolor: '#fff', plot_bgcolor: '#fff', hovermode: 'closest',
-                legend: {orientation: 'h', y: -0.2, yanchor: 'top', x: 0}};
+  const base = () => ({font: {family: 'system-ui, "Segoe UI", Helvetica, Arial, sans-serif', size: 13, color: themed('ink')},
+                margin: {l: 58, r: 12, t: 10, b: 46}, paper_bgcolor: themed('paper'), plot_bgcolor: themed('paper'), hovermode: 'closest',
+                hoverlabel: {bgcolor: themed('faint'), font: {color: themed('ink')}},
+                legend: {orientation: 'h', y: -0.18, yanchor: 'top', x: 0}});
   const axis = (title, more) => Object.assign(
-    {title: {text: title, standoff: 8}, gridcolor: '#e4e4e4', linecolor: '#444', zeroline: false, ticks: 'outside', showline: true, automargin: true}, more);
+    {title: {text: title, standoff: 8}, gridcolor: themed('grid'), linecolor: themed('quiet'), zeroline: false, ticks: 'outside', showline: true, automargin: true}, more);
   const plain = text => String(text).replace(/[&<>%]/g, c => `&#${c.charCodeAt(0)};`);  // Plotly's text has tags and %{...}
   function graph(id, traces, layout) {
     const config = {responsive: true, displaylogo: false, modeBarButtonsToRemove: ['select2d', 'lasso2d', 'autoScale2d'],
                     toImageButtonOptions: {format: 'svg', filename: id}};
-    return Plotly.react(id, traces, Object.assign({}, base, layout), config);
+    return Plotly.react(id, traces, Object.assign(base(), layout), config);
   }
   const interval = r => r && r.interval ? [r.value - r.interval.low, r.interval.high - r.value] : [0, 0];
   const present = r => r && r.value !== undefined && r.value !== null;
@@ -41,55 +44,126 @@
     return {tickvals: marks.map(k => Math.sqrt(k * omega2)), ticktext: marks.map(k => String(+k.toPrecision(3)))};
   }
 
+  // The onsets that bound the shaded regions: those of a sweep, else of the simulations, else of the experiments.
+  function shadingOnsets() {
+    for (const fits of [b => b.sweep, b => b.side === 'simulation', () => true]) {
+      const some = data.boundaries.filter(fits);
+      if (some.length) return some.filter(b => b.of === some[0].of);
+    }
+    return [];
+  }
+
+  // [n_l, low, high] of an onset for every N_l, in order; an open side extends to the edge of the graph.
+  const limitsOf = (onsets, kind, y) => onsets.filter(b => b.onset === kind).sort((p, q) => p.n_l - q.n_l).map(b => b.gamma !== null ? [b.n_l, b.low, b.high]
+    : [b.n_l, b.below === null ? y[0] : b.below, b.above === null ? y[1] : b.above]);
+
+  // The regions of the phases as shapes. Between them the phase is not determined: the intervals of the onsets stay blank.
+  function regions(x, y) {
+    const onsets = shadingOnsets(), bounce = limitsOf(onsets, 'bouncing', y), convect = limitsOf(onsets, 'convecting', y);
+    const line = (limits, side) => [[x[0], limits[0][side]], ...limits.map(l => [l[0], l[side]]), [x[1], limits[limits.length - 1][side]]];
+    const flat = level => [[x[0], level], [x[1], level]];
+    const shapes = [];
+    const region = (phase, lower, upper) => shapes.push({type: 'path', layer: 'below', line: {width: 0}, fillcolor: phaseColour[phase], opacity: 0.16,
+      path: 'M' + lower.concat([...upper].reverse()).map(p => p.join(',')).join('L') + 'Z'});
+    if (bounce.length) region('co-moving', flat(y[0]), line(bounce, 1));
+    if (bounce.length && convect.length) region('bouncing', line(bounce, 2), line(convect, 1));
+    if (convect.length) region('convecting', line(convect, 2), flat(y[1]));
+    return {shapes, of: onsets.length ? onsets[0].of : ''};
+  }
+
+  // Runs at one N_l and Gamma lie side by side: the experiments to the left, the simulations to the right. Offsets in units of N_l.
+  function spread(step) {
+    const groups = new Map(), offset = runs.map(() => 0);
+    runs.forEach((r, i) => {
+      const key = `${r.n_l.toPrecision(2)} ${r.gamma.toFixed(2)}`;
+      groups.set(key, (groups.get(key) || []).concat(i));
+    });
+    for (const group of groups.values()) {
+      group.sort((a, b) => (runs[a].side > runs[b].side) - (runs[a].side < runs[b].side) || a - b);
+      group.forEach((i, k) => { offset[i] = (k - (group.length - 1) / 2) * step; });
+    }
+    return offset;
+  }
+
   function drawDiagram() {
-    const nl = runs.concat(data.sweep).map(r => r.n_l), gammas = runs.concat(data.sweep).map(r => r.gamma);
-    const wide = Math.max(5, 0.12 * (Math.max(...nl) - Math.min(...nl)));
-    const x = [Math.min(...nl) - wide, Math.max(...nl) + wide];
-    const aside = 9.5 * (x[1] - x[0]) / Math.max(100, $('phase-diagram').clientWidth - 116);  // symbols side by side, not on top of each other
-    const pad = Math.max(0.1, 0.08 * (Math.max(...gammas) - Math.min(...gammas)));
-    const y = [Math.min(...gammas) - pad, Math.max(...gammas) + pad];
-    const traces = [];
+    const all = runs.concat(data.sweep), nl = all.map(r => r.n_l).concat(data.boundaries.map(b => b.n_l)), gammas = all.map(r => r.gamma);
+    const ends = data.boundaries.filter(b => b.gamma !== null).flatMap(b => [b.low, b.high]);
+    const wide = Math.max(4, 0.12 * (Math.max(...nl) - Math.min(...nl)));
+    const x = [Math.max(0, Math.min(...nl) - wide), Math.max(...nl) + wide];
+    const pixel = (x[1] - x[0]) / Math.max(100, $('phase-diagram').clientWidth - 116);
+    const offset = spread(19 * pixel);
+    const low = Math.min(...gammas, ...ends), high = Math.max(...gammas, ...ends), pad = Math.max(0.1, 0.1 * (high - low));
+    const y = [Math.max(0, low - pad), high + pad];
+    const traces = [], shaded = regions(x, y);
     for (const start of new Set(data.sweep.map(p => p.start)))
       for (const phase of Object.keys(phaseColour)) {
         const of = data.sweep.filter(p => p.start === start && p.phase === phase);
         if (of.length) traces.push({x: of.map(p => p.n_l), y: of.map(p => p.gamma), mode: 'markers', name: `sweep ${plain(start)}, ${phase}`,
           hovertemplate: `sweep, ${plain(start)}: ${phase}<br>Nₗσ %{x:.3g}, Γ %{y:.4g}<extra></extra>`,
-          marker: {size: 8, symbol: phaseSymbol[phase] + (start.startsWith('crystal') ? '' : '-dot'), color: phaseColour[phase], opacity: 0.6}});
+          marker: {size: 6, symbol: phaseSymbol[phase] + (phase === 'undetermined' ? '-open' : ''), color: phaseColour[phase], opacity: 0.55}});
       }
+    for (const kind of ['bouncing', 'convecting'])
+      for (const key of new Set(data.boundaries.filter(b => b.onset === kind).map(b => b.of))) {
+        const of = data.boundaries.filter(b => b.onset === kind && b.of === key && (b.gamma !== null || b.below !== null || b.above !== null));
+        if (!of.length) continue;
+        const side = of[0].side, colour = sideColour[side], open = side === 'experiment' ? '-open' : '';
+        const shift = (side === 'experiment' ? -1 : 1) * 46 * pixel * (of[0].sweep ? 0 : 1);
+        const place = b => b.gamma !== null ? b.gamma : b.below !== null ? b.below : b.above;
+        traces.push({x: of.map(b => Math.max(x[0], b.n_l + shift)), y: of.map(place), mode: of.length > 1 ? 'lines+markers' : 'markers', name: `onset of ${kind}, ${plain(key)}`,
+          text: of.map(b => b.gamma !== null ? `Γ = ${+b.gamma.toPrecision(3)} [${+b.low.toPrecision(3)}, ${+b.high.toPrecision(3)}]` : b.below !== null ? `Γ above ${b.below}` : `Γ below ${b.above}`),
+          hovertemplate: `onset of ${kind}, ${plain(key)}<br>%{text}<extra></extra>`,
+          error_y: {type: 'data', symmetric: false, array: of.map(b => b.gamma !== null ? b.high - b.gamma : 0), arrayminus: of.map(b => b.gamma !== null ? b.gamma - b.low : 0), width: 7, thickness: 1.6, color: colour},
+          line: {color: colour, width: 1.4, dash: kind === 'bouncing' ? 'dot' : 'solid'},
+          marker: {size: 11, symbol: of.map(b => b.gamma !== null ? (kind === 'bouncing' ? 'diamond' : 'star') + open : b.below !== null ? 'arrow-up' : 'arrow-down'),
+                   color: colour, line: {width: 1.5, color: colour}}});
+      }
+    const chosen = shown();
+    traces.push({x: chosen.map(i => runs[i].n_l + offset[i]), y: chosen.map(i => runs[i].gamma), mode: 'markers', name: 'shown', hoverinfo: 'skip',
+      marker: {size: 25, symbol: 'circle-open', color: themed('ink'), line: {width: 2}}});
     for (const side of ['experiment', 'simulation'])
       for (const phase of Object.keys(phaseColour)) {
         const of = runs.map((r, i) => i).filter(i => runs[i].side === side && runs[i].phase === phase);
         if (!of.length) continue;
         const open = side === 'experiment';
-        traces.push({x: of.map(i => runs[i].n_l + (open ? -aside : aside)), y: of.map(i => runs[i].gamma), customdata: of,
+        traces.push({x: of.map(i => runs[i].n_l + offset[i]), y: of.map(i => runs[i].gamma), customdata: of,
           mode: 'markers', name: `${side}, ${phase}`, text: of.map(i => plain(runs[i].name)),
           hovertemplate: `${side}: ${phase}<br>%{text}<br>Γ = %{y:.4g}<extra>click to look</extra>`,
           marker: {size: 14, symbol: phaseSymbol[phase] + (open || phase === 'undetermined' ? '-open' : ''), color: phaseColour[phase],
-                   line: {width: 2, color: open ? phaseColour[phase] : '#222'}}});
-      }
-    for (const kind of ['bouncing', 'convecting'])
-      for (const key of new Set(data.boundaries.filter(b => b.onset === kind && b.gamma !== null).map(b => b.of))) {
-        const of = data.boundaries.filter(b => b.onset === kind && b.of === key && b.gamma !== null);
-        const experiment = of[0].side === 'experiment';
-        traces.push({x: of.map(b => b.n_l + (experiment ? -0.4 : 0.4) * aside), y: of.map(b => b.gamma), mode: of.length > 1 ? 'lines+markers' : 'markers', name: `onset of ${kind}, ${plain(key)}`,
-          hovertemplate: `onset of ${kind}, ${plain(key)}<br>Γ = %{y:.3g}<extra></extra>`,
-          error_y: {type: 'data', symmetric: false, array: of.map(b => b.high - b.gamma), arrayminus: of.map(b => b.gamma - b.low), width: 6, thickness: 1.2},
-          line: {color: sideColour[experiment ? 'experiment' : 'simulation'], width: 1.2, dash: kind === 'bouncing' ? 'dot' : 'solid'},
-          marker: {size: 6, symbol: experiment ? 'square' : 'diamond', color: sideColour[experiment ? 'experiment' : 'simulation']}});
+                   line: {width: 2, color: open || phase === 'undetermined' ? phaseColour[phase] : themed('ink')}}});
       }
     const omegas = runs.map(r => r.omega), one = omegas.length > 0 && omegas.every(w => Math.abs(w - omegas[0]) <= 1e-3 * omegas[0]);
-    const layout = {height: 520, xaxis: axis('N<sub>l</sub> σ', {range: x}), yaxis: axis('Γ = A ω² / g', {range: y}),
+    const layout = {height: 480, showlegend: false, xaxis: axis('N<sub>l</sub> σ', {range: x}), yaxis: axis('Γ = A ω² / g', {range: y}), shapes: shaded.shapes,
                     margin: {l: 58, r: one ? 58 : 12, t: 10, b: 46}};
     if (one && runs.length) {
       traces.push({x: [x[0]], y: [y[0]], yaxis: 'y2', mode: 'markers', marker: {opacity: 0}, hoverinfo: 'skip', showlegend: false});
       layout.yaxis2 = axis('K<sub>m</sub> = A² ω² / σ g', Object.assign({overlaying: 'y', side: 'right', range: y, matches: 'y', showgrid: false},
                                                                 niceKm(omegas[0] ** 2, Math.max(0, y[0]), y[1])));
     }
-    graph('phase-diagram', traces, layout).then(element =>
+    const glyphs = {'co-moving': '●', bouncing: '■', convecting: '▲', undetermined: '×'}, key = $('diagram-key');
+    key.replaceChildren();
+    const entry = (glyph, colour, text) => {
+      const item = document.createElement('span'), mark = document.createElement('b');
+      item.className = 'keyed';
+      mark.style.color = colour;
+      mark.textContent = glyph + ' ';
+      item.append(mark, text);
+      key.append(item);
+    };
+    for (const phase of Object.keys(glyphs)) if (all.some(r => r.phase === phase)) entry(glyphs[phase], phaseColour[phase], phase);
+    if (data.boundaries.some(b => b.onset === 'bouncing')) entry('◆', sideColour.simulation, 'onset of bouncing');
+    if (data.boundaries.some(b => b.onset === 'convecting')) entry('★', sideColour.simulation, 'onset of convection');
+    $('diagram-words').textContent = (runs.length ? 'Open symbols: experiments. Filled: simulations, which are the twins where they start from the filmed packing; runs at one drive lie side by side. Click one, or use the arrow keys, to show its bed; the ring marks what is shown. ' : '') +
+      (data.boundaries.length ? 'Onsets: bar, interval; arrow, the onset lies beyond. ' : '') +
+      (shaded.of ? `Shaded: the phases between the onsets of: ${shaded.of}; blank: undecided.` : '');
+    $('phase-diagram').setAttribute('aria-label', 'Phase diagram. ' + matches.map(m => `Gamma ${+m.gamma.toPrecision(3)}: ` +
+      m.experiments.concat(m.simulations).map(i => `${runs[i].side} ${runs[i].phase}`).join(', ')).join('. '));
+    graph('phase-diagram', traces, layout).then(element => {
+      element.removeAllListeners('plotly_click');
       element.on('plotly_click', event => {
         const run = event.points.map(p => p.customdata).find(r => r !== undefined && r !== null);
         if (run !== undefined) show(run);
-      }));
+      });
+    });
   }
 
   function drawThresholds() {
@@ -112,7 +186,7 @@
         }
       }
       graph('curve-' + name, traces, {height: 340, xaxis: axis('Γ = A ω² / g', {range: [low, high]}),
-        yaxis: axis(name.replace('_', '<sub>') + '</sub> / σ', {type: 'log', exponentformat: 'power', dtick: 'D2', tickfont: {size: 14}})}).then(element =>
+        yaxis: axis(name.replace('_', '<sub>') + '</sub> / σ', {type: 'log', exponentformat: 'power', dtick: 1, minor: {ticks: 'outside', ticklen: 3, dtick: 'D1'}})}).then(element =>
           element.on('plotly_click', event => { if (event.points[0].customdata !== undefined) show(event.points[0].customdata); }));
     }
   }
@@ -138,6 +212,8 @@
       shown().map(i => `${runs[i].side} ${runs[i].phase}`).join(', ');
     drawMoment();
     drawSeries();
+    drawDiagram();
+    for (const row of document.querySelectorAll('tr[data-run]')) row.classList.toggle('chosen', shown().includes(Number(row.dataset.run)));
     document.body.dataset.run = run;
   }
 
@@ -230,7 +306,7 @@
       }
     }
     const left = camera.ox + camera.s * run.box[0], right = camera.ox + camera.s * run.box[1], floor = camera.oy - camera.s * m.plate;
-    make('path', {d: `M${left} -0.5V${floor}H${right}V-0.5`, fill: 'none', stroke: '#444', 'stroke-width': 0.12 * camera.s,
+    make('path', {d: `M${left} -0.5V${floor}H${right}V-0.5`, fill: 'none', 'stroke-width': 0.12 * camera.s,
                   'stroke-dasharray': run.periodic ? `${0.4 * camera.s}` : 'none', class: 'walls'}, svg);
     box.querySelector('figcaption').textContent = `${side}: ${run.name}, ${m.label}` +
       ($('layer-raw').checked && !m.picture ? ' (no camera frame kept)' : '') +
@@ -284,24 +360,43 @@
     s_j.push({x: [0, length], y: [1, 1], mode: 'lines', name: 'σ', hoverinfo: 'skip', line: {color: '#D55E00', dash: 'dash', width: 1.5}});
     graph('series-s_k', s_k, {height: 300, xaxis: axis('phase k / N<sub>k</sub>', {range: [-0.02, 1]}), yaxis: axis('s(k) / σ')});
     graph('series-s_j', s_j, {height: 300, xaxis: axis('cycle j'), yaxis: axis('s<sub>j</sub> / σ', {rangemode: 'tozero'})});
-    const longest = Math.max(1e-12, ...shown().map(i => longestStep(runs[i].convection)));
-    for (const side of ['experiment', 'simulation']) drawConvection(side, state[side], longest);
+    const fields = shown().filter(i => runs[i].convection);
+    const longest = Math.max(1e-12, ...fields.map(i => longestStep(runs[i].convection)));
+    // One frame for both sides: the cells and their fields together.
+    const frame = [Math.min(...fields.map(i => Math.min(runs[i].box[0], runs[i].convection.extent[0]))), Math.max(...fields.map(i => Math.max(runs[i].box[1], runs[i].convection.extent[1]))),
+                   Math.min(0, ...fields.map(i => runs[i].convection.extent[2])), Math.max(...fields.map(i => runs[i].convection.extent[3])) + 0.5];
+    for (const side of ['experiment', 'simulation']) drawConvection(side, state[side], longest, frame);
   }
 
   const speedAt = (field, k) => field.u[k] === null ? 0 : Math.hypot(field.u[k], field.w[k]);
   const longestStep = field => field ? field.u.reduce((most, u, k) => Math.max(most, speedAt(field, k)), 0) : 0;
 
   // Mean displacement per cycle and cell as arrows, where the results hold it: [rows][columns][x, z], NaN where no bead passed.
-  // `longest`, of both sides, is as long as a cell allows, so that arrows of one length mean the same on both.
-  function drawConvection(side, index, longest) {
+  // `longest`, of both sides, is as long as a cell of the field allows, so that arrows of one length mean the same on both.
+  // `frame` [x0, x1, z0, z1] is the same for both sides. The line is the outline of the cell.
+  function drawConvection(side, index, longest, frame) {
     const box = $('convection-' + side), field = index === null ? null : runs[index].convection;
     box.hidden = !field;
     if (!field) return;
-    const svg = box.querySelector('svg');
+    const svg = box.querySelector('svg'), cell = runs[index].box;
     svg.replaceChildren();
     const [x0, x1, z0, z1] = field.extent, width = x1 - x0, height = z1 - z0;
-    svg.setAttribute('viewBox', `${x0 - 0.5} ${-z1 - 0.5} ${width + 1} ${height + 1}`);
-    make('rect', {x: x0, y: -z1, width, height, fill: '#fff', stroke: '#444', 'stroke-width': 0.08}, svg);
+    svg.setAttribute('viewBox', `${frame[0] - 2} ${-frame[3] - 1.6} ${frame[1] - frame[0] + 3} ${frame[3] - frame[2] + 3.6}`);
+    svg.setAttribute('aria-label', `${side}: convection field, longest displacement ${longestStep(field).toPrecision(3)} sigma per cycle`);
+    make('path', {d: `M${cell[0]} ${-frame[3]}V${-frame[2]}H${cell[1]}V${-frame[3]}`, fill: 'none', 'stroke-width': 0.1, class: 'outline', 'stroke-dasharray': runs[index].periodic ? '0.4' : 'none'}, svg);
+    const label = (text, x, y, anchor) => { make('text', {x, y, 'text-anchor': anchor}, svg).textContent = text; };
+    const step = span => [1, 2, 5, 10, 20, 50, 100].find(s => span / s <= 5) || 200;
+    const dX = step(frame[1] - frame[0]), dZ = step(frame[3] - frame[2]);
+    for (let v = Math.ceil(frame[0] / dX) * dX; v <= frame[1] + 1e-9; v += dX) {
+      make('path', {d: `M${v} ${-frame[2]}v0.3`, 'stroke-width': 0.06, class: 'tick'}, svg);
+      label(String(v), v, -frame[2] + 1, 'middle');
+    }
+    for (let v = Math.ceil(frame[2] / dZ) * dZ; v <= frame[3] + 1e-9; v += dZ) {
+      make('path', {d: `M${frame[0]} ${-v}h-0.3`, 'stroke-width': 0.06, class: 'tick'}, svg);
+      label(String(v), frame[0] - 0.5, -v + 0.25, 'end');
+    }
+    label('x / σ', (frame[0] + frame[1]) / 2, -frame[2] + 1.8, 'middle');
+    label('z / σ', frame[0] - 1.8, -frame[3] - 0.9, 'start');
     const dx = width / field.columns, dz = height / field.rows;
     const gain = 0.9 * Math.min(dx, dz) / longest;
     for (let row = 0; row < field.rows; ++row)
@@ -315,7 +410,9 @@
         make('path', {d: `M${(cx - u / 2).toFixed(3)} ${(-(cz - w / 2)).toFixed(3)}L${ex.toFixed(3)} ${(-ez).toFixed(3)}M${wing(0.5)}L${ex.toFixed(3)} ${(-ez).toFixed(3)}L${wing(-0.5)}`,
           fill: 'none', stroke: viridisAt(0.85 * speed), 'stroke-width': Math.min(dx, dz) * 0.07, 'stroke-linecap': 'round'}, svg);
       }
-    box.querySelector('figcaption').textContent = `${side}: mean displacement per cycle; the longest arrow is ${longestStep(field).toPrecision(3)} σ${shown().length > 1 ? ', both sides on one scale' : ''}.`;
+    make('path', {d: `M${frame[1] - Math.min(dx, dz) * 0.9} ${-frame[3] - 0.8}h${0.9 * Math.min(dx, dz)}`, 'stroke-width': 0.12, class: 'tick'}, svg);
+    label(`${longest.toPrecision(2)} σ`, frame[1] - Math.min(dx, dz) * 0.9 - 0.3, -frame[3] - 0.55, 'end');
+    box.querySelector('figcaption').textContent = `${side}: mean displacement per cycle; the longest arrow is ${longestStep(field).toPrecision(3)} σ${shown().length > 1 ? ', both sides on one scale' : ''}. Line: the cell.`;
   }
 
   // ---- zoom: the wheel, a drag; a double click goes back ----
@@ -380,7 +477,10 @@
       for (const row of table.tBodies[0].rows)
         if (row.dataset.run !== undefined) {
           row.classList.add('choosable');
-          row.addEventListener('click', () => { show(Number(row.dataset.run)); $('point').scrollIntoView({behavior: 'smooth'}); });
+          row.tabIndex = 0;
+          const choose = () => { show(Number(row.dataset.run)); $('point').scrollIntoView({behavior: 'smooth'}); };
+          row.addEventListener('click', choose);
+          row.addEventListener('keydown', event => { if (event.key === 'Enter') choose(); });
         }
     }
   }
@@ -402,11 +502,57 @@
   for (const svg of document.querySelectorAll('.beads')) zoomable(svg);
   document.body.classList.add('live');
   tables();
-  drawDiagram();
-  $('point').hidden = $('curves').hidden = !runs.length;  // a diagram of a sweep only
-  if (runs.length) {
+
+  // ---- sections: a link of the contents opens its section; all are open in print ----
+  const opened = () => {
+    const section = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    if (section && section.matches('details')) { section.open = true; section.scrollIntoView(); }
+  };
+  window.addEventListener('hashchange', opened);
+  for (const link of document.querySelectorAll('nav a')) link.addEventListener('click', () => setTimeout(opened, 0));
+  for (const section of document.querySelectorAll('details.section'))
+    section.addEventListener('toggle', () => { for (const plot of section.querySelectorAll('.js-plotly-plot')) if (section.open) Plotly.Plots.resize(plot); });
+  window.addEventListener('beforeprint', () => { for (const section of document.querySelectorAll('details.section')) section.open = true; });
+
+  // ---- only the real differences, unless the switch says otherwise ----
+  const onlyReal = $('only-real');
+  if (onlyReal) {
+    const follow = () => document.querySelector('table[data-name=differences]').classList.toggle('only-real', onlyReal.checked);
+    onlyReal.addEventListener('change', follow);
+    follow();
+  }
+
+  // ---- theme ----
+  function paint() {
+    Object.assign(sideColour, {experiment: themed('experiment'), simulation: themed('simulation')});
+    drawDiagram();
+    if (!runs.length) return;
     drawThresholds();
-    const differ = matches.findIndex(m => m.verdict === 'differ'), first = matches[differ >= 0 ? differ : matches.length - 1];
+    if (shown().length) drawSeries();
+  }
+  const system = matchMedia('(prefers-color-scheme: dark)'), root = document.documentElement;
+  const dark = () => root.dataset.theme ? root.dataset.theme === 'dark' : system.matches;
+  const name = () => { $('theme').textContent = dark() ? 'Light' : 'Dark'; $('theme').setAttribute('aria-label', `${dark() ? 'light' : 'dark'} colours`); };
+  $('theme').hidden = false;
+  $('theme').addEventListener('click', () => { root.dataset.theme = dark() ? 'light' : 'dark'; name(); paint(); });
+  system.addEventListener('change', () => { name(); paint(); });
+  name();
+
+  // ---- the arrow keys on the diagram go from run to run, in the order of the drive ----
+  $('phase-diagram').addEventListener('keydown', event => {
+    const step = {ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1}[event.key];
+    if (!step || !runs.length) return;
+    event.preventDefault();
+    const order = runs.map((r, i) => i).sort((a, b) => runs[a].gamma - runs[b].gamma || a - b);
+    show(order[(order.indexOf(Number(document.body.dataset.run)) + step + order.length) % order.length]);
+  });
+
+  $('point').hidden = !runs.length;  // a diagram of a sweep only
+  document.querySelector('.opening').classList.toggle('both', runs.length > 0);
+  paint();
+  if (runs.length) {
+    const differ = matches.findIndex(m => m.verdict === 'differ'), both = matches.filter(m => m.experiments.length && m.simulations.length);
+    const first = differ >= 0 ? matches[differ] : both.length ? both[both.length - 1] : matches[matches.length - 1];
     show(first.experiments.concat(first.simulations)[0]);
   }
   document.body.dataset.ready = 'yes';

@@ -71,7 +71,8 @@ std::string real_differences(const Comparison& c) {
   const std::size_t n = names.size();
   if (n > kMostNamed) names.resize(kMostNamed);
   return fmt::format("{} of the {} compared numbers differ{} really: {}{}.", n, c.differences.size(),
-                     n == 1 ? "s" : "", fmt::join(names, ", "), n > kMostNamed ? ", ..." : "");
+                     n == 1 ? "s" : "", fmt::join(names, ", "),
+                     n > kMostNamed ? fmt::format(" and {} more", n - kMostNamed) : "");
 }
 
 std::string conclusion_of_sweep(const Comparison& c) {
@@ -255,25 +256,45 @@ std::string verdict_table(const std::vector<Run>& runs, const std::vector<Match>
   return table.html();
 }
 
-std::string runs_table(const std::vector<Run>& runs) {
-  const auto names = scalar_names(runs);
-  std::vector<std::string> heads = {"run", "side", "start", "Γ", "beads", "frames", "phase"};
-  for (const std::string& name : names) heads.push_back(typeset(name));
+/// The runs with all their numbers. After name and side come the columns of the numbers that differ really
+/// between the sides, then those that differ between the runs, then those that are the same in all.
+std::string runs_table(const Comparison& c) {
+  struct Column {
+    std::string name, head;
+    std::vector<std::string> cells;
+    int rank = 1;
+  };
+  std::vector<Column> columns;
+  const auto add = [&](const std::string& name, const std::string& head, const auto& cell_of) {
+    Column column{.name = name, .head = head, .cells = {}};
+    for (const Run& run : c.runs) column.cells.push_back(cell_of(run));
+    const auto& cells = column.cells;
+    if (std::all_of(cells.begin(), cells.end(), [&](const std::string& s) { return s == cells.front(); }))
+      column.rank = 2;
+    const bool real = std::any_of(c.differences.begin(), c.differences.end(),
+                                  [&](const Difference& d) { return d.is_real() && d.quantity == name; });
+    if (real) column.rank = 0;
+    columns.push_back(std::move(column));
+  };
+  add("phase", "phase", [](const Run& run) { return std::string(phase_name(run.phase)); });
+  add("start", "start", [](const Run& run) { return run.start.empty() ? "–" : html_text(run.start); });
+  add("beads", "beads", [](const Run& run) { return fmt::format("{}", run.n_beads); });
+  add("frames", "frames", [](const Run& run) { return fmt::format("{}", run.n_frames); });
+  for (const std::string& name : scalar_names(c.runs))
+    add(name, typeset(name),
+        [&](const Run& run) { return number(value_of(seek_result(run.results, name)), "absent"); });
+  std::stable_sort(columns.begin(), columns.end(),
+                   [](const Column& a, const Column& b) { return a.rank < b.rank; });
+
+  std::vector<std::string> heads = {"run", "side", "Γ"};
+  for (const Column& column : columns) heads.push_back(column.head);
   Table table("runs", heads);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Run& run = runs[i];
+  for (std::size_t i = 0; i < c.runs.size(); ++i) {
     table.row(fmt::format(" data-run=\"{}\"", i));
-    table.cell(html_text(run.name));
-    table.cell(side_name(run.side));
-    table.cell(run.start.empty() ? "–" : html_text(run.start));
-    table.cell(run.gamma);
-    table.cell(fmt::format("{}", run.n_beads));
-    table.cell(fmt::format("{}", run.n_frames));
-    table.cell(phase_name(run.phase));
-    for (const std::string& name : names) {
-      const Result* r = seek_result(run.results, name);
-      table.cell(number(value_of(r), "absent"));
-    }
+    table.cell(html_text(c.runs[i].name), "nowrap");
+    table.cell(side_name(c.runs[i].side));
+    table.cell(c.runs[i].gamma);
+    for (const Column& column : columns) table.cell(column.cells[i]);
   }
   return table.html();
 }
@@ -301,21 +322,38 @@ std::string with_error(const Measured& m) {
   return m.error ? fmt::format("{:.4g} ± {:.2g}", m.value, *m.error) : fmt::format("{:.4g}", m.value);
 }
 
+/// What a difference is made of: the effect of camera and tracking, and the parts of its error.
+std::string composition(const Difference& d) {
+  std::vector<std::string> parts;
+  const auto add = [&](const char* name, const std::optional<double>& v) {
+    if (v) parts.push_back(fmt::format("{} {:.2g}", name, *v));
+  };
+  if (d.camera) parts.push_back(fmt::format("camera and tracking {:+.2g}", *d.camera));
+  add("statistics ±", d.statistics);
+  add("seeds ±", d.seed_error());
+  add("tracers ±", d.tracers);
+  add("between starts", d.defects);
+  return parts.empty() ? "–" : fmt::format("{}", fmt::join(parts, "; "));
+}
+
 std::string differences_table(const Comparison& c) {
-  Table table("differences", {"Γ", "number", "experiment", "simulation", "difference", "attributed to",
-                              "by camera and tracking", "what is left", "error by statistics", "by seed",
-                              "by tracers", "between starts"});
+  Table table("differences", {"Γ", "number", "unit", "experiment", "simulation", "difference", "what is left",
+                              "error", "in errors", "made of", "attributed to"});
   for (const Difference& d : c.differences) {
-    table.row(fmt::format(" data-run=\"{}\"", c.matches[d.match].experiments.front()));
+    table.row(fmt::format(" data-run=\"{}\" class=\"{}\"", c.matches[d.match].experiments.front(),
+                          d.is_real() ? "real" : "agrees"));
     table.cell(c.matches[d.match].gamma);
     table.cell(typeset(d.quantity));
+    table.cell(html_text(d.unit));
     table.cell(with_error(d.experiment), "nowrap");
     table.cell(with_error(d.simulation), "nowrap");
     table.cell(d.difference());
-    table.cell(d.attribution(), "words");
-    table.cell(d.camera);
     table.cell(d.remainder());
-    for (const auto& part : {d.statistics, d.seeds, d.tracers, d.defects}) table.cell(part);
+    table.cell(d.error());
+    const auto t = d.in_errors();
+    table.cell(t ? fmt::format("{:.1f}", *t) : "–");
+    table.cell(composition(d), "words");
+    table.cell(d.attribution(), "words");
   }
   return table.html();
 }
@@ -370,15 +408,22 @@ std::string script(std::string_view text) {
 
 /// The elements in which the script draws. Without JavaScript they are hidden, and only the figures by
 /// gnuplot further down are shown.
-constexpr std::string_view kLive = R"(
-<div class="needs-script">
-<h2>Phase diagram</h2>
-<p>Open symbols: experiment; filled: simulation. Click a symbol to show its bed below.</p>
-<div id="phase-diagram"></div>
-<section id="point">
-<h2 id="point-title">A point</h2>
+constexpr std::string_view kOpening = R"(
+<div class="opening needs-script">
+<section aria-labelledby="diagram-title">
+<h2 id="diagram-title">Phase diagram</h2>
+<div id="phase-diagram" role="img" tabindex="0" aria-describedby="diagram-words"></div>
+<p id="diagram-key"></p>
+<p id="diagram-words" class="quiet"></p>
+</section>
+<section id="point" aria-labelledby="point-title">
+<h2 id="point-title" aria-live="polite">A point</h2>
 <div class="controls"><label>Point <select id="which"></select></label></div>
-<div class="controls"><button id="play">Play</button><input id="moment" type="range" min="0" value="0" aria-label="moment"><span id="moment-label"></span></div>
+<div class="frames">
+<figure id="panel-experiment"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
+<figure id="panel-simulation"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
+</div>
+<div class="controls"><button id="play">Play</button><input id="moment" type="range" min="0" value="0" aria-label="frame"><span id="moment-label"></span></div>
 <div class="controls">
 <label><input type="checkbox" id="layer-raw" checked> camera frame</label>
 <label><input type="checkbox" id="layer-found" checked> beads</label>
@@ -387,25 +432,22 @@ constexpr std::string_view kLive = R"(
 <label>colour <select id="colour"><option value="q6">q6</option><option value="psi6">ψ6</option><option value="structure">local structure</option><option value="coordination">Voronoi neighbours (defects)</option><option value="none">none</option></select></label>
 </div>
 <p id="key"></p>
-<div class="pair">
-<figure id="panel-experiment"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
-<figure id="panel-simulation"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
+<p class="quiet controls-only">Wheel: zoom (Ctrl: out beyond the whole picture). Drag: move. Double-click: reset.</p>
+</section>
 </div>
-<p><small>Use the wheel to zoom (with Ctrl to zoom out beyond the whole picture), drag to move, double-click to reset.</small></p>
+)";
+constexpr std::string_view kSeries = R"(
 <div class="pair">
-<div><h3>Height of the tracers above the plate, s(k)</h3><div id="series-s_k"></div></div>
-<div><h3>Spread of the tracer line, s<sub>j</sub></h3><div id="series-s_j"></div></div>
+<div><h3>Height of the tracers above the plate, s(k)</h3><div id="series-s_k" role="img" aria-label="s(k) over the phase of the drive, both sides"></div></div>
+<div><h3>Spread of the tracer line, s<sub>j</sub></h3><div id="series-s_j" role="img" aria-label="spread of the tracer line over the cycles, both sides"></div></div>
 </div>
 <div class="pair">
 <figure id="convection-experiment" hidden><svg class="field" role="img"></svg><figcaption></figcaption></figure>
 <figure id="convection-simulation" hidden><svg class="field" role="img"></svg><figcaption></figcaption></figure>
 </div>
-</section>
-<section id="curves">
-<h2>s<sub>b</sub> and s<sub>c</sub> against the drive</h2>
-<div class="pair"><div id="curve-s_b"></div><div id="curve-s_c"></div></div>
-</section>
-</div>
+)";
+constexpr std::string_view kThresholds = R"(
+<div class="pair"><div id="curve-s_b" role="img" aria-label="s_b against the drive, both sides, with the threshold of bouncing"></div><div id="curve-s_c" role="img" aria-label="s_c against the drive, both sides, with the threshold of convection"></div></div>
 )";
 
 std::string filmed_words(const Comparison& c) {
@@ -431,44 +473,114 @@ std::string static_figures(const std::vector<Figure>& figures, const std::filesy
   return html + "</div>\n";
 }
 
+/// A folding section of the page.
+struct Section {
+  std::string id, title, body;
+  bool open = true;
+  bool needs_script = false;
+};
+
+/// The sections after the opening, in the order of the page.
+std::vector<Section> sections_of(const Comparison& c, const std::vector<Figure>& figures,
+                                 const std::filesystem::path& figure_folder,
+                                 const std::string& provenance_json) {
+  std::vector<Section> list;
+  const bool beds = !c.runs.empty();
+  if (beds) list.push_back({"phases", "Phases at each drive strength", verdict_table(c.runs, c.matches)});
+  if (!c.differences.empty()) {
+    const auto real = std::count_if(c.differences.begin(), c.differences.end(),
+                                    [](const Difference& d) { return d.is_real(); });
+    list.push_back(
+        {"differences", "Differences",
+         "<p>Experiment minus simulation. The contribution of camera and tracking is the difference between "
+         "the simulation as filmed and tracked and the simulation itself; what is left is compared with its "
+         "error. A difference is real if what is left exceeds two errors and the difference between starts "
+         "with other defects. " +
+             html_text(filmed_words(c)) +
+             fmt::format("</p>\n<p class=\"needs-script\"><label><input type=\"checkbox\" id=\"only-real\" "
+                         "checked> only the {} real of {} differences</label></p>\n",
+                         real, c.differences.size()) +
+             differences_table(c)});
+  }
+  if (!c.boundaries.empty())
+    list.push_back(
+        {"onsets", "Onsets",
+         "<p>Each onset is between the strongest drive without the phase and the weakest drive with it: a "
+         "bracket, not a fit. Those of a sweep are fitted, with their 95 % interval.</p>\n" +
+             boundary_table(c.boundaries)});
+  if (beds) {
+    list.push_back(
+        {"curves-of-point", "Curves and convection of the chosen point", std::string(kSeries), true, true});
+    list.push_back({"curves", "s<sub>b</sub> and s<sub>c</sub> against the drive", std::string(kThresholds),
+                    true, true});
+    list.push_back({"runs", "Runs", runs_table(c)});
+  }
+  list.push_back({"figures", "Figures for print",
+                  "<p>The same figures, drawn by gnuplot; the folder figures/ has them as SVG, PDF and "
+                  "PNG.</p>\n" +
+                      static_figures(figures, figure_folder),
+                  false});
+  list.push_back({"conventions", "How each number is computed", conventions(c.runs), false});
+  list.push_back(
+      {"provenance", "Provenance",
+       "<p>" + html_text(version_line()) + "</p>\n<pre>" +
+           html_text(json_text(nlohmann::json::parse(provenance_json), 2)) +
+           "</pre>\n<details><summary>Licence of plotly.js, which draws the graphs</summary><pre>" +
+           html_text(std::string(embedded::plotly_license)) + "</pre></details>\n",
+       false});
+  return list;
+}
+
+/// "a cell 10 σ wide, N_l = 10", of the first run; empty without runs.
+std::string cell_words(const Comparison& c) {
+  if (c.runs.empty()) return "sweep";
+  const Run& run = c.runs.front();
+  return fmt::format("cell {:.3g} σ wide, N_l = {:.3g}", run.box.size().x(), run.n_l);
+}
+
+/// The conclusion as the box that opens the page. Its class says by colour whether the sides agree.
+std::string verdict_box(const Comparison& c) {
+  bool differ = false, same = !c.matches.empty();
+  for (const Match& match : c.matches) {
+    const std::string word = verdict_word(c.runs, match);
+    differ = differ || word == "differ";
+    same = same && (word == "same" || match.experiments.empty() || match.simulations.empty());
+  }
+  std::string html = fmt::format("<div class=\"verdict {}\" id=\"verdict\">\n", differ ? "differ"
+                                                                                : same ? "same"
+                                                                                       : "open");
+  for (const std::string& sentence : conclusion_sentences(c)) html += "<p>" + typeset(sentence) + "</p>\n";
+  return html + "</div>\n";
+}
+
 std::string page(const Comparison& c, const std::vector<Figure>& figures,
                  const std::filesystem::path& figure_folder, const std::string& provenance_json) {
+  const nlohmann::json provenance = nlohmann::json::parse(provenance_json);
+  const std::string date = provenance.value("utc", std::string()).substr(0, 10);
+  const std::string title = fmt::format("Experiment and simulation: {}", cell_words(c));
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n"
-      "<title>Experiment and simulation</title><style>{}</style></head><body>\n<h1>Experiment and "
-      "simulation, side by side</h1>\n<p class=\"lead\">{}</p>\n",
-      embedded::page_css, html_text(conclusion(c)));
+      "<title>{} ({})</title><style>{}</style></head><body>\n<header><h1>{}</h1><span>{} <button "
+      "id=\"theme\" "
+      "hidden>Dark</button></span></header>\n{}",
+      html_text(title), date, embedded::page_css, typeset(title), date, verdict_box(c));
+  html += kOpening;
   html +=
-      "<p>Both sides went through the same analysis. A bed <em>bounces</em> if s<sub>b</sub> &gt; σ/30 and "
-      "<em>convects</em> if also s<sub>c</sub> &gt; σ "
-      "(Fortini &amp; Huang 2015, app. B). In brackets: 95 % intervals.</p>\n";
-  if (!c.runs.empty()) html += "<h2>Phases</h2>\n" + verdict_table(c.runs, c.matches);
-  html += kLive;
-  if (!c.boundaries.empty())
+      "<p class=\"quiet\">Both sides went through the same analysis. A bed <em>bounces</em> if s<sub>b</sub> "
+      "&gt; σ/30 and <em>convects</em> if also s<sub>c</sub> &gt; σ (Fortini &amp; Huang 2015, app. B). In "
+      "brackets: 95 % intervals.</p>\n";
+  const std::vector<Section> sections = sections_of(c, figures, figure_folder, provenance_json);
+  html += "<nav aria-label=\"Contents\"><ol>\n";
+  for (const Section& s : sections)
+    html += fmt::format("<li{}><a href=\"#{}\">{}</a></li>\n", s.needs_script ? " class=\"of-script\"" : "",
+                        s.id, s.title);
+  html += "</ol></nav>\n<main>\n";
+  for (const Section& s : sections)
     html +=
-        "<h2>Boundaries</h2>\n<p>Each boundary is between the strongest drive without the phase and the "
-        "weakest drive with it: a bracket, not a fit. Those of a sweep are fitted, with their 95 % "
-        "interval.</p>\n" +
-        boundary_table(c.boundaries);
-  if (!c.differences.empty())
-    html +=
-        "<h2>Differences</h2>\n<p>Experiment minus simulation. The contribution of camera and tracking is "
-        "the difference between the simulation as filmed and tracked and the simulation itself; what is left "
-        "is compared with the errors (± one standard error). " +
-        html_text(filmed_words(c)) + "</p>\n" + differences_table(c);
-  if (!c.runs.empty()) html += "<h2>Runs</h2>\n" + runs_table(c.runs);
-  html += "<details><summary>The same figures, drawn by gnuplot</summary>\n" +
-          static_figures(figures, figure_folder) + "</details>\n";
-  html +=
-      "<h2>How each number is computed</h2>\n<details><summary>Convention, interval and source of every "
-      "number</summary>\n" +
-      conventions(c.runs) + "</details>\n";
-  html += "<h2>Provenance</h2>\n<p>" + html_text(version_line()) +
-          "</p>\n<details><summary>Command, inputs and their digests</summary><pre>" +
-          html_text(json_text(nlohmann::json::parse(provenance_json), 2)) +
-          "</pre></details>\n<details><summary>Licence of plotly.js, which draws the graphs</summary><pre>" +
-          html_text(std::string(embedded::plotly_license)) + "</pre></details>\n";
+        fmt::format("<details class=\"section{}\" id=\"{}\"{}><summary><h2>{}</h2></summary>\n{}</details>\n",
+                    s.needs_script ? " needs-script" : "", s.id, s.open ? " open" : "", s.title, s.body);
+  html += "</main>\n";
   html += "<script type=\"application/json\" id=\"data\">" + report_data(c) + "</script>\n";
   html += "<script>" + script(embedded::plotly_js) + "</script>\n<script>" + script(embedded::page_js) +
           "</script>\n</body></html>\n";

@@ -166,6 +166,9 @@ std::string report_data(const Comparison& comparison) {
          {"onset", phase_name(b.onset)},
          {"n_l", b.n_l},
          {"gamma", gamma ? json(*gamma) : json(nullptr)},
+         {"below", b.below ? json(*b.below) : json(nullptr)},
+         {"above", b.above ? json(*b.above) : json(nullptr)},
+         {"sweep", b.sweep},
          {"low", gamma && half ? json((*b.below + *b.above) / 2 - *half) : json(gamma.value_or(0))},
          {"high", gamma && half ? json((*b.below + *b.above) / 2 + *half) : json(gamma.value_or(0))}});
   }

@@ -10,3 +10,5 @@ cmake -S "$2/tests/architecture/outside_program" -B "$scratch/build" -G Ninja -D
 cmake --build "$scratch/build" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
 "$scratch/build/outside"
 "$scratch/prefix/bin/twincell" --version
+"$scratch/prefix/bin/twincell" example "$scratch/example" >/dev/null
+diff -r "$scratch/prefix/share/twincell/data_samples/demo/gamma-1.6" "$scratch/example/frames"

@@ -196,8 +196,8 @@ def check_overlay(browser):
 
 
 def check_tables(browser, downloads):
-    column = "[...document.querySelectorAll('table[data-name=runs] tbody tr')].map(r => parseFloat(r.cells[3].innerText))"
-    head = "document.querySelectorAll('table[data-name=runs] th')[3]"
+    column = "[...document.querySelectorAll('table[data-name=runs] tbody tr')].map(r => parseFloat(r.cells[2].innerText))"
+    head = "document.querySelectorAll('table[data-name=runs] th')[2]"
     browser.click(head)
     assert browser.value(column) == sorted(browser.value(column)), "a click sorts"
     browser.click(head)
@@ -209,8 +209,58 @@ def check_tables(browser, downloads):
         assert time.monotonic() < until, "runs.csv is not saved"
         time.sleep(0.1)
     lines = (downloads / "runs.csv").read_text().splitlines()
-    assert len(lines) == 4 and lines[0].startswith("run,side,start,Γ"), lines
-    assert [line.split(",")[3] for line in lines[1:]] == ["1.6", "0.9", "0.9"], lines
+    assert len(lines) == 4 and lines[0].startswith("run,side,Γ,"), lines
+    assert [line.split(",")[2] for line in lines[1:]] == ["1.6", "0.9", "0.9"], lines
+
+
+def check_opening(browser):
+    """Verdict, diagram and frames come first; the diagram has regions and does not reach below N_l = 0."""
+    assert browser.value("document.title").startswith("Experiment and simulation: cell 10 σ wide, N_l = 10 (20"), browser.value("document.title")
+    order = browser.value("['verdict', 'phase-diagram', 'panel-experiment'].map(id => document.getElementById(id).getBoundingClientRect().y + scrollY)"
+                          ".concat(document.querySelector('nav').getBoundingClientRect().y + scrollY)")
+    assert order[0] < min(order[1:3]) and max(order[1:3]) < order[3], order
+    assert browser.value("document.querySelectorAll('#phase-diagram .shapelayer path').length") >= 2, "the phases are shaded"
+    assert browser.value("document.getElementById('phase-diagram')._fullLayout.xaxis.range[0]") >= 0
+    places = browser.value("[...document.querySelectorAll('#phase-diagram .scatterlayer .point')].filter(p => typeof p.__data__.data === 'number')"
+                           ".map(p => (b => [b.x + b.width / 2, b.y + b.height / 2])(p.getBoundingClientRect()))")
+    apart = min(max(abs(p[0] - q[0]), abs(p[1] - q[1])) for k, p in enumerate(places) for q in places[:k])
+    assert apart >= 14, f"symbols of two runs are {apart:.0f} px apart"
+    missing = browser.value("[...document.querySelectorAll('svg[role=img], [role=img], button, select, input')].filter(e => e.getClientRects().length && "
+                            "!e.getAttribute('aria-label') && !e.labels?.length && !e.textContent.trim()).map(e => e.outerHTML.slice(0, 80))")
+    assert not missing, f"without an alternative text: {missing}"
+
+
+def check_sections(browser):
+    """Contents lead to their sections, sections fold, the differences are the real ones by default."""
+    ids = browser.value("[...document.querySelectorAll('nav a')].map(a => a.getAttribute('href').slice(1))")
+    assert len(ids) >= 8 and browser.value(f"{json.dumps(ids)}.every(id => document.getElementById(id).matches('details'))"), ids
+    assert not browser.value("document.getElementById('conventions').open")
+    browser.click("document.querySelector('nav a[href=\"#conventions\"]')")
+    browser.wait("document.getElementById('conventions').open", "a link of the contents opens its section")
+    browser.click("document.querySelector('#conventions > summary')")
+    browser.wait("!document.getElementById('conventions').open", "a click on the heading folds a section")
+    rows = "[...document.querySelectorAll('table[data-name=differences] tbody tr')].filter(r => r.getClientRects().length)"
+    real = browser.value("document.querySelectorAll('table[data-name=differences] tr.real').length")
+    every = browser.value("document.querySelectorAll('table[data-name=differences] tbody tr').length")
+    assert browser.value(rows + ".length") == real < every, "only the real differences are shown"
+    browser.click("document.getElementById('only-real')")
+    assert browser.value(rows + ".length") == every, "the switch shows all"
+    browser.click("document.getElementById('only-real')")
+
+
+def check_theme_and_keys(browser):
+    """The switch changes the colours of page and graphs; arrow keys go from run to run."""
+    colours = "[getComputedStyle(document.body).backgroundColor, document.querySelector('#phase-diagram .bglayer .bg, #phase-diagram .main-svg').style.cssText]"
+    before = browser.value(colours)
+    browser.click("document.getElementById('theme')")
+    after = browser.value(colours)
+    assert before[0] != after[0] and before[1] != after[1], (before, after)
+    browser.click("document.getElementById('theme')")
+    assert browser.value(colours) == before
+    run = browser.value("document.body.dataset.run")
+    browser.value("document.getElementById('phase-diagram').focus()")
+    browser.key("ArrowRight", 39)
+    browser.wait(f"document.body.dataset.run !== '{run}'", "an arrow key shows another run")
 
 
 def check_fit(browser, width):
@@ -244,15 +294,22 @@ def main():
             browser.session = browser.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
             for domain in ("Page", "Runtime", "Network"):
                 browser.call(domain + ".enable")
+            browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
             browser.open(url, 1280, 900)
             check_fit(browser, 1280)
+            check_opening(browser)
+            check_sections(browser)
+            check_theme_and_keys(browser)
             check_clicks(browser)
             check_overlay(browser)
             check_tables(browser, scratch)
             if pictures:
                 browser.picture(pictures / "laptop.png")
+            browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
             browser.open(url, 390, 844)
             check_fit(browser, 390)
+            assert browser.value("getComputedStyle(document.body).backgroundColor") == "rgb(21, 24, 28)", "dark as the system says"
+            check_opening(browser)
             check_clicks(browser)
             if pictures:
                 browser.picture(pictures / "phone.png")
