@@ -24,7 +24,8 @@ for job in "${jobs[@]}"; do
 done
 
 echo "demo: filming the twins, comparing" >&2
-"$program" compare --experiment "${experiments[@]}" --simulation "${simulations[@]}" -q -o "$report" --camera "$here/CAMERA.toml" \
+"$program" compare --experiment "${experiments[@]}" --simulation "${simulations[@]}" \
+  --sweep "$here"/boundaries/{bouncing,convecting}.json -q -o "$report" --camera "$here/CAMERA.toml" \
   >"$work/comparison.txt"
 # The conclusion, the phases and where the report is; onsets and single differences are in the report.
 sed '/^onset of /,/other numbers/d' "$work/comparison.txt"
