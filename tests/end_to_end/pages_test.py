@@ -47,7 +47,7 @@ def blocks_of_page(text):
             while not lines[i].startswith("```"):
                 block.append(lines[i])
                 i += 1
-        elif lines[i].startswith("    ") and (i == 0 or not lines[i - 1].strip()):
+        elif lines[i].startswith("    ") and (i == 0 or not lines[i - 1].strip() or lines[i - 1].startswith("<!--")):
             while i < len(lines) and lines[i].startswith("    "):
                 block.append(lines[i][4:])
                 i += 1
