@@ -119,7 +119,7 @@ void add_export(CLI::App& program, Common& common) {
   CLI::App& verb = add_verb(program, common, "export",
                             "Export a trajectory in the format of another program, or a scene as a LAMMPS "
                             "deck, with the commands that run it and import its result.",
-                            "twincell export run.h5 --to xyz -o run.xyz");
+                            "twincell export sim.h5 --to xyz -o sim.xyz");
   verb.add_option("input", o->input, "Trajectory (H5MD) or scene file (TOML, docs/scene.md)")->required();
   std::string formats;
   std::vector<std::string> words = {kDeck};

@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 program, source, scratch = map(os.path.abspath, sys.argv[1:4])
-PROGRAMS = r"(for|twincell|mkdir|cd|\(cd|\./run|mpirun|cmake|ctest|gnuplot|lmp)\b"
+PROGRAMS = r"(for|source|twincell|mkdir|cd|\(cd|\./run|mpirun|cmake|ctest|gnuplot|lmp)\b"
 
 # What a page promises about its results: (file or None for the printed text, what it contains).
 PROMISES = {
