@@ -88,22 +88,25 @@ std::vector<std::string> conclusion_sentences(const Comparison& c) {
   const std::vector<Run>& runs = c.runs;
   const std::vector<Match>& matches = c.matches;
   if (runs.empty() && (!c.sweep.empty() || !c.boundaries.empty())) return {conclusion_of_sweep(c)};
-  std::vector<std::string> differ;
+  std::vector<std::string> differ, open;
   std::size_t paired = 0, same = 0;
   for (const Match& match : matches) {
+    if (match.experiments.empty() || match.simulations.empty()) continue;
+    ++paired;
     const std::string word = verdict_word(runs, match);
-    if (!match.experiments.empty() && !match.simulations.empty()) ++paired;
-    if (word == "same") ++same;
-    if (word == "differ")
-      differ.push_back(fmt::format("Gamma {:.3g} ({} in the experiment, {} in the simulation)", match.gamma,
-                                   phases_of(runs, match.experiments), phases_of(runs, match.simulations)));
+    if (word == "same") {
+      ++same;
+      continue;
+    }
+    (word == "differ" ? differ : open)
+        .push_back(fmt::format("Gamma {:.3g} ({} in the experiment, {} in the simulation)", match.gamma,
+                               phases_of(runs, match.experiments), phases_of(runs, match.simulations)));
   }
   if (paired == 0) return {"No drive strength was run on both sides."};
   std::vector<std::string> text = {
       fmt::format("Same phase on both sides at {} of {} drive strengths.", same, paired)};
   if (!differ.empty()) text.push_back(fmt::format("They differ at {}.", fmt::join(differ, "; ")));
-  if (const std::size_t open = paired - same - differ.size(); open > 0)
-    text.push_back(fmt::format("Undetermined at {}.", open));
+  if (!open.empty()) text.push_back(fmt::format("Undetermined at {}.", fmt::join(open, "; ")));
   for (std::string& onset : onset_sentences(c.boundaries)) text.push_back(std::move(onset));
   if (const std::string real = real_differences(c); !real.empty()) text.push_back(real);
   return text;
