@@ -85,9 +85,11 @@ void translate(std::exception_ptr thrown) {
 
 void PythonProgress::update(std::int64_t done, std::int64_t total) {
   constexpr std::chrono::milliseconds kPause{100};
-  const bool last = total > 0 && done >= total;
-  if (const auto now = Clock::now(); now - last_ < kPause && !(last && !callback_.is_none())) return;
+  // A callback is called at the beginning and at the end in any case.
+  const bool must = (!called_ || (total > 0 && done >= total)) && !callback_.is_none();
+  if (const auto now = Clock::now(); now - last_ < kPause && !must) return;
   last_ = Clock::now();
+  called_ = true;
   const py::gil_scoped_acquire lock;
   try {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();

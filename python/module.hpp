@@ -45,6 +45,7 @@ class PythonProgress : public Progress {
   py::object callback_;
   std::exception_ptr raised_;
   Clock::time_point last_ = Clock::now();
+  bool called_ = false;
 };
 
 /// Calls work(progress) without the interpreter's lock.
