@@ -53,8 +53,7 @@ void add(const CLI::App& app, const std::string& path, std::vector<Command>& tab
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
   for (const CLI::App* verb : verbs) command.below.push_back(verb->get_name());
   table.push_back(command);
-  for (const CLI::App* verb : verbs)
-    add(*verb, path.empty() ? verb->get_name() : path + " " + verb->get_name(), table);
+  for (const CLI::App* verb : verbs) add(*verb, command.path_of(verb->get_name()), table);
 }
 
 }  // namespace

@@ -25,6 +25,11 @@ struct Command {
   std::string summary, footer;
   std::vector<CommandOption> positionals, options;
   std::vector<std::string> below;  ///< verbs of a group
+
+  /// Path of a verb of the group.
+  [[nodiscard]] std::string path_of(const std::string& verb) const {
+    return path.empty() ? verb : path + " " + verb;
+  }
 };
 
 /// All commands in the order of --help, a group before its verbs. The first is the program itself, with an

@@ -30,8 +30,7 @@ std::string shared_lookup(const std::vector<Command>& table) {
   std::string verbs, words, choices;
   for (const Command& command : table) {
     for (const std::string& name : command.below)
-      verbs += fmt::format("      '{}:{}') path='{}';;\n", command.path, name,
-                           command.path.empty() ? name : command.path + " " + name);
+      verbs += fmt::format("      '{}:{}') path='{}';;\n", command.path, name, command.path_of(name));
     words += fmt::format("    '{}') words='{}';;\n", command.path, words_of(command));
     for (const CommandOption& option : command.options)
       if (!option.choices.empty())
@@ -93,7 +92,7 @@ std::string fish(const std::vector<Command>& table) {
         word.clear();
       }
     for (const std::string& name : command.below) {
-      const std::string path = command.path.empty() ? name : command.path + " " + name;
+      const std::string path = command.path_of(name);
       std::string summary;
       for (const Command& c : table)
         if (c.path == path) summary = c.summary.substr(0, c.summary.find(". "));

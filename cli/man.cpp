@@ -75,7 +75,7 @@ std::string page(const Command& command, const std::vector<Command>& table) {
   if (!command.below.empty()) {
     s += ".SH VERBS\n";
     for (const std::string& name : command.below) {
-      const std::string path = command.path.empty() ? name : command.path + " " + name;
+      const std::string path = command.path_of(name);
       const auto verb =
           std::find_if(table.begin(), table.end(), [&](const Command& c) { return c.path == path; });
       s += fmt::format(".TP\n\\fB{}\\fR\n{}\n", roff(name), roff(verb->summary));

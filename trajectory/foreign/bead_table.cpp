@@ -66,12 +66,7 @@ class TableReader final : public SnapshotReader {
                 fmt::format("the time differs from that of line {}, which has the same frame.", s.line));
       s.beads.push_back(rows_[next_].bead);
     }
-    for (const SnapshotBead& bead : s.beads)
-      for (int k = 0; k < options_.dimension; ++k) {
-        s.lower[k] = std::min(s.lower[k], bead.position[k] - bead.radius);
-        s.upper[k] = std::max(s.upper[k], bead.position[k] + bead.radius);
-      }
-    if (options_.dimension == 2) s.upper.z() = s.lower.z() + 1;
+    enclose(s, options_.dimension);
     return true;
   }
   [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -58,7 +57,7 @@ class XyzReader final : public SnapshotReader {
     if (!in_.next()) fail("the file ends within a frame.");
     read_head(s);
     for (std::int64_t i = 0; i < n; ++i) read_bead(i, s);
-    if (!has_box_) enclose(s);
+    if (!has_box_) enclose(s, dimension_);
     return true;
   }
   [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
@@ -73,20 +72,8 @@ class XyzReader final : public SnapshotReader {
   };
 
   [[noreturn]] void fail(const std::string& complaint) const { fail_at(in_.number(), complaint); }
-  [[nodiscard]] std::int64_t whole(std::string_view word) const {
-    std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
-      fail(fmt::format("'{}' is not a whole number.", word.substr(0, 60)));
-    return value;
-  }
-  [[nodiscard]] double number(std::string_view word) const {
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-      fail(fmt::format("'{}' is not a finite number.", word.substr(0, 60)));
-    return value;
-  }
+  [[nodiscard]] std::int64_t whole(std::string_view word) const { return whole_at(in_.number(), word); }
+  [[nodiscard]] double number(std::string_view word) const { return number_at(in_.number(), word); }
 
   void read_head(Snapshot& s) {
     const auto pairs = pairs_of(in_.line());
@@ -193,16 +180,6 @@ class XyzReader final : public SnapshotReader {
     if (velocity_) bead.velocity = three(velocity_);
     if (spin_) bead.spin = three(spin_);
     s.beads.push_back(bead);
-  }
-
-  /// Without Lattice, the box encloses the beads.
-  void enclose(Snapshot& s) const {
-    for (const SnapshotBead& bead : s.beads)
-      for (int k = 0; k < dimension_; ++k) {
-        s.lower[k] = std::min(s.lower[k], bead.position[k] - bead.radius);
-        s.upper[k] = std::max(s.upper[k], bead.position[k] + bead.radius);
-      }
-    if (dimension_ == 2) s.upper.z() = s.lower.z() + 1;
   }
 
   LineReader in_;

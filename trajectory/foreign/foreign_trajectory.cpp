@@ -34,10 +34,6 @@ bool next_sorted(SnapshotReader& reader, Snapshot& s) {
 
 }  // namespace
 
-void SnapshotReader::fail_at(long line, const std::string& complaint) const {
-  throw InputError({file_.string(), line, 0, ""}, complaint);
-}
-
 struct ForeignTrajectory::Impl {
   std::filesystem::path path;
   const ForeignFormat* format = nullptr;

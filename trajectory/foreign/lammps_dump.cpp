@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -106,19 +105,8 @@ class DumpReader final : public SnapshotReader {
     if (words_.size() != 1) fail(fmt::format("one number is needed, '{}' was found.", excerpt()));
     return words_[0];
   }
-  [[nodiscard]] std::int64_t whole(std::string_view word) const {
-    std::int64_t value = 0;
-    const auto [end, ec] = std::from_chars(word.begin(), word.end(), value);
-    if (ec != std::errc() || end != word.end()) fail(fmt::format("'{}' is not a whole number.", word));
-    return value;
-  }
-  [[nodiscard]] double number(std::string_view word) const {
-    double value = 0;
-    const auto [end, ec] = std::from_chars(word.begin(), word.end(), value);
-    if (ec != std::errc() || end != word.end() || !std::isfinite(value))
-      fail(fmt::format("'{}' is not a finite number.", word));
-    return value;
-  }
+  [[nodiscard]] std::int64_t whole(std::string_view word) const { return whole_at(in_.number(), word); }
+  [[nodiscard]] double number(std::string_view word) const { return number_at(in_.number(), word); }
 
   void read_box(const std::string& flags, Snapshot& s) {
     split_words(flags, words_);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trajectory/box.hpp"
@@ -36,6 +37,9 @@ struct Snapshot {
   Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
   std::vector<SnapshotBead> beads;
 };
+
+/// Sets the box of a snapshot that comes without one: it contains the origin and all beads.
+void enclose(Snapshot& s, int dimension);
 
 /// The quantities that the snapshots of a file have, besides id and position.
 struct SnapshotColumns {
@@ -69,6 +73,9 @@ class SnapshotReader {
 
  protected:
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  /// The number that `word` is. \throws InputError as fail_at if it is no whole or no finite number
+  [[nodiscard]] std::int64_t whole_at(long line, std::string_view word) const;
+  [[nodiscard]] double number_at(long line, std::string_view word) const;
 
  private:
   std::filesystem::path file_;
