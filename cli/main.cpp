@@ -13,11 +13,11 @@
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
 #include "cli/version.hpp"
-#include "core/config.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
 #include "core/hdf5.hpp"
 #include "core/malloc_tuning.hpp"
+#include "core/nearest_word.hpp"
 #include "imaging/stack/opencv_errors.hpp"
 
 namespace {
@@ -58,16 +58,9 @@ std::string nearest_command(const CLI::App& group, const std::string& word) {
   for (const CLI::App* verb : verbs_of(group))
     for (const CLI::App* below : verbs_of(*verb))
       if (below->get_name() == word) return verb->get_name() + " " + word;
-  std::string best;
-  std::size_t smallest = 4;
-  for (const CLI::App* verb : verbs_of(group)) {
-    const std::size_t d = edit_distance(verb->get_name(), word);
-    if (d < smallest) {
-      smallest = d;
-      best = verb->get_name();
-    }
-  }
-  return best;
+  std::vector<std::string> names;
+  for (const CLI::App* verb : verbs_of(group)) names.push_back(verb->get_name());
+  return nearest_word(word, names);
 }
 
 /// Complaint about the first word of the command line that should be a verb but is none; empty if every group
@@ -103,20 +96,14 @@ std::string unknown_option(const CLI::App& program, int argc, char** argv) {
     if (word == "--") break;
     if (!word.starts_with("--")) continue;
     const std::string name = word.substr(0, word.find('='));
-    std::string best;
-    std::size_t smallest = 4;
-    bool known = false;
+    if (verb->get_option_no_throw(name) != nullptr) continue;
+    std::vector<std::string> names;
     for (const CLI::Option* option : verb->get_options())
-      for (const std::string& other : option->get_lnames()) {
-        const std::size_t d = edit_distance("--" + other, name);
-        known = known || d == 0;
-        if (d >= smallest || option->get_group().empty()) continue;
-        smallest = d;
-        best = "--" + other;
-      }
-    if (!known)
-      return "there is no option '" + name + "'" +
-             (best.empty() ? "; --help shows the options." : "; did you mean '" + best + "'?");
+      for (const std::string& other : option->get_lnames())
+        if (!option->get_group().empty()) names.push_back("--" + other);
+    const std::string near = nearest_word(name, names);
+    return "there is no option '" + name + "'" +
+           (near.empty() ? "; --help shows the options." : "; did you mean '" + near + "'?");
   }
   return {};
 }

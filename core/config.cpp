@@ -8,12 +8,12 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numeric>
 #include <set>
 #include <sstream>
 #include <utility>
 
 #include "core/atomic_file.hpp"
+#include "core/nearest_word.hpp"
 #include "core/placeholder.hpp"
 
 namespace twincell {
@@ -421,16 +421,10 @@ void walk(const toml::table& table, const std::string& path, const std::set<std:
 
 void Config::refuse_unknown_keys() const {
   walk(shared_->table, "", shared_->asked, [&](const std::string& key, const toml::node& node) {
-    const std::string* nearest = nullptr;
-    std::size_t smallest = 4;
-    for (const std::string& known : shared_->asked)
-      if (const std::size_t d = edit_distance(known, key); d < smallest) {
-        smallest = d;
-        nearest = &known;
-      }
+    const std::string nearest = nearest_word(key, {shared_->asked.begin(), shared_->asked.end()});
     throw ConfigError(shared_->where_of(node, key),
-                      nearest != nullptr ? fmt::format("there is no such key; did you mean '{}'?", *nearest)
-                                         : "there is no such key.");
+                      nearest.empty() ? "there is no such key."
+                                      : fmt::format("there is no such key; did you mean '{}'?", nearest));
   });
 }
 
@@ -438,19 +432,6 @@ std::string Config::text() const {
   std::ostringstream out;
   out << shared_->table << "\n";
   return out.str();
-}
-
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({substituted, row[j] + 1, row[j - 1] + 1}));
-    }
-  }
-  return row.back();
 }
 
 }  // namespace twincell

@@ -102,7 +102,4 @@ class Config {
   std::shared_ptr<ConfigSection::Shared> shared_;
 };
 
-/// Levenshtein distance, for "did you mean".
-std::size_t edit_distance(const std::string& a, const std::string& b);
-
 }  // namespace twincell
