@@ -40,7 +40,8 @@ std::string phases_in_words(const PhaseTable& p) {
     text = fmt::format("phase lock: {}, {} frames per cycle", row_of(kPhaseMethods, p.method).word,
                        p.frames_per_cycle);
     if (p.period_frames) text += fmt::format(", period {:.4f} frames", *p.period_frames);
-    if (!p.checked_by.empty()) text += ", checked by " + p.checked_by;
+    if (!p.checked_by.empty())
+      text += (p.method == PhaseMethod::found ? ", by " : ", checked by ") + p.checked_by;
     if (!p.not_checked.empty()) text += " (not checked: " + p.not_checked + ")";
     if (p.offset != 0 && p.method == PhaseMethod::triggers)
       text += fmt::format(", all {:+.3f} frames after their phases", p.offset);
@@ -56,7 +57,7 @@ std::string phases_in_words(const PhaseTable& p) {
       text += " (so many that the camera seems to run free of the drive; the phases are then meaningless)";
     if (p.agreement)
       text += fmt::format("; phase 0 placed by the drive, correlation {:.3f}", *p.agreement);
-    else if (p.method == PhaseMethod::found)
+    else if (p.method == PhaseMethod::found && p.checked_by.empty())
       text += "; phase 0 is where the bed passes its mean height upwards";
     text += '\n';
   }

@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/median.hpp"
-#include "imaging/phase/sine_slips.hpp"
+#include "imaging/phase/plate_phases.hpp"
 
 namespace twincell {
 
@@ -22,19 +22,6 @@ constexpr const char* kCure =
 [[noreturn]] void refuse(const PhaseTable& table, const std::string& why) {
   throw ConfigError(Where{.file = {}, .key = "frames_per_cycle"},
                     fmt::format("is {}, but {}; {}.", table.frames_per_cycle, why, kCure));
-}
-
-/// Sets the phases of all frames from their ticks since frame 0.
-void set_phases(PhaseTable& table, std::span<const std::int64_t> ticks) {
-  const std::int64_t n = table.frames_per_cycle;
-  table.frames.clear();
-  table.dropped = table.doubled = 0;
-  for (std::size_t f = 0; f < ticks.size(); ++f) {
-    const std::int64_t at = ticks[f] + table.first_phase, by = f == 0 ? 1 : ticks[f] - ticks[f - 1];
-    table.frames.push_back({static_cast<std::int32_t>(at % n), at / n, static_cast<double>(by)});
-    table.doubled += by == 0 ? 1 : 0;
-    table.dropped += std::max<std::int64_t>(by - 1, 0);
-  }
 }
 
 /// Accepts ticks in which frames are missing or doubled, unless they are too many. \param witness "the plate"
@@ -57,65 +44,28 @@ void accept(PhaseTable& table, std::span<const std::int64_t> ticks, const std::s
 
 /// \returns whether the plate could tell; `why_not` if it could not
 bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> plate, std::string& why_not) {
-  constexpr double kSeen = 0.6, kLeast_px = 1, kMostScatter = 0.15, kOff = 0.6;
-  const auto n = static_cast<std::size_t>(table.frames_per_cycle);
-  const auto seen = std::count_if(plate.begin(), plate.end(), [](double z) { return std::isfinite(z); });
-  if (static_cast<double>(seen) < kSeen * static_cast<double>(plate.size()) || seen == 0) {
-    why_not = "the plate is not in the picture";
+  constexpr double kOff = 0.6;
+  const PlateReading reading = read_plate(plate, table.frames_per_cycle);
+  if (reading.other)
+    refuse(table,
+           fmt::format("the plate in the frames repeats itself after {:.4g} frames, so that the phases "
+                       "are wrong by half a frame from frame {} on",
+                       reading.other->period,
+                       static_cast<std::int64_t>(std::llround(
+                           0.5 / std::abs(table.frames_per_cycle / reading.other->period - 1)))));
+  if (!reading.slips) {
+    why_not = reading.why_not;
     return false;
   }
-  if (table.frames_per_cycle < 3 || plate.size() < n) {
-    why_not = fmt::format("{} frames are less than a cycle", plate.size());
-    if (table.frames_per_cycle < 3) why_not = "a cycle has fewer than three frames";
-    return false;
-  }
-  const auto moves = [&](double amplitude, double scatter) {
-    return amplitude >= kLeast_px && scatter <= kMostScatter * amplitude;
-  };
-  const std::optional<SineSlips> fit = fit_sine_with_slips(plate, table.frames_per_cycle);
-  const bool slips = fit && fit->dropped + fit->doubled > 0;
-  // If the lock does not fit as it is, another period may fit better than slips: each slip costs what
-  // twelve nats of deviation do.
-  if (!fit || slips || !moves(fit->amplitude, fit->scatter)) {
-    constexpr double kSlip = 12, kLeastScatter = 0.02, kSamePeriod = 0.5;
-    const std::optional<FreeSine> free = fit_free_sine(plate);
-    const auto cost = [&](double scatter, double amplitude, double number) {
-      return static_cast<double>(plate.size()) * std::log(std::max(scatter / amplitude, kLeastScatter)) +
-             kSlip * number;
-    };
-    if (free && moves(free->amplitude, free->scatter)) {
-      const double drift =
-          std::abs(static_cast<double>(n) / free->period - 1) * static_cast<double>(plate.size());
-      const bool better = !fit || !moves(fit->amplitude, fit->scatter) ||
-                          cost(free->scatter, free->amplitude, 0) <
-                              cost(fit->scatter, fit->amplitude,
-                                   static_cast<double>(std::count_if(
-                                       fit->ticks.begin() + 1, fit->ticks.end(),
-                                       [&, before = std::int64_t{0}](std::int64_t t) mutable {
-                                         const bool slip = t != before + 1;
-                                         before = t;
-                                         return slip;
-                                       })));
-      if (better && drift > kSamePeriod)
-        refuse(table, fmt::format("the plate in the frames repeats itself after {:.4g} frames, so that the "
-                                  "phases are wrong by half a frame from frame {} on",
-                                  free->period,
-                                  static_cast<std::int64_t>(std::llround(
-                                      0.5 / std::abs(static_cast<double>(n) / free->period - 1)))));
-    }
-  }
-  if (!fit || !moves(fit->amplitude, fit->scatter)) {
-    why_not = "no edge at the bottom of the picture moves as a plate";
-    return false;
-  }
+  const SineSlips& fit = *reading.slips;
   table.checked_by = "the plate";
-  if (slips) accept(table, fit->ticks, "the plate in the frames");
+  if (fit.dropped + fit.doubled > 0) accept(table, fit.ticks, "the plate in the frames");
   // Phase of the first frame.
   const double cycle = table.frames_per_cycle;
-  const double off = std::remainder(fit->phase * cycle - table.first_phase - lock.offset, cycle);
+  const double off = std::remainder(fit.phase * cycle - table.first_phase - lock.offset, cycle);
   if (std::abs(off) > kOff) {
     const long shown =
-        ((std::lround(fit->phase * cycle - lock.offset) % table.frames_per_cycle) + table.frames_per_cycle) %
+        ((std::lround(fit.phase * cycle - lock.offset) % table.frames_per_cycle) + table.frames_per_cycle) %
         table.frames_per_cycle;
     table.warning += fmt::format(
         "{}the plate shows the first frame at phase {} of {}, but the stated first phase is {} "

@@ -2,8 +2,9 @@
 /// \file
 /// Phase lock: which phase of the drive a frame shows.
 ///
-/// Three methods determine it, one file each: a whole number of frames per cycle (here), a list of triggers
-/// (trigger_list.hpp), and the bed's own periodic motion (phase_estimation.hpp). All return a PhaseTable.
+/// Three methods determine it: a whole number of frames per cycle (here), a list of triggers
+/// (trigger_list.hpp), and the motion of the plate (plate_phases.hpp) or of the bed (phase_estimation.hpp).
+/// All return a PhaseTable.
 
 #include <array>
 #include <cstdint>
@@ -65,7 +66,8 @@ struct PhaseMethodRow {
 inline constexpr std::array kPhaseMethods = {
     PhaseMethodRow{PhaseMethod::none, "none", "none", "no phases"},
     PhaseMethodRow{PhaseMethod::fixed, "fixed", "N", "N frames per cycle, every frame taken"},
-    PhaseMethodRow{PhaseMethod::found, "found", "found", "phases from the bed's own motion"},
+    PhaseMethodRow{PhaseMethod::found, "found", "found",
+                   "phases from the motion of the plate, or of the bed where no plate is seen"},
     PhaseMethodRow{PhaseMethod::triggers, "triggers", "LIST.csv", "a list of trigger times or phases"}};
 
 /// The phases of a stack, with their quality measures and defects.
@@ -83,10 +85,9 @@ struct PhaseTable {
   std::int64_t doubled = 0;         ///< frames that repeat the previous instant
   std::vector<FramePhase> frames;   ///< empty: frame f follows PhaseLock{frames_per_cycle, first_phase}
   double offset = 0;                ///< frame intervals by which every frame was taken later than its phase
-  std::string
-      checked_by;  ///< for a fixed lock: "the plate", "the time stamps" or "the bed"; empty: unchecked
-  std::string not_checked;  ///< why a fixed lock could not be checked
-  std::string warning;      ///< how a fixed lock contradicts the stack; empty: it does not
+  std::string checked_by;           ///< "the plate", "the time stamps" or "the bed"; empty: unchecked
+  std::string not_checked;          ///< why a fixed lock could not be checked
+  std::string warning;              ///< how a fixed lock contradicts the stack; empty: it does not
 
   [[nodiscard]] bool locked() const { return frames_per_cycle > 0; }
   [[nodiscard]] FramePhase at(std::int64_t frame) const;

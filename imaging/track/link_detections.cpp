@@ -1,6 +1,7 @@
 #include "imaging/track/link_detections.hpp"
 
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -9,6 +10,7 @@
 #include "core/error.hpp"
 #include "imaging/link/initial_velocities.hpp"
 #include "imaging/phase/phase_estimation.hpp"
+#include "imaging/phase/plate_phases.hpp"
 #include "imaging/phase/trigger_list.hpp"
 
 namespace twincell {
@@ -86,6 +88,9 @@ PhaseTable determine_phases(const DetectionStore& located, const LinkOptions& li
     case PhaseMethod::found: {
       PhaseEstimationOptions options{.frames_per_cycle = cell.phase_lock.frames_per_cycle, .gamma = {}};
       if (const auto drive = cell.drive()) options.gamma = drive->gamma();
+      if (std::optional<PhaseTable> seen =
+              phases_from_plate(evidence.plate_px, options.frames_per_cycle, cell.phase_lock.offset))
+        return *std::move(seen);
       PhaseTable table = estimate_phases(bed_motion(located, link, unit_of(cell, link)), options);
       table.offset = cell.phase_lock.offset;
       return table;

@@ -1,0 +1,109 @@
+#include "imaging/phase/plate_phases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace twincell {
+
+namespace {
+
+bool moves(double amplitude, double scatter) {
+  constexpr double kLeast_px = 1, kMostScatter = 0.15;
+  return amplitude >= kLeast_px && scatter <= kMostScatter * amplitude;
+}
+
+/// Cost of a sine, natural log-odds: each missing or doubled frame costs what twelve nats of deviation do.
+double cost(std::size_t frames, double scatter, double amplitude, std::int64_t slips) {
+  constexpr double kSlip = 12, kLeastScatter = 0.02;
+  return static_cast<double>(frames) * std::log(std::max(scatter / amplitude, kLeastScatter)) +
+         kSlip * static_cast<double>(slips);
+}
+
+std::int64_t number_of_slips(const SineSlips& fit) {
+  std::int64_t slips = 0;
+  for (std::size_t f = 1; f < fit.ticks.size(); ++f) slips += fit.ticks[f] == fit.ticks[f - 1] + 1 ? 0 : 1;
+  return slips;
+}
+
+double cost(const SineSlips& fit) {
+  return cost(fit.ticks.size(), fit.scatter, fit.amplitude, number_of_slips(fit));
+}
+
+}  // namespace
+
+PlateReading read_plate(std::span<const double> plate, int frames_per_cycle) {
+  constexpr double kSeen = 0.6, kSamePeriod = 0.5;
+  PlateReading out;
+  const auto seen = std::count_if(plate.begin(), plate.end(), [](double z) { return std::isfinite(z); });
+  if (static_cast<double>(seen) < kSeen * static_cast<double>(plate.size()) || seen == 0) {
+    out.why_not = "the plate is not in the picture";
+    return out;
+  }
+  if (frames_per_cycle < 3) {
+    out.why_not = "a cycle has fewer than three frames";
+    return out;
+  }
+  if (plate.size() < static_cast<std::size_t>(frames_per_cycle)) {
+    out.why_not = fmt::format("{} frames are less than a cycle", plate.size());
+    return out;
+  }
+  std::optional<SineSlips> fit = fit_sine_with_slips(plate, frames_per_cycle);
+  const bool fits = fit && moves(fit->amplitude, fit->scatter);
+  if (!fits || fit->dropped + fit->doubled > 0) {
+    const std::optional<FreeSine> free = fit_free_sine(plate);
+    if (free && moves(free->amplitude, free->scatter)) {
+      const double drift = std::abs(frames_per_cycle / free->period - 1) * static_cast<double>(plate.size());
+      if ((!fits || cost(plate.size(), free->scatter, free->amplitude, 0) < cost(*fit)) &&
+          drift > kSamePeriod)
+        out.other = free;
+    }
+  }
+  if (fits)
+    out.slips = std::move(fit);
+  else
+    out.why_not = "no edge at the bottom of the picture moves as a plate";
+  return out;
+}
+
+void set_phases(PhaseTable& table, std::span<const std::int64_t> ticks) {
+  const std::int64_t n = table.frames_per_cycle;
+  table.frames.clear();
+  table.dropped = table.doubled = 0;
+  for (std::size_t f = 0; f < ticks.size(); ++f) {
+    const std::int64_t at = ticks[f] + table.first_phase, by = f == 0 ? 1 : ticks[f] - ticks[f - 1];
+    table.frames.push_back({static_cast<std::int32_t>(at % n), at / n, static_cast<double>(by)});
+    table.doubled += by == 0 ? 1 : 0;
+    table.dropped += std::max<std::int64_t>(by - 1, 0);
+  }
+}
+
+std::optional<PhaseTable> phases_from_plate(std::span<const double> plate, int stated, double offset) {
+  constexpr int kMostTried = 24;
+  int first = stated, last = stated;
+  if (stated == 0) {
+    const std::optional<FreeSine> apparent = fit_free_sine(plate);
+    if (!apparent) return std::nullopt;
+    first = std::max(3, static_cast<int>(0.85 * apparent->period));
+    last = std::min(static_cast<int>(1.3 * apparent->period) + 1, first + kMostTried - 1);
+  }
+  std::optional<SineSlips> best;
+  int best_n = 0;
+  for (int n = first; n <= last; ++n) {
+    PlateReading reading = read_plate(plate, n);
+    if (!reading.fits() || (best && cost(*reading.slips) >= cost(*best))) continue;
+    best = std::move(reading.slips);
+    best_n = n;
+  }
+  if (!best) return std::nullopt;
+  PhaseTable table{.method = PhaseMethod::found, .frames_per_cycle = best_n};
+  table.offset = offset;
+  table.first_phase = static_cast<int>((std::lround(best->phase * best_n - offset) + best_n) % best_n);
+  table.checked_by = "the plate";
+  set_phases(table, best->ticks);
+  return table;
+}
+
+}  // namespace twincell

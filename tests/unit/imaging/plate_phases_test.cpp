@@ -1,0 +1,93 @@
+// Phases from the plate alone, against films whose phases and faults are known.
+#include "imaging/phase/plate_phases.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+using namespace twincell;
+
+namespace {
+
+/// Heights of a plate at the given ticks. \param period frames \param noise px
+std::vector<double> plate_at(const std::vector<double>& ticks, double period, double amplitude,
+                             double noise) {
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> heights;
+  for (const double t : ticks)
+    heights.push_back(40 + noise * normal(generator) +
+                      amplitude * std::sin(2 * std::numbers::pi * t / period));
+  return heights;
+}
+
+/// Ticks of `frames` frames that begin at `first`; a frame is missing before each of `dropped`, and each of
+/// `doubled` repeats the instant before it.
+std::vector<double> ticks_of(int frames, int first, const std::vector<int>& dropped,
+                             const std::vector<int>& doubled) {
+  std::vector<double> ticks;
+  double tick = first;
+  for (int f = 0; f < frames; ++f) {
+    if (f > 0) ++tick;
+    for (const int d : dropped) tick += d == f ? 1 : 0;
+    for (const int d : doubled) tick -= d == f ? 1 : 0;
+    ticks.push_back(tick);
+  }
+  return ticks;
+}
+
+}  // namespace
+
+TEST(PlatePhases, EveryFrameOfADamagedFilmGetsItsPhase) {
+  for (const int n : {12, 20, 48})
+    for (const int stated : {n, 0})
+      for (const int first : {0, 7}) {
+        const std::vector<double> ticks = ticks_of(5 * n, first, {n + 3, 3 * n}, {2 * n + n / 4});
+        const auto table = phases_from_plate(plate_at(ticks, n, 12, 0.1), stated);
+        ASSERT_TRUE(table) << n << ' ' << stated;
+        EXPECT_EQ(table->frames_per_cycle, n) << stated;
+        EXPECT_EQ(table->dropped, 2) << n << ' ' << stated;
+        EXPECT_EQ(table->doubled, 1) << n << ' ' << stated;
+        int wrong = 0;
+        for (std::size_t f = 0; f < ticks.size(); ++f) {
+          const FramePhase at = table->at(static_cast<std::int64_t>(f));
+          wrong += at.phase + n * at.cycle == std::llround(ticks[f]) ? 0 : 1;
+        }
+        // Noise of 0.1 px cannot tell the two frames at the plate's turning point apart.
+        EXPECT_LE(wrong, n / 12) << n << ' ' << stated;
+      }
+}
+
+TEST(PlatePhases, AnIntactFilmHasNoFaultsInNoise) {
+  for (const double noise : {0.0, 0.3, 1.0})
+    for (const int stated : {20, 0}) {
+      const auto table = phases_from_plate(plate_at(ticks_of(240, 4, {}, {}), 20, 12, noise), stated);
+      ASSERT_TRUE(table) << noise;
+      EXPECT_EQ(table->frames_per_cycle, 20) << noise;
+      EXPECT_EQ(table->first_phase, 4) << noise;
+      EXPECT_EQ(table->dropped + table->doubled, 0) << noise;
+    }
+}
+
+TEST(PlatePhases, ADelayOfAllFramesDoesNotMoveTheFirstPhase) {
+  std::vector<double> ticks = ticks_of(120, 3, {}, {});
+  for (double& t : ticks) t += 0.49;
+  const std::vector<double> heights = plate_at(ticks, 20, 12, 0);
+  EXPECT_EQ(phases_from_plate(heights, 20, 0.49)->first_phase, 3);
+  EXPECT_EQ(phases_from_plate(heights, 20, -0.51)->first_phase, 4);
+}
+
+TEST(PlatePhases, APlateThatCannotTellGivesNothing) {
+  const std::vector<double> ticks = ticks_of(200, 0, {}, {});
+  EXPECT_FALSE(phases_from_plate({}, 0));
+  EXPECT_FALSE(phases_from_plate(std::vector<double>(200, std::numeric_limits<double>::quiet_NaN()), 20));
+  EXPECT_FALSE(phases_from_plate(std::vector<double>(200, 40.0), 20)) << "at rest";
+  EXPECT_FALSE(phases_from_plate(plate_at(ticks, 20, 0.8, 0), 20)) << "moves by less than a pixel";
+  EXPECT_FALSE(phases_from_plate(plate_at(ticks, 20, 12, 0), 24)) << "another number of frames per cycle";
+  EXPECT_FALSE(phases_from_plate(plate_at(ticks, 19.6, 12, 0), 0)) << "no whole number of frames";
+  EXPECT_FALSE(phases_from_plate(plate_at(ticks, 20, 12, 0), 2));
+}
