@@ -12,14 +12,26 @@
 #include "core/cancellation.hpp"
 
 // The list: an observable is NAME.cpp in a room of analysis/, which defines NAME_observable.
-#define TWINCELL_OBSERVABLES(EACH)                                                                   \
-  EACH(phase_thresholds)                                                                             \
-  EACH(slip)                                                                                         \
-  EACH(granular_temperature)                                                                         \
-  EACH(bond_order)                                                                                   \
-  EACH(orientation) EACH(grains) EACH(defects) EACH(convection) EACH(profiles) EACH(volume_fraction) \
-      EACH(centre_of_mass) EACH(bed_flight) EACH(pair_correlation) EACH(mean_squared_displacement)   \
-          EACH(velocity_distribution)
+#define TWINCELL_OBSERVABLES(EACH) \
+  EACH(phase_thresholds)           \
+  EACH(slip)                       \
+  EACH(granular_temperature)       \
+  EACH(bond_order)                 \
+  EACH(orientation)                \
+  EACH(grains)                     \
+  EACH(defects)                    \
+  EACH(convection)                 \
+  EACH(profiles)                   \
+  EACH(volume_fraction)            \
+  EACH(centre_of_mass)             \
+  EACH(bed_flight)                 \
+  EACH(pair_correlation)           \
+  EACH(structure_factor)           \
+  EACH(contact_number)             \
+  EACH(voronoi_area)               \
+  EACH(mean_squared_displacement)  \
+  EACH(velocity_autocorrelation)   \
+  EACH(velocity_distribution)
 
 namespace twincell {
 

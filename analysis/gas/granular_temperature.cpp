@@ -5,7 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
+
+#include "analysis/statistics/ratio_average.hpp"
 
 namespace twincell {
 namespace {
@@ -69,15 +70,6 @@ class Components {
   CycleAverage x, y, z, sum;
 };
 
-/// Samples for the relative excess of one mean over another, from the cycles that have both.
-struct Excess {
-  std::vector<double> difference, of;
-  void add(double mean, double other) {
-    difference.push_back(mean - other);
-    of.push_back(other);
-  }
-};
-
 /// Number of beads, mass, and first two moments of the vertical velocity in one slab at one phase.
 struct SlabSums {
   double n = 0, mass = 0, momentum = 0, squares = 0;
@@ -101,9 +93,9 @@ class GranularTemperature : public Observable {
       const auto of_time = time_.add(frame, mean.temperature);
       const auto of_coarse = coarse_.add(frame, mean.temperature_coarse);
       if (of_frames && of_time && of_coarse) {
-        aliasing_z_.add(of_frames->z, of_time->z);
-        aliasing_.add(of_frames->sum, of_time->sum);
-        sampling_.add(of_coarse->sum, of_time->sum);
+        aliasing_z_.add(of_frames->z - of_time->z, of_time->z);
+        aliasing_.add(of_frames->sum - of_time->sum, of_time->sum);
+        sampling_.add(of_coarse->sum - of_time->sum, of_time->sum);
       }
     }
     if (frame.phase >= 0) add_field(frame);
@@ -154,33 +146,25 @@ class GranularTemperature : public Observable {
   [[nodiscard]] bool over_time() const { return time_.sum.by_cycles(); }
   [[nodiscard]] const Components& best() const { return over_time() ? time_ : frames_; }
 
-  [[nodiscard]] static Result excess(const std::string& name, const Excess& e, const std::string& what,
+  [[nodiscard]] static Result excess(const std::string& name, const RatioAverage& e, const std::string& what,
                                      const std::string& source) {
-    if (e.of.empty())
+    if (e.n() == 0)
       return absent_result(
           name,
           "not known: the trajectory has no means over the time between its frames, which `simulate` "
           "writes",
           source);
-    const double difference = std::accumulate(e.difference.begin(), e.difference.end(), 0.0),
-                 of = std::accumulate(e.of.begin(), e.of.end(), 0.0), share = difference / of;
-    if (!(of > 0)) return absent_result(name, "the temperature is 0: no relative excess is defined", source);
+    if (!std::isfinite(e.mean()))
+      return absent_result(name, "the temperature is 0: no relative excess is defined", source);
     Result r{.name = name,
-             .values = {share},
+             .values = {e.mean()},
              .unit = "1",
-             .n = e.of.size(),
+             .n = e.n(),
              .n_of = "cycles",
              .convention = what + ", relative to the latter",
              .source = source};
-    // The numerator and the denominator of the ratio fluctuate and are correlated. To first order, the
-    // scatter of the ratio is that of the difference minus share times the denominator (linearised ratio
-    // estimator).
-    BlockAverage rest;
-    const double mean = of / static_cast<double>(e.of.size());
-    for (std::size_t j = 0; j < e.of.size(); ++j)
-      rest.add(share + (e.difference[j] - share * e.of[j]) / mean);
-    r.interval = rest.interval("cycles");
-    if (!r.interval) r.no_interval = rest.why_no_interval("cycles");
+    r.interval = e.interval("cycles");
+    if (!r.interval) r.no_interval = e.why_no_interval("cycles");
     return r;
   }
 
@@ -287,7 +271,8 @@ class GranularTemperature : public Observable {
 
   const TrajectoryInfo& info_;
   Components frames_, time_, coarse_;
-  Excess aliasing_, aliasing_z_, sampling_;
+  // Relative excess of one mean over another, from the cycles that have both.
+  RatioAverage aliasing_, aliasing_z_, sampling_;
   std::map<std::pair<std::int32_t, int>, SlabSums> field_;
 };
 

@@ -5,16 +5,18 @@
 #include <limits>
 #include <numeric>
 
+#include "analysis/observable/array_with_interval.hpp"
+#include "analysis/statistics/ratio_average.hpp"
+
 namespace twincell {
 namespace {
 
-constexpr NamedResult kResults[] = {{"msd"}, {"msd_lag"}};
+constexpr NamedResult kResults[] = {{"msd"}, {"msd_low"}, {"msd_high"}, {"msd_lag"}};
 const char* const kSource = "Allen & Tildesley, Computer Simulation of Liquids, sec. 2.7";
 
 class MeanSquaredDisplacement : public Observable {
  public:
-  explicit MeanSquaredDisplacement(const AnalysisContext& context)
-      : info_(context.info), sums_(kLongestLag, 0), counts_(kLongestLag, 0) {}
+  explicit MeanSquaredDisplacement(const AnalysisContext& context) : info_(context.info), msd_(kLongestLag) {}
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
@@ -32,25 +34,24 @@ class MeanSquaredDisplacement : public Observable {
   }
 
   [[nodiscard]] std::vector<Result> results() const override {
-    std::vector<double> msd(kLongestLag, std::numeric_limits<double>::quiet_NaN()), lags(kLongestLag);
+    std::vector<double> lags(kLongestLag);
     std::iota(lags.begin(), lags.end(), 1.0);
-    for (std::size_t m = 0; m < kLongestLag; ++m)
-      if (counts_[m] > 0) msd[m] = sums_[m] / static_cast<double>(counts_[m]);
     const std::string none = info_.columns.phase
                                  ? "no bead is seen at phase 0 of two cycles that are at most 32 apart"
                                  : "the frames have no drive phase";
-    Result times =
-        array_of(lags, {.name = "msd_lag", .unit = "cycles", .n_of = "lags", .source = kSource}, none);
-    Result values =
-        array_of(msd,
-                 {.name = "msd",
-                  .unit = "sigma^2",
-                  .n_of = "lags",
-                  .convention = "phase 0 of whole cycles, relative to the mean displacement of the beads",
-                  .source = kSource},
-                 none);
-    if (!values.present()) times = absent_result("msd_lag", none, kSource);
-    return {values, times};
+    std::vector<Result> all = array_with_interval(
+        msd_,
+        {.name = "msd",
+         .unit = "sigma^2",
+         .n_of = "lags",
+         .convention = "phase 0 of whole cycles, relative to the mean displacement of the beads",
+         .source = kSource},
+        "pairs of cycles", none);
+    all.push_back(
+        all.front().present()
+            ? array_of(lags, {.name = "msd_lag", .unit = "cycles", .n_of = "lags", .source = kSource}, none)
+            : absent_result("msd_lag", none, kSource));
+    return all;
   }
 
  private:
@@ -72,8 +73,8 @@ class MeanSquaredDisplacement : public Observable {
     double sum = 0;
     for (std::size_t i = 0; i < now.size(); ++i)
       if (const Vec3 d = step(i); d.allFinite()) sum += (d - drift).squaredNorm();
-    sums_[m] += sum / static_cast<double>(n - 1) * static_cast<double>(n);  // n - 1: the drift is estimated
-    counts_[m] += n;
+    const auto beads = static_cast<double>(n);
+    msd_[m].add(sum / (beads - 1) * beads, beads);  // n - 1: the drift is estimated
   }
 
   struct Past {
@@ -82,8 +83,7 @@ class MeanSquaredDisplacement : public Observable {
   };
   const TrajectoryInfo& info_;
   std::deque<Past> past_;
-  std::vector<double> sums_;
-  std::vector<std::size_t> counts_;
+  std::vector<RatioAverage> msd_;
 };
 
 }  // namespace

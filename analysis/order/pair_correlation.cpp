@@ -1,54 +1,21 @@
 #include "analysis/order/pair_correlation.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "analysis/neighbours/bed_window.hpp"
+#include "analysis/observable/array_with_interval.hpp"
+
 namespace twincell {
 namespace {
 
-constexpr NamedResult kResults[] = {{"g_r"}, {"g_r_distance"}, {"g_peak"}, {"g_peak_distance"}};
+constexpr NamedResult kResults[] = {{"g_r"},          {"g_r_low"}, {"g_r_high"},
+                                    {"g_r_distance"}, {"g_peak"},  {"g_peak_distance"}};
 constexpr auto kBins = static_cast<std::size_t>(kPairCorrelationRange / kPairCorrelationWidth + 0.5);
 const char* const kSource = "Ripley 1988, ch. 3";
 
-/// The part of the cell in which the bed lies, along the axes that count.
-struct Window {
-  std::vector<int> axes;  ///< with edges
-  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
-  double content = 1;  ///< area or volume
-  std::size_t beads = 0;
-
-  /// Distance of a point from the nearest edge; negative outside.
-  [[nodiscard]] double depth(const Vec3& r) const {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const int a : axes) nearest = std::min({nearest, r[a] - low[a], high[a] - r[a]});
-    return nearest;
-  }
-};
-
-Window window_of(const std::vector<Vec3>& beads, const Box& box) {
-  constexpr double kTail = 0.005, kMargin = 0.5;  // share beyond the window at each end; sigma
-  Window w;
-  std::vector<double> along(beads.size());
-  for (int a = 0; a < 3; ++a) {
-    if (box.dimension == 2 && a == 1) continue;
-    if (box.periodic(static_cast<Axis>(a))) {
-      w.content *= box.size()[a];
-      continue;
-    }
-    for (std::size_t i = 0; i < beads.size(); ++i) along[i] = beads[i][a];
-    const auto tail = static_cast<std::ptrdiff_t>(kTail * static_cast<double>(along.size()));
-    std::nth_element(along.begin(), along.begin() + tail, along.end());
-    w.low[a] = along[static_cast<std::size_t>(tail)] - kMargin;
-    std::nth_element(along.begin(), along.end() - 1 - tail, along.end());
-    w.high[a] = *(along.end() - 1 - tail) + kMargin;
-    w.content *= w.high[a] - w.low[a];
-    w.axes.push_back(a);
-  }
-  for (const Vec3& r : beads) w.beads += w.depth(r) >= 0 ? 1 : 0;
-  return w;
-}
+constexpr double kMargin = 0.5;  // sigma, of the window: a bead reaches half its diameter beyond its centre
 
 class PairCorrelation : public Observable {
  public:
@@ -56,11 +23,9 @@ class PairCorrelation : public Observable {
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
-    std::vector<Vec3> beads;
-    for (std::size_t i = 0; i < frame.position.size(); ++i)
-      if (frame.present(i) && frame.position[i].allFinite()) beads.push_back(frame.position[i]);
+    const std::vector<Vec3> beads = present_centres(frame);
     if (beads.size() < 2) return;
-    const Window window = window_of(beads, info_.box);
+    const BedWindow window = bed_window(beads, info_.box, kMargin);
     if (window.beads == 0) return;
     const double density = static_cast<double>(window.beads) / window.content;
     // The farthest edge of a bin up to which each bead is a reference bead, and the pairs in those bins.
@@ -111,22 +76,23 @@ class PairCorrelation : public Observable {
                .source = kSource};
       return r;
     };
-    return {
-        array_of(values, {.name = "g_r", .unit = "1", .n_of = "bins", .convention = rule, .source = kSource},
-                 none),
-        peak == kBins ? absent_result("g_r_distance", none, kSource)
-                      : array_of(centres,
-                                 {.name = "g_r_distance",
-                                  .unit = "sigma",
-                                  .n_of = "bins",
-                                  .convention = "centres of the bins",
-                                  .source = kSource},
-                                 none),
-        scalar("g_peak", peak == kBins ? kNaN : values[peak], "1", "largest bin of g_r; " + rule,
-               "the bin is chosen from the same frames as the value"),
-        scalar("g_peak_distance", peak == kBins ? kNaN : centres[peak], "sigma",
-               "centre of the bin of g_peak",
-               "the distance is known to half the width of a bin, 0.025 sigma")};
+    std::vector<Result> all = array_with_interval(
+        g_, {.name = "g_r", .unit = "1", .n_of = "bins", .convention = rule, .source = kSource}, "frames",
+        none);
+    all.push_back(peak == kBins ? absent_result("g_r_distance", none, kSource)
+                                : array_of(centres,
+                                           {.name = "g_r_distance",
+                                            .unit = "sigma",
+                                            .n_of = "bins",
+                                            .convention = "centres of the bins",
+                                            .source = kSource},
+                                           none));
+    all.push_back(scalar("g_peak", peak == kBins ? kNaN : values[peak], "1", "largest bin of g_r; " + rule,
+                         "the bin is chosen from the same frames as the value"));
+    all.push_back(scalar("g_peak_distance", peak == kBins ? kNaN : centres[peak], "sigma",
+                         "centre of the bin of g_peak",
+                         "the distance is known to half the width of a bin, 0.025 sigma"));
+    return all;
   }
 
  private:

@@ -16,12 +16,12 @@ inline constexpr double kPairCorrelationWidth = 0.05;  ///< sigma, width of a bi
 ///     4 pi/3 (r_2^3 - r_1^3)
 ///
 /// The bed ends at walls, at the plate and at its surface. A reference bead of a bin is therefore one that is
-/// farther than the bin's outer radius from the edges of a window (border correction, Ripley 1988). Along an
-/// axis without period, the window lies between the 0.5 and the 99.5 percentile of the centres, widened by
-/// half a bead diameter on both sides; a single bead that flies does not move it. rho is the number of beads
-/// in the window over its area (volume), in each frame. Results:
+/// farther than the bin's outer radius from the edges of the bed's window (bed_window.hpp) with a margin of
+/// half a bead diameter (border correction, Ripley 1988). rho is the number of beads in the window over its
+/// area (volume), in each frame. Results:
 ///
 /// - g_r: [bins] mean over frames with reference beads; NaN in bins that no frame has
+/// - g_r_low, g_r_high: [bins] ends of its 95 % interval, from block averages over frames
 /// - g_r_distance: [bins] centres of the bins, sigma
 /// - g_peak: scalar, the largest g(r)
 /// - g_peak_distance: scalar, centre of its bin, sigma

@@ -270,7 +270,11 @@ void cover_order_grains_and_defects() {
                                           "dislocations",
                                           "free_disclinations",
                                           "holes",
-                                          "defect_fraction"};
+                                          "defect_fraction",
+                                          "contact_number",
+                                          "contact_number_inside",
+                                          "voronoi_area",
+                                          "voronoi_area_variance"};
   AnalysisOptions options;
   options.only = names;
   std::map<std::string, std::pair<double, double>> sums;
@@ -509,7 +513,25 @@ TEST(Coverage, OfEveryResultThatHasAnInterval) {
                                          "g_peak",
                                          "g_peak_distance",
                                          "msd",
-                                         "msd_lag"};
+                                         "msd_lag",
+                                         "g_r_low",
+                                         "g_r_high",
+                                         "msd_low",
+                                         "msd_high",
+                                         "S_q",
+                                         "S_q_low",
+                                         "S_q_high",
+                                         "S_q_wavenumber",
+                                         "S_q_peak",
+                                         "S_q_peak_wavenumber",
+                                         "vacf",
+                                         "vacf_low",
+                                         "vacf_high",
+                                         "vacf_lag",
+                                         "voronoi_area_density",
+                                         "voronoi_area_density_low",
+                                         "voronoi_area_density_high",
+                                         "voronoi_area_ratio"};
   for (const std::string& name : result_names())
     EXPECT_NE(without.contains(name), counted().contains(name)) << name;
 }

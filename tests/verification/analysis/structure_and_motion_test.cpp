@@ -8,9 +8,10 @@
 #include "analysis/gas/velocity_distribution.hpp"
 #include "analysis/motion/mean_squared_displacement.hpp"
 #include "analysis/order/pair_correlation.hpp"
-#include "trajectory/trajectory.hpp"
+#include "tests/support/known_beds.hpp"
 
 using namespace twincell;
+using namespace twincell::test;
 
 namespace {
 
@@ -18,34 +19,6 @@ using Random = std::mt19937_64;
 
 void validate_close(const std::string& what, double measured, double expected, double tolerance) {
   EXPECT_NEAR(measured, expected, tolerance) << what;
-}
-
-MemoryTrajectory empty(int dimension, const Vec3& size, bool periodic) {
-  TrajectoryInfo info;
-  info.columns.velocity = info.columns.phase = true;
-  info.phases_per_cycle = 1;
-  info.box.dimension = dimension;
-  info.box.upper = size;
-  const Boundary edge = periodic ? Boundary::periodic : Boundary::wall;
-  info.box.boundary = {edge, dimension == 2 ? Boundary::open : edge, edge};
-  return MemoryTrajectory(info);
-}
-
-void add(MemoryTrajectory& t, std::vector<Vec3> position, std::vector<Vec3> velocity = {}) {
-  Frame frame;
-  frame.cycle = static_cast<std::int64_t>(t.n_frames());
-  frame.phase = 0;
-  frame.step = frame.cycle;
-  frame.velocity = velocity.empty() ? std::vector<Vec3>(position.size(), Vec3::Zero()) : std::move(velocity);
-  frame.position = std::move(position);
-  t.info().n_beads = frame.position.size();
-  t.append(frame);
-}
-
-std::vector<double> values_of(const MemoryTrajectory& t, const std::string& name) {
-  AnalysisOptions options;
-  options.only = {name};
-  return find_result(analyze(t, options), name).values;
 }
 
 /// Mean of g(r) over the bins from `from` to `to`, each weighted by its content.
@@ -60,21 +33,6 @@ double mean_g(const MemoryTrajectory& t, double from, double to) {
     all += weight;
   }
   return sum / all;
-}
-
-MemoryTrajectory ideal_gas(int dimension, bool periodic) {
-  const Vec3 size = dimension == 2 ? Vec3(20, 1, 30) : Vec3(12, 11, 13);
-  MemoryTrajectory t = empty(dimension, size, periodic);
-  Random random(5);
-  std::uniform_real_distribution<double> share(0, 1);
-  for (int f = 0; f < 60; ++f) {
-    std::vector<Vec3> beads;
-    for (int i = 0; i < 600; ++i)
-      beads.emplace_back(share(random) * size.x(), dimension == 2 ? 0 : share(random) * size.y(),
-                         share(random) * size.z());
-    add(t, beads);
-  }
-  return t;
 }
 
 }  // namespace
@@ -102,13 +60,8 @@ TEST(PairCorrelation, OfPointsWithoutInteractionIsOne) {
 TEST(PairCorrelation, CountsTheShellsOfATriangularLattice) {
   constexpr int kColumns = 12, kRows = 14;
   constexpr double kSpacing = 1.02;
-  const double height = kSpacing * std::sqrt(3.0) / 2;
-  MemoryTrajectory t = empty(2, Vec3(kColumns * kSpacing, 1, kRows * height), true);
-  std::vector<Vec3> beads;
-  for (int row = 0; row < kRows; ++row)
-    for (int column = 0; column < kColumns; ++column)
-      beads.emplace_back((column + 0.5 * (row % 2)) * kSpacing, 0, row * height);
-  add(t, beads);
+  MemoryTrajectory t = empty(2, period_of_lattice(kColumns, kRows, kSpacing), true);
+  add(t, triangular_lattice(kColumns, kRows, kSpacing));
   const double density = 2 / (std::sqrt(3.0) * kSpacing * kSpacing);
   const auto shell = [&](double r) {  // beads between 0.9 and 1.1 r
     const auto g = values_of(t, "g_r");
@@ -168,6 +121,35 @@ TEST(MeanSquaredDisplacement, OfARandomWalkGrowsWithTimeAndOfStreamsWithItsSquar
     validate_close("msd of a random walk over 2 d D t", of_walk[lag - 1] / (2 * kStep * kStep * m), 1, 0.06);
     // n/(n - 1): the mean displacement of 400 beads is estimated
     validate_close("msd of two streams over (v t)^2", of_stream[lag - 1] / (1e-4 * m * m), 400.0 / 399, 1e-9);
+  }
+}
+
+TEST(MeanSquaredDisplacement, LiesInItsInterval) {
+  // Random walks of 12 beads over 200 cycles: 2 d D m T is inside 95 % of the intervals.
+  constexpr double kStep = 0.1;
+  Random random(8);
+  std::normal_distribution<double> step(0, kStep);
+  for (const std::size_t lag : {1U, 3U}) {
+    int held = 0;
+    constexpr int kWalks = 400;
+    for (int k = 0; k < kWalks; ++k) {
+      MemoryTrajectory walk = empty(2, Vec3(50, 1, 50), false);
+      std::vector<Vec3> a(12, Vec3(25, 0, 25));
+      for (int f = 0; f < 200; ++f) {
+        for (Vec3& r : a) r += Vec3(step(random), 0, step(random));
+        add(walk, a);
+      }
+      AnalysisOptions options;
+      options.only = {"msd_low", "msd_high"};
+      const auto results = analyze(walk, options);
+      const double expected = 2 * kStep * kStep * static_cast<double>(lag);
+      held += find_result(results, "msd_low").values[lag - 1] <= expected &&
+                      expected <= find_result(results, "msd_high").values[lag - 1]
+                  ? 1
+                  : 0;
+    }
+    // the standard error of 95 % in 400 is 1.1 %
+    validate_close("coverage of msd, %", 100.0 * held / kWalks, 95, 3.5);
   }
 }
 

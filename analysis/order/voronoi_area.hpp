@@ -1,0 +1,31 @@
+#pragma once
+/// \file
+/// Distribution of the areas of Voronoi cells.
+
+#include "analysis/observable/observable.hpp"
+
+namespace twincell {
+
+inline constexpr double kVoronoiAreaRange = 3;     ///< largest ratio of an area to the mean of its frame
+inline constexpr double kVoronoiAreaWidth = 0.05;  ///< width of a bin
+
+/// Area A of each enclosed Voronoi cell (voronoi.hpp), from its edges of length l at the distance |b|/2 of
+/// the bead:
+///
+///     A = sum over edges of |b| l/4
+///
+/// sqrt(3)/2 = 0.866 in a close-packed lattice of beads of diameter 1, and the area of the box over the
+/// number of beads if all cells are enclosed. A bead at a surface has no area, so that a gas more dilute than
+/// the limit of the cells' radius has few. Results:
+///
+/// - voronoi_area: mean, sigma^2; 95 % interval from block averages over frames
+/// - voronoi_area_variance: variance within a frame, sum (A - <A>)^2/(n - 1), mean over frames, sigma^4; same
+/// - voronoi_area_density: [bins] probability density of A over the mean of its frame, up to 3 in bins of
+/// 0.05
+/// - voronoi_area_density_low, voronoi_area_density_high: [bins] ends of its 95 % interval
+/// - voronoi_area_ratio: [bins] centres of the bins
+///
+/// Planar beds only. F. W. Starr et al., Phys. Rev. Lett. 89 (2002) 125501.
+extern const ObservableEntry voronoi_area_observable;
+
+}  // namespace twincell
