@@ -31,7 +31,9 @@
   EACH(voronoi_area)               \
   EACH(mean_squared_displacement)  \
   EACH(velocity_autocorrelation)   \
-  EACH(velocity_distribution)
+  EACH(velocity_distribution)      \
+  EACH(contact_force)              \
+  EACH(stress)
 
 namespace twincell {
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "analysis/observable/observable.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
@@ -62,6 +63,16 @@ void export_scene(const ExportOptions& o, const Common& common) {
                            deck.import_command));
 }
 
+/// q6 and |psi6| of the beads of a planar trajectory, by the neighbour rule of `analyze` without options.
+BeadNumbers bond_orders(const TrajectoryInfo& info) {
+  if (info.box.dimension != 2) return {};
+  const double cutoff = neighbour_cutoff(info, {});
+  return {{"q6", "psi6"}, [&info, cutoff](const Frame& frame) {
+            BondOrder order = bond_order(find_neighbours(frame, info.box, cutoff));
+            return std::vector{std::move(order.q6), std::move(order.psi6)};
+          }};
+}
+
 void export_beads(const ExportOptions& o, const Common& common) {
   const auto refuse = [](const char* option, const char* why) { throw ConfigError({"", 0, 0, option}, why); };
   if (!o.assignments.empty()) refuse("--set", "applies to a scene; the input is a trajectory.");
@@ -78,7 +89,8 @@ void export_beads(const ExportOptions& o, const Common& common) {
   AtomicPath written(o.output, product);
   ProgressBar progress(common, "writing");
   const std::size_t frames =
-      export_trajectory(trajectory, format, units, written.part(), output.stem().string(), progress);
+      export_trajectory(trajectory, format, units, written.part(), output.stem().string(), progress,
+                        bond_orders(trajectory.info()));
   written.commit();
   print_result(common,
                {{"output", o.output},

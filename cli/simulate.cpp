@@ -30,7 +30,7 @@ constexpr double kHardBeads = 0.1;
 
 struct SimulateOptions {
   std::string scene, output;
-  bool relax = false;
+  bool relax = false, contacts = false;
   std::vector<std::string> assignments;
   std::optional<double> checkpoint_every;  ///< s; 0: only at signals
   bool resume = false;
@@ -206,6 +206,7 @@ void run_into(H5mdWriter& writer, sim::Simulation& run, Progress& progress, sim:
 void run_simulate(const SimulateOptions& options, const Common& common) {
   std::vector<std::string> assignments = with_seed(options.assignments, common);
   if (options.relax) assignments.emplace_back("start.relax=true");
+  if (options.contacts) assignments.emplace_back("time.contacts=true");
   sim::Scene scene = sim::read_scene(options.scene, assignments);
   if (scene.until)
     note(common, fmt::format("[until] applies only to `measure` and `sweep`, which analyse during the run; "
@@ -286,6 +287,9 @@ void add_simulate(CLI::App& program, Common& common) {
       ->take_all();
   verb.add_flag("--relax", options->relax,
                 "Push overlapping beads of the start apart, however deep the overlap");
+  verb.add_flag("--contacts", options->contacts,
+                "Store the contacts of every frame: pair, overlap, normal and tangential force, for the "
+                "forces and the stress of `analyze` and the force chains of `export --to vtk`");
   verb.add_option("--checkpoint-every", options->checkpoint_every,
                   "Time between checkpoints in OUTPUT.checkpoint/, s; 0: only at SIGINT and SIGTERM; "
                   "default: no checkpoints, with --resume every 600 s")

@@ -30,6 +30,7 @@ struct Columns {
   bool position_sigma = false;  ///< Frame::position_sigma
   bool time_mean = false;       ///< Frame::time_mean
   bool contacts = false;        ///< Frame::contacts, force, moment and rim_speed
+  bool contact_forces = false;  ///< Frame::contact_forces
 };
 
 /// Where a run stands in the phase diagram, as the program that made the run knew it.
@@ -53,6 +54,7 @@ struct TrajectoryInfo {
   std::vector<double> radius;        ///< per slot, sigma; empty if absent
   std::vector<double> mass;          ///< per slot, m; empty if absent
   std::vector<std::uint8_t> tracer;  ///< per slot, 1 for a tracer bead; empty if absent
+  std::vector<std::string> walls;    ///< names of the walls that ContactForce::j counts; empty if absent
   std::string provenance_json;       ///< provenance.hpp; empty if absent
   std::string tracking_json;         ///< report of the tracking of an experiment, JSON; empty if absent
 };
@@ -74,6 +76,19 @@ struct ContactMemory {
   std::vector<double> values;
 };
 
+/// Force at a contact of two beads, or of a bead and a wall, at one instant.
+struct ContactForce {
+  std::int32_t i = 0;          ///< bead
+  std::int32_t j = 0;          ///< bead, > i; or -1 - w for wall w of TrajectoryInfo::walls
+  double overlap = 0;          ///< R_i + R_j - |r_i - r_j|, sigma; R_i minus the distance of the wall
+  Vec3 normal = Vec3::Zero();  ///< unit vector from j, or from the wall, to i
+  double normal_force = 0;     ///< on i along `normal`, m g; negative: attraction
+  Vec3 tangential_force = Vec3::Zero();  ///< on i, perpendicular to `normal`, m g
+
+  /// Force on i, m g; that on j is its opposite.
+  [[nodiscard]] Vec3 force() const { return normal_force * normal + tangential_force; }
+};
+
 /// State of all beads at one instant.
 struct Frame {
   static constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
@@ -93,8 +108,9 @@ struct Frame {
   // State from which a simulation continues, in addition to positions and velocities; empty if absent.
   std::vector<ContactMemory> contacts;  ///< sorted by (i, j)
   std::vector<Vec3> force;              ///< [n_beads], sum over the bead's contacts, m g; NaN where unknown
-  std::vector<Vec3> moment;      ///< [n_beads], torque of the contacts divided by the radius, m g, as Force
-                                 ///< (sim/system/system.hpp) defines it
+  std::vector<Vec3> moment;  ///< [n_beads], torque of the contacts divided by the radius, m g, as Force
+                             ///< (sim/system/system.hpp) defines it
+  std::vector<ContactForce> contact_forces;  ///< sorted by (i, j); empty if absent or without contact
   std::vector<Vec3> rim_speed;   ///< [n_beads], radius times angular velocity, sigma/t0; NaN where unknown
   std::vector<std::int64_t> id;  ///< [n_beads] or empty; slot number where filled, -1 where empty
 

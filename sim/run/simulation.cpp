@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "sim/run/contact_forces.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/system/cell_grid.hpp"
@@ -256,6 +257,9 @@ TrajectoryInfo Simulation::trajectory_info() const {
       .velocity = true, .spin = plan_.rotation, .identity = false, .phase = true, .plate_height = true};
   info.columns.time_mean = samples_per_phase() > 0;
   info.columns.contacts = scene_.springs;
+  info.columns.contact_forces = scene_.contacts;
+  if (scene_.contacts)
+    for (const Wall& wall : system_.walls) info.walls.push_back(wall.name);
   info.samples_per_cycle = static_cast<int>(samples_per_phase()) * scene_.phases;
   const auto boundary = [](Edge e) {
     return e == Edge::periodic ? Boundary::periodic : e == Edge::wall ? Boundary::wall : Boundary::open;
@@ -305,6 +309,7 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
       frame.rim_speed.push_back(system_.rim_speeds.size() == n ? system_.rim_speeds[i] : unknown);
     }
   }
+  if (scene_.contacts) frame.contact_forces = contact_forces(plan_, system_, kernel_->contacts());
   if (temperature_.steps == steps_per_phase()) {
     const auto steps = static_cast<double>(temperature_.steps);
     frame.time_mean = {temperature_.all / steps, temperature_.coarse / steps};

@@ -25,6 +25,9 @@ ResourceDemand resource_demand(const Scene& s, const Plan& plan, std::size_t bea
   demand.memory = n * (350 + 2 * pairs * bytes_of_pair);
   demand.frames = static_cast<double>(s.cycles) * s.phases;
   demand.disk = demand.frames * n * 0.85 * 8 * (2 * s.dimension + spins);
+  // Between a bed in flight and a dense packing: a contact per bead, 8 float and 2 integer numbers.
+  constexpr double kBytesOfContact = 30;
+  if (s.contacts) demand.disk += demand.frames * n * kBytesOfContact;
   return demand;
 }
 

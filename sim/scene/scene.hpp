@@ -134,7 +134,8 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   Stepping stepping = Stepping::automatic;
   std::int64_t discard = 10, cycles = 200;
   int phases = 20;
-  bool springs = false;  ///< contact memory is stored with every frame
+  bool springs = false;   ///< contact memory is stored with every frame
+  bool contacts = false;  ///< contact forces are stored with every frame
   std::optional<int>
       samples;  ///< samples per cycle of time averages; 0: none; absent: 400, or two per phase with
                 ///< event-driven motion, because the beads of a dilute gas do not land all at once

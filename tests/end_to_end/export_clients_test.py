@@ -27,7 +27,7 @@ def run(*command, folder, code=0):
 def trajectory(twincell, source, folder):
     """A crystal of 60 beads over one cycle, and its numbers: time, positions (x, z up), velocities, radius."""
     run(twincell, "simulate", source / SCENE, "--set", "beads.count=60", "--set", "cell.width=6", "--set", "time.discard=0",
-        "--set", "time.cycles=1", "-o", "run.h5", "-q", folder=folder)
+        "--set", "time.cycles=1", "--contacts", "-o", "run.h5", "-q", folder=folder)
     with h5py.File(folder / "run.h5") as file:
         group = file["particles/trajectory"]
         return {"time": group["position/time"][()], "step": group["position/step"][()],
@@ -162,7 +162,39 @@ def vtk(twincell, folder, truth):
         velocity = vtk_to_numpy(data.GetPointData().GetArray("velocity"))
         assert np.array_equal(velocity[:, 1], truth["vz"][frame])
         assert data.GetFieldData().GetArray("TimeValue").GetValue(0) == truth["time"][frame]
+        q6 = vtk_to_numpy(data.GetPointData().GetArray("q6"))
+        assert frame > 0 or np.nanmin(np.abs(q6 - 0.7408)) < 1e-3, q6  # inside the crystal
     print(f"VTK: {len(listed)} files equal to the bit")
+
+    listed = ElementTree.parse(folder / "run" / "run-contacts.pvd").getroot().findall("Collection/DataSet")
+    assert len(listed) == len(truth["time"])
+    with h5py.File(folder / "run.h5") as file:
+        stored = file["twincell/contact_forces"]
+        count, pairs, values = stored["count"][()], stored["pairs"][()], stored["values"][()]
+        group = file[file["connectivity/contacts"].attrs["particles_group"]]
+        assert group == file["particles/trajectory"]
+        bonds = file["connectivity/contacts/value"][()]
+    lines = 0
+    for frame, entry in enumerate(listed):
+        reader = reading.vtkXMLPolyDataReader()
+        reader.SetFileName(str(folder / "run" / entry.get("file")))
+        reader.Update()
+        data = reader.GetOutput()
+        here = slice(sum(count[:frame]), sum(count[:frame + 1]))
+        assert data.GetNumberOfLines() == count[frame]
+        cells = data.GetCellData()
+        assert np.array_equal(vtk_to_numpy(cells.GetArray("normal_force")), values[here, 4].astype(float))
+        j = vtk_to_numpy(cells.GetArray("j"))
+        assert np.array_equal(j, pairs[here, 1])
+        assert np.array_equal(bonds[frame][bonds[frame][:, 0] >= 0], pairs[here][j >= 0])
+        ends = vtk_to_numpy(data.GetPoints().GetData()).reshape(-1, 2, 3)
+        for (start, end), (a, b) in zip(ends, pairs[here]):
+            assert start[0] == truth["x"][frame][a] and start[1] == truth["z"][frame][a]
+            if b >= 0:
+                assert abs(end[0] - truth["x"][frame][b]) < 1e-6 and abs(end[1] - truth["z"][frame][b]) < 1e-6
+        lines += len(ends)
+    assert lines > 0
+    print(f"VTK: {lines} contacts as lines")
 
 
 def main():

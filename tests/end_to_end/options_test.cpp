@@ -38,6 +38,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"checkpoint-every", "time between checkpoints"},
     {"columns", "names of the columns of a table"},
     {"contact-time", "contact time"},
+    {"contacts", "contacts of every frame"},
     {"csv", "table of tracks"},
     {"cutoff", "largest distance of neighbours"},
     {"cycles", "number of cycles"},

@@ -70,10 +70,8 @@ class TableReader final : public SnapshotReader {
     return true;
   }
   [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
-  // In three dimensions y is vertical as in a picture, and z is the depth.
   [[nodiscard]] Vec3 upright(const Vec3& v) const override {
-    const double height = options_.y_up ? v.y() : -v.y() + 0.0;
-    return options_.dimension == 3 ? Vec3(v.x(), v.z(), height) : Vec3(v.x(), height, v.z());
+    return from_picture(v, options_.dimension, options_.y_up);
   }
   [[nodiscard]] std::int64_t size() const override { return static_cast<std::int64_t>(rows_.size()); }
   [[nodiscard]] std::int64_t done() const override { return static_cast<std::int64_t>(next_); }

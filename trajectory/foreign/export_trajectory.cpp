@@ -22,6 +22,7 @@ SnapshotColumns columns_of(const TrajectoryInfo& info) {
   has.mass = !info.mass.empty();
   has.uncertainty = info.columns.position_sigma;
   has.phase = info.columns.phase;
+  has.contacts = info.columns.contact_forces;
   has.velocity.fill(info.columns.velocity);
   has.spin.fill(info.columns.spin);
   return has;
@@ -50,6 +51,25 @@ void set_box(Snapshot& s, const TrajectoryInfo& info, const ExportUnits& units) 
   s.upper *= units.length;
 }
 
+void add_contacts(Snapshot& s, const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units) {
+  const int dimension = info.box.dimension;
+  const auto radius = [&](std::int32_t bead) {
+    return info.radius.empty() ? 0.5 : info.radius[static_cast<std::size_t>(bead)];
+  };
+  for (const ContactForce& c : frame.contact_forces) {
+    const Vec3& centre = frame.position[static_cast<std::size_t>(c.i)];
+    if (!centre.allFinite()) continue;
+    const double length = radius(c.i) + (c.j >= 0 ? radius(c.j) : 0) - c.overlap;
+    s.contacts.push_back({.i = c.i,
+                          .j = c.j,
+                          .from = turned(centre, dimension) * units.length,
+                          .to = turned(centre - length * c.normal, dimension) * units.length,
+                          .overlap = c.overlap * units.length,
+                          .normal_force = c.normal_force,
+                          .tangential_force = turned(c.tangential_force, dimension)});
+  }
+}
+
 }  // namespace
 
 ExportUnits ExportUnits::laboratory(const TrajectoryInfo& info, const std::string& option) {
@@ -61,7 +81,8 @@ ExportUnits ExportUnits::laboratory(const TrajectoryInfo& info, const std::strin
   return {.length = *info.scale.sigma_m * 1e3, .time = *t0, .length_unit = "mm", .time_unit = "s"};
 }
 
-Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units) {
+Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units,
+                     const std::vector<std::vector<double>>& numbers) {
   const int dimension = info.box.dimension;
   Snapshot s;
   s.step = frame.step;
@@ -70,6 +91,8 @@ Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const Expor
   if (info.columns.phase && frame.cycle >= 0) s.cycle = frame.cycle;
   if (std::isfinite(frame.plate_height)) s.plate_height = frame.plate_height * units.length;
   set_box(s, info, units);
+  add_contacts(s, frame, info, units);
+  s.numbers.resize(numbers.size());
   for (std::size_t i = 0; i < info.n_beads; ++i) {
     if (!frame.present(i) || !frame.position[i].allFinite()) continue;
     SnapshotBead bead;
@@ -91,23 +114,28 @@ Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const Expor
         s.upper[k] = std::max(s.upper[k], bead.position[k]);
       }
     s.beads.push_back(bead);
+    for (std::size_t k = 0; k < numbers.size(); ++k) s.numbers[k].push_back(numbers[k][i]);
   }
   return s;
 }
 
 std::size_t export_trajectory(const TrajectorySource& source, const ForeignFormat& format,
                               const ExportUnits& units, const std::filesystem::path& part,
-                              const std::string& stem, Progress& progress) {
+                              const std::string& stem, Progress& progress, const BeadNumbers& numbers) {
   const TrajectoryInfo& info = source.info();
+  const bool more = format.numbers && numbers.of;
+  SnapshotColumns columns = columns_of(info);
+  if (more) columns.numbers = numbers.names;
   const auto writer = format.create(part, {.dimension = info.box.dimension,
-                                           .columns = columns_of(info),
+                                           .columns = columns,
                                            .length_unit = units.length_unit,
                                            .time_unit = units.time_unit,
                                            .stem = stem});
   Frame frame;
   for (std::size_t t = 0; t < source.n_frames(); ++t) {
     source.read(t, frame);
-    writer->append(snapshot_of(frame, info, units));
+    writer->append(
+        snapshot_of(frame, info, units, more ? numbers.of(frame) : std::vector<std::vector<double>>{}));
     progress.update(static_cast<std::int64_t>(t + 1), static_cast<std::int64_t>(source.n_frames()));
   }
   writer->finish();

@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "core/progress.hpp"
 #include "trajectory/foreign/format.hpp"
@@ -22,15 +24,25 @@ struct ExportUnits {
   static ExportUnits laboratory(const TrajectoryInfo& info, const std::string& option);
 };
 
+/// Numbers of each bead that are not in the trajectory.
+struct BeadNumbers {
+  std::vector<std::string> names;
+  /// [name][slot] of a frame.
+  std::function<std::vector<std::vector<double>>(const Frame&)> of;
+};
+
 /// The frame as a snapshot: axes of Snapshot, beads that are present, id = slot, type 1 or, for tracers, 2.
 /// The box is that of the cell, lower by the amplitude of the drive along its axis, and wider where the
 /// centre of a bead lies beyond it.
-Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units);
+/// \param numbers BeadNumbers::of the frame
+Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units,
+                     const std::vector<std::vector<double>>& numbers = {});
 
-/// Writes all frames to `part`, a file or a folder. \returns the number of frames
-/// \throws RunError if it cannot be written
+/// Writes all frames to `part`, a file or a folder, with `numbers` if the format carries them. \returns the
+/// number of frames \throws RunError if it cannot be written
 std::size_t export_trajectory(const TrajectorySource& source, const ForeignFormat& format,
                               const ExportUnits& units, const std::filesystem::path& part,
-                              const std::string& stem, Progress& progress = Progress::none());
+                              const std::string& stem, Progress& progress = Progress::none(),
+                              const BeadNumbers& numbers = {});
 
 }  // namespace twincell

@@ -219,9 +219,11 @@ class XyzWriter final : public SnapshotWriter {
     if (has_.type) out_.text() += ":type:I:1";
     if (has_.velocity[0]) out_.text() += ":velo:R:3";
     if (has_.spin[2]) out_.text() += ":omega:R:3";
+    for (const std::string& name : has_.numbers) fmt::format_to(text, ":{}:R:1", name);
     out_.text() += '\n';
     const auto add = [&](const Vec3& v) { fmt::format_to(text, " {} {} {}", v[0], v[1], v[2]); };
-    for (const SnapshotBead& bead : s.beads) {
+    for (std::size_t i = 0; i < s.beads.size(); ++i) {
+      const SnapshotBead& bead = s.beads[i];
       out_.text() += 'X';
       add(bead.position);  // first, where readers of plain XYZ expect it
       fmt::format_to(text, " {}", bead.id);
@@ -230,6 +232,7 @@ class XyzWriter final : public SnapshotWriter {
       if (has_.type) fmt::format_to(text, " {}", bead.type);
       if (has_.velocity[0]) add(bead.velocity);
       if (has_.spin[2]) add(bead.spin);
+      for (const auto& column : s.numbers) fmt::format_to(text, " {}", column[i]);
       out_.text() += '\n';
     }
     out_.flush_if_large();
@@ -252,6 +255,7 @@ const ForeignFormat extended_xyz_format = {
     .open = [](const std::filesystem::path& file, const ReadOptions& options)
         -> std::unique_ptr<SnapshotReader> { return std::make_unique<XyzReader>(file, options); },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
-        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<XyzWriter>(part, options); }};
+        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<XyzWriter>(part, options); },
+    .numbers = true};
 
 }  // namespace twincell

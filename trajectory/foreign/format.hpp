@@ -40,6 +40,7 @@ struct ForeignFormat {
   /// Null: the format is only read.
   std::unique_ptr<SnapshotWriter> (*create)(const std::filesystem::path& part, const WriteOptions& options);
   bool folder = false;                ///< the output is a folder with a file for each frame
+  bool numbers = false;               ///< it carries SnapshotColumns::numbers
   const char* source = "simulation";  ///< TrajectoryInfo::source of what is read
 };
 

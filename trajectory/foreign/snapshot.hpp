@@ -24,6 +24,17 @@ struct SnapshotBead {
   Vec3 uncertainty = Vec3::Zero();  ///< standard uncertainty of the position
 };
 
+/// A contact of a snapshot: a line with its force.
+struct SnapshotContact {
+  std::int64_t i = 0, j = 0;  ///< ids of the beads; j = -1 - w for wall w
+  /// From the centre of i to that of j, across a period to its nearest image; to the point of contact at a
+  /// wall.
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+  double overlap = 0;                    ///< in the unit of length
+  double normal_force = 0;               ///< m g; negative: attraction
+  Vec3 tangential_force = Vec3::Zero();  ///< on i, m g
+};
+
 /// A frame in the units and axes of another program. A two-dimensional system is in its plane (x, y), y up;
 /// in a three-dimensional one z is up.
 struct Snapshot {
@@ -36,7 +47,19 @@ struct Snapshot {
   std::array<bool, 3> periodic{};
   Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
   std::vector<SnapshotBead> beads;
+  std::vector<SnapshotContact> contacts;     ///< only when written
+  std::vector<std::vector<double>> numbers;  ///< [SnapshotColumns::numbers][beads], only when written
 };
+
+/// A vector in the axes of a picture: x to the right, y downwards, z into the depth (3D only).
+inline Vec3 to_picture(const Vec3& v, int dimension) {
+  return dimension == 3 ? Vec3(v.x(), -v.z() + 0.0, v.y()) : Vec3(v.x(), -v.y() + 0.0, v.z());
+}
+/// The inverse of to_picture. \param y_up y increases upwards
+inline Vec3 from_picture(const Vec3& v, int dimension, bool y_up) {
+  const double height = y_up ? v.y() : -v.y() + 0.0;
+  return dimension == 3 ? Vec3(v.x(), v.z(), height) : Vec3(v.x(), height, v.z());
+}
 
 /// Sets the box of a snapshot that comes without one: it contains the origin and all beads.
 void enclose(Snapshot& s, int dimension);
@@ -44,7 +67,9 @@ void enclose(Snapshot& s, int dimension);
 /// The quantities that the snapshots of a file have, besides id and position.
 struct SnapshotColumns {
   bool type = false, radius = false, mass = false, uncertainty = false;
-  bool phase = false;  ///< only when written
+  bool phase = false;                ///< only when written
+  bool contacts = false;             ///< only when written
+  std::vector<std::string> numbers;  ///< names of further numbers of each bead, only when written
   std::array<bool, 3> velocity{}, spin{};
   /// Coordinates that are wrapped into the period and come without the number of periods.
   std::array<bool, 3> wrapped{};

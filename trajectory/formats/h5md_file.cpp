@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
 #include "core/hdf5_self_contained.hpp"
+#include "trajectory/formats/contact_lists.hpp"
 #include "twincell_version.hpp"
 
 namespace twincell {
@@ -21,6 +22,10 @@ namespace {
 
 constexpr hsize_t kFramesPerFlush = 64;
 constexpr std::int64_t kEmptySlot = -1;
+/// Columns of /twincell/contact_forces/values.
+const std::vector<std::string> kForceColumns = {
+    "overlap",      "normal_x",           "normal_y",           "normal_z",
+    "normal_force", "tangential_force_x", "tangential_force_y", "tangential_force_z"};
 constexpr const char* kTemperature = "temperature_time_mean";
 constexpr const char* kTemperatureCoarse = "temperature_time_mean_coarse";
 
@@ -69,7 +74,9 @@ struct H5mdWriter::Impl {
   h5::Handle file;
   h5::Series step, time, position, position_sigma, edges, velocity, spin, id, plate_height, phase, cycle,
       temperature, temperature_coarse;
-  h5::Series contact_count, contact_pairs, contact_values, force, moment, rim_speed;
+  h5::Series force, moment, rim_speed;
+  ContactListWriter contacts, contact_forces;
+  ConnectivityWriter connectivity;
   std::int64_t last_step = 0;
 
   Impl(const fs::path& final_path, TrajectoryInfo i)
@@ -78,7 +85,8 @@ struct H5mdWriter::Impl {
   void create();
   void create_particles();
   void create_parameters();
-  void append_contacts(const std::vector<ContactMemory>& contacts);
+  void append_contacts(const std::vector<ContactMemory>& memories);
+  void append_contact_forces(const std::vector<ContactForce>& forces);
   void close();
 };
 
@@ -189,10 +197,14 @@ void H5mdWriter::Impl::create_parameters() {
     if (at.gamma) h5::write_scalar(conditions.get(), "gamma", *at.gamma);
     if (!at.start.empty()) h5::write_text(conditions.get(), "start", at.start);
   }
-  if (info.columns.contacts) {
-    const h5::Handle contacts = h5::create_group(ours.get(), "contacts");
-    contact_count = h5::Series(contacts.get(), "count", H5T_STD_I64LE, {}, 1024);
-    contact_pairs = h5::Series(contacts.get(), "pairs", H5T_STD_I32LE, {2}, 1024);
+  if (info.columns.contacts)
+    contacts = ContactListWriter(h5::create_group(ours.get(), "contacts"), H5T_IEEE_F64LE);
+  if (info.columns.contact_forces) {
+    h5::Handle group = h5::create_group(ours.get(), "contact_forces");
+    h5::write_attribute(group.get(), "columns", kForceColumns);
+    if (!info.walls.empty()) h5::write_attribute(group.get(), "walls", info.walls);
+    contact_forces = ContactListWriter(std::move(group), H5T_IEEE_F32LE);
+    connectivity = ConnectivityWriter(file.get(), "particles/trajectory");
   }
   const h5::Handle cell = h5::create_group(ours.get(), "cell");
   h5::write_attribute(cell.get(), "dimension", info.box.dimension);
@@ -205,35 +217,38 @@ void H5mdWriter::Impl::create_parameters() {
   if (tilt[0] != 0 || tilt[1] != 0) h5::write_dataset(cell.get(), "side_tilt", tilt.data(), {2});
 }
 
-/// The number of contacts differs between frames. The contacts of all frames are stored one after the other,
-/// and the number of contacts of each frame is stored separately.
-void H5mdWriter::Impl::append_contacts(const std::vector<ContactMemory>& contacts) {
-  const auto n = static_cast<std::int64_t>(contacts.size());
-  contact_count.append(h5::native<std::int64_t>(), &n);
-  if (contacts.empty()) return;
-  const std::size_t each = contacts.front().values.size();
-  if (!contact_values) {  // the first contact determines the number of values
-    const h5::Handle group =
-        h5::own(H5Oopen(file.get(), "twincell/contacts", H5P_DEFAULT), "opening contacts");
-    contact_values = h5::Series(group.get(), "values", H5T_IEEE_F64LE, {each}, 1024);
-  }
+void H5mdWriter::Impl::append_contacts(const std::vector<ContactMemory>& memories) {
   std::vector<std::int32_t> pairs;
   std::vector<double> values;
-  for (const ContactMemory& c : contacts) {
+  for (const ContactMemory& c : memories) {
     pairs.insert(pairs.end(), {c.i, c.j});
     values.insert(values.end(), c.values.begin(), c.values.end());
   }
-  if (values.size() != each * contacts.size())
-    throw RunError(path.final().string() + ": the contacts of one frame have different numbers of values.");
-  contact_pairs.append(h5::native<std::int32_t>(), pairs.data(), contacts.size());
-  contact_values.append(h5::native<double>(), values.data(), contacts.size());
+  contacts.append(pairs, values);
+}
+
+void H5mdWriter::Impl::append_contact_forces(const std::vector<ContactForce>& forces) {
+  std::vector<std::int32_t> pairs;
+  std::vector<double> values;
+  for (const ContactForce& c : forces) {
+    pairs.insert(pairs.end(), {c.i, c.j});
+    values.push_back(c.overlap);
+    values.insert(values.end(), c.normal.data(), c.normal.data() + 3);
+    values.push_back(c.normal_force);
+    values.insert(values.end(), c.tangential_force.data(), c.tangential_force.data() + 3);
+  }
+  contact_forces.append(pairs, values);
+  connectivity.append(pairs);
 }
 
 void H5mdWriter::Impl::close() {
-  for (h5::Series* s : {&step, &time, &position, &position_sigma, &edges, &velocity, &spin, &id,
-                        &plate_height, &phase, &cycle, &temperature, &temperature_coarse, &contact_count,
-                        &contact_pairs, &force, &moment, &rim_speed, &contact_values})
+  for (h5::Series* s :
+       {&step, &time, &position, &position_sigma, &edges, &velocity, &spin, &id, &plate_height, &phase,
+        &cycle, &temperature, &temperature_coarse, &force, &moment, &rim_speed})
     *s = h5::Series();
+  contacts = ContactListWriter();
+  contact_forces = ContactListWriter();
+  connectivity = ConnectivityWriter();
   h5::check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path.final().string() + ": writing to disk");
   file.reset();
 }
@@ -261,6 +276,9 @@ void H5mdWriter::append(const Frame& frame) {
   need(w.info.columns.contacts, frame.force.size(), "force");
   need(w.info.columns.contacts, frame.moment.size(), "moment");
   need(w.info.columns.contacts, frame.rim_speed.size(), "rim_speed");
+  if (!w.info.columns.contact_forces && !frame.contact_forces.empty())
+    throw RunError(fmt::format("{}: frame {} has contact forces, none were announced.",
+                               w.path.final().string(), w.step.size()));
   if (w.step.size() > 0 && frame.step <= w.last_step)
     throw RunError(fmt::format("{}: frame {} has step {}, not above the previous one's {}.",
                                w.path.final().string(), w.step.size(), frame.step, w.last_step));
@@ -285,7 +303,8 @@ void H5mdWriter::append(const Frame& frame) {
     w.temperature.append(h5::native<double>(), frame.time_mean.temperature.data());
     w.temperature_coarse.append(h5::native<double>(), frame.time_mean.temperature_coarse.data());
   }
-  if (w.contact_count) {
+  if (w.contact_forces) w.append_contact_forces(frame.contact_forces);
+  if (w.contacts) {
     w.append_contacts(frame.contacts);
     w.force.append(h5::native<double>(), frame.force.data());
     w.moment.append(h5::native<double>(), frame.moment.data());
@@ -317,14 +336,15 @@ struct H5mdReader::Impl {
   [[noreturn]] void refuse(const std::string& key, const std::string& complaint) const {
     throw InputError({path.string(), 0, 0, key}, complaint);
   }
-  h5::Series contact_pairs, contact_values, force, moment, rim_speed;
-  std::vector<std::int64_t> contact_count, contact_begin;  ///< per frame; empty without contacts
+  h5::Series force, moment, rim_speed;
+  ContactListReader contacts, contact_forces;
 
   std::string particle_group() const;
   void open();
   void open_columns(const std::string& group);
   void open_contacts();
   std::vector<ContactMemory> contacts_of(std::size_t frame) const;
+  std::vector<ContactForce> contact_forces_of(std::size_t frame) const;
   void read_box(const std::string& group);
   bool is_planar() const;
   void read_parameters();
@@ -486,53 +506,46 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
 }
 
 void H5mdReader::Impl::open_contacts() {
-  const std::string where = "twincell/contacts";
-  if (!h5::exists(file.get(), where)) return;
-  contact_count = h5::read_dataset<std::int64_t>(file.get(), where + "/count");
-  if (contact_count.size() != position.size()) refuse(where + "/count", "one number per frame is needed.");
-  contact_pairs = h5::Series(file.get(), where + "/pairs");
-  contact_values = h5::Series(file.get(), where + "/values");
-  if (!contact_pairs || contact_pairs.record() != std::vector<hsize_t>{2})
-    refuse(where + "/pairs", "two numbers per contact are needed.");
-  std::int64_t sum = 0;
-  const auto all = static_cast<std::int64_t>(contact_pairs.size());
-  for (const std::int64_t n : contact_count) {
-    if (n < 0 || n > all - sum)
-      refuse(where + "/count",
-             fmt::format("a count of {} contacts exceeds the {} contacts that are stored.", n, all));
-    contact_begin.push_back(sum);
-    sum += n;
-  }
-  if (all > 0 && (!contact_values || contact_values.record().size() != 1 ||
-                  contact_values.size() != contact_pairs.size()))
-    refuse(where + "/values", "every contact must have the same number of values.");
-  if (!force || !moment || !rim_speed)
-    refuse(where, "contacts require the particles' force, moment and rim_speed, which are missing.");
-  info.columns.contacts = true;
+  const std::size_t frames = position.size();
+  contacts = ContactListReader(file.get(), "twincell/contacts", path.string(), frames, info.n_beads);
+  if (contacts && (!force || !moment || !rim_speed))
+    refuse("twincell/contacts",
+           "contacts require the particles' force, moment and rim_speed, which are missing.");
+  info.columns.contacts = static_cast<bool>(contacts);
+  const std::string where = "twincell/contact_forces";
+  contact_forces = ContactListReader(file.get(), where, path.string(), frames, info.n_beads);
+  if (!contact_forces) return;
+  if (contact_forces.values_each() != 0 && contact_forces.values_each() != kForceColumns.size())
+    refuse(where + "/values", fmt::format("a contact has {} values, {} are needed.",
+                                          contact_forces.values_each(), kForceColumns.size()));
+  info.columns.contact_forces = true;
+  info.walls = h5::read_text_attribute(open_object(file.get(), where).get(), "walls");
 }
 
 std::vector<ContactMemory> H5mdReader::Impl::contacts_of(std::size_t frame) const {
-  if (!info.columns.contacts || contact_count[frame] == 0) return {};
-  const auto n = static_cast<std::size_t>(contact_count[frame]),
-             each = static_cast<std::size_t>(contact_values.record()[0]);
-  std::vector<std::int32_t> pairs(2 * n);
-  std::vector<double> values(each * n);
-  const auto begin = static_cast<hsize_t>(contact_begin[frame]);
-  contact_pairs.read(begin, h5::native<std::int32_t>(), pairs.data(), n);
-  if (each > 0) contact_values.read(begin, h5::native<double>(), values.data(), n);
-  std::vector<ContactMemory> contacts;
-  constexpr std::int32_t kMostWalls = 100;
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::int32_t i = pairs[2 * k], j = pairs[2 * k + 1];
-    const auto beads = static_cast<std::int64_t>(info.n_beads);
-    if (i < 0 || i >= beads || j >= beads || j < -kMostWalls || (j >= 0 && j <= i))
-      refuse("twincell/contacts/pairs", fmt::format("({}, {}) is not a contact of {} beads.", i, j, beads));
-    contacts.push_back({i, j, {values.data() + k * each, values.data() + (k + 1) * each}});
-    for (const double v : contacts.back().values)
-      if (!std::isfinite(v))
-        refuse("twincell/contacts/values", fmt::format("a value of contact ({}, {}) is not finite.", i, j));
+  if (!contacts) return {};
+  std::vector<std::int32_t> pairs;
+  std::vector<double> values;
+  contacts.read(frame, pairs, values);
+  std::vector<ContactMemory> memories;
+  const std::size_t each = contacts.values_each();
+  for (std::size_t k = 0; 2 * k < pairs.size(); ++k)
+    memories.push_back(
+        {pairs[2 * k], pairs[2 * k + 1], {values.data() + k * each, values.data() + (k + 1) * each}});
+  return memories;
+}
+
+std::vector<ContactForce> H5mdReader::Impl::contact_forces_of(std::size_t frame) const {
+  if (!contact_forces) return {};
+  std::vector<std::int32_t> pairs;
+  std::vector<double> values;
+  contact_forces.read(frame, pairs, values);
+  std::vector<ContactForce> forces;
+  for (std::size_t k = 0; 2 * k < pairs.size(); ++k) {
+    const double* v = values.data() + k * kForceColumns.size();
+    forces.push_back({pairs[2 * k], pairs[2 * k + 1], v[0], Vec3(v + 1), v[4], Vec3(v + 5)});
   }
-  return contacts;
+  return forces;
 }
 
 void H5mdReader::Impl::read_box(const std::string& group) {
@@ -701,6 +714,7 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
     frame.plate_height = Frame::kNoHeight;
     if (r.plate_height) r.plate_height.read(index, h5::native<double>(), &frame.plate_height);
     frame.contacts = r.contacts_of(index);
+    frame.contact_forces = r.contact_forces_of(index);
     frame.time_mean = {};
     if (r.info.columns.time_mean) {
       r.temperature.read(index, h5::native<double>(), frame.time_mean.temperature.data());

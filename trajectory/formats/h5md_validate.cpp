@@ -19,6 +19,7 @@ class Checker {
   void check_root();
   void check_particles();
   void check_observables();
+  void check_connectivity();
   [[nodiscard]] std::vector<std::string> faults() const { return faults_; }
 
  private:
@@ -175,6 +176,15 @@ void Checker::check_observables() {
   }
 }
 
+void Checker::check_connectivity() {
+  const std::string element = "connectivity/contacts";
+  if (!h5::exists(file_, element)) return;
+  check_element(element);
+  const h5::Handle group = h5::own(H5Oopen(file_, element.c_str(), H5P_DEFAULT), "opening " + element);
+  if (H5Aexists(group.get(), "particles_group") <= 0)
+    fault(element + "@particles_group", "the attribute is missing.");
+}
+
 }  // namespace
 
 std::vector<std::string> validate_h5md(const std::filesystem::path& path) {
@@ -189,6 +199,7 @@ std::vector<std::string> validate_h5md(const std::filesystem::path& path) {
       checker.check_root();
       checker.check_particles();
       checker.check_observables();
+      checker.check_connectivity();
       faults = checker.faults();
     } catch (const RunError& e) {
       faults.emplace_back(e.what());

@@ -157,6 +157,53 @@ TEST(H5mdFile, WhatIsWrittenIsReadBitForBit) {
   EXPECT_TRUE(validate_h5md(folder / "run.h5").empty());
 }
 
+TEST(H5mdFile, ContactForcesAreStoredWithTheirConnectivity) {
+  const TemporaryFolder folder;
+  TrajectoryInfo info = experiment_info();
+  info.columns.contact_forces = true;
+  info.walls = {"bottom", "left"};
+  const ContactForce touch{0, 1, 0.125, -Vec3::UnitX(), 2.5, Vec3(0, 0, 0.75)},
+      floor{0, -1, 0.5, Vec3::UnitZ(), 3, Vec3(-1, 0, 0)},
+      second{1, 2, 0.25, Vec3::UnitX(), -1, Vec3::Zero()};
+  const std::vector<std::vector<ContactForce>> of = {{}, {floor, touch}, {floor, touch, second}, {}};
+  {
+    H5mdWriter writer(folder / "run.h5", info);
+    for (int f = 0; f < 4; ++f) {
+      Frame frame = frame_number(2 * f);
+      frame.contact_forces = of[static_cast<std::size_t>(f)];
+      writer.append(frame);
+    }
+    writer.finish();
+  }
+  const H5mdReader reader(folder / "run.h5");
+  EXPECT_TRUE(reader.info().columns.contact_forces);
+  EXPECT_EQ(reader.info().walls, info.walls);
+  Frame frame;
+  for (std::size_t f = 0; f < 4; ++f) {
+    reader.read(f, frame);
+    ASSERT_EQ(frame.contact_forces.size(), of[f].size());
+    for (std::size_t k = 0; k < of[f].size(); ++k) {
+      const ContactForce &a = frame.contact_forces[k], &b = of[f][k];
+      EXPECT_EQ(std::pair(a.i, a.j), std::pair(b.i, b.j));
+      EXPECT_EQ(a.overlap, b.overlap);
+      EXPECT_EQ(a.normal, b.normal);
+      EXPECT_EQ(a.normal_force, b.normal_force);
+      EXPECT_EQ(a.tangential_force, b.tangential_force);
+    }
+  }
+  EXPECT_TRUE(validate_h5md(folder / "run.h5").empty());
+  // The standard element holds the pairs of beads, -1 where a frame has fewer.
+  const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  EXPECT_EQ(h5::read_dataset<std::int32_t>(file.get(), "connectivity/contacts/value"),
+            (std::vector<std::int32_t>{-1, -1, -1, -1, 0, 1, -1, -1, 0, 1, 1, 2, -1, -1, -1, -1}));
+  EXPECT_TRUE(h5::exists(file.get(), "connectivity/contacts/step"));
+  // Without an announcement, contact forces are refused.
+  H5mdWriter writer(folder / "other.h5", experiment_info());
+  frame = frame_number(0);
+  frame.contact_forces = {touch};
+  EXPECT_THROW(writer.append(frame), RunError);
+}
+
 TEST(H5mdFile, NothingAppearsUnderTheFinalNameBeforeTheEnd) {
   const TemporaryFolder folder;
   {

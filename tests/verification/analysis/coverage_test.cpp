@@ -463,6 +463,42 @@ void cover_flights() {
         15);
 }
 
+// --- contacts whose forces are correlated from frame to frame ---
+
+/// A column of beads on a floor. Their forces have a common factor that is correlated over the frames.
+MemoryTrajectory pressed(int cycles, Random& random) {
+  constexpr std::int32_t kColumn = 6;
+  TrajectoryInfo info = info_of(kColumn, 1, Vec3(1, 1, 8));
+  info.columns.velocity = info.columns.contact_forces = true;
+  info.walls = {"bottom"};
+  MemoryTrajectory out(info);
+  Correlated breath(0.5, random);
+  for (int j = 0; j < cycles; ++j) {
+    Frame frame = frame_of(info, j, 0);
+    const double common = 1 + 0.2 * breath.next();
+    for (std::int32_t i = 0; i < kColumn; ++i) {
+      frame.position.emplace_back(0.5, 0, i + 0.5);
+      frame.velocity.emplace_back(normal(random), 0, normal(random));
+      const auto force = [&](double mean) { return mean * common * (1 + 0.1 * normal(random)); };
+      if (i == 0) frame.contact_forces.push_back({i, -1, 0, Vec3::UnitZ(), force(kColumn), Vec3::Zero()});
+      // The last contact, and one across a bead, are there in half of the frames.
+      if (i + 2 < kColumn || (i + 1 < kColumn && uniform(random, 0, 1) < 0.5))
+        frame.contact_forces.push_back(
+            {i, i + 1, 0, -Vec3::UnitZ(), force(kColumn - 1 - i), Vec3(force(0.1), 0, 0)});
+      if (i == 1 && uniform(random, 0, 1) < 0.5)
+        frame.contact_forces.push_back({i, i + 2, 0, -Vec3::UnitZ(), force(1), Vec3::Zero()});
+    }
+    out.append(frame);
+  }
+  return out;
+}
+
+void cover_contact_forces() {
+  const std::vector<std::string> names = {"contact_force", "tangential_to_normal",
+                                          "mechanical_contact_number", "pressure", "pressure_kinetic"};
+  cover("a pressed column", pressed, 80, long_run(pressed, 40000, names, {}, 16), {}, 17);
+}
+
 TEST(Coverage, OfEveryResultThatHasAnInterval) {
   cover_temperatures();
   cover_heights_and_volume_fractions();
@@ -472,6 +508,7 @@ TEST(Coverage, OfEveryResultThatHasAnInterval) {
   cover_slip();
   cover_circulations();
   cover_flights();
+  cover_contact_forces();
   // Words, arrays, counts, and results that state themselves why they have no interval.
   const std::set<std::string> without = {"s_k",
                                          "half_pixel",
@@ -531,7 +568,17 @@ TEST(Coverage, OfEveryResultThatHasAnInterval) {
                                          "voronoi_area_density",
                                          "voronoi_area_density_low",
                                          "voronoi_area_density_high",
-                                         "voronoi_area_ratio"};
+                                         "voronoi_area_ratio",
+                                         "stress",
+                                         "stress_kinetic",
+                                         "stress_xx_z",
+                                         "stress_zz_z",
+                                         "stress_z",
+                                         "wall_force",
+                                         "contact_force_density",
+                                         "contact_force_density_low",
+                                         "contact_force_density_high",
+                                         "contact_force_ratio"};
   for (const std::string& name : result_names())
     EXPECT_NE(without.contains(name), counted().contains(name)) << name;
 }

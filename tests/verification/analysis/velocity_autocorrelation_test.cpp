@@ -47,10 +47,10 @@ TEST(VelocityAutocorrelation, OfOscillatorsIsTheCosine) {
   }
   const auto c = values_of(t, "vacf"), lag = values_of(t, "vacf_lag");
   ASSERT_EQ(c.size(), kLongestVelocityLag + 1);
+  double worst = 0;
   for (std::size_t m = 0; m < c.size(); ++m)
-    validate({"V5.23", "C(" + std::to_string(m) + ") of oscillators",
-              std::cos(kOmega * static_cast<double>(m)), 1e-12, "cos(omega t)"},
-             c[m]);
+    worst = std::max(worst, std::abs(c[m] - std::cos(kOmega * static_cast<double>(m))));
+  validate({"V5.23", "C(t) of oscillators at 33 lags, largest error", 0, 1e-12, "cos(omega t)"}, worst);
   EXPECT_DOUBLE_EQ(lag.back(), static_cast<double>(kLongestVelocityLag));
 }
 

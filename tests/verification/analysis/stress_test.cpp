@@ -1,0 +1,136 @@
+// Stress and force distribution of lattices whose contact forces are known.
+#include "analysis/force/stress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "analysis/force/contact_force.hpp"
+#include "tests/support/column.hpp"
+#include "tests/support/known_beds.hpp"
+#include "tests/support/validation.hpp"
+
+namespace twincell::test {
+namespace {
+
+constexpr int kColumns = 8, kRows = 10;
+
+/// A triangular lattice of spacing a < 1 in a periodic box; every contact has the force f(overlap) of the
+/// given function.
+MemoryTrajectory compressed(double a, const std::function<double()>& force, int frames = 1) {
+  MemoryTrajectory t = empty(2, period_of_lattice(kColumns, kRows, a), true);
+  t.info().columns.contact_forces = true;
+  add(t, triangular_lattice(kColumns, kRows, a));
+  Frame frame = t.frames().front();
+  const Neighbours near = find_neighbours(frame, t.info().box, 1.01 * a);
+  MemoryTrajectory out(t.info());
+  for (int f = 0; f < frames; ++f) {
+    frame.contact_forces.clear();
+    frame.step = frame.cycle = f;
+    for (std::size_t i = 0; i < frame.position.size(); ++i)
+      near.for_each(i, [&](std::size_t j, const Vec3& bond) {
+        if (i < j)
+          frame.contact_forces.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(j), 1 - a,
+                                          -bond.normalized(), force(), Vec3::Zero()});
+      });
+    out.append(frame);
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST(Stress, OfACompressedTriangularLatticeIsIsotropic) {
+  // Three contacts per bead, each f a n n: sigma = 3/2 N f a/V with V = N sqrt(3)/2 a^2.
+  for (const double a : {0.99, 0.9}) {
+    const double f = 1000 * (1 - a), expected = std::sqrt(3.0) * f / a;
+    const MemoryTrajectory t = compressed(a, [f] { return f; });
+    const auto stress = values_of(t, "stress");
+    validate({"V5.24", "sigma_xx of a compressed lattice", expected, 1e-9 * expected, "sqrt(3) f/a"},
+             stress[0]);
+    validate({"V5.24", "sigma_zz of a compressed lattice", expected, 1e-9 * expected, "sqrt(3) f/a"},
+             stress[3]);
+    validate({"V5.24", "sigma_xz of a compressed lattice", 0, 1e-9 * expected, "symmetry"}, stress[1]);
+    validate({"V5.24", "pressure of a compressed lattice", expected, 1e-9 * expected, "sqrt(3) f/a"},
+             values_of(t, "pressure")[0]);
+    EXPECT_NEAR(values_of(t, "contact_force")[0], f, 1e-9 * f);
+    EXPECT_NEAR(values_of(t, "mechanical_contact_number")[0], 6, 1e-12);
+  }
+}
+
+TEST(Stress, OfAColumnIsTheWeightAbove) {
+  for (const int dimension : {2, 3}) {
+    const MemoryTrajectory t = sim::column_at_rest(dimension);
+    AnalysisOptions options;
+    options.only = {"stress", "wall_force", "stress_zz_z", "mechanical_contact_number", "contact_force"};
+    const auto results = analyze(t, options);
+    const auto& walls = find_result(results, "wall_force").values;
+    validate({"V5.24", "force on the floor over the weight", 1, 1e-6, "closed form"},
+             walls[0] / sim::kColumnBeads);
+    // Virial: contact k carries k beads over a branch of one diameter, the floor all over a radius: N^2/2.
+    // The window of a column is one diameter wide.
+    validate({"V5.24", "sigma_zz of a column", sim::kColumnBeads / 2.0, 2e-3, "closed form"},
+             find_result(results, "stress").values.back());
+    const auto& profile = find_result(results, "stress_zz_z").values;
+    double worst = 0;  // the middle of slab k is the centre of a bead: half of it is above
+    for (int k = 0; k < sim::kColumnBeads; ++k)
+      worst =
+          std::max(worst, std::abs(profile.at(static_cast<std::size_t>(k)) - (sim::kColumnBeads - k - 0.5)));
+    validate({"V5.24", "sigma_zz of the slabs of a column, largest error", 0, 5e-3, "closed form"}, worst);
+    validate({"V5.24", "mean force of the contacts", sim::kColumnBeads / 2.0, 1e-5, "closed form"},
+             find_result(results, "contact_force").value());
+    // N - 1 beads with two contacts; the top one has one
+    validate({"V5.24", "mechanical contact number of a column", 2, 1e-12, "closed form"},
+             find_result(results, "mechanical_contact_number").value());
+  }
+}
+
+TEST(Stress, KineticPartIsTheTemperature) {
+  // Beads of mass 1 with speed c in both senses of each axis: m <v_a^2> = c^2/2 along each axis.
+  MemoryTrajectory t = empty(2, Vec3(8, 1, 4), true);
+  t.info().columns.contact_forces = true;
+  std::vector<Vec3> r, v;
+  for (int i = 0; i < 32; ++i) {
+    r.emplace_back(i % 8 + 0.5, 0, i / 8 + 0.5);
+    const double c = i % 4 < 2 ? 3 : -3;
+    v.push_back(Vec3(1, 0, 2) + (i % 2 == 0 ? Vec3(c, 0, 0) : Vec3(0, 0, c)));
+  }
+  add(t, r, v);
+  validate({"V5.24", "kinetic pressure of a gas", 4.5, 1e-12, "N T/V"}, values_of(t, "pressure_kinetic")[0]);
+  EXPECT_NEAR(values_of(t, "pressure")[0], 0, 1e-12);
+}
+
+TEST(ContactForce, DistributionIsThatOfTheForces) {
+  // Exponential forces: density exp(-x) of x = f/<f>, by the mean of each of its bins.
+  std::mt19937_64 random(2);
+  std::exponential_distribution<double> force(0.2);
+  const MemoryTrajectory t = compressed(
+      0.99, [&] { return force(random); }, 400);
+  const auto density = values_of(t, "contact_force_density"), low = values_of(t, "contact_force_density_low"),
+             high = values_of(t, "contact_force_density_high");
+  int held = 0;
+  for (std::size_t b = 0; b < 40; ++b) {
+    const double x = static_cast<double>(b) * kForceWidth;
+    const double expected = (std::exp(-x) - std::exp(-x - kForceWidth)) / kForceWidth;
+    // 96000 forces; 240 in each frame, whose mean has an error of 6 %
+    EXPECT_NEAR(density[b], expected, 0.03) << x;
+    held += low[b] <= expected && expected <= high[b] ? 1 : 0;
+  }
+  EXPECT_GE(held, 32);
+  validate({"V5.25", "mean of exponential forces", 5, 0.06, "closed form"}, values_of(t, "contact_force")[0]);
+}
+
+TEST(ContactForce, IsAbsentWithoutStoredContacts) {
+  MemoryTrajectory t = empty(2, Vec3(8, 1, 4), true);
+  add(t, {Vec3(1, 0, 1), Vec3(2, 0, 1)});
+  for (const char* name : {"stress", "pressure", "wall_force", "stress_zz_z", "contact_force",
+                           "contact_force_density", "mechanical_contact_number"}) {
+    AnalysisOptions options;
+    options.only = {name};
+    EXPECT_NE(find_result(analyze(t, options), name).absent.find("--contacts"), std::string::npos) << name;
+  }
+}
+
+}  // namespace twincell::test
