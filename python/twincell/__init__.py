@@ -11,9 +11,15 @@ from ._core import (
     result_names, simulate, sweep, track, version, voronoi)
 from ._frames import Frames, open_frames
 from ._locating import locate
+from ._program import (
+    calibrate_beads, calibrate_camera, calibrate_contacts_bounce, calibrate_contacts_collisions,
+    calibrate_contacts_infer, calibrate_contacts_numbers, calibrate_plate, calibrate_walls, compare, match, render,
+    reproduce)
 
 __all__ = [
     "Box", "ConfigError", "Drive", "Error", "Frames", "InputError", "Interrupted", "Result", "Results", "RunError",
-    "Scene", "Simulation", "Trajectory", "__version__", "analyze", "bond_order", "coordination", "fit",
-    "hexatic_order", "laws", "locate", "neighbours", "open_frames", "preset_names", "result_names", "simulate",
-    "sweep", "track", "version", "voronoi"]
+    "Scene", "Simulation", "Trajectory", "__version__", "analyze", "bond_order", "calibrate_beads",
+    "calibrate_camera", "calibrate_contacts_bounce", "calibrate_contacts_collisions", "calibrate_contacts_infer",
+    "calibrate_contacts_numbers", "calibrate_plate", "calibrate_walls", "compare", "coordination", "fit",
+    "hexatic_order", "laws", "locate", "match", "neighbours", "open_frames", "preset_names", "render", "reproduce",
+    "result_names", "simulate", "sweep", "track", "version", "voronoi"]

@@ -1,0 +1,145 @@
+"""Verbs that run as the program: match, compare, render, reproduce, calibrate_*.
+
+These verbs read and write files and take hours rather than microseconds. Each function runs the program `twincell` of
+the same installation with the same options and returns its --json document. The numbers are therefore those of the verb.
+"""
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import warnings
+from pathlib import Path
+
+from . import _core
+
+_PROGRESS = re.compile(r"^(.*): (\d+) %$")
+_CLASSES = {1: _core.RunError, 2: _core.ConfigError, 3: _core.InputError, 130: _core.Interrupted, 143: _core.Interrupted}
+_GATE = 4  # finished, but a quality gate failed: there is a document
+
+
+def _program():
+    """The program: $TWINCELL_PROGRAM, that of the build tree or the prefix of this module, or that of PATH."""
+    here = Path(__file__).resolve()
+    places = [os.environ.get("TWINCELL_PROGRAM", ""), here.parents[2] / "twincell"]
+    if len(here.parents) > 4:
+        places.append(here.parents[4] / "bin" / "twincell")
+    for place in (*places, shutil.which("twincell") or ""):
+        if str(place) and Path(place).is_file() and os.access(place, os.X_OK):
+            return str(place)
+    raise _core.RunError("The program twincell is not installed: it is neither beside this module nor in PATH, and "
+                         "TWINCELL_PROGRAM does not name it.")
+
+
+def _words(options):
+    """The words of options by name: True for a flag, a list for several words, a tuple for numbers with commas."""
+    for name, value in options.items():
+        if value is None or value is False:
+            continue
+        yield "--" + name.rstrip("_").replace("_", "-")
+        if isinstance(value, dict):
+            yield from (f"{key}={v if isinstance(v, str) else json.dumps(v)}" for key, v in value.items())
+        elif isinstance(value, tuple):
+            yield ",".join(map(str, value))
+        elif isinstance(value, list):
+            yield from map(str, value)
+        elif value is not True:
+            yield str(value)
+
+
+def _positional(*words):
+    return [str(word) for word in words if word is not None]
+
+
+def _raise(code, sentence):
+    made = _CLASSES.get(code, _core.Error)
+    error = made(sentence)
+    error.exit_code = code
+    raise error
+
+
+def _run(verb, positional, options, callback):
+    """Runs a verb; its document. Notes become warnings, progress goes to callback(done, 100)."""
+    words = [_program(), *verb.split(), *positional, *_words(options), "--json"]
+    lines = []
+    with tempfile.TemporaryFile("w+") as result:  # a pipe that nobody reads would block the program
+        process = subprocess.Popen(words, stdout=result, stderr=subprocess.PIPE, text=True)
+        try:
+            for line in process.stderr:
+                progress = _PROGRESS.match(line.strip())
+                if progress is None:
+                    lines.append(line.strip())
+                elif callback is not None:
+                    callback(int(progress.group(2)), 100)
+            code = process.wait()
+        except BaseException:  # also KeyboardInterrupt, and what the callback raises
+            process.send_signal(signal.SIGINT)
+            process.wait()
+            raise
+        finally:
+            process.stderr.close()
+        result.seek(0)
+        text = result.read()
+    if code < 0:
+        _raise(128 - code, f"The program was stopped by signal {-code}.")
+    if code not in (0, _GATE) or not text.strip():
+        _raise(code, lines[-1].removeprefix("twincell: ") if lines else f"The program ended with the code {code}.")
+    for line in lines:
+        if line:
+            warnings.warn(line.removeprefix("twincell: ").removeprefix("note: "), stacklevel=3)
+    return json.loads(text)
+
+
+def match(*stacks_and_cells, output, callback=None, **options):
+    """The twin of each filmed cell, and both sides compared: `twincell match` (docs/comparing.md).
+
+    stacks_and_cells: stacks and cell files, as for the verb. output: folder for trajectories, scenes and report.
+    Options have the names of the verb with _ for -: twins=2, scene="twin.toml", set={"drive.gamma": 1.8}, range_=2; True for a
+    flag, a list for several words, a tuple for numbers that are joined by commas.
+    callback: called with (percent, 100); what it raises stops the program.
+    Returns a dict. Notes of the program are warnings, its errors the exceptions of this module with the same sentence.
+    """
+    return _run("match", _positional(*stacks_and_cells), {"output": output, **options}, callback)
+
+
+def compare(*, output, callback=None, **options):
+    """Experiments and simulations in one report: `twincell compare` (docs/comparing.md).
+
+    experiment, simulation, stack, sweep: lists of files; output: folder for the report. Otherwise as `match`.
+    """
+    return _run("compare", [], {"output": output, **options}, callback)
+
+
+def render(trajectory, *, callback=None, **options):
+    """Frames of a trajectory as a camera would record them: `twincell render` (docs/camera.md).
+
+    trajectory: H5MD file; output: folder for the frames; movie: film. Otherwise as `match`.
+    """
+    return _run("render", _positional(trajectory), options, callback)
+
+
+def reproduce(name, *, callback=None, **options):
+    """A figure or table of the papers: `twincell reproduce` (docs/reproduce.md). Otherwise as `match`."""
+    return _run("reproduce", _positional(name), options, callback)
+
+
+def _calibration(kind, what):
+    def calibrate(*inputs, callback=None, **options):
+        return _run("calibrate " + kind, _positional(*inputs), options, callback)
+
+    calibrate.__name__ = calibrate.__qualname__ = "calibrate_" + kind.replace(" ", "_")
+    calibrate.__doc__ = (f"{what}: `twincell calibrate {kind}` (docs/calibrating.md).\n\n"
+                         "inputs: as for the verb; options as for `match`. Returns a dict.")
+    return calibrate
+
+
+calibrate_camera = _calibration("camera", "Scale, origin, rotation and distortion of the picture")
+calibrate_walls = _calibration("walls", "Width of the cell and tilts of its side walls")
+calibrate_plate = _calibration("plate", "Drive, and phase of each frame, from the edge of the plate")
+calibrate_beads = _calibration("beads", "Diameter and spread of the beads, and layers of the bed")
+calibrate_contacts_bounce = _calibration("contacts bounce", "Restitution from a bouncing bead")
+calibrate_contacts_collisions = _calibration("contacts collisions", "Contact law from collisions of two beads")
+calibrate_contacts_infer = _calibration("contacts infer", "Contact parameters from measured observables")
+calibrate_contacts_numbers = _calibration("contacts numbers", "Restitution and contact time to stiffness and damping")

@@ -1,0 +1,96 @@
+"""The verbs that run as the program, from Python against the command line: same options, same numbers to the bit."""
+import shutil
+
+import pytest
+
+import twincell
+from conftest import document, program, sentence
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory):
+    """The folder that `twincell example` unpacks."""
+    folder = tmp_path_factory.mktemp("inputs") / "ex"
+    assert program("example", folder).returncode == 0
+    return folder
+
+
+def same(mine, verb):
+    """Both documents without what names the run itself."""
+    for d in (mine, verb):
+        d.pop("provenance", None)
+    assert mine == verb
+
+
+@pytest.mark.parametrize("kind", ["walls", "plate", "beads", "camera"])
+@pytest.mark.filterwarnings("ignore")
+def test_calibrate(inputs, kind):
+    verb = document("calibrate", kind, inputs / "frames", "--cell", inputs / "frames/CELL.toml")
+    same(getattr(twincell, "calibrate_" + kind)(inputs / "frames", cell=inputs / "frames/CELL.toml"), verb)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_calibrate_contacts(inputs):
+    verb = document("calibrate", "contacts", "numbers", "--restitution", "0.9", "--contact-time", "2.2e-3")
+    same(twincell.calibrate_contacts_numbers(restitution=0.9, contact_time=2.2e-3), verb)
+    verb = document("calibrate", "contacts", "bounce", inputs / "bounce.csv")
+    same(twincell.calibrate_contacts_bounce(inputs / "bounce.csv"), verb)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_render_and_compare(sim_file, tmp_path):
+    words = ("render", sim_file, "-o", tmp_path / "film", "--pixels-per-sigma", "12", "--seed", "3")
+    verb = document(*words)
+    bytes_of_verb = (tmp_path / "film/frame_00003.png").read_bytes()
+    shutil.rmtree(tmp_path / "film")
+    seen = []
+    mine = twincell.render(sim_file, output=tmp_path / "film", pixels_per_sigma=12, seed=3,
+                           callback=lambda done, total: seen.append(done / total))
+    same(mine, verb)
+    assert (tmp_path / "film/frame_00003.png").read_bytes() == bytes_of_verb
+    verb = document("compare", "--simulation", sim_file, "-o", tmp_path / "report")
+    same(twincell.compare(simulation=[sim_file], output=tmp_path / "report"), verb)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_match(inputs, tmp_path):
+    verb = document("match", inputs / "frames", "-o", tmp_path / "twin", "--twins", "1", "--set", "time.cycles=2")
+    mine = twincell.match(inputs / "frames", output=tmp_path / "twin", twins=1, set={"time.cycles": 2})
+    same(mine, verb)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_reproduce(tmp_path):
+    verb = document("reproduce", "p1-table1", "-o", tmp_path / "rep")
+    same(twincell.reproduce("p1-table1", output=tmp_path / "rep"), verb)
+
+
+def test_refusals_are_the_sentences_of_the_program(inputs, tmp_path):
+    for words, call in (
+            (("calibrate", "walls", "no-folder"), lambda: twincell.calibrate_walls("no-folder")),
+            (("compare", "-o", tmp_path / "r"), lambda: twincell.compare(output=tmp_path / "r")),
+            (("reproduce", "p1-table1", "-o", tmp_path / "r", "--threds", "1"),
+             lambda: twincell.reproduce("p1-table1", output=tmp_path / "r", threds=1))):
+        said, code = sentence(*words)
+        with pytest.raises(twincell.Error) as raised:
+            call()
+        assert str(raised.value) == said and raised.value.exit_code == code
+    with pytest.raises(OSError):
+        twincell.calibrate_walls("no-folder")
+
+
+def test_what_a_callback_raises_stops_the_program(inputs, tmp_path):
+    def stop(done, total):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        twincell.match(inputs / "frames", output=tmp_path / "stopped", twins=1, callback=stop)
+    assert not (tmp_path / "stopped/report").exists()
+
+
+def test_a_missing_program_is_named(monkeypatch, tmp_path):
+    monkeypatch.setattr(twincell._program, "__file__", str(tmp_path / "a/b/c/d/e.py"))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("TWINCELL_PROGRAM")
+    with pytest.raises(twincell.RunError, match="not installed"):
+        twincell.reproduce("p1-table1", output=tmp_path / "rep")
