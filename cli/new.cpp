@@ -19,7 +19,6 @@
 #include "core/error.hpp"
 #include "core/escape.hpp"
 #include "core/output_rules.hpp"
-#include "imaging/cell/cell_keys.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/overlay.hpp"
 #include "twin/cell_draft.hpp"
@@ -35,7 +34,6 @@ struct NewOptions {
   std::vector<std::string> stacks;
   std::string output;
   double diameter_px = 0;
-  bool keys = false;
   CellAnswers answers;
 };
 
@@ -134,20 +132,7 @@ nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& st
   return document;
 }
 
-nlohmann::json json_of_keys() {
-  nlohmann::json list = nlohmann::json::array();
-  for (const CellKey& k : cell_keys())
-    list.push_back({{"key", k.key},
-                    {"unit", k.unit},
-                    {"range", k.range},
-                    {"default", k.absent},
-                    {"example", k.example},
-                    {"meaning", k.meaning}});
-  return {{"keys", list}};
-}
-
 void run(const Common& common, NewOptions& o) {
-  if (o.keys) return print_result(common, json_of_keys(), cell_keys_markdown());
   if (o.stacks.empty())
     throw ConfigError({.file = {}, .key = "new"}, "no stack is named; give at least one stack of frames.");
   const bool several = o.stacks.size() > 1;
@@ -196,7 +181,6 @@ void add_new(CLI::App& program, Common& common) {
       "stacks", o->stacks,
       "Stack: folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md); several "
       "stacks: one for each drive strength");
-  verb.add_flag("--keys", o->keys, "Print all keys of a CELL.toml with unit, range, default and example");
   // One file, or a folder for several stacks: write_one() checks the outputs.
   common.outputs.push_back(
       {verb.add_option(

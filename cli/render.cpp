@@ -97,9 +97,10 @@ void add_render(CLI::App& program, Common& common) {
         [&](auto* value) {
           const std::string name = "--" + list[i].key;
           if constexpr (std::is_same_v<decltype(value), bool*>)
-            o->given.emplace_back(verb.add_flag(name, *value, list[i].help), i);
+            o->given.emplace_back(verb.add_flag(name, *value, list[i].help_with_unit()), i);
           else
-            o->given.emplace_back(verb.add_option(name, *value, list[i].help)->capture_default_str(), i);
+            o->given.emplace_back(
+                verb.add_option(name, *value, list[i].help_with_unit())->capture_default_str(), i);
         },
         list[i].value);
   verb.callback([o, &common] { run(*o, common); });

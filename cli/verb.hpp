@@ -28,6 +28,7 @@ void add_fit(CLI::App& program, Common& common);
 void add_help(CLI::App& program, Common& common);
 void add_import(CLI::App& program, Common& common);
 void add_info(CLI::App& program, Common& common);
+void add_keys(CLI::App& program, Common& common);
 void add_locate(CLI::App& program, Common& common);
 void add_man(CLI::App& program, Common& common);
 void add_match(CLI::App& program, Common& common);

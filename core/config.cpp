@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/atomic_file.hpp"
+#include "core/key_record.hpp"
 #include "core/nearest_word.hpp"
 #include "core/placeholder.hpp"
 
@@ -110,6 +111,7 @@ std::optional<T> value_of(const toml::node* node, const Where& where, const char
 }  // namespace
 
 std::optional<double> ConfigSection::number(const std::string& key) const {
+  record_key(full(key), {.number = true});
   if (!has(key)) return std::nullopt;
   const toml::node* node = find(shared_->table, full(key));
   if (const auto whole = node->value_exact<std::int64_t>()) return static_cast<double>(*whole);
@@ -119,12 +121,14 @@ std::optional<double> ConfigSection::number(const std::string& key) const {
 }
 
 std::optional<std::int64_t> ConfigSection::integer(const std::string& key) const {
+  record_key(full(key), {.whole = true});
   return has(key) ? value_of<std::int64_t>(find(shared_->table, full(key)), where(key), "a whole number")
                   : std::nullopt;
 }
 
 std::optional<double> ConfigSection::number_in(const std::string& key, std::optional<double> lower,
                                                std::optional<double> upper, bool open_lower) const {
+  record_key(full(key), {.value = {lower, upper, open_lower}});
   auto value = number(key);
   if (value) require_range(where(key), *value, lower, upper, open_lower);
   return value;
@@ -132,6 +136,7 @@ std::optional<double> ConfigSection::number_in(const std::string& key, std::opti
 
 std::optional<std::int64_t> ConfigSection::integer_in(const std::string& key, std::int64_t lower,
                                                       std::int64_t upper) const {
+  record_key(full(key), {.value = {static_cast<double>(lower), static_cast<double>(upper)}});
   auto value = integer(key);
   // Compared as integers: above 2^53 a double cannot represent every integer.
   if (value && (*value < lower || *value > upper))
@@ -142,11 +147,13 @@ std::optional<std::int64_t> ConfigSection::integer_in(const std::string& key, st
 }
 
 std::optional<bool> ConfigSection::boolean(const std::string& key) const {
+  record_key(full(key), {.boolean = true});
   return has(key) ? value_of<bool>(find(shared_->table, full(key)), where(key), "true or false")
                   : std::nullopt;
 }
 
 std::optional<std::string> ConfigSection::text(const std::string& key) const {
+  record_key(full(key), {.text = true});
   return has(key) ? value_of<std::string>(find(shared_->table, full(key)), where(key), "a text in quotes")
                   : std::nullopt;
 }
@@ -164,6 +171,7 @@ std::optional<std::vector<double>> finite_numbers(const toml::node& node) {
 }  // namespace
 
 std::optional<std::vector<double>> ConfigSection::numbers(const std::string& key, std::size_t count) const {
+  record_key(full(key), {.lengths = {count}});
   if (!has(key)) return std::nullopt;
   auto values = finite_numbers(*find(shared_->table, full(key)));
   if (!values || values->size() != count)
@@ -172,6 +180,7 @@ std::optional<std::vector<double>> ConfigSection::numbers(const std::string& key
 }
 
 std::optional<std::vector<std::pair<double, double>>> ConfigSection::pairs(const std::string& key) const {
+  record_key(full(key), {.pairs = true});
   if (!has(key)) return std::nullopt;
   const toml::array* list = find(shared_->table, full(key))->as_array();
   std::vector<std::pair<double, double>> values;
@@ -185,11 +194,13 @@ std::optional<std::vector<std::pair<double, double>>> ConfigSection::pairs(const
 }
 
 bool ConfigSection::is_list(const std::string& key) const {
+  record_key(full(key), {.list = true});
   return has(key) && find(shared_->table, full(key))->is_array();
 }
 
 std::optional<std::string> ConfigSection::word(const std::string& key,
                                                const std::vector<std::string>& words) const {
+  record_key(full(key), {.words = words});
   auto value = text(key);
   if (value && std::find(words.begin(), words.end(), *value) == words.end())
     throw ConfigError(where(key), fmt::format("'{}' is not one of {}.", *value, fmt::join(words, ", ")));

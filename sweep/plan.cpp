@@ -12,6 +12,7 @@
 #include "core/atomic_file.hpp"
 #include "core/cancellation.hpp"
 #include "core/config.hpp"
+#include "core/key_record.hpp"
 #include "core/sha256.hpp"
 #include "core/toml_leaves.hpp"
 #include "sim/scene/plan.hpp"
@@ -145,6 +146,7 @@ void read_axes(Plan& plan, const ConfigSection& root) {
                           "a search chooses its number of seeds itself; search.runs limits it.");
       continue;
     }
+    record_key("axes." + leaf.path, {.list = true});
     plan.axes.push_back({leaf.path, leaf.items, table.where(leaf.path).line});
     leaves.push_back(leaf);
   }

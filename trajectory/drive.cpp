@@ -51,8 +51,9 @@ std::vector<Term> terms_of(const DriveSpec& s, double gravity, const Where& wher
 }  // namespace
 
 DriveSpec read_drive_spec(const ConfigSection& drive) {
-  return {drive.number("amplitude"), drive.number("omega"), drive.number("frequency"),
-          drive.number("gamma"),     drive.number("k_m"),   drive.number("peak_velocity")};
+  const auto positive = [&](const char* key) { return drive.number_in(key, 0, std::nullopt, true); };
+  return {drive.number_in("amplitude", 0), positive("omega"),         positive("frequency"),
+          drive.number_in("gamma", 0),     drive.number_in("k_m", 0), drive.number_in("peak_velocity", 0)};
 }
 
 Drive solve_drive(const DriveSpec& spec, double gravity, const Where& where, Axis axis) {

@@ -96,8 +96,9 @@ std::optional<ConfigSection> table_at(const Config& config, std::string_view pat
   return at;
 }
 
-void require_sign(const Where& where, double value, Sign sign) {
-  if (sign != Sign::any) require_range(where, value, 0, std::nullopt, sign == Sign::positive);
+/// The bounds of a sign, as number_in() and require_range() take them.
+std::optional<double> lower_of(Sign sign) {
+  return sign == Sign::any ? std::nullopt : std::optional(0.0);
 }
 
 void refuse_bare_numbers(const Config& config) {
@@ -163,10 +164,10 @@ void reduce_units(Config& config) {
     }
     if (!table->has(s.written)) continue;
     const Where where = table->where(s.written);
-    const double value = *table->number_in(s.written, std::nullopt);
-    require_sign(where, value, s.sign);
+    const bool open = s.sign == Sign::positive;
+    const double value = *table->number_in(s.written, lower_of(s.sign), std::nullopt, open);
     const double here = reduced_quantity(value, s.unit, scale, where) / s.per_plain;
-    require_sign(where, here, s.sign);
+    require_range(where, here, lower_of(s.sign), std::nullopt, open);  // it may underflow
     // The user must decide which of two spellings is meant, even if their values agree now.
     if (table->has(s.plain))
       throw ConfigError(

@@ -17,36 +17,60 @@ namespace {
 constexpr double kMostReduced = 1e6, kMostPhysical = 1e9;
 
 /// Adds the three spellings of a length or time: without a unit, in reduced units, and in laboratory units.
+/// \param in_reduced, in_physical examples
 void add_quantity(std::vector<CameraOption>& list, const std::string& key, const std::string& help,
-                  double& value, CameraUnit& unit, const char* reduced, const char* physical,
-                  bool both_ways = false) {
-  const auto spelling = [&](const std::string& name, const std::string& text, CameraUnit means) {
+                  double& value, CameraUnit& unit, const char* reduced, const char* in_reduced,
+                  const char* physical, const char* in_physical, bool both_ways = false) {
+  const auto spelling = [&](const std::string& name, const char* symbol, const char* example,
+                            const std::string& text, CameraUnit means) {
     const double most = means == CameraUnit::physical ? kMostPhysical : kMostReduced;
-    list.push_back({name, text, &value, both_ways ? -most : 0, most, {}, &unit, means});
+    list.push_back({name, symbol, example, text, &value, both_ways ? -most : 0, most, {}, &unit, means});
   };
   const bool length = std::string_view(reduced) == "sigma";
-  spelling(
-      key,
-      fmt::format("{}, {}; if the trajectory has a scale, use one of the next two options", help, reduced),
-      CameraUnit::bare);
-  spelling(key + "-" + reduced, fmt::format("{}, {}", help, reduced), CameraUnit::reduced);
-  spelling(key + "-" + physical, fmt::format("{}, {}", help, length ? "mm" : "microseconds"),
-           CameraUnit::physical);
+  spelling(key, reduced, in_reduced,
+           help + "; if the trajectory has a scale, use one of the next two options", CameraUnit::bare);
+  spelling(key + "-" + reduced, reduced, in_reduced, help, CameraUnit::reduced);
+  spelling(key + "-" + physical, length ? "mm" : "microseconds", in_physical, help, CameraUnit::physical);
 }
 
 }  // namespace
 
+std::string CameraOption::help_with_unit() const {
+  return symbol.empty() || symbol == "1" ? help : help + ", " + symbol;
+}
+
+std::string CameraOption::toml_key() const {
+  std::string text = key;
+  std::replace(text.begin(), text.end(), '-', '_');
+  return text;
+}
+
+std::string CameraOption::toml_value() const {
+  return std::visit(
+      [](auto* v) -> std::string {
+        if constexpr (std::is_same_v<decltype(v), std::string*>)
+          return fmt::format("\"{}\"", *v);
+        else
+          return fmt::format("{}", *v);
+      },
+      value);
+}
+
 std::vector<CameraOption> camera_option_list(CameraOptions& o) {
   std::vector<CameraOption> list = {
-      {"pixels-per-sigma", "Camera pixels per bead diameter", &o.pixels_per_sigma, 3, 400, {}},
-      {"margin", "Width of the wall shown around the cell, px", &o.margin_px, 0, 1000, {}},
+      {"pixels-per-sigma", "px", "12.0", "Camera pixels per bead diameter", &o.pixels_per_sigma, 3, 400, {}},
+      {"margin", "px", "40.0", "Width of the wall shown around the cell", &o.margin_px, 0, 1000, {}},
       {"rotation",
-       "Rotation of the picture about its centre, degrees, counter-clockwise",
+       "degrees",
+       "2.0",
+       "Rotation of the picture about its centre, counter-clockwise",
        &o.rotation_deg,
        -180,
        180,
        {}},
       {"distortion",
+       "1",
+       "0.01",
        "Radial distortion k1: a point at distance r from the centre, in half diagonals, appears at r (1 + k1 "
        "r^2)",
        &o.distortion,
@@ -54,68 +78,102 @@ std::vector<CameraOption> camera_option_list(CameraOptions& o) {
        0.2,
        {}},
       {"left-tilt",
-       "Outward tilt of the left wall, degrees, about its foot on the plate; 0: as in the trajectory",
+       "degrees",
+       "0.5",
+       "Outward tilt of the left wall about its foot, which moves with the plate; 0: as in the trajectory",
        &o.left_tilt,
        -30,
        30,
        {}},
-      {"right-tilt", "Outward tilt of the right wall, likewise", &o.right_tilt, -30, 30, {}},
-      {"blur", "Blur of the optics, standard deviation, px", &o.blur_px, 0.2, 5, {}},
-      {"backlight", "Grey level of the light at the centre of the picture", &o.backlight, 1, 255, {}},
-      {"vignetting", "Relative loss of light in the corners", &o.vignetting, 0, 0.9, {}},
+      {"right-tilt",
+       "degrees",
+       "0.5",
+       "Outward tilt of the right wall, likewise",
+       &o.right_tilt,
+       -30,
+       30,
+       {}},
+      {"blur",
+       "px",
+       "1.2",
+       "Blur of the optics, standard deviation; the width of a pixel is added",
+       &o.blur_px,
+       0.2,
+       5,
+       {}},
+      {"backlight", "grey levels", "180.0", "Light at the centre of the picture", &o.backlight, 1, 255, {}},
+      {"vignetting", "1", "0.3", "Relative loss of light in the corners", &o.vignetting, 0, 0.9, {}},
       {"lamp-drift",
+       "1",
+       "-0.1",
        "Relative change of the light from the first frame to the last",
        &o.lamp_drift,
        -0.9,
        0.9,
        {}},
       {"lamp-flicker",
+       "1",
+       "0.02",
        "Relative change of the light from frame to frame, standard deviation",
        &o.lamp_flicker,
        0,
        0.5,
        {}},
-      {"bright", "Front light: bright beads, walls and plate on black", &o.bright, 0, 0, {}},
+      {"bright", "", "true", "Front light: bright beads, walls and plate on black", &o.bright, 0, 0, {}},
       {"electrons-per-level",
+       "electrons",
+       "10.0",
        "Shot noise: electrons per grey level; 0: no shot noise",
        &o.electrons_per_level,
        0,
        1e9,
        {}},
-      {"read-noise", "Read noise, grey levels, standard deviation", &o.read_noise, 0, 50, {}},
-      {"black-level", "Grey level without light", &o.black_level, 0, 100, {}},
-      {"bits", "Bit depth of the picture: 8, 10, 12, 14 or 16", &o.bits, 8, 16, {}},
-      {"tracer-darkness", "Darkness of a tracer disc", &o.tracer_darkness, 0.4, 1, {}},
-      {"glare", "Peak level of a bright spot on a bead, share of the light", &o.glare, 0, 2, {}},
-      {"glare-share", "Share of the beads that have a bright spot", &o.glare_share, 0, 1, {}},
+      {"read-noise", "grey levels", "2.0", "Read noise, standard deviation", &o.read_noise, 0, 50, {}},
+      {"black-level", "grey levels", "5.0", "Level without light", &o.black_level, 0, 100, {}},
+      {"bits",
+       "bits",
+       "12",
+       "Depth of the picture: 8, 10, 12, 14 or 16; above 8 the PNG has 16 bit with values below 2^bits",
+       &o.bits,
+       8,
+       16,
+       {}},
+      {"tracer-darkness",
+       "1",
+       "0.8",
+       "Share of the light that a tracer disc absorbs",
+       &o.tracer_darkness,
+       0.4,
+       1,
+       {}},
+      {"glare", "1", "0.5", "Peak level of a bright spot on a bead, share of the light", &o.glare, 0, 2, {}},
+      {"glare-share", "1", "0.3", "Share of the beads that have a bright spot", &o.glare_share, 0, 1, {}},
       {"glare-kind",
-       "Position of the spot: reflected (upper left, as from a lamp in front) or transmitted (the centre)",
+       "",
+       "\"transmitted\"",
+       "Position of the spot: reflected (upper left, 0.13 R wide, as from a lamp in front) or transmitted "
+       "(the centre, 0.25 R wide)",
        &o.glare_kind,
        0,
        0,
        {"reflected", "transmitted"}},
-      {"dust", "Specks on the glass", &o.dust, 0, 10000, {}},
-      {"scratches", "Scratches on the glass", &o.scratches, 0, 1000, {}},
-      {"drop", "Probability that a frame is lost", &o.drop, 0, 0.9, {}},
-      {"double", "Probability that a frame is stored twice", &o.doubled, 0, 0.9, {}},
+      {"dust", "", "20", "Specks on the glass, the same in every frame", &o.dust, 0, 10000, {}},
+      {"scratches", "", "3", "Scratches on the glass, the same in every frame", &o.scratches, 0, 1000, {}},
+      {"drop", "1", "0.01", "Probability that a frame is lost", &o.drop, 0, 0.9, {}},
+      {"double", "1", "0.01", "Probability that a frame is stored twice", &o.doubled, 0, 0.9, {}},
   };
   add_quantity(list, "max-height", "Height shown (0: up to the highest bead)", o.max_height,
-               o.max_height_unit, "sigma", "mm");
+               o.max_height_unit, "sigma", "30.0", "mm", "60.0");
   add_quantity(list, "exposure", "Motion blur: exposure time, centred on the time of the picture", o.exposure,
-               o.exposure_unit, "t0", "us");
+               o.exposure_unit, "t0", "0.05", "us", "700.0");
   add_quantity(list, "trigger-offset", "Delay of every picture after the time of its frame", o.trigger_offset,
-               o.trigger_offset_unit, "t0", "us", true);
+               o.trigger_offset_unit, "t0", "0.01", "us", "140.0", true);
   add_quantity(list, "trigger-jitter", "Scatter of the trigger time, standard deviation", o.trigger_jitter,
-               o.trigger_jitter_unit, "t0", "us");
+               o.trigger_jitter_unit, "t0", "0.01", "us", "90.0");
   return list;
 }
 
 namespace {
-
-std::string toml_key(std::string key) {
-  std::replace(key.begin(), key.end(), '-', '_');
-  return key;
-}
 
 void check_option(const CameraOption& option, const Where& where) {
   if (const auto* number = std::get_if<double*>(&option.value))
@@ -156,13 +214,14 @@ CameraOptions CameraOptions::reduced(const Scale& scale) const {
   return out;
 }
 
-CameraOptions read_camera(const std::filesystem::path& file) {
-  const Config config = Config::from_file(file);
+namespace {
+
+CameraOptions interpret(const Config& config) {
   const ConfigSection root = config.root();
   CameraOptions options;
   std::map<const CameraUnit*, std::string> said;
   for (const CameraOption& option : camera_option_list(options)) {
-    const std::string key = toml_key(option.key);
+    const std::string key = option.toml_key();
     if (option.stated_in != nullptr) {
       if (!root.has(key)) continue;
       if (const auto [other, fresh] = said.emplace(option.stated_in, key); !fresh)
@@ -194,20 +253,22 @@ CameraOptions read_camera(const std::filesystem::path& file) {
   return options;
 }
 
+}  // namespace
+
+CameraOptions read_camera(const std::filesystem::path& file) {
+  return interpret(Config::from_file(file));
+}
+
+CameraOptions read_camera_text(const std::string& text, const std::string& name) {
+  return interpret(Config::from_text(text, name));
+}
+
 std::string camera_text(const CameraOptions& options) {
   CameraOptions copy = options;
   std::string text;
   for (const CameraOption& option : camera_option_list(copy)) {
     if (!option.kept()) continue;
-    const std::string value = std::visit(
-        [](auto* v) -> std::string {
-          if constexpr (std::is_same_v<decltype(v), std::string*>)
-            return fmt::format("\"{}\"", *v);
-          else
-            return fmt::format("{}", *v);
-        },
-        option.value);
-    text += fmt::format("{} = {}  # {}\n", toml_key(option.key), value, option.help);
+    text += fmt::format("{} = {}  # {}\n", option.toml_key(), option.toml_value(), option.help_with_unit());
   }
   return text + fmt::format("seed = {}\n", options.seed);
 }

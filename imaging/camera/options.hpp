@@ -71,10 +71,13 @@ struct CameraOptions {
   [[nodiscard]] CameraOptions reduced(const Scale& scale) const;
 };
 
-/// One option: its name on the command line (with underscores in a CAMERA.toml), its meaning, the variable
-/// that stores it, and its bounds or allowed words.
+/// One option: its name on the command line (with underscores in a CAMERA.toml), unit, an example, its
+/// meaning, the variable that stores it, and its bounds or allowed words.
 struct CameraOption {
-  std::string key, help;
+  std::string key;
+  std::string symbol;   ///< of its unit: "px"; "1" for a ratio; empty for words, switches and counts
+  std::string example;  ///< a TOML value
+  std::string help;
   std::variant<double*, int*, bool*, std::string*> value;
   double lower = 0, upper = 0;
   std::vector<std::string> words;
@@ -83,6 +86,11 @@ struct CameraOption {
 
   /// Whether this spelling is the one in use. Of the spellings of a length or time, exactly one is in use.
   [[nodiscard]] bool kept() const { return stated_in == nullptr || *stated_in == unit; }
+  /// The help, and the unit unless the value is a ratio or has none.
+  [[nodiscard]] std::string help_with_unit() const;
+  /// The key in a CAMERA.toml, and its present value there.
+  [[nodiscard]] std::string toml_key() const;
+  [[nodiscard]] std::string toml_value() const;
 };
 
 /// The list from which the command line, CAMERA.toml, check() and the documentation are made. To add an
@@ -91,6 +99,8 @@ std::vector<CameraOption> camera_option_list(CameraOptions& options);
 
 /// Reads a CAMERA.toml; absent keys keep their defaults. \throws InputError, ConfigError
 CameraOptions read_camera(const std::filesystem::path& file);
+/// The same from text. \param name for messages
+CameraOptions read_camera_text(const std::string& text, const std::string& name);
 
 /// All options as the text of a CAMERA.toml.
 std::string camera_text(const CameraOptions& options);

@@ -1,5 +1,6 @@
 #include "imaging/cell/cell.hpp"
 
+#include "core/bounded_list.hpp"
 #include "core/config.hpp"
 #include "trajectory/unit_keys.hpp"
 
@@ -33,11 +34,9 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
 
   const ConfigSection camera = root.section("camera");
   cell.pixels_per_sigma = camera.number_in("pixels_per_sigma", 1, 1e4);
-  if (const auto origin = camera.numbers("origin_px", 2)) {
-    constexpr double kFarthest_px = 1e6;
-    for (const double x : *origin) require_range(camera.where("origin_px"), x, -kFarthest_px, kFarthest_px);
+  constexpr double kFarthest_px = 1e6;
+  if (const auto origin = numbers_in(camera, "origin_px", 2, -kFarthest_px, kFarthest_px))
     cell.origin = PixelPoint{(*origin)[0], (*origin)[1]};
-  }
   cell.phase_lock.frames_per_cycle =
       static_cast<int>(camera.integer_in("frames_per_cycle", 0, kMostPhases).value_or(0));
   cell.phase_lock.first_phase =
@@ -61,14 +60,10 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
                  : *sides == "periodic" ? Boundary::periodic
                                         : Boundary::open;
 
-  if (const auto tilt = box.numbers("side_tilt", 2)) {
-    for (const double t : *tilt) require_range(box.where("side_tilt"), t, -45, 45);
-    cell.side_tilt = {(*tilt)[0], (*tilt)[1]};
-  }
+  if (const auto tilt = numbers_in(box, "side_tilt", 2, -45, 45)) cell.side_tilt = {(*tilt)[0], (*tilt)[1]};
 
   const ConfigSection drive = root.section("drive");
   cell.drive_spec = read_drive_spec(drive);
-  // The signs are checked here as well as in solve_drive(), which does not know the lines of the file.
   constexpr double kLargest = 1e8;
   for (const char* key : {"amplitude", "gamma", "k_m", "peak_velocity"})
     (void)drive.number_in(key, 0, kLargest);

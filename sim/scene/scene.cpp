@@ -8,6 +8,8 @@
 #include <initializer_list>
 #include <numbers>
 
+#include "core/bounded_list.hpp"
+#include "core/key_record.hpp"
 #include "sim/laws/axes.hpp"
 #include "sim/scene/presets.hpp"
 #include "trajectory/calibration_file.hpp"
@@ -80,6 +82,7 @@ constexpr double radians(double degrees) {
 /// Reads gravity and returns the magnitude of g as given, to which Gamma and K_m refer.
 double read_gravity(const Section& s, Scene& scene, Voids& voids) {
   const auto tilt = s.number_in("tilt", -45, 45);
+  record_key(s.where("gravity").key, {.lengths = {2, 3}});
   if (!s.is_list("gravity")) {
     const double g = s.number_in("gravity", 0).value_or(1), lean = radians(tilt.value_or(0));
     scene.gravity = Vec3(g * std::sin(lean), 0, -g * std::cos(lean));
@@ -105,8 +108,7 @@ void read_side_tilt(const Section& s, Scene& scene) {
     scene.left_tilt = scene.right_tilt = s.number_in("side_tilt", -kSteepest, kSteepest).value_or(0);
     return;
   }
-  const std::vector<double> both = s.numbers("side_tilt", 2).value();
-  for (const double tilt : both) require_range(s.where("side_tilt"), tilt, -kSteepest, kSteepest);
+  const std::vector<double> both = numbers_in(s, "side_tilt", 2, -kSteepest, kSteepest).value();
   scene.left_tilt = both[0];
   scene.right_tilt = both[1];
 }

@@ -3,8 +3,8 @@
 /// The kinds of start: one table that the scene reader, the plan, `simulate`, `explain` and the help share.
 ///
 /// To add a start: its function in a file sim/start/start_NAME.cpp with a test, and here its enumerator, the
-/// declaration of the function, and one row of the table; then its line in docs/scene.md, which a test
-/// compares with this table.
+/// declaration of the function, and one row of the table. `twincell keys scene` prints its line of
+/// help.
 
 #include <array>
 #include <string_view>

@@ -67,6 +67,17 @@ def test_manual():
         assert done.returncode == 0 and not done.stderr, f"{name}: {done.stderr}"
 
 
+def test_keys():
+    page = pathlib.Path(__file__).resolve().parents[2] / "docs/keys.md"
+    assert run("keys", "--markdown").stdout == page.read_text(), "docs/keys.md is not what `twincell keys --markdown` prints"
+    text = run("keys").stdout
+    assert max(map(len, text.splitlines())) <= 100
+    for file, key in (("cell", "camera.bright"), ("scene", "contact.mu"), ("plan", "search.width"), ("camera", "blur")):
+        part = run("keys", file).stdout
+        assert part in text and f"\n  {key} = " in part, file
+    run("keys", "cel", code=2)
+
+
 def test_completion():
     script = run("completion", "bash").stdout
     (folder / "completion.bash").write_text(script)

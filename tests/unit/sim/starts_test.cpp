@@ -1,4 +1,4 @@
-// The table of starts: every row works, and docs/scene.md describes it with the same words.
+// The table of starts: every row works.
 #include "sim/scene/starts.hpp"
 
 #include <fmt/format.h>
@@ -7,7 +7,6 @@
 #include <set>
 #include <string>
 
-#include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "sim/start/start.hpp"
 #include "tests/support/complaint.hpp"
@@ -49,13 +48,6 @@ TEST(Starts, KeysOfAnotherStartAreRefusedWithTheStartsThatReadThem) {
                               "start.kind is not \"random\"");
   expect_refusal<ConfigError>([&] { read("table", "frame = 0"); }, "start.from", "a start from a table");
   expect_refusal<ConfigError>([&] { read("cystal_a", ""); }, "start.kind", "crystal_a");
-}
-
-TEST(Starts, TheManualDescribesEveryStart) {
-  const std::string manual = read_text_file(TWINCELL_SOURCE_DIR "/docs/scene.md");
-  for (const StartRow& start : kStarts)
-    EXPECT_NE(manual.find(fmt::format("`\"{}\"`: {}", start.word, start.help)), std::string::npos)
-        << "docs/scene.md lacks: `\"" << start.word << "\"`: " << start.help;
 }
 
 // Gamma refers to the gravity of the scene; without gravity there is none.

@@ -1,0 +1,130 @@
+#include "core/key_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <regex>
+#include <sstream>
+
+#include "core/config.hpp"
+#include "core/error.hpp"
+
+namespace twincell {
+
+namespace {
+
+std::string table_of(const std::string& key) {
+  const std::size_t dot = key.rfind('.');
+  return dot == std::string::npos ? "" : key.substr(0, dot);
+}
+
+std::string note_of(const KeyTable& table, const std::string& name) {
+  for (const auto& [of, note] : table.notes)
+    if (of == name) return note;
+  return {};
+}
+
+std::string meaning_of(const KeyRow& row) {
+  return row.meaning.empty() ? "the same" : row.meaning;
+}
+
+std::string range_of(const std::map<std::string, KeyRule>& rules, const KeyRow& row) {
+  const auto rule = rules.find(row.key);
+  return rule == rules.end() ? "" : rule->second.range();
+}
+
+/// A default that is a value, not words, is set as code.
+std::string default_markdown(const std::string& absent) {
+  if (absent.empty()) return "–";
+  try {
+    (void)Config::from_text("x = " + absent, "default");
+    return "`" + absent + "`";
+  } catch (const ConfigError&) {
+    return absent;
+  }
+}
+
+/// Pages of the manual as links from another one: "docs/scene.md" becomes "[scene.md](scene.md)".
+std::string linked(const std::string& text) {
+  return std::regex_replace(text, std::regex(R"(docs/(\w+\.md))"), "[$1]($1)");
+}
+
+/// Number of columns: UTF-8 continuation bytes take none.
+std::size_t columns_of(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+/// Breaks text into lines of at most `width` columns, each with its indentation and prefix.
+std::string wrapped(const std::string& text, const std::string& first, const std::string& later,
+                    std::size_t width) {
+  std::istringstream words(text);
+  std::string out, line = first, word;
+  bool empty = true;
+  while (words >> word) {
+    if (!empty && columns_of(line) + 1 + columns_of(word) > width) {
+      out += line + "\n";
+      line = later, empty = true;
+    }
+    line += (empty ? "" : " ") + word;
+    empty = false;
+  }
+  return out + line + "\n";
+}
+
+constexpr std::size_t kWidth = 100;
+
+}  // namespace
+
+std::map<std::string, KeyRule> rules_of(const KeyTable& table) {
+  const KeyRecord record;
+  for (const KeyRow& row : table.rows) {
+    std::vector<std::string> assignments = row.with;
+    assignments.push_back(row.key + "=" + row.example);
+    try {
+      table.read(assignments);
+    } catch (const Error&) {  // of the file that the example names: its key was queried before
+    }
+  }
+  return record.rules();
+}
+
+std::string key_markdown(const KeyTable& table) {
+  const auto rules = rules_of(table);
+  std::string text = fmt::format("## {}\n\n{}\n", table.title, linked(table.intro));
+  std::string name = "none yet";
+  for (const KeyRow& row : table.rows) {
+    if (const std::string of = table_of(row.key); of != name) {
+      name = of;
+      if (!name.empty()) text += fmt::format("\n### `[{}]`\n", name);
+      if (const std::string note = note_of(table, name); !note.empty()) text += "\n" + note + "\n";
+      text += "\n| key | unit | range | default | example | meaning |\n|---|---|---|---|---|---|\n";
+    }
+    text += fmt::format("| `{}` | {} | {} | {} | `{}` | {} |\n", row.key, row.unit, range_of(rules, row),
+                        default_markdown(row.absent), row.example, linked(meaning_of(row)));
+  }
+  return text;
+}
+
+std::string key_text(const KeyTable& table) {
+  const auto rules = rules_of(table);
+  std::string text = table.title + "\n\n" + wrapped(table.intro, "", "", kWidth);
+  std::string name = "none yet";
+  for (const KeyRow& row : table.rows) {
+    if (const std::string of = table_of(row.key); of != name) {
+      name = of;
+      text += name.empty() ? "\n" : fmt::format("\n[{}]\n", name);
+      if (const std::string note = note_of(table, name); !note.empty())
+        text += wrapped(note, "  ", "  ", kWidth);
+    }
+    std::string facts = row.unit;
+    for (const std::string& fact :
+         {range_of(rules, row), row.absent.empty() ? std::string() : "default: " + row.absent})
+      facts += (facts.empty() || fact.empty() ? "" : "; ") + fact;
+    text += wrapped(facts, fmt::format("  {} = {}  # ", row.key, row.example), "      # ", kWidth);
+    text += wrapped(meaning_of(row), "      ", "      ", kWidth);
+  }
+  return text;
+}
+
+}  // namespace twincell

@@ -1,0 +1,12 @@
+#pragma once
+/// \file
+/// Table of the keys of a CAMERA.toml, for docs/keys.md and `twincell keys camera`.
+
+#include "core/key_table.hpp"
+
+namespace twincell {
+
+/// The options of camera_option_list(), and the seed.
+const KeyTable& camera_keys();
+
+}  // namespace twincell
