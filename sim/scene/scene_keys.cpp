@@ -311,6 +311,9 @@ void add_start_and_time(Rows& rows) {
       {"time.springs", "", "false", "true",
        "true: every frame also stores the memory of its contacts and the forces, as a start in motion needs "
        "them"},
+      {"time.contacts", "", "false", "true",
+       "true, or simulate --contacts: every frame also stores its contacts with pair, overlap, normal and "
+       "tangential force"},
       {"time.samples", "", "400; two per phase with event-driven motion", "200",
        "samples per cycle for averages over time (granular temperature), rounded to an even number in each "
        "phase; 0: none"},
