@@ -2,7 +2,7 @@
 
 usage: export_clients_test.py TWINCELL SOURCE_DIR FOLDER CLIENT
 
-CLIENT is mdanalysis, lammps, pandas, ase, gsd or vtk. Exit code 77 means that the client is not installed.
+CLIENT is mdanalysis, lammps, pandas, ase, gsd, vtk or xml. Exit code 77 means that the client is not installed.
 """
 
 import math
@@ -197,6 +197,30 @@ def vtk(twincell, folder, truth):
     print(f"VTK: {lines} contacts as lines")
 
 
+def xml(twincell, folder, truth):
+    """Python's XML parser reads TrackMate's file; its tracks are followed as TmXmlReader does, from edge to edge."""
+    import xml.etree.ElementTree as ElementTree
+
+    root = ElementTree.parse(export(twincell, "trackmate", "run.xml", folder)).getroot()
+    assert root.tag == "TrackMate" and root.find("Model").get("spatialunits") == "sigma"
+    frames = root.findall("Model/AllSpots/SpotsInFrame")
+    assert [int(f.get("frame")) for f in frames] == list(range(len(truth["time"])))
+    spots = {s.get("ID"): s for f in frames for s in f}
+    assert len(spots) == truth["x"].size
+    shown = {t.get("TRACK_ID") for t in root.findall("Model/FilteredTracks/TrackID")}
+    tracks = root.findall("Model/AllTracks/Track")
+    assert len(tracks) == len(shown) == 60
+    seen = {name: np.full(truth["x"].shape, np.nan) for name in ("POSITION_X", "POSITION_Y", "POSITION_T")}
+    for track in tracks:
+        edges = [(e.get("SPOT_SOURCE_ID"), e.get("SPOT_TARGET_ID")) for e in track]
+        for spot in {spot for edge in edges for spot in edge}:
+            for name, array in seen.items():
+                array[int(spots[spot].get("FRAME")), int(track.get("TRACK_ID"))] = float(spots[spot].get(name))
+    same("TrackMate x", seen["POSITION_X"], truth["x"], 0)
+    same("TrackMate y, downwards", -seen["POSITION_Y"], truth["z"], 0)
+    same("TrackMate t", seen["POSITION_T"], np.broadcast_to(truth["time"][:, None], truth["x"].shape), 0)
+
+
 def main():
     twincell, source, folder, client = sys.argv[1:]
     folder = pathlib.Path(folder) / f"export_{client}"
@@ -204,7 +228,7 @@ def main():
     folder.mkdir(parents=True)
     truth = trajectory(pathlib.Path(twincell), pathlib.Path(source), folder)
     assert truth["x"].shape[1] == 60 and not math.isnan(truth["x"].sum())
-    {"mdanalysis": mdanalysis, "lammps": lammps, "pandas": pandas, "ase": ase, "gsd": gsd, "vtk": vtk}[client](
+    {"mdanalysis": mdanalysis, "lammps": lammps, "pandas": pandas, "ase": ase, "gsd": gsd, "vtk": vtk, "xml": xml}[client](
         twincell, folder, truth)
 
 

@@ -19,6 +19,8 @@ void save_trajectory(const std::filesystem::path& file, bool full) {
     info.columns = {.velocity = true, .spin = true, .identity = true, .phase = true, .plate_height = true};
     info.drive = Drive{Axis::z, 1.5, 1.0};
     info.phases_per_cycle = 2;
+    info.columns.contact_forces = true;
+    info.walls = {"bottom"};
     info.radius.assign(2, 0.5);
     info.tracer.assign(2, 0);
   }
@@ -33,6 +35,9 @@ void save_trajectory(const std::filesystem::path& file, bool full) {
       frame.cycle = f / 2;
       frame.velocity = frame.spin = {Vec3(0, 0, 1), Vec3(0, 0, 0)};
       frame.id = {0, 1};
+      if (f == 0)
+        frame.contact_forces = {{0, -1, 0.01, Vec3::UnitZ(), 1, Vec3::Zero()},
+                                {0, 1, 0.01, -Vec3::UnitX(), 1, Vec3::UnitZ()}};
     }
     writer.append(frame);
   }

@@ -96,13 +96,15 @@ ForeignOptions options_of(const MemoryTrajectory& t) {
 void expect_vector(const Vec3& a, const Vec3& b, double tolerance, int dimension, const std::string& what) {
   for (int k = 0; k < 3; ++k) {
     if (dimension == 2 && k == 1) continue;
-    EXPECT_NEAR(a[k], b[k], tolerance) << what << " along " << "xyz"[k];
+    EXPECT_NEAR(a[k], b[k], tolerance) << what << " along "
+                                       << "xyz"[k];
   }
 }
 
 TEST_F(ForeignFormats, WhatIsWrittenIsReadBack) {
   for (const ForeignFormat* format : foreign_formats()) {
     if (format->create == nullptr || format->open == nullptr) continue;
+    if (format->word == "trackmate") continue;  // positions, times and radii only: TrackMateTracks
     const bool is_table = format->word == "csv";
     const double tolerance = format->word == "gsd" ? 1e-6 : 1e-14;  // single precision
     for (const int dimension : {2, 3}) {
@@ -252,6 +254,121 @@ TEST_F(ForeignFormats, DamagedTables) {
             "f:3: the time differs from that of line 2, which has the same frame.");
   EXPECT_EQ(refusal("csv", "frame;particle;x;y\n0;1;2;3\n"),
             "f:1: the fields are separated by semicolons; use commas, and decimal points in numbers.");
+}
+
+TEST_F(ForeignFormats, TrackMateTracks) {
+  for (const int dimension : {2, 3}) {
+    const MemoryTrajectory out = three_beads(dimension);
+    EXPECT_EQ(export_trajectory(out, foreign_format("trackmate", ""), ExportUnits::reduced(), file(), "f"),
+              3U);
+    ForeignOptions options = options_of(out);
+    options.timestep.reset();  // has times
+    options.tracer_type.reset();
+    const MemoryTrajectory in = read("trackmate", options);
+    ASSERT_EQ(in.n_frames(), 3U);
+    ASSERT_EQ(in.info().n_beads, 3U);
+    EXPECT_EQ(in.info().source, "experiment");
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(in.info().radius[i], out.info().radius[i]);
+    for (std::size_t f = 0; f < 3; ++f) {
+      const Frame &a = in.frames()[f], &b = out.frames()[f];
+      EXPECT_NEAR(a.time, b.time, 1e-13);
+      for (std::size_t i = 0; i < 3; ++i) {
+        ASSERT_EQ(a.present(i), b.present(i)) << "bead " << i << " of frame " << f;
+        if (b.present(i)) expect_vector(a.position[i], b.position[i], 1e-13, dimension, "position");
+      }
+    }
+  }
+  // A single frame has no tracks: every spot is a bead.
+  MemoryTrajectory one(three_beads(2).info());
+  one.append(three_beads(2).frames()[0]);
+  export_trajectory(one, foreign_format("trackmate", ""), ExportUnits::reduced(), file(), "f");
+  EXPECT_EQ(read("trackmate", {.timestep = 1}).info().n_beads, 3U);
+}
+
+/// Positions in px, of which five are a bead diameter.
+ForeignOptions in_pixels() {
+  ForeignOptions options;
+  options.sigma = 5;
+  options.origin = Vec3(0, 100, 0);
+  return options;
+}
+
+/// A file of TrackMate 7, shortened: spot 4 is in no track, track 1 did not pass the filters.
+constexpr const char* kTrackMate = R"(<?xml version="1.0" encoding="UTF-8"?>
+<TrackMate version="7.11.1">
+  <!-- <Spot ID="9"/> -->
+  <Log>a text &lt;Spot&gt;</Log>
+  <Model spatialunits="pixel" timeunits="sec">
+    <AllSpots nspots="6">
+      <SpotsInFrame frame="0">
+        <Spot ID="1" name="ID1" POSITION_T="0.0" RADIUS="2.5" FRAME="0" POSITION_X="10.5" POSITION_Y="7" POSITION_Z="0" />
+        <Spot ID="3" name="a > b" POSITION_T="0.0" RADIUS="2.5" FRAME="0" POSITION_X="20" POSITION_Y="7" POSITION_Z="0" />
+      </SpotsInFrame>
+      <SpotsInFrame frame="1">
+        <Spot ID="2" name="ID2" POSITION_T="0.5" RADIUS="2.5" FRAME="1" POSITION_X="11" POSITION_Y="6" POSITION_Z="0" />
+        <Spot ID="4" name="ID4" POSITION_T="0.5" RADIUS="2.5" FRAME="1" POSITION_X="30" POSITION_Y="7" POSITION_Z="0" />
+        <Spot ID="5" name="ID5" POSITION_T="0.5" RADIUS="2.5" FRAME="1" POSITION_X="20" POSITION_Y="8" POSITION_Z="0" />
+      </SpotsInFrame>
+    </AllSpots>
+    <AllTracks>
+      <Track name="Track_0" TRACK_ID="0"><Edge SPOT_SOURCE_ID="1" SPOT_TARGET_ID="2" LINK_COST="0.3" /></Track>
+      <Track name="Track_1" TRACK_ID="1"><Edge SPOT_SOURCE_ID="3" SPOT_TARGET_ID="5" LINK_COST="0.3" /></Track>
+    </AllTracks>
+    <FilteredTracks><TrackID TRACK_ID="0" /></FilteredTracks>
+  </Model>
+</TrackMate>)";
+
+TEST_F(ForeignFormats, FilesOfTrackMate) {
+  put_file(file(), kTrackMate);
+  MemoryTrajectory t = read("trackmate", in_pixels());
+  ASSERT_EQ(t.info().n_beads, 1U);
+  ASSERT_EQ(t.n_frames(), 2U);
+  EXPECT_NEAR(t.frames()[1].position[0].x() - t.frames()[0].position[0].x(), 0.1, 1e-12);
+  EXPECT_NEAR(t.frames()[1].position[0].z() - t.frames()[0].position[0].z(), 0.2, 1e-12);  // y downwards
+  EXPECT_NEAR(t.info().radius[0], 0.5, 1e-12);
+  // The list of tracks that "Export tracks to XML file" writes has frames and positions only.
+  put_file(file(),
+           "<?xml version=\"1.0\"?>\n<Tracks nTracks=\"2\" spaceUnits=\"pixel\" frameInterval=\"0.5\" "
+           "timeUnits=\"sec\">\n<particle nSpots=\"2\"><detection t=\"0\" x=\"1\" y=\"2\" z=\"0\" />"
+           "<detection t=\"1\" x=\"1.5\" y=\"2\" z=\"0\" /></particle>\n<particle nSpots=\"1\">"
+           "<detection t=\"1\" x=\"4\" y=\"2\" z=\"0\" /></particle></Tracks>");
+  ForeignOptions list_of_tracks = in_pixels();
+  list_of_tracks.timestep = 0.5;
+  t = read("trackmate", list_of_tracks);
+  ASSERT_EQ(t.info().n_beads, 2U);
+  EXPECT_FALSE(t.frames()[0].present(1));
+  EXPECT_NEAR(t.frames()[1].time, 0.5 / std::sqrt(5.0), 1e-12);  // t0 = sqrt(sigma/g)
+}
+
+TEST_F(ForeignFormats, DamagedTrackMateFiles) {
+  const std::string good = kTrackMate;
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    return refusal("trackmate", text, in_pixels());
+  };
+  EXPECT_EQ(refusal("trackmate", "", {}), "f: there is no XML element.");
+  EXPECT_EQ(refusal("trackmate", "<svg/>", {}), "f:1: the element 'svg' is neither TrackMate nor Tracks.");
+  EXPECT_EQ(with("FRAME=\"0\"", "FRAME=\"x\""), "f:8: 'x' is not a whole number.");
+  EXPECT_EQ(with("POSITION_X=\"10.5\"", ""), "f:8: 'Spot' has no attribute 'POSITION_X'.");
+  EXPECT_EQ(with("POSITION_X=\"10.5\"", "POSITION_X=\"nan\""), "f:8: 'nan' is not a finite number.");
+  EXPECT_EQ(with("SPOT_TARGET_ID=\"2\"", "SPOT_TARGET_ID=\"7\""), "f:18: there is no spot 7.");
+  EXPECT_EQ(with("SPOT_TARGET_ID=\"5\"", "SPOT_TARGET_ID=\"2\""),
+            "f:19: the spot 2 belongs to the tracks 0 and 1.");
+  EXPECT_EQ(with("SPOT_TARGET_ID=\"2\"", "SPOT_TARGET_ID=\"4\"").substr(0, 30), "accepted");
+  EXPECT_EQ(with("ID=\"2\"", "ID=\"1\""), "f:12: the spot 1 occurs twice.");
+  EXPECT_EQ(with("TrackID TRACK_ID=\"0\"", "TrackID TRACK_ID=\"3\""), "f: the file has no tracks.");
+  // Two spots of one track in a frame: a split.
+  EXPECT_NE(with("<Edge SPOT_SOURCE_ID=\"1\" SPOT_TARGET_ID=\"2\" LINK_COST=\"0.3\" />",
+                 "<Edge SPOT_SOURCE_ID=\"1\" SPOT_TARGET_ID=\"2\"/><Edge SPOT_SOURCE_ID=\"1\" "
+                 "SPOT_TARGET_ID=\"4\"/>")
+                .find("occurs twice in a frame"),
+            std::string::npos);
+  // Cut anywhere, it is refused or read, with a sentence.
+  for (std::size_t n = 0; n < good.size(); n += 7) {
+    const std::string said = refusal("trackmate", good.substr(0, n), in_pixels());
+    EXPECT_TRUE(said == "accepted" || said.starts_with("f")) << said;
+  }
 }
 
 TEST_F(ForeignFormats, AGsdFileCutAnywhereIsRefused) {

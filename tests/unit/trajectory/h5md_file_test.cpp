@@ -197,6 +197,15 @@ TEST(H5mdFile, ContactForcesAreStoredWithTheirConnectivity) {
   EXPECT_EQ(h5::read_dataset<std::int32_t>(file.get(), "connectivity/contacts/value"),
             (std::vector<std::int32_t>{-1, -1, -1, -1, 0, 1, -1, -1, 0, 1, 1, 2, -1, -1, -1, -1}));
   EXPECT_TRUE(h5::exists(file.get(), "connectivity/contacts/step"));
+  // A damaged list is refused.
+  {
+    const h5::Handle damaged(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    const std::int64_t counts[] = {0, 2, 9, 0};
+    const h5::Handle set(H5Dopen2(damaged.get(), "twincell/contact_forces/count", H5P_DEFAULT));
+    ASSERT_GE(H5Dwrite(set.get(), h5::native<std::int64_t>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, counts), 0);
+  }
+  expect_refusal<InputError>([&] { H5mdReader broken(folder / "run.h5"); }, "twincell/contact_forces/count",
+                             "9 contacts exceeds the 5 contacts");
   // Without an announcement, contact forces are refused.
   H5mdWriter writer(folder / "other.h5", experiment_info());
   frame = frame_number(0);
