@@ -198,14 +198,15 @@ TEST(H5mdFile, ContactForcesAreStoredWithTheirConnectivity) {
             (std::vector<std::int32_t>{-1, -1, -1, -1, 0, 1, -1, -1, 0, 1, 1, 2, -1, -1, -1, -1}));
   EXPECT_TRUE(h5::exists(file.get(), "connectivity/contacts/step"));
   // A damaged list is refused.
+  fs::copy_file(folder / "run.h5", folder / "damaged.h5");
   {
-    const h5::Handle damaged(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    const h5::Handle damaged(H5Fopen((folder / "damaged.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
     const std::int64_t counts[] = {0, 2, 9, 0};
     const h5::Handle set(H5Dopen2(damaged.get(), "twincell/contact_forces/count", H5P_DEFAULT));
     ASSERT_GE(H5Dwrite(set.get(), h5::native<std::int64_t>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, counts), 0);
   }
-  expect_refusal<InputError>([&] { H5mdReader broken(folder / "run.h5"); }, "twincell/contact_forces/count",
-                             "9 contacts exceeds the 5 contacts");
+  expect_refusal<InputError>([&] { H5mdReader broken(folder / "damaged.h5"); },
+                             "twincell/contact_forces/count", "9 contacts exceeds the 5 contacts");
   // Without an announcement, contact forces are refused.
   H5mdWriter writer(folder / "other.h5", experiment_info());
   frame = frame_number(0);
