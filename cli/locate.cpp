@@ -14,6 +14,7 @@
 #include "cli/locating_options.hpp"
 #include "cli/numbers.hpp"
 #include "cli/output.hpp"
+#include "cli/settings_table.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
@@ -35,6 +36,7 @@ struct LocateOptions {
   std::string stack, output, overlay, truth, candidates, debug_folder;
   std::vector<double> scored_rows;
   std::int64_t overlay_frame = -1;  // -1: the first that is read
+  bool explain = false;
   LocatingRequest locating;
 };
 
@@ -163,7 +165,7 @@ void run(LocateOptions& o, const Common& common) {
   // Settings that the user did not give are determined from the first frames.
   RegionFrames seen(*frames, region);
   FramesAhead ahead(seen);
-  const auto [locator, settings_index] = configure_locator(ahead, given);
+  const auto [locator, settings_index, choice] = configure_locator(ahead, given);
   const std::int64_t settings_frame = range.number(settings_index);
   MotionInExposure motion;
   const std::int64_t n = locate_stack(
@@ -242,6 +244,8 @@ void run(LocateOptions& o, const Common& common) {
     for (const double other : locator.other_diameters_px) sizes += fmt::format(" and {:.2f}", other);
     text += fmt::format("bead diameter found from {}: {} px (--diameter)\n", shown, sizes);
   }
+  if (!choice.tried.empty()) document["settings_tried"] = settings_as_json(choice, refine);
+  text += o.explain ? settings_table(choice, refine) : narrow_win(choice, refine);
   if (refine != locator.refine.method && model_of(locator.refine) == DiscModel::circle)
     text += fmt::format(
         "the insides of the discs differ in {}: the discs are fitted by their rims (--refine edges)\n",
@@ -313,6 +317,10 @@ void add_locate(CLI::App& program, Common& common) {
           "Number of the frame for --overlay and --debug-dir, from 0; default: the first that is read")
       ->check(zero_or_above());
   add_locating_options(verb, o->locating);
+  verb.add_flag(
+      "--explain", o->explain,
+      "Print all settings that were tried, the evidence of the picture for each, and by how much the "
+      "chosen ones won");
   verb.add_option("--truth", o->truth,
                   "Score the result against the ground truth: truth.csv, or a folder of truth_NN.csv");
   verb.add_option("--scored-rows", o->scored_rows,

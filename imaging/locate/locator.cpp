@@ -14,6 +14,7 @@
 #include "core/median.hpp"
 #include "imaging/locate/picture_orientation.hpp"
 #include "imaging/refine/size_assignment.hpp"
+#include "imaging/refine/unlike_discs.hpp"
 
 namespace twincell {
 
@@ -154,6 +155,12 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   if (refiner.model == DiscModel::shared_profile) judged.min_interior = -HUGE_VAL;
   judged.other_radii_px = refined.other_radii_px;
   result.judged = judge(result.refined.beads, radius, grey.cols, grey.rows, judged);
+  if (some_may_be_unlike(result.judged.beads)) {
+    std::vector<double> radii = {radius};
+    radii.insert(radii.end(), refined.other_radii_px.begin(), refined.other_radii_px.end());
+    const std::vector<Detection> unlike = drop_unlike(grey, result.judged.beads, radii);
+    result.judged.dropped.insert(result.judged.dropped.end(), unlike.begin(), unlike.end());
+  }
   result.reports.push_back({"judge", watch.lap(), result.judged.beads.size()});
   return result;
 }

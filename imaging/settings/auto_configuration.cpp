@@ -14,16 +14,15 @@
 #include "imaging/refine/edge_fit.hpp"
 #include "imaging/refine/picture_fit.hpp"
 #include "imaging/refine/profile_fit.hpp"
+#include "imaging/settings/find_contrast.hpp"
 #include "imaging/settings/hypothesis_test.hpp"
 #include "imaging/settings/polydisperse_settings.hpp"
 #include "imaging/settings/profile_model_selection.hpp"
+#include "imaging/settings/settings_choice.hpp"
 
 namespace twincell {
 
 namespace {
-
-constexpr int kSide = 600;        // side of the region of a frame that is examined, px
-constexpr double kClearly = 1.2;  // factor by which pale discs must explain more
 
 /// Radii (px) at which the sharpness of the votes has a maximum, sharpest first.
 std::vector<double> sharp_radii(const cv::Mat1f& darkness, double smallest, double largest) {
@@ -64,20 +63,6 @@ double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options) 
   const std::vector<double> radii =
       sharp_radii(prepare(grey, options, largest).darkness, kSmallestRadius, largest);
   return radii.empty() ? 0 : 2 * radii[0];
-}
-
-double find_contrast(const cv::Mat& grey, const LocatorOptions& options) {
-  PreprocessOptions plain = options.preprocess;
-  plain.contrast = 1;
-  if (model_of(options.refine) == DiscModel::shared_profile) return 1;
-  const double contrast = contrast_of(prepare(grey, plain, options.diameter_px / 2).darkness);
-  if (model_of(options.refine) == DiscModel::circle) return contrast;
-  if (contrast >= kPale) return 1;
-  const cv::Mat part = busiest(grey, kSide);
-  const auto explained = [&](double by) {
-    return settle_plain(part, options, {plain.bright, options.diameter_px, by}).explained;
-  };
-  return explained(contrast) > kClearly * explained(1) ? contrast : 1;
 }
 
 std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given) {
@@ -196,7 +181,7 @@ std::optional<FoundSettings> find_pale(const cv::Mat& grey, const LocatorOptions
   if (model_of(given.refine) != DiscModel::plain) return std::nullopt;
   const std::vector<Hypothesis> all = hypotheses(grey, given, lattice, true);
   if (all.empty()) return std::nullopt;
-  double to_beat = best ? kClearly * best->explained : 0;
+  double to_beat = best ? kPaleClearly * best->explained : 0;
   if (best && best->method == kProfileRefiner.word) {
     const ProfileTrial trial = try_profile(grey, given, {best->bright, best->diameter_px});
     if (trial.explained > 0 && !trial.has_plain_shape()) return std::nullopt;
@@ -212,27 +197,59 @@ std::optional<FoundSettings> find_pale(const cv::Mat& grey, const LocatorOptions
   return pale;
 }
 
+/// The best profiles that were tried, without those of about the same size as a better one.
+std::vector<FoundSettings> best_profiles(std::vector<FoundSettings> tried) {
+  constexpr std::size_t kMost = 3;
+  constexpr double kSame = 0.04;
+  std::stable_sort(tried.begin(), tried.end(),
+                   [](const auto& a, const auto& b) { return a.explained > b.explained; });
+  std::vector<FoundSettings> best;
+  for (const FoundSettings& t : tried)
+    if (best.size() < kMost && std::none_of(best.begin(), best.end(), [&](const FoundSettings& b) {
+          return b.bright == t.bright && std::abs(b.diameter_px / t.diameter_px - 1) < kSame;
+        }))
+      best.push_back(t);
+  return best;
+}
+
+/// Common profiles of small discs of either polarity, for which there are hardly any votes.
+std::vector<FoundSettings> small_profiles(const cv::Mat& grey, const LocatorOptions& given) {
+  constexpr double kMost = 12, kRatio = 1.12;  // px
+  constexpr int kSide = 160;
+  const cv::Mat region = busiest(grey, kSide);
+  std::vector<FoundSettings> tried;
+  for (const bool bright : {false, true})
+    for (double d = 2 * kSmallestRadius; d <= kMost; d *= kRatio) {
+      if (given.polarity_known && bright != given.preprocess.bright) continue;
+      const ProfileTrial trial = try_profile(region, given, {bright, d});
+      if (trial.explained > 0)
+        tried.push_back({d, bright, trial.explained, {}, std::string(kProfileRefiner.word)});
+    }
+  return best_profiles(std::move(tried));
+}
+
 }  // namespace
 
-std::optional<FoundSettings> find_settings(const cv::Mat& picture, const LocatorOptions& given) {
+SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& given) {
   // A frame too small for a disc of the smallest radius contains no information on the size.
-  if (given.diameter_px <= 0 && std::min(picture.cols, picture.rows) < 2 * kSmallestRadius)
-    return std::nullopt;
+  if (given.diameter_px <= 0 && std::min(picture.cols, picture.rows) < 2 * kSmallestRadius) return {};
   // Orientation: canonical, as in `locate`, so that a rotated picture has the same settings.
   const cv::Mat frame = canonical_picture_orientation(picture).turned(picture);
+  std::vector<FoundSettings> candidates;
   std::optional<FoundSettings> patterned;
   if (given.diameter_px <= 0) patterned = find_patterned(frame, given);
   // Plain discs of all hypotheses.
   constexpr double kShrink = 4;
-  const cv::Mat grey = busiest(frame, kSide);
+  const cv::Mat grey = busiest(frame, kExaminedSide);
   const double lattice = lattice_constant(grey);
   const std::vector<Hypothesis> all = hypotheses(grey, given, lattice);
   std::optional<FoundSettings> best;
   const auto try_all = [&](const std::vector<Hypothesis>& some) {
     for (const Hypothesis& h : some) {
       const Trial trial = settle_plain(grey, given, h);
-      if (!best || trial.explained > best->explained)
-        best = FoundSettings{trial.diameter_px, h.bright, trial.explained, {}, {}};
+      const FoundSettings found{trial.diameter_px, h.bright, trial.explained, {}, {}};
+      if (found.explained > 0 || given.diameter_px > 0) candidates.push_back(found);
+      if (!best || found.explained > best->explained) best = found;
     }
   };
   try_all(all);
@@ -244,18 +261,44 @@ std::optional<FoundSettings> find_settings(const cv::Mat& picture, const Locator
     for (Hypothesis& h : larger) h.diameter_px *= kShrink;
     try_all(larger);
   }
-  // Patterned discs: rims of large circles also appear in a packing of small discs, but explain less of it.
-  const double part = static_cast<double>(grey.total()) / static_cast<double>(frame.total());
-  if (patterned && (!best || part * patterned->explained > best->explained)) return patterned;
-  // Other models: common profile, pale discs, several sizes.
-  if (best && given.refine.method == kExactRefiner.word)
-    if (auto alike = select_profile_model(frame, given, all, *best, lattice)) best = alike;
+  // Other models: common profile, pale discs, rims alone.
+  std::vector<FoundSettings> profiles;
+  const bool one_size = given.other_diameters_px.empty();
+  if (best && one_size && given.refine.method == kExactRefiner.word)
+    if (auto alike = select_profile_model(frame, given, all, *best, lattice, profiles)) best = alike;
   if (auto pale = find_pale(grey, given, lattice, best)) best = pale;
-  const bool by_picture = model_of(given.refine) == DiscModel::plain;
-  if (best && best->explained > 0 && given.diameter_px <= 0 && by_picture)
-    if (auto mixed = find_polydisperse(grey, given, all, *best)) return mixed;
-  if (best && best->explained <= 0 && given.diameter_px <= 0) return std::nullopt;
-  return best;
+  if (best) candidates.insert(candidates.begin(), *best);
+  for (const FoundSettings& p : best_profiles(profiles)) candidates.push_back(p);
+  if (patterned) candidates.push_back(*patterned);
+  // Evidence. Patterned discs may be larger than the region.
+  constexpr double kAcross = 6;
+  const cv::Mat region =
+      patterned ? busiest(frame, std::max(kExaminedSide, static_cast<int>(kAcross * patterned->diameter_px)))
+                : grey;
+  std::vector<TriedSettings> tried = try_settings(region, given, candidates);
+  SettingsChoice choice = confirmed(region, given, std::move(tried));
+  if (given.diameter_px > 0 || model_of(given.refine) != DiscModel::plain) return choice;
+  if (choice.tried.empty() && one_size && given.refine.method == kExactRefiner.word)
+    choice = confirmed(region, given, try_settings(region, given, small_profiles(grey, given)));
+  if (choice.tried.empty()) return choice;
+  // The size of the winner, by its rims alone and with further sizes.
+  FoundSettings winner = choice.tried.front().settings;
+  std::vector<FoundSettings> more;
+  if (winner.method != kEdgeRefiner.word) {
+    if (auto mixed = find_polydisperse(grey, given, all, winner)) more.push_back(*mixed);
+    if (given.refine.method == kExactRefiner.word) {
+      winner.method = kEdgeRefiner.word;
+      more.push_back(winner);
+    }
+  }
+  for (const TriedSettings& t : try_settings(region, given, more)) choice.tried.push_back(t);
+  return confirmed(region, given, std::move(choice.tried));
+}
+
+std::optional<FoundSettings> find_settings(const cv::Mat& picture, const LocatorOptions& given) {
+  const SettingsChoice choice = choose_settings(picture, given);
+  if (choice.tried.empty()) return std::nullopt;
+  return choice.tried.front().settings;
 }
 
 }  // namespace twincell

@@ -3,12 +3,11 @@
 /// Auto-configuration of the locator from one frame: bead size, polarity and disc model.
 ///
 /// The hypotheses are the radii at which the gradient votes of either polarity are sharpest, and the lattice
-/// constant of a crystal (lattice_constant.hpp). The hypothesis whose fitted discs explain most of the
-/// picture wins. The measure is the sum of -R^2 ln(1 - share explained), the gain in log-likelihood; it is 0
-/// if most of the discs overlap. Plain discs are tried first. Discs with a common radial profile
-/// (profile_fit.hpp) replace them if they explain clearly more. Plain discs of the size that the profile
-/// shows are used again if they explain as much. The search uses the region of the frame with the most edges,
-/// some hundred discs wide. If it finds nothing there, it searches the region reduced by a factor of four for
+/// constant of a crystal (lattice_constant.hpp). Plain discs, discs with a common radial profile
+/// (profile_fit.hpp), pale discs, discs known by their rims alone (edge_fit.hpp) and discs of several sizes
+/// propose settings: those whose fits converge and do not overlap. The proposals are judged by the evidence
+/// of the picture (settings_choice.hpp). The search uses the region of the frame with the most edges, some
+/// hundred discs wide. If it finds nothing there, it searches the region reduced by a factor of four for
 /// larger discs.
 
 #include <opencv2/core.hpp>
@@ -31,12 +30,11 @@ double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options);
 /// found too. Empty if no such discs are found.
 std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given);
 
-/// Darkness of a typical disc of a frame, for PreprocessOptions::contrast with the method, size and polarity
-/// of the options. 1 for discs with a common profile. For the picture fit it is also 1, unless the discs are
-/// so pale that the fit explains a fifth more with the measured contrast.
-double find_contrast(const cv::Mat& grey, const LocatorOptions& options);
+/// Tries settings for what `given` leaves open (see above), and chooses by the evidence of the picture
+/// (settings_choice.hpp). Empty if no round object stands out.
+SettingsChoice choose_settings(const cv::Mat& grey, const LocatorOptions& given);
 
-/// Finds the settings that `given` leaves open: the diameter, the polarity and, with the default refiner, the
+/// The settings chosen by choose_settings: the diameter, the polarity and, with the default refiner, the
 /// disc model. Empty if no round object stands out.
 std::optional<FoundSettings> find_settings(const cv::Mat& grey, const LocatorOptions& given);
 

@@ -2,24 +2,16 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "core/error.hpp"
 #include "imaging/settings/auto_configuration.hpp"
+#include "imaging/settings/find_contrast.hpp"
+#include "imaging/settings/settings_choice.hpp"
 
 namespace twincell {
 
 namespace {
-
-/// The given options, completed with the settings found.
-LocatorOptions with(const FoundSettings& found, LocatorOptions options) {
-  options.diameter_px = found.diameter_px;
-  options.preprocess.bright = found.bright;
-  if (options.other_diameters_px.empty()) options.other_diameters_px = found.other_diameters_px;
-  if (!found.method.empty()) options.refine.method = found.method;
-  options.preprocess.contrast = found.contrast;
-  options.polarity_known = true;
-  return options;
-}
 
 /// Whether all pixels are equal. A search for discs in such a frame, or in one of a few pixels, takes as long
 /// as in any other and finds nothing.
@@ -38,14 +30,14 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
     const cv::Mat* frame = frames.look(k);
     if (frame == nullptr) break;
     if (is_blank(*frame)) continue;
-    const auto found = find_settings(*frame, given);
-    if (!found) continue;
-    LocatorOptions settled = with(*found, given);
+    SettingsChoice choice = choose_settings(*frame, given);
+    if (choice.tried.empty()) continue;
+    LocatorOptions settled = completed(choice.tried.front().settings, given);
     if (model_of(settled.refine) == DiscModel::circle)
       settled.preprocess.contrast = find_contrast(*frame, settled);
     if (!first) first = settled;
     if (locate(*frame, settled).beads.empty()) continue;
-    return {settled, static_cast<std::int64_t>(k)};
+    return {settled, static_cast<std::int64_t>(k), std::move(choice)};
   }
   if (!first && given.diameter_px <= 0)
     throw InputError(
@@ -53,7 +45,7 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
         "shows no discs from which a bead diameter could be estimated; give it with --diameter.");
   LocatorOptions found = first.value_or(given);
   found.polarity_known = true;
-  return {found, 0};
+  return {found, 0, {}};
 }
 
 }  // namespace
@@ -61,11 +53,11 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
 LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions& given) {
   cv::setNumThreads(1);  // the only thread pool is that of this program
   const cv::Mat* first = frames.look(0);
-  if (first == nullptr) return {given, 0};
+  if (first == nullptr) return {given, 0, {}};
   if (given.diameter_px <= 0 || !given.polarity_known) return search(frames, given);
   LocatorOptions found = given;
   found.preprocess.contrast = find_contrast(*first, given);
-  return {found, 0};
+  return {found, 0, {}};
 }
 
 }  // namespace twincell

@@ -5,14 +5,16 @@
 #include <cstdint>
 
 #include "imaging/locate/locator.hpp"
+#include "imaging/settings/found_settings.hpp"
 #include "imaging/stack/frames_ahead.hpp"
 
 namespace twincell {
 
-/// Complete options, and the frame from which the open settings were found.
+/// Complete options, the frame from which the open settings were found, and the settings tried on it.
 struct LocatorConfiguration {
   LocatorOptions locator;
   std::int64_t frame = 0;
+  SettingsChoice choice;  ///< the settings that were tried on that frame; empty: none were
 };
 
 /// Finds the settings that `given` leaves open (diameter, polarity and, with the default refiner, the disc

@@ -2,6 +2,7 @@
 /// \file
 /// Locator settings found from a frame.
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,19 @@ struct FoundSettings {
   std::vector<double> other_diameters_px;  ///< diameters of discs of further sizes
   std::string method;                      ///< new value of RefineOptions::method; empty: unchanged
   double contrast = 1;                     ///< PreprocessOptions::contrast of plain discs
+};
+
+/// Settings that were tried on a picture.
+struct TriedSettings {
+  FoundSettings settings;
+  double evidence = 0;    ///< of the picture for the discs located with them, nats (picture_evidence.hpp)
+  std::size_t beads = 0;  ///< discs located with them
+};
+
+/// All settings that were tried, and the best of them.
+struct SettingsChoice {
+  std::vector<TriedSettings> tried;  ///< the chosen ones first, the others by evidence; empty: none explains
+                                     ///< anything
 };
 
 }  // namespace twincell

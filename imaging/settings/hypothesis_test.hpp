@@ -16,6 +16,10 @@ namespace twincell {
 
 /// Darkness below which discs may be too pale to be recognised.
 inline constexpr double kPale = 0.45;
+/// Factor by which pale discs must explain more than others.
+inline constexpr double kPaleClearly = 1.2;
+/// Largest side of the region of a frame that is examined, px.
+inline constexpr int kExaminedSide = 600;
 /// The range of radii that is searched, px.
 inline constexpr double kSmallestRadius = 3, kLargestRadius = 40;
 

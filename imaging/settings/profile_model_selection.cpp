@@ -15,8 +15,11 @@ class ProfileModelSearch {
  public:
   ProfileModelSearch(const cv::Mat& grey, const LocatorOptions& given, const FoundSettings& plain)
       : grey_(grey), given_(given), best_{plain.bright, plain.diameter_px} {
-    best_trial_ = try_profile(grey_, given_, best_);
+    best_trial_ = tried(best_);
   }
+
+  /// Every size and polarity whose common profile explains something.
+  [[nodiscard]] const std::vector<FoundSettings>& tried() const { return tried_; }
 
   /// Tries each hypothesis, extended to its rim. A profile has more freedom than a plain disc, so it must be
   /// clearly better than the profile at the size of the plain discs.
@@ -54,7 +57,7 @@ class ProfileModelSearch {
     constexpr double kBetter = 1.1;
     const Hypothesis other{!best_.bright, best_.diameter_px};
     if (!allowed(other)) return;
-    ProfileTrial trial = try_profile(grey_, given_, other);
+    ProfileTrial trial = tried(other);
     if (trial.explained > kBetter * best_trial_.explained &&
         std::abs(trial.profile.rim() / best_trial_.profile.rim() - 1) < kClose)
       accept(other, std::move(trial));
@@ -89,6 +92,12 @@ class ProfileModelSearch {
   }
 
  private:
+  ProfileTrial tried(const Hypothesis& h) {
+    ProfileTrial trial = try_profile(grey_, given_, h);
+    if (trial.explained > 0)
+      tried_.push_back({h.diameter_px, h.bright, trial.explained, {}, std::string(kProfileRefiner.word)});
+    return trial;
+  }
   void accept(const Hypothesis& h, ProfileTrial trial) {
     best_ = h;
     best_trial_ = std::move(trial);
@@ -100,15 +109,15 @@ class ProfileModelSearch {
   }
   /// Tries a hypothesis and extends its size to the rim that its profile shows, as long as this explains
   /// more.
-  ProfileTrial extended_to_rim(Hypothesis& h) const {
+  ProfileTrial extended_to_rim(Hypothesis& h) {
     constexpr int kRounds = 2;
-    ProfileTrial trial = try_profile(grey_, given_, h);
+    ProfileTrial trial = tried(h);
     for (int round = 0; round < kRounds && trial.explained > 0; ++round) {
       const double rim = trial.profile.rim();
       const bool inverted = trial.profile.at(0.95 * rim) < 0;
       const Hypothesis next{h.bright != inverted, 2 * rim};
       if (!allowed(next) || (!inverted && std::abs(next.diameter_px / h.diameter_px - 1) < kClose)) break;
-      ProfileTrial out = try_profile(grey_, given_, next);
+      ProfileTrial out = tried(next);
       if (out.explained <= trial.explained) break;
       h = next;
       trial = std::move(out);
@@ -129,26 +138,32 @@ class ProfileModelSearch {
   Hypothesis best_;
   ProfileTrial best_trial_;
   FoundSettings best_plain_;
+  std::vector<FoundSettings> tried_;
 };
 
 }  // namespace
 
 std::optional<FoundSettings> select_profile_model(const cv::Mat& frame, const LocatorOptions& given,
                                                   const std::vector<Hypothesis>& all,
-                                                  const FoundSettings& plain, double lattice) {
+                                                  const FoundSettings& plain, double lattice,
+                                                  std::vector<FoundSettings>& tried) {
   constexpr int kDiscs = 14;  // discs across the region that is examined
   double largest = plain.diameter_px;
   for (const Hypothesis& h : all) largest = std::max(largest, h.diameter_px);
   const cv::Mat grey = busiest(frame, std::clamp(static_cast<int>(kDiscs * largest), 160, 360));
   ProfileModelSearch search(grey, given, plain);
   search.try_all(all, lattice);
-  if (search.found_nothing()) return std::nullopt;
-  if (!search.plain_suffices()) {
-    search.try_wider();
-    search.try_inverted();
-    search.try_best_as_plain();
+  std::optional<FoundSettings> found;
+  if (!search.found_nothing()) {
+    if (!search.plain_suffices()) {
+      search.try_wider();
+      search.try_inverted();
+      search.try_best_as_plain();
+    }
+    found = search.result(plain);
   }
-  return search.result(plain);
+  tried.insert(tried.end(), search.tried().begin(), search.tried().end());
+  return found;
 }
 
 }  // namespace twincell

@@ -15,10 +15,12 @@ namespace twincell {
 /// The best of the hypotheses with a common profile, each first extended to the rim that its profile shows;
 /// or plain discs of the width that a profile shows, if the votes did not propose that width. Empty if the
 /// result agrees with the settings in `plain`.
+/// \param tried every size and polarity whose common profile explains something is added
 /// \param plain the best of the same hypotheses with plain discs
 /// \param lattice the lattice constant, px; 0: none
 std::optional<FoundSettings> select_profile_model(const cv::Mat& frame, const LocatorOptions& given,
                                                   const std::vector<Hypothesis>& all,
-                                                  const FoundSettings& plain, double lattice);
+                                                  const FoundSettings& plain, double lattice,
+                                                  std::vector<FoundSettings>& tried);
 
 }  // namespace twincell

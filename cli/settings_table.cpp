@@ -1,0 +1,53 @@
+#include "cli/settings_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "imaging/settings/settings_choice.hpp"
+
+namespace twincell::cli {
+
+std::string options_of(const FoundSettings& settings, const std::string& refine) {
+  std::string text = fmt::format("--diameter {:.2f}", settings.diameter_px);
+  for (const double other : settings.other_diameters_px) text += fmt::format(" {:.2f}", other);
+  text += settings.bright ? " --bright" : " --dark";
+  const std::string& method = settings.method.empty() ? refine : settings.method;
+  return text + " --refine " + method;
+}
+
+std::string settings_table(const SettingsChoice& choice, const std::string& refine) {
+  if (choice.tried.empty())
+    return "no settings were tried: diameter and polarity are given, or nothing is seen\n";
+  double most = 0;
+  for (const TriedSettings& t : choice.tried) most = std::max(most, t.evidence);
+  std::string text = "evidence/nats   share  beads  settings\n";
+  for (const TriedSettings& t : choice.tried)
+    text += fmt::format("{:13.0f}  {:6.3f}  {:5}  {}{}\n", t.evidence, t.evidence / most, t.beads,
+                        options_of(t.settings, refine), &t == &choice.tried.front() ? "  (chosen)" : "");
+  const std::size_t k = runner_up(choice);
+  if (k == 0) return text + "no other discs were considered\n";
+  return text + fmt::format("the best settings with other discs have {:.0f} nats less: {}\n",
+                            choice.tried.front().evidence - choice.tried[k].evidence,
+                            options_of(choice.tried[k].settings, refine));
+}
+
+std::string narrow_win(const SettingsChoice& choice, const std::string& refine) {
+  const std::size_t k = narrow_runner_up(choice);
+  if (k == 0) return {};
+  return fmt::format("other settings explain the picture nearly as well; compare --overlay with: {}\n",
+                     options_of(choice.tried[k].settings, refine));
+}
+
+nlohmann::json settings_as_json(const SettingsChoice& choice, const std::string& refine) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const TriedSettings& t : choice.tried)
+    list.push_back({{"options", options_of(t.settings, refine)},
+                    {"evidence", t.evidence},
+                    {"beads", t.beads},
+                    {"chosen", &t == &choice.tried.front()}});
+  return list;
+}
+
+}  // namespace twincell::cli

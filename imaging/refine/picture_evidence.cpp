@@ -1,0 +1,341 @@
+#include "imaging/refine/picture_evidence.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "core/median.hpp"
+
+namespace twincell {
+
+namespace {
+
+constexpr double kOutside = 2.5;               // px beyond the rim that belong to a disc
+constexpr float kRim = 2;                      // px inside the rim that belong to it
+constexpr double kPerPixel = 2;                // levels of the profile
+constexpr double kDiscCost = 2.5;              // ln N each: half of x, y, R, a, o
+constexpr double kStep = 0.5, kLeastStep = 2;  // of R; px
+constexpr int kDirections = 8;
+constexpr int kRounds = 2;  // of learning the profile, then the level of each disc
+
+/// The discs of one size: profile, scale of the residuals, and whether the profile is used, by r - R.
+struct Size {
+  double radius = 0;
+  std::size_t first = 0, count = 0;  // levels among all sizes
+  std::vector<double> level, scale;
+  std::vector<bool> used;
+  std::vector<cv::Point> steps;  // to the neighbours of a pixel on straight lines
+};
+
+/// A place in the profile of a size: level k and the share of level k + 1.
+struct Place {
+  std::size_t k;
+  double part;
+};
+
+class Explanation {
+ public:
+  Explanation(const cv::Mat1f& grey, const std::vector<Detection>& discs, const std::vector<double>& radii)
+      : grey_(grey), discs_(discs), noise_(noise_level(grey)), owner_(grey.size(), -1) {
+    for (const double r : radii) {
+      Size s;
+      s.radius = r;
+      s.first = levels_;
+      s.count = static_cast<std::size_t>(std::ceil((r + kOutside) * kPerPixel)) + 2;
+      levels_ += s.count;
+      s.level.assign(s.count, 0);
+      s.scale.assign(s.count, noise_);
+      s.used.assign(s.count, true);
+      const double far = std::max(kLeastStep, kStep * r);
+      for (int k = 0; k < kDirections; ++k) {
+        const double turn = std::numbers::pi * k / kDirections;
+        s.steps.emplace_back(cvRound(far * std::cos(turn)), cvRound(far * std::sin(turn)));
+      }
+      sizes_.push_back(std::move(s));
+    }
+    for (const Detection& d : discs) {
+      std::size_t nearest = 0;
+      for (std::size_t k = 1; k < radii.size(); ++k)
+        if (std::abs(std::log(d.radius / radii[k])) < std::abs(std::log(d.radius / radii[nearest])))
+          nearest = k;
+      size_of_.push_back(nearest);
+    }
+    amplitude_.assign(discs.size(), 1);
+    offset_.assign(discs.size(), 0);
+    share_pixels();
+  }
+
+  PictureEvidence evidence() {
+    for (int round = 0; round < kRounds; ++round) {
+      learn_profiles(round == 0);
+      render();
+      level_discs();
+    }
+    measure();
+    return gains();
+  }
+
+ private:
+  /// Calls use(x, y, r - R) for the pixels of the picture that a disc reaches.
+  template <class Use>
+  void over(const Detection& d, Use&& use) const {
+    const double reach = d.radius + kOutside;
+    for (int y = std::max(0, cvCeil(d.y - reach)); y <= std::min(grey_.rows - 1, cvFloor(d.y + reach)); ++y) {
+      const double dy = y - d.y, half = std::sqrt(std::max(0.0, reach * reach - dy * dy));
+      for (int x = std::max(0, cvCeil(d.x - half)); x <= std::min(grey_.cols - 1, cvFloor(d.x + half)); ++x)
+        use(x, y, std::sqrt((x - d.x) * (x - d.x) + dy * dy) - d.radius);
+    }
+  }
+  /// The place in the profile at r - R. The innermost level serves a disc that is larger than its size.
+  [[nodiscard]] Place place(const Size& s, double out) const {
+    const double t = std::clamp((out + s.radius) * kPerPixel, 0.0, static_cast<double>(s.count) - 1.001);
+    const auto k = static_cast<std::size_t>(t);
+    return {k, t - static_cast<double>(k)};
+  }
+
+  /// Gives each pixel to the disc whose rim it is nearest to, or deepest inside of.
+  void share_pixels() {
+    cv::Mat1f nearest(grey_.size(), static_cast<float>(kOutside));
+    for (std::size_t b = 0; b < discs_.size(); ++b)
+      over(discs_[b], [&](int x, int y, double out) {
+        if (static_cast<float>(out) >= nearest(y, x)) return;
+        nearest(y, x) = static_cast<float>(out);
+        owner_(y, x) = static_cast<int>(b);
+      });
+    out_ = nearest;
+  }
+
+  /// Fits the levels of all profiles, and in the first round a common ground, by weighted least squares.
+  void learn_profiles(bool first) {
+    struct Term {
+      std::size_t level;
+      double share;
+    };
+    // The terms of each pixel, from all discs that reach it.
+    std::vector<std::vector<Term>> terms(grey_.total());
+    for (std::size_t b = 0; b < discs_.size(); ++b) {
+      const Size& s = sizes_[size_of_[b]];
+      over(discs_[b], [&](int x, int y, double out) {
+        const Place p = place(s, out);
+        auto& list = terms[static_cast<std::size_t>(y) * static_cast<std::size_t>(grey_.cols) +
+                           static_cast<std::size_t>(x)];
+        list.push_back({s.first + p.k, 1 - p.part});
+        list.push_back({s.first + p.k + 1, p.part});
+      });
+    }
+    const auto n = static_cast<Eigen::Index>(levels_ + 1);
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+    double pixels = 0;
+    for (int y = 0; y < grey_.rows; ++y)
+      for (int x = 0; x < grey_.cols; ++x) {
+        auto& list = terms[static_cast<std::size_t>(y) * static_cast<std::size_t>(grey_.cols) +
+                           static_cast<std::size_t>(x)];
+        if (list.empty()) continue;
+        const auto b = static_cast<std::size_t>(owner_(y, x));
+        const double v = static_cast<double>(grey_(y, x)) - offset_[b];
+        double weight = 1;
+        if (!first) {
+          const double e = v - amplitude_[b] * (static_cast<double>(model_(y, x)));
+          const double scale = 10 * noise_;
+          weight = scale * scale / (scale * scale + e * e);
+        }
+        for (Term& t : list) t.share *= amplitude_[b];
+        if (first) list.push_back({levels_, 1});
+        for (const Term& t : list) {
+          right[static_cast<Eigen::Index>(t.level)] += weight * t.share * v;
+          for (const Term& u : list)
+            a(static_cast<Eigen::Index>(t.level), static_cast<Eigen::Index>(u.level)) +=
+                weight * t.share * u.share;
+        }
+        ++pixels;
+      }
+    // Levels in few pixels follow their neighbours; the profile is 0 where the disc has ended.
+    const double smooth = 0.01 * (pixels + 1) / static_cast<double>(n);
+    for (const Size& s : sizes_) {
+      for (std::size_t k = 1; k < s.count; ++k) {
+        const auto i = static_cast<Eigen::Index>(s.first + k);
+        a(i - 1, i - 1) += smooth, a(i, i) += smooth, a(i - 1, i) -= smooth, a(i, i - 1) -= smooth;
+      }
+      const auto last = static_cast<Eigen::Index>(s.first + s.count - 1);
+      a(last, last) += 100 * smooth;
+    }
+    a.diagonal().array() += 1e-9 * (pixels + 1);
+    const Eigen::VectorXd solved = a.ldlt().solve(right);
+    for (Size& s : sizes_)
+      for (std::size_t k = 0; k < s.count; ++k) s.level[k] = solved[static_cast<Eigen::Index>(s.first + k)];
+  }
+
+  /// The sum of the profiles of all discs.
+  void render() {
+    model_ = cv::Mat1f::zeros(grey_.size());
+    for (std::size_t b = 0; b < discs_.size(); ++b) {
+      const Size& s = sizes_[size_of_[b]];
+      over(discs_[b], [&](int x, int y, double out) {
+        const Place p = place(s, out);
+        model_(y, x) += static_cast<float>((1 - p.part) * s.level[p.k] + p.part * s.level[p.k + 1]);
+      });
+    }
+  }
+
+  /// Fits offset and amplitude of each disc to its pixels. Discs of one size look alike, so the amplitude is
+  /// within a factor of 0.5 to 1.5 of the common one.
+  void level_discs() {
+    struct Sums {
+      double n = 0, m = 0, v = 0, mm = 0, mv = 0;
+    };
+    constexpr double kLeast = 0.5, kMost = 1.5;
+    for (int pass = 0; pass < 2; ++pass) {
+      std::vector<Sums> sums(discs_.size());
+      for (int y = 0; y < grey_.rows; ++y)
+        for (int x = 0; x < grey_.cols; ++x) {
+          const int b = owner_(y, x);
+          if (b < 0) continue;
+          const auto k = static_cast<std::size_t>(b);
+          const auto m = static_cast<double>(model_(y, x)), v = static_cast<double>(grey_(y, x));
+          double w = 1;
+          if (pass > 0) {
+            const double e = v - offset_[k] - amplitude_[k] * m, scale = 10 * noise_;
+            w = scale * scale / (scale * scale + e * e);
+          }
+          Sums& s = sums[k];
+          s.n += w, s.m += w * m, s.v += w * v, s.mm += w * m * m, s.mv += w * m * v;
+        }
+      for (std::size_t b = 0; b < discs_.size(); ++b) {
+        const Sums& s = sums[b];
+        if (s.n <= 0) continue;
+        const double spread = s.mm - s.m * s.m / s.n;
+        amplitude_[b] = spread > 0 ? std::clamp((s.mv - s.m * s.v / s.n) / spread, kLeast, kMost) : 1.0;
+        offset_[b] = (s.v - amplitude_[b] * s.m) / s.n;
+      }
+    }
+  }
+
+  [[nodiscard]] double residual(int x, int y) const {
+    const auto b = static_cast<std::size_t>(owner_(y, x));
+    return static_cast<double>(grey_(y, x)) - offset_[b] - amplitude_[b] * static_cast<double>(model_(y, x));
+  }
+  /// e_0 of a pixel: the smallest rms difference, over sqrt 2, to the two pixels at a distance on a straight
+  /// line through it. In uniform areas the smallest of several would be below the noise.
+  [[nodiscard]] double without(int x, int y, const std::vector<cv::Point>& steps) const {
+    constexpr double kTypical = 0.45;  // median of the square of a standard normal variable
+    const float here = grey_(y, x);
+    float least = HUGE_VALF;
+    for (const cv::Point& step : steps) {
+      float squares = 0;
+      int seen = 0;
+      for (const int times : {-2, -1, 1, 2}) {
+        const int i = x + times * step.x, j = y + times * step.y;
+        if (i < 0 || j < 0 || i >= grey_.cols || j >= grey_.rows) continue;
+        const float e = grey_(j, i) - here;
+        squares += e * e;
+        ++seen;
+      }
+      if (seen > 0) least = std::min(least, squares / static_cast<float>(2 * seen));
+    }
+    const double floor = kTypical * noise_ * noise_;
+    return std::sqrt(std::isfinite(least) ? std::max(floor, static_cast<double>(least)) : floor);
+  }
+
+  template <class Use>
+  void over_owned(Use&& use) const {
+    for (int y = 0; y < grey_.rows; ++y)
+      for (int x = 0; x < grey_.cols; ++x)
+        if (const int b = owner_(y, x); b >= 0) {
+          const auto k = static_cast<std::size_t>(b);
+          use(x, y, k, place(sizes_[size_of_[k]], static_cast<double>(out_(y, x))).k);
+        }
+  }
+
+  /// Measures the scale of the residuals by r - R, and decides where the profile is used.
+  void measure() {
+    std::vector<std::vector<double>> residuals(levels_), gain(levels_);
+    over_owned([&](int x, int y, std::size_t b, std::size_t k) {
+      residuals[sizes_[size_of_[b]].first + k].push_back(std::abs(residual(x, y)));
+    });
+    constexpr double kFromMedian = 1.4826;
+    for (Size& s : sizes_)
+      for (std::size_t k = 0; k < s.count; ++k)
+        if (auto& of = residuals[s.first + k]; !of.empty())
+          s.scale[k] = std::max(noise_, kFromMedian * upper_median(std::move(of)));
+    std::vector<double> sums(levels_);
+    over_owned([&](int x, int y, std::size_t b, std::size_t k) {
+      const Size& s = sizes_[size_of_[b]];
+      sums[s.first + k] += pixel_gain(residual(x, y), s.scale[k], without(x, y, s.steps), noise_);
+    });
+    for (Size& s : sizes_)
+      for (std::size_t k = 0; k < s.count; ++k) s.used[k] = sums[s.first + k] > 0;
+  }
+
+  PictureEvidence gains() {
+    PictureEvidence result;
+    const double cost = std::log(static_cast<double>(grey_.total()));
+    result.of_disc.assign(discs_.size(), -kDiscCost * cost);
+    result.misfit.assign(discs_.size(), 0);
+    std::vector<double> pixels(discs_.size());
+    over_owned([&](int x, int y, std::size_t b, std::size_t k) {
+      const Size& s = sizes_[size_of_[b]];
+      if (!s.used[k]) return;
+      const double e1 = residual(x, y);
+      result.of_disc[b] += pixel_gain(e1, s.scale[k], without(x, y, s.steps), noise_);
+      if (out_(y, x) < -kRim) return;
+      result.misfit[b] += std::log(1 + e1 * e1 / (s.scale[k] * s.scale[k]));
+      ++pixels[b];
+    });
+    for (std::size_t b = 0; b < discs_.size(); ++b)
+      if (pixels[b] > 0) result.misfit[b] /= pixels[b];
+    for (const double of : result.of_disc) result.total += of;
+    for (const Size& s : sizes_)
+      result.total -= 0.5 * cost * static_cast<double>(std::count(s.used.begin(), s.used.end(), true));
+    return result;
+  }
+
+  const cv::Mat1f& grey_;
+  const std::vector<Detection>& discs_;
+  double noise_;
+  std::vector<Size> sizes_;
+  std::size_t levels_ = 0;
+  std::vector<std::size_t> size_of_;
+  std::vector<double> amplitude_, offset_;
+  cv::Mat1i owner_;  // the disc that a pixel belongs to; -1: none
+  cv::Mat1f out_;    // r - R of that disc
+  cv::Mat1f model_;  // sum of the profiles
+};
+
+}  // namespace
+
+double pixel_gain(double e1, double s1, double e0, double s0) {
+  return std::log(s1 / s0) + std::log((s0 * s0 + e0 * e0) / (s1 * s1 + e1 * e1));
+}
+
+double noise_level(const cv::Mat1f& grey) {
+  constexpr double kSamples = 40000, kShare = 0.2;
+  constexpr double kQuantile = 0.2533;  // of |z|: a fifth of a normal distribution lies within
+  constexpr double kLeast = 1e-3;
+  double low = 0, high = 0;
+  cv::minMaxLoc(grey, &low, &high);
+  const double least = std::max(kLeast * (high - low), 1e-12);
+  const int stride = std::max(1, static_cast<int>(static_cast<double>(grey.total()) / kSamples));
+  std::vector<float> seen;
+  for (int y = stride / 2; y < grey.rows; y += stride) {
+    const float* v = grey[y];
+    for (int x = 1; x + 1 < grey.cols; ++x) seen.push_back(std::abs(v[x - 1] - 2 * v[x] + v[x + 1]));
+  }
+  if (seen.empty()) return least;
+  const auto at = seen.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(seen.size()));
+  std::nth_element(seen.begin(), at, seen.end());
+  return std::max(least, static_cast<double>(*at) / (kQuantile * std::sqrt(6.0)));
+}
+
+PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detection>& discs,
+                                 const std::vector<double>& radii_px) {
+  if (discs.empty() || grey.empty())
+    return {0, std::vector<double>(discs.size(), 0.0), std::vector<double>(discs.size(), 0.0)};
+  cv::Mat1f levels;
+  grey.convertTo(levels, CV_32F);
+  return Explanation(levels, discs, radii_px).evidence();
+}
+
+}  // namespace twincell

@@ -1,0 +1,54 @@
+#pragma once
+/// \file
+/// Evidence of a picture for a set of discs: by how much the discs describe the picture better than a model
+/// without discs does. One currency for discs of any size, polarity and appearance, whichever fit found them.
+///
+/// Without discs, a pixel is known from its neighbourhood: its residual e_0 is the rms difference, over sqrt
+/// 2, to the two pixels at the distance max(2 px, 0.6 R) on a straight line through it, for the best of eight
+/// directions, so that noise alone gives its own standard deviation s_0. This describes uniform areas, smooth
+/// light, and straight edges and lines of every kind (walls, tape, a water line); it fails at round rims.
+///
+/// With discs, a pixel within 2.5 px of a disc or inside it belongs to the disc b whose rim is nearest:
+///     I(p) = o_b + a_b sum_k f(r_k - R_k).
+/// The radial profile f is common to the discs of one size and is learnt from the picture, as is the scale
+/// s_1 of the residual e_1 at each r - R. Where the profile describes the picture worse than the
+/// neighbourhood does, summed over all discs of a size (as inside patterned discs), it is not used.
+///
+/// Residuals are distributed as Cauchy's, p(e) = s/(pi (s^2 + e^2)), because no model of a real picture is
+/// exact. The gain of a pixel is ln p(e_1) - ln p(e_0); it is lost where a rim is predicted and none is seen.
+/// Each disc costs (5/2) ln N (x, y, R, a, o) and each size (n/2) ln N for its n profile levels, N the number
+/// of pixels (Schwarz, Ann. Stat. 6, 461 (1978)).
+
+#include <cstddef>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "imaging/disc/detection.hpp"
+
+namespace twincell {
+
+/// Result for one set of discs, in nats: differences are logarithms of ratios of likelihoods.
+struct PictureEvidence {
+  double total = 0;             ///< of the whole picture; 0 without discs
+  std::vector<double> of_disc;  ///< share of each disc, after its cost; < 0: the picture is better without it
+  /// Mean of ln(1 + (e_1/s_1)^2) over the pixels of each disc: how unlike the other discs of its size it is.
+  /// 0.53 for normal residuals of the common scale.
+  std::vector<double> misfit;
+};
+
+/// \param grey       CV_8U, CV_16U or CV_32F, one channel
+/// \param discs      centres and radii
+/// \param radii_px   the sizes; each disc belongs to the nearest. At least one
+/// Pure.
+PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detection>& discs,
+                                 const std::vector<double>& radii_px);
+
+/// Gain of a pixel with residuals e_1 of scale s_1 with discs, e_0 of scale s_0 without: ln p(e_1) - ln
+/// p(e_0).
+double pixel_gain(double e1, double s1, double e0, double s0);
+
+/// Standard deviation of the noise, grey levels, from the smallest fifth of the second differences, so that
+/// up to half of the pixels may lie on edges. At least 1/1000 of the range of the grey levels.
+double noise_level(const cv::Mat1f& grey);
+
+}  // namespace twincell

@@ -1,0 +1,26 @@
+#pragma once
+/// \file
+/// Removal of accepted discs that are no beads: marks of other kinds (tape, walls, letters, water lines) that
+/// discs were fitted to.
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "imaging/disc/detection.hpp"
+
+namespace twincell {
+
+/// Whether some scores are so much worse than the others that drop_unlike may find such discs: 1 - score is
+/// above 0.02 plus three times its median. In pictures of beads alone none are. Pure.
+bool some_may_be_unlike(const std::vector<Detection>& beads);
+
+/// Drops the discs without which the evidence of the picture (picture_evidence.hpp) is larger and whose rims
+/// fit worse than those of the others: misfit above 1.2. This is done once: a repetition would also drop the
+/// neighbours of a bead that was dropped by mistake.
+/// \param beads    those that remain
+/// \param radii_px the sizes; each disc belongs to the nearest
+/// \returns the dropped ones, with Verdict::unexplained
+std::vector<Detection> drop_unlike(const cv::Mat& grey, std::vector<Detection>& beads,
+                                   const std::vector<double>& radii_px);
+
+}  // namespace twincell

@@ -1,0 +1,21 @@
+#include "imaging/settings/find_contrast.hpp"
+
+#include "imaging/settings/hypothesis_test.hpp"
+
+namespace twincell {
+
+double find_contrast(const cv::Mat& grey, const LocatorOptions& options) {
+  PreprocessOptions plain = options.preprocess;
+  plain.contrast = 1;
+  if (model_of(options.refine) == DiscModel::shared_profile) return 1;
+  const double contrast = contrast_of(prepare(grey, plain, options.diameter_px / 2).darkness);
+  if (model_of(options.refine) == DiscModel::circle) return contrast;
+  if (contrast >= kPale) return 1;
+  const cv::Mat part = busiest(grey, kExaminedSide);
+  const auto explained = [&](double by) {
+    return settle_plain(part, options, {plain.bright, options.diameter_px, by}).explained;
+  };
+  return explained(contrast) > kPaleClearly * explained(1) ? contrast : 1;
+}
+
+}  // namespace twincell

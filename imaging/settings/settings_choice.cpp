@@ -1,0 +1,130 @@
+#include "imaging/settings/settings_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "imaging/refine/picture_evidence.hpp"
+#include "imaging/settings/find_contrast.hpp"
+
+namespace twincell {
+
+namespace {
+
+/// All diameters, ascending.
+std::vector<double> diameters_of(const FoundSettings& s) {
+  std::vector<double> all = s.other_diameters_px;
+  all.push_back(s.diameter_px);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+bool same_sizes(const FoundSettings& a, const FoundSettings& b, double tolerance) {
+  const std::vector<double> of_a = diameters_of(a), of_b = diameters_of(b);
+  return of_a.size() == of_b.size() &&
+         std::equal(of_a.begin(), of_a.end(), of_b.begin(),
+                    [&](double x, double y) { return std::abs(x / y - 1) < tolerance; });
+}
+
+bool agree(const FoundSettings& a, const FoundSettings& b) {
+  constexpr double kSame = 0.015;
+  return a.bright == b.bright && a.method == b.method && a.contrast == b.contrast && same_sizes(a, b, kSame);
+}
+
+TriedSettings try_one(const cv::Mat& region, const LocatorOptions& given, FoundSettings settings,
+                      int most_sweeps) {
+  LocatorOptions options = completed(settings, given);
+  if (model_of(options.refine) == DiscModel::circle)
+    settings.contrast = options.preprocess.contrast = find_contrast(region, options);
+  options.refine.sweeps = std::min(options.refine.sweeps, most_sweeps);
+  const std::vector<Detection> beads = locate(region, options).beads;
+  std::vector<double> radii = {0.5 * options.diameter_px};
+  for (const double d : options.other_diameters_px) radii.push_back(0.5 * d);
+  return {settings, picture_evidence(region, beads, radii).total, beads.size()};
+}
+
+}  // namespace
+
+LocatorOptions completed(const FoundSettings& settings, LocatorOptions given) {
+  given.diameter_px = settings.diameter_px;
+  given.preprocess.bright = settings.bright;
+  if (given.other_diameters_px.empty()) given.other_diameters_px = settings.other_diameters_px;
+  if (!settings.method.empty()) given.refine.method = settings.method;
+  given.preprocess.contrast = settings.contrast;
+  given.polarity_known = true;
+  return given;
+}
+
+std::vector<TriedSettings> try_settings(const cv::Mat& region, const LocatorOptions& given,
+                                        const std::vector<FoundSettings>& candidates) {
+  constexpr int kTrialSweeps = 6;  // enough for most discs to be in place
+  std::vector<TriedSettings> tried;
+  std::vector<FoundSettings> known;  // before their contrast is measured
+  for (const FoundSettings& c : candidates) {
+    if (std::any_of(known.begin(), known.end(), [&](const FoundSettings& k) { return agree(k, c); }))
+      continue;
+    known.push_back(c);
+    tried.push_back(try_one(region, given, c, kTrialSweeps));
+  }
+  return tried;
+}
+
+SettingsChoice choose(std::vector<TriedSettings> tried) {
+  constexpr double kClearly = 1.25, kDiscs = 3;
+  constexpr double kLeastShare = 5;  // nats a disc: odds of 150 that it is one
+  const auto sizes = [](const TriedSettings& t) { return t.settings.other_diameters_px.size(); };
+  const auto best = std::max_element(tried.begin(), tried.end(),
+                                     [](const auto& a, const auto& b) { return a.evidence < b.evidence; });
+  if (best == tried.end() || best->evidence <= 0 ||
+      best->evidence < kLeastShare * static_cast<double>(best->beads))
+    return {};
+  const double share = best->evidence / static_cast<double>(best->beads);
+  auto chosen = best;
+  const auto first = tried.begin();
+  if (first->evidence > 0 && sizes(*first) <= sizes(*best)) {
+    const bool suffices = sizes(*first) < sizes(*best) ? first->evidence > best->evidence - kDiscs * share
+                                                       : kClearly * first->evidence > best->evidence;
+    if (suffices) chosen = first;
+  }
+  SettingsChoice choice{{*chosen}};
+  tried.erase(chosen);
+  std::stable_sort(tried.begin(), tried.end(),
+                   [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
+  choice.tried.insert(choice.tried.end(), tried.begin(), tried.end());
+  return choice;
+}
+
+SettingsChoice confirmed(const cv::Mat& region, const LocatorOptions& given,
+                         std::vector<TriedSettings> tried) {
+  SettingsChoice choice = choose(std::move(tried));
+  // Each failure lowers the evidence of one of the settings to that of its full fit.
+  for (std::size_t left = choice.tried.size(); left > 0; --left) {
+    TriedSettings& first = choice.tried.front();
+    const double before = first.evidence;
+    first = try_one(region, given, first.settings, given.refine.sweeps);
+    constexpr double kKept = 0.9;
+    if (first.evidence >= kKept * before) break;
+    choice = choose(std::move(choice.tried));
+    if (choice.tried.empty()) break;
+  }
+  return choice;
+}
+
+std::size_t runner_up(const SettingsChoice& choice) {
+  constexpr double kOtherSize = 0.1, kOtherNumber = 0.05;
+  for (std::size_t k = 1; k < choice.tried.size(); ++k) {
+    const TriedSettings &first = choice.tried.front(), &other = choice.tried[k];
+    const double difference = std::abs(static_cast<double>(other.beads) - static_cast<double>(first.beads));
+    if (!same_sizes(first.settings, other.settings, kOtherSize) ||
+        difference > kOtherNumber * static_cast<double>(first.beads))
+      return k;
+  }
+  return 0;
+}
+
+std::size_t narrow_runner_up(const SettingsChoice& choice) {
+  constexpr double kNarrow = 0.9;
+  const std::size_t k = runner_up(choice);
+  return k > 0 && choice.tried[k].evidence >= kNarrow * choice.tried.front().evidence ? k : 0;
+}
+
+}  // namespace twincell

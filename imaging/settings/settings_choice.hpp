@@ -1,0 +1,44 @@
+#pragma once
+/// \file
+/// Choice among settings by the evidence of the picture (picture_evidence.hpp).
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "imaging/locate/locator.hpp"
+#include "imaging/settings/found_settings.hpp"
+
+namespace twincell {
+
+/// The given options, completed with settings.
+LocatorOptions completed(const FoundSettings& settings, LocatorOptions given);
+
+/// Locates the discs of a region with each of the settings and measures the evidence. Settings that agree to
+/// 1.5 % of the diameters are tried once.
+/// \param candidates the preferred ones first
+/// \returns in the same order
+std::vector<TriedSettings> try_settings(const cv::Mat& region, const LocatorOptions& given,
+                                        const std::vector<FoundSettings>& candidates);
+
+/// Sorts by evidence and puts the chosen ones first. They are those with the largest evidence, unless the
+/// first in the list, which are preferred, suffice: those with as many sizes must have 1.25 times their
+/// evidence, and those with further sizes must gain the share of three discs. The evidence knows neither that
+/// gaps of a crystal are not discs nor which fit is the most accurate; the order of the list does. \param
+/// tried the preferred ones first; those without positive evidence are never chosen \returns empty if the
+/// largest evidence is below 5 nats a disc
+SettingsChoice choose(std::vector<TriedSettings> tried);
+
+/// Chooses, then fits the region with the chosen settings in full: a fit that was cut short may hold discs
+/// that it drops in the end. If the evidence falls by more than a tenth, chooses again.
+SettingsChoice confirmed(const cv::Mat& region, const LocatorOptions& given,
+                         std::vector<TriedSettings> tried);
+
+/// Whether the chosen settings won narrowly: the best settings with other discs (a diameter that differs by
+/// more than a tenth, another number of sizes or of discs by more than a twentieth) have at least 0.9 of
+/// their evidence. \returns their index in `tried`; 0: the win is clear, or there are none
+std::size_t narrow_runner_up(const SettingsChoice& choice);
+
+/// The best settings with other discs, as above, whatever their evidence; 0: there are none.
+std::size_t runner_up(const SettingsChoice& choice);
+
+}  // namespace twincell
