@@ -158,7 +158,8 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   if (some_may_be_unlike(result.judged.beads)) {
     std::vector<double> radii = {radius};
     radii.insert(radii.end(), refined.other_radii_px.begin(), refined.other_radii_px.end());
-    const std::vector<Detection> unlike = drop_unlike(grey, result.judged.beads, radii);
+    const std::vector<Detection> unlike =
+        drop_unlike(grey, result.judged.beads, result.judged.dropped, radii);
     result.judged.dropped.insert(result.judged.dropped.end(), unlike.begin(), unlike.end());
   }
   result.reports.push_back({"judge", watch.lap(), result.judged.beads.size()});

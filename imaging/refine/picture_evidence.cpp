@@ -37,7 +37,8 @@ struct Place {
 
 class Explanation {
  public:
-  Explanation(const cv::Mat1f& grey, const std::vector<Detection>& discs, const std::vector<double>& radii)
+  Explanation(const cv::Mat1f& grey, const std::vector<Detection>& discs, const std::vector<double>& radii,
+              double neighbour_radius)
       : grey_(grey), discs_(discs), noise_(noise_level(grey)), owner_(grey.size(), -1) {
     for (const double r : radii) {
       Size s;
@@ -48,7 +49,7 @@ class Explanation {
       s.level.assign(s.count, 0);
       s.scale.assign(s.count, noise_);
       s.used.assign(s.count, true);
-      const double far = std::max(kLeastStep, kStep * r);
+      const double far = std::max(kLeastStep, kStep * (neighbour_radius > 0 ? neighbour_radius : r));
       for (int k = 0; k < kDirections; ++k) {
         const double turn = std::numbers::pi * k / kDirections;
         s.steps.emplace_back(cvRound(far * std::cos(turn)), cvRound(far * std::sin(turn)));
@@ -330,12 +331,12 @@ double noise_level(const cv::Mat1f& grey) {
 }
 
 PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detection>& discs,
-                                 const std::vector<double>& radii_px) {
+                                 const std::vector<double>& radii_px, double neighbour_radius_px) {
   if (discs.empty() || grey.empty())
     return {0, std::vector<double>(discs.size(), 0.0), std::vector<double>(discs.size(), 0.0)};
   cv::Mat1f levels;
   grey.convertTo(levels, CV_32F);
-  return Explanation(levels, discs, radii_px).evidence();
+  return Explanation(levels, discs, radii_px, neighbour_radius_px).evidence();
 }
 
 }  // namespace twincell

@@ -4,9 +4,10 @@
 /// without discs does. One currency for discs of any size, polarity and appearance, whichever fit found them.
 ///
 /// Without discs, a pixel is known from its neighbourhood: its residual e_0 is the rms difference, over sqrt
-/// 2, to the two pixels at the distance max(2 px, 0.6 R) on a straight line through it, for the best of eight
-/// directions, so that noise alone gives its own standard deviation s_0. This describes uniform areas, smooth
-/// light, and straight edges and lines of every kind (walls, tape, a water line); it fails at round rims.
+/// 2, to the four pixels at the distances max(2 px, R/2) and twice that on either side on a straight line
+/// through it, for the best of eight directions, so that noise alone gives its own standard deviation s_0.
+/// This describes uniform areas, smooth light, and straight edges and lines of every kind (walls, tape, a
+/// water line); it fails at round rims.
 ///
 /// With discs, a pixel within 2.5 px of a disc or inside it belongs to the disc b whose rim is nearest:
 ///     I(p) = o_b + a_b sum_k f(r_k - R_k).
@@ -39,9 +40,11 @@ struct PictureEvidence {
 /// \param grey       CV_8U, CV_16U or CV_32F, one channel
 /// \param discs      centres and radii
 /// \param radii_px   the sizes; each disc belongs to the nearest. At least one
+/// \param neighbour_radius_px  R of the distances above; 0: that of each disc's size. Sets of discs of
+///     different sizes can be compared only if it is the same for all
 /// Pure.
 PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detection>& discs,
-                                 const std::vector<double>& radii_px);
+                                 const std::vector<double>& radii_px, double neighbour_radius_px = 0);
 
 /// Gain of a pixel with residuals e_1 of scale s_1 with discs, e_0 of scale s_0 without: ln p(e_1) - ln
 /// p(e_0).

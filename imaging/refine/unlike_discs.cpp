@@ -8,22 +8,36 @@
 
 namespace twincell {
 
-bool some_may_be_unlike(const std::vector<Detection>& beads) {
-  constexpr double kLeast = 0.02, kTimes = 3;
-  if (beads.empty()) return false;
+namespace {
+
+/// 1 - score of a disc that is not like the others.
+double limit_of_lack(const std::vector<Detection>& beads) {
+  constexpr double kLeast = 0.01, kTimes = 3;
   std::vector<double> lacks;
   for (const Detection& b : beads) lacks.push_back(1 - b.score);
-  const double limit = kLeast + kTimes * upper_median(lacks);
-  return std::any_of(lacks.begin(), lacks.end(), [&](double lack) { return lack > limit; });
+  return beads.empty() ? 1 : kLeast + kTimes * upper_median(std::move(lacks));
+}
+
+}  // namespace
+
+bool some_may_be_unlike(const std::vector<Detection>& beads) {
+  const double limit = limit_of_lack(beads);
+  return std::any_of(beads.begin(), beads.end(), [&](const Detection& b) { return 1 - b.score > limit; });
 }
 
 std::vector<Detection> drop_unlike(const cv::Mat& grey, std::vector<Detection>& beads,
+                                   const std::vector<Detection>& others,
                                    const std::vector<double>& radii_px) {
-  constexpr double kLeastMisfit = 1.2;  // smaller ones are those of beads, however little of their rims shows
-  const PictureEvidence evidence = picture_evidence(grey, beads, radii_px);
+  constexpr double kLeastMisfit = 1.6;  // smaller ones are those of beads, however little of their rims shows
+  const double limit = limit_of_lack(beads);
+  std::vector<Detection> all = beads;
+  for (const Detection& o : others)
+    if (o.verdict == Verdict::outside) all.push_back(o);
+  const PictureEvidence evidence = picture_evidence(grey, all, radii_px);
   std::vector<Detection> kept, dropped;
   for (std::size_t k = 0; k < beads.size(); ++k) {
-    const bool unlike = evidence.of_disc[k] < 0 && evidence.misfit[k] > kLeastMisfit;
+    const bool unlike =
+        1 - beads[k].score > limit && evidence.of_disc[k] < 0 && evidence.misfit[k] > kLeastMisfit;
     (unlike ? dropped : kept).push_back(beads[k]);
     if (unlike) dropped.back().verdict = Verdict::unexplained;
   }

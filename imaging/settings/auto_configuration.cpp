@@ -215,7 +215,7 @@ std::vector<FoundSettings> best_profiles(std::vector<FoundSettings> tried) {
 /// Common profiles of small discs of either polarity, for which there are hardly any votes.
 std::vector<FoundSettings> small_profiles(const cv::Mat& grey, const LocatorOptions& given) {
   constexpr double kMost = 12, kRatio = 1.12;  // px
-  constexpr int kSide = 160;
+  constexpr int kSide = 300;
   const cv::Mat region = busiest(grey, kSide);
   std::vector<FoundSettings> tried;
   for (const bool bright : {false, true})
@@ -272,14 +272,19 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   if (patterned) candidates.push_back(*patterned);
   // Evidence. Patterned discs may be larger than the region.
   constexpr double kAcross = 6;
-  const cv::Mat region =
-      patterned ? busiest(frame, std::max(kExaminedSide, static_cast<int>(kAcross * patterned->diameter_px)))
-                : grey;
+  ExaminedRegion region{grey, candidates.empty() ? 0 : 0.5 * candidates.front().diameter_px};
+  // In a crystal that fills the frame the gaps are as alike as the discs, and described as well.
+  if (lattice > 0) region.clearly = HUGE_VAL;
+  if (patterned)
+    region.picture =
+        busiest(frame, std::max(kExaminedSide, static_cast<int>(kAcross * patterned->diameter_px)));
   std::vector<TriedSettings> tried = try_settings(region, given, candidates);
   SettingsChoice choice = confirmed(region, given, std::move(tried));
   if (given.diameter_px > 0 || model_of(given.refine) != DiscModel::plain) return choice;
-  if (choice.tried.empty() && one_size && given.refine.method == kExactRefiner.word)
+  if (choice.tried.empty() && one_size && given.refine.method == kExactRefiner.word) {
+    region.neighbour_radius_px = kSmallestRadius;
     choice = confirmed(region, given, try_settings(region, given, small_profiles(grey, given)));
+  }
   if (choice.tried.empty()) return choice;
   // The size of the winner, by its rims alone and with further sizes.
   FoundSettings winner = choice.tried.front().settings;

@@ -30,16 +30,17 @@ bool agree(const FoundSettings& a, const FoundSettings& b) {
   return a.bright == b.bright && a.method == b.method && a.contrast == b.contrast && same_sizes(a, b, kSame);
 }
 
-TriedSettings try_one(const cv::Mat& region, const LocatorOptions& given, FoundSettings settings,
+TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given, FoundSettings settings,
                       int most_sweeps) {
   LocatorOptions options = completed(settings, given);
   if (model_of(options.refine) == DiscModel::circle)
-    settings.contrast = options.preprocess.contrast = find_contrast(region, options);
+    settings.contrast = options.preprocess.contrast = find_contrast(region.picture, options);
   options.refine.sweeps = std::min(options.refine.sweeps, most_sweeps);
-  const std::vector<Detection> beads = locate(region, options).beads;
+  const std::vector<Detection> beads = locate(region.picture, options).beads;
   std::vector<double> radii = {0.5 * options.diameter_px};
   for (const double d : options.other_diameters_px) radii.push_back(0.5 * d);
-  return {settings, picture_evidence(region, beads, radii).total, beads.size()};
+  return {settings, picture_evidence(region.picture, beads, radii, region.neighbour_radius_px).total,
+          beads.size()};
 }
 
 }  // namespace
@@ -54,7 +55,7 @@ LocatorOptions completed(const FoundSettings& settings, LocatorOptions given) {
   return given;
 }
 
-std::vector<TriedSettings> try_settings(const cv::Mat& region, const LocatorOptions& given,
+std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const LocatorOptions& given,
                                         const std::vector<FoundSettings>& candidates) {
   constexpr int kTrialSweeps = 6;  // enough for most discs to be in place
   std::vector<TriedSettings> tried;
@@ -68,8 +69,8 @@ std::vector<TriedSettings> try_settings(const cv::Mat& region, const LocatorOpti
   return tried;
 }
 
-SettingsChoice choose(std::vector<TriedSettings> tried) {
-  constexpr double kClearly = 1.25, kDiscs = 3;
+SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
+  constexpr double kDiscs = 3;
   constexpr double kLeastShare = 5;  // nats a disc: odds of 150 that it is one
   const auto sizes = [](const TriedSettings& t) { return t.settings.other_diameters_px.size(); };
   const auto best = std::max_element(tried.begin(), tried.end(),
@@ -82,7 +83,7 @@ SettingsChoice choose(std::vector<TriedSettings> tried) {
   const auto first = tried.begin();
   if (first->evidence > 0 && sizes(*first) <= sizes(*best)) {
     const bool suffices = sizes(*first) < sizes(*best) ? first->evidence > best->evidence - kDiscs * share
-                                                       : kClearly * first->evidence > best->evidence;
+                                                       : clearly * first->evidence > best->evidence;
     if (suffices) chosen = first;
   }
   SettingsChoice choice{{*chosen}};
@@ -93,9 +94,9 @@ SettingsChoice choose(std::vector<TriedSettings> tried) {
   return choice;
 }
 
-SettingsChoice confirmed(const cv::Mat& region, const LocatorOptions& given,
+SettingsChoice confirmed(const ExaminedRegion& region, const LocatorOptions& given,
                          std::vector<TriedSettings> tried) {
-  SettingsChoice choice = choose(std::move(tried));
+  SettingsChoice choice = choose(std::move(tried), region.clearly);
   // Each failure lowers the evidence of one of the settings to that of its full fit.
   for (std::size_t left = choice.tried.size(); left > 0; --left) {
     TriedSettings& first = choice.tried.front();
@@ -103,7 +104,7 @@ SettingsChoice confirmed(const cv::Mat& region, const LocatorOptions& given,
     first = try_one(region, given, first.settings, given.refine.sweeps);
     constexpr double kKept = 0.9;
     if (first.evidence >= kKept * before) break;
-    choice = choose(std::move(choice.tried));
+    choice = choose(std::move(choice.tried), region.clearly);
     if (choice.tried.empty()) break;
   }
   return choice;

@@ -10,6 +10,16 @@
 
 namespace twincell {
 
+/// Ratio of evidence at which other settings replace the preferred ones.
+inline constexpr double kClearly = 1.25;
+
+/// The part of a frame in which settings are tried.
+struct ExaminedRegion {
+  cv::Mat picture;
+  double neighbour_radius_px = 0;  ///< of picture_evidence: the same for all settings that are compared
+  double clearly = kClearly;       ///< of choose()
+};
+
 /// The given options, completed with settings.
 LocatorOptions completed(const FoundSettings& settings, LocatorOptions given);
 
@@ -17,7 +27,7 @@ LocatorOptions completed(const FoundSettings& settings, LocatorOptions given);
 /// 1.5 % of the diameters are tried once.
 /// \param candidates the preferred ones first
 /// \returns in the same order
-std::vector<TriedSettings> try_settings(const cv::Mat& region, const LocatorOptions& given,
+std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const LocatorOptions& given,
                                         const std::vector<FoundSettings>& candidates);
 
 /// Sorts by evidence and puts the chosen ones first. They are those with the largest evidence, unless the
@@ -26,11 +36,11 @@ std::vector<TriedSettings> try_settings(const cv::Mat& region, const LocatorOpti
 /// gaps of a crystal are not discs nor which fit is the most accurate; the order of the list does. \param
 /// tried the preferred ones first; those without positive evidence are never chosen \returns empty if the
 /// largest evidence is below 5 nats a disc
-SettingsChoice choose(std::vector<TriedSettings> tried);
+SettingsChoice choose(std::vector<TriedSettings> tried, double clearly = kClearly);
 
 /// Chooses, then fits the region with the chosen settings in full: a fit that was cut short may hold discs
 /// that it drops in the end. If the evidence falls by more than a tenth, chooses again.
-SettingsChoice confirmed(const cv::Mat& region, const LocatorOptions& given,
+SettingsChoice confirmed(const ExaminedRegion& region, const LocatorOptions& given,
                          std::vector<TriedSettings> tried);
 
 /// Whether the chosen settings won narrowly: the best settings with other discs (a diameter that differs by
