@@ -1,0 +1,64 @@
+// `locate --explain`: what was tried, and the options of the chosen settings give the same beads.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace twincell {
+namespace {
+
+/// Black discs of 16 px, apart from each other, on a light ground with noise.
+void write_discs(const std::string& file) {
+  constexpr int kSide = 200, kSamples = 4;
+  cv::Mat1f fine(kSide * kSamples, kSide * kSamples, 200.0F), picture;
+  for (int i = 0; i < 7; ++i)
+    for (int j = 0; j < 7; ++j)
+      cv::circle(fine, {(24 + 25 * i + 2 * j) * kSamples, (24 + 25 * j + i % 3) * kSamples}, 8 * kSamples,
+                 20.0F, cv::FILLED);
+  cv::GaussianBlur(fine, fine, {0, 0}, 0.7 * kSamples);
+  cv::resize(fine, picture, {kSide, kSide}, 0, 0, cv::INTER_AREA);
+  std::mt19937_64 random(1);
+  std::normal_distribution<float> normal(0, 2);
+  for (float& level : picture) level += normal(random);
+  cv::Mat1b bytes;
+  picture.convertTo(bytes, CV_8U);
+  cv::imwrite(file, bytes);
+}
+
+}  // namespace
+
+TEST(LocateExplain, PrintsWhatWasTriedAndAClearWin) {
+  const TemporaryFolder folder;
+  const std::string picture = (folder.path() / "discs.png").string(),
+                    table = (folder.path() / "beads.csv").string();
+  write_discs(picture);
+  const Ran text = run_program({"locate", picture, "-o", table, "-q", "--explain"});
+  ASSERT_EQ(text.code, 0) << text.err;
+  EXPECT_NE(text.out.find("evidence/nats"), std::string::npos);
+  EXPECT_NE(text.out.find("(chosen)"), std::string::npos);
+  EXPECT_EQ(text.out.find("nearly as well"), std::string::npos);
+  const Ran json = run_program({"locate", picture, "-o", table, "-q", "--json"});
+  const auto said = nlohmann::json::parse(json.out);
+  ASSERT_FALSE(said["settings_tried"].empty());
+  const nlohmann::json chosen = said["settings_tried"][0];
+  EXPECT_EQ(chosen["chosen"], true);
+  EXPECT_EQ(chosen["beads"], 49);
+  EXPECT_GT(chosen["evidence"].get<double>(), 49 * 100);
+  // The options, pasted, give the same beads.
+  std::vector<std::string> pasted = {"locate", picture, "-o", table, "-q", "--json"};
+  std::istringstream words(chosen["options"].get<std::string>());
+  for (std::string word; words >> word;) pasted.push_back(word);
+  const auto again = nlohmann::json::parse(run_program(pasted).out);
+  EXPECT_EQ(again["frames"][0]["beads"], 49);
+  EXPECT_FALSE(again.contains("settings_tried"));
+}
+
+}  // namespace twincell
