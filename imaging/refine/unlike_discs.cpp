@@ -1,6 +1,7 @@
 #include "imaging/refine/unlike_discs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/median.hpp"
@@ -25,6 +26,18 @@ bool some_may_be_unlike(const std::vector<Detection>& beads) {
   return std::any_of(beads.begin(), beads.end(), [&](const Detection& b) { return 1 - b.score > limit; });
 }
 
+namespace {
+
+/// Whether a disc outside the frame was found near a bead: others, which darken its rim, may be missing.
+bool near_outside(const Detection& b, const std::vector<Detection>& others) {
+  constexpr double kNear = 5;  // R
+  return std::any_of(others.begin(), others.end(), [&](const Detection& o) {
+    return o.verdict == Verdict::outside && std::hypot(o.x - b.x, o.y - b.y) < kNear * b.radius;
+  });
+}
+
+}  // namespace
+
 std::vector<Detection> drop_unlike(const cv::Mat& grey, std::vector<Detection>& beads,
                                    const std::vector<Detection>& others,
                                    const std::vector<double>& radii_px) {
@@ -36,8 +49,8 @@ std::vector<Detection> drop_unlike(const cv::Mat& grey, std::vector<Detection>& 
   const PictureEvidence evidence = picture_evidence(grey, all, radii_px);
   std::vector<Detection> kept, dropped;
   for (std::size_t k = 0; k < beads.size(); ++k) {
-    const bool unlike =
-        1 - beads[k].score > limit && evidence.of_disc[k] < 0 && evidence.misfit[k] > kLeastMisfit;
+    const bool unlike = 1 - beads[k].score > limit && evidence.of_disc[k] < 0 &&
+                        evidence.misfit[k] > kLeastMisfit && !near_outside(beads[k], others);
     (unlike ? dropped : kept).push_back(beads[k]);
     if (unlike) dropped.back().verdict = Verdict::unexplained;
   }
