@@ -1,11 +1,14 @@
 // twincell reproduce NAME --budget 10: a figure or table of the papers, compared with its targets.
+// twincell reproduce --all --budget 2: all of them, and the page about them.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <ctime>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,6 +22,7 @@
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 #include "core/output_rules.hpp"
+#include "reproduce/papers_page.hpp"
 #include "reproduce/reproduction.hpp"
 
 namespace twincell::cli {
@@ -31,11 +35,13 @@ using reproduce::Reproduction;
 using reproduce::Target;
 
 struct ReproduceOptions {
-  std::string name, output, runs, data;
+  std::string name, output, runs, data, from;
   std::optional<std::pair<double, double>> window;
-  double budget = 10;
-  bool full = false;
+  std::optional<double> budget;  ///< minutes; hours with --all
+  bool full = false, all = false;
 };
+
+constexpr double kDefaultMinutes = 10, kDefaultHours = 2, kMinutesPerHour = 60;
 
 const Reproducible& named(const std::string& name) {
   const auto& all = reproduce::list();
@@ -59,8 +65,9 @@ fs::path runs_of(const Reproducible& what, const ReproduceOptions& options, cons
 std::string as_text(const Reproduction& r, const fs::path& folder) {
   std::string s = r.title + "\n\n";
   for (const Target& t : r.targets) {
-    s += fmt::format("  {:<12} {}: {}\n               target {}", word_of(t.verdict), t.name,
-                     t.measured.empty() ? "not measured" : t.measured, t.expected);
+    s += fmt::format("  {:<12} {}: {}{}\n               target {}", word_of(t.verdict), t.name,
+                     t.measured.empty() ? "not measured" : t.measured,
+                     t.runs.empty() ? "" : fmt::format(" ({})", t.runs), t.expected);
     s += (t.reason.empty() ? "" : " (" + t.reason + ")") + "\n";
   }
   s += "\nMeasured\n" + r.table;
@@ -77,19 +84,109 @@ std::string as_text(const Reproduction& r, const fs::path& folder) {
 }
 
 nlohmann::json as_json(const Reproduction& r, const fs::path& folder) {
-  nlohmann::json j = {
-      {"title", r.title},           {"complete", r.complete}, {"measured", nlohmann::json::parse(r.measured)},
-      {"conditions", r.conditions}, {"cheaper", r.cheaper},   {"output", folder.string()}};
+  nlohmann::json j = {{"title", r.title},
+                      {"complete", r.complete},
+                      {"measured", nlohmann::json::parse(r.measured)},
+                      {"conditions", r.conditions},
+                      {"cheaper", r.cheaper},
+                      {"output", folder.string()},
+                      {"runs", r.runs}};
   for (const Target& t : r.targets)
     j["targets"].push_back({{"name", t.name},
                             {"expected", t.expected},
                             {"measured", t.measured},
+                            {"runs", t.runs},
                             {"verdict", word_of(t.verdict)},
                             {"reason", t.reason}});
   return j;
 }
 
-void run(const ReproduceOptions& options, const Common& common) {
+/// The JSON document of an earlier call. \throws InputError if the file is not one
+nlohmann::json stored_document(const fs::path& file) {
+  const nlohmann::json document = nlohmann::json::parse(read_text_file(file), nullptr, false);
+  if (document.is_discarded() || !document.contains("measured") || !document.contains("targets"))
+    throw InputError({file.string(), 0, 0, ""},
+                     "is not a result of `reproduce`, which has the members measured and targets.");
+  return document;
+}
+
+/// What one figure of this call gets.
+struct Share {
+  double minutes = kDefaultMinutes;  ///< determines the extent of the study
+  double seconds = 1e300;            ///< time limit
+};
+
+/// Runs a figure, or judges its stored runs again, and writes its files into `folder`. \returns its document
+/// and text
+std::pair<nlohmann::json, std::string> make(const Reproducible& what, const ReproduceOptions& options,
+                                            const Share& share, const fs::path& folder, const fs::path& from,
+                                            const Common& common) {
+  std::optional<nlohmann::json> stored;
+  if (!from.empty()) {
+    if (!what.judges_stored)
+      throw ConfigError(
+          {"", 0, 0, "from"},
+          fmt::format("does not work for {}, whose runs take seconds: run it again.", what.name));
+    stored = stored_document(from);
+  }
+  claim_shared_folder(folder, Product::runs());
+  // The cost of earlier calls in this folder, which this call resumes.
+  double core_minutes = 0;
+  const fs::path result = folder / (what.name + ".json");
+  if (!stored && fs::exists(result))
+    core_minutes = nlohmann::json::parse(read_text_file(result), nullptr, false).value("core_minutes", 0.0);
+  const std::clock_t begin = std::clock();
+  SweepWatch watch(common, share.seconds);
+  Reproduction r;
+  try {
+    r = what.run({.minutes = share.minutes,
+                  .full = options.full,
+                  .threads = common.n_threads(),
+                  .seed = common.seed.value_or(1),
+                  .folder = folder,
+                  .runs = runs_of(what, options, folder),
+                  .window = options.window,
+                  .data = options.data,
+                  .stored = stored ? (*stored)["measured"].dump() : "",
+                  .watch = &watch});
+  } catch (const nlohmann::json::exception&) {
+    if (!stored) throw;
+    throw InputError({from.string(), 0, 0, ""}, fmt::format("does not hold the runs of {}.", what.name));
+  }
+  core_minutes += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / 60;
+  if (stored) {
+    // What was run is what the document says; its verdicts and figures alone are new.
+    const auto keep = [&](const char* key, auto& member) {
+      if (stored->contains(key)) member = stored->at(key).get<std::decay_t<decltype(member)>>();
+    };
+    keep("conditions", r.conditions);
+    keep("cheaper", r.cheaper);
+    keep("complete", r.complete);
+    keep("runs", r.runs);
+    core_minutes = stored->value("core_minutes", 0.0);
+  }
+  for (Target& t : r.targets)
+    if (t.runs.empty() && t.verdict != reproduce::Verdict::absent) t.runs = r.runs;
+  nlohmann::json document = as_json(r, folder);
+  if (core_minutes > 0) document["core_minutes"] = core_minutes;
+  document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
+  const std::string text = as_text(r, folder);
+  {
+    AtomicPath files(folder, Product::runs());
+    write_text_file(files.part() / (what.name + ".json"), json_text(document, 1) + "\n");
+    write_text_file(files.part() / (what.name + ".txt"), text);
+    files.commit();
+  }
+  if (!r.figures.empty()) {
+    AtomicPath files(folder, Product::runs());
+    for (const Figure& figure : r.figures)
+      draw(figure, files.part());  // last, so that the results are stored even if gnuplot is missing
+    files.commit();
+  }
+  return {document, text};
+}
+
+void run_one(const ReproduceOptions& options, const Common& common) {
   const Reproducible& what = named(options.name);
   const fs::path folder = options.output.empty() ? options.name : options.output;
   if ((options.window || !options.data.empty()) && !what.takes_data)
@@ -102,32 +199,87 @@ void run(const ReproduceOptions& options, const Common& common) {
     throw ConfigError({"", 0, 0, "window"},
                       fmt::format("is {:g} to {:g}; the lower limit must be below the upper limit.",
                                   options.window->first, options.window->second));
+  const double minutes = options.budget.value_or(kDefaultMinutes);
+  const auto [document, text] =
+      make(what, options, {minutes, options.full ? 1e300 : 60 * minutes}, folder, options.from, common);
+  print_result(common, document, text);
+}
+
+/// Share of every figure: its worth of the budget for those with runs of their own. A figure that uses the
+/// runs of another gets the same extent, and a little time in case that one did not finish.
+std::map<std::string, Share> shares_of(double minutes, bool full) {
+  constexpr double kWithoutRuns = 3;  // seconds
+  double worth = 0;
+  for (const Reproducible& r : reproduce::list())
+    if (r.runs_like.empty() && r.same_as.empty()) worth += r.worth;
+  std::map<std::string, Share> shares;
+  for (const Reproducible& r : reproduce::list()) {
+    const double own = minutes * (r.runs_like.empty() ? r : named(r.runs_like)).worth / worth;
+    shares[r.name] = {own, full ? 1e300 : r.runs_like.empty() ? 60 * own : kWithoutRuns};
+  }
+  return shares;
+}
+
+void run_all(const ReproduceOptions& options, const Common& common) {
+  const fs::path folder = options.output.empty() ? "papers" : options.output;
+  if (options.window || !options.data.empty())
+    throw ConfigError({"", 0, 0, options.window ? "window" : "data"}, "has no effect with --all.");
+  if (!options.from.empty() && !fs::is_directory(options.from))
+    throw ConfigError({"", 0, 0, "from"},
+                      fmt::format("is {}; with --all it must be a folder of NAME.json files.", options.from));
   claim_shared_folder(folder, Product::runs());
-  SweepWatch watch(common, options.full ? 1e300 : 60 * options.budget);
-  const Reproduction r = what.run({.minutes = options.budget,
-                                   .full = options.full,
-                                   .threads = common.n_threads(),
-                                   .seed = common.seed.value_or(1),
-                                   .folder = folder,
-                                   .runs = runs_of(what, options, folder),
-                                   .window = options.window,
-                                   .data = options.data,
-                                   .watch = &watch});
-  nlohmann::json document = as_json(r, folder);
-  document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
-  {
+  const double hours = options.budget.value_or(kDefaultHours);
+  std::string command = "twincell reproduce --all";
+  command += !options.from.empty() ? " --from " + options.from
+             : options.full        ? " --full"
+                                   : fmt::format(" --budget {:g}", hours);
+  const auto shares = shares_of(kMinutesPerHour * hours, options.full);
+  std::vector<reproduce::Document> documents;
+  const auto write_page = [&] {
     AtomicPath files(folder, Product::runs());
-    write_text_file(files.part() / (options.name + ".json"), json_text(document, 1) + "\n");
-    write_text_file(files.part() / (options.name + ".txt"), as_text(r, folder));
+    write_text_file(files.part() / "papers.md", reproduce::papers_page(documents, command));
     files.commit();
+  };
+  nlohmann::json summary = {{"output", folder.string()}};
+  for (const Reproducible& what : reproduce::list()) {
+    if (!what.same_as.empty()) continue;
+    fs::path from;
+    if (!options.from.empty()) {
+      for (const fs::path& file : {fs::path(options.from) / (what.name + ".json"),
+                                   fs::path(options.from) / what.name / (what.name + ".json")})
+        if (from.empty() && fs::exists(file)) from = file;
+      if (from.empty()) continue;
+    }
+    nlohmann::json document;
+    if (!from.empty() && !what.judges_stored)
+      document = stored_document(from);
+    else
+      document = make(what, options, shares.at(what.name), folder / what.name, from, common).first;
+    nlohmann::json& counts = summary["figures"][what.name];
+    for (const auto& verdict : reproduce::kVerdicts) counts[std::string(verdict.word)] = 0;
+    for (const auto& t : document["targets"]) {
+      nlohmann::json& n = counts[t["verdict"].get<std::string>()];
+      n = n.is_null() ? 1 : n.get<int>() + 1;
+    }
+    documents.push_back({what.name, json_text(document)});
+    write_page();  // after every figure, so that an interrupted call leaves a page
   }
-  if (!r.figures.empty()) {
-    AtomicPath files(folder, Product::runs());
-    for (const Figure& figure : r.figures)
-      draw(figure, files.part());  // last, so that the results are stored even if gnuplot is missing
-    files.commit();
+  std::string text;
+  for (const auto& [name, counts] : summary["figures"].items()) {
+    text += fmt::format("  {:<12}", name);
+    for (const auto& verdict : reproduce::kVerdicts)
+      text += fmt::format(" {} {:<3}", verdict.word, counts[std::string(verdict.word)].get<int>());
+    text += "\n";
   }
-  print_result(common, document, as_text(r, folder));
+  print_result(common, summary, text + (folder / "papers.md").string() + "\n");
+}
+
+void run(const ReproduceOptions& options, const Common& common) {
+  if (options.all == !options.name.empty())
+    throw ConfigError({"", 0, 0, "reproduce"}, options.all
+                                                   ? "takes a name or --all, not both."
+                                                   : "needs the name of a figure or table, or --all.");
+  options.all ? run_all(options, common) : run_one(options, common);
 }
 
 }  // namespace
@@ -141,15 +293,23 @@ void add_reproduce(CLI::App& program, Common& common) {
                "twincell reproduce p1-fig3 --budget 10");
   std::string list = "Figure or table to reproduce, one of:";
   for (const Reproducible& r : reproduce::list()) list += fmt::format("\n{}: {}", r.name, r.what);
-  verb.add_option("name", options->name, list)->required()->type_name(kWord);
-  writes(
-      common, verb,
-      verb.add_option("-o,--output", options->output, "Folder for runs, figures and results; default: NAME"),
-      Product::runs());
+  verb.add_option("name", options->name, list)->type_name(kWord);
+  writes(common, verb,
+         verb.add_option("-o,--output", options->output,
+                         "Folder for runs, figures and results; default: NAME, with --all papers"),
+         Product::runs());
   const auto budget =
-      verb.add_option("--budget", options->budget, "Time limit, min; a smaller budget computes fewer runs")
-          ->check(CLI::Range(0.01, 1e6))
-          ->capture_default_str();
+      verb.add_option("--budget", options->budget,
+                      fmt::format("Time limit, min; with --all h; a smaller budget computes fewer runs; "
+                                  "default: {:g} min, with --all {:g} h",
+                                  kDefaultMinutes, kDefaultHours))
+          ->check(CLI::Range(0.001, 1e6));
+  verb.add_flag("--all", options->all,
+                "Reproduce all figures and tables within the budget, which is shared among them by their "
+                "worth, and write papers.md, the page about them; the same command continues");
+  verb.add_option("--from", options->from,
+                  "NAME.json of an earlier call (with --all: a folder of them): nothing is simulated; only "
+                  "targets, verdicts and figures are made anew from its runs");
   verb.add_option("--runs", options->runs,
                   "Folder of the runs that several figures share; default: next to the folder of the figure");
   verb.add_option(

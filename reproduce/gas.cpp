@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -40,13 +41,51 @@ const std::vector<GasSize>& sizes() {
   return all;
 }
 
-Estimate estimate_of(const json& result) {
+Estimate number_of(const json& result) {
   Estimate e{.value = result["value"].get<double>(), .low = {}, .high = {}};
   const json interval = result.value("interval", json::object());
   // An end that is not finite is null.
   if (const json low = interval.value("low", json()); low.is_number()) e.low = low.get<double>();
   if (const json high = interval.value("high", json()); high.is_number()) e.high = high.get<double>();
   return e;
+}
+
+std::vector<double> numbers_of(const json& array) {
+  std::vector<double> values;
+  for (const json& element : array)
+    values.push_back(element.is_number() ? element.get<double>() : std::nan(""));
+  return values;
+}
+
+constexpr double kSameValue = 1e-9;  ///< relative difference below which two values of a key are the same
+
+/// The arrays over height that Gas::as_json writes on request.
+constexpr std::array kProfiles = {"profile_z", "phi_z", "T_z_z", "T_z_frames_z"};
+
+/// A point as Gas::as_json writes it.
+GasPoint point_of(const json& stored) {
+  GasPoint p;
+  p.at = stored.at("at").get<double>();
+  p.id = stored.value("id", "");
+  p.done = true;
+  p.failed = stored.value("failed", "");
+  p.cycles = stored.value("cycles", std::int64_t{0});
+  p.contact_fraction = stored.value("contact_fraction", 0.0);
+  if (stored.contains("until")) {
+    p.until = stored["until"].value("text", "");
+    p.precise = stored["until"].value("reached", false);
+  }
+  for (const auto& [name, value] : stored.items()) {
+    if (value.is_array()) p.arrays[name] = numbers_of(value);
+    if (!value.is_object() || !value.contains("value") || !value["value"].is_number()) continue;
+    Estimate& e = p.scalars[name];
+    e.value = value["value"].get<double>();
+    if (const json interval = value.value("interval", json::array()); interval.size() == 2) {
+      e.low = interval[0].get<double>();
+      e.high = interval[1].get<double>();
+    }
+  }
+  return p;
 }
 
 double half_width(const Estimate& e) {
@@ -78,12 +117,24 @@ const std::vector<GasSystem>& gas_systems() {
 }
 
 const GasSize& gas_size_for(const Request& request, double share) {
-  if (request.full) return sizes().back();
+  if (request.full || !request.stored.empty()) return sizes().back();
   const double core_minutes = request.minutes * request.threads / share;
   const GasSize* chosen = &sizes().front();
   for (const GasSize& size : sizes())
     if (core_minutes >= size.core_minutes) chosen = &size;
   return *chosen;
+}
+
+Reproducible gas_entry(const std::string& name, const std::string& what,
+                       const std::function<Reproduction(const Request&)>& run) {
+  return {.name = name, .what = what, .run = run, .shared_runs = "p2-runs", .judges_stored = true};
+}
+
+Reproducible gas_entry_of(const std::string& of, const std::string& name, const std::string& what,
+                          const std::function<Reproduction(const Request&)>& run) {
+  Reproducible entry = gas_entry(name, what + fmt::format(" (runs of {})", of), run);
+  entry.runs_like = of;
+  return entry;
 }
 
 Estimate quotient(const Estimate& a, const Estimate& b) {
@@ -106,11 +157,30 @@ bool GasPoint::solid() const {
   return t && t->value < kSolid;
 }
 
-Gas::Gas(const Request& request) : request_(request), store_(request.runs) {}
+Gas::Gas(const Request& request)
+    : request_(request),
+      store_(request.runs,
+             request.stored.empty() ? sweep::Store::Access::write : sweep::Store::Access::read) {
+  if (request.stored.empty()) return;
+  const json stored = json::parse(request.stored);
+  for (const json& point : stored.is_object() ? stored.at("points") : stored)
+    stored_[point.at("curve").get<std::string>()].push_back(point_of(point));
+}
 
 std::size_t Gas::add(const GasCurve& curve) {
   Runs& runs = runs_.emplace_back();
   runs.curve = curve;
+  if (!request_.stored.empty()) {
+    // The stored points, and places without a result for the values that the document lacks.
+    runs.points = stored_[curve.name];
+    for (const double value : curve.values)
+      if (std::none_of(runs.points.begin(), runs.points.end(),
+                       [&](const GasPoint& p) { return std::abs(p.at / value - 1) < kSameValue; }))
+        runs.points.emplace_back().at = value;
+    std::sort(runs.points.begin(), runs.points.end(),
+              [](const GasPoint& a, const GasPoint& b) { return a.at < b.at; });
+    return runs_.size() - 1;
+  }
   std::string values;
   for (const double value : curve.values)
     values += fmt::format("{}{:.17g}", values.empty() ? "" : ", ", value);
@@ -138,6 +208,7 @@ std::size_t Gas::add(const GasSystem& system, const GasSize& size, const std::ve
 }
 
 bool Gas::run() {
+  if (!request_.stored.empty()) return true;
   std::vector<sweep::Schedule*> schedules;
   for (Runs& runs : runs_) schedules.push_back(&*runs.schedule);
   const bool complete = run_here(schedules, store_, {request_.threads, false}, *request_.watch);
@@ -165,10 +236,8 @@ void Gas::read(Runs& runs) const {
       const json results = result.value("results", json::object());  // items() of a temporary would dangle
       for (const auto& [name, value] : results.items()) {
         if (!value.contains("value") || value["value"].is_null()) continue;
-        if (value["value"].is_number()) p.scalars[name] = estimate_of(value);
-        if (!value["value"].is_array()) continue;
-        for (const json& element : value["value"])
-          p.arrays[name].push_back(element.is_number() ? element.get<double>() : std::nan(""));
+        if (value["value"].is_number()) p.scalars[name] = number_of(value);
+        if (value["value"].is_array()) p.arrays[name] = numbers_of(value["value"]);
       }
     }
     runs.points.push_back(std::move(p));
@@ -189,6 +258,7 @@ std::string Gas::table() const {
                      runs.curve.key == "drive.k_m" ? "W" : runs.curve.key, "T_bar_z", "eq5", "field",
                      "T_bar_x", "T_bar", "dh_bar", "phi_top", "touching", "cycles (tau)");
     for (const GasPoint& p : runs.points) {
+      if (!p.done && !request_.stored.empty()) continue;
       if (!p.done || !p.failed.empty()) {
         s += fmt::format("  {:>9.4g} {}\n", p.at, p.done ? p.failed : "not begun");
         continue;
@@ -211,7 +281,20 @@ std::string Gas::table() const {
   return s;
 }
 
-std::string Gas::as_json() const {
+std::string Gas::runs_text() const {
+  std::int64_t least = std::numeric_limits<std::int64_t>::max(), most = 0;
+  for (const Runs& runs : runs_)
+    for (const GasPoint& p : runs.points)
+      if (p.done && p.failed.empty()) {
+        least = std::min(least, p.cycles);
+        most = std::max(most, p.cycles);
+      }
+  if (most == 0) return "no run";
+  return least == most ? fmt::format("one run a point, {} cycles", most)
+                       : fmt::format("one run a point, {} to {} cycles", least, most);
+}
+
+std::string Gas::as_json(bool with_profiles) const {
   nlohmann::json all = nlohmann::json::array();
   for (const Runs& runs : runs_)
     for (const GasPoint& p : runs.points) {
@@ -228,6 +311,9 @@ std::string Gas::as_json() const {
         j[name] = {{"value", e.value}};
         if (e.low && e.high) j[name]["interval"] = {*e.low, *e.high};
       }
+      for (const char* name : kProfiles)
+        if (const auto found = p.arrays.find(name); with_profiles && found != p.arrays.end())
+          j[name] = found->second;
       all.push_back(j);
     }
   return json_text(all);
@@ -342,7 +428,9 @@ std::optional<Peak> peak_of(const std::vector<GasPoint>& points) {
       std::max_element(t.begin(), t.end(), [](const auto& a, const auto& b) { return a.second < b.second; }) -
       t.begin());
   Peak peak{.w = t[top].first, .grid = t[top].first, .height = t[top].second, .inside = false};
-  if (top == 0 || top + 1 == t.size()) return peak;
+  if (top > 0) peak.left = t[top - 1].first;
+  if (top + 1 < t.size()) peak.right = t[top + 1].first;
+  if (!peak.left || !peak.right) return peak;
   peak.inside = true;
   const double x0 = std::log(t[top - 1].first), x1 = std::log(t[top].first), x2 = std::log(t[top + 1].first);
   const double left = (t[top].second - t[top - 1].second) / (x1 - x0);
@@ -352,22 +440,23 @@ std::optional<Peak> peak_of(const std::vector<GasPoint>& points) {
   return peak;
 }
 
-std::optional<double> flat_from(const Series& s, bool errors_count) {
+std::optional<Estimate> flat_from(const Series& s, bool errors_count) {
   constexpr double kNearly = 0.05;
-  std::optional<double> from;
+  std::optional<Estimate> from;
   for (std::size_t k = s.x.size(); k-- > 0;) {
     const double last = s.y.back().value;
     const Estimate& e = s.y[k];
     const double nearest =
         errors_count ? std::clamp(last, e.low.value_or(e.value), e.high.value_or(e.value)) : e.value;
     if (std::abs(nearest - last) > kNearly * last) break;
-    from = s.x[k];
+    from = Estimate{s.x[k], k > 0 ? std::optional(s.x[k - 1]) : std::nullopt, s.x[k]};
   }
   return from;
 }
 
 std::optional<double> w_2_of(const std::vector<GasPoint>& points) {
-  return flat_from(series_of("", points, "T_bar_z"), false);
+  const auto from = flat_from(series_of("", points, "T_bar_z"), false);
+  return from ? std::optional(from->value) : std::nullopt;
 }
 
 double table_3(int dimension, bool algebraic, double w) {

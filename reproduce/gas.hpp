@@ -3,13 +3,13 @@
 /// Vibrated gases: the runs and plots that the figures of Bhateja, Sharma & Singh 2016 share.
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/report/figures.hpp"
-#include "reproduce/estimate.hpp"
 #include "reproduce/reproduction.hpp"
 #include "sweep/schedule.hpp"
 
@@ -41,6 +41,13 @@ struct GasSize {
 };
 /// The size for a request whose work is `share` of that of Fig. 2.
 const GasSize& gas_size_for(const Request& request, double share = 1);
+
+/// An entry of the list whose runs are those of Gas.
+Reproducible gas_entry(const std::string& name, const std::string& what,
+                       const std::function<Reproduction(const Request&)>& run);
+/// The same without runs of its own: `of` is the entry that computes them.
+Reproducible gas_entry_of(const std::string& of, const std::string& name, const std::string& what,
+                          const std::function<Reproduction(const Request&)>& run);
 
 /// a/b, with the half-widths of the intervals combined as independent relative errors.
 Estimate quotient(const Estimate& a, const Estimate& b);
@@ -81,6 +88,7 @@ struct GasCurve {
 /// computed only once.
 class Gas {
  public:
+  /// Request::stored replaces the store: the points of a curve are those of its name in the document.
   explicit Gas(const Request& request);
   /// Adds a curve. \returns its index
   std::size_t add(const GasCurve& curve);
@@ -95,8 +103,10 @@ class Gas {
   /// Text table with one line per point: W, T_bar_z in its conventions, the other results, correlation time,
   /// and how the run ended.
   [[nodiscard]] std::string table() const;
-  /// The same as JSON.
-  [[nodiscard]] std::string as_json() const;
+  /// Seeds and cycles behind the points: "one run a point, 113 to 40000 cycles".
+  [[nodiscard]] std::string runs_text() const;
+  /// The same as JSON. \param with_profiles add the arrays over height
+  [[nodiscard]] std::string as_json(bool with_profiles = false) const;
   /// Conditions to state with each number: contacts, step, start, cycles, seed, conventions.
   [[nodiscard]] std::vector<std::string> conditions() const;
   /// Simplifications relative to the paper, and the number of runs that the limit of cycles ended.
@@ -113,6 +123,7 @@ class Gas {
 
   const Request& request_;
   sweep::Store store_;
+  std::map<std::string, std::vector<GasPoint>> stored_;  ///< by curve
   std::deque<Runs> runs_;  // schedules refer to their plans, so elements must not move
 };
 
@@ -137,12 +148,17 @@ struct Peak {
   double grid = 0;      ///< W of the largest point
   double height = 0;    ///< T_bar_z of the largest point
   bool inside = false;  ///< whether there is a lower point on either side
+  std::optional<double> left, right;  ///< W of the neighbouring points: the maximum lies between them
+
+  /// W_f with the interval from the left to the right neighbour; open at an end of the points.
+  [[nodiscard]] Estimate position() const { return {w, left, right}; }
 };
 /// Finds W_f. Empty for fewer than three points that are not solid.
 std::optional<Peak> peak_of(const std::vector<GasPoint>& points);
-/// Smallest x from which a series stays within 5 % of its last value; empty for an empty series. \param
-/// errors_count accept points whose interval reaches into this range
-std::optional<double> flat_from(const Series& s, bool errors_count);
+/// Smallest x from which a series stays within 5 % of its last value, with the interval from the point before
+/// to this point; empty for an empty series. \param errors_count accept points whose interval reaches into
+/// this range
+std::optional<Estimate> flat_from(const Series& s, bool errors_count);
 /// W_2: smallest W from which T_bar_z stays within 5 % of its value at the largest W.
 std::optional<double> w_2_of(const std::vector<GasPoint>& points);
 

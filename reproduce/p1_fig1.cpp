@@ -65,10 +65,9 @@ std::vector<Target> targets_of(const Packings& all) {
     const Bulk b = bulk_of(*crystal);
     q6.measured = fmt::format("{:.5f}, from {:.5f} to {:.5f} over {} beads",
                               b.sum_q6 / static_cast<double>(b.n), b.least_q6, b.largest_q6, b.n);
-    q6.verdict =
-        all_of({within(exact(b.least_q6), 0.7398, 0.7418), within(exact(b.largest_q6), 0.7398, 0.7418)});
+    q6.verdict = judge({b.sum_q6 / static_cast<double>(b.n), b.least_q6, b.largest_q6}, 0.7398, 0.7418);
     psi6.measured = fmt::format("{:.6f} at least, over {} beads", b.least_psi6, b.n);
-    psi6.verdict = b.least_psi6 > 0.999 ? Verdict::pass : Verdict::fail;
+    psi6.verdict = judge(exact(b.least_psi6), 0.999, kUnbounded);
   }
   targets.push_back(q6);
   targets.push_back(psi6);
@@ -79,10 +78,10 @@ std::vector<Target> targets_of(const Packings& all) {
   if (!all.random.empty()) {
     const Estimate share = all.over_random([](const Packing& p) { return p.scalars.at("ordered_fraction"); });
     ordered.measured = fmt::format("{}, {} random", share.text(), all.random.size());
-    ordered.verdict = within(share, 0.5, 1);
+    ordered.verdict = judge(share, 0.5, kUnbounded);
     const Estimate together = all.over_random(clustering_of);
     lines.measured = together.text();
-    lines.verdict = within(together, std::nextafter(1.0, 2.0), 1e300);
+    lines.verdict = above(together, exact(1));
     const auto with = std::count_if(all.random.begin(), all.random.end(), [](const Packing& p) {
       return p.scalars.at("grain_boundary_fraction") > 0;
     });
@@ -90,7 +89,7 @@ std::vector<Target> targets_of(const Packings& all) {
         fmt::format("{} of {} beds; {} grains and {} dislocations a bed", with, all.random.size(),
                     all.over_random([](const Packing& p) { return p.scalars.at("grains"); }).text(),
                     all.over_random([](const Packing& p) { return p.scalars.at("dislocations"); }).text());
-    grains.verdict = static_cast<std::size_t>(with) == all.random.size() ? Verdict::pass : Verdict::fail;
+    grains.verdict = holds(static_cast<std::size_t>(with) == all.random.size());
   }
   targets.push_back(ordered);
   targets.push_back(lines);
@@ -135,7 +134,10 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p1_fig1() {
-  return {"p1-fig1", "crystal and random beds before the drive starts, coloured by q6", run, kPackingRuns};
+  return {.name = "p1-fig1",
+          .what = "crystal and random beds before the drive starts, coloured by q6",
+          .run = run,
+          .shared_runs = kPackingRuns};
 }
 
 }  // namespace twincell::reproduce

@@ -34,7 +34,7 @@ std::vector<Target> targets_of(const Packings& all) {
     if (const Packing* crystal = all.crystal(o.start)) {
       const double angle = crystal->scalars.at("orientation");
       t.measured = fmt::format("{:.4f} degrees", angle);
-      t.verdict = within(exact(angle), o.angle - 1, o.angle + 1);
+      t.verdict = judge(exact(angle), o.angle - 1, o.angle + 1);
     }
     targets.push_back(t);
   }
@@ -44,9 +44,7 @@ std::vector<Target> targets_of(const Packings& all) {
     const Estimate difference = all.over_random(
         [](const Packing& p) { return share(p, "orientation_a") - share(p, "orientation_b"); });
     favoured.measured = fmt::format("{}, {} random", difference.text(), all.random.size());
-    favoured.verdict = difference.low && *difference.low > 0     ? Verdict::pass
-                       : difference.high && *difference.high < 0 ? Verdict::fail
-                                                                 : Verdict::inconclusive;
+    favoured.verdict = above(difference, exact(0));
     if (favoured.verdict == Verdict::inconclusive)
       favoured.reason = "beds differ more among each other than A from B";
     if (favoured.verdict == Verdict::fail)
@@ -60,7 +58,7 @@ std::vector<Target> targets_of(const Packings& all) {
              share(p, "grain_boundary_fraction") > 0;
     });
     both.measured = fmt::format("{} of {} beds", with, all.random.size());
-    both.verdict = static_cast<std::size_t>(with) == all.random.size() ? Verdict::pass : Verdict::fail;
+    both.verdict = holds(static_cast<std::size_t>(with) == all.random.size());
   }
   targets.push_back(favoured);
   targets.push_back(both);
@@ -149,8 +147,10 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p1_fig2() {
-  return {"p1-fig2", "lattice orientations A and B at a side wall, and their shares in random beds", run,
-          kPackingRuns};
+  return {.name = "p1-fig2",
+          .what = "lattice orientations A and B at a side wall, and their shares in random beds",
+          .run = run,
+          .shared_runs = kPackingRuns};
 }
 
 }  // namespace twincell::reproduce

@@ -15,7 +15,6 @@
 #include "calibration/fit/table.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
-#include "reproduce/estimate.hpp"
 #include "reproduce/is_arrested.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/reproduction.hpp"
@@ -77,23 +76,28 @@ bool has_slips() {
 struct Boundary {
   int layers;
   bool random, convecting;
-  sweep::Plan plan;
-  std::optional<sweep::Schedule> schedule;
+  sweep::Plan plan = {};
+  std::optional<sweep::Schedule> schedule = {};  ///< while the runs are computed
+  bool complete = false;
+  std::vector<sweep::Trial> trials = {};  ///< of all runs
+  std::vector<sweep::Trial> moving = {};  ///< the same; a bed that came to rest does not convect
+  std::size_t at_rest = 0;  ///< runs with s_c > sigma whose bed had come to rest: it had rearranged once,
+                            ///< which the paper's criterion does not distinguish from convection
+  Onset onset_of_all = {}, onset_of_moving = {};
 
-  [[nodiscard]] const Onset& onset() const { return *schedule->curves().front().onset; }
-  [[nodiscard]] bool begun() const { return schedule->curves().front().onset && onset().n > 0; }
+  [[nodiscard]] const Onset& onset() const { return onset_of_all; }
+  [[nodiscard]] bool begun() const { return onset().n > 0; }
   [[nodiscard]] std::string start() const { return random ? "random" : "crystal"; }
   [[nodiscard]] std::string verdict() const { return convecting ? "convecting" : "bouncing"; }
 
-  /// Runs with s_c > sigma whose bed had come to rest: it had rearranged once, which the paper's criterion
-  /// does not distinguish from convection.
-  struct Rest {
-    std::size_t at_rest = 0;
-    Onset moving;  ///< onset of s_c > sigma in beds that keep moving, from the same runs
-  };
-  [[nodiscard]] Rest rest() const {
-    Rest all;
-    std::vector<sweep::Trial> trials;
+  void add(double gamma, bool yes, bool moves) {
+    trials.push_back({gamma, yes});
+    moving.push_back({gamma, moves});
+    at_rest += yes && !moves ? 1 : 0;
+  }
+  /// Enters the runs of the schedule, which is no longer needed.
+  void read() {
+    complete = schedule->all();
     const sweep::Curve& curve = schedule->curves().front();
     for (std::size_t k = 0; k < curve.points.size(); ++k) {
       const auto& result = curve.results[k];
@@ -106,13 +110,16 @@ struct Boundary {
         std::vector<double> s_j;
         for (const json& x : found) s_j.push_back(x.is_number() ? x.get<double>() : std::nan(""));
         moves = !is_arrested(s_j);
-        all.at_rest += moves ? 0 : 1;
       }
-      trials.push_back({*curve.points[k].at, moves});
+      add(*curve.points[k].at, *answer, moves);
     }
+    schedule.reset();
+  }
+  /// The onsets from the runs.
+  void estimate() {
     const sweep::Search& search = *plan.search;
-    all.moving = sweep::estimate_onset(trials, search.low, search.high, search.width);
-    return all;
+    onset_of_all = sweep::estimate_onset(trials, search.low, search.high, search.width);
+    onset_of_moving = sweep::estimate_onset(moving, search.low, search.high, search.width);
   }
 };
 
@@ -133,7 +140,7 @@ json number(const std::optional<double>& value) {
   return value ? json(*value) : json(nullptr);
 }
 
-json as_json(const Boundary& b, const std::optional<Boundary::Rest>& rest) {
+json as_json(const Boundary& b, int cycles) {
   json j = {{"layers", b.layers}, {"start", b.start()}, {"verdict", b.verdict()}};
   if (!b.begun()) return j;
   const Onset& o = b.onset();
@@ -145,11 +152,15 @@ json as_json(const Boundary& b, const std::optional<Boundary::Rest>& rest) {
   j["k_m"] = {{"value", squared(o.value)}, {"low", squared(o.low)}, {"high", squared(o.high)}};
   j["runs"] = o.n;
   j["yes"] = o.yes;
-  j["complete"] = b.schedule->all();
+  j["complete"] = b.complete;
+  j["width"] = b.plan.search->width;
+  j["cycles"] = cycles;
   j["text"] = o.text();
-  if (rest) {
-    const Onset& moving = rest->moving;
-    j["at_rest"] = rest->at_rest;
+  for (std::size_t k = 0; k < b.trials.size(); ++k)
+    j["trials"].push_back({b.trials[k].x, b.trials[k].yes, b.moving[k].yes});
+  if (b.convecting) {
+    const Onset& moving = b.onset_of_moving;
+    j["at_rest"] = b.at_rest;
     j["moving"] = {{"value", number(moving.value)},
                    {"low", number(moving.low)},
                    {"high", number(moving.high)},
@@ -158,17 +169,19 @@ json as_json(const Boundary& b, const std::optional<Boundary::Rest>& rest) {
   return j;
 }
 
-/// Runs of crystals in region A1, and the count of their slips.
+/// Slips of crystals in region A1, summed over runs.
+struct SlipCount {
+  std::size_t runs = 0;
+  double slips = 0, eligible = 0;
+};
+
+/// Runs of crystals in region A1.
 struct Crystals {
   sweep::Plan plan;
   std::optional<sweep::Schedule> schedule;
 
-  struct Count {
-    std::size_t runs = 0;
-    double slips = 0, eligible = 0;
-  };
-  [[nodiscard]] Count count() const {
-    Count all;
+  [[nodiscard]] SlipCount count() const {
+    SlipCount all;
     for (const auto& curve : schedule->curves())
       for (const auto& result : curve.results) {
         if (!result) continue;
@@ -236,9 +249,7 @@ Target below_experiment(const std::deque<Boundary>& all, const std::vector<Filme
     const Onset& o = b->onset();
     t.measured += fmt::format("{}N_l = {}: {}; experiment {:.4g}", t.measured.empty() ? "" : ", ", b->layers,
                               o.text(), point.convection);
-    verdicts.push_back(o.high && *o.high < point.convection ? Verdict::pass
-                       : o.low && *o.low > point.convection ? Verdict::fail
-                                                            : Verdict::inconclusive);
+    verdicts.push_back(above(exact(point.convection), estimate_of(o)));
   }
   if (!filmed.empty() && verdicts.empty())
     t.reason = "no N_l from 60 on has a random bed here and a point in the data";
@@ -247,7 +258,7 @@ Target below_experiment(const std::deque<Boundary>& all, const std::vector<Filme
 }
 
 std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all,
-                               const std::optional<Crystals>& crystals, const std::vector<Filmed>& filmed) {
+                               const std::optional<SlipCount>& crystals, const std::vector<Filmed>& filmed) {
   std::vector<Target> targets;
   constexpr double kBounceLow = 1.10, kBounceHigh = 1.35;
   for (const int layers : size.layers)
@@ -256,7 +267,8 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
                fmt::format("Gamma {:.2f} to {:.2f}", kBounceLow, kBounceHigh), "", Verdict::absent, ""};
       if (const Boundary* b = find(all, layers, random, false)) {
         t.measured = b->onset().text();
-        t.verdict = within(b->onset(), kBounceLow, kBounceHigh);
+        t.verdict = judge(estimate_of(b->onset()), kBounceLow, kBounceHigh);
+        t.runs = fmt::format("{} runs, {} cycles", b->onset().n, size.bounce_cycles);
       }
       targets.push_back(t);
     }
@@ -269,26 +281,38 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
           fmt::format("crystal {}; random {}; 2 ln(L/L_opposite) = {:.3g}", crystal->onset().text(),
                       random->onset().text(), std::abs(evidence_above(crystal->onset(), random->onset())));
       t.verdict = above(crystal->onset(), random->onset());
+      t.runs = fmt::format("{} and {} runs, {} cycles", crystal->onset().n, random->onset().n,
+                           size.convect_cycles);
       if (t.verdict == Verdict::inconclusive)
         t.reason = fmt::format("{:g} would decide", sweep::kLikelihoodDrop);
     }
     targets.push_back(t);
   }
   {
-    // The paper does not state N_l of its Figs. 4 and 5; the best verdict over all N_l counts.
+    // The paper does not state N_l of its Figs. 4 and 5. The best verdict counts, of the heights at which the
+    // slips of Fig. 5 are defined: lower beds have too few beads in bonds that can be counted.
     constexpr double kLow = 3.3 * 0.75, kHigh = 3.3 * 1.25;
-    Target t{"onset of convection, random, at the N_l of Figs. 4, 5", "K_m 3.3 +- 25 %", "", Verdict::absent,
-             "the paper does not state that N_l; any of these counts"};
+    constexpr int kLowestWithSlips = 20;
+    Target t{
+        "onset of convection, random, at the N_l of Figs. 4, 5", "K_m 3.3 +- 25 %", "", Verdict::absent,
+        fmt::format("the paper does not state that N_l; the best of these from N_l = {} on, where p_s is "
+                    "defined, counts",
+                    kLowestWithSlips)};
     for (const int layers : size.layers)
       if (const Boundary* b = find(all, layers, true, true)) {
-        const Verdict verdict = within(b->onset(), std::sqrt(kLow), std::sqrt(kHigh));
-        if (b->onset().value)
-          t.measured += fmt::format("{}N_l = {}: K_m {:.3g}", t.measured.empty() ? "" : ", ", layers,
-                                    *b->onset().value * *b->onset().value);
-        if (t.verdict == Verdict::absent || verdict == Verdict::pass ||
-            (verdict == Verdict::inconclusive && t.verdict == Verdict::fail))
-          t.verdict = verdict;
+        const Estimate onset = estimate_of(b->onset());
+        const auto squared = [](double gamma) { return gamma * gamma; };
+        const Estimate k_m{squared(onset.value),
+                           onset.low ? std::optional(squared(*onset.low)) : std::nullopt,
+                           onset.high ? std::optional(squared(*onset.high)) : std::nullopt};
+        const Verdict verdict = judge(k_m, kLow, kHigh);
+        t.measured += fmt::format("{}N_l = {}: K_m {}: {}", t.measured.empty() ? "" : ", ", layers,
+                                  k_m.text(), word_of(verdict));
+        t.runs += fmt::format("{}{}", t.runs.empty() ? "" : ", ", b->onset().n);
+        if (layers >= kLowestWithSlips)
+          t.verdict = t.verdict == Verdict::absent ? verdict : best_of(t.verdict, verdict);
       }
+    if (!t.runs.empty()) t.runs += fmt::format(" runs, {} cycles", size.convect_cycles);
     targets.push_back(t);
   }
   {
@@ -310,10 +334,11 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
              Verdict::absent, ""};
     if (!crystals) {
       t.reason = "the analysis has no slip count";
-    } else if (const auto count = crystals->count(); count.runs > 0) {
-      t.measured = fmt::format("{:.0f} of {:.0f} bead-periods, {} runs, Gamma 1.2 to 2.1", count.slips,
-                               count.eligible, count.runs);
-      t.verdict = count.slips == 0 ? Verdict::pass : Verdict::fail;
+    } else if (crystals->runs > 0) {
+      t.measured =
+          fmt::format("{:.0f} of {:.0f} bead-periods, Gamma 1.2 to 2.1", crystals->slips, crystals->eligible);
+      t.runs = fmt::format("{} runs, {} cycles", crystals->runs, size.convect_cycles);
+      t.verdict = judge(exact(crystals->slips), 0, 0);
     }
     targets.push_back(t);
   }
@@ -411,55 +436,111 @@ std::vector<std::string> cheaper_of(const Size& size, const std::deque<Boundary>
   return s;
 }
 
-Reproduction run(const Request& request) {
-  if (request.window)
-    throw ConfigError({.file = {}, .key = "window"}, "has no effect on p1-fig3, which has no W.");
-  const std::vector<Filmed> filmed = filmed_in(request.data);
-  const Size& size = size_for(request);
-  const sweep::Store store(request.folder);
+/// The runs of the figure: its searches, and the slips of its crystals.
+struct Runs {
   std::deque<Boundary> boundaries;  // schedules refer to their plans, so elements must not move
+  std::optional<SlipCount> crystals;
+  bool complete = true;
+};
+
+Boundary& add_boundary(Runs& runs, const Size& size, int layers, bool random, bool convecting,
+                       std::uint64_t seed) {
+  Boundary& b = runs.boundaries.emplace_back();
+  b.layers = layers;
+  b.random = random;
+  b.convecting = convecting;
+  b.plan = plan_of(size, layers, random, convecting, seed);
+  return b;
+}
+
+Runs simulated(const Request& request, const Size& size) {
+  Runs runs;
+  const sweep::Store store(request.folder);
   for (const int layers : size.layers)
     for (const bool convecting : {true, false})
       for (const bool random : {true, false}) {
-        Boundary& b = boundaries.emplace_back();
-        b.layers = layers;
-        b.random = random;
-        b.convecting = convecting;
-        b.plan = plan_of(size, layers, random, convecting, request.seed);
+        Boundary& b = add_boundary(runs, size, layers, random, convecting, request.seed);
         b.schedule.emplace(b.plan, store);
       }
   std::optional<Crystals> crystals = crystals_of(size, request.seed);
   if (crystals) crystals->schedule.emplace(crystals->plan, store);
-  Reproduction r;
-  r.title = "Fortini & Huang 2015, Fig. 3: onsets of bouncing and convection";
-  r.complete = true;
   // Run the height that most targets use first, so that a lack of time affects the least important runs.
   for (const bool first : {true, false}) {
     std::vector<sweep::Schedule*> schedules;
     if (first && crystals) schedules.push_back(&*crystals->schedule);
-    for (Boundary& b : boundaries)
+    for (Boundary& b : runs.boundaries)
       if ((b.layers == kLayersOfA1) == first) schedules.push_back(&*b.schedule);
-    r.complete = run_here(schedules, store, {request.threads, false}, *request.watch) && r.complete;
+    runs.complete = run_here(schedules, store, {request.threads, false}, *request.watch) && runs.complete;
   }
-  r.targets = targets_of(size, boundaries, crystals, filmed);
+  for (Boundary& b : runs.boundaries) b.read();
+  if (crystals) runs.crystals = crystals->count();
+  return runs;
+}
+
+/// The runs of a document that this figure wrote. \param size its heights become those of the document
+Runs stored_runs(const Request& request, Size& size) {
+  Runs runs;
+  size.layers.clear();
+  for (const json& j : json::parse(request.stored)) {
+    if (j.contains("slips")) {
+      runs.crystals = SlipCount{j.at("runs").get<std::size_t>(), j.at("slips").get<double>(),
+                                j.at("bead_periods").get<double>()};
+      continue;
+    }
+    const int layers = j.at("layers").get<int>();
+    if (std::find(size.layers.begin(), size.layers.end(), layers) == size.layers.end())
+      size.layers.push_back(layers);
+    if (j.contains("runs") && !j.contains("trials"))
+      throw ConfigError({.file = {}, .key = "from"},
+                        "names a document of an earlier version, which does not hold the single runs.");
+    const bool convecting = j.at("verdict") == "convecting";
+    if (j.contains("trials")) {
+      (convecting ? size.convect_cycles : size.bounce_cycles) = j.at("cycles").get<int>();
+      (convecting ? size.convect_width : size.bounce_width) = j.at("width").get<double>();
+    }
+    Boundary& b = add_boundary(runs, size, layers, j.at("start") == "random", convecting, request.seed);
+    b.complete = j.value("complete", false);
+    for (const json& t : j.value("trials", json::array()))
+      b.add(t.at(0).get<double>(), t.at(1).get<bool>(), t.at(2).get<bool>());
+  }
+  return runs;
+}
+
+Reproduction run(const Request& request) {
+  if (request.window)
+    throw ConfigError({.file = {}, .key = "window"}, "has no effect on p1-fig3, which has no W.");
+  const std::vector<Filmed> filmed = filmed_in(request.data);
+  Size size = size_for(request);
+  Runs runs = request.stored.empty() ? simulated(request, size) : stored_runs(request, size);
+  std::deque<Boundary>& boundaries = runs.boundaries;
+  for (Boundary& b : boundaries) b.estimate();
+  Reproduction r;
+  r.title = "Fortini & Huang 2015, Fig. 3: onsets of bouncing and convection";
+  r.complete = runs.complete;
+  r.targets = targets_of(size, boundaries, runs.crystals, filmed);
   r.cheaper = cheaper_of(size, boundaries);
   r.conditions = p1_conditions(run_of(kLayersOfA1, false, size.convect_cycles));
   r.conditions.push_back(fmt::format("seeds of all runs drawn from the master seed {}", request.seed));
   json measured = json::array();
   for (const Boundary& b : boundaries) {
-    const auto rest = b.convecting && b.begun() ? std::optional(b.rest()) : std::nullopt;
-    measured.push_back(as_json(b, rest));
-    r.table += fmt::format("  N_l = {:<3} {:<11} {:<8} {}{}", b.layers, b.verdict(), b.start(),
-                           b.begun() ? "Gamma " + b.onset().text() : "not begun",
-                           b.schedule->all() ? "" : " (unfinished)");
-    if (rest && rest->at_rest > 0)
-      r.table += fmt::format("; at rest {}, moving from {}", rest->at_rest, rest->moving.text());
+    measured.push_back(as_json(b, b.convecting ? size.convect_cycles : size.bounce_cycles));
+    r.table +=
+        fmt::format("  N_l = {:<3} {:<11} {:<8} {}{}", b.layers, b.verdict(), b.start(),
+                    b.begun() ? "Gamma " + b.onset().text() : "not begun", b.complete ? "" : " (unfinished)");
+    if (b.convecting && b.at_rest > 0)
+      r.table += fmt::format("; at rest {}, moving from {}", b.at_rest, b.onset_of_moving.text());
     r.table += '\n';
   }
   r.table +=
       "  at rest: of the runs with s_c > sigma those whose s_j changed by less than 0.1 sigma in the second "
       "half of\n  their cycles: they had rearranged and came to rest; moving: the onset without them. Runs "
       "end early, so that\n  one that rearranges slowly counts as moving\n";
+  if (runs.crystals)
+    measured.push_back({{"layers", kLayersOfA1},
+                        {"runs", runs.crystals->runs},
+                        {"slips", runs.crystals->slips},
+                        {"bead_periods", runs.crystals->eligible}});
+  r.runs = fmt::format("{} cycles for s_b, {} for s_c", size.bounce_cycles, size.convect_cycles);
   r.measured = json_text(measured);
   r.figures = {figure_of(boundaries, filmed)};
   return r;
@@ -468,11 +549,12 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p1_fig3() {
-  return {"p1-fig3",
-          "phase diagram: onsets of bouncing and convection against N_l, random and crystal starts",
-          run,
-          {},
-          true};
+  return {.name = "p1-fig3",
+          .what = "phase diagram: onsets of bouncing and convection against N_l, random and crystal starts",
+          .run = run,
+          .takes_data = true,
+          .judges_stored = true,
+          .worth = 8};
 }
 
 }  // namespace twincell::reproduce

@@ -134,6 +134,7 @@ Reproduction reproduction_of(const Packings& all, const std::string& title, std:
                  .cheaper = all.cheaper,
                  .conditions = all.conditions,
                  .complete = all.complete};
+  r.runs = fmt::format("{} random beds, each crystal once", all.random.size());
   json measured = json::array();
   for (const auto* beds : {&all.crystals, &all.random})
     for (const Packing& p : *beds) {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "analysis/motion/snapshots.hpp"
-#include "reproduce/estimate.hpp"
 #include "reproduce/reproduction.hpp"
 
 namespace twincell::reproduce {

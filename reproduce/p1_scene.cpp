@@ -24,8 +24,8 @@ beads.layers = {}
 time.steps_per_contact = 6.37
 time.discard = {}
 time.cycles = {}
-)",
-                     run.layers, start, run.discard, run.cycles);
+{})",
+                     run.layers, start, run.discard, run.cycles, run.keys);
 }
 
 namespace {
@@ -39,8 +39,8 @@ sim::Scene read(const P1Run& run) {
 
 }  // namespace
 
-std::vector<std::string> p1_contact_conditions() {
-  const sim::Scene scene = read({20, "crystal_a", 1});
+std::vector<std::string> p1_contact_conditions(const std::string& keys) {
+  const sim::Scene scene = read({20, "crystal_a", 1, 10, keys});
   const auto& bead = scene.contact.bead;
   const double gamma_n = bead.required("gamma_n"), gamma_t = bead.required("gamma_t");
   return {
@@ -66,7 +66,7 @@ std::string p1_step_condition(const P1Run& run) {
 
 std::vector<std::string> p1_conditions(const P1Run& run) {
   const sim::Scene scene = read(run);
-  std::vector<std::string> all = p1_contact_conditions();
+  std::vector<std::string> all = p1_contact_conditions(run.keys);
   all.push_back(p1_step_condition(run));
   all.push_back(fmt::format("drive starts {}; crystals perturbed by {:g} sigma",
                             scene.comoving ? "co-moving" : "abruptly", kPerturbation));

@@ -14,6 +14,7 @@ struct P1Run {
   std::string start;  ///< "random", "crystal_a", "crystal_b"; empty if an axis of the plan sets it
   int cycles;         ///< N_f
   double discard = 10;
+  std::string keys = {};  ///< further keys of the scene, each with its line end
 };
 
 /// The scene as a table [scene] of a plan. The split integrator at n = 6.37 is at least as accurate as Verlet
@@ -25,8 +26,8 @@ std::string p1_scene(const P1Run& run);
 /// and slip rule, start, cycles, phases, conventions.
 std::vector<std::string> p1_conditions(const P1Run& run);
 
-/// The conditions that do not depend on the run: cell, contacts, tension and slip rule.
-std::vector<std::string> p1_contact_conditions();
+/// The conditions on cell, contacts, tension and slip rule. \param keys P1Run::keys
+std::vector<std::string> p1_contact_conditions(const std::string& keys = {});
 /// The condition on integrator and time step.
 std::string p1_step_condition(const P1Run& run);
 

@@ -28,7 +28,7 @@ struct Size {
 constexpr int kPaperCycles = 200;
 constexpr double kOnsetWidth = 0.2;  ///< in Gamma; about the spacing of points
 
-const Size& size_for(const Request& request) {
+const Size& size_for(const Request& request, double share) {
   static constexpr std::array<Size, 7> all = {{{0, 20, 30, 1, 4},
                                                {1, 20, 60, 1, 2},
                                                {6, 20, 200, 1, 1},
@@ -39,7 +39,7 @@ const Size& size_for(const Request& request) {
   if (request.full) return all.back();
   const Size* chosen = &all.front();
   for (const Size& size : all)
-    if (request.minutes * request.threads >= size.core_minutes) chosen = &size;
+    if (request.minutes * request.threads * share >= size.core_minutes) chosen = &size;
   return *chosen;
 }
 
@@ -139,7 +139,6 @@ Estimate SweepPoint::mean_temperature() const {
 
 StrengthSweep make_strength_sweep(const std::string& start, const std::vector<SweepRun>& runs) {
   std::map<double, SweepPoint> points;
-  std::vector<sweep::Trial> trials;
   for (const SweepRun& run : runs) {
     SweepPoint& point = points[run.gamma];
     point.gamma = run.gamma;
@@ -149,11 +148,19 @@ StrengthSweep make_strength_sweep(const std::string& start, const std::vector<Sw
     point.convecting += run.s_c > kConvectionThreshold ? 1 : 0;
     point.slips += run.slips;
     point.eligible += run.eligible;
-    trials.push_back({run.gamma, run.s_c > kConvectionThreshold});
   }
+  std::vector<SweepPoint> rising;
+  for (const auto& [gamma, point] : points) rising.push_back(point);
+  return find_regions(start, std::move(rising));
+}
+
+StrengthSweep find_regions(const std::string& start, std::vector<SweepPoint> points) {
   StrengthSweep sweep;
   sweep.start = start;
-  for (const auto& [gamma, point] : points) sweep.points.push_back(point);
+  sweep.points = std::move(points);
+  std::vector<sweep::Trial> trials;
+  for (const SweepPoint& point : sweep.points)
+    for (std::size_t k = 0; k < point.runs; ++k) trials.push_back({point.gamma, k < point.convecting});
   if (sweep.points.size() >= 4) {
     const sweep::Onset onset =
         estimate_onset(trials, sweep.points.front().gamma, sweep.points.back().gamma, kOnsetWidth);
@@ -174,10 +181,59 @@ StrengthSweep make_strength_sweep(const std::string& start, const std::vector<Sw
   return sweep;
 }
 
-StrengthSweeps strength_sweeps(const Request& request) {
-  const Size& size = size_for(request);
+namespace {
+
+std::string runs_text_of(const StrengthSweeps& sweeps, int cycles) {
+  std::size_t least = 0, most = 0;
+  for (const StrengthSweep* sweep : {&sweeps.random, &sweeps.crystal})
+    for (const SweepPoint& p : sweep->points) {
+      least = most == 0 ? p.runs : std::min(least, p.runs);
+      most = std::max(most, p.runs);
+    }
+  if (most == 0) return "no run";
+  std::string s = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
+  s += most == 1 ? " run a point" : " runs a point";
+  return cycles > 0 ? s + fmt::format(", {} cycles", cycles) : s;
+}
+
+/// The sweeps of a document that json_of() wrote.
+StrengthSweeps stored_sweeps(const std::string& stored) {
+  StrengthSweeps all;
+  all.complete = true;
+  const json document = json::parse(stored);
+  for (const json& sweep : document) {
+    std::vector<SweepPoint> points;
+    for (const json& p : sweep.at("points")) {
+      SweepPoint& point = points.emplace_back();
+      point.gamma = p.at("gamma").get<double>();
+      point.slips = p.at("slips").get<double>();
+      point.eligible = p.at("bead_periods").get<double>();
+      point.runs = p.at("runs").get<std::size_t>();
+      point.bouncing = p.at("bouncing").get<std::size_t>();
+      point.convecting = p.at("convecting").get<std::size_t>();
+      for (const json& t : p.at("T_g")) {
+        Estimate& e = point.temperature.emplace_back();
+        e.value = t.at("value").get<double>();
+        if (t.at("low").is_number()) e.low = t.at("low").get<double>();
+        if (t.at("high").is_number()) e.high = t.at("high").get<double>();
+      }
+    }
+    all.layers = sweep.at("layers").get<int>();
+    const auto start = sweep.at("start").get<std::string>();
+    (start == "random" ? all.random : all.crystal) = find_regions(start, std::move(points));
+  }
+  all.runs_text = runs_text_of(all, 0);
+  return all;
+}
+
+}  // namespace
+
+StrengthSweeps strength_sweeps(const Request& request, const std::string& keys, double share) {
+  if (!request.stored.empty()) return stored_sweeps(request.stored);
+  const Size& size = size_for(request, share);
   const sweep::Store store(request.runs);
-  const P1Run random{size.layers, "random", size.cycles}, crystal{size.layers, "crystal_a", size.cycles};
+  const P1Run random{size.layers, "random", size.cycles, 10, keys},
+      crystal{size.layers, "crystal_a", size.cycles, 10, keys};
   const sweep::Plan of_random = plan_of(size, random, request.seed),
                     of_crystal = plan_of(size, crystal, request.seed);
   sweep::Schedule r(of_random, store), c(of_crystal, store);
@@ -186,7 +242,10 @@ StrengthSweeps strength_sweeps(const Request& request) {
   all.complete = run_here({&r, &c}, store, {request.threads, false}, *request.watch);
   all.random = strength_sweep_of("random", r);
   all.crystal = strength_sweep_of("crystal_a", c);
+  all.runs_text = runs_text_of(all, size.cycles);
   all.conditions = p1_conditions(crystal);
+  all.conditions.emplace_back(
+      "T_g* is a time average, from 400 samples a cycle, which does not hang on the phases of the frames");
   all.conditions.push_back(
       fmt::format("N_l = {} (the paper does not state that of Figs. 4 and 5); {} run{} of each start and "
                   "strength, seeds drawn from the master seed {}",
@@ -260,6 +319,7 @@ Reproduction reproduction_of(const StrengthSweeps& sweeps, const std::string& ti
   r.complete = sweeps.complete;
   r.conditions = sweeps.conditions;
   r.cheaper = sweeps.cheaper;
+  r.runs = sweeps.runs_text;
   r.table = text_of(sweeps);
   r.measured = json_of(sweeps);
   return r;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "calibration/fit/curve_fit.hpp"
-#include "reproduce/estimate.hpp"
 #include "reproduce/reproduction.hpp"
 
 namespace twincell::reproduce {
@@ -57,18 +56,26 @@ struct StrengthSweep {
 
 /// Points and regions from runs in any order.
 StrengthSweep make_strength_sweep(const std::string& start, const std::vector<SweepRun>& runs);
+/// Regions from points, which are rising in gamma.
+StrengthSweep find_regions(const std::string& start, std::vector<SweepPoint> points);
 
 /// Sweeps from both starts at one bed height.
 struct StrengthSweeps {
   int layers = 0;
   bool complete = false;
   StrengthSweep random, crystal;
+  std::string runs_text;  ///< seeds and cycles: "3 runs a point, 200 cycles"
   std::vector<std::string> conditions, cheaper;
 };
 
-/// Runs the sweeps, or reads the results that are in Request::runs. Small budgets mean fewer points, cycles
-/// and seeds, and lower beds.
-StrengthSweeps strength_sweeps(const Request& request);
+/// Runs the sweeps, or reads the results that are in Request::runs or Request::stored. Small budgets mean
+/// fewer points, cycles and seeds, and lower beds. \param keys P1Run::keys \param share part of the budget
+/// that these sweeps may use
+StrengthSweeps strength_sweeps(const Request& request, const std::string& keys = {}, double share = 1);
+
+/// Targets of Fig. 4 and of Fig. 5.
+std::vector<Target> temperature_targets(const StrengthSweeps& sweeps);
+std::vector<Target> slip_targets(const StrengthSweeps& sweeps);
 
 /// Common output of the figures: K_m, T_g and slips of every point as text and as JSON, and the conditions.
 Reproduction reproduction_of(const StrengthSweeps& sweeps, const std::string& title);

@@ -125,7 +125,7 @@ Target target_of(const Study& study, const Exponent* e, bool of_height) {
     return t;
   }
   t.measured = e->text();
-  t.verdict = within(e->alpha(), study.expected - kTolerance, study.expected + kTolerance);
+  t.verdict = judge(e->alpha(), study.expected - kTolerance, study.expected + kTolerance);
   if (study.high > kEndOfData)
     t.reason = fmt::format("the paper's data end at W = 89.4, the window at {:g}", study.high);
   return t;
@@ -226,6 +226,7 @@ Reproduction run(const Request& request, bool of_height) {
   r.table += gas.table();
   r.measured = json_text({{"exponents", exponents}, {"points", nlohmann::json::parse(gas.as_json())}});
   r.conditions = gas.conditions();
+  r.runs = gas.runs_text();
   r.cheaper = gas.cheaper();
   r.figures = {figure_of(of_height ? "p2-table2" : "p2-table1", fitted, of_height)};
   return r;
@@ -234,15 +235,20 @@ Reproduction run(const Request& request, bool of_height) {
 }  // namespace
 
 Reproducible p2_table1() {
-  return {
-      "p2-table1",
-      "exponents of T_z(V_p) in the windows of earlier experiments or in your own window (runs of p2-fig2)",
-      [](const Request& request) { return run(request, false); }, "p2-runs", true};
+  Reproducible entry =
+      gas_entry_of("p2-fig2", "p2-table1",
+                   "exponents of T_z(V_p) in the windows of earlier experiments or in your own window",
+                   [](const Request& request) { return run(request, false); });
+  entry.takes_data = true;
+  return entry;
 }
 
 Reproducible p2_table2() {
-  return {"p2-table2", "exponents of the centre-of-mass lift in the same windows (runs of p2-fig2)",
-          [](const Request& request) { return run(request, true); }, "p2-runs", true};
+  Reproducible entry =
+      gas_entry_of("p2-fig2", "p2-table2", "exponents of the centre-of-mass lift in the same windows",
+                   [](const Request& request) { return run(request, true); });
+  entry.takes_data = true;
+  return entry;
 }
 
 }  // namespace twincell::reproduce

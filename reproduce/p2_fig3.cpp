@@ -112,14 +112,15 @@ Reproduction run(const Request& request) {
   };
   r.targets = {
       {"W = 1.397 < W_f: only the upper layers are mobilized", "lowest layer less than half of the highest",
-       said(0), mobile[0][0] < mobile[0][kLayers - 1] / 2 ? Verdict::pass : Verdict::fail,
+       said(0), holds(mobile[0][0] < mobile[0][kLayers - 1] / 2),
        "mobile: 0.2 d relative to the centre of mass within a cycle"},
       {"W = 2.739 = W_f: all layers are agitated", "every layer more than half mobile", said(2),
-       *std::min_element(mobile[2].begin(), mobile[2].end()) > 0.5 ? Verdict::pass : Verdict::fail, ""},
+       holds(*std::min_element(mobile[2].begin(), mobile[2].end()) > 0.5), ""},
       {"the lowest layer moves more from W to W", "rising",
        fmt::format("{:.2f}, {:.2f}, {:.2f}", mobile[0][0], mobile[1][0], mobile[2][0]),
-       mobile[0][0] < mobile[1][0] && mobile[1][0] < mobile[2][0] ? Verdict::pass : Verdict::fail, ""}};
+       holds(mobile[0][0] < mobile[1][0] && mobile[1][0] < mobile[2][0]), ""}};
   r.measured = json_text(measured);
+  r.runs = fmt::format("one run a point, {} cycles", cycles);
   r.cheaper = {fmt::format("one seed, {} cycles each", cycles),
                "the insets, T_bar_z near W = 1, are p2-fig2's points"};
   r.complete = true;
@@ -129,7 +130,10 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig3() {
-  return {"p2-fig3", "snapshots below, near and at W_f, and the mobile layers", run};
+  return {.name = "p2-fig3",
+          .what = "snapshots below, near and at W_f, and the mobile layers",
+          .run = run,
+          .worth = 0.2};
 }
 
 }  // namespace twincell::reproduce

@@ -82,7 +82,7 @@ Reproduction run(const Request& request) {
     const auto [low, high] = std::minmax_element(without.begin(), without.end(), less);
     const Estimate q = quotient(high->second, low->second);
     constant.measured = fmt::format("largest over smallest {} over {} points", q.text(), without.size());
-    constant.verdict = within(q, 1, 1.03);
+    constant.verdict = judge(q, 1, 1.03);
   }
   Target peak{"with gravity: rises, then decays to a constant", "a maximum inside the range", "",
               Verdict::absent, ""};
@@ -108,6 +108,11 @@ Reproduction run(const Request& request) {
     }
     second.measured = fmt::format("lowest after the peak {} at W = {:.3g}", dip->second.text(), dip->first);
     second.verdict = verdict;
+    if (verdict == Verdict::pass) {
+      // With one run a point, a second maximum looks the same as a bed that is in its other state there.
+      second.verdict = Verdict::inconclusive;
+      second.reason = "one seed, and at W = 113 the bed has two states, which differ as much";
+    }
   } else {
     second.reason = "too few frequencies at this budget";
   }
@@ -125,6 +130,7 @@ Reproduction run(const Request& request) {
   r.table = "  the key is omega; W = 100 omega^2\n" + gas.table();
   r.measured = gas.as_json();
   r.conditions = gas.conditions();
+  r.runs = gas.runs_text();
   r.cheaper = gas.cheaper();
   if (size.depth < 35)
     r.cheaper.push_back(fmt::format("period of {:g} d along y, {} beads, where the paper has 3000 (35 d)",
@@ -141,7 +147,9 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig5() {
-  return {"p2-fig5", "a channel shaken sideways, with and without gravity", run, "p2-runs"};
+  Reproducible entry = gas_entry("p2-fig5", "a channel shaken sideways, with and without gravity", run);
+  entry.worth = 4;
+  return entry;
 }
 
 }  // namespace twincell::reproduce

@@ -61,7 +61,7 @@ Target bitwise(const Gas& gas, const Setting& s) {
   const double alpha = 2 + std::log(values.back() / values.front()) / std::log(kPeakVelocities[2]);
   t.measured =
       fmt::format("{:.17g}, {:.17g}, {:.17g}: alpha = {:.15g}", values[0], values[1], values[2], alpha);
-  t.verdict = same ? Verdict::pass : Verdict::fail;
+  t.verdict = holds(same);
   return t;
 }
 
@@ -76,7 +76,7 @@ Target with_one_k_n(const Gas& gas, const Setting& s, std::vector<Estimate>& alp
   }
   alphas.push_back(e);
   t.measured = e.text();
-  t.verdict = within(e, 1.98, 2.02);
+  t.verdict = judge(e, 1.98, 2.02);
   return t;
 }
 
@@ -118,6 +118,7 @@ Reproduction run(const Request& request) {
   r.table += gas.table();
   r.measured = gas.as_json();
   r.conditions = gas.conditions();
+  r.runs = gas.runs_text();
   r.cheaper = gas.cheaper();
   r.cheaper.push_back(fmt::format("{} settings of amplitude and density, V_p = 1, 2, 4", settings.size()));
   r.figures = {
@@ -131,7 +132,7 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig6() {
-  return {"p2-fig6", "exponent alpha = 2 without gravity; bitwise scaling where k_n ~ V_p^2", run, "p2-runs"};
+  return gas_entry("p2-fig6", "exponent alpha = 2 without gravity; bitwise scaling where k_n ~ V_p^2", run);
 }
 
 }  // namespace twincell::reproduce

@@ -48,7 +48,7 @@ std::vector<Target> targets_of(const std::string& name, const Series& s) {
   if (high != nullptr && last != nullptr) {
     const Estimate q = quotient(*last, *high);
     constant.measured = fmt::format("{} over {}, quotient {}", last->text(), high->text(), q.text());
-    constant.verdict = within(q, 0.9, 1.1);
+    constant.verdict = judge(q, 0.9, 1.1);
   }
   return {rises, constant};
 }
@@ -69,6 +69,7 @@ Reproduction run(const Request& request) {
   r.table = gas.table();
   r.measured = gas.as_json();
   r.conditions = gas.conditions();
+  r.runs = gas.runs_text();
   r.cheaper = gas.cheaper();
   r.cheaper.emplace_back("the height at rest is that of each run's own bed, settled at A = 0");
   r.figures = {series_figure(
@@ -82,8 +83,7 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 Reproducible p2_fig7() {
-  return {"p2-fig7", "ratio of temperature to centre-of-mass lift against W (runs of p2-fig2)", run,
-          "p2-runs"};
+  return gas_entry_of("p2-fig2", "p2-fig7", "ratio of temperature to centre-of-mass lift against W", run);
 }
 
 }  // namespace twincell::reproduce

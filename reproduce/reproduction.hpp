@@ -2,7 +2,6 @@
 /// \file
 /// Reproduction of a figure or table of the papers: targets, measured values, and simplifications.
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -12,22 +11,10 @@
 #include <vector>
 
 #include "analysis/report/figures.hpp"
-#include "core/choice.hpp"
+#include "reproduce/verdict.hpp"
 #include "sweep/farm.hpp"
 
 namespace twincell::reproduce {
-
-/// Verdict on a target.
-enum class Verdict { pass, fail, inconclusive, absent };
-/// All verdicts with their words.
-inline constexpr std::array kVerdicts = {
-    Choice<Verdict>{Verdict::pass, "pass", "the measured value is in the target, or the stated order holds"},
-    Choice<Verdict>{Verdict::fail, "fail",
-                    "the whole interval is outside the target, or the opposite order holds"},
-    Choice<Verdict>{Verdict::inconclusive, "inconclusive", "the measurement does not decide"},
-    Choice<Verdict>{Verdict::absent, "absent", "not measured"}};
-/// The word of a verdict.
-std::string word_of(Verdict verdict);
 
 /// One number or statement of the paper, with the measured value and the verdict.
 struct Target {
@@ -35,7 +22,8 @@ struct Target {
   std::string expected;  ///< "1.10 to 1.35"
   std::string measured;  ///< with interval
   Verdict verdict = Verdict::absent;
-  std::string reason;  ///< explanation of the verdict, if needed
+  std::string reason;     ///< what decides the verdict, if needed
+  std::string runs = {};  ///< seeds and cycles behind the number; empty: Reproduction::runs
 };
 
 /// Budget and options of a reproduction.
@@ -48,7 +36,9 @@ struct Request {
   std::filesystem::path runs = {};  ///< folder of runs that figures share (Reproducible::shared_runs)
   std::optional<std::pair<double, double>> window = {};  ///< the user's own window of W
   std::filesystem::path data = {};                       ///< the user's own points, CSV; empty: none
-  sweep::Watch* watch = nullptr;                         ///< must not be null when a reproduction runs
+  std::string stored = {};  ///< Reproduction::measured of an earlier call: nothing runs, only the verdicts
+                            ///< and figures are made anew; empty: none
+  sweep::Watch* watch = nullptr;  ///< must not be null when a reproduction runs
 };
 
 /// Complete result of a reproduction.
@@ -57,8 +47,9 @@ struct Reproduction {
   std::vector<Target> targets;
   std::vector<std::string> cheaper;          ///< simplifications relative to the paper, in sentences
   std::vector<std::string> conditions = {};  ///< conditions to state with each number, in sentences
-  std::string table;                         ///< measured values as a text table
-  std::string measured;                      ///< measured values as JSON
+  std::string runs = {};  ///< seeds and cycles behind the numbers: "3 runs a point, 200 cycles"
+  std::string table;      ///< measured values as a text table
+  std::string measured;   ///< measured values as JSON
   std::vector<Figure> figures;
   bool complete = false;  ///< false if the time ran out; the same command continues
 };
@@ -70,6 +61,11 @@ struct Reproducible {
   std::function<Reproduction(const Request&)> run;
   std::string shared_runs = {};  ///< folder of runs that other figures also use, next to the figure's
   bool takes_data = false;       ///< whether it uses Request::window or Request::data
+  bool judges_stored = false;    ///< whether it can use Request::stored
+  double worth = 1;              ///< share of the time of `reproduce --all`, relative to the others
+  std::string runs_like = {};    ///< entry whose runs this one needs: `--all` gives it the same budget for
+                                 ///< them, and no time of its own
+  std::string same_as = {};      ///< entry with the same targets: `--all` leaves this one out
 };
 /// All reproductions. To add one: its file, a declaration below, an entry in list.cpp, a test.
 const std::vector<Reproducible>& list();
@@ -82,6 +78,7 @@ Reproducible p1_fig5();
 Reproducible p1_table1();
 Reproducible p1_appendix();
 Reproducible p1_step();
+Reproducible p1_truncate();
 Reproducible p2_fig2();
 Reproducible p2_fig3();
 Reproducible p2_fig4();
@@ -100,12 +97,5 @@ Reproducible p2_fig16();
 Reproducible p2_table1();
 Reproducible p2_table2();
 Reproducible p2_table3();
-
-/// Verdict on whether an onset is within [low, high]: met if its value is, missed if its whole interval is
-/// outside, absent without runs, else open.
-Verdict within(const sweep::Onset& onset, double low, double high);
-/// Verdict on whether one onset is above another: met or missed if the opposite is excluded (evidence_above),
-/// absent without runs, else open.
-Verdict above(const sweep::Onset& upper, const sweep::Onset& lower);
 
 }  // namespace twincell::reproduce

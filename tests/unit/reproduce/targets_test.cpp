@@ -1,26 +1,16 @@
-// Whether a target is met, missed or left open by an interval.
+// What the figures of the first paper derive from their runs: regions, barriers, beds that came to rest.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "reproduce/estimate.hpp"
 #include "reproduce/is_arrested.hpp"
 #include "reproduce/p1_sweep.hpp"
 #include "reproduce/reproduction.hpp"
 
 namespace twincell::reproduce {
 namespace {
-
-sweep::Onset onset(std::optional<double> value, std::optional<double> low, std::optional<double> high) {
-  sweep::Onset o;
-  o.value = value;
-  o.low = low;
-  o.high = high;
-  o.n = 10;
-  return o;
-}
 
 TEST(Targets, ABedThatRearrangedOnceCameToRest) {
   // From a bed of 20 layers at Gamma = 2.2: tracers separate during the first cycles and then keep their
@@ -41,63 +31,6 @@ TEST(Targets, ABedThatRearrangedOnceCameToRest) {
   EXPECT_FALSE(is_arrested({1, 1, 1}));
   EXPECT_FALSE(is_arrested({}));
   EXPECT_FALSE(is_arrested(std::vector<double>(10, std::nan(""))));
-}
-
-TEST(Targets, AValueInsideIsMetAnIntervalOutsideIsMissed) {
-  EXPECT_EQ(within(onset(1.2, 1.15, 1.25), 1.1, 1.35), Verdict::pass);
-  EXPECT_EQ(within(onset(1.5, 1.4, 1.6), 1.1, 1.35), Verdict::fail);
-  EXPECT_EQ(within(onset(1.0, 0.9, 1.05), 1.1, 1.35), Verdict::fail);
-  EXPECT_EQ(within(onset(1.4, 1.3, 1.5), 1.1, 1.35), Verdict::inconclusive);
-  EXPECT_EQ(within(onset({}, 1.4, {}), 1.1, 1.35), Verdict::fail);
-  EXPECT_EQ(within(onset({}, 1.2, {}), 1.1, 1.35), Verdict::inconclusive);
-  EXPECT_EQ(within(onset({}, {}, {}), 1.1, 1.35), Verdict::inconclusive);
-  EXPECT_EQ(within(sweep::Onset{}, 1.1, 1.35), Verdict::absent);
-}
-
-/// The onset of a bed whose verdict changes at mu, from `n` runs at each of two points on either side.
-sweep::Onset step_at(double mu, int n) {
-  std::vector<sweep::Trial> trials;
-  for (int k = 0; k < n; ++k)
-    for (const double away : {0.1, 0.3}) {
-      trials.push_back({mu - away, false});
-      trials.push_back({mu + away, true});
-    }
-  return estimate_onset(trials, 1, 5, 0.2);
-}
-
-TEST(Targets, OneOnsetIsAboveAnotherWhenTheOppositeIsExcluded) {
-  EXPECT_EQ(above(step_at(3, 4), step_at(2, 4)), Verdict::pass);
-  EXPECT_EQ(above(step_at(2, 4), step_at(3, 4)), Verdict::fail);
-  EXPECT_EQ(above(step_at(2.05, 4), step_at(2, 4)), Verdict::inconclusive);
-  EXPECT_EQ(above(step_at(2.3, 1), step_at(2, 1)), Verdict::inconclusive);
-  EXPECT_EQ(above(step_at(3, 4), sweep::Onset{}), Verdict::absent);
-  // An onset above the range is greater than one inside it.
-  const std::vector<sweep::Trial> never(10, sweep::Trial{4.9, false});
-  EXPECT_EQ(above(estimate_onset(never, 1, 5, 0.2), step_at(2, 4)), Verdict::pass);
-}
-
-TEST(Targets, EvidenceIsZeroForWhatFitsBestAndGrowsWithRuns) {
-  EXPECT_NEAR(evidence_above(step_at(2, 4), step_at(3, 4)), 0, 1e-12);
-  EXPECT_GT(evidence_above(step_at(3, 4), step_at(2, 4)), evidence_above(step_at(3, 2), step_at(2, 2)));
-}
-
-TEST(Targets, AnEstimateIsMetMissedOrLeftOpen) {
-  const Estimate known{7, 6.5, 7.5};
-  EXPECT_EQ(within(known, 6, 8), Verdict::pass);
-  EXPECT_EQ(within(known, 8, 9), Verdict::fail);
-  EXPECT_EQ(within(known, 7.2, 9), Verdict::inconclusive);
-  EXPECT_EQ(within(Estimate{7, {}, {}}, 8, 9), Verdict::inconclusive);
-  EXPECT_EQ(within(exact(7), 8, 9), Verdict::fail);
-  EXPECT_EQ(above(known, Estimate{5, 4, 6}), Verdict::pass);
-  EXPECT_EQ(above(Estimate{5, 4, 6}, known), Verdict::fail);
-  EXPECT_EQ(above(known, Estimate{6, 5, 7}), Verdict::inconclusive);
-  EXPECT_EQ(agree(known, Estimate{8, 7.2, 9}), Verdict::pass);
-  EXPECT_EQ(agree(known, Estimate{8, 7.6, 9}), Verdict::fail);
-  EXPECT_EQ(agree(known, Estimate{8, 7.6, {}}), Verdict::inconclusive);
-  EXPECT_EQ(all_of({Verdict::pass, Verdict::pass}), Verdict::pass);
-  EXPECT_EQ(all_of({Verdict::pass, Verdict::inconclusive}), Verdict::inconclusive);
-  EXPECT_EQ(all_of({Verdict::inconclusive, Verdict::fail}), Verdict::fail);
-  EXPECT_EQ(all_of({}), Verdict::absent);
 }
 
 /// A crystal whose slip probability follows the paper's barriers: no slips up to K_m = 6, barrier 130 up to

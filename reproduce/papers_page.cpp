@@ -1,0 +1,104 @@
+#include "reproduce/papers_page.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "reproduce/verdict.hpp"
+
+namespace twincell::reproduce {
+
+namespace {
+
+using nlohmann::json;
+
+/// A text as a cell of a Markdown table.
+std::string cell(const std::string& text) {
+  std::string s;
+  for (const char c : text) {
+    if (c == '|' || c == '*' || c == '<' || c == '[' || c == ']') s += '\\';
+    s += c == '\n' ? ' ' : c;
+  }
+  return s;
+}
+
+/// Processor time in core-minutes; "–" if it was not recorded.
+std::string cost_of(const json& document) {
+  if (!document.contains("core_minutes")) return "–";
+  return fmt::format("{:.2g}", document["core_minutes"].get<double>());
+}
+
+struct Paper {
+  const char *prefix, *title;
+};
+constexpr std::array<Paper, 2> kPapers = {
+    {{"p1-", "Fortini & Huang 2015"}, {"p2-", "Bhateja, Sharma & Singh 2016"}}};
+
+/// Number of targets with each verdict.
+std::map<std::string, int> counts_of(const json& document) {
+  std::map<std::string, int> counts;
+  for (const json& t : document.at("targets")) ++counts[t.at("verdict").get<std::string>()];
+  return counts;
+}
+
+std::string row_of_counts(const std::string& name, std::map<std::string, int> counts,
+                          const std::string& cost) {
+  std::string s = fmt::format("| {} |", name);
+  for (const auto& verdict : kVerdicts) s += fmt::format(" {} |", counts[std::string(verdict.word)]);
+  return s + fmt::format(" {} |\n", cost);
+}
+
+}  // namespace
+
+std::string papers_page(const std::vector<Document>& documents, const std::string& command) {
+  std::vector<json> parsed;
+  for (const Document& d : documents) parsed.push_back(json::parse(d.text));
+  std::string s =
+      "# The papers, figure by figure\n\n"
+      "`" +
+      command +
+      "` wrote this page. It compares every number and statement of the two papers with the "
+      "result of this\nprogram. [Reproducing the papers](reproduce.md) explains the commands and the "
+      "findings.\n\n"
+      "One rule gives every verdict. It compares the 95 % interval of the measured value with the target:\n\n"
+      "| verdict | meaning |\n|---|---|\n";
+  for (const auto& verdict : kVerdicts) s += fmt::format("| {} | {} |\n", verdict.word, verdict.help);
+  s += "\nStatements about an order use the interval of the difference. A statement about a count or about "
+       "bits has no interval.\nEach target is counted once. The cost is the processor time of the calls that "
+       "filled the folder of the figure; \"–\" means\nthat it was not recorded. Figures that share runs "
+       "count them once, with the figure that computed them.\n\n## Summary\n\n| |";
+  for (const auto& verdict : kVerdicts) s += fmt::format(" {} |", verdict.word);
+  s += " core-minutes |\n|---|";
+  for (std::size_t k = 0; k <= kVerdicts.size(); ++k) s += "---|";
+  s += "\n";
+  std::map<std::string, int> sum;
+  for (std::size_t k = 0; k < parsed.size(); ++k) {
+    const auto counts = counts_of(parsed[k]);
+    for (const auto& [word, n] : counts) sum[word] += n;
+    s += row_of_counts(fmt::format("`{}`", documents[k].name), counts, cost_of(parsed[k]));
+  }
+  s += row_of_counts("all", sum, "");
+  for (const Paper& paper : kPapers) {
+    s += fmt::format("\n## {}\n", paper.title);
+    for (std::size_t k = 0; k < parsed.size(); ++k) {
+      const json& document = parsed[k];
+      if (!documents[k].name.starts_with(paper.prefix)) continue;
+      s += fmt::format("\n### {}\n\n{}.{}\n\n", documents[k].name,
+                       cell(document.at("title").get<std::string>()),
+                       document.value("complete", true) ? "" : " Not all runs fitted into the time limit.");
+      s += "| statement | target | measured, 95 % interval | runs | verdict | what decides it |\n"
+           "|---|---|---|---|---|---|\n";
+      for (const json& t : document.at("targets")) {
+        const auto text = [&](const char* key) { return cell(t.value(key, "")); };
+        s += fmt::format("| {} | {} | {} | {} | {} | {} |\n", text("name"), text("expected"),
+                         text("measured").empty() ? "–" : text("measured"), text("runs"), text("verdict"),
+                         text("reason"));
+      }
+    }
+  }
+  return s;
+}
+
+}  // namespace twincell::reproduce
