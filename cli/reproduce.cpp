@@ -35,7 +35,7 @@ using reproduce::Reproduction;
 using reproduce::Target;
 
 struct ReproduceOptions {
-  std::string name, output, runs, data, from;
+  std::string name, output, runs, data, stored;
   std::optional<std::pair<double, double>> window;
   std::optional<double> budget;  ///< minutes; hours with --all
   bool full = false, all = false;
@@ -125,7 +125,7 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
   if (!from.empty()) {
     if (!what.judges_stored)
       throw ConfigError(
-          {"", 0, 0, "from"},
+          {"", 0, 0, "stored"},
           fmt::format("does not work for {}, whose runs take seconds: run it again.", what.name));
     stored = stored_document(from);
   }
@@ -201,7 +201,7 @@ void run_one(const ReproduceOptions& options, const Common& common) {
                                   options.window->first, options.window->second));
   const double minutes = options.budget.value_or(kDefaultMinutes);
   const auto [document, text] =
-      make(what, options, {minutes, options.full ? 1e300 : 60 * minutes}, folder, options.from, common);
+      make(what, options, {minutes, options.full ? 1e300 : 60 * minutes}, folder, options.stored, common);
   print_result(common, document, text);
 }
 
@@ -224,15 +224,16 @@ void run_all(const ReproduceOptions& options, const Common& common) {
   const fs::path folder = options.output.empty() ? "papers" : options.output;
   if (options.window || !options.data.empty())
     throw ConfigError({"", 0, 0, options.window ? "window" : "data"}, "has no effect with --all.");
-  if (!options.from.empty() && !fs::is_directory(options.from))
-    throw ConfigError({"", 0, 0, "from"},
-                      fmt::format("is {}; with --all it must be a folder of NAME.json files.", options.from));
+  if (!options.stored.empty() && !fs::is_directory(options.stored))
+    throw ConfigError(
+        {"", 0, 0, "stored"},
+        fmt::format("is {}; with --all it must be a folder of NAME.json files.", options.stored));
   claim_shared_folder(folder, Product::runs());
   const double hours = options.budget.value_or(kDefaultHours);
   std::string command = "twincell reproduce --all";
-  command += !options.from.empty() ? " --from " + options.from
-             : options.full        ? " --full"
-                                   : fmt::format(" --budget {:g}", hours);
+  command += !options.stored.empty() ? " --stored " + options.stored
+             : options.full          ? " --full"
+                                     : fmt::format(" --budget {:g}", hours);
   const auto shares = shares_of(kMinutesPerHour * hours, options.full);
   std::vector<reproduce::Document> documents;
   const auto write_page = [&] {
@@ -244,9 +245,9 @@ void run_all(const ReproduceOptions& options, const Common& common) {
   for (const Reproducible& what : reproduce::list()) {
     if (!what.same_as.empty()) continue;
     fs::path from;
-    if (!options.from.empty()) {
-      for (const fs::path& file : {fs::path(options.from) / (what.name + ".json"),
-                                   fs::path(options.from) / what.name / (what.name + ".json")})
+    if (!options.stored.empty()) {
+      for (const fs::path& file : {fs::path(options.stored) / (what.name + ".json"),
+                                   fs::path(options.stored) / what.name / (what.name + ".json")})
         if (from.empty() && fs::exists(file)) from = file;
       if (from.empty()) continue;
     }
@@ -307,7 +308,7 @@ void add_reproduce(CLI::App& program, Common& common) {
   verb.add_flag("--all", options->all,
                 "Reproduce all figures and tables within the budget, which is shared among them by their "
                 "worth, and write papers.md, the page about them; the same command continues");
-  verb.add_option("--from", options->from,
+  verb.add_option("--stored", options->stored,
                   "NAME.json of an earlier call (with --all: a folder of them): nothing is simulated; only "
                   "targets, verdicts and figures are made anew from its runs");
   verb.add_option("--runs", options->runs,

@@ -491,7 +491,7 @@ Runs stored_runs(const Request& request, Size& size) {
     if (std::find(size.layers.begin(), size.layers.end(), layers) == size.layers.end())
       size.layers.push_back(layers);
     if (j.contains("runs") && !j.contains("trials"))
-      throw ConfigError({.file = {}, .key = "from"},
+      throw ConfigError({.file = {}, .key = "stored"},
                         "names a document of an earlier version, which does not hold the single runs.");
     const bool convecting = j.at("verdict") == "convecting";
     if (j.contains("trials")) {

@@ -1,5 +1,12 @@
 # One collision
 # gnuplot p1-appendix-a.gp draws p1-appendix-a.svg, p1-appendix-a.pdf and p1-appendix-a.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 760,360 dynamic enhanced font 'Arial,15' background 'white'

@@ -1,5 +1,12 @@
 # s_b of a rigid inelastic bed
 # gnuplot p1-appendix-b.gp draws p1-appendix-b.svg, p1-appendix-b.pdf and p1-appendix-b.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 540,400 dynamic enhanced font 'Arial,15' background 'white'
@@ -22,9 +29,9 @@ set yrange [0.002:2]
 set xlabel 'Γ'
 set ylabel 's_b / σ'
 set key bottom right
-set arrow 1 from first 1.16359,graph 0 to first 1.16359,first 0.033333 nohead dt 2 lc rgb '#0072B2'
+set arrow 1 from first 1.16359,graph 0 to first 1.16359,first 0.033333 nohead dt 2 lc rgb blue
 set label 1 'Γ = 1.1636' at first 1.16359,graph 0.05 offset 0.7,0
-plot 0.033333 with lines dt 4 lw 1.5 lc rgb '#666666' title 'σ/30', 'p1-appendix-b.dat' using 1:4 with lines lw 1.3 lc rgb '#0072B2' notitle, '' using 1:2 with points pt 7 ps 0.9 lc rgb '#0072B2' title 'variance over phases', '' using 1:5 with lines lw 1.3 lc rgb '#D55E00' notitle, '' using 1:3 with points pt 6 ps 0.9 lc rgb '#D55E00' title 'about the height at rest'
+plot 0.033333 with lines dt 4 lw 1.5 lc rgb '#666666' title 'σ/30', 'p1-appendix-b.dat' using 1:4 with lines lw 1.3 lc rgb blue notitle, '' using 1:2 with points pt 7 ps 0.9 lc rgb blue title 'variance over phases', '' using 1:5 with lines lw 1.3 lc rgb vermilion notitle, '' using 1:3 with points pt 6 ps 0.9 lc rgb vermilion title 'about the height at rest'
 unset output
 reset
 }

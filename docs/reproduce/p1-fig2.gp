@@ -1,5 +1,12 @@
 # Orientations of the lattice at a side wall
 # gnuplot p1-fig2.gp draws p1-fig2.svg, p1-fig2.pdf and p1-fig2.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 760,360 dynamic enhanced font 'Arial,15' background 'white'
@@ -66,7 +73,7 @@ set ylabel 'share of ordered beads' offset 1,0
 set key at screen 0.965,0.9 vertical samplen 1.2 spacing 0.95
 set boxwidth 0.8
 set style fill solid border lc rgb '#333333'
-plot 'p1-fig2.dat' index 2 using 1:($2+$3+$4) with boxes lc rgb '#E69F00' title 'B', '' index 2 using 1:($2+$3) with boxes lc rgb '#DDDDDD' title 'between', '' index 2 using 1:2 with boxes lc rgb '#56B4E9' title 'A'
+plot 'p1-fig2.dat' index 2 using 1:($2+$3+$4) with boxes lc rgb orange title 'B', '' index 2 using 1:($2+$3) with boxes lc rgb '#DDDDDD' title 'between', '' index 2 using 1:2 with boxes lc rgb sky title 'A'
 unset multiplot
 unset output
 reset

@@ -1,5 +1,12 @@
 # Contact of two beads
 # gnuplot p1-fig6.gp draws p1-fig6.svg, p1-fig6.pdf and p1-fig6.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 540,360 dynamic enhanced font 'Arial,15' background 'white'
@@ -24,19 +31,19 @@ unset key
 set xrange [-2.1:2.1]
 set yrange [-1.5:1.5]
 set style arrow 1 head filled size 0.1,18 lw 2 lc rgb '#222222'
-set style arrow 2 head filled size 0.1,18 lw 2 lc rgb '#0072B2'
-set style arrow 3 heads size 0.05,90 lw 1.5 lc rgb '#D55E00'
+set style arrow 2 head filled size 0.1,18 lw 2 lc rgb blue
+set style arrow 3 heads size 0.05,90 lw 1.5 lc rgb vermilion
 set arrow 1 from 0.84,0.24 to 1.513,0.432 arrowstyle 1 front
 set label 1 'n_{ij}' at 1.5,0.56
 set arrow 2 from 0,0 to -0.192,0.673 arrowstyle 1 front
 set label 2 't_{ij}' at -0.52,0.86 front
 set arrow 3 from 0.84,0.24 to 0.45,0.95 arrowstyle 2 front
-set label 3 'v_{ij}' at 0.55,1.02 front tc rgb '#0072B2'
+set label 3 'v_{ij}' at 0.55,1.02 front tc rgb blue
 set arrow 4 from -0.122,-0.035 to 0.122,0.035 arrowstyle 3 front
-set label 4 'δ_{n}' at 0.14,-0.12 tc rgb '#D55E00' front
+set label 4 'δ_{n}' at 0.14,-0.12 tc rgb vermilion front
 set label 5 'j' at -0.9,-0.24 front
 set label 6 'i' at 0.8,0.05 front
-plot 'p1-fig6.dat' using 1:2:3 with circles fs transparent solid 0.35 border lc rgb '#555555' fc rgb '#56B4E9'
+plot 'p1-fig6.dat' using 1:2:3 with circles fs transparent solid 0.35 border lc rgb '#555555' fc rgb sky
 unset output
 reset
 }

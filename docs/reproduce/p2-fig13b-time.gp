@@ -25,7 +25,7 @@ set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
 set xlabel 'z/d'
 set ylabel 'T_z(z)/(m g d)'
-set key top right
+set key above
 set xrange [0:*]
 set yrange [0:*]
 

@@ -26,7 +26,7 @@ set datafile missing '?'
 set xlabel 'z/d'
 set ylabel 'T_z(z)/(m g d)'
 set key above
-set xrange [0:71]
+set xrange [0:72]
 set yrange [0:*]
 
 plot 'p2-fig14a-time.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'W = 5.589', 'p2-fig14a-time.dat' index 1 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'W = 22.36', 'p2-fig14a-time.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title 'W = 50.3', 'p2-fig14a-time.dat' index 3 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 13 lc rgb '#CC79A7' title 'W = 68.47', 'p2-fig14a-time.dat' index 4 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 11 lc rgb '#E69F00' title 'W = 85.01'

@@ -1,5 +1,12 @@
 # W = 1.4
 # gnuplot p2-fig3a.gp draws p2-fig3a.svg, p2-fig3a.pdf and p2-fig3a.png
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 420,420 dynamic enhanced font 'Arial,15' background 'white'
@@ -20,7 +27,7 @@ set xrange [0:10]
 set yrange [-1:9]
 set size ratio -1
 set style fill solid 0.9 border -1
-set palette defined (0 '#F0F0F0', 1 '#D55E00')
+set palette defined (0 '#F0F0F0', 1 vermilion)
 set cbrange [0:1]
 set cblabel 'speed about the centre of mass/V_p'
 set xlabel 'x/d'

@@ -26,7 +26,7 @@ set datafile missing '?'
 set xlabel 'setting'
 set ylabel 'alpha'
 set key above
-set xrange [0.5:5.5]
+set xrange [0.5:3.5]
 set yrange [1.5:2.5]
 
 plot 'p2-fig6.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'k_n ∝ V_p^2', 'p2-fig6.dat' index 1 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'one k_n'

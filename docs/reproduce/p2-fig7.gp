@@ -1,4 +1,4 @@
-# T_z over the lift of the barycentre against W
+# T_z over the lift of the centre of mass against W
 # gnuplot p2-fig7.gp draws p2-fig7.svg, p2-fig7.pdf and p2-fig7.png
 blue = '#0072B2'
 orange = '#E69F00'

@@ -1,4 +1,4 @@
-# Lift of the barycentre against V_p
+# Lift of the centre of mass against V_p
 # gnuplot p2-table2.gp draws p2-table2.svg, p2-table2.pdf and p2-table2.png
 blue = '#0072B2'
 orange = '#E69F00'
@@ -29,7 +29,7 @@ set key above
 set logscale xy
 set key outside right top
 
-plot 'p2-table2.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'Warr et al., 2D rough', 'p2-table2.dat' index 1 using 1:2 with lines lw 1.3 dt 1 lc rgb '#D55E00' title 'alpha_h = 1.430', 'p2-table2.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title '2D rough, [W_f, W_2]', 'p2-table2.dat' index 3 using 1:2 with lines lw 1.3 dt 1 lc rgb '#0072B2' title 'alpha_h = 1.389', 'p2-table2.dat' index 4 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title '3D rough, [W_f, W_2]', 'p2-table2.dat' index 5 using 1:2 with lines lw 1.3 dt 1 lc rgb '#009E73' title 'alpha_h = 1.004'
+plot 'p2-table2.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'Warr et al., 2D rough', 'p2-table2.dat' index 1 using 1:2 with lines lw 1.3 dt 1 lc rgb '#D55E00' title 'alpha_h = 1.407', 'p2-table2.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title '2D rough, [W_f, W_2]', 'p2-table2.dat' index 3 using 1:2 with lines lw 1.3 dt 1 lc rgb '#0072B2' title 'alpha_h = 1.358', 'p2-table2.dat' index 4 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title '3D rough, [W_f, W_2]', 'p2-table2.dat' index 5 using 1:2 with lines lw 1.3 dt 1 lc rgb '#009E73' title 'alpha_h = 0.967'
 unset output
 reset
 }

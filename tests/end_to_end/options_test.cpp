@@ -18,6 +18,7 @@ namespace {
 const std::map<std::string, std::string> kQuantities = {
     {"accelerometer", "measurement of an accelerometer"},
     {"accuracy", "requested accuracy"},
+    {"all", "all figures and tables"},
     {"background", "picture of the cell without beads"},
     {"backlight", "grey level of the light"},
     {"bead", "index of a bead"},
@@ -141,6 +142,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"sigma", "diameter in an import, or column of errors"},
     {"simulation", "trajectories of simulations"},
     {"stack", "stacks of experiments"},
+    {"stored", "results of an earlier call"},
     {"sweep", "collected results of sweeps"},
     {"target", "picture of a calibration target"},
     {"target-grid", "points of the target"},

@@ -154,20 +154,20 @@ TEST(Reproduce, StoredRunsAreJudgedAgainWithoutASimulation) {
   const auto fig4 = reproduced("p1-fig4", folder / "four", {"p1-fig4"});
   const std::string stored = (fs::path(folder / "four") / "p1-fig4.json").string();
   const Ran again =
-      run_program({"reproduce", "p1-fig4", "--from", stored, "--json", "-q", "-o", folder / "again"});
+      run_program({"reproduce", "p1-fig4", "--stored", stored, "--json", "-q", "-o", folder / "again"});
   ASSERT_EQ(again.code, 0) << again.err;
   const auto document = nlohmann::json::parse(again.out);
   EXPECT_EQ(document["targets"], fig4["targets"]);
   EXPECT_EQ(document["measured"], fig4["measured"]);
   EXPECT_EQ(document["conditions"], fig4["conditions"]);
   // A document of another figure, a file that is no document, and a figure that cannot be judged again.
-  EXPECT_EQ(run_program({"reproduce", "p2-fig2", "--from", stored, "-q", "-o", folder / "x"}).code, 3);
+  EXPECT_EQ(run_program({"reproduce", "p2-fig2", "--stored", stored, "-q", "-o", folder / "x"}).code, 3);
   std::ofstream(folder / "bad.json") << "[1, 2";
   const Ran bad =
-      run_program({"reproduce", "p1-fig4", "--from", folder / "bad.json", "-q", "-o", folder / "y"});
+      run_program({"reproduce", "p1-fig4", "--stored", folder / "bad.json", "-q", "-o", folder / "y"});
   EXPECT_EQ(bad.code, 3) << bad.err;
   EXPECT_NE(bad.err.find("bad.json"), std::string::npos) << bad.err;
-  EXPECT_EQ(run_program({"reproduce", "p1-table1", "--from", stored, "-q", "-o", folder / "z"}).code, 2);
+  EXPECT_EQ(run_program({"reproduce", "p1-table1", "--stored", stored, "-q", "-o", folder / "z"}).code, 2);
 }
 
 TEST(Reproduce, AllOfAFolderBecomesThePageOnThePapers) {
@@ -175,7 +175,7 @@ TEST(Reproduce, AllOfAFolderBecomesThePageOnThePapers) {
   reproduced("p1-table1", folder / "in/p1-table1", {});
   reproduced("p1-fig4", folder / "in/p1-fig4", {"p1-fig4"});
   const Ran ran =
-      run_program({"reproduce", "--all", "--from", folder / "in", "--json", "-q", "-o", folder / "out"});
+      run_program({"reproduce", "--all", "--stored", folder / "in", "--json", "-q", "-o", folder / "out"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const auto document = nlohmann::json::parse(ran.out);
   EXPECT_EQ(document["figures"].size(), 2U);
