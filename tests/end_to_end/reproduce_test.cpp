@@ -172,6 +172,7 @@ TEST(Reproduce, StoredRunsAreJudgedAgainWithoutASimulation) {
 
 TEST(Reproduce, AllOfAFolderBecomesThePageOnThePapers) {
   const TemporaryFolder folder;
+  fs::create_directory(folder / "in");
   reproduced("p1-table1", folder / "in/p1-table1", {});
   reproduced("p1-fig4", folder / "in/p1-fig4", {"p1-fig4"});
   const Ran ran =
