@@ -405,7 +405,7 @@ Figure series_figure(const std::string& name, const std::string& title, const st
                         plot.empty() ? "" : ", ", f.name, index++, s.line ? "" : ":3:4",
                         s.line ? fmt::format("lines lw 1.3 dt {}", s.dash)
                                : fmt::format("yerrorbars lw 1 ps 0.8 pt {}", kPoints[turn % kPoints.size()]),
-                        kColours[turn % kColours.size()], s.title);
+                        kColours[s.of.value_or(turn) % kColours.size()], s.title);
   }
   if (plot.empty()) {  // gnuplot rejects an empty plot
     f.data = "# nothing measured\n";

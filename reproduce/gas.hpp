@@ -134,6 +134,8 @@ struct Series {
   std::vector<Estimate> y;
   bool line = false;  ///< drawn as a line without points
   int dash = 1;
+  /// For a line: the series of points, counted from 0, whose colour it has; absent: that of its own number.
+  std::optional<std::size_t> of = {};
 };
 /// A result of the points against their key, without the points that lack it.
 Series series_of(const std::string& title, const std::vector<GasPoint>& points, const std::string& result);

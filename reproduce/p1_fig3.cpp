@@ -402,8 +402,10 @@ Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& fil
   for (const double k_m : {1.0, 2.0, 4.0, 6.0, 9.0, 12.0, 16.0, 20.0, 25.0})
     ticks.push_back(fmt::format("'{:g}' {:.6f}", k_m, std::sqrt(k_m) / kOmega));
   f.plot = fmt::format(
-      "set xrange [0:90]\nset yrange [0.9:5.2]\nset xlabel 'N_l σ'\nset ylabel 'Γ'\nset y2label 'K_m'\n"
-      "set ytics nomirror\nset y2range [0.9:5.2]\nset y2tics ({})\nset key top left\nplot {}\n",
+      "set xrange [0:*]\nset yrange [0.9:*]\nset link y2\nset offsets 0,0,graph 0.06,0\nset xlabel 'N_l "
+      "σ'\nset ylabel 'Γ'\nset y2label "
+      "'K_m'\n"
+      "set ytics nomirror\nset y2tics ({})\nset key above\nplot {}\n",
       fmt::join(ticks, ", "), plot);
   f.caption =
       "Onset of bouncing (open) and of convection (filled) against the height of the bed, from random starts "

@@ -121,9 +121,15 @@ Reproduction run(const Request& request) {
   r.runs = gas.runs_text();
   r.cheaper = gas.cheaper();
   r.cheaper.push_back(fmt::format("{} settings of amplitude and density, V_p = 1, 2, 4", settings.size()));
+  std::string ticks;
+  for (std::size_t k = 0; k < settings.size(); ++k)
+    ticks += fmt::format("{}\"A = {:g} d\\nn = {:g}\" {}", k == 0 ? "" : ", ", settings[k].amplitude,
+                         settings[k].layers, k + 1);
   r.figures = {
-      series_figure("p2-fig6", "alpha without gravity", "setting", "alpha", {scaled, fixed},
-                    fmt::format("set xrange [0.5:{}]\nset yrange [1.5:2.5]\n", settings.size() + 0.5),
+      series_figure("p2-fig6", "α without gravity", "amplitude and number of layers", "α", {scaled, fixed},
+                    fmt::format("set xrange [0.5:{}]\nset yrange [1.9:2.1]\nset xlabel offset 0,-1\nset "
+                                "bmargin 6\nset xtics ({})\n",
+                                settings.size() + 0.5, ticks),
                     "Exponent of T_z with V_p, g = 0, lid 10 d above the floor; settings as in the table. "
                     "Form of Bhateja et al. 2016, Fig. 6.")};
   return r;

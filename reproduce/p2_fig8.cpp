@@ -143,7 +143,7 @@ Reproduction run(const Request& request, bool coefficients) {
       add_targets(r.targets, f, coefficients);
       r.table += line_of(f);
       if (!f.fit) continue;
-      Series s{.title = f.name(), .x = {}, .y = {}, .line = true, .dash = algebraic ? 1 : 2};
+      Series s{.title = f.name(), .x = {}, .y = {}, .line = true, .dash = algebraic ? 1 : 2, .of = k};
       for (double w = f.points.front().x; w <= f.points.back().x; w *= 1.03) {
         s.x.push_back(w);
         s.y.push_back({.value = f.fit->at(w), .low = {}, .high = {}});

@@ -31,6 +31,15 @@ std::vector<Panel> panels() {
 
 const std::vector<int> kFrequencies = {500, 600, 700, 900, 1200, 1500, 2000, 3000, 4000};
 constexpr double kSoftest = 1e5;
+/// A parameter as a figure spells it: "μ = 0.4", "k_n = 10^{6}".
+std::string symbol_text(const Panel& p) {
+  return p.symbol == "mu" ? "μ" : p.symbol;
+}
+std::string legend_text(const Panel& p, double value) {
+  return p.symbol == "k_n" ? fmt::format("k_n = 10^{{{:g}}}", std::log10(value))
+                           : fmt::format("{} = {:g}", symbol_text(p), value);
+}
+
 constexpr double kSoftUpTo = 23;  ///< W above which beads of k_n = 1e5 overlap by more than 5 %
 
 /// Whether a value is canonical. Canonical values are left out of the scene, so that the other panels and
@@ -164,10 +173,10 @@ Reproduction run_9(const Request& request) {
   for (const Panel& p : study.all) {
     std::vector<Series> series;
     for (std::size_t k = 0; k < p.values.size(); ++k)
-      series.push_back(series_of(gas.curve(p.curves[k]).name, gas.points(p.curves[k]), "T_bar_z"));
+      series.push_back(series_of(legend_text(p, p.values[k]), gas.points(p.curves[k]), "T_bar_z"));
     r.figures.push_back(series_figure(
-        "p2-fig9" + p.name, "T_z/(m V_p^2) with " + p.symbol, "W = V_p^2/(d g)", "T_z/(m V_p^2)", series,
-        "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
+        "p2-fig9" + p.name, "T_z/(m V_p^2) with " + symbol_text(p), "W = V_p^2/(d g)", "T_z/(m V_p^2)",
+        series, "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
         fmt::format("2D rough, {} varied. Form of Bhateja et al. 2016, Fig. 9({}).", p.symbol, p.name)));
   }
   r.table = gas.table();
@@ -244,8 +253,8 @@ Reproduction run_10(const Request& request) {
       r.targets.push_back(deep);
     }
     r.figures.push_back(
-        series_figure("p2-fig10-" + p.symbol, "alpha over [W_f, W_2] with " + p.symbol, p.symbol, "α", {s},
-                      "set yrange [0:2.5]\nset offsets graph 0.05, graph 0.05, 0, 0\nunset key\n",
+        series_figure("p2-fig10-" + p.symbol, "α over [W_f, W_2] with " + symbol_text(p), symbol_text(p), "α",
+                      {s}, "set yrange [0:2.5]\nset offsets graph 0.05, graph 0.05, 0, 0\nunset key\n",
                       "Form of Bhateja et al. 2016, Fig. 10."));
   }
   r.table += gas.table();

@@ -323,7 +323,7 @@ std::vector<Figure> pair_figures(const std::string& name, const Pair& pair, bool
         series_figure(name + (rough ? "b" : "a") + reading.figure,
                       fmt::format("{}, 3D {}{}", of_packing ? "Packing fraction" : "Local temperature",
                                   rough ? "rough" : "smooth", reading.said),
-                      "z/d", of_packing ? "phi(z)" : "T_z(z)/(m g d)", series,
+                      "z/d", of_packing ? "φ(z)" : "T_z(z)/(m g d)", series,
                       fmt::format("set xrange [0:{:g}]\nset yrange [0:*]\n", top),
                       "100 grains, N = 4, slabs of d. Form of Bhateja et al. 2016, Figs. 14 and 15."));
   }

@@ -23,15 +23,16 @@ set border lw 1 lc rgb '#444444'
 set tics textcolor rgb '#222222'
 set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
-set xrange [0:90]
-set yrange [0.9:5.2]
+set xrange [0:*]
+set yrange [0.9:*]
+set link y2
+set offsets 0,0,graph 0.06,0
 set xlabel 'N_l σ'
 set ylabel 'Γ'
 set y2label 'K_m'
 set ytics nomirror
-set y2range [0.9:5.2]
 set y2tics ('1' 1.000000, '2' 1.414214, '4' 2.000000, '6' 2.449490, '9' 3.000000, '12' 3.464102, '16' 4.000000, '20' 4.472136, '25' 5.000000)
-set key top left
+set key above
 plot 'p1-fig3.dat' index 0 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 9 lc rgb '#009E73' title 'convection, random', 'p1-fig3.dat' index 1 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#009E73' notitle, 'p1-fig3.dat' index 2 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 7 lc rgb '#0072B2' title 'convection, crystal', 'p1-fig3.dat' index 3 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#0072B2' notitle, 'p1-fig3.dat' index 4 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 8 lc rgb '#009E73' title 'bouncing, random', 'p1-fig3.dat' index 5 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#009E73' notitle, 'p1-fig3.dat' index 6 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 6 lc rgb '#0072B2' title 'bouncing, crystal', 'p1-fig3.dat' index 7 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#0072B2' notitle
 unset output
 reset

@@ -1,4 +1,4 @@
-# alpha over [W_f, W_2] with N
+# α over [W_f, W_2] with N
 # gnuplot p2-fig10-N.gp draws p2-fig10-N.svg, p2-fig10-N.pdf and p2-fig10-N.png
 blue = '#0072B2'
 orange = '#E69F00'

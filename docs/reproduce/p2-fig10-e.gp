@@ -1,4 +1,4 @@
-# alpha over [W_f, W_2] with e
+# α over [W_f, W_2] with e
 # gnuplot p2-fig10-e.gp draws p2-fig10-e.svg, p2-fig10-e.pdf and p2-fig10-e.png
 blue = '#0072B2'
 orange = '#E69F00'

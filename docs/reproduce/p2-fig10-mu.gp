@@ -1,4 +1,4 @@
-# alpha over [W_f, W_2] with mu
+# α over [W_f, W_2] with μ
 # gnuplot p2-fig10-mu.gp draws p2-fig10-mu.svg, p2-fig10-mu.pdf and p2-fig10-mu.png
 blue = '#0072B2'
 orange = '#E69F00'
@@ -23,7 +23,7 @@ set border lw 1 lc rgb '#444444'
 set tics textcolor rgb '#222222'
 set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
-set xlabel 'mu'
+set xlabel 'μ'
 set ylabel 'α'
 set key above
 set yrange [0:2.5]

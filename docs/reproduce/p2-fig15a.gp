@@ -24,7 +24,7 @@ set tics textcolor rgb '#222222'
 set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
 set xlabel 'z/d'
-set ylabel 'phi(z)'
+set ylabel 'φ(z)'
 set key above
 set xrange [0:72]
 set yrange [0:*]

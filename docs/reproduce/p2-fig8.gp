@@ -31,7 +31,7 @@ set xrange [1:150]
 set yrange [0.03:1]
 set key inside vertical bottom left
 
-plot 'p2-fig8.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title '2D rough', 'p2-fig8.dat' index 1 using 1:2 with lines lw 1.3 dt 1 lc rgb '#D55E00' title '2D rough, algebraic', 'p2-fig8.dat' index 2 using 1:2 with lines lw 1.3 dt 2 lc rgb '#0072B2' title '2D rough, exponential', 'p2-fig8.dat' index 3 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title '3D rough', 'p2-fig8.dat' index 4 using 1:2 with lines lw 1.3 dt 1 lc rgb '#009E73' title '3D rough, algebraic', 'p2-fig8.dat' index 5 using 1:2 with lines lw 1.3 dt 2 lc rgb '#CC79A7' title '3D rough, exponential'
+plot 'p2-fig8.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title '2D rough', 'p2-fig8.dat' index 1 using 1:2 with lines lw 1.3 dt 1 lc rgb '#D55E00' title '2D rough, algebraic', 'p2-fig8.dat' index 2 using 1:2 with lines lw 1.3 dt 2 lc rgb '#D55E00' title '2D rough, exponential', 'p2-fig8.dat' index 3 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title '3D rough', 'p2-fig8.dat' index 4 using 1:2 with lines lw 1.3 dt 1 lc rgb '#0072B2' title '3D rough, algebraic', 'p2-fig8.dat' index 5 using 1:2 with lines lw 1.3 dt 2 lc rgb '#0072B2' title '3D rough, exponential'
 unset output
 reset
 }

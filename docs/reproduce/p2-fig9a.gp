@@ -30,7 +30,7 @@ set logscale x
 set xrange [1:150]
 set yrange [0:*]
 
-plot 'p2-fig9a.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'k_n = 100000', 'p2-fig9a.dat' index 1 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'k_n = 1e+06', 'p2-fig9a.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title 'k_n = 1e+07'
+plot 'p2-fig9a.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'k_n = 10^{5}', 'p2-fig9a.dat' index 1 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'k_n = 10^{6}', 'p2-fig9a.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title 'k_n = 10^{7}'
 unset output
 reset
 }

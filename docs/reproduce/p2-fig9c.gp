@@ -1,4 +1,4 @@
-# T_z/(m V_p^2) with mu
+# T_z/(m V_p^2) with μ
 # gnuplot p2-fig9c.gp draws p2-fig9c.svg, p2-fig9c.pdf and p2-fig9c.png
 blue = '#0072B2'
 orange = '#E69F00'
@@ -30,7 +30,7 @@ set logscale x
 set xrange [1:150]
 set yrange [0:*]
 
-plot 'p2-fig9c.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'mu = 0.1', 'p2-fig9c.dat' index 1 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'mu = 0.4', 'p2-fig9c.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title 'mu = 0.8'
+plot 'p2-fig9c.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'μ = 0.1', 'p2-fig9c.dat' index 1 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'μ = 0.4', 'p2-fig9c.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title 'μ = 0.8'
 unset output
 reset
 }
