@@ -36,6 +36,7 @@ constexpr std::array kInputs = {
     Input{"example/few.toml", "few.toml", "a bed to render: simulate, render"},
     Input{"example/CAMERA.toml", "CAMERA.toml", "a camera with lens faults and dust: render --camera"},
     Input{"example/gas.toml", "gas.toml", "a dilute gas: measure"},
+    Input{"example/gas_plan.toml", "gas_plan.toml", "its temperature against the drive: sweep"},
     Input{"example/plan.toml", "plan.toml", "a search for the onset of bouncing: sweep"},
     Input{"example/bounce.csv", "bounce.csv", "heights of a bouncing bead: calibrate contacts bounce"},
     Input{"example/p_s.csv", "p_s.csv", "slip frequencies: fit"},
