@@ -15,6 +15,7 @@
 #include "analysis/report/spatial_figures.hpp"
 #include "analysis/runs/pooling.hpp"
 #include "cli/output.hpp"
+#include "cli/results_summary.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
@@ -100,7 +101,9 @@ void run(const Common& common, const AnalyzeOptions& options) {
   document["results"] = nlohmann::json::parse(results_json(results));
   if (runs.size() > 1) document["runs"] = options.trajectories;
   document["provenance"] = nlohmann::json::parse(provenance_json);
-  print_result(common, document, results_text(results));
+  print_result(
+      common, document,
+      common.verbose ? results_text(results) : results_summary(results, !options.analysis.only.empty()));
 }
 
 }  // namespace

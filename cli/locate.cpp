@@ -158,8 +158,7 @@ void run(LocateOptions& o, const Common& common) {
   ProgressBar bar(common, "locate");
   const std::string refine = given.refine.method;
   const bool find_diameter = given.diameter_px <= 0, find_polarity = !given.polarity_known;
-  constexpr std::int64_t kShown = 20;  // frames with a line of their own
-  std::vector<std::pair<std::string, std::string>> lines;
+  std::vector<std::pair<std::string, std::string>> lines;  // of each frame, with --verbose
   std::map<Verdict, std::size_t> left_out;
   std::size_t beads = 0, bare = 0;  // frames without a bead
   // Settings that the user did not give are determined from the first frames.
@@ -186,7 +185,7 @@ void run(LocateOptions& o, const Common& common) {
           stages += fmt::format(" {} {:.1f} ms", stage.stage, 1000 * stage.seconds);
           if (stage.stage != "prepare") stages += fmt::format(" ({})", stage.beads);
         }
-        if (index < kShown) lines.emplace_back(line, stages);
+        if (common.verbose) lines.emplace_back(line, stages);
         std::map<Verdict, std::size_t> reasons;
         for (const Detection& b : located.dropped) ++reasons[b.verdict];
         f["dropped"] = in_words(reasons);
@@ -217,7 +216,7 @@ void run(LocateOptions& o, const Common& common) {
   for (std::int64_t index = 0; index < n; ++index) {
     const auto at = static_cast<std::size_t>(index);
     if (motion.claimed(at)) document["frames"][at]["path_px"] = motion.path(at);
-    if (index >= kShown) continue;
+    if (!common.verbose) continue;
     text += lines[at].first;
     if (motion.claimed(at))
       text += fmt::format(", moved by {:.2f} px during the exposure",
@@ -236,7 +235,8 @@ void run(LocateOptions& o, const Common& common) {
   if (!locator.other_diameters_px.empty()) document["other_diameters_px"] = locator.other_diameters_px;
   document["refine"] = locator.refine.method;
   document["bright"] = locator.preprocess.bright;
-  if (n > kShown) text += fmt::format("... {} more frames\n", n - kShown);
+  text =
+      fmt::format("{} frames, {} beads{}\n", n, beads, common.verbose ? "" : "; -v prints each frame") + text;
   const std::string shown = settings_frame == 0 ? "the first frame" : fmt::format("frame {}", settings_frame);
   if (find_diameter || find_polarity) document["settings_frame"] = settings_frame;
   if (find_diameter) {

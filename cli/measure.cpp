@@ -12,6 +12,7 @@
 #include "analysis/observable/results.hpp"
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
+#include "cli/results_summary.hpp"
 #include "cli/verb.hpp"
 #include "core/json_text.hpp"
 #include "sim/run/make_solver.hpp"
@@ -69,7 +70,7 @@ Run run_once(const MeasureOptions& options, const std::vector<std::string>& assi
   return r;
 }
 
-std::string as_text(const Run& run) {
+std::string as_text(const Run& run, bool verbose, bool requested) {
   const json& about = run.about;
   std::string s = fmt::format("start: {}; {} cycles after {} discarded\n", about["start"].get<std::string>(),
                               about["cycles"].get<long>(), about["discarded"].get<long>());
@@ -84,7 +85,8 @@ std::string as_text(const Run& run) {
                      about["contact_fraction"].get<double>() > 0.1
                          ? ", more than the 0.1 up to which they behave like hard beads"
                          : "");
-  return s + results_text(run.measured.results);
+  return s +
+         (verbose ? results_text(run.measured.results) : results_summary(run.measured.results, requested));
 }
 
 /// Compares T_z of both starts: the starts agree if their intervals overlap.
@@ -105,7 +107,7 @@ void run(const MeasureOptions& options, const Common& common) {
   json document = first.about;
   document["results"] = json::parse(results_json(first.measured.results));
   document["provenance"] = json::parse(first.provenance);
-  std::string text = as_text(first);
+  std::string text = as_text(first, common.verbose, !options.analysis.only.empty());
   if (options.both_starts) {
     std::vector<std::string> boiling = assignments;
     boiling.emplace_back(kFluidised);
@@ -114,7 +116,8 @@ void run(const MeasureOptions& options, const Common& common) {
     document["other_start"] = second.about;
     document["other_start"]["results"] = json::parse(results_json(second.measured.results));
     document["starts"] = compared(first, second);
-    text += "\n" + as_text(second) + "\n" + document["starts"].get<std::string>() + "\n";
+    text += "\n" + as_text(second, common.verbose, !options.analysis.only.empty()) + "\n" +
+            document["starts"].get<std::string>() + "\n";
   }
   print_result(common, document, text);
 }

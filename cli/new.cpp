@@ -37,9 +37,20 @@ struct NewOptions {
   CellAnswers answers;
 };
 
+constexpr const char* kHead = "# Cell description, written by: ";
+
 /// A cell file is edited by hand, so an existing one is replaced only with --force.
 Product cell_file() {
   return {.name = "a cell file", .sign = Product::Sign::none, .mark = {}};
+}
+
+/// \throws ConfigError if the output is an earlier cell file, which --force does not yet give up
+void keep_earlier(const fs::path& cell, const Common& common) {
+  if (!common.force && is_product(cell, Product::text("a cell file", kHead)))
+    throw ConfigError(
+        {.file = cell.string(), .key = {}},
+        "is an earlier cell file, which may have been edited since; replace it with --force, or "
+        "name another one with -o.");
 }
 
 /// Asks one question on the terminal. An empty line, or the end of the input, leaves the value unknown.
@@ -109,6 +120,7 @@ nlohmann::json json_of(const CellSurvey& s, const CellDraft& draft) {
 nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& stack, const fs::path& cell,
                          bool first, std::string& said) {
   const fs::path picture = fs::path(cell).replace_extension(".png");
+  keep_earlier(cell, common);
   require_output(cell, cell_file());
   require_output(picture, Product::picture());
   const CellSurvey survey = survey_cell(stack, {.diameter_px = o.diameter_px, .threads = common.n_threads()},
@@ -118,9 +130,7 @@ nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& st
   const CellDraft draft = draft_cell(survey, o.answers);
   for (const auto* sentences : {&survey.notes, &draft.notes})
     for (const std::string& sentence : *sentences) note(common, sentence);
-  write_text_file(
-      cell, cell_text(draft, survey, "# Cell description, written by: " + one_line(common.command_line)),
-      cell_file());
+  write_text_file(cell, cell_text(draft, survey, kHead + one_line(common.command_line)), cell_file());
   write_png(picture, draw_cell(survey, draft));
   said += stack.string() + "\n" + table_of(draft);
   for (const NotMeasured& m : survey.missing)
@@ -137,6 +147,7 @@ void run(const Common& common, NewOptions& o) {
     throw ConfigError({.file = {}, .key = "new"}, "no stack is named; give at least one stack of frames.");
   const bool several = o.stacks.size() > 1;
   if (o.output.empty()) o.output = several ? "cells" : "CELL.toml";
+  if (o.output == kStandardOutput) require_output(o.output, cell_file());  // refuses it
   if (several && fs::path(o.output).extension() == ".toml")
     throw ConfigError(
         {.file = o.output, .key = "-o"},

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -21,6 +22,7 @@
 #include "core/json_text.hpp"
 #include "core/output_rules.hpp"
 #include "core/temporary_files.hpp"
+#include "core/text_columns.hpp"
 
 namespace twincell::cli {
 
@@ -138,7 +140,8 @@ CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, c
   CLI::App& verb = *program.add_subcommand(name, summary);
   verb.footer("Example:\n  " + example);
   verb.add_flag("--json", common.json, "Print the result as one JSON document instead of text");
-  verb.add_flag("-q,--quiet", common.quiet, "Print no progress and no notes");
+  verb.add_flag("-q,--quiet", common.quiet, "Print nothing but errors (with --json: and the document)");
+  verb.add_flag("-v,--verbose", common.verbose, "Print every detail of the result");
   verb.add_option("--threads", common.threads,
                   "Number of threads; 0 (default): automatic, at most one per core")
       ->check(CLI::Range(0, 4096))
@@ -170,17 +173,34 @@ CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product
 }
 
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text) {
-  const std::string out = common.json ? json_text(document, 2) + "\n" : text;
-  if (common.result_on_stderr) {
-    if (!common.quiet) std::fwrite(out.data(), 1, out.size(), stderr);
-    return;
-  }
-  if (std::fwrite(out.data(), 1, out.size(), stdout) != out.size() || std::fflush(stdout) != 0)
+  if (common.quiet && !common.json) return;
+  std::FILE* const stream = common.result_on_stderr ? stderr : stdout;
+  std::string out = common.json ? json_text(document, 2) + "\n" : text;
+  if (!common.json && ::isatty(::fileno(stream)) == 1) out = fit_columns(out, kColumns);
+  const bool written =
+      std::fwrite(out.data(), 1, out.size(), stream) == out.size() && std::fflush(stream) == 0;
+  if (!written && errno != EPIPE && !common.result_on_stderr)
     throw RunError("The result cannot be written to standard output.");
 }
 
 void note(const Common& common, const std::string& text) {
   if (!common.quiet) std::fprintf(stderr, "note: %s\n", one_line(text).c_str());
+}
+
+std::string time_text(double seconds) {
+  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+EveryMinute::EveryMinute() : last_ns_(now_ns()) {}
+
+bool EveryMinute::operator()() {
+  constexpr std::int64_t kMinute_ns = 60'000'000'000;
+  const std::int64_t now = now_ns();
+  if (now - last_ns_ < kMinute_ns) return false;
+  last_ns_ = now;
+  return true;
 }
 
 ProgressBar::ProgressBar(const Common& common, std::string label)
@@ -198,20 +218,20 @@ void ProgressBar::update(std::int64_t done, std::int64_t total) {
   if (quiet_ || total <= 0) return;
   if (first_ < 0) first_ = done;  // a resumed run does not start at 0
   const int percent = static_cast<int>(100 * done / total);
-  const int step = terminal_ ? 1 : 10;
-  if (last_percent_ >= 0 && percent / step == last_percent_ / step) return;
+  if (terminal_ ? percent == last_percent_ : !due_()) return;
   last_percent_ = percent;
   const double elapsed = 1e-9 * static_cast<double>(now_ns() - start_ns_);
   const double left =
       done > first_ ? elapsed * static_cast<double>(total - done) / static_cast<double>(done - first_) : 0;
   if (!terminal_) {
-    if (percent > 0) std::fprintf(stderr, "%s: %d %%\n", label_.c_str(), percent);
+    std::fprintf(stderr, "%s: %d %%, about %s left\n", label_.c_str(), percent, time_text(left).c_str());
     return;
   }
   const int filled = kBarWidth * percent / 100;
-  std::fprintf(stderr, "\r%s [%s%s] %3d %%, %.0f s left \033[K", label_.c_str(),
+  std::fprintf(stderr, "\r%s [%s%s] %3d %%, %s left \033[K", label_.c_str(),
                std::string(static_cast<std::size_t>(filled), '#').c_str(),
-               std::string(static_cast<std::size_t>(kBarWidth - filled), '.').c_str(), percent, left);
+               std::string(static_cast<std::size_t>(kBarWidth - filled), '.').c_str(), percent,
+               time_text(left).c_str());
   std::fflush(stderr);
 }
 

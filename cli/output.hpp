@@ -30,7 +30,8 @@ struct Output {
 /// Options that every verb has.
 struct Common {
   bool json = false;                  ///< print the result as one JSON document
-  bool quiet = false;                 ///< print no progress and no notes
+  bool quiet = false;                 ///< print nothing but errors, and the document of --json
+  bool verbose = false;               ///< print every detail of the result
   int threads = 0;                    ///< number of threads; 0: automatic, at most one per core
   std::optional<std::uint64_t> seed;  ///< of the random numbers; absent: the default of the verb
   std::string command_line;
@@ -68,13 +69,31 @@ inline constexpr const char* kWord = "WORD";
 /// rules (output_rules.hpp), with all other arguments that name existing files as inputs, and is locked.
 CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product product);
 
-/// Prints the result of a verb: `document` as JSON with --json, otherwise `text`. The result goes to stderr
-/// if an output of the verb is standard output.
+/// Prints the result of a verb: `document` as JSON with --json, otherwise `text`, in lines of at most
+/// kColumns columns on a terminal, or nothing with --quiet. The result goes to stderr if an output of the
+/// verb is standard output. A reader that has stopped reading, such as head, is no error.
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text);
 /// Prints a note or warning on stderr ("note: …"), unless --quiet is set.
 void note(const Common& common, const std::string& text);
 
-/// Shows progress on stderr: a bar on a terminal, otherwise one line per 10 %, and nothing with --quiet.
+/// Width of what is printed for people.
+inline constexpr std::size_t kColumns = 100;
+
+/// A time in a suitable unit: "40 s", "12 min", "3.5 h".
+std::string time_text(double seconds);
+
+/// Whether a minute has passed since the last line of progress, or since the beginning.
+class EveryMinute {
+ public:
+  EveryMinute();
+  bool operator()();
+
+ private:
+  std::int64_t last_ns_;
+};
+
+/// Shows progress on stderr: a bar with the time left on a terminal, otherwise one line a minute, and nothing
+/// with --quiet.
 /// Throws Interrupted after SIGINT or SIGTERM.
 class ProgressBar : public Progress {
  public:
@@ -89,6 +108,7 @@ class ProgressBar : public Progress {
   int last_percent_ = -1;
   std::int64_t first_ = -1;  ///< value of `done` at the first update
   std::int64_t start_ns_;
+  EveryMinute due_;
 };
 
 /// Installs the signal handlers. ProgressBar and throw_if_cancelled (cancellation.hpp) react to the signals.

@@ -113,7 +113,7 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, s
   return d;
 }
 
-std::string as_text(const nlohmann::json& d) {
+std::string as_text(const nlohmann::json& d, bool verbose) {
   std::string s = fmt::format("{} beads, {}\n", d["beads"].get<long>(), d["kernel"].get<std::string>());
   if (d["gamma"].is_number())
     s += fmt::format("Gamma = {:.6g}, K_m = {:.6g}\n", d["gamma"].get<double>(), d["k_m"].get<double>());
@@ -129,7 +129,8 @@ std::string as_text(const nlohmann::json& d) {
     s += fmt::format("settled in {:.4g} t0 to {:.3g} m g sigma per bead{}\n", settled["time"].get<double>(),
                      settled["energy_per_bead"].get<double>(),
                      settled["reached"].get<bool>() ? "" : " (stopped by start.settle_limit)");
-  for (const auto& e : d["effects"])
+  if (!verbose) s += fmt::format("{} effects considered; -v, or explain, lists them\n", d["effects"].size());
+  for (const auto& e : verbose ? d["effects"] : nlohmann::json::array())
     s += fmt::format("  {:<20} {:<13} {}\n", e["name"].get<std::string>(), e["state"].get<std::string>(),
                      e["reason"].get<std::string>());
   if (d.contains("contact_fraction"))
@@ -266,7 +267,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   nlohmann::json document = describe(run, options.output, begun_at, seconds);
   document["warnings"] = warnings;
-  print_result(common, document, as_text(document));
+  print_result(common, document, as_text(document, common.verbose));
 }
 
 }  // namespace

@@ -10,12 +10,6 @@
 
 namespace twincell::cli {
 
-std::string time_text(double seconds) {
-  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
-  return fmt::format("{:.1f} h", seconds / 3600);
-}
-
 SweepWatch::SweepWatch(const Common& common, double seconds)
     : quiet_(common.quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
@@ -48,9 +42,7 @@ void SweepWatch::look(const sweep::Counts& counts, double seconds_left) {
     std::fflush(stderr);
     return;
   }
-  const int tenth = counts.known > 0 ? static_cast<int>(10 * counts.done / counts.known) : 0;
-  if (tenth == last_tenth_) return;
-  last_tenth_ = tenth;
+  if (!due_()) return;
   std::fprintf(stderr, "%s\n", line.c_str());
 }
 

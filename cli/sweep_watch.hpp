@@ -10,11 +10,8 @@
 
 namespace twincell::cli {
 
-/// A time in a suitable unit: "40 s", "12 min", "3.5 h".
-std::string time_text(double seconds);
-
 /// Prints "12 of 40 points done, 2 running, about 3 min left": on a terminal one line that is overwritten,
-/// elsewhere a new line for every tenth of the points. Throws Interrupted after a signal, which ends the
+/// elsewhere one line a minute. Throws Interrupted after a signal, which ends the
 /// sweep.
 class SweepWatch : public sweep::Watch {
  public:
@@ -30,7 +27,7 @@ class SweepWatch : public sweep::Watch {
   double seconds_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::string last_;
-  int last_tenth_ = -1;
+  EveryMinute due_;
 };
 
 }  // namespace twincell::cli

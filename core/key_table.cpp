@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <regex>
-#include <sstream>
 
 #include "core/config.hpp"
 #include "core/error.hpp"
+#include "core/text_columns.hpp"
 
 namespace twincell {
 
@@ -49,30 +48,12 @@ std::string linked(const std::string& text) {
   return std::regex_replace(text, std::regex(R"(docs/(\w+\.md))"), "[$1]($1)");
 }
 
-/// Number of columns: UTF-8 continuation bytes take none.
-std::size_t columns_of(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-/// Breaks text into lines of at most `width` columns, each with its indentation and prefix.
-std::string wrapped(const std::string& text, const std::string& first, const std::string& later,
-                    std::size_t width) {
-  std::istringstream words(text);
-  std::string out, line = first, word;
-  bool empty = true;
-  while (words >> word) {
-    if (!empty && columns_of(line) + 1 + columns_of(word) > width) {
-      out += line + "\n";
-      line = later, empty = true;
-    }
-    line += (empty ? "" : " ") + word;
-    empty = false;
-  }
-  return out + line + "\n";
-}
-
 constexpr std::size_t kWidth = 100;
+
+/// A paragraph with this indentation.
+std::string wrapped(const std::string& text, const std::string& indent) {
+  return fold_line(indent + text, kWidth, indent);
+}
 
 }  // namespace
 
@@ -108,21 +89,20 @@ std::string key_markdown(const KeyTable& table) {
 
 std::string key_text(const KeyTable& table) {
   const auto rules = rules_of(table);
-  std::string text = table.title + "\n\n" + wrapped(table.intro, "", "", kWidth);
+  std::string text = table.title + "\n\n" + wrapped(table.intro, "");
   std::string name = "none yet";
   for (const KeyRow& row : table.rows) {
     if (const std::string of = table_of(row.key); of != name) {
       name = of;
       text += name.empty() ? "\n" : fmt::format("\n[{}]\n", name);
-      if (const std::string note = note_of(table, name); !note.empty())
-        text += wrapped(note, "  ", "  ", kWidth);
+      if (const std::string note = note_of(table, name); !note.empty()) text += wrapped(note, "  ");
     }
     std::string facts = row.unit;
     for (const std::string& fact :
          {range_of(rules, row), row.absent.empty() ? std::string() : "default: " + row.absent})
       facts += (facts.empty() || fact.empty() ? "" : "; ") + fact;
-    text += wrapped(facts, fmt::format("  {} = {}  # ", row.key, row.example), "      # ", kWidth);
-    text += wrapped(meaning_of(row), "      ", "      ", kWidth);
+    text += fold_line(fmt::format("  {} = {}  # {}", row.key, row.example, facts), kWidth, "      # ");
+    text += wrapped(meaning_of(row), "      ");
   }
   return text;
 }

@@ -25,7 +25,7 @@ done
 
 echo "demo: filming the twins, comparing" >&2
 "$program" compare --experiment "${experiments[@]}" --simulation "${simulations[@]}" \
-  --sweep "$here"/boundaries/{bouncing,convecting}.json -q -o "$report" --camera "$here/CAMERA.toml" \
-  >"$work/comparison.txt"
+  --sweep "$here"/boundaries/{bouncing,convecting}.json -o "$report" --camera "$here/CAMERA.toml" \
+  >"$work/comparison.txt" 2>"$work/log-comparison.txt" || { cat "$work/log-comparison.txt" >&2; exit 1; }
 # The conclusion, the phases and where the report is; onsets and single differences are in the report.
 sed '/^onset of /,/other numbers/d' "$work/comparison.txt"

@@ -142,7 +142,7 @@ TEST(New, AnEditedCellIsNotReplacedWithoutForce) {
   const std::string before = text_of(cell);
   const Ran ran = run_program({"new", stack, "-o", cell, "-q", "--drive-gamma", "0.9"});
   EXPECT_EQ(ran.code, 2);
-  EXPECT_NE(ran.err.find("CELL.toml"), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("CELL.toml: is an earlier cell file"), std::string::npos) << ran.err;
   EXPECT_EQ(text_of(cell), before);
   EXPECT_EQ(run_program({"new", stack, "-o", cell, "-q", "--drive-gamma", "0.9", "--force"}).code, 0);
   EXPECT_NE(text_of(cell), before);

@@ -166,6 +166,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"vary", "parameter to infer"},
     {"version", "version"},
     {"vignetting", "loss of light in the corners"},
+    {"verbose", "print every detail"},
     {"window", "window of the abscissa"},
     {"x", "column of the abscissa"},
     {"y", "column of the ordinate"},

@@ -134,13 +134,16 @@ std::vector<Verb> verbs() {
        {"calibrate", "contacts", "infer", "sim.h5", "--scene", "scene.toml", "--vary", "contact.mu=0.1:0.9"},
        "--figures",
        true},
+      {"new", {"new", "frames"}, "-o", false},
+      {"example", {"example"}, "", true},
+      {"man", {"man"}, "-o", true},
       {"sweep collect", {"sweep", "collect", "plan.toml", "--folder", "swept"}, "-o", false},
   };
 }
 
 Ran run_verb(const Verb& verb, const std::string& output, const std::vector<std::string>& more = {}) {
   std::vector<std::string> words = verb.words;
-  words.emplace_back(verb.option);
+  if (*verb.option != '\0') words.emplace_back(verb.option);
   words.push_back(output);
   words.insert(words.end(), more.begin(), more.end());
   return run_program(words);
@@ -181,7 +184,7 @@ TEST(Outputs, StandardOutputTakesTextAlone) {
   EXPECT_EQ(run_program({"sweep", "run", "plan.toml", "--folder", "swept", "-q"}).code, 0);
   const auto before = Sandbox::contents();
   const std::string frames = "frames", cell = "frames/CELL.toml";
-  const Ran table = run_program({"locate", frames, "-o", "-"});
+  const Ran table = run_program({"locate", frames, "-o", "-", "-v"});
   EXPECT_EQ(table.code, 0) << table.err;
   EXPECT_TRUE(table.out.starts_with("y,x,mass,")) << table.out.substr(0, 200);
   EXPECT_GT(std::count(table.out.begin(), table.out.end(), '\n'), 100);

@@ -1,5 +1,6 @@
 """Runs every command block of README.md, docs/*.md and the examples of --help, as printed and in the order of the page, each
-page in a folder that `twincell example` made.
+page in a folder that `twincell example` made. The examples of --help run with -q, which prints nothing unless something
+fails; this holds every verb against that rule.
 
 A command block is an indented or fenced block whose first word is a program or a loop. The line before a block may hold
     <!-- not run: REASON -->       the block takes long or needs what a test machine lacks
@@ -100,7 +101,7 @@ def run_page(name):
             continue
         for command in commands:
             ran += 1
-            script += ["echo \"@ $EPOCHREALTIME \"" + shell_quoted(command), command]
+            script += ["echo \"@ $EPOCHREALTIME \"" + shell_quoted(command), quiet(command) if name == "--help" else command]
     script.append("echo \"@ $EPOCHREALTIME end\"")
     with tempfile.TemporaryDirectory(dir=scratch) as folder:
         home = pathlib.Path(folder)
@@ -123,6 +124,13 @@ def run_page(name):
                 text.append(f"FAILED: {file or 'the output'} lacks what the page promises: {phrase}")
                 good = False
     return "\n".join(text), ran, len(skipped), good
+
+
+def quiet(command):
+    """The command with -q, which must print nothing; as it is if the verb prints for another program."""
+    if re.match(r"twincell (help|completion|sweep template)\b", command) or not re.fullmatch(r"twincell [^|<>;&]+", command):
+        return command
+    return f'said=$({command} -q 2>&1); [ -z "$said" ] || {{ echo "-q does not silence: $said"; exit 1; }}'
 
 
 def shell_quoted(word):

@@ -1,0 +1,18 @@
+#pragma once
+/// \file
+/// The results of an analysis for people.
+
+#include <string>
+#include <vector>
+
+#include "analysis/observable/observable.hpp"
+
+namespace twincell::cli {
+
+/// The phase with its reason, then the numbers with their intervals, in at most 100 columns.
+/// \param requested the results were asked for by name: lists and absent ones are rows, too; otherwise they
+/// are
+///   only counted, and results_text() has them
+std::string results_summary(const std::vector<Result>& results, bool requested);
+
+}  // namespace twincell::cli
