@@ -3,13 +3,16 @@
 usage: command_line_test.py TWINCELL FOLDER
 """
 
+import os
 import pathlib
+import pty
 import re
 import shutil
 import subprocess
 import sys
 
 program, folder = sys.argv[1], pathlib.Path(sys.argv[2]) / "command_line"
+source = pathlib.Path(__file__).resolve().parents[2]
 
 
 def run(*words, code=0):
@@ -68,8 +71,7 @@ def test_manual():
 
 
 def test_keys():
-    page = pathlib.Path(__file__).resolve().parents[2] / "docs/keys.md"
-    assert run("keys", "--markdown").stdout == page.read_text(), "docs/keys.md is not what `twincell keys --markdown` prints"
+    assert run("keys", "--markdown").stdout == (source / "docs/keys.md").read_text(), "docs/keys.md is not what `twincell keys --markdown` prints"
     text = run("keys").stdout
     assert max(map(len, text.splitlines())) <= 100
     for file, key in (("cell", "camera.bright"), ("scene", "contact.mu"), ("plan", "search.width"), ("camera", "blur")):
@@ -100,8 +102,27 @@ def test_completion():
 
 
 def test_a_reader_that_stops_is_no_error():
-    done = subprocess.run(f"'{program}' help reproduce | head -n 1", shell=True, capture_output=True, text=True)
-    assert done.returncode == 0 and not done.stderr and len(done.stdout.splitlines()) == 1
+    for words in ("help reproduce", "keys"):
+        done = subprocess.run(f"set -o pipefail; '{program}' {words} | head -n 1", shell=True, executable="/bin/bash",
+                              capture_output=True, text=True)
+        assert done.returncode == 0 and not done.stderr and len(done.stdout.splitlines()) == 1, words
+
+
+def test_lines_on_a_terminal_have_at_most_100_columns():
+    terminal, end = pty.openpty()
+    scene = source / "data_samples/example/scene.toml"
+    with subprocess.Popen([program, "explain", scene], stdout=end, stderr=subprocess.DEVNULL) as process:
+        os.close(end)
+        text = b""
+        try:
+            while part := os.read(terminal, 4096):
+                text += part
+        except OSError:  # the program has ended
+            pass
+    assert process.returncode == 0
+    lines = text.decode().splitlines()
+    assert len(lines) > 20 and max(map(len, lines)) <= 100, max(lines, key=len)
+    assert max(map(len, run("explain", str(scene)).stdout.splitlines())) > 100, "in a file each line stays whole"
 
 
 shutil.rmtree(folder, ignore_errors=True)
