@@ -104,9 +104,10 @@ void check_parts(const nlohmann::json& differences) {
 TEST(Analyze, TextJsonAndFileSayTheSame) {
   const TemporaryFolder folder;
   const std::string file = film(folder / "sim.h5", bed(1.5, 0, "simulation"));
-  const Ran text = run_program({"analyze", file, "-q"});
+  const Ran text = run_program({"analyze", file});
   EXPECT_EQ(text.code, 0) << text.err;
   EXPECT_EQ(text.err, "");
+  EXPECT_EQ(run_program({"analyze", file, "-q"}).out, "");
   EXPECT_NE(text.out.find("bouncing"), std::string::npos);
 
   const Ran json = run_program({"analyze", file, "--json", "-q", "-o", folder / "results.h5"});
@@ -215,7 +216,7 @@ TEST(Compare, OneReportWithEverythingInIt) {
 TEST(Compare, TextEndsWithThePathOfTheReport) {
   const TemporaryFolder folder;
   const std::string one = film(folder / "exp.h5", bed(1.5, 0, "experiment"));
-  const Ran ran = run_program({"compare", "-q", "--experiment", one, "-o", folder / "report"});
+  const Ran ran = run_program({"compare", "--experiment", one, "-o", folder / "report"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   EXPECT_NE(ran.out.find("only experiment"), std::string::npos);
   const std::string last = "report: " + (folder / "report/report.html").string() + "\n";

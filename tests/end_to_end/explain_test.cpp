@@ -23,7 +23,7 @@ class Explain : public ::testing::Test {
            "[drive]\ngamma = 1.5\n[time]\nsteps_per_contact = 10\ncycles = 1\ndiscard = 0\n";
   }
   [[nodiscard]] Ran run(const std::string& verb, const std::vector<std::string>& more) const {
-    std::vector<std::string> words{verb, scene_, "-q"};
+    std::vector<std::string> words{verb, scene_};
     words.insert(words.end(), more.begin(), more.end());
     return run_program(words);
   }

@@ -44,7 +44,7 @@ TEST(Fit, TextJsonAndPictureSayTheSame) {
   EXPECT_EQ(nlohmann::json::parse(read_text_file(folder / "fit/fit.json"))["parameters"],
             document["parameters"]);
 
-  const Ran text = run_program({"fit", table, "--law", "arrhenius", "--trials", "trials", "-q"});
+  const Ran text = run_program({"fit", table, "--law", "arrhenius", "--trials", "trials"});
   EXPECT_EQ(text.code, 0) << text.err;
   EXPECT_NE(text.out.find("E_b"), std::string::npos);
   EXPECT_NE(text.out.find("1 zero and left out"), std::string::npos) << text.out;
@@ -79,7 +79,7 @@ TEST(Fit, Refusals) {
 TEST(Fit, ErrorsThatAreNoneAreSaid) {
   const TemporaryFolder folder;
   put_file(folder / "flat.csv", "x,y,s\n1,2,0\n2,2,0\n4,2,0.1\n8,2,0\n16,2,0\n");
-  const Ran line = run_program({"fit", folder / "flat.csv", "--law", "line", "--sigma", "s", "-q"});
+  const Ran line = run_program({"fit", folder / "flat.csv", "--law", "line", "--sigma", "s"});
   EXPECT_EQ(line.code, 0) << line.err;
   EXPECT_NE(line.out.find("not weighted: the given errors are not above 0 at 4 of 5 points"),
             std::string::npos)

@@ -117,7 +117,7 @@ TEST(New, TrackingWithTheWrittenCellGivesTheSameResults) {
 TEST(New, WithoutAnswersPlaceholdersAreLeftThatEveryVerbRefusesByName) {
   const TemporaryFolder folder;
   const fs::path cell = folder / "CELL.toml", stack = kDemo / "gamma-0.9";
-  const Ran ran = run_program({"new", stack, "-o", cell, "-q"});
+  const Ran ran = run_program({"new", stack, "-o", cell});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_NE(ran.out.find("2 values are still needed"), std::string::npos) << ran.out;
   EXPECT_NE(text_of(cell).find("sigma_mm = \"FILL IN: bead diameter in mm\""), std::string::npos)

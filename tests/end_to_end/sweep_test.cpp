@@ -81,7 +81,7 @@ TEST_F(Sweeps, OneCoreTwoCoresShardsAndRanksGiveTheSameBytes) {
 }
 
 TEST_F(Sweeps, ASweepEndsInItsPictureAndPlotDrawsOtherResults) {
-  const Ran ran = run(grid_, at("one"));
+  const Ran ran = run_program({"sweep", "run", grid_, "--folder", at("one")});
   ASSERT_EQ(ran.code, kDone) << ran.err;
   EXPECT_NE(ran.out.find("picture: " + at("one/figures/sweep.svg")), std::string::npos) << ran.out;
   const std::string drawn = bytes_of(at("one/figures/sweep.dat"));
@@ -101,7 +101,7 @@ TEST_F(Sweeps, ASweepEndsInItsPictureAndPlotDrawsOtherResults) {
 TEST_F(Sweeps, CompareDrawsTheDiagramOfASweepAlone) {
   ASSERT_EQ(run(grid_, at("one")).code, kDone);
   (void)collected(grid_, at("one"));
-  const Ran ran = run_program({"compare", "--sweep", at("one.json"), "-o", at("report"), "-q"});
+  const Ran ran = run_program({"compare", "--sweep", at("one.json"), "-o", at("report")});
   ASSERT_EQ(ran.code, kDone) << ran.err;
   EXPECT_NE(ran.out.find("points of a sweep"), std::string::npos) << ran.out;
   EXPECT_NE(bytes_of(at("report/report.html")).find("points of a sweep"), std::string::npos);

@@ -100,17 +100,11 @@ TEST(Track, BeadsOfSeveralSizes) {
   write(folder / "scene.toml", mixed);
   ASSERT_EQ(run_program({"simulate", folder / "scene.toml", "-o", folder / "sim.h5", "-q"}).code, 0);
   ASSERT_EQ(run_program({"render", folder / "sim.h5", "-o", folder / "frames", "-q"}).code, 0);
-  std::vector<std::string> words = {"track",
-                                    folder / "frames",
-                                    "-o",
-                                    folder / "exp.h5",
-                                    "--cell",
-                                    folder / "frames/CELL.toml",
-                                    "--truth",
-                                    folder / "frames/truth.csv",
-                                    "--phase-lock",
-                                    "20",
-                                    "-q"};
+  std::vector<std::string> words = {"track",        folder / "frames",
+                                    "-o",           folder / "exp.h5",
+                                    "--cell",       folder / "frames/CELL.toml",
+                                    "--truth",      folder / "frames/truth.csv",
+                                    "--phase-lock", "20"};
   const Ran one = run_program(words);
   EXPECT_EQ(one.code, 0) << one.err;
   EXPECT_NE(one.out.find("--diameter D1 D2"), std::string::npos) << one.out;
