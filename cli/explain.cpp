@@ -73,12 +73,15 @@ std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::C
   s += fmt::format("  {} beads x {} periods = {:.3g} particle-steps, without settling\n", cost.beads,
                    plan.steps / plan.steps_per_period, steps * beads);
   if (!cost.stopped.empty()) return s + "Time\n  unknown: the short test run stopped: " + cost.stopped + "\n";
-  s += fmt::format(
-      "Time\n"
-      "  {}, at {:.3g} million particle-steps/s; measured on this machine over {} steps of this scene after "
-      "{:.3g} t0 of settling; an airborne bed is cheaper to simulate than a resting one\n",
-      duration(steps * cost.seconds_per_step), 1e-6 * beads / cost.seconds_per_step, cost.measured_steps,
-      cost.settled_for);
+  s += fmt::format("Time\n  {}, at {:.3g} million particle-steps/s; ",
+                   duration(steps * cost.seconds_per_step), 1e-6 * beads / cost.seconds_per_step);
+  s += cost.relative_work
+           ? fmt::format(
+                 "the bed at rest was measured on this machine; a step of the driven bed takes {:.2g} of "
+                 "its time on average\n",
+                 *cost.relative_work)
+           : fmt::format("measured on this machine over {} steps of this scene after {:.3g} t0 of settling\n",
+                         cost.measured_steps, cost.settled_for);
   return s;
 }
 

@@ -50,6 +50,7 @@ std::string cost_json(const Scene& scene, const Cost& cost) {
     d["expected_seconds"] = cost.seconds_per_step * static_cast<double>(plan.steps);
     d["particle_steps_per_second"] = beads / cost.seconds_per_step;
     d["measured_steps"] = cost.measured_steps;
+    if (cost.relative_work) d["relative_work"] = *cost.relative_work;
   } else {
     d["stopped"] = cost.stopped;
   }

@@ -2,27 +2,69 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
+#include "core/cpu_clock.hpp"
 #include "core/error.hpp"
+#include "sim/run/driven_work.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/starts.hpp"
 
 namespace twincell::sim {
 
 namespace {
 
-/// Advances in small pieces until `seconds` have passed or `most` steps are done; returns the elapsed
-/// seconds.
-double advance_for(double seconds, std::int64_t most, Solver& solver, System& system, Progress& progress) {
-  using Clock = std::chrono::steady_clock;
-  const auto begin = Clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  const std::int64_t piece = 1 + 200'000 / (1 + static_cast<std::int64_t>(system.beads.size()));
-  for (std::int64_t done = 0; done < most && elapsed() < seconds; done += piece) {
+/// Processor time of one thread does not depend on other programs. Several threads also wait for each other,
+/// which only the elapsed time includes.
+double now(std::size_t beads, int threads) {
+  if (threads_for(beads, threads) == 1) return cpu_seconds();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Steps and the time that they took.
+struct Piece {
+  std::int64_t steps = 0;
+  double seconds = 0;
+};
+
+/// Advances in calls of the length that a run uses, until `seconds` have passed or `most` steps are done.
+Piece advance_for(double seconds, std::int64_t most, Solver& solver, System& system, int threads,
+                  Progress& progress) {
+  const std::size_t beads = system.beads.size();
+  const double begin = now(beads, threads);
+  Piece piece;
+  while (piece.steps < most && piece.seconds < seconds) {
     progress.update(0, 0);
-    solver.advance(system, std::min(piece, most - done));
+    const std::int64_t steps = std::min(steps_per_call(beads), most - piece.steps);
+    solver.advance(system, steps);
+    piece.steps += steps;
+    piece.seconds = now(beads, threads) - begin;
   }
-  return elapsed();
+  return piece;
+}
+
+/// Time of a step of the bed at rest. Beads that start at random positions would fall first, so the same
+/// beads are measured in a crystal.
+double seconds_per_step_at_rest(Scene scene, double seconds, int threads, Progress& progress) {
+  if (start_row(scene.start).draws) scene.start = StartKind::crystal_a;
+  RunState state = placed(scene, progress);
+  const Plan plan = make_plan(scene, state.beads);
+  System system = make_system(scene, plan);
+  system.drive.amplitude = 0;
+  system.beads = std::move(state.beads);
+  const auto solver = make_solver(plan, guard_limits(plan), SolverKind::best, threads);
+  solver->advance(system, steps_per_call(system.beads.size()));  // builds the outer list, once in a run
+  const Piece piece =
+      advance_for(seconds, std::numeric_limits<std::int64_t>::max(), *solver, system, threads, progress);
+  return piece.seconds / static_cast<double>(piece.steps);
+}
+
+double layers_of(const Scene& scene, std::size_t beads) {
+  const double diameter = 2 * scene.radius;
+  double per_layer = scene.width / diameter;
+  if (scene.dimension == 3) per_layer *= scene.depth / diameter;
+  return static_cast<double>(beads) / per_layer;
 }
 
 }  // namespace
@@ -41,18 +83,23 @@ Cost measure_cost(const Scene& scene, double seconds, int threads, Progress& pro
   solver->restore(std::move(state.contacts));
   cost.beads = system.beads.size();
   cost.solver = solver->description();
+  const bool falls = scene.g() > 0 && !state.driven;
   try {
-    const bool falls = scene.g() > 0 && !state.driven;
     advance_for(falls ? kSettling : 0, falls ? static_cast<std::int64_t>(scene.settle_limit / plan.dt) : 0,
-                *solver, system, progress);
+                *solver, system, threads, progress);
     if (!state.driven) {
       cost.settled_for = system.time();
       begin_drive(scene, plan, system);
     }
-    const std::int64_t begin = system.step;
-    const double took = advance_for(seconds, plan.steps, *solver, system, progress);
-    cost.measured_steps = system.step - begin;
-    cost.seconds_per_step = took / static_cast<double>(cost.measured_steps);
+    const Piece driven = advance_for(seconds, plan.steps, *solver, system, threads, progress);
+    cost.measured_steps = driven.steps;
+    cost.seconds_per_step = driven.seconds / static_cast<double>(driven.steps);
+    const bool bed = falls && !plan.event_driven && cost.beads > 0;
+    if (bed && driven.steps < std::min(plan.steps, plan.steps_per_period)) {
+      cost.relative_work = driven_work(scene.drive.gamma(scene.g()), layers_of(scene, cost.beads));
+      cost.seconds_per_step =
+          *cost.relative_work * seconds_per_step_at_rest(scene, seconds, threads, progress);
+    }
   } catch (const RunError& e) {
     cost.stopped = e.what();
   }

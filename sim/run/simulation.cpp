@@ -16,11 +16,6 @@ namespace twincell::sim {
 
 namespace {
 
-/// Number of steps that take at most about a tenth of a second, so that a signal is handled promptly.
-std::int64_t unnoticed_steps(const System& s) {
-  return 1 + 2'000'000 / (1 + static_cast<std::int64_t>(s.beads.size()));
-}
-
 double top_of(const std::vector<Bead>& beads) {
   double top = 0;
   for (const Bead& b : beads) top = std::max(top, b.z + b.radius);
@@ -75,6 +70,13 @@ double largest_kick(const System& s) {
 }
 
 }  // namespace
+
+std::int64_t steps_per_call(std::size_t beads) {
+  // Every call of the solver builds the inner list. A list lives for about 64 steps: shorter calls would
+  // build lists more often than the beads need.
+  constexpr std::int64_t kListLife = 64;
+  return std::max(kListLife, 1 + 2'000'000 / (1 + static_cast<std::int64_t>(beads)));
+}
 
 double kinetic_energy_per_bead(const System& s) {
   double sum = 0;
@@ -188,7 +190,7 @@ void Simulation::settle(Progress& progress) try {
   const bool falls = !system_.beads.empty() && scene_.g() > 0;
   const auto most = falls ? static_cast<std::int64_t>(scene_.settle_limit / system_.dt) : 0;
   while (system_.step / block * block < most && quiet_ < kLooks) {
-    kernel_->advance(system_, std::min(block - system_.step % block, unnoticed_steps(system_)));
+    kernel_->advance(system_, std::min(block - system_.step % block, steps_per_call(system_.beads.size())));
     if (system_.step % block == 0) {
       settled_.energy_per_bead = kinetic_energy_per_bead(system_);
       quiet_ = settled_.energy_per_bead < scene_.rest_energy ? quiet_ + 1 : 0;
@@ -359,7 +361,7 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
       looked_at_ += static_cast<std::int64_t>(system_.beads.size());
     }
     if (into == 0) temperature_ = {};
-    std::int64_t piece = std::min(per_phase - into, unnoticed_steps(system_));
+    std::int64_t piece = std::min(per_phase - into, steps_per_call(system_.beads.size()));
     // Samples are taken only in the interval before a frame that is written.
     const bool sampling = samples > 0 && (frame + 1) / scene_.phases >= plan_.cycles_before;
     const std::int64_t next = sampling ? into * samples / per_phase + 1 : 0;

@@ -54,6 +54,10 @@ struct RunState {
 /// \throws ConfigError, InputError if the start is impossible
 RunState placed(const Scene& scene, Progress& progress = Progress::none());
 
+/// Largest number of steps of a run between two updates of its Progress: about 0.1 s of work, and at least 64
+/// steps.
+std::int64_t steps_per_call(std::size_t beads);
+
 /// Mean of m v^2/2 + I omega^2/2 over the beads; 0 without beads.
 double kinetic_energy_per_bead(const System& s);
 

@@ -1,0 +1,43 @@
+// The forecast of a driven bed's work: its measured points, the bounds, and monotony between points.
+
+#include "sim/run/driven_work.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace twincell::sim {
+namespace {
+
+TEST(DrivenWork, ReturnsItsMeasuredPoints) {
+  EXPECT_DOUBLE_EQ(driven_work(2, 10), 0.474);
+  EXPECT_DOUBLE_EQ(driven_work(1.5, 40), 0.768);
+  EXPECT_DOUBLE_EQ(driven_work(3, 80), 0.564);
+  EXPECT_DOUBLE_EQ(driven_work(5, 160), 0.729);
+}
+
+TEST(DrivenWork, IsLinearInGammaAndInTheLogarithmOfTheLayers) {
+  EXPECT_NEAR(driven_work(2.5, 80), (0.781 + 0.564) / 2, 1e-12);
+  EXPECT_NEAR(driven_work(2, std::sqrt(10.0 * 40.0)), (0.474 + 0.638) / 2, 1e-12);
+}
+
+TEST(DrivenWork, ABedThatStaysOnThePlateWorksLikeABedAtRest) {
+  for (const double layers : {0.1, 10.0, 33.0, 1e6}) {
+    EXPECT_EQ(driven_work(0, layers), 1);
+    EXPECT_EQ(driven_work(1, layers), 1);
+  }
+}
+
+TEST(DrivenWork, OutsideTheMeasuredRangeTheNearestValueApplies) {
+  EXPECT_DOUBLE_EQ(driven_work(100, 1e9), 0.729);
+  EXPECT_DOUBLE_EQ(driven_work(100, 1e-9), 0.298);
+}
+
+TEST(DrivenWork, DeeperBedsSaveLess) {
+  for (double gamma = 1.25; gamma <= 5; gamma += 0.25)
+    for (double layers = 10; layers < 150; layers *= 1.1)
+      EXPECT_LT(driven_work(gamma, layers), driven_work(gamma, 1.1 * layers)) << gamma << ' ' << layers;
+}
+
+}  // namespace
+}  // namespace twincell::sim
