@@ -18,8 +18,8 @@ std::string plan_json(const Plan& plan);
 /// What `explain` states: plan_json with the error of the step (state_step_error), and "beads", "has_chance",
 /// "start", "vectors", "bytes_per_bead", "bytes_per_pair", "pairs_per_bead", "expected_memory_bytes",
 /// "expected_disk_bytes", "particle_steps"; then "expected_seconds", "particle_steps_per_second" and
-/// "measured_steps", "relative_work" if a whole period was not measured (Cost), or "stopped" if the measurement
-/// ended early.
+/// "measured_steps", "relative_work" if a whole period was not measured (Cost), or "stopped" if the
+/// measurement ended early.
 std::string cost_json(const Scene& scene, const Cost& cost);
 
 /// The provenance of a run of a scene. \param provenance with command line and inputs
