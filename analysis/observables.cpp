@@ -8,6 +8,7 @@
 
 #include "analysis/motion/centre_of_mass.hpp"
 #include "analysis/motion/tracers.hpp"
+#include "analysis/observable/no_such_result.hpp"
 #include "analysis/observable/observable.hpp"
 #include "core/cancellation.hpp"
 
@@ -55,9 +56,7 @@ void check(const AnalysisOptions& options) {
   const auto names = result_names();
   for (const std::string& name : options.only)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      throw ConfigError(
-          {.file = {}, .key = "only"},
-          fmt::format("there is no result called \"{}\"; the results are {}", name, fmt::join(names, ", ")));
+      throw ConfigError({.file = {}, .key = "only"}, no_such_result(name));
   if (options.discard_cycles < 0)
     throw ConfigError({.file = {}, .key = "discard"},
                       fmt::format("{} cycles cannot be left out; at least 0", options.discard_cycles));

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/observable/no_such_result.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/statistics/statistics.hpp"
 #include "calibration/contact/contact_figures.hpp"
@@ -404,8 +405,7 @@ void check_observables(const std::vector<std::string>& names) {
           "'onset' cannot be computed from one film; give the measured onset with --onset "
           "bouncing=GAMMA+-ERROR.");
     if (std::find(known.begin(), known.end(), names[k]) == known.end())
-      refuse(fmt::format("there is no result called '{}'; the results are {}.", names[k],
-                         fmt::join(known, ", ")));
+      refuse(no_such_result(names[k]) + '.');
     for (std::size_t m = 0; m < k; ++m)
       if (names[m] == names[k]) refuse(fmt::format("names {} twice.", names[k]));
   }

@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 
 struct NewOptions {
   std::vector<std::string> stacks;
-  std::string output;
+  std::optional<std::string> output;
   double diameter_px = 0;
   CellAnswers answers;
 };
@@ -146,23 +146,23 @@ void run(const Common& common, NewOptions& o) {
   if (o.stacks.empty())
     throw ConfigError({.file = {}, .key = "new"}, "no stack is named; give at least one stack of frames.");
   const bool several = o.stacks.size() > 1;
-  if (o.output.empty()) o.output = several ? "cells" : "CELL.toml";
-  if (o.output == kStandardOutput) require_output(o.output, cell_file());  // refuses it
-  if (several && fs::path(o.output).extension() == ".toml")
+  const std::string output = o.output.value_or(several ? "cells" : "CELL.toml");
+  if (output.empty() || output == kStandardOutput) require_output(output, cell_file());  // refuses them
+  if (several && fs::path(output).extension() == ".toml")
     throw ConfigError(
-        {.file = o.output, .key = "-o"},
+        {.file = output, .key = "-o"},
         fmt::format("is one file, but {} stacks need a cell file each; name a folder.", o.stacks.size()));
-  if (!several && fs::path(o.output).extension() != ".toml")
-    throw ConfigError({.file = o.output, .key = "-o"},
+  if (!several && fs::path(output).extension() != ".toml")
+    throw ConfigError({.file = output, .key = "-o"},
                       "must end in .toml; the picture next to it ends in .png.");
   for (const std::string& stack : o.stacks) protect_input(file_of_stack(stack));
   const std::vector<std::string> names = names_of_stacks({o.stacks.begin(), o.stacks.end()});
-  if (several) claim_shared_folder(o.output, cells_folder());
+  if (several) claim_shared_folder(output, cells_folder());
   nlohmann::json cells = nlohmann::json::array();
   std::string said;
   std::size_t open = 0;
   for (std::size_t i = 0; i < o.stacks.size(); ++i) {
-    const fs::path cell = several ? fs::path(o.output) / (names[i] + ".toml") : fs::path(o.output);
+    const fs::path cell = several ? fs::path(output) / (names[i] + ".toml") : fs::path(output);
     cells.push_back(write_one(common, o, o.stacks[i], cell, i == 0, said));
     open += cells.back()["open"].size();
   }
@@ -170,10 +170,10 @@ void run(const Common& common, NewOptions& o) {
     said += fmt::format("{} value{} still needed: look for \"FILL IN\" in the file{}.\n", open,
                         open == 1 ? " is" : "s are", several ? "s" : "");
   else
-    said += "next: twincell match " +
-            (several ? "STACKS... " + shell_word(o.output)
-                     : shell_word(o.stacks[0]) + " " + shell_word(o.output)) +
-            " -o twin/\n";
+    said +=
+        "next: twincell match " +
+        (several ? "STACKS... " + shell_word(output) : shell_word(o.stacks[0]) + " " + shell_word(output)) +
+        " -o twin/\n";
   nlohmann::json document = {{"cells", cells},
                              {"provenance", nlohmann::json::parse(common.provenance().to_json())}};
   print_result(common, document, said);

@@ -28,9 +28,14 @@ std::string settings_table(const SettingsChoice& choice, const std::string& refi
                         options_of(t.settings, refine), &t == &choice.tried.front() ? "  (chosen)" : "");
   const std::size_t k = runner_up(choice);
   if (k == 0) return text + "no other discs were considered\n";
-  return text + fmt::format("the best settings with other discs have {:.0f} nats less: {}\n",
-                            choice.tried.front().evidence - choice.tried[k].evidence,
-                            options_of(choice.tried[k].settings, refine));
+  const double lead = choice.tried.front().evidence - choice.tried[k].evidence;
+  const std::string other = options_of(choice.tried[k].settings, refine);
+  if (lead < 0)
+    return text + fmt::format(
+                      "the best settings with other discs have {:.0f} nats more, less than the factor "
+                      "{:g} at which they replace the preferred ones: {}\n",
+                      -lead, kClearly, other);
+  return text + fmt::format("the best settings with other discs have {:.0f} nats less: {}\n", lead, other);
 }
 
 std::string narrow_win(const SettingsChoice& choice, const std::string& refine) {

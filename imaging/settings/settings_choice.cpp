@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "imaging/refine/picture_evidence.hpp"
+#include "imaging/refine/profile_fit.hpp"
 #include "imaging/settings/find_contrast.hpp"
 
 namespace twincell {
@@ -23,6 +24,10 @@ bool same_sizes(const FoundSettings& a, const FoundSettings& b, double tolerance
   return of_a.size() == of_b.size() &&
          std::equal(of_a.begin(), of_a.end(), of_b.begin(),
                     [&](double x, double y) { return std::abs(x / y - 1) < tolerance; });
+}
+
+bool is_profile(const TriedSettings& tried) {
+  return tried.settings.method == kProfileRefiner.word;
 }
 
 bool agree(const FoundSettings& a, const FoundSettings& b) {
@@ -115,9 +120,10 @@ std::size_t runner_up(const SettingsChoice& choice) {
   for (std::size_t k = 1; k < choice.tried.size(); ++k) {
     const TriedSettings &first = choice.tried.front(), &other = choice.tried[k];
     const double difference = std::abs(static_cast<double>(other.beads) - static_cast<double>(first.beads));
-    if (!same_sizes(first.settings, other.settings, kOtherSize) ||
-        difference > kOtherNumber * static_cast<double>(first.beads))
-      return k;
+    if (difference > kOtherNumber * static_cast<double>(first.beads)) return k;
+    // A profile has no rim: with another diameter it describes the same discs.
+    if (is_profile(other) && !is_profile(first)) continue;
+    if (!same_sizes(first.settings, other.settings, kOtherSize)) return k;
   }
   return 0;
 }

@@ -61,6 +61,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"dust", "specks on the glass"},
     {"electrons-per-level", "electrons per grey level"},
     {"experiment", "trajectories of experiments"},
+    {"explain", "whether the choice of the settings is printed"},
     {"exposure", "exposure time"},
     {"field-cell", "cells of displacement averages"},
     {"figures", "folder of figures"},

@@ -47,6 +47,11 @@ TEST(SettingsChoice, RunnerUpHasOtherDiscs) {
   EXPECT_EQ(narrow_runner_up(clear), 0U);
   const SettingsChoice narrow = choose({tried(10, 1000, 100), tried(16, 950, 60)});
   EXPECT_EQ(narrow.tried[narrow_runner_up(narrow)].settings.diameter_px, 16);
+  TriedSettings profile = tried(16, 990, 100);
+  profile.settings.method = "profile";
+  EXPECT_EQ(runner_up(choose({tried(10, 1000, 100), profile})), 0U) << "the same discs, which have no rim";
+  profile.beads = 50;
+  EXPECT_EQ(runner_up(choose({tried(10, 1000, 100), profile})), 1U);
   EXPECT_EQ(runner_up(choose({tried(10, 1000, 100), tried(10.5, 990, 101)})), 0U);
 }
 
