@@ -16,6 +16,20 @@ TEST(DrivenWork, ReturnsItsMeasuredPoints) {
   EXPECT_DOUBLE_EQ(driven_work(5, 160), 0.729);
 }
 
+// Runs of the first paper's preset from a crystal, apart from the runs of the table: user time of a step at
+// Gamma = 2 over that at Gamma = 1, where the bed stays on the plate, for the same beads.
+TEST(DrivenWork, ForecastsRunsOfThreeSizesWithin20Percent) {
+  struct Run {
+    double beads, width;     ///< width in bead diameters
+    double at_rest, driven;  ///< million particle-steps per second of user time, one thread
+  };
+  for (const Run& r :
+       {Run{200, 20, 95.7, 193.9}, Run{1600, 20, 98.3, 129.5}, Run{20'000, 250, 87.8, 120.7}}) {
+    const double measured = r.at_rest / r.driven;
+    EXPECT_NEAR(driven_work(2, r.beads / r.width) / measured, 1, 0.2) << r.beads;
+  }
+}
+
 TEST(DrivenWork, IsLinearInGammaAndInTheLogarithmOfTheLayers) {
   EXPECT_NEAR(driven_work(2.5, 80), (0.781 + 0.564) / 2, 1e-12);
   EXPECT_NEAR(driven_work(2, std::sqrt(10.0 * 40.0)), (0.474 + 0.638) / 2, 1e-12);
