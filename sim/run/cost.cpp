@@ -44,6 +44,15 @@ Piece advance_for(double seconds, std::int64_t most, Solver& solver, System& sys
   return piece;
 }
 
+double layers_of(const Scene& scene, std::size_t beads) {
+  const double diameter = 2 * scene.radius;
+  double per_layer = scene.width / diameter;
+  if (scene.dimension == 3) per_layer *= scene.depth / diameter;
+  return static_cast<double>(beads) / per_layer;
+}
+
+constexpr double kCrossing = 8;  ///< most time for the bed to be compressed, over that of the measurement
+
 /// Time of a step of the bed at rest. Beads that start at random positions would fall first, so the same
 /// beads are measured in a crystal.
 double seconds_per_step_at_rest(Scene scene, double seconds, int threads, Progress& progress) {
@@ -54,17 +63,15 @@ double seconds_per_step_at_rest(Scene scene, double seconds, int threads, Progre
   system.drive.amplitude = 0;
   system.beads = std::move(state.beads);
   const auto solver = make_solver(plan, guard_limits(plan), SolverKind::best, threads);
-  solver->advance(system, steps_per_call(system.beads.size()));  // builds the outer list, once in a run
+  // Beads of a crystal touch without overlap and fall together. Those above the sound wave that starts at the
+  // plate have no contact forces yet. The wave crosses a layer in half a contact time at most.
+  const std::size_t beads = system.beads.size();
+  const double crossing = layers_of(scene, beads) * scene.steps_per_contact / 2;
+  advance_for(kCrossing * seconds, std::max(steps_per_call(beads), static_cast<std::int64_t>(crossing)),
+              *solver, system, threads, progress);
   const Piece piece =
       advance_for(seconds, std::numeric_limits<std::int64_t>::max(), *solver, system, threads, progress);
   return piece.seconds / static_cast<double>(piece.steps);
-}
-
-double layers_of(const Scene& scene, std::size_t beads) {
-  const double diameter = 2 * scene.radius;
-  double per_layer = scene.width / diameter;
-  if (scene.dimension == 3) per_layer *= scene.depth / diameter;
-  return static_cast<double>(beads) / per_layer;
 }
 
 }  // namespace
