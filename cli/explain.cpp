@@ -102,8 +102,8 @@ void add_explain(CLI::App& program, Common& common) {
   auto o = std::make_shared<ExplainOptions>();
   CLI::App& verb = add_verb(program, common, "explain",
                             "Show the plan of a scene: effects that are on, off or approximated, with "
-                            "reasons; time step, memory and expected time. Runs the scene for a fraction of "
-                            "a second to measure its speed, and writes no file.",
+                            "reasons; time step, memory and expected time. Runs the scene for at most a few "
+                            "seconds to measure its speed, and writes no file.",
                             "twincell explain scene.toml --set contact.mu=0.0");
   verb.add_option("scene", o->scene, "Scene file (TOML, docs/scene.md)")->required();
   verb.add_option("--set", o->assignments,
