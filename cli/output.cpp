@@ -193,12 +193,16 @@ std::string time_text(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
-EveryMinute::EveryMinute() : last_ns_(now_ns()) {}
+EveryMinute::EveryMinute() : interval_ns_(60'000'000'000), last_ns_(now_ns()) {
+  const char* const stated = std::getenv("TWINCELL_PROGRESS_S");
+  double seconds = 0;
+  if (stated == nullptr || std::sscanf(stated, "%lf", &seconds) != 1) return;
+  if (seconds >= 0 && seconds < 1e6) interval_ns_ = static_cast<std::int64_t>(1e9 * seconds);
+}
 
 bool EveryMinute::operator()() {
-  constexpr std::int64_t kMinute_ns = 60'000'000'000;
   const std::int64_t now = now_ns();
-  if (now - last_ns_ < kMinute_ns) return false;
+  if (now - last_ns_ < interval_ns_) return false;
   last_ns_ = now;
   return true;
 }
@@ -218,7 +222,7 @@ void ProgressBar::update(std::int64_t done, std::int64_t total) {
   if (quiet_ || total <= 0) return;
   if (first_ < 0) first_ = done;  // a resumed run does not start at 0
   const int percent = static_cast<int>(100 * done / total);
-  if (terminal_ ? percent == last_percent_ : !due_()) return;
+  if (percent == last_percent_ || (!terminal_ && !due_())) return;
   last_percent_ = percent;
   const double elapsed = 1e-9 * static_cast<double>(now_ns() - start_ns_);
   const double left =

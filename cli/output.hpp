@@ -82,14 +82,15 @@ inline constexpr std::size_t kColumns = 100;
 /// A time in a suitable unit: "40 s", "12 min", "3.5 h".
 std::string time_text(double seconds);
 
-/// Whether a minute has passed since the last line of progress, or since the beginning.
+/// Whether a minute has passed since the last line of progress, or since the beginning; with the environment
+/// variable TWINCELL_PROGRESS_S, whether as many seconds have passed.
 class EveryMinute {
  public:
   EveryMinute();
   bool operator()();
 
  private:
-  std::int64_t last_ns_;
+  std::int64_t interval_ns_, last_ns_;
 };
 
 /// Shows progress on stderr: a bar with the time left on a terminal, otherwise one line a minute, and nothing

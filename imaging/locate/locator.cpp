@@ -155,7 +155,7 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   if (refiner.model == DiscModel::shared_profile) judged.min_interior = -HUGE_VAL;
   judged.other_radii_px = refined.other_radii_px;
   result.judged = judge(result.refined.beads, radius, grey.cols, grey.rows, judged);
-  if (some_may_be_unlike(result.judged.beads)) {
+  if (judged.drop_unlike && some_may_be_unlike(result.judged.beads)) {
     std::vector<double> radii = {radius};
     radii.insert(radii.end(), refined.other_radii_px.begin(), refined.other_radii_px.end());
     const std::vector<Detection> unlike =

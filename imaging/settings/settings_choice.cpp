@@ -35,6 +35,11 @@ bool agree(const FoundSettings& a, const FoundSettings& b) {
   return a.bright == b.bright && a.method == b.method && a.contrast == b.contrast && same_sizes(a, b, kSame);
 }
 
+/// Area of the discs, if all are of the first size, px^2 up to a factor.
+double area_of(const TriedSettings& tried) {
+  return static_cast<double>(tried.beads) * tried.settings.diameter_px * tried.settings.diameter_px;
+}
+
 TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given, FoundSettings settings,
                       int most_sweeps) {
   LocatorOptions options = completed(settings, given);
@@ -51,6 +56,7 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
 }  // namespace
 
 LocatorOptions completed(const FoundSettings& settings, LocatorOptions given) {
+  given.judge.drop_unlike = given.diameter_px <= 0 && settings.other_diameters_px.empty();
   given.diameter_px = settings.diameter_px;
   given.preprocess.bright = settings.bright;
   if (given.other_diameters_px.empty()) given.other_diameters_px = settings.other_diameters_px;
@@ -75,7 +81,7 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 }
 
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
-  constexpr double kDiscs = 3;
+  constexpr double kDiscs = 3, kTimesArea = 2;
   constexpr double kLeastShare = 5;  // nats a disc: odds of 150 that it is one
   const auto sizes = [](const TriedSettings& t) { return t.settings.other_diameters_px.size(); };
   const auto best = std::max_element(tried.begin(), tried.end(),
@@ -87,8 +93,11 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
   auto chosen = best;
   const auto first = tried.begin();
   if (first->evidence > 0 && sizes(*first) <= sizes(*best)) {
-    const bool suffices = sizes(*first) < sizes(*best) ? first->evidence > best->evidence - kDiscs * share
-                                                       : clearly * first->evidence > best->evidence;
+    // Marks on the ground may be discs too, and more of them than there are beads.
+    const bool covers_more = area_of(*first) > kTimesArea * area_of(*best);
+    const bool suffices = sizes(*first) < sizes(*best)
+                              ? first->evidence > best->evidence - kDiscs * share
+                              : covers_more || clearly * first->evidence > best->evidence;
     if (suffices) chosen = first;
   }
   SettingsChoice choice{{*chosen}};

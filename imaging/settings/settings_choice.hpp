@@ -32,10 +32,10 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 
 /// Sorts by evidence and puts the chosen ones first. They are those with the largest evidence, unless the
 /// first in the list, which are preferred, suffice: those with as many sizes must have 1.25 times their
-/// evidence, and those with further sizes must gain the share of three discs. The evidence knows neither that
-/// gaps of a crystal are not discs nor which fit is the most accurate; the order of the list does. \param
-/// tried the preferred ones first; those without positive evidence are never chosen \returns empty if the
-/// largest evidence is below 5 nats a disc
+/// evidence and at least half of the area of their discs, and those with further sizes must gain the share of
+/// three discs. The evidence knows neither that gaps of a crystal are not discs nor which fit is the most
+/// accurate; the order of the list does. \param tried the preferred ones first; those without positive
+/// evidence are never chosen \returns empty if the largest evidence is below 5 nats a disc
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly = kClearly);
 
 /// Chooses, then fits the region with the chosen settings in full: a fit that was cut short may hold discs

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from . import _core
 
-_PROGRESS = re.compile(r"^(.*): (\d+) %$")
+_PROGRESS = re.compile(r"^(.*): (\d+) %(?:, about .* left)?$")
 _CLASSES = {1: _core.RunError, 2: _core.ConfigError, 3: _core.InputError, 130: _core.Interrupted, 143: _core.Interrupted}
 _GATE = 4  # finished, but a quality gate failed: there is a document
 
@@ -65,7 +65,8 @@ def _run(verb, positional, options, callback):
     words = [_program(), *verb.split(), *positional, *_words(options), "--json"]
     lines = []
     with tempfile.TemporaryFile("w+") as result:  # a pipe that nobody reads would block the program
-        process = subprocess.Popen(words, stdout=result, stderr=subprocess.PIPE, text=True)
+        often = {**os.environ, "TWINCELL_PROGRESS_S": "0"}
+        process = subprocess.Popen(words, stdout=result, stderr=subprocess.PIPE, text=True, env=often)
         try:
             for line in process.stderr:
                 progress = _PROGRESS.match(line.strip())

@@ -40,12 +40,12 @@ TEST(LocateExplain, PrintsWhatWasTriedAndAClearWin) {
   const std::string picture = (folder.path() / "discs.png").string(),
                     table = (folder.path() / "beads.csv").string();
   write_discs(picture);
-  const Ran text = run_program({"locate", picture, "-o", table, "-q", "--explain"});
+  const Ran text = run_program({"locate", picture, "-o", table, "--explain"});
   ASSERT_EQ(text.code, 0) << text.err;
   EXPECT_NE(text.out.find("evidence/nats"), std::string::npos);
   EXPECT_NE(text.out.find("(chosen)"), std::string::npos);
   EXPECT_EQ(text.out.find("nearly as well"), std::string::npos);
-  const Ran json = run_program({"locate", picture, "-o", table, "-q", "--json"});
+  const Ran json = run_program({"locate", picture, "-o", table, "--json"});
   const auto said = nlohmann::json::parse(json.out);
   ASSERT_FALSE(said["settings_tried"].empty());
   const nlohmann::json chosen = said["settings_tried"][0];
@@ -53,7 +53,7 @@ TEST(LocateExplain, PrintsWhatWasTriedAndAClearWin) {
   EXPECT_EQ(chosen["beads"], 49);
   EXPECT_GT(chosen["evidence"].get<double>(), 49 * 100);
   // The options, pasted, give the same beads.
-  std::vector<std::string> pasted = {"locate", picture, "-o", table, "-q", "--json"};
+  std::vector<std::string> pasted = {"locate", picture, "-o", table, "--json"};
   std::istringstream words(chosen["options"].get<std::string>());
   for (std::string word; words >> word;) pasted.push_back(word);
   const auto again = nlohmann::json::parse(run_program(pasted).out);
