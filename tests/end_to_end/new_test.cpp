@@ -86,11 +86,8 @@ TEST(New, TheShippedStacksGiveTheNumbersOfTheirHandWrittenCells) {
       return d["measured"][key][k]["standard_error"].get<double>();
     };
     EXPECT_NEAR(*found.pixels_per_sigma, *hand.pixels_per_sigma, 3 * error("camera.pixels_per_sigma"));
-    // The shipped frames are older than the rule that beads and walls block light together (cell_edges.hpp):
-    // they are a little too bright where beads touch walls, so that the edges come out farther outside.
-    constexpr double kOldFrames_px = 0.015;
-    EXPECT_NEAR(found.origin->x_px, hand.origin->x_px, kOldFrames_px + error("camera.origin_px", 0));
-    EXPECT_NEAR(found.origin->y_px, hand.origin->y_px, kOldFrames_px + error("camera.origin_px", 1));
+    EXPECT_NEAR(found.origin->x_px, hand.origin->x_px, 3 * error("camera.origin_px", 0));
+    EXPECT_NEAR(found.origin->y_px, hand.origin->y_px, 3 * error("camera.origin_px", 1));
     EXPECT_NEAR(*found.width, *hand.width, 3 * error("cell.width_sigma"));
     EXPECT_NEAR(found.drive()->amplitude, hand.drive()->amplitude, 3 * error("drive.amplitude_sigma"));
     EXPECT_LT(error("camera.origin_px", 1), 0.01);
