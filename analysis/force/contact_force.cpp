@@ -1,8 +1,6 @@
 #include "analysis/force/contact_force.hpp"
 
-#include <cmath>
-
-#include "analysis/observable/array_with_interval.hpp"
+#include "analysis/observable/ratio_density.hpp"
 #include "analysis/statistics/ratio_average.hpp"
 
 namespace twincell {
@@ -15,14 +13,13 @@ constexpr NamedResult kResults[] = {{"contact_force"},
                                     {"contact_force_density_high"},
                                     {"contact_force_ratio"},
                                     {"mechanical_contact_number"}};
-constexpr auto kBins = static_cast<std::size_t>(kForceRange / kForceWidth + 0.5);
 const char* const kSource = "Mueth, Jaeger & Nagel 1998";
 const char* const kThornton = "Thornton 2000";
 
 class ContactForces : public Observable {
  public:
   explicit ContactForces(const AnalysisContext& context)
-      : stored_(context.info.columns.contact_forces), density_(kBins) {}
+      : stored_(context.info.columns.contact_forces), density_(kForceRange, kForceWidth) {}
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
@@ -41,13 +38,10 @@ class ContactForces : public Observable {
     normal_.add(normal / pairs);
     if (!(normal > 0)) return;  // a ratio to a mean attraction has no meaning
     friction_.add(tangential / pairs, normal / pairs);
-    std::vector<double> counts(kBins, 0);
-    for (const ContactForce& c : frame.contact_forces) {
-      const double ratio = c.normal_force / (normal / pairs);
-      if (c.j >= 0 && ratio >= 0 && ratio < kForceRange)
-        ++counts[static_cast<std::size_t>(ratio / kForceWidth)];
-    }
-    for (std::size_t b = 0; b < kBins; ++b) density_[b].add(counts[b] / (pairs * kForceWidth));
+    std::vector<double> forces;
+    for (const ContactForce& c : frame.contact_forces)
+      if (c.j >= 0) forces.push_back(c.normal_force);
+    density_.add(forces, normal / pairs);
   }
 
   [[nodiscard]] std::vector<Result> results() const override {
@@ -75,24 +69,8 @@ class ContactForces : public Observable {
       if (!r.interval) r.no_interval = friction_.why_no_interval(r.n_of);
       all.push_back(std::move(r));
     }
-    for (Result& r : array_with_interval(density_,
-                                         {.name = "contact_force_density",
-                                         .unit = "1",
-                                         .n_of = "bins",
-                                         .convention = "normal force over the mean of its frame; " + which,
-                                         .source = kSource},
-                                         "frames", none))
+    for (Result& r : density_.results("contact_force", "normal force", which, kSource, none))
       all.push_back(std::move(r));
-    std::vector<double> centres(kBins);
-    for (std::size_t b = 0; b < kBins; ++b) centres[b] = (static_cast<double>(b) + 0.5) * kForceWidth;
-    all.push_back(density_.front().n() == 0 ? absent_result("contact_force_ratio", none, kSource)
-                                            : array_of(centres,
-                                                       {.name = "contact_force_ratio",
-                                                        .unit = "1",
-                                                        .n_of = "bins",
-                                                        .convention = "centres of the bins",
-                                                        .source = kSource},
-                                                       none));
     all.push_back(
         mean_of(contact_number_,
                 {.name = "mechanical_contact_number",
@@ -119,7 +97,7 @@ class ContactForces : public Observable {
   bool stored_;
   BlockAverage normal_, contact_number_;
   RatioAverage friction_;
-  std::vector<BlockAverage> density_;
+  RatioDensity density_;
 };
 
 }  // namespace

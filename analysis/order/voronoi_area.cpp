@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "analysis/observable/array_with_interval.hpp"
+#include "analysis/observable/ratio_density.hpp"
 
 namespace twincell {
 namespace {
@@ -13,7 +13,6 @@ constexpr NamedResult kResults[] = {{"voronoi_area"},
                                     {"voronoi_area_density_low"},
                                     {"voronoi_area_density_high"},
                                     {"voronoi_area_ratio"}};
-constexpr auto kBins = static_cast<std::size_t>(kVoronoiAreaRange / kVoronoiAreaWidth + 0.5);
 const char* const kSource = "Starr et al. 2002";
 
 /// Areas of the enclosed cells, sigma^2.
@@ -33,7 +32,7 @@ std::vector<double> enclosed_areas(const VoronoiCells& cells) {
 class VoronoiArea : public Observable {
  public:
   explicit VoronoiArea(const AnalysisContext& context)
-      : planar_(context.info.box.dimension == 2), density_(kBins) {}
+      : planar_(context.info.box.dimension == 2), density_(kVoronoiAreaRange, kVoronoiAreaWidth) {}
 
   void add(const FrameView& view) override {
     if (!planar_) return;
@@ -42,15 +41,10 @@ class VoronoiArea : public Observable {
     const auto n = static_cast<double>(areas.size());
     double mean = 0, squares = 0;
     for (const double a : areas) mean += a / n;
-    std::vector<double> counts(kBins, 0);
-    for (const double a : areas) {
-      squares += (a - mean) * (a - mean);
-      const auto b = static_cast<std::size_t>(a / mean / kVoronoiAreaWidth);
-      if (b < kBins) ++counts[b];
-    }
+    for (const double a : areas) squares += (a - mean) * (a - mean);
     mean_.add(mean);
     if (areas.size() > 1) variance_.add(squares / (n - 1));
-    for (std::size_t b = 0; b < kBins; ++b) density_[b].add(counts[b] / (n * kVoronoiAreaWidth));
+    density_.add(areas, mean);
   }
 
   [[nodiscard]] std::vector<Result> results() const override {
@@ -71,31 +65,15 @@ class VoronoiArea : public Observable {
                                         .convention = "variance within a frame; " + which,
                                         .source = kSource},
                                        planar_ ? "no frame has two enclosed beads" : none)};
-    for (Result& r : array_with_interval(density_,
-                                         {.name = "voronoi_area_density",
-                                         .unit = "1",
-                                         .n_of = "bins",
-                                         .convention = "area over the mean of its frame; " + which,
-                                         .source = kSource},
-                                         "frames", none))
+    for (Result& r : density_.results("voronoi_area", "area", which, kSource, none))
       all.push_back(std::move(r));
-    std::vector<double> centres(kBins);
-    for (std::size_t b = 0; b < kBins; ++b) centres[b] = (static_cast<double>(b) + 0.5) * kVoronoiAreaWidth;
-    all.push_back(mean_.n() == 0 ? absent_result("voronoi_area_ratio", none, kSource)
-                                 : array_of(centres,
-                                            {.name = "voronoi_area_ratio",
-                                             .unit = "1",
-                                             .n_of = "bins",
-                                             .convention = "centres of the bins",
-                                             .source = kSource},
-                                            none));
     return all;
   }
 
  private:
   bool planar_;
   BlockAverage mean_, variance_;
-  std::vector<BlockAverage> density_;
+  RatioDensity density_;
 };
 
 }  // namespace

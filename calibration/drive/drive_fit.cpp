@@ -365,21 +365,11 @@ Timed first_attempt(const std::vector<double>& heights, int frames_per_cycle) {
   return out;
 }
 
-/// Frames per cycle to try in the repair: dropped frames shorten the apparent period.
-std::vector<int> candidates_for(int stated, double period) {
-  constexpr int kMost = 24;
-  std::vector<int> candidates = {stated};
-  for (int n = std::max(3, static_cast<int>(0.85 * period));
-       stated == 0 && n <= static_cast<int>(1.3 * period) + 1 && candidates.size() < kMost; ++n)
-    candidates.push_back(n);
-  return candidates;
-}
-
 /// Repairs dropped and doubled frames: for each number of frames per cycle, finds the best path of phases and
 /// fits again. The repair is kept where it follows the frames better.
 void repair_frames(const std::vector<double>& heights, int frames_per_cycle, Timed& now, DriveFit& lock) {
   const double period = 2 * kPi / now.attempt.fitted.report.values[3];
-  for (const int n : candidates_for(frames_per_cycle, period)) {
+  for (const int n : frames_per_cycle_to_try(frames_per_cycle, period)) {
     const std::optional<SineSlips> slips = fit_sine_with_slips(heights, n);
     if (!slips || slips->dropped + slips->doubled == 0) continue;
     std::vector<double> mended(slips->ticks.begin(), slips->ticks.end());

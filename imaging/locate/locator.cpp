@@ -156,10 +156,8 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   judged.other_radii_px = refined.other_radii_px;
   result.judged = judge(result.refined.beads, radius, grey.cols, grey.rows, judged);
   if (judged.drop_unlike && some_may_be_unlike(result.judged.beads)) {
-    std::vector<double> radii = {radius};
-    radii.insert(radii.end(), refined.other_radii_px.begin(), refined.other_radii_px.end());
     const std::vector<Detection> unlike =
-        drop_unlike(grey, result.judged.beads, result.judged.dropped, radii);
+        drop_unlike(grey, result.judged.beads, result.judged.dropped, radius);
     result.judged.dropped.insert(result.judged.dropped.end(), unlike.begin(), unlike.end());
   }
   result.reports.push_back({"judge", watch.lap(), result.judged.beads.size()});

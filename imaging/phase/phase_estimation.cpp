@@ -427,16 +427,10 @@ PhaseTable estimate_phases(const BedMotion& motion, const PhaseEstimationOptions
 
   std::vector<std::int64_t> ticks = std::move(best->ticks);
   const std::size_t zero = place_zero(heights.wave, options.gamma, table);
-  for (std::int64_t& tick : ticks) tick += static_cast<std::int64_t>(zero);
-  const std::int64_t whole = ticks[0] / period * period;
-  for (std::size_t f = 0; f < ticks.size(); ++f) {
-    const std::int64_t tick = ticks[f] - whole, passed = f == 0 ? 1 : ticks[f] - ticks[f - 1];
-    table.frames.push_back(
-        {static_cast<std::int32_t>(tick % period), tick / period, static_cast<double>(passed)});
-    if (passed == 0) ++table.doubled;
-    if (passed > 1) table.dropped += passed - 1;
-  }
-  table.first_phase = table.frames.front().phase;
+  const std::int64_t first = ticks[0];
+  table.first_phase = static_cast<int>((first + static_cast<std::int64_t>(zero)) % period);
+  for (std::int64_t& tick : ticks) tick -= first;
+  set_phases(table, ticks);
   return table;
 }
 

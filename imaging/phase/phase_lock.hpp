@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -96,5 +97,9 @@ struct PhaseTable {
 /// The phases of a PhaseLock. Nothing is measured, so jitter and period are absent and no frame counts as
 /// dropped.
 PhaseTable fixed_phases(const PhaseLock& lock);
+
+/// Sets phases, cycles and counts of missing and doubled frames. \param ticks [frames] frame intervals since
+/// frame 0 \pre table.frames_per_cycle and table.first_phase are set
+void set_phases(PhaseTable& table, std::span<const std::int64_t> ticks);
 
 }  // namespace twincell

@@ -32,9 +32,9 @@ double cost(const SineSlips& fit) {
   return cost(fit.ticks.size(), fit.scatter, fit.amplitude, number_of_slips(fit));
 }
 
-}  // namespace
-
-PlateReading read_plate(std::span<const double> plate, int frames_per_cycle) {
+/// read_plate() with the sine of any period. \param free_sine gives it; called where it is needed
+template <class FreeSineSource>
+PlateReading read(std::span<const double> plate, int frames_per_cycle, const FreeSineSource& free_sine) {
   constexpr double kSeen = 0.6, kSamePeriod = 0.5;
   PlateReading out;
   const auto seen = std::count_if(plate.begin(), plate.end(), [](double z) { return std::isfinite(z); });
@@ -53,7 +53,7 @@ PlateReading read_plate(std::span<const double> plate, int frames_per_cycle) {
   std::optional<SineSlips> fit = fit_sine_with_slips(plate, frames_per_cycle);
   const bool fits = fit && moves(fit->amplitude, fit->scatter);
   if (!fits || fit->dropped + fit->doubled > 0) {
-    const std::optional<FreeSine> free = fit_free_sine(plate);
+    const std::optional<FreeSine> free = free_sine();
     if (free && moves(free->amplitude, free->scatter)) {
       const double drift = std::abs(frames_per_cycle / free->period - 1) * static_cast<double>(plate.size());
       if ((!fits || cost(plate.size(), free->scatter, free->amplitude, 0) < cost(*fit)) &&
@@ -68,31 +68,20 @@ PlateReading read_plate(std::span<const double> plate, int frames_per_cycle) {
   return out;
 }
 
-void set_phases(PhaseTable& table, std::span<const std::int64_t> ticks) {
-  const std::int64_t n = table.frames_per_cycle;
-  table.frames.clear();
-  table.dropped = table.doubled = 0;
-  for (std::size_t f = 0; f < ticks.size(); ++f) {
-    const std::int64_t at = ticks[f] + table.first_phase, by = f == 0 ? 1 : ticks[f] - ticks[f - 1];
-    table.frames.push_back({static_cast<std::int32_t>(at % n), at / n, static_cast<double>(by)});
-    table.doubled += by == 0 ? 1 : 0;
-    table.dropped += std::max<std::int64_t>(by - 1, 0);
-  }
+}  // namespace
+
+PlateReading read_plate(std::span<const double> plate, int frames_per_cycle) {
+  return read(plate, frames_per_cycle, [&] { return fit_free_sine(plate); });
 }
 
 std::optional<PhaseTable> phases_from_plate(std::span<const double> plate, int stated, double offset) {
-  constexpr int kMostTried = 24;
-  int first = stated, last = stated;
-  if (stated == 0) {
-    const std::optional<FreeSine> apparent = fit_free_sine(plate);
-    if (!apparent) return std::nullopt;
-    first = std::max(3, static_cast<int>(0.85 * apparent->period));
-    last = std::min(static_cast<int>(1.3 * apparent->period) + 1, first + kMostTried - 1);
-  }
+  const std::optional<FreeSine> free = stated == 0 ? fit_free_sine(plate) : std::nullopt;
+  if (stated == 0 && !free) return std::nullopt;
   std::optional<SineSlips> best;
   int best_n = 0;
-  for (int n = first; n <= last; ++n) {
-    PlateReading reading = read_plate(plate, n);
+  for (const int n : frames_per_cycle_to_try(stated, free ? free->period : 0)) {
+    PlateReading reading =
+        free ? read(plate, n, [&] { return free; }) : read_plate(plate, n);  // one search for all n
     if (!reading.fits() || (best && cost(*reading.slips) >= cost(*best))) continue;
     best = std::move(reading.slips);
     best_n = n;

@@ -34,8 +34,4 @@ PlateReading read_plate(std::span<const double> plate_px, int frames_per_cycle);
 std::optional<PhaseTable> phases_from_plate(std::span<const double> plate_px, int frames_per_cycle,
                                             double offset = 0);
 
-/// Sets phases, cycles and counts of missing and doubled frames. \param ticks [frames] frame intervals since
-/// frame 0 \pre table.frames_per_cycle and table.first_phase are set
-void set_phases(PhaseTable& table, std::span<const std::int64_t> ticks);
-
 }  // namespace twincell

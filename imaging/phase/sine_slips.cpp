@@ -212,4 +212,14 @@ std::optional<FreeSine> fit_free_sine(std::span<const double> all) {
   return FreeSine{kTurn / best.omega, best.amplitude(), scatter_of(deviations(z, ticks, best))};
 }
 
+std::vector<int> frames_per_cycle_to_try(int stated, double apparent_period) {
+  constexpr std::size_t kMost = 23;
+  if (stated != 0) return {stated};
+  std::vector<int> all;
+  const int last = static_cast<int>(1.3 * apparent_period) + 1;
+  for (int n = std::max(3, static_cast<int>(0.85 * apparent_period)); n <= last && all.size() < kMost; ++n)
+    all.push_back(n);
+  return all;
+}
+
 }  // namespace twincell

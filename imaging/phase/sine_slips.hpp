@@ -39,4 +39,8 @@ struct FreeSine {
 /// \returns nothing for fewer than eight heights
 std::optional<FreeSine> fit_free_sine(std::span<const double> heights);
 
+/// Frames per cycle to try for a plate with missing or doubled frames: the stated number, or if it is 0 the
+/// whole numbers from 0.85 to 1.3 times the apparent period, which missing frames shorten; at most 23.
+std::vector<int> frames_per_cycle_to_try(int stated, double apparent_period);
+
 }  // namespace twincell

@@ -115,24 +115,20 @@ PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double
   for (const double c : cycles) around += std::polar(1.0, 2 * std::numbers::pi * c * n);
   table.offset = std::arg(around) / (2 * std::numbers::pi);
   const auto ticks_at = [&](double c) { return std::round(c * n - table.offset); };
-  const auto first_cycle = static_cast<std::int64_t>(std::floor(ticks_at(cycles.front()) / n));
+  const double first = ticks_at(cycles.front());
+  table.first_phase = static_cast<int>(static_cast<std::int64_t>(first) -
+                                       static_cast<std::int64_t>(std::floor(first / n)) * frames_per_cycle);
   double squares = 0, sum = 0;
-  std::int64_t before = 0;
-  for (std::size_t f = 0; f < cycles.size(); ++f) {
-    const auto tick = static_cast<std::int64_t>(ticks_at(cycles[f])) - first_cycle * frames_per_cycle;
-    const double late = cycles[f] * n - table.offset - ticks_at(cycles[f]);
+  std::vector<std::int64_t> ticks;
+  for (const double c : cycles) {
+    const double tick = ticks_at(c), late = c * n - table.offset - tick;
     squares += late * late;
     sum += late;
-    const std::int64_t passed = f == 0 ? 1 : tick - before;
-    table.frames.push_back({static_cast<std::int32_t>(tick % frames_per_cycle), tick / frames_per_cycle,
-                            static_cast<double>(passed)});
-    if (passed == 0) ++table.doubled;
-    if (passed > 1) table.dropped += passed - 1;
-    before = tick;
+    ticks.push_back(static_cast<std::int64_t>(tick - first));
   }
+  set_phases(table, ticks);
   if (const double elapsed = cycles.back() - cycles.front(); elapsed > 0)
     table.period_frames = std::round(elapsed * n) / elapsed;
-  table.first_phase = table.frames.front().phase;
   // The mean on the circle is the arithmetic mean to second order only.
   const double mean = sum / static_cast<double>(cycles.size());
   table.offset += mean;

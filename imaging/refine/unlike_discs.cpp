@@ -39,14 +39,13 @@ bool near_outside(const Detection& b, const std::vector<Detection>& others) {
 }  // namespace
 
 std::vector<Detection> drop_unlike(const cv::Mat& grey, std::vector<Detection>& beads,
-                                   const std::vector<Detection>& others,
-                                   const std::vector<double>& radii_px) {
+                                   const std::vector<Detection>& others, double radius_px) {
   constexpr double kLeastMisfit = 1.6;  // smaller ones are those of beads, however little of their rims shows
   const double limit = limit_of_lack(beads);
   std::vector<Detection> all = beads;
   for (const Detection& o : others)
     if (o.verdict == Verdict::outside) all.push_back(o);
-  const PictureEvidence evidence = picture_evidence(grey, all, radii_px);
+  const PictureEvidence evidence = picture_evidence(grey, all, {radius_px});
   std::vector<Detection> kept, dropped;
   for (std::size_t k = 0; k < beads.size(); ++k) {
     const bool unlike = 1 - beads[k].score > limit && evidence.of_disc[k] < 0 &&

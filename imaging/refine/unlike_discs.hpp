@@ -16,11 +16,11 @@ bool some_may_be_unlike(const std::vector<Detection>& beads);
 
 /// Drops the discs with such a score without which the evidence of the picture (picture_evidence.hpp) is
 /// larger and whose rims fit worse than those of the others: misfit above 1.6. This is done once: a
-/// repetition would also drop the neighbours of a bead that was dropped by mistake. \param beads    those
-/// that remain \param others   discs that were dropped; those with their centres outside the frame are
-/// visible too \param radii_px the sizes; each disc belongs to the nearest \returns the dropped ones, with
-/// Verdict::unexplained
+/// repetition would also drop the neighbours of a bead that was dropped by mistake.
+/// \param beads     of one size; those that are not dropped remain
+/// \param others    discs that were dropped before; those with their centres outside the frame are visible
+/// too \param radius_px the size \returns the dropped ones, with Verdict::unexplained
 std::vector<Detection> drop_unlike(const cv::Mat& grey, std::vector<Detection>& beads,
-                                   const std::vector<Detection>& others, const std::vector<double>& radii_px);
+                                   const std::vector<Detection>& others, double radius_px);
 
 }  // namespace twincell

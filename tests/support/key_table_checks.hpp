@@ -98,6 +98,23 @@ inline std::optional<Assignments> context_of_default(const KeyTable& table, cons
   return std::nullopt;
 }
 
+/// A stated default changes nothing and an example does. \param told everything that the reader makes of
+/// assignments, as text \returns the number of defaults that are values
+template <class Told>
+int expect_defaults_change_nothing(const KeyTable& table, Told told) {
+  int checked = 0;
+  for (const KeyRow& row : table.rows) {
+    const auto with = context_of_default(table, row);
+    if (!with) continue;
+    Assignments stated = *with;
+    stated.push_back(row.key + "=" + row.absent);
+    EXPECT_EQ(told(stated), told(*with)) << row.key;
+    EXPECT_NE(told(with_key(row, row.example)), told(row.with)) << row.key << ": the example is the default";
+    ++checked;
+  }
+  return checked;
+}
+
 /// Every key that the reader queried for any example has a row, once. \param name_of the key for which the
 /// row stands
 template <class Name>
