@@ -13,6 +13,7 @@
 #include "core/error.hpp"
 #include "core/table_text.hpp"
 #include "trajectory/foreign/format.hpp"
+#include "trajectory/foreign/picture_beads.hpp"
 #include "trajectory/foreign/text_file.hpp"
 
 namespace twincell {
@@ -37,10 +38,10 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   }
 }
 
-class TableReader final : public SnapshotReader {
+class TableReader final : public PictureBeadsReader {
  public:
   TableReader(const std::filesystem::path& file, const ReadOptions& options)
-      : SnapshotReader(file), options_(options), text_(read_table_text(file)) {
+      : PictureBeadsReader(file, options), text_(read_table_text(file)) {
     std::size_t at = 0;
     place_columns(line_from(at));
     long line = 1;
@@ -49,39 +50,23 @@ class TableReader final : public SnapshotReader {
       const std::string_view row = line_from(at);
       if (row.find_first_not_of(" ,") != std::string_view::npos) read_row(row, line);
     }
-    if (rows_.empty()) fail_at(0, "the table has no row.");
-    std::stable_sort(rows_.begin(), rows_.end(),
-                     [](const Row& a, const Row& b) { return a.frame < b.frame; });
+    if (beads_.empty()) fail_at(0, "the table has no row.");
+    sort_by_frame();
+    check_times();
   }
-
-  bool next(Snapshot& s) override {
-    if (next_ == rows_.size()) return false;
-    s = Snapshot{};
-    s.step = rows_[next_].frame;
-    s.line = rows_[next_].bead.line;
-    s.time = rows_[next_].time;
-    for (; next_ < rows_.size() && rows_[next_].frame == s.step; ++next_) {
-      if (rows_[next_].time != s.time)
-        fail_at(rows_[next_].bead.line,
-                fmt::format("the time differs from that of line {}, which has the same frame.", s.line));
-      s.beads.push_back(rows_[next_].bead);
-    }
-    enclose(s, options_.dimension);
-    return true;
-  }
-  [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
-  [[nodiscard]] Vec3 upright(const Vec3& v) const override {
-    return from_picture(v, options_.dimension, options_.y_up);
-  }
-  [[nodiscard]] std::int64_t size() const override { return static_cast<std::int64_t>(rows_.size()); }
-  [[nodiscard]] std::int64_t done() const override { return static_cast<std::int64_t>(next_); }
 
  private:
-  struct Row {
-    std::int64_t frame = 0;
-    std::optional<double> time;
-    SnapshotBead bead;
-  };
+  /// \throws InputError if beads of a frame have different times
+  void check_times() const {
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < beads_.size(); ++k) {
+      if (beads_[k].frame != beads_[first].frame) first = k;
+      if (beads_[k].time != beads_[first].time)
+        fail_at(beads_[k].bead.line,
+                fmt::format("the time differs from that of line {}, which has the same frame.",
+                            beads_[first].bead.line));
+    }
+  }
 
   std::string_view line_from(std::size_t& at) const {
     const std::size_t end = std::min(text_.find('\n', at), text_.size());
@@ -153,7 +138,7 @@ class TableReader final : public SnapshotReader {
                          fmt::format("{:g} is not a whole number.", value));
       return static_cast<std::int64_t>(value);
     };
-    Row row;
+    BeadOfFrame row;
     row.frame = whole("frame");
     if (column("time")) row.time = real("time", 0);
     row.bead.line = number;
@@ -176,15 +161,12 @@ class TableReader final : public SnapshotReader {
                          fmt::format("'{}' is neither 0 nor 1.", word.substr(0, 60)));
       row.bead.type = yes ? 2 : 1;
     }
-    rows_.push_back(row);
+    beads_.push_back(row);
   }
 
-  ReadOptions options_;
   std::string text_;
   std::array<std::optional<std::size_t>, kQuantities.size()> at_{};
-  std::size_t n_columns_ = 0, next_ = 0;
-  SnapshotColumns has_;
-  std::vector<Row> rows_;
+  std::size_t n_columns_ = 0;
 };
 
 class TableWriter final : public SnapshotWriter {

@@ -16,6 +16,7 @@
 #include "core/escape.hpp"
 #include "core/table_text.hpp"
 #include "trajectory/foreign/format.hpp"
+#include "trajectory/foreign/picture_beads.hpp"
 #include "trajectory/foreign/text_file.hpp"
 
 namespace twincell {
@@ -115,10 +116,10 @@ class Tags {
   long line_ = 1;
 };
 
-class TrackMateReader final : public SnapshotReader {
+class TrackMateReader final : public PictureBeadsReader {
  public:
   TrackMateReader(const std::filesystem::path& file, const ReadOptions& options)
-      : SnapshotReader(file), options_(options) {
+      : PictureBeadsReader(file, options) {
     const std::string text = read_table_text(file);
     Tags tags(text, [this](long line, const std::string& what) { fail_at(line, what); });
     Tag tag;
@@ -130,36 +131,11 @@ class TrackMateReader final : public SnapshotReader {
     else
       fail_at(tag.line,
               fmt::format("the element '{}' is neither TrackMate nor Tracks.", tag.name.substr(0, 60)));
-    if (spots_.empty()) fail_at(0, "the file has no tracks.");
-    std::stable_sort(spots_.begin(), spots_.end(),
-                     [](const Spot& a, const Spot& b) { return a.frame < b.frame; });
+    if (beads_.empty()) fail_at(0, "the file has no tracks.");
+    sort_by_frame();
   }
-
-  bool next(Snapshot& s) override {
-    if (next_ == spots_.size()) return false;
-    s = Snapshot{};
-    s.step = spots_[next_].frame;
-    s.line = spots_[next_].bead.line;
-    s.time = spots_[next_].time;
-    for (; next_ < spots_.size() && spots_[next_].frame == s.step; ++next_)
-      s.beads.push_back(spots_[next_].bead);
-    enclose(s, options_.dimension);
-    return true;
-  }
-  [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
-  [[nodiscard]] Vec3 upright(const Vec3& v) const override {
-    return from_picture(v, options_.dimension, options_.y_up);
-  }
-  [[nodiscard]] std::int64_t size() const override { return static_cast<std::int64_t>(spots_.size()); }
-  [[nodiscard]] std::int64_t done() const override { return static_cast<std::int64_t>(next_); }
 
  private:
-  struct Spot {
-    std::int64_t frame = 0;
-    std::optional<double> time;
-    SnapshotBead bead;
-  };
-
   [[nodiscard]] std::string_view needed(const Tag& tag, std::string_view name) const {
     const std::string_view* value = tag.attribute(name);
     if (value == nullptr) fail_at(tag.line, fmt::format("'{}' has no attribute '{}'.", tag.name, name));
@@ -184,18 +160,18 @@ class TrackMateReader final : public SnapshotReader {
       if (tag.name == "particle" && !tag.ends) ++particle;
       if (tag.name != "detection" || tag.ends) continue;
       if (particle < 0) fail_at(tag.line, "a detection belongs to no particle.");
-      Spot spot{.frame = whole(tag, "t")};
+      BeadOfFrame spot{.frame = whole(tag, "t")};
       spot.bead.id = particle;
       spot.bead.line = tag.line;
       spot.bead.type = 1;
       spot.bead.position = position(tag, {"x", "y", "z"});
-      spots_.push_back(spot);
+      beads_.push_back(spot);
     }
   }
 
   /// A file of TrackMate: all spots, the edges of all tracks, and the tracks that passed the filters.
   void read_model(Tags& tags) {
-    std::unordered_map<std::int64_t, std::size_t> place;  // ID -> entry of spots_
+    std::unordered_map<std::int64_t, std::size_t> place;  // ID -> entry of beads_
     std::unordered_map<std::int64_t, std::int64_t> track_of;
     std::set<std::int64_t> shown;
     bool filtered = false;
@@ -205,16 +181,16 @@ class TrackMateReader final : public SnapshotReader {
     while (tags.next(tag)) {
       if (tag.ends) continue;
       if (tag.name == "Spot") {
-        Spot spot{.frame = whole(tag, "FRAME")};
+        BeadOfFrame spot{.frame = whole(tag, "FRAME")};
         if (tag.attribute("POSITION_T") != nullptr) spot.time = number(tag, "POSITION_T");
         spot.bead.line = tag.line;
         spot.bead.type = 1;
         spot.bead.radius = tag.attribute("RADIUS") != nullptr ? number(tag, "RADIUS") : 0;
         has_.radius = has_.radius && spot.bead.radius > 0;
         spot.bead.position = position(tag, {"POSITION_X", "POSITION_Y", "POSITION_Z"});
-        if (!place.emplace(whole(tag, "ID"), spots_.size()).second)
+        if (!place.emplace(whole(tag, "ID"), beads_.size()).second)
           fail_at(tag.line, fmt::format("the spot {} occurs twice.", needed(tag, "ID")));
-        spots_.push_back(spot);
+        beads_.push_back(spot);
       } else if (tag.name == "Track") {
         track = whole(tag, "TRACK_ID");
       } else if (tag.name == "Edge") {
@@ -240,26 +216,21 @@ class TrackMateReader final : public SnapshotReader {
   void keep_tracked(const std::unordered_map<std::int64_t, std::size_t>& place,
                     const std::unordered_map<std::int64_t, std::int64_t>& track_of,
                     const std::set<std::int64_t>* shown) {
-    const bool single = std::all_of(spots_.begin(), spots_.end(),
-                                    [&](const Spot& s) { return s.frame == spots_.front().frame; });
-    std::vector<bool> kept(spots_.size(), false);
+    const bool single = std::all_of(beads_.begin(), beads_.end(),
+                                    [&](const BeadOfFrame& s) { return s.frame == beads_.front().frame; });
+    std::vector<bool> kept(beads_.size(), false);
     for (const auto& [id, k] : place) {
       const auto track = track_of.find(id);
       if (track == track_of.end() && !single) continue;
       if (track != track_of.end() && shown != nullptr && !shown->contains(track->second)) continue;
-      spots_[k].bead.id = track == track_of.end() ? id : track->second;
+      beads_[k].bead.id = track == track_of.end() ? id : track->second;
       kept[k] = true;
     }
-    std::vector<Spot> tracked;
-    for (std::size_t k = 0; k < spots_.size(); ++k)
-      if (kept[k]) tracked.push_back(spots_[k]);
-    spots_ = std::move(tracked);
+    std::vector<BeadOfFrame> tracked;
+    for (std::size_t k = 0; k < beads_.size(); ++k)
+      if (kept[k]) tracked.push_back(beads_[k]);
+    beads_ = std::move(tracked);
   }
-
-  ReadOptions options_;
-  SnapshotColumns has_;
-  std::vector<Spot> spots_;
-  std::size_t next_ = 0;
 };
 
 class TrackMateWriter final : public SnapshotWriter {
@@ -291,9 +262,9 @@ class TrackMateWriter final : public SnapshotWriter {
       fmt::format_to(text,
                      "<Spot ID=\"{}\" name=\"{}\" QUALITY=\"1\" POSITION_X=\"{}\" POSITION_Y=\"{}\" "
                      "POSITION_Z=\"{}\" POSITION_T=\"{}\" FRAME=\"{}\" RADIUS=\"{}\" VISIBILITY=\"1\"/>\n",
-                     n_spots_, bead.id, r.x(), r.y(), r.z(), s.time.value_or(0), n_frames_,
+                     n_beads_, bead.id, r.x(), r.y(), r.z(), s.time.value_or(0), n_frames_,
                      options_.columns.radius ? bead.radius : 0.5);
-      spots_of_[bead.id].push_back(n_spots_++);
+      beads_of_[bead.id].push_back(n_beads_++);
     }
     out_.text() += "</SpotsInFrame>\n";
     last_time_ = s.time.value_or(0);
@@ -305,7 +276,7 @@ class TrackMateWriter final : public SnapshotWriter {
   void finish() override {
     auto text = std::back_inserter(out_.text());
     out_.text() += "</AllSpots>\n<AllTracks>\n";
-    for (const auto& [bead, spots] : spots_of_) {
+    for (const auto& [bead, spots] : beads_of_) {
       if (spots.size() < 2) continue;
       fmt::format_to(text, "<Track name=\"{0}\" TRACK_ID=\"{0}\">\n", bead);
       for (std::size_t k = 1; k < spots.size(); ++k)
@@ -315,7 +286,7 @@ class TrackMateWriter final : public SnapshotWriter {
       out_.flush_if_large();
     }
     out_.text() += "</AllTracks>\n<FilteredTracks>\n";
-    for (const auto& [bead, spots] : spots_of_)
+    for (const auto& [bead, spots] : beads_of_)
       if (spots.size() > 1) fmt::format_to(text, "<TrackID TRACK_ID=\"{}\"/>\n", bead);
     const double interval =
         n_frames_ > 1 ? (last_time_ - first_time_) / static_cast<double>(n_frames_ - 1) : 1;
@@ -333,8 +304,8 @@ class TrackMateWriter final : public SnapshotWriter {
  private:
   TextOutput out_;
   WriteOptions options_;
-  std::map<std::int64_t, std::vector<std::int64_t>> spots_of_;  ///< bead -> spots in the order of the frames
-  std::int64_t n_frames_ = 0, n_spots_ = 0;
+  std::map<std::int64_t, std::vector<std::int64_t>> beads_of_;  ///< bead -> spots in the order of the frames
+  std::int64_t n_frames_ = 0, n_beads_ = 0;
   double first_time_ = 0, last_time_ = 0;
   Vec3 low_ = Vec3::Constant(1e300), high_ = Vec3::Constant(-1e300);
 };
