@@ -17,12 +17,9 @@ ResourceDemand resource_demand(const Scene& s, const Plan& plan, std::size_t bea
   const auto n = static_cast<double>(beads);
   const bool flat = s.dimension == 2;
   const bool unlike = s.spread != SizeSpread::none || s.intruder || start_row(s.start).from_file;
-  // Velocities at whole steps need the contact velocities of the previous step in addition to the spring.
-  const double before = plan.key.velocity == Velocity::full_step ? 8 * (flat ? 2 : 4) : 0;
-  const double pairs = flat ? 3 : 6, bytes_of_pair = (flat ? 50 : 65) + before + (unlike ? 35 : 0);
-  const double spins = !plan.rotation ? 0 : flat ? 1 : 3;
   ResourceDemand demand;
-  demand.memory = n * (350 + 2 * pairs * bytes_of_pair);
+  demand.memory = n * ((flat ? 3000 : 4600) + (unlike ? 1500 : 0));
+  const double spins = !plan.rotation ? 0 : flat ? 1 : 3;
   demand.frames = static_cast<double>(s.cycles) * s.phases;
   demand.disk = demand.frames * n * 0.85 * 8 * (2 * s.dimension + spins);
   // Between a bed in flight and a dense packing: a contact per bead, 8 float and 2 integer numbers.

@@ -19,10 +19,9 @@ struct ResourceDemand {
 
 /// Demand of a run with this number of beads.
 ///
-/// memory = n (350 + 2 p b): data of start and solver per bead, and the old and the new list with p pairs of
-/// b bytes each; p = 3 in 2D, 6 in 3D; b = 50 in 2D, 65 in 3D, and 35 more if beads are unequal. Integrators
-/// with velocities at whole steps add 16 bytes per pair in 2D, 32 in 3D. Dense beds need between half of the
-/// result and all of it (tests/hard/demand_test.cpp). disk = 0.85 * 8 bytes for each coordinate, velocity and
+/// memory = 3000 n in 2D, 4600 n in 3D, and 1500 n more if beads are unequal: the measured peak of a dense
+/// bed, raised by a fifth (tests/hard/sim/demand_test.cpp). Most of it is in use only while a pair list is
+/// built. disk = 0.85 * 8 bytes for each coordinate, velocity and
 /// spin.
 ResourceDemand resource_demand(const Scene& scene, const Plan& plan, std::size_t beads);
 

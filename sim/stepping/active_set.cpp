@@ -17,8 +17,8 @@ void ActiveSet::find(const PacketLayout& layout, const BeadShare& share, const O
   };
   for (const std::int32_t pair : inner.packets.source) {
     if (pair < 0 || all) continue;
-    activate(outer.i[static_cast<Size>(pair)]);
-    activate(outer.j[static_cast<Size>(pair)]);
+    activate(layout.place(outer.i[static_cast<Size>(pair)]));
+    activate(layout.place(outer.j[static_cast<Size>(pair)]));
   }
   for (const ContactPackets& wall : walls.walls)
     for (const std::int32_t bead : wall.source) activate(bead);

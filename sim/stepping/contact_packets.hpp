@@ -17,6 +17,17 @@ std::size_t bytes_of(const std::vector<T>&... vectors) {
   return ((vectors.capacity() * sizeof(T)) + ... + 0);
 }
 
+/// Resizes a vector that is filled anew again and again. Its spare room is at most a sixteenth of its size;
+/// a vector that grows by itself may take twice what it holds.
+template <class T>
+void resize_closely(std::vector<T>& v, std::size_t n) {
+  if (n > v.capacity()) {
+    v = {};  // the old memory is free before the new is taken
+    v.reserve(n + n / 16);
+  }
+  v.resize(n);
+}
+
 /// Contacts in packets: the input of a kernel.
 struct ContactPackets {
   std::vector<std::int32_t> i, j, force_i, force_j;
@@ -44,6 +55,10 @@ struct PacketLayout {
   /// Index of the first number of the record of a bead.
   [[nodiscard]] std::int32_t record(std::int32_t place) const {
     return place * (dimension == 2 ? kRecord<2> : kRecord<3>);
+  }
+  /// The place of a bead from the index of the first number of its record.
+  [[nodiscard]] std::int32_t place(std::int32_t record) const {
+    return record / (dimension == 2 ? kRecord<2> : kRecord<3>);
   }
   /// A set of constants, each in all lanes.
   [[nodiscard]] std::vector<double> broadcast(const std::vector<double>& set) const {

@@ -40,7 +40,7 @@ void find_near_pairs(ListedBeads& beads, OuterPairs& outer, double margin, doubl
   const Size width = beads.layout.width;
   NearPairArgs scan{};
   scan.records = beads.packed.records();
-  scan.i = outer.record_i.data(), scan.j = outer.record_j.data();
+  scan.i = outer.i.data(), scan.j = outer.j.data();
   scan.reach = beads.packed.equal() ? beads.pair_constants.data() : outer.reach.data();
   scan.reach_step = beads.packed.equal() ? 0 : static_cast<std::ptrdiff_t>(width);
   scan.shift = outer.shift.empty() ? nullptr : outer.shift.data();
@@ -88,6 +88,10 @@ void InnerPairs::distribute(const PacketLayout& layout, const BeadShare& share, 
   std::vector<std::int32_t>& source = packets.source;
   source.clear(), chunks.clear();
   pairs = 0;
+  Size most = 2 * layout.width * outer.chunk_end.size();  // padding
+  for (Size k = 0; k < outer.near.size(); ++k)
+    most += static_cast<Size>(std::popcount(static_cast<unsigned>(outer.near[k] | outer.touching[k])));
+  resize_closely(source, most), source.clear();
   Size from = 0, bead_end = share.begin;
   for (Size c = 0; c < outer.chunk_end.size(); ++c) {
     const Size to = outer.chunk_end[c];
@@ -123,29 +127,29 @@ void InnerPairs::pack(const PacketLayout& layout, const BeadShare& share, const 
   const bool shifted = !outer.shift.empty();
   const Size constants = outer.pairs == 0 ? 0 : outer.constants.size() / outer.pairs;
   a.count = static_cast<std::int64_t>(count);
-  a.i.resize(padded), a.j.resize(padded);
-  if (split) a.force_i.resize(padded), a.force_j.resize(padded);
-  a.memory.resize(padded * memory);
-  a.constants.resize(padded * constants);
-  a.shift.resize(shifted ? padded * dimension : 0);
-  const auto own = [&](std::int32_t k) { return share.owns(k) ? k : share.dummy; };
+  resize_closely(a.i, padded), resize_closely(a.j, padded);
+  if (split) resize_closely(a.force_i, padded), resize_closely(a.force_j, padded);
+  resize_closely(a.memory, padded * memory);
+  resize_closely(a.constants, padded * constants);
+  resize_closely(a.shift, shifted ? padded * dimension : 0);
+  const std::int32_t dummy = layout.record(share.dummy);
+  const auto own = [&](std::int32_t record) { return share.owns(layout.place(record)) ? record : dummy; };
   for (Size packet = 0, at = 0; packet < count; ++packet)
     for (Size lane = 0; lane < width; ++lane, ++at) {
       const auto set = [&](std::vector<double>& numbers, Size of, auto value) {
         for (Size m = 0; m < of; ++m) numbers[(packet * of + m) * width + lane] = value(m);
       };
       if (a.source[at] < 0) {
-        a.i[at] = a.j[at] = layout.record(share.dummy);
-        if (split) a.force_i[at] = a.force_j[at] = layout.record(share.dummy);
+        a.i[at] = a.j[at] = dummy;
+        if (split) a.force_i[at] = a.force_j[at] = dummy;
         set(a.memory, memory, [](Size) { return 0.0; });
         set(a.constants, constants, [](Size) { return 1.0; });
         if (shifted) set(a.shift, dimension, [](Size) { return 0.0; });
         continue;
       }
       const Size pair = static_cast<Size>(a.source[at]);
-      a.i[at] = outer.record_i[pair], a.j[at] = outer.record_j[pair];
-      if (split)
-        a.force_i[at] = layout.record(own(outer.i[pair])), a.force_j[at] = layout.record(own(outer.j[pair]));
+      a.i[at] = outer.i[pair], a.j[at] = outer.j[pair];
+      if (split) a.force_i[at] = own(outer.i[pair]), a.force_j[at] = own(outer.j[pair]);
       set(a.memory, memory, [&](Size m) { return outer.memory[pair * memory + m]; });
       set(a.constants, constants, [&](Size m) { return outer.constants[pair * constants + m]; });
       if (shifted)
@@ -176,11 +180,15 @@ void InnerList::set_horizon(double dt, double skin, bool airborne) {
     slack_ *= 2;
   else if (deviated_ < 0.25 * slack_)
     slack_ *= 0.5;
-  slack_ = std::clamp(slack_, 1e-5 * skin, 0.1 * skin);
   // Horizon: an airborne bed has few near pairs, so building the list costs more than passing through it, and
-  // the horizon is longer. It is limited so that no bead can arrive from outside the outer list.
-  const double horizon_steps = airborne ? kLongHorizon : kHorizon;
-  horizon_ = std::min(horizon_steps * dt, 0.5 * skin / std::max(spread(range_), 1e-300));
+  // the horizon is longer.
+  horizon_ = (airborne ? kLongHorizon : kHorizon) * dt;
+  limit_to(skin);
+}
+
+void InnerList::limit_to(double skin) {
+  slack_ = std::clamp(slack_, 1e-5 * skin, 0.1 * skin);
+  horizon_ = std::min(horizon_, 0.5 * skin / std::max(spread(range_), 1e-300));
   margin_ = horizon_ * spread(range_) + 2 * slack_;
 }
 

@@ -47,6 +47,8 @@ class InnerList {
   void measure_velocities(ListedBeads& beads, const std::vector<BeadShare>& shares);
   /// Adapts slack and horizon for the next list. \param airborne few of the listed pairs are near
   void set_horizon(double dt, double skin, bool airborne);
+  /// Limits slack and horizon so that no bead can arrive from outside an outer list with this skin.
+  void limit_to(double skin);
   /// Begins the validity of a new list.
   void begin();
   /// Registers one step. \param strayed largest deviation of a velocity from free flight

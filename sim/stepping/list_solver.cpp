@@ -143,7 +143,7 @@ std::vector<ContactMemory> ListSolver::contacts() const {
     for (Size r = 0; r < pairs.source.size(); ++r) {
       if (pairs.source[r] < 0) continue;
       const Size from = static_cast<Size>(pairs.source[r]);
-      const std::int32_t i = part.outer.i[from], j = part.outer.j[from];
+      const std::int32_t i = layout.place(part.outer.i[from]), j = layout.place(part.outer.j[from]);
       // Both threads store a pair that crosses them; only the owner of bead i reports it.
       if (part.share.owns(i)) keep(pairs, r, bead(i), bead(j));
     }
@@ -179,16 +179,15 @@ Solver::Footprint ListSolver::footprint() const {
 void ListSolver::build_outer(const System& given) {
   Size listed = 0;
   for (const Part& part : parts_) listed += part.outer.pairs;
-  outer_.adapt_skin(beads_.packed.size(), listed);
+  outer_.adapt_skin(given.dimension, beads_.packed.size(), listed);
   System s = given;  // the search needs positions by bead
   beads_.packed.store(s, beads_.order.bead);
   check_motion(s, limits_);
   const RememberedContacts remembered(contacts(), s.beads.size());
   restored_.clear();
   const std::vector<NearPair> found = outer_.search(s, beads_.order);
-  const bool periodic = s.period[0] > 0 || s.period[1] > 0 || s.period[2] > 0;
   for (Part& part : parts_) {
-    part.outer.assign(beads_, part.share, found, remembered, periodic);
+    part.outer.assign(beads_, part.share, found, remembered, s.period);
     part.inner.packets = {};
     part.walls.restore(beads_, part.share, remembered.all);
   }
@@ -203,7 +202,10 @@ void ListSolver::refresh_pairs(const System& s) {
   for (const Part& part : parts_) near += part.inner.pairs, listed += part.outer.pairs;
   inner_.set_horizon(s.dt, outer_.skin(), 4 * near < listed);
   if (is_forced()) outer_.discard();
-  if (outer_.is_stale(beads_.packed, inner_.margin())) build_outer(s);
+  if (outer_.is_stale(beads_.packed, inner_.margin())) {
+    build_outer(s);
+    inner_.limit_to(outer_.skin());
+  }
   inner_.begin();
   outer_.count_inner_list();
   ++counters_.near_refreshes;

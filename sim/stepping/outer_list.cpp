@@ -30,6 +30,10 @@ std::vector<T> in_order_of(std::vector<T> given, Size n, First first, Second sec
   return sorted;
 }
 
+double base_skin(double usual_radius) {
+  return kListReach * 2 * usual_radius;
+}
+
 }  // namespace
 
 RememberedContacts::RememberedContacts(std::vector<ContactMemory> sorted, Size beads)
@@ -58,34 +62,39 @@ void OuterPairs::divide_into_chunks(const BeadShare& share, const std::vector<co
 }
 
 void OuterPairs::assign(const ListedBeads& beads, const BeadShare& share, const std::vector<NearPair>& found,
-                        const RememberedContacts& remembered, bool periodic) {
+                        const RememberedContacts& remembered, const std::array<double, 3>& period) {
   const PacketLayout& layout = beads.layout;
   const PackedBeads& packed = beads.packed;
+  const bool periodic = period[0] > 0 || period[1] > 0 || period[2] > 0;
   std::vector<const NearPair*> own;
+  own.reserve(found.size());
   for (const NearPair& f : found)
     if (share.owns(f.i) || share.owns(f.j)) own.push_back(&f);
   throw_if_cancelled();
   divide_into_chunks(share, own);
   pairs = own.size();
   const Size packets = layout.packets(pairs), padded = packets * layout.width;
-  i.assign(padded, share.dummy), j.assign(padded, share.dummy);
+  i.assign(padded, layout.record(share.dummy)), j.assign(padded, layout.record(share.dummy));
   near.assign(packets, 0), touching.assign(packets, 0);
   shift.assign(periodic ? padded * layout.dimension : 0, 0);
   memory.assign(pairs * layout.memory, 0);
   reach.assign(packed.equal() ? 0 : padded, 0);
-  constants.clear(), remembering.clear();
+  remembering.clear();
+  if (packed.equal() || pairs == 0) constants.clear();
   for (Size p = 0; p < pairs; ++p) {
     const NearPair& f = *own[p];
     const Size a = static_cast<Size>(f.i), b = static_cast<Size>(f.j);
-    i[p] = f.i, j[p] = f.j;
+    i[p] = layout.record(f.i), j[p] = layout.record(f.j);
     if (periodic)
-      for (Size c = 0; c < layout.dimension; ++c)
-        shift[layout.index(p, layout.dimension, c)] =
-            f.shift[layout.dimension == 2 && c == 1 ? 2 : static_cast<int>(c)];
+      for (Size c = 0; c < layout.dimension; ++c) {
+        const Size axis = layout.dimension == 2 && c == 1 ? 2 : c;
+        shift[layout.index(p, layout.dimension, c)] = f.images[axis] * period[axis];
+      }
     if (!packed.equal()) {
       const double ra = packed.radius(a), rb = packed.radius(b);
       const auto set = contact_constants(beads.plan.bead, packed.pair(a, b), ra + rb, 1 / ra, 1 / rb);
-      constants.insert(constants.end(), set.begin(), set.end());
+      if (p == 0) resize_closely(constants, pairs * set.size());
+      std::copy(set.begin(), set.end(), constants.begin() + static_cast<std::ptrdiff_t>(p * set.size()));
       reach[p] = ra + rb;
     }
     if (layout.memory == 0 || remembered.all.empty()) continue;
@@ -95,8 +104,6 @@ void OuterPairs::assign(const ListedBeads& beads, const BeadShare& share, const 
       remembering.push_back(static_cast<std::int32_t>(p));
     }
   }
-  record_i.resize(padded), record_j.resize(padded);
-  for (Size p = 0; p < padded; ++p) record_i[p] = layout.record(i[p]), record_j[p] = layout.record(j[p]);
 }
 
 void OuterList::set_limits(const System& s) {
@@ -109,7 +116,7 @@ void OuterList::set_limits(const System& s) {
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
   usual_radius_ = *middle;
-  const double base = kListReach * 2 * usual_radius_;
+  const double base = base_skin(usual_radius_);
   widest_skin_ = 3 * 2 * usual_radius_;
   for (const double period : s.period)  // a bead must not reach two images of another
     if (period > 0) widest_skin_ = std::min(widest_skin_, 0.5 * period - 2 * largest);
@@ -159,25 +166,41 @@ bool OuterList::have_crossed(const PackedBeads& beads, double margin) {
 /// A wide skin makes builds of the outer list rare, but the list long. The cost is least where building the
 /// list costs as much as the passes through it. Per bead the search costs some hundred times as much as a
 /// pass costs per pair. A dense bed therefore keeps only its first shell, and a dilute gas has a wide skin.
-void OuterList::adapt_skin(Size beads, Size listed) {
+void OuterList::adapt_skin(int dimension, Size beads, Size listed) {
   constexpr double kSearch = 400;
   const double search = kSearch * static_cast<double>(beads),
                passes = static_cast<double>(inner_lists_) * static_cast<double>(listed);
   if (inner_lists_ == 0) return;
   inner_lists_ = 0;
-  if (search > 2 * passes) skin_ *= 1.25;
+  if (search > 2 * passes && 3 * listed < 2 * most_listed_pairs(dimension) * beads) skin_ *= 1.25;
   if (passes > 2 * search) skin_ *= 0.8;
   skin_ = std::clamp(skin_, 0.2 * usual_radius_, widest_skin_);
 }
 
-std::vector<NearPair> OuterList::search(const System& s, const BeadOrder& order) const {
+std::vector<NearPair> OuterList::search(const System& s, const BeadOrder& order) {
+  const Size most = most_listed_pairs(s.dimension) * s.beads.size();
+  const double base = base_skin(usual_radius_);
+  for (;;) {
+    std::vector<NearPair> found = pairs_within_skin(s, order);
+    if (found.size() <= most || skin_ <= base) return found;
+    skin_ = std::max(0.8 * skin_, base);
+  }
+}
+
+std::vector<NearPair> OuterList::pairs_within_skin(const System& s, const BeadOrder& order) {
   std::vector<NearPair> found;
+  found.reserve(found_ + found_ / 16);
   for_each_near_pair(
       s.beads, s.dimension, s.period, skin_, [&](std::int32_t a, std::int32_t b, double, const Vec3& shift) {
         // Bead i is the one with the lower number, whatever the order in memory, so that a
         // remembered vector keeps its sign.
-        found.push_back({order.place[static_cast<Size>(a)], order.place[static_cast<Size>(b)], shift});
+        NearPair pair{order.place[static_cast<Size>(a)], order.place[static_cast<Size>(b)], {}};
+        for (int k = 0; k < 3; ++k)
+          if (const double p = s.period[static_cast<Size>(k)]; p > 0)
+            pair.images[static_cast<Size>(k)] = static_cast<std::int32_t>(std::lround(shift[k] / p));
+        found.push_back(pair);
       });
+  found_ = found.size();
   return in_order_of(
       std::move(found), s.beads.size(), [](const NearPair& f) { return std::min(f.i, f.j); },
       [](const NearPair& f) { return std::max(f.i, f.j); });

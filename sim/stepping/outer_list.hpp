@@ -4,6 +4,7 @@
 /// beads may have crossed the skin. Displacements are measured relative to the mean motion, so a bed that
 /// rides on its plate keeps its list for thousands of steps.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -26,14 +27,13 @@ struct RememberedContacts {
 
 /// A pair within the skin.
 struct NearPair {
-  std::int32_t i, j;  ///< places
-  Vec3 shift;         ///< added to r_i - r_j (periodic images)
+  std::int32_t i, j;                   ///< places
+  std::array<std::int32_t, 3> images;  ///< periods that are added to r_i - r_j
 };
 
 /// The pairs of the outer list that contain a bead of one thread. Arrays are padded to whole packets.
 struct OuterPairs {
-  std::vector<std::int32_t> i, j;                ///< places
-  std::vector<std::int32_t> record_i, record_j;  ///< first numbers of their records
+  std::vector<std::int32_t> i, j;  ///< first numbers of the records of the beads
   std::vector<double> shift, reach;
   std::vector<double> constants, memory;  ///< [pair][number]
   std::vector<std::size_t> chunk_end;     ///< [chunk] end of its pairs
@@ -44,10 +44,9 @@ struct OuterPairs {
 
   /// Takes the pairs of a thread's beads.
   void assign(const ListedBeads& beads, const BeadShare& share, const std::vector<NearPair>& found,
-              const RememberedContacts& remembered, bool periodic);
+              const RememberedContacts& remembered, const std::array<double, 3>& period);
   [[nodiscard]] std::size_t bytes() const {
-    return bytes_of(i, j, shift, reach, constants, memory, record_i, record_j, near, touching, remembering,
-                    chunk_end);
+    return bytes_of(i, j, shift, reach, constants, memory, near, touching, remembering, chunk_end);
   }
 
  private:
@@ -59,6 +58,12 @@ struct OuterPairs {
 /// bead twice. The data of a chunk are still in a near cache when its contact forces are complete and its
 /// next step begins. With 32 packets, the cost of the calls exceeds the gain.
 inline constexpr std::size_t kChunkBeads = 8 * kGroup, kChunkPackets = 128;
+
+/// Listed pairs per bead beyond which the skin is not widened, and a wide one is narrowed. A dense packing
+/// has 3 neighbours per bead in 2D and 6 in 3D, each pair counted once.
+inline constexpr std::size_t most_listed_pairs(int dimension) {
+  return dimension == 2 ? 6 : 10;
+}
 
 /// Skin and validity of the outer list.
 class OuterList {
@@ -82,17 +87,20 @@ class OuterList {
   void count_inner_list() { ++inner_lists_; }
 
   /// Adapts the skin to the number of listed pairs and of inner lists since the last build.
-  void adapt_skin(std::size_t beads, std::size_t listed);
-  /// All pairs within the skin, sorted by place.
-  [[nodiscard]] std::vector<NearPair> search(const System& s, const BeadOrder& order) const;
+  void adapt_skin(int dimension, std::size_t beads, std::size_t listed);
+  /// All pairs within the skin, sorted by place. Narrows the skin until at most most_listed_pairs() per bead
+  /// are within it; a narrow skin may contain more.
+  [[nodiscard]] std::vector<NearPair> search(const System& s, const BeadOrder& order);
   /// Registers a build: present positions are the reference for displacements.
   void set_reference(const PackedBeads& beads);
   [[nodiscard]] std::size_t bytes() const { return bytes_of(built_); }
 
  private:
+  [[nodiscard]] std::vector<NearPair> pairs_within_skin(const System& s, const BeadOrder& order);
   [[nodiscard]] bool have_crossed(const PackedBeads& beads, double margin);
 
   double skin_ = 0, widest_skin_ = 0, usual_radius_ = 0;
+  std::size_t found_ = 0;                      ///< pairs of the last search
   std::int64_t builds_ = 0, inner_lists_ = 0;  ///< the latter since the last build
   double approach_ = 0;      ///< bound on the approach of two beads since the build; HUGE_VAL: unknown
   double last_margin_ = 0;   ///< of the last inner list

@@ -136,7 +136,7 @@ TEST_F(Explain, FilesWithoutAnEndAreRefused) {
 
 // A signal interrupts the placement of ten million beads.
 TEST_F(Explain, ASignalEndsThePlacingOfManyBeads) {
-  RunningProgram program({"explain", scene_, "-q", "--set", "beads.count=10000000"});
+  RunningProgram program({"explain", scene_, "-q", "--set", "beads.count=4000000"});
   std::this_thread::sleep_for(std::chrono::milliseconds(400));
   const auto asked = std::chrono::steady_clock::now();
   program.signal(SIGTERM);

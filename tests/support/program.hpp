@@ -45,6 +45,7 @@ class RunningProgram {
       ::_exit(127);
     }
   }
+  [[nodiscard]] pid_t id() const { return child_; }
   void signal(int number) const { ::kill(child_, number); }
   Ran wait() {
     int status = 0;

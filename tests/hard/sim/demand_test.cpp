@@ -1,9 +1,11 @@
 // Resources of a run: the estimate against the memory that kernels use, and the refusals.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 
 #include "core/error.hpp"
-#include "sim/run/cost.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "tests/support/complaint.hpp"
 #include "tests/support/program.hpp"
@@ -14,35 +16,56 @@ namespace twincell::sim {
 namespace {
 
 const std::string kScene =
-    "preset = \"fortini-huang-2015\"\n[drive]\ngamma = 1.8\n[time]\ncycles = 100\nphases = 20\n";
+    "preset = \"fortini-huang-2015\"\n[drive]\ngamma = 1.3\nfrequency = 0.7\n[time]\ncycles = 1\nphases = "
+    "1\ndiscard = 0\n";
 
-TEST(ResourceDemand, LiesAboveWhatTheKernelHoldsAndNotFarAbove) {
-  const std::vector<std::string> scenes = {
-      "[cell]\nwidth = 100\n[beads]\nlayers = 50\n",
-      "[cell]\nwidth = 100\n[beads]\nlayers = 50\nspread = "
-      "\"uniform\"\nspread_width = 0.1\n",
-      "[cell]\nwidth = 30\ndimension = 3\ndepth = 30\n[beads]\nlayers = 10\n",
-      "[cell]\nwidth = 30\ndimension = 3\ndepth = 30\n[beads]\nlayers = 10\nspread = \"uniform\"\n"
-      "spread_width = 0.1\n"};
-  for (const std::string& words : scenes) {
-    const Scene scene = read_scene_text(kScene + words, "scene.toml");
-    const Cost cost = measure_cost(scene, 0.05, 1);
-    const double held =
-        static_cast<double>(cost.beads) * (cost.bytes_per_bead + cost.pairs_per_bead * cost.bytes_per_pair);
-    const ResourceDemand demand = resource_demand(scene, cost.plan, cost.beads);
-    EXPECT_GT(demand.memory, held) << words;
-    EXPECT_LT(demand.memory, 4 * held) << words;
-  }
+/// Peak of the resident memory of `simulate`, in bytes.
+double peak_of(const std::string& scene, const std::string& output) {
+  const RunningProgram program({"simulate", scene, "-o", output, "--force", "-q"});
+  rusage usage{};
+  int status = 0;
+  ::wait4(program.id(), &status, 0, &usage);
+  EXPECT_EQ(status, 0) << scene;
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+// The program and its libraries take the same memory in a small and in a large bed, so that the difference of
+// the peaks is that of the beads.
+TEST(ResourceDemand, LiesAboveThePeakOfTheProgramAndNotFarAbove) {
+  if (kSanitized) GTEST_SKIP() << "A sanitized program needs more memory.";
+  const TemporaryFolder folder;
+  const std::string file = folder / "s.toml";
+  for (const bool flat : {true, false})
+    for (const bool unlike : {false, true}) {
+      double beads[2], peak[2], expected[2];
+      for (const int large : {0, 1}) {
+        const std::string text = fmt::format(
+            "{}[start]\nsettle_limit = 0.3\n[contact]\nk_n = 1e4\nk_t = 5e3\n[cell]\n{}[beads]\n"
+            "layers = {}\n{}",
+            kScene, flat ? "width = 100\n" : "width = 30\ndimension = 3\ndepth = 30\n",
+            flat ? (large ? 120 : 20) : (large ? 18 : 3),
+            unlike ? "spread = \"uniform\"\nspread_width = 0.1\n" : "");
+        put_file(file, text);
+        const Scene scene = read_scene_text(text, file);
+        beads[large] = static_cast<double>(scene.n_beads.value_or(0));
+        expected[large] = resource_demand(scene, make_plan(scene), scene.n_beads.value_or(0)).memory;
+        peak[large] = peak_of(file, folder / "o.h5");
+      }
+      const double per_bead = (peak[1] - peak[0]) / (beads[1] - beads[0]);
+      RecordProperty(fmt::format("{}D{}", flat ? 2 : 3, unlike ? "_unlike" : ""), per_bead);
+      EXPECT_LT(per_bead, expected[1] / beads[1]) << flat << unlike;
+      EXPECT_GT(per_bead, 0.2 * expected[1] / beads[1]) << flat << unlike;
+    }
 }
 
 TEST(ResourceDemand, MoreThanTheMachineHasIsRefusedByKey) {
   const Scene layers = read_scene_text(kScene + "[cell]\nwidth = 100\n[beads]\nlayers = 50\n", "scene.toml");
   const Plan plan = make_plan(layers);
-  EXPECT_NO_THROW(require_memory(layers, plan, 5000, 5000 * 746));
-  expect_refusal<ConfigError>([&] { require_memory(layers, plan, 5000, 5000 * 746 - 1); }, "scene.toml:10",
-                              "beads.layers", "5000 beads", "3.73 MB");
+  EXPECT_NO_THROW(require_memory(layers, plan, 5000, 5000 * 3000));
+  expect_refusal<ConfigError>([&] { require_memory(layers, plan, 5000, 5000 * 3000 - 1); }, "scene.toml:12",
+                              "beads.layers", "5000 beads", "15 MB");
   const Scene count = read_scene_text(kScene + "[beads]\ncount = 5000\n", "scene.toml");
-  expect_refusal<ConfigError>([&] { require_memory(count, plan, 5000, 1e6); }, "scene.toml:8", "beads.count",
+  expect_refusal<ConfigError>([&] { require_memory(count, plan, 5000, 1e6); }, "scene.toml:10", "beads.count",
                               "the machine has 1 MB");
 }
 

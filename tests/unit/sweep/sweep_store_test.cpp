@@ -59,7 +59,7 @@ TEST(SweepStore, OnlyASweepsFolderIsWrittenInto) {
   EXPECT_NO_THROW(Store(folder / "thesis", Store::Access::read));
 }
 
-// The first paper's beds take 650 bytes per bead, so that the four points take 1.3, 1.3, 2.6 and 2.6 MB.
+// The first paper's beds take 3000 bytes per bead, so that the four points take 6, 6, 12 and 12 MB.
 TEST(SweepMemory, PointsThatRunAtOnceMustFitTogether) {
   const TemporaryFolder folder;
   const std::string scene =
@@ -69,16 +69,16 @@ TEST(SweepMemory, PointsThatRunAtOnceMustFitTogether) {
       "plan.toml");
   const Store store(folder / "grid");
   const Schedule schedule(grid, store);
-  EXPECT_NO_THROW(require_memory_together(schedule, 1, "--threads", 2.6e6));
-  EXPECT_NO_THROW(require_memory_together(schedule, 2, "--threads", 5.2e6));
-  EXPECT_NO_THROW(require_memory_together(schedule, 16, "--threads", 7.8e6));
-  expect_refusal<ConfigError>([&] { require_memory_together(schedule, 2, "--threads", 5.1e6); }, "plan.toml",
-                              "beads.count", "4000 beads", "2 points that run at once", "5.2 MB",
-                              "has 5.1 MB available", "with --threads 1");
-  expect_refusal<ConfigError>([&] { require_memory_together(schedule, 16, "--threads", 7.7e6); },
+  EXPECT_NO_THROW(require_memory_together(schedule, 1, "--threads", 12e6));
+  EXPECT_NO_THROW(require_memory_together(schedule, 2, "--threads", 24e6));
+  EXPECT_NO_THROW(require_memory_together(schedule, 16, "--threads", 36e6));
+  expect_refusal<ConfigError>([&] { require_memory_together(schedule, 2, "--threads", 23.5e6); }, "plan.toml",
+                              "beads.count", "4000 beads", "2 points that run at once", "24 MB",
+                              "has 23.5 MB available", "with --threads 1");
+  expect_refusal<ConfigError>([&] { require_memory_together(schedule, 16, "--threads", 35.5e6); },
                               "4 points that run at once", "with --threads 3");
-  expect_refusal<ConfigError>([&] { require_memory_together(schedule, 2, "--threads", 2.5e6); },
-                              "beads.count", "requires 4000 beads in one point", "2.6 MB");
+  expect_refusal<ConfigError>([&] { require_memory_together(schedule, 2, "--threads", 11.5e6); },
+                              "beads.count", "requires 4000 beads in one point", "12 MB");
   // Later rounds of a search may reach the ends of its range.
   const Plan search = read_plan_text(scene +
                                          "drive.gamma = 1.5\n[search]\nkey = \"beads.layers\"\nverdict = "
@@ -87,8 +87,8 @@ TEST(SweepMemory, PointsThatRunAtOnceMustFitTogether) {
                                      "plan.toml");
   const Store searched(folder / "search");
   const Schedule rounds(search, searched);
-  EXPECT_NO_THROW(require_memory_together(rounds, 3, "--threads", 7.8e6));
-  expect_refusal<ConfigError>([&] { require_memory_together(rounds, 3, "--threads", 7.7e6); }, "beads.layers",
+  EXPECT_NO_THROW(require_memory_together(rounds, 3, "--threads", 36e6));
+  expect_refusal<ConfigError>([&] { require_memory_together(rounds, 3, "--threads", 35.5e6); }, "beads.layers",
                               "4000 beads", "with --threads 2");
 }
 
