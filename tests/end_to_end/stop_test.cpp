@@ -63,10 +63,10 @@ TEST_F(Stop, EveryLongWorkEndsWithinASecond) {
       {"calibrate", "beads", "frames", "-o", "out/c.toml"},
       {"reproduce", "p1-appendix", "-o", "out/r"},
       {"sweep", "plan", "plan.toml", "--folder", "out/sweep"},
-      {"explain", "s.toml", "--set", "beads.layers=900000"},
-      {"simulate", "s.toml", "-o", "out/o.h5", "--set", "beads.layers=900000", "--set", "start.kind=random"},
+      {"explain", "s.toml", "--set", "beads.layers=300000"},
+      {"simulate", "s.toml", "-o", "out/o.h5", "--set", "beads.layers=300000", "--set", "start.kind=random"},
       {"simulate", "s.toml", "-o", "out/o.h5", "--set", "time.cycles=20000"},
-      {"export", "s.toml", "--to", "lammps", "-o", "out/deck", "--set", "beads.layers=900000"},
+      {"export", "s.toml", "--to", "lammps", "-o", "out/deck", "--set", "beads.layers=300000"},
       {"cost", "sim", "-o", "out/cost"},
   };
   for (const Words& words : all)
