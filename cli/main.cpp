@@ -20,6 +20,9 @@
 #include "core/nearest_word.hpp"
 #include "imaging/stack/opencv_errors.hpp"
 
+namespace twincell::cli {
+void add_draw(CLI::App&, Common&);
+}  // namespace twincell::cli
 namespace {
 
 using namespace twincell;
@@ -27,10 +30,10 @@ using namespace twincell::cli;
 
 // Order of the list in --help: the verbs that a new user needs come first.
 constexpr AddVerb kVerbs[] = {
-    add_example, add_new,     add_locate,  add_track, add_explain,   add_simulate,
-    add_render,  add_analyze, add_measure, add_sweep, add_reproduce, add_calibrate,
-    add_match,   add_compare, add_fit,     add_info,  add_validate,  add_export,
-    add_import,  add_cost,    add_keys,    add_help,  add_man,       add_completion,
+    add_example, add_new,     add_locate,  add_track,      add_explain,   add_simulate,  add_render,
+    add_draw,    add_analyze, add_measure, add_sweep,      add_reproduce, add_calibrate, add_match,
+    add_compare, add_fit,     add_info,    add_validate,   add_export,    add_import,    add_cost,
+    add_keys,    add_help,    add_man,     add_completion,
 };
 
 int complain(const std::string& sentence, ExitCode code) {

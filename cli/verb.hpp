@@ -21,6 +21,7 @@ void add_calibrate(CLI::App& program, Common& common);
 void add_compare(CLI::App& program, Common& common);
 void add_completion(CLI::App& program, Common& common);
 void add_cost(CLI::App& program, Common& common);
+void add_draw(CLI::App& program, Common& common);
 void add_example(CLI::App& program, Common& common);
 void add_explain(CLI::App& program, Common& common);
 void add_export(CLI::App& program, Common& common);

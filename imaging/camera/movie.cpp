@@ -60,12 +60,15 @@ Movie::~Movie() {
 }
 
 void Movie::add(const cv::Mat& frame, int bits) {
-  cv::Mat grey = frame, colour;
-  if (bits > 8) frame.convertTo(grey, CV_8U, std::ldexp(1.0, 8 - bits));
-  if (grey.size() != size_)
-    cv::copyMakeBorder(grey, grey, 0, size_.height - grey.rows, 0, size_.width - grey.cols,
+  cv::Mat shown = frame, colour;
+  if (bits > 8) frame.convertTo(shown, CV_8U, std::ldexp(1.0, 8 - bits));
+  if (shown.size() != size_)
+    cv::copyMakeBorder(shown, shown, 0, size_.height - shown.rows, 0, size_.width - shown.cols,
                        cv::BORDER_REPLICATE);
-  cv::cvtColor(grey, colour, cv::COLOR_GRAY2BGR);
+  if (shown.channels() == 1)
+    cv::cvtColor(shown, colour, cv::COLOR_GRAY2BGR);
+  else
+    colour = shown;
   writer_->video.write(colour);
   ++frames_;
 }
