@@ -20,9 +20,6 @@
 #include "core/nearest_word.hpp"
 #include "imaging/stack/opencv_errors.hpp"
 
-namespace twincell::cli {
-void add_draw(CLI::App&, Common&);
-}  // namespace twincell::cli
 namespace {
 
 using namespace twincell;

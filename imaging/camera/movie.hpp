@@ -10,8 +10,9 @@
 
 namespace twincell {
 
-/// Writes .mp4 (H.264, or MPEG-4 if this build of OpenCV has no H.264) or .avi (Motion JPEG), 8-bit grey. An
-/// odd width or height is made even by repeating the last column or row. The file appears at commit().
+/// Writes .mp4 (H.264, or MPEG-4 if this build of OpenCV has no H.264) or .avi (Motion JPEG), 8-bit grey or
+/// BGR. An odd width or height is made even by repeating the last column or row. The file appears at
+/// commit().
 class Movie {
  public:
   /// \throws ConfigError for another extension or a rate outside 0.01 .. 1000,

@@ -52,26 +52,36 @@ double plate_of(const Frame& frame, const Box& box) {
 
 /// Largest numbers over the drawn frames, so that one scale serves the whole film.
 struct Extremes {
-  double bottom = 0, top = 0;
+  double bottom = 0, top = 0;  ///< sigma
   std::array<double, 2> colours = {INFINITY, -INFINITY};
   double speed = 0, force = 0;
 };
 
-Extremes heights(const TrajectorySource& source, const std::vector<std::size_t>& indices, const DrawJob& job,
-                 Progress& progress) {
+Extremes extremes_of(const TrajectorySource& source, const std::vector<std::size_t>& indices,
+                     const DrawJob& job, Progress& progress) {
   const TrajectoryInfo& info = source.info();
   Extremes e{.bottom = info.box.lower.z(), .top = info.box.lower.z() + 1};
   Frame frame;
-  for (std::size_t k = 0; k < indices.size(); ++k) {
-    source.read(indices[k], frame);
+  const auto widen = [&] {
     e.bottom = std::min(e.bottom, plate_of(frame, info.box));
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       if (!visible(frame, i)) continue;
       const double radius = info.radius.empty() ? kRadius : info.radius[i];
       e.top = std::max(e.top, frame.position[i].z() + radius);
       e.bottom = std::min(e.bottom, frame.position[i].z() - radius);
-      if (job.vectors && frame.velocity[i].allFinite()) e.speed = std::max(e.speed, frame.velocity[i].norm());
     }
+  };
+  // Tracks begin before the first drawn frame.
+  for (std::size_t k = indices.front() - std::min(indices.front(), job.tracks); k < indices.front(); ++k) {
+    source.read(k, frame);
+    widen();
+  }
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    source.read(indices[k], frame);
+    widen();
+    if (job.vectors)
+      for (const Vec3& velocity : frame.velocity)
+        if (velocity.allFinite()) e.speed = std::max(e.speed, velocity.norm());
     if (job.contacts)
       for (const ContactForce& c : frame.contact_forces)
         e.force = std::max(e.force, std::abs(c.normal_force));
@@ -192,7 +202,7 @@ class Painter {
       }
   }
 
-  // The farthest first, so that nearer beads hide farther ones. With tracks, beads are smaller.
+  // The farthest first, so that nearer beads hide farther ones.
   void draw_beads(cv::Mat3b& picture, std::size_t index) const {
     const std::vector<double> values =
         job_.colours.of ? job_.colours.of(index, frame_) : std::vector<double>();
@@ -219,6 +229,7 @@ class Painter {
   }
 
   void draw_contacts(cv::Mat3b& picture) const {
+    if (extremes_.force <= 0) return;
     for (const ContactForce& c : frame_.contact_forces) {
       const auto i = static_cast<std::size_t>(c.i);
       const Vec3 from = info_.box.wrap(frame_.position[i]);
@@ -337,14 +348,14 @@ cv::Vec3b map_colour(double value, const std::array<double, 2>& range) {
 }
 
 View view_of(const TrajectorySource& source, const DrawJob& job) {
-  const Extremes e = heights(source, drawn_frames(source, job), job, Progress::none());
+  const Extremes e = extremes_of(source, drawn_frames(source, job), job, Progress::none());
   return {source.info().box, e.bottom, e.top, job.pixels_per_sigma};
 }
 
 Drawn draw(const TrajectorySource& source, const DrawJob& job, Progress& progress) {
   check(source, job);
   const std::vector<std::size_t> indices = drawn_frames(source, job);
-  const Extremes extremes = heights(source, indices, job, progress);
+  const Extremes extremes = extremes_of(source, indices, job, progress);
   const View view(source.info().box, extremes.bottom, extremes.top, job.pixels_per_sigma);
   Painter painter(source, job, view, extremes);
   if (job.film()) {

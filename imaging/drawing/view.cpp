@@ -13,13 +13,13 @@ namespace twincell {
 namespace {
 
 // Room for the texts and the colour bar, px.
-constexpr int kLeft = 24, kRight = 150, kTop = 40, kBottom = 56;
+constexpr int kLeft = 24, kRight = 176, kTop = 40, kBottom = 56;
 constexpr double kTurn = std::numbers::pi / 6, kTilt = std::numbers::pi / 12;
 
 }  // namespace
 
 View::View(const Box& box, double bottom, double top, double pixels_per_sigma)
-    : planar_(box.dimension == 2), centre_((box.lower + box.upper) / 2) {
+    : planar_(box.dimension == 2), centre_((box.lower + box.upper) / 2), height_(top - bottom) {
   centre_.z() = (bottom + top) / 2;
   Vec3 low = box.lower, high = box.upper;
   low.z() = bottom, high.z() = top;

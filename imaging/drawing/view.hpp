@@ -2,6 +2,7 @@
 /// \file
 /// Where a drawing shows a point of the cell.
 
+#include <array>
 #include <opencv2/core.hpp>
 
 #include "trajectory/box.hpp"
@@ -26,8 +27,9 @@ class View {
 
   [[nodiscard]] Projected project(const Vec3& r) const;
   [[nodiscard]] double pixels_per_sigma() const { return scale_; }
-  [[nodiscard]] cv::Size size() const { return size_; }  ///< of the whole picture, px
-  [[nodiscard]] cv::Rect cell() const { return cell_; }  ///< the part that shows the cell
+  [[nodiscard]] double height() const { return height_; }  ///< of the part of the cell that is shown, sigma
+  [[nodiscard]] cv::Size size() const { return size_; }    ///< of the whole picture, px
+  [[nodiscard]] cv::Rect cell() const { return cell_; }    ///< the part that shows the cell
 
  private:
   /// (right, up) times the magnification, the magnification, and the depth in sigma, before the scale.
@@ -36,7 +38,7 @@ class View {
   bool planar_;
   Vec3 centre_;
   double distance_ = 0, near_ = 0, far_ = 1;
-  double scale_ = 1;
+  double scale_ = 1, height_;
   cv::Point2d origin_;  ///< px of right = up = 0
   cv::Size size_;
   cv::Rect cell_;

@@ -92,6 +92,7 @@ std::vector<Verb> verbs() {
       {"analyze figures", {"analyze", "sim.h5"}, "--figures", true},
       {"render", {"render", "sim.h5"}, "-o", true},
       {"render movie", {"render", "sim.h5"}, "--movie", false},
+      {"draw", {"draw", "sim.h5"}, "-o", false},
       {"locate", {"locate", "frames"}, "-o", false},
       {"locate overlay", {"locate", "frames", "-o", "beads.csv"}, "--overlay", false},
       {"locate candidates", {"locate", "frames", "-o", "beads.csv"}, "--candidates", false},
@@ -343,6 +344,8 @@ TEST(Outputs, FilesAreReplacedByTheirOwnKindOrByForce) {
       {"locate", "frames", "-o", "b.csv", "--overlay", "o.png", "--candidates", "c.csv", "--debug-dir", "d"},
       {"track", "frames", "--cell", "frames/CELL.toml", "-o", "t.h5", "--csv", "t.csv"},
       {"render", "sim.h5", "--movie", "f.avi"},
+      {"draw", "sim.h5", "-o", "d.png"},
+      {"draw", "sim.h5", "-o", "d.avi", "--frames", ":2"},
       {"fit", "table.csv", "--law", "line", "-o", "fit"},
       {"export", "scene.toml", "--to", "lammps", "-o", "deck"}};
   for (auto words : twice) {
