@@ -21,7 +21,7 @@ constexpr double kRadius = 0.5;      // of a bead whose radius is not known, sig
 constexpr double kLongestArrow = 2;  // sigma
 constexpr double kWidestLine = 0.4;  // sigma
 const cv::Scalar kInk(40, 40, 40), kWall(60, 60, 60), kPeriodic(205, 205, 205), kTrack(120, 120, 120),
-    kArrow(40, 40, 200), kChain(30, 30, 30);
+    kArrow(40, 40, 200), kChain(30, 30, 30), kRim(235, 235, 235);
 
 std::vector<std::size_t> chosen(const TrajectorySource& source, const FrameRange& range) {
   const auto n = static_cast<std::int64_t>(source.n_frames());
@@ -46,13 +46,28 @@ bool visible(const Frame& frame, std::size_t i) {
   return frame.present(i) && frame.position[i].allFinite();
 }
 
-double plate_of(const Frame& frame, const Box& box) {
-  return std::isfinite(frame.plate_height) ? frame.plate_height : box.lower.z();
+/// The axis along which the cell is driven, if it is a horizontal one. The whole cell then moves.
+std::optional<int> sideways_axis(const TrajectoryInfo& info) {
+  if (!info.drive || info.drive->axis == Axis::z) return std::nullopt;
+  return static_cast<int>(info.drive->axis);
+}
+
+double plate_of(const Frame& frame, const TrajectoryInfo& info) {
+  return std::isfinite(frame.plate_height) && !sideways_axis(info) ? frame.plate_height : info.box.lower.z();
+}
+
+/// Horizontal displacement of the cell; Frame::plate_height is along the axis of the drive.
+Vec3 shift_of(const Frame& frame, const TrajectoryInfo& info) {
+  Vec3 shift = Vec3::Zero();
+  if (const auto axis = sideways_axis(info); axis && std::isfinite(frame.plate_height))
+    shift[*axis] = frame.plate_height;
+  return shift;
 }
 
 /// Largest numbers over the drawn frames, so that one scale serves the whole film.
 struct Extremes {
   double bottom = 0, top = 0;  ///< sigma
+  Vec3 shift = Vec3::Zero();   ///< largest horizontal displacement of the cell, sigma
   std::array<double, 2> colours = {INFINITY, -INFINITY};
   double speed = 0, force = 0;
 };
@@ -63,7 +78,8 @@ Extremes extremes_of(const TrajectorySource& source, const std::vector<std::size
   Extremes e{.bottom = info.box.lower.z(), .top = info.box.lower.z() + 1};
   Frame frame;
   const auto widen = [&] {
-    e.bottom = std::min(e.bottom, plate_of(frame, info.box));
+    e.bottom = std::min(e.bottom, plate_of(frame, info));
+    e.shift = e.shift.cwiseMax(shift_of(frame, info).cwiseAbs());
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       if (!visible(frame, i)) continue;
       const double radius = info.radius.empty() ? kRadius : info.radius[i];
@@ -105,6 +121,12 @@ double round_length(double most) {
   for (const double step : {5.0, 2.0})
     if (step * decade <= most) return step * decade;
   return decade;
+}
+
+View view_for(const TrajectoryInfo& info, const DrawJob& job, const Extremes& e) {
+  Box seen = info.box;
+  seen.lower -= e.shift, seen.upper += e.shift;
+  return {seen, e.bottom, e.top, job.pixels_per_sigma};
 }
 
 class Painter {
@@ -153,12 +175,13 @@ class Painter {
   // the eye lie in front of the beads.
   void draw_cell(cv::Mat3b& picture, bool front) const {
     const Box& box = info_.box;
-    const double plate = plate_of(frame_, box), top = extremes_.top;
+    const Vec3 shift = shift_of(frame_, info_);
+    const double plate = plate_of(frame_, info_), top = extremes_.top;
     const auto foot = [&](bool right, bool back, double z) {
       const double tilt = box.side_tilt[right ? 1 : 0] * CV_PI / 180;
       const double lean = std::tan(tilt) * (z - plate);
-      return Vec3(right ? box.upper.x() + lean : box.lower.x() - lean, back ? box.upper.y() : box.lower.y(),
-                  z);
+      return Vec3(shift + Vec3(right ? box.upper.x() + lean : box.lower.x() - lean,
+                               back ? box.upper.y() : box.lower.y(), z));
     };
     if (box.dimension == 2) {
       for (const bool right : {false, true})
@@ -215,11 +238,11 @@ class Painter {
     for (const auto& [p, i] : beads) {
       const cv::Vec3b map =
           values.empty() ? cv::Vec3b(222, 190, 150) : map_colour(values[i], extremes_.colours);
-      constexpr double kFade = 0.6, kRim = 0.55, kGloss = 0.45;
+      constexpr double kFade = 0.6, kDark = 0.55, kGloss = 0.45;
       const double fade = kFade * p.depth;
       const cv::Scalar own(map[0], map[1], map[2]), white(255, 255, 255);
       const cv::Scalar colour = own * (1 - fade) + white * fade;
-      const cv::Scalar rim = own * (kRim * (1 - fade)) + white * fade;
+      const cv::Scalar rim = own * (kDark * (1 - fade)) + white * fade;
       const double r = radius(i) * p.scale;
       disc(picture, p.at, r, rim);
       disc(picture, p.at, std::max(r - std::max(1.0, 0.05 * r), 0.5 * r), colour);
@@ -230,6 +253,11 @@ class Painter {
 
   void draw_contacts(cv::Mat3b& picture) const {
     if (extremes_.force <= 0) return;
+    struct Line {
+      cv::Point2d from, to;
+      int width;
+    };
+    std::vector<Line> lines;
     for (const ContactForce& c : frame_.contact_forces) {
       const auto i = static_cast<std::size_t>(c.i);
       const Vec3 from = info_.box.wrap(frame_.position[i]);
@@ -238,8 +266,11 @@ class Painter {
       const Projected a = view_.project(from), b = view_.project(to);
       const double width = kWidestLine * a.scale * std::abs(c.normal_force) / extremes_.force;
       if (width < 0.25) continue;  // px: would look as thick as a line of one pixel
-      line(picture, a.at, b.at, kChain, std::max(1, static_cast<int>(std::lround(width))));
+      lines.push_back({a.at, b.at, std::max(1, static_cast<int>(std::lround(width)))});
     }
+    // A light rim keeps the lines readable on dark beads.
+    for (const Line& l : lines) line(picture, l.from, l.to, kRim, l.width + 2);
+    for (const Line& l : lines) line(picture, l.from, l.to, kChain, l.width);
   }
 
   void draw_vectors(cv::Mat3b& picture) const {
@@ -348,15 +379,14 @@ cv::Vec3b map_colour(double value, const std::array<double, 2>& range) {
 }
 
 View view_of(const TrajectorySource& source, const DrawJob& job) {
-  const Extremes e = extremes_of(source, drawn_frames(source, job), job, Progress::none());
-  return {source.info().box, e.bottom, e.top, job.pixels_per_sigma};
+  return view_for(source.info(), job, extremes_of(source, drawn_frames(source, job), job, Progress::none()));
 }
 
 Drawn draw(const TrajectorySource& source, const DrawJob& job, Progress& progress) {
   check(source, job);
   const std::vector<std::size_t> indices = drawn_frames(source, job);
   const Extremes extremes = extremes_of(source, indices, job, progress);
-  const View view(source.info().box, extremes.bottom, extremes.top, job.pixels_per_sigma);
+  const View view = view_for(source.info(), job, extremes);
   Painter painter(source, job, view, extremes);
   if (job.film()) {
     Movie movie(job.output, view.size(), job.frames_per_second);

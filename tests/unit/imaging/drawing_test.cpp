@@ -152,6 +152,21 @@ TEST(Drawing, InSpaceTheNearerBeadHidesTheFartherAndIsLarger) {
   EXPECT_NEAR(1 / far.scale - 1 / near.scale, apart / (eye * view.pixels_per_sigma()), 1e-12);
 }
 
+TEST(Drawing, ACellThatIsDrivenSidewaysIsDrawnWhereItIs) {
+  MemoryTrajectory trajectory = three_beads();
+  trajectory.info().drive = Drive{.axis = Axis::x, .amplitude = 1, .omega = 1};
+  DrawJob job;
+  job.pixels_per_sigma = 40;
+  const View view = view_of(trajectory, job);
+  const cv::Mat3b picture = drawn(trajectory, job);
+  // In the last frame the cell is 0.75 to the right, and its plate at rest.
+  EXPECT_LT(at(picture, view.project(Vec3(0.75, 0, 1)).at)[0], 100);
+  EXPECT_LT(at(picture, view.project(Vec3(10.75, 0, 1)).at)[0], 100);
+  EXPECT_LT(at(picture, view.project(Vec3(5, 0, 0)).at)[0], 100);
+  for (const Vec3& r : {Vec3(0, 0, 1), Vec3(10, 0, 1), Vec3(5, 0, 0.75)})
+    EXPECT_GT(at(picture, view.project(r).at)[0], 250) << r.transpose();
+}
+
 TEST(Drawing, AFilmHasTheChosenFrames) {
   const MemoryTrajectory trajectory = three_beads();
   const TemporaryFolder folder;
