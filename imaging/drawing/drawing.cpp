@@ -150,8 +150,11 @@ class Painter {
  private:
   static constexpr int kShift = 4;  // bits of a pixel that OpenCV's coordinates keep
   static cv::Point fine(const cv::Point2d& p) {
-    constexpr double kFine = 1 << kShift;
-    return {static_cast<int>(std::lround(p.x * kFine)), static_cast<int>(std::lround(p.y * kFine))};
+    constexpr double kFine = 1 << kShift, kFarthest = 1e8;  // a bead may be far outside an open cell
+    const auto whole = [=](double px) {
+      return static_cast<int>(std::lround(std::clamp(px * kFine, -kFarthest, kFarthest)));
+    };
+    return {whole(p.x), whole(p.y)};
   }
   static void line(cv::Mat3b& picture, const cv::Point2d& a, const cv::Point2d& b, const cv::Scalar& colour,
                    int width) {
@@ -260,6 +263,7 @@ class Painter {
     std::vector<Line> lines;
     for (const ContactForce& c : frame_.contact_forces) {
       const auto i = static_cast<std::size_t>(c.i);
+      if (!visible(frame_, i)) continue;
       const Vec3 from = info_.box.wrap(frame_.position[i]);
       const double other = c.j >= 0 ? radius(static_cast<std::size_t>(c.j)) : 0;
       const Vec3 to = from - c.normal * (radius(i) + other - c.overlap);
@@ -356,10 +360,14 @@ void check(const TrajectorySource& source, const DrawJob& job) {
     refuse("--vectors", "needs velocities, which this trajectory does not have.");
   if (job.contacts && !info.columns.contact_forces)
     refuse("--contacts", "needs contacts (simulate --contacts), which this trajectory does not have.");
-  if (job.colours.range && !((*job.colours.range)[0] < (*job.colours.range)[1]))
+  if (!job.colours.range) return;
+  const auto [low, high] = *job.colours.range;
+  if (!job.colours.of)
     throw ConfigError(Where{.file = {}, .key = "--colour-range"},
-                      fmt::format("is {:g} to {:g}; the first number must be the smaller one.",
-                                  (*job.colours.range)[0], (*job.colours.range)[1]));
+                      "applies to a number; choose one by --colour.");
+  if (!std::isfinite(low) || !std::isfinite(high) || low >= high)
+    throw ConfigError(Where{.file = {}, .key = "--colour-range"},
+                      fmt::format("is {:g} to {:g}, but must be a number and a larger one.", low, high));
 }
 
 }  // namespace

@@ -191,9 +191,14 @@ TEST(Drawing, WrongRequestsAreRefused) {
   job.pixels_per_sigma = 1e4;
   EXPECT_THROW(draw(trajectory, job), ConfigError);
   job.pixels_per_sigma = 10;
-  job.colours.range = {1, 1};
+  job.colours.range = {0, 1};  // without a number
   EXPECT_THROW(draw(trajectory, job), ConfigError);
-  job.colours.range = std::nullopt;
+  job.colours = by_slot();
+  for (const std::array<double, 2> range : {std::array{1.0, 1.0}, std::array{0.0, double{INFINITY}}}) {
+    job.colours.range = range;
+    EXPECT_THROW(draw(trajectory, job), ConfigError) << range[1];
+  }
+  job.colours = {};
   trajectory.info().columns.velocity = trajectory.info().columns.contact_forces = false;
   DrawJob vectors = job, contacts = job;
   vectors.vectors = contacts.contacts = true;
