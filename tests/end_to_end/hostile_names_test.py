@@ -85,6 +85,8 @@ class Session:
         self.run("analyze", n + b".h5", "-o", n + b".r.h5", "--figures", n + b".fig", "--json", "-q")
         self.run("render", n + b".h5", "-o", n + b".frames", "--movie", n + b".avi", "--json", "-q")
         self.run("info", n + b".avi", "--json")
+        self.run("draw", n + b".h5", "-o", n + b".drawn.png", "--json", "-q")
+        self.run("draw", n + b".h5", "-o", n + b".drawn.avi", "--frames", ":2", "--json", "-q")
         cell = n + b".frames/CELL.toml"
         self.run("locate", n + b".frames", "-o", n + b".csv", "--overlay", n + b".png", "--debug-dir", n + b".debug",
                  "--json", "-q")
