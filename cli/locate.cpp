@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 
+#include "cli/locate_view.hpp"
 #include "cli/locating_options.hpp"
 #include "cli/numbers.hpp"
 #include "cli/output.hpp"
@@ -33,7 +34,7 @@ namespace twincell::cli {
 namespace {
 
 struct LocateOptions {
-  std::string stack, output, overlay, truth, candidates, debug_folder;
+  std::string stack, output, overlay, view, truth, candidates, debug_folder;
   std::vector<double> scored_rows;
   std::int64_t overlay_frame = -1;  // -1: the first that is read
   bool explain = false;
@@ -166,6 +167,8 @@ void run(LocateOptions& o, const Common& common) {
   FramesAhead ahead(seen);
   const auto [locator, settings_index, choice] = configure_locator(ahead, given);
   const std::int64_t settings_frame = range.number(settings_index);
+  std::optional<LocateView> view;
+  if (!o.view.empty()) view.emplace(o.locating, region, locator, choice);
   MotionInExposure motion;
   const std::int64_t n = locate_stack(
       ahead, locator, common.n_threads(),
@@ -202,6 +205,7 @@ void run(LocateOptions& o, const Common& common) {
           write_overlay(o.overlay, grey, as_located.beads);
           drawn = true;
         }
+        if (view) view->add(frame, grey, located);
         if (!o.debug_folder.empty() && frame == o.overlay_frame)
           write_debug_pictures(o.debug_folder, grey, locator);
       },
@@ -212,6 +216,10 @@ void run(LocateOptions& o, const Common& common) {
   check_flat(o.locating.flat, locator.preprocess.bright);
   table.commit();
   candidates.commit();
+  if (view) {
+    document["view"] = o.view;
+    write_text_file(o.view, view->page(o.stack, o.output, n), locate_page());
+  }
   // Motion during the exposure needs the beads of the next frame, so it is told after all frames.
   for (std::int64_t index = 0; index < n; ++index) {
     const auto at = static_cast<std::size_t>(index);
@@ -270,6 +278,7 @@ void run(LocateOptions& o, const Common& common) {
   document["left_out"] = in_words(left_out);
   text += doubts(left_out, beads, bare, static_cast<std::size_t>(n));
   text += o.output + "\n";
+  if (view) text += o.view + "\n";
   if (truth) {
     const Score s = scorer.score();
     document["truth"] = as_json(s);
@@ -311,6 +320,13 @@ void add_locate(CLI::App& program, Common& common) {
          verb.add_option("--overlay", o->overlay,
                          "Picture of the frame --frame to write (PNG), with its beads marked"),
          Product::picture());
+  writes(
+      common, verb,
+      verb.add_option("--view", o->view,
+                      fmt::format("Page to write (HTML), which opens offline: the first {} frames with found "
+                                  "beads and dropped candidates, and what other settings would keep",
+                                  LocateView::kMostFrames)),
+      locate_page());
   former_option(verb, "--overlay-frame", "--frame");
   verb.add_option(
           "--frame", o->overlay_frame,

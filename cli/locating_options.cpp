@@ -2,10 +2,13 @@
 
 #include "cli/locating_options.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
+#include "core/escape.hpp"
 #include "imaging/refine/refiner.hpp"
 
 namespace twincell::cli {
@@ -22,6 +25,9 @@ void add_locating_options(CLI::App& verb, LocatingRequest& request) {
       ->check(CLI::IsMember(finder_names()));
   verb.add_option("--min-score", request.locator.find.min_score,
                   "Smallest share of the edge of a circle that must be visible, 0 to 1; default: 0.04");
+  verb.add_option("--min-explained", request.locator.judge.min_score,
+                  "Smallest score of a bead, 0 to 1: share of the variance around its edge that the disc "
+                  "explains; default: 0.5");
   verb.add_option("--refine", request.locator.refine.method,
                   "Method that finds the position of each bead to a fraction of a pixel. " + refiners_help())
       ->check(CLI::IsMember(refiner_names()));
@@ -49,6 +55,34 @@ void add_locating_options(CLI::App& verb, LocatingRequest& request) {
   verb.add_option("--frames", request.frames,
                   "Frames that are read: A:B or A:B:STEP, from frame A, counted from 0, to the one before B; "
                   "default: all");
+}
+
+std::string command_words(const LocatingRequest& request) {
+  const LocatorOptions usual;
+  std::string words;
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) words += fmt::format(" {} {}", name, shell_word(value));
+  };
+  if (request.locator.finder != usual.finder) add("--locator", request.locator.finder);
+  if (request.locator.find.min_score != usual.find.min_score)
+    add("--min-score", fmt::format("{}", request.locator.find.min_score));
+  add("--flat", request.flat);
+  add("--background", request.background);
+  add("--roi", request.roi);
+  add("--mask", request.mask);
+  add("--frames", request.frames);
+  return words;
+}
+
+std::string command_words_of_discs(const LocatingRequest& request) {
+  const LocatorOptions usual;
+  std::string words;
+  if (!request.diameters.empty()) words += fmt::format(" --diameter {}", fmt::join(request.diameters, " "));
+  if (request.dark) words += " --dark";
+  if (request.locator.preprocess.bright) words += " --bright";
+  if (request.locator.refine.method != usual.refine.method)
+    words += " --refine " + request.locator.refine.method;
+  return words;
 }
 
 std::unique_ptr<FrameSource> open_for_locating(const std::string& stack, const LocatingRequest& request,

@@ -26,16 +26,20 @@ std::string settings_table(const SettingsChoice& choice, const std::string& refi
   for (const TriedSettings& t : choice.tried)
     text += fmt::format("{:13.0f}  {:6.3f}  {:5}  {}{}\n", t.evidence, t.evidence / most, t.beads,
                         options_of(t.settings, refine), &t == &choice.tried.front() ? "  (chosen)" : "");
+  return text + settings_lead(choice, refine);
+}
+
+std::string settings_lead(const SettingsChoice& choice, const std::string& refine) {
   const std::size_t k = runner_up(choice);
-  if (k == 0) return text + "no other discs were considered\n";
+  if (k == 0) return "no other discs were considered\n";
   const double lead = choice.tried.front().evidence - choice.tried[k].evidence;
   const std::string other = options_of(choice.tried[k].settings, refine);
   if (lead < 0)
-    return text + fmt::format(
-                      "the best settings with other discs have {:.0f} nats more, less than the factor "
-                      "{:g} at which they replace the preferred ones: {}\n",
-                      -lead, kClearly, other);
-  return text + fmt::format("the best settings with other discs have {:.0f} nats less: {}\n", lead, other);
+    return fmt::format(
+        "the best settings with other discs have {:.0f} nats more, less than the factor {:g} at which they "
+        "replace the preferred ones: {}\n",
+        -lead, kClearly, other);
+  return fmt::format("the best settings with other discs have {:.0f} nats less: {}\n", lead, other);
 }
 
 std::string narrow_win(const SettingsChoice& choice, const std::string& refine) {

@@ -17,6 +17,10 @@ std::string options_of(const FoundSettings& settings, const std::string& refine)
 /// chosen ones come first. Below it, by how much they won over the best settings with other discs.
 std::string settings_table(const SettingsChoice& choice, const std::string& refine);
 
+/// By how much the chosen settings won over the best ones with other discs, in a sentence. \pre choice.tried
+/// is not empty
+std::string settings_lead(const SettingsChoice& choice, const std::string& refine);
+
 /// If the chosen settings won narrowly, a sentence with the options of the runner-up; otherwise empty.
 std::string narrow_win(const SettingsChoice& choice, const std::string& refine);
 

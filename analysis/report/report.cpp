@@ -13,6 +13,7 @@
 #include "analysis/observable/results.hpp"
 #include "analysis/report/boundary_figure.hpp"
 #include "analysis/report/figures.hpp"
+#include "analysis/report/page_parts.hpp"
 #include "analysis/report/report_data.hpp"
 #include "analysis/runs/onset_agreement.hpp"
 #include "core/atomic_file.hpp"
@@ -23,7 +24,7 @@
 namespace twincell {
 
 namespace embedded {  // files of analysis/report/, embedded into the program by cmake/embed.cmake
-extern const std::string_view page_css, page_js, plotly_js, plotly_license;
+extern const std::string_view page_js, plotly_js, plotly_license;
 }
 
 namespace {
@@ -401,14 +402,6 @@ std::string inline_svg(const std::string& file, const std::string& prefix, const
   return svg.replace(0, 4, fmt::format("<svg role=\"img\" aria-label=\"{}\"", html_text(title)));
 }
 
-/// Text for the content of a script element, escaped so that it cannot end the element.
-std::string script(std::string_view text) {
-  std::string safe(text);
-  for (std::size_t at = safe.find("</script"); at != std::string::npos; at = safe.find("</script", at))
-    safe.insert(at + 1, 1, '\\');
-  return safe;
-}
-
 /// The elements in which the script draws. Without JavaScript they are hidden, and only the figures by
 /// gnuplot further down are shown.
 constexpr std::string_view kOpening = R"(
@@ -567,7 +560,7 @@ std::string page(const Comparison& c, const std::vector<Figure>& figures,
       "<title>{} ({})</title><style>{}</style></head><body>\n<header><h1>{}</h1><span>{} <button "
       "id=\"theme\" "
       "hidden>Dark</button></span></header>\n{}",
-      html_text(title), date, embedded::page_css, typeset(title), date, verdict_box(c));
+      html_text(title), date, page_style(), typeset(title), date, verdict_box(c));
   html += kOpening;
   html +=
       "<p class=\"quiet\">Both sides went through the same analysis. A bed <em>bounces</em> if s<sub>b</sub> "
@@ -585,8 +578,8 @@ std::string page(const Comparison& c, const std::vector<Figure>& figures,
                     s.needs_script ? " needs-script" : "", s.id, s.open ? " open" : "", s.title, s.body);
   html += "</main>\n";
   html += "<script type=\"application/json\" id=\"data\">" + report_data(c) + "</script>\n";
-  html += "<script>" + script(embedded::plotly_js) + "</script>\n<script>" + script(embedded::page_js) +
-          "</script>\n</body></html>\n";
+  html += "<script>" + script_text(embedded::plotly_js) + "</script>\n<script>" +
+          script_text(embedded::page_js) + "</script>\n</body></html>\n";
   return html;
 }
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/observable/results.hpp"
-#include "core/json_text.hpp"
+#include "analysis/report/page_parts.hpp"
 
 namespace twincell {
 namespace {
@@ -23,20 +23,6 @@ json hundredths(double v) {
   return std::isfinite(v) ? std::lround(100 * v) : -1;
 }
 
-std::string base64(const std::string& bytes) {
-  static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() ? kLetters[word >> (18 - 6 * k) & 63U] : '=';
-  }
-  return text;
-}
-
 std::string label_of(const Frame& frame, int phases) {
   if (frame.cycle < 0 || frame.phase < 0 || phases <= 0) return fmt::format("frame {}", frame.step);
   return fmt::format("cycle {}, phase {}/{}", frame.cycle, frame.phase, phases);
@@ -50,7 +36,7 @@ json moment_json(const Snapshot& moment, int phases, const std::string& picture)
             {"cycle", locked ? json(f.cycle) : json(nullptr)},
             {"fraction", locked ? static_cast<double>(f.phase) / phases : 0.0},
             {"plate", or_null(moment.plate)},
-            {"picture", picture.empty() ? json(nullptr) : json("data:image/png;base64," + base64(picture))}};
+            {"picture", picture.empty() ? json(nullptr) : json(data_uri("image/png", picture))}};
   for (const char* column : {"x", "z", "q6", "psi6", "bonds", "coordination", "structure"})
     j[column] = json::array();
   for (std::size_t i = 0; i < f.position.size(); ++i) {
@@ -175,12 +161,7 @@ std::string report_data(const Comparison& comparison) {
   for (const SweepPoint& p : comparison.sweep)
     document["sweep"].push_back(
         {{"n_l", p.n_l}, {"gamma", p.gamma}, {"start", p.start}, {"phase", phase_name(p.phase)}});
-  const std::string text = json_text(document);
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text)  // "</script" inside a name must not end the element
-    safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return safe;
+  return json_script_text(document);
 }
 
 }  // namespace twincell

@@ -96,6 +96,7 @@ void LocatorOptions::check() const {
   if (refine.ring_px != 0) range("ring", refine.ring_px, 1, 50);
   range("blur", refine.blur_px, 0, 10);
   range("radius-spread", refine.radius_spread, 1e-6, 1);
+  range("min-explained", judge.min_score, 0, 1);
   range("radius-tolerance", judge.radius_tolerance, 0, 1);
   const std::vector<std::string> finders = finder_names();
   if (std::find(finders.begin(), finders.end(), finder) == finders.end())

@@ -71,7 +71,7 @@ double farthest_from(const std::vector<std::pair<double, double>>& part,
 
 TEST(LocatingOptions, LocateTrackAndMatchHaveTheSame) {
   const auto locate = options_of("locate"), track = options_of("track"), match = options_of("match");
-  for (const char* name : {"--diameter", "--locator", "--min-score", "--refine", "--bright", "--dark",
+  for (const char* name : {"--diameter", "--locator", "--min-score", "--min-explained", "--refine", "--bright", "--dark",
                            "--flat", "--background", "--roi", "--mask", "--frames"}) {
     ASSERT_TRUE(locate.contains(name)) << name;
     ASSERT_TRUE(track.contains(name)) << name;

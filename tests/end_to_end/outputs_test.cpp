@@ -97,6 +97,7 @@ std::vector<Verb> verbs() {
       {"locate overlay", {"locate", "frames", "-o", "beads.csv"}, "--overlay", false},
       {"locate candidates", {"locate", "frames", "-o", "beads.csv"}, "--candidates", false},
       {"locate debug", {"locate", "frames", "-o", "beads.csv"}, "--debug-dir", true},
+      {"locate view", {"locate", "frames", "-o", "beads.csv"}, "--view", false},
       {"track", {"track", "frames", "--cell", "frames/CELL.toml"}, "-o", false},
       {"track csv", {"track", "frames", "--cell", "frames/CELL.toml", "-o", "t.h5"}, "--csv", false},
       {"import", {"import", "notes.txt"}, "-o", false},
@@ -212,7 +213,8 @@ TEST(Outputs, StandardOutputTakesTextAlone) {
   for (const Verb& verb : verbs()) {
     const std::string name = verb.name;
     const bool text = name.starts_with("calibrate") || name.starts_with("sweep collect") ||
-                      name == "locate" || name == "locate candidates" || name == "track csv";
+                      name == "locate" || name == "locate candidates" || name == "locate view" ||
+                      name == "track csv";
     if (text && !verb.folder) continue;
     const Ran ran = run_verb(verb, "-");
     EXPECT_EQ(ran.code, 2) << name;
@@ -341,7 +343,8 @@ TEST(Outputs, FilesAreReplacedByTheirOwnKindOrByForce) {
   const std::vector<std::vector<std::string>> twice = {
       {"simulate", "scene.toml", "-o", "a.h5"},
       {"analyze", "sim.h5", "-o", "r.h5"},
-      {"locate", "frames", "-o", "b.csv", "--overlay", "o.png", "--candidates", "c.csv", "--debug-dir", "d"},
+      {"locate", "frames", "-o", "b.csv", "--overlay", "o.png", "--candidates", "c.csv", "--debug-dir", "d",
+       "--view", "v.html"},
       {"track", "frames", "--cell", "frames/CELL.toml", "-o", "t.h5", "--csv", "t.csv"},
       {"render", "sim.h5", "--movie", "f.avi"},
       {"draw", "sim.h5", "-o", "d.png"},

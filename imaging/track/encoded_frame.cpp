@@ -1,0 +1,33 @@
+#include "imaging/track/encoded_frame.hpp"
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace twincell {
+
+EncodedFrame encoded_frame(const cv::Mat& grey) {
+  constexpr int kLongest = 1600, kQuality = 90, kCompression = 9;
+  constexpr std::size_t kExact = std::size_t{1} << 18;
+  double top = 0;
+  cv::minMaxLoc(grey, nullptr, &top);
+  cv::Mat1b byte;
+  grey.convertTo(byte, CV_8U, grey.depth() == CV_8U || top <= 0 ? 1.0 : 255 / top);
+  if (const int longest = std::max(byte.cols, byte.rows); longest > kLongest) {
+    const double shrink = static_cast<double>(kLongest) / longest;
+    const cv::Size size(std::max(1, cvRound(shrink * byte.cols)), std::max(1, cvRound(shrink * byte.rows)));
+    cv::resize(byte, byte, size, 0, 0, cv::INTER_AREA);
+  }
+  const bool exact = byte.total() <= kExact;
+  const std::vector<int> settings = exact ? std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, kCompression}
+                                          : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, kQuality};
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(exact ? ".png" : ".jpg", byte, bytes, settings))
+    throw RunError("A frame cannot be encoded as a picture.");
+  return {exact ? "image/png" : "image/jpeg", {bytes.begin(), bytes.end()}};
+}
+
+}  // namespace twincell
