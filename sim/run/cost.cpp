@@ -51,6 +51,16 @@ double layers_of(const Scene& scene, std::size_t beads) {
   return static_cast<double>(beads) / per_layer;
 }
 
+/// Beads of unlike sizes do not touch on a lattice, whose constant is the largest diameter, and would fall
+/// without contacts. With that diameter they are a bed in contact; by their masses they stay unlike, as in
+/// the run.
+void enlarge_to_touch(std::vector<Bead>& beads, std::size_t intruders) {
+  const auto end = beads.end() - static_cast<std::ptrdiff_t>(intruders);
+  double largest = 0;
+  for (auto b = beads.begin(); b != end; ++b) largest = std::max(largest, b->radius);
+  for (auto b = beads.begin(); b != end; ++b) b->radius = largest;
+}
+
 constexpr double kCrossing = 8;  ///< most time for the bed to be compressed, over that of the measurement
 
 /// Time of a step of the bed at rest. Beads that start at random positions would fall first, so the same
@@ -59,6 +69,7 @@ double seconds_per_step_at_rest(Scene scene, double seconds, int threads, Progre
   if (start_row(scene.start).draws) scene.start = StartKind::crystal_a;
   RunState state = placed(scene, progress);
   const Plan plan = make_plan(scene, state.beads);
+  if (!start_row(scene.start).from_file) enlarge_to_touch(state.beads, scene.intruder ? 1 : 0);
   System system = make_system(scene, plan);
   system.drive.amplitude = 0;
   system.beads = std::move(state.beads);
