@@ -119,8 +119,8 @@ class XyzReader final : public SnapshotReader {
   }
 
   void place_columns(const std::string& text) {
-    if (text == placed_) return;
-    if (!placed_.empty()) fail("the columns are not those of the first frame.");
+    if (position_ && text == placed_) return;
+    if (position_) fail("the columns are not those of the first frame.");
     placed_ = text;
     std::vector<std::string> parts(1);
     for (const char c : text)

@@ -200,12 +200,13 @@ class GsdReader final : public SnapshotReader {
     if (frame_ == n_frames_) return false;
     s = Snapshot{};
     const auto step = numbers("configuration/step", 1, 1);
-    s.step = step.empty() ? static_cast<std::int64_t>(frame_) : static_cast<std::int64_t>(step[0]);
+    s.step = step.empty() ? static_cast<std::int64_t>(frame_) : whole("configuration/step", step[0]);
     if (const auto time = numbers("log/configuration/time", 1, 1); !time.empty()) s.time = time[0];
     const auto count = numbers("particles/N", 1, 1);
-    const auto n = static_cast<std::size_t>(count.empty() ? 0 : count[0]);
-    if (static_cast<std::int64_t>(n) > size_)
-      fail_at(0, fmt::format("{} beads are announced in a file of {} bytes.", n, size_));
+    const std::int64_t announced = count.empty() ? 0 : whole("particles/N", count[0]);
+    if (announced < 0 || announced > size_)
+      fail_at(0, fmt::format("{} beads are announced in a file of {} bytes.", announced, size_));
+    const auto n = static_cast<std::size_t>(announced);
     const Vec3 centre = read_box(s);
     const auto position = numbers("particles/position", n, 3);
     if (position.empty() && n > 0) fail_at(0, fmt::format("frame {} has no positions.", frame_));
@@ -220,8 +221,8 @@ class GsdReader final : public SnapshotReader {
     const Vec3 size = s.upper - s.lower;
     for (std::size_t i = 0; i < n; ++i) {
       SnapshotBead bead;
-      bead.id = ids.empty() ? static_cast<std::int64_t>(i) : static_cast<std::int64_t>(ids[i]);
-      bead.type = types.empty() ? 1 : static_cast<long>(types[i]) + 1;
+      bead.id = ids.empty() ? static_cast<std::int64_t>(i) : whole("log/particles/id", ids[i]);
+      bead.type = types.empty() ? 1 : whole("particles/typeid", types[i]) + 1;
       bead.radius = diameter.empty() ? 0.5 : diameter[i] / 2;  // HOOMD's default diameter is 1
       bead.mass = mass.empty() ? 1 : mass[i];
       if (!(bead.radius > 0)) fail_at(0, fmt::format("bead {} of frame {} has no size.", i, frame_));
@@ -310,6 +311,14 @@ class GsdReader final : public SnapshotReader {
         fail_at(0, fmt::format("{} of frame {} has a value that is not finite.", name, e.frame));
     }
     return values;
+  }
+
+  [[nodiscard]] std::int64_t whole(const char* name, double value) const {
+    constexpr double kExact = 9e15;  // below it a double holds every whole number
+    if (value != std::floor(value) || std::abs(value) > kExact)
+      fail_at(0, fmt::format("{} of frame {} has {:g}, not a whole number within {:g}.", name, frame_, value,
+                             kExact));
+    return static_cast<std::int64_t>(value);
   }
 
   template <class Number>

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "core/atomic_file.hpp"
@@ -198,6 +199,8 @@ TEST_F(ForeignFormats, DamagedXyz) {
             "f:2: '99999999999999999999' is not a whole number.");
   EXPECT_EQ(refusal("xyz", "1\nProperties=pos:R\n1 1 0\n"),
             "f:2: Properties needs name:type:count for each property.");
+  EXPECT_EQ(refusal("xyz", "1\nProperties=\"\"\n\n"),
+            "f:2: Properties needs name:type:count for each property.");
   EXPECT_EQ(refusal("xyz", "1\nProperties=id:I:1\n1\n"), "f:2: there is no property pos:R:3.");
   EXPECT_EQ(refusal("xyz", "2\n" + head + ":id:I:1\n1 2 0 7\n1 3 0 7\n"),
             "f:4: the bead with id 7 occurs twice in a frame.");
@@ -377,6 +380,25 @@ TEST_F(ForeignFormats, AGsdFileCutAnywhereIsRefused) {
   EXPECT_EQ(refusal("gsd", whole), "accepted");
   for (std::size_t n = 0; n < whole.size(); n += 37)
     EXPECT_NE(refusal("gsd", whole.substr(0, n)), "accepted") << n << " of " << whole.size() << " bytes";
+}
+
+// GSD stores the ids as doubles.
+TEST_F(ForeignFormats, AGsdFileWithAnIdThatIsNoWholeNumberIsRefused) {
+  export_trajectory(three_beads(3), foreign_format("gsd", ""), ExportUnits::reduced(), file(), "f");
+  const std::string whole = read_text_file(file());
+  const auto bytes = [](const std::array<double, 3>& ids) {
+    return std::string(reinterpret_cast<const char*>(ids.data()), sizeof ids);
+  };
+  const std::size_t at = whole.find(bytes({0, 1, 2}));
+  ASSERT_NE(at, std::string::npos);
+  const auto with = [&](double id) {
+    std::string damaged = whole;
+    return refusal("gsd", damaged.replace(at, 3 * sizeof(double), bytes({0, id, 2})));
+  };
+  EXPECT_EQ(with(5), "accepted");
+  EXPECT_EQ(with(0.5), "f: log/particles/id of frame 0 has 0.5, not a whole number within 9e+15.");
+  EXPECT_EQ(with(2e200), "f: log/particles/id of frame 0 has 2e+200, not a whole number within 9e+15.");
+  EXPECT_EQ(with(-1e19), "f: log/particles/id of frame 0 has -1e+19, not a whole number within 9e+15.");
 }
 
 // A flipped byte may change a number; it must never end the reader otherwise than by a sentence.
