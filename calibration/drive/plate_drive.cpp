@@ -180,18 +180,28 @@ void compare_frame_rate(DriveCheck& check, const CellDescription& cell, double s
         *cell.frame_rate_hz, cell.phase_lock.frames_per_cycle, omega, stated);
 }
 
-/// Motion of the plate. A fit that begins at a wrong number of frames per cycle may fail, so that a second
-/// one searches for the period. It needs the stated position of the plate, because without the plate in the
-/// picture it would find a period in the noise of another edge.
+/// Motion of the plate. A fit that begins at a wrong number of frames per cycle fails or ends beside the true
+/// period, so that a second one searches for the period and is kept if it describes the heights as well. It
+/// needs the stated position of the plate, because without the plate in the picture it would find a period in
+/// the noise of another edge.
 DriveFit motion_of_plate(const CellDescription& cell, const StackEdges& edges) {
-  try {
-    return plate_in_picture(cell, edges).second;
-  } catch (const InputError&) {
-    if (!cell.phase_lock.locked() || !cell.origin) throw;
-    CellDescription free = cell;
-    free.phase_lock = {};
-    return plate_in_picture(free, edges).second;
-  }
+  if (!cell.phase_lock.locked() || !cell.origin) return plate_in_picture(cell, edges).second;
+  CellDescription free = cell;
+  free.phase_lock = {};
+  const auto fitted = [&](const CellDescription& from) -> std::optional<DriveFit> {
+    try {
+      return plate_in_picture(from, edges).second;
+    } catch (const InputError&) {
+      return {};
+    }
+  };
+  const auto as_stated = fitted(cell);
+  if (!as_stated) return plate_in_picture(free, edges).second;
+  const auto searched = fitted(free);
+  constexpr double kAsWell = 1.1;
+  return searched && searched->locked >= as_stated->locked && searched->rms <= kAsWell * as_stated->rms
+             ? *searched
+             : *as_stated;
 }
 
 }  // namespace
