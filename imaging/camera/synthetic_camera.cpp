@@ -253,15 +253,16 @@ cv::Mat1f SyntheticCamera::light(const Exposure& exposure) const {
         row[x] = flat ? row[x] - depth * stamp[i] : row[x] * (1 - depth * stamp[i]);
     }
   }
-  // Walls, plate and lamp: applied after the discs, because they multiply the light that passes all discs.
-  share = cv::max(share, 0.0F);
-  draw_plate(exposure, share);
-  if (walls_.empty() && info_.box.boundary[0] == Boundary::wall) draw_leaning_walls(exposure, share);
+  // Walls and plate: beads do not overlap them, so what they block adds up. A product of blurred shapes would
+  // be too bright where a bead touches a wall, because the blur acts on the picture as a whole.
+  cv::Mat1f cell(size_, 1.0F);
+  draw_plate(exposure, cell);
+  if (walls_.empty() && info_.box.boundary[0] == Boundary::wall) draw_leaning_walls(exposure, cell);
   const auto lamp = static_cast<float>(exposure.lamp);
   for (int y = 0; y < size_.height; ++y)
     for (int x = 0; x < size_.width; ++x) {
-      float left = share(y, x);
-      if (!walls_.empty()) left *= walls_(y, x);
+      const float open = walls_.empty() ? cell(y, x) : cell(y, x) * walls_(y, x);
+      float left = std::max(0.0F, share(y, x) - (1 - open));
       if (options_.bright) left = 1 - left;
       if (!glow.empty()) left += glow(y, x);
       share(y, x) = lamp * backlight_(y, x) * left;

@@ -197,13 +197,13 @@ struct Step {
   double at = 0, blur = 0, error = 0;
 };
 
-/// The pixels of a step, i = first ...: light relative to the local light, and share that beads transmit.
+/// The pixels of a step, i = first ...: light relative to the local light, and share that beads block.
 struct Window {
   int first = 0;
-  std::vector<double> light, share;
+  std::vector<double> light, blocked;
 };
 
-/// Fits l_i = T_i Phi((i - e)/s) by Gauss-Newton steps in e, and in s if free_blur.
+/// Fits l_i = Phi((i - e)/s) - D_i by Gauss-Newton steps in e, and in s if free_blur.
 std::optional<Step> fit_step(const Window& w, double start, double s, bool free_blur, double noise) {
   constexpr double kLargestMisfit = 3.5, kModelError = 0.015;
   double e = start;
@@ -214,9 +214,8 @@ std::optional<Step> fit_step(const Window& w, double start, double s, bool free_
     Eigen::Vector2d right = Eigen::Vector2d::Zero();
     squares = 0;
     for (std::size_t k = 0; k < w.light.size(); ++k) {
-      const double near = (w.first + static_cast<int>(k) - e) / s,
-                   rise = w.share[k] * normal_density(near) / s;
-      const double r = w.light[k] - w.share[k] * normal_cdf(near);
+      const double near = (w.first + static_cast<int>(k) - e) / s, rise = normal_density(near) / s;
+      const double r = w.light[k] - (normal_cdf(near) - w.blocked[k]);
       const Eigen::Vector2d slope(-rise, free_blur ? -rise * near : 0.0);
       normal += slope * slope.transpose();
       right += r * slope;
@@ -264,7 +263,7 @@ CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) 
   // Windows: pixels around the step of a line, scaled so that the wall is 0 and the background is 1.
   const auto window_of = [&](const Line& line, double s) {
     const int reach = static_cast<int>(std::ceil(kEdge * s)) + 1, n = length(d.size(), line.from);
-    Window w{.first = std::max(1, line.light - reach), .light = {}, .share = {}};
+    Window w{.first = std::max(1, line.light - reach), .light = {}, .blocked = {}};
     for (int i = w.first; i < std::min(n, line.light + reach); ++i) {
       const cv::Point at = pixel(d.size(), line.from, line.number, i);
       if (share(at) < kLeastShare) break;
@@ -273,7 +272,7 @@ CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) 
                    dark = black_is_clipped ? 1 : 1 - walls.dot(basis) / b;
       if (dark - level < 0.5) return Window{};
       w.light.push_back((dark - static_cast<double>(d(at))) / (dark - level));
-      w.share.push_back(static_cast<double>(share(at)));
+      w.blocked.push_back(1 - static_cast<double>(share(at)));
     }
     return w;
   };

@@ -5,13 +5,14 @@
 /// Every row is searched from the left and from the right border, and every column from the bottom, through
 /// the dark to the first bright pixel. At the step there, at position e, the light relative to the local
 /// light is
-///     l_i = T_i Phi((i - e)/s),
-/// with a blur s common to all rows of a frame (and another common to all columns), and T_i the share of
-/// light that the beads transmit, from their fitted discs. Pixels with T_i < 0.97 are left out. The local
-/// light is a quadratic surface through the pixels visible past the beads. Without a bead nearby the step is
-/// symmetric, and e does not depend on s. There is no point within 4.5 s of a corner, or where no light
-/// reaches the step. A bead that touches the wall and was not located hides the wall: the point is then on
-/// the bead's far side, always further inside the cell, never outside.
+///     l_i = Phi((i - e)/s) - D_i,
+/// with a blur s common to all rows of a frame (and another common to all columns), and D_i the share of
+/// light that the beads block, from their fitted discs. Beads and walls do not overlap, so what they block
+/// adds up, before and after the blur. Pixels with D_i > 0.03 are left out. The local light is a quadratic
+/// surface through the pixels visible past the beads. Without a bead nearby the step is symmetric, and e does
+/// not depend on s. There is no point within 4.5 s of a corner, or where no light reaches the step. A bead
+/// that touches the wall and was not located hides the wall: the point is then on the bead's far side, always
+/// further inside the cell, never outside.
 
 #include <opencv2/core.hpp>
 #include <vector>

@@ -121,6 +121,21 @@ Surface bright_envelope(const Rows& image) {
   return c;
 }
 
+// The edge of a region lies within a block or two of its coarse picture. There, the region also enters beads
+// that touch it. Such bumps are narrower than a bead; the edge of the region is straight over that width. The
+// regions are continued beyond the border, as below.
+void trim_bumps(cv::Mat1b& regions, const cv::Mat1b& surely_inside, double disc_radius_px) {
+  const int half = cvRound(0.6 * disc_radius_px), width = 2 * half + 1;
+  cv::Mat1b continued;
+  cv::copyMakeBorder(regions, continued, half, half, half, half, cv::BORDER_REPLICATE);
+  const auto opened = [&](int rows, int columns) {
+    cv::Mat1b result;
+    cv::morphologyEx(continued, result, cv::MORPH_OPEN, cv::Mat1b(rows, columns, uchar{1}));
+    return cv::Mat1b(result(cv::Rect(half, half, regions.cols, regions.rows)));
+  };
+  regions &= (opened(1, width) & opened(width, 1)) | surely_inside;
+}
+
 // Morphological opening of the dark region by a disc, through two distance maps, at reduced resolution. The
 // opening is a few pixels too large or too small, but only within the dark region. The frame is continued
 // beyond its border, so that a thin strip of plate at the bottom of a frame counts as thick. Empty if there
@@ -184,8 +199,14 @@ cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double dis
   const cv::Mat1b coarse =
       to_core(cv::Rect(pad, pad, size.width, size.height)) < reach + (shrink > 1 ? 1 : 0);
   cv::Mat1b regions;
-  cv::resize(coarse, regions, cv::Size(), shrink, shrink, cv::INTER_NEAREST);
-  regions = regions(cv::Rect(0, 0, darkness.cols, darkness.rows)) & dark_pixels;
+  const auto at_full_size = [&](const cv::Mat1b& blocks) {
+    cv::Mat1b full;
+    cv::resize(blocks, full, cv::Size(), shrink, shrink, cv::INTER_NEAREST);
+    return cv::Mat1b(full(cv::Rect(0, 0, darkness.cols, darkness.rows)));
+  };
+  regions = at_full_size(coarse) & dark_pixels;
+  trim_bumps(regions, at_full_size(to_core(cv::Rect(pad, pad, size.width, size.height)) < 0.5 * reach),
+             disc_radius_px);
   cv::dilate(regions, regions, cv::Mat(), cv::Point(-1, -1), 2);  // includes their blurred edge
   return regions;
 }
@@ -199,12 +220,12 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double radius_px, double
   constexpr double kOutOfFocus = 0.22;         // of the radius
 
   // Distances from an edge to either side, in units of the blur.
-  constexpr double kTail = 1.5, kFromDark = 0.7, kFromDarkest = 1.55;
+  constexpr double kTail = 2, kFromDark = 0.7, kFromDarkest = 1.55;
   cv::Mat1b regions = regions_darker_than(kDark, darkness, in_radii * radius_px);
-  const double blur = regions.empty() ? 0 : blur_of(darkness);
-  if (blur < kSharp) return regions;
+  if (regions.empty()) return regions;
+  const double blur = blur_of(darkness);
   double beside = (kTail + kFromDark) * blur;
-  if (blur > kOutOfFocus * radius_px) {
+  if (blur > std::max(kSharp, kOutOfFocus * radius_px)) {
     cv::Mat1f smooth;
     cv::GaussianBlur(darkness, smooth, {0, 0}, kSmooth);
     std::vector<float> levels;
@@ -218,8 +239,8 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double radius_px, double
     regions = regions_darker_than(kOfDarkest * *at, smooth, in_radii * radius_px);
     beside = (kTail + kFromDarkest) * blur;
   }
-  const int wide = 2 * std::max(0, cvRound(beside) - 2) + 1;
-  if (!regions.empty())
+  const int wide = 2 * std::max(0, cvCeil(beside) - 2) + 1;
+  if (!regions.empty() && wide > 1)
     cv::dilate(regions, regions, cv::getStructuringElement(cv::MORPH_ELLIPSE, {wide, wide}));
   return regions;
 }

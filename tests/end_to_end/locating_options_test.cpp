@@ -71,8 +71,8 @@ double farthest_from(const std::vector<std::pair<double, double>>& part,
 
 TEST(LocatingOptions, LocateTrackAndMatchHaveTheSame) {
   const auto locate = options_of("locate"), track = options_of("track"), match = options_of("match");
-  for (const char* name : {"--diameter", "--locator", "--min-score", "--min-explained", "--refine", "--bright", "--dark",
-                           "--flat", "--background", "--roi", "--mask", "--frames"}) {
+  for (const char* name : {"--diameter", "--locator", "--min-score", "--min-explained", "--refine",
+                           "--bright", "--dark", "--flat", "--background", "--roi", "--mask", "--frames"}) {
     ASSERT_TRUE(locate.contains(name)) << name;
     ASSERT_TRUE(track.contains(name)) << name;
     ASSERT_TRUE(match.contains(name)) << name;
@@ -103,10 +103,11 @@ TEST(LocatingOptions, NothingIsFoundOutsideTheRegionAndCoordinatesStay) {
   std::vector<std::pair<double, double>> well_inside;
   for (const auto& [x, y] : roi) {
     EXPECT_TRUE(x > 49.5 && x < 109.5 && y > 99.5) << x << ' ' << y;
-    if (x > 57 && x < 103 && y > 107) well_inside.emplace_back(x, y);
+    if (x > 62 && x < 98 && y > 112) well_inside.emplace_back(x, y);
   }
   EXPECT_GE(well_inside.size(), 12U);
-  EXPECT_LT(farthest_from(well_inside, whole), 0.05);
+  // The light is estimated from the region alone, which here is full of beads.
+  EXPECT_LT(farthest_from(well_inside, whole), 0.1);
   cv::Mat1b mask(cv::imread((kDemo / "frame_00007.png").string(), cv::IMREAD_UNCHANGED).size(), uchar{255});
   mask.colRange(0, 70) = 0;
   cv::imwrite(folder / "mask.png", mask);

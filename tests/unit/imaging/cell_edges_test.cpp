@@ -1,0 +1,78 @@
+// Edges of walls and plate in pictures drawn sharply on a fine grid and then blurred, as a lens does it.
+#include "imaging/cell/cell_edges.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <random>
+#include <vector>
+
+using namespace twincell;
+
+namespace {
+
+constexpr double kRadius_px = 7.5, kLeft_px = 20.37, kRight_px = 200.81, kPlate_px = 160.23;
+constexpr int kFine = 8;  // grid points a pixel
+
+/// A cell with a column of beads along either wall and a row on the plate, each `gap_px` from it.
+cv::Mat cell_with_beads(double gap_px, double blur_px, double noise) {
+  const cv::Size size(221, 181);
+  cv::Mat1f fine(size * kFine, 1.0F);
+  const auto at = [](int i) { return (i + 0.5) / kFine - 0.5; };
+  std::vector<cv::Point2d> beads;
+  for (double y = kPlate_px - kRadius_px - gap_px; y > 20; y -= 2 * kRadius_px + 3) {
+    beads.emplace_back(kLeft_px + kRadius_px + gap_px, y);
+    beads.emplace_back(kRight_px - kRadius_px - gap_px, y);
+  }
+  for (double x = kLeft_px + 4 * kRadius_px; x < kRight_px - 4 * kRadius_px; x += 2 * kRadius_px + 3)
+    beads.emplace_back(x, kPlate_px - kRadius_px - gap_px);
+  for (int j = 0; j < fine.rows; ++j)
+    for (int i = 0; i < fine.cols; ++i)
+      if (at(i) < kLeft_px || at(i) > kRight_px || at(j) > kPlate_px) fine(j, i) = 0;
+  for (const cv::Point2d& b : beads)
+    for (int j = static_cast<int>((b.y - kRadius_px - 1) * kFine); at(j) < b.y + kRadius_px; ++j)
+      for (int i = static_cast<int>((b.x - kRadius_px - 1) * kFine); at(i) < b.x + kRadius_px; ++i)
+        if (std::hypot(at(i) - b.x, at(j) - b.y) < kRadius_px) fine(j, i) = 0;
+  cv::GaussianBlur(fine, fine, {}, blur_px * kFine, blur_px * kFine, cv::BORDER_REPLICATE);
+  cv::Mat1f light;
+  cv::resize(fine, light, size, 0, 0, cv::INTER_AREA);
+  std::mt19937_64 generator(5);
+  std::normal_distribution<float> normal(0, static_cast<float>(noise));
+  cv::Mat1b grey(size);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      grey(y, x) = cv::saturate_cast<uchar>(10 + 200 * light(y, x) + normal(generator));
+  return grey;
+}
+
+/// Mean distance of an edge's points from the truth, px.
+template <class Coordinate>
+double offset_of(const std::vector<EdgePoint>& edge, double truth, Coordinate coordinate) {
+  double sum = 0, weight = 0;
+  for (const EdgePoint& p : edge) {
+    sum += (coordinate(p) - truth) / (p.sigma * p.sigma);
+    weight += 1 / (p.sigma * p.sigma);
+  }
+  return sum / weight;
+}
+
+}  // namespace
+
+TEST(CellEdges, BeadsThatTouchTheEdgesDoNotMoveThem) {
+  constexpr double kBound_px = 0.0125;  // a product of the two lights errs by 0.017
+  const auto x = [](const EdgePoint& p) { return p.at.x_px; };
+  const auto y = [](const EdgePoint& p) { return p.at.y_px; };
+  for (const double gap_px : {0.0, 0.5, 1.5})
+    for (const double blur_px : {0.7, 1.0}) {
+      const CellEdges edges = find_cell_edges(cell_with_beads(gap_px, blur_px, 1), false, 2 * kRadius_px);
+      ASSERT_GE(edges.left.size(), 40U) << gap_px;
+      ASSERT_GE(edges.right.size(), 40U) << gap_px;
+      ASSERT_GE(edges.plate.size(), 40U) << gap_px;
+      // The edge of the drawing lies on the grid, within half a step of the stated position.
+      const auto drawn = [](double edge) { return std::round((edge + 0.5) * kFine) / kFine - 0.5; };
+      EXPECT_NEAR(offset_of(edges.left, drawn(kLeft_px), x), 0, kBound_px) << gap_px << ' ' << blur_px;
+      EXPECT_NEAR(offset_of(edges.right, drawn(kRight_px), x), 0, kBound_px) << gap_px << ' ' << blur_px;
+      EXPECT_NEAR(offset_of(edges.plate, drawn(kPlate_px), y), 0, kBound_px) << gap_px << ' ' << blur_px;
+    }
+}
