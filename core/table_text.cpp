@@ -39,6 +39,32 @@ std::string read_table_text(const std::filesystem::path& file) {
   return text;
 }
 
+std::vector<std::string_view> fields_of(std::string_view line) {
+  constexpr std::string_view kSpace = " \t\r";
+  const auto trimmed = [&](std::string_view field) {
+    field.remove_prefix(std::min(field.find_first_not_of(kSpace), field.size()));
+    return field.substr(0, field.find_last_not_of(kSpace) + 1);
+  };
+  std::vector<std::string_view> fields;
+  for (std::size_t at = 0;;) {
+    const std::size_t begin = std::min(line.find_first_not_of(kSpace, at), line.size());
+    std::size_t after = begin;
+    if (begin < line.size() && line[begin] == '"') {
+      std::size_t quote = line.find('"', begin + 1);
+      while (quote != std::string_view::npos && quote + 1 < line.size() && line[quote + 1] == '"')
+        quote = line.find('"', quote + 2);
+      if (quote != std::string_view::npos) after = quote + 1;
+    }
+    const std::size_t end = std::min(line.find(',', after), line.size());
+    std::string_view field = trimmed(line.substr(at, end - at));
+    if (field.size() > 1 && field.front() == '"' && field.back() == '"')
+      field = trimmed(field.substr(1, field.size() - 2));
+    fields.push_back(field);
+    if (end == line.size()) return fields;
+    at = end + 1;
+  }
+}
+
 void check_column_names(const std::vector<std::string>& names, const Where& where) {
   if (names.size() == 1 && names.front().find_first_of(";\t") != std::string::npos)
     throw InputError(where,

@@ -6,7 +6,9 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "core/error.hpp"
 #include "core/table_text.hpp"
@@ -14,29 +16,13 @@
 namespace twincell {
 namespace {
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields;
-  std::string field;
-  std::istringstream in(line);
-  while (std::getline(in, field, ',')) fields.push_back(trimmed(field));
-  if (line.ends_with(',')) fields.emplace_back();
-  return fields;
-}
-
-double number_of(const std::string& field, const Where& where) {
+/// The number of a field, NaN for an empty one; nothing if it is no finite number.
+std::optional<double> number_of(std::string_view field) {
   if (field.empty() || field == "nan" || field == "NaN") return std::numeric_limits<double>::quiet_NaN();
   double value = 0;
   const char* first = field.data() + (field.front() == '+' ? 1 : 0);
   const auto [end, error] = std::from_chars(first, field.data() + field.size(), value);
-  if (error != std::errc() || end != field.data() + field.size())
-    throw InputError(where, fmt::format("\"{}\" is not a number", field));
-  if (std::isinf(value)) throw InputError(where, fmt::format("\"{}\" is not a finite number", field));
+  if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) return {};
   return value;
 }
 
@@ -48,7 +34,20 @@ const std::vector<double>& Table::column(const std::string& name) const {
     throw ConfigError(
         {.file = file, .key = "column"},
         fmt::format("there is no column \"{}\"; the columns are {}", name, fmt::join(names, ", ")));
-  return columns[static_cast<std::size_t>(found - names.begin())];
+  const auto c = static_cast<std::size_t>(found - names.begin());
+  const auto is_text = [&](std::size_t k) { return texts.contains(k); };
+  if (!is_text(c)) return columns[c];
+  std::vector<std::string> numeric;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (!is_text(k) &&
+        std::any_of(columns[k].begin(), columns[k].end(), [](double v) { return !std::isnan(v); }))
+      numeric.push_back(names[k]);
+  const Text& text = texts.at(c);
+  throw InputError(
+      {.file = file, .line = text.line, .key = name},
+      fmt::format("\"{}\" is not a finite number; {}", text.word,
+                  numeric.empty() ? "no column holds numbers alone"
+                                  : fmt::format("columns of numbers are {}", fmt::join(numeric, ", "))));
 }
 
 Table read_table(const std::filesystem::path& path) {
@@ -58,22 +57,23 @@ Table read_table(const std::filesystem::path& path) {
   long line_number = 0;
   for (std::string line; std::getline(in, line);) {
     ++line_number;
-    const std::string content = trimmed(line);
-    if (content.empty() || content.front() == '#') continue;
-    const std::vector<std::string> fields = fields_of(content);
+    const std::vector<std::string_view> fields = fields_of(line);
+    if ((fields.size() == 1 && fields.front().empty()) || fields.front().starts_with('#')) continue;
+    const Where where{.file = table.file, .line = line_number, .key = {}};
     if (table.names.empty()) {
-      table.names = fields;
-      check_column_names(fields, {.file = table.file, .line = line_number, .key = {}});
+      table.names.assign(fields.begin(), fields.end());
+      check_column_names(table.names, where);
       table.columns.resize(fields.size());
       continue;
     }
-    const Where where{.file = table.file, .line = line_number, .key = {}};
     if (fields.size() != table.names.size())
       throw InputError(
           where, fmt::format("has {} fields; the header line has {}", fields.size(), table.names.size()));
-    for (std::size_t c = 0; c < fields.size(); ++c)
-      table.columns[c].push_back(
-          number_of(fields[c], {.file = table.file, .line = line_number, .key = table.names[c]}));
+    for (std::size_t c = 0; c < fields.size(); ++c) {
+      const auto number = number_of(fields[c]);
+      if (!number) table.texts.try_emplace(c, Table::Text{line_number, std::string(fields[c].substr(0, 60))});
+      table.columns[c].push_back(number.value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
   }
   if (table.n_rows() == 0)
     throw InputError({.file = table.file, .key = {}}, "there is no row of numbers below the header line");

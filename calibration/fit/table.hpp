@@ -1,28 +1,37 @@
 #pragma once
 /// \file
-/// Reader for CSV tables of numbers.
+/// Reader for CSV tables.
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
 namespace twincell {
 
-/// Named columns of numbers.
+/// Named columns.
 struct Table {
+  /// First field of a column that is no finite number.
+  struct Text {
+    long line = 0;
+    std::string word;
+  };
   std::string file;
   std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;  ///< [names][rows]; NaN for an empty field or "nan"
+  std::vector<std::vector<double>> columns;  ///< [names][rows]; NaN for an empty field, "nan" or text
+  std::map<std::size_t, Text> texts;         ///< of the columns that hold other things than numbers
 
   [[nodiscard]] std::size_t n_rows() const { return columns.empty() ? 0 : columns.front().size(); }
-  /// The column called `name`. \throws ConfigError listing the existing columns
+  /// The column called `name`.
+  /// \throws ConfigError listing the existing columns if there is none
+  /// \throws InputError "FILE:LINE: NAME: …" listing the columns of numbers if it holds other things
   [[nodiscard]] const std::vector<double>& column(const std::string& name) const;
 };
 
-/// Reads comma-separated values: a header line of names, then rows with as many numbers. Blank lines, lines
-/// that begin with #, and spaces around fields are skipped. \throws InputError "FILE:LINE: …" for a missing
-/// file, a row of another length, a field that is not a finite number, or a table without rows; also as
-/// check_column_names
+/// Reads comma-separated values: a header line of names, then rows with as many fields. Blank lines, lines
+/// that begin with #, and spaces around fields are skipped. Columns of text, such as the ids of a sweep, may
+/// stand beside those of numbers. \throws InputError "FILE:LINE: …" for a missing file, a row of another
+/// length, or a table without rows; also as check_column_names
 Table read_table(const std::filesystem::path& path);
 
 }  // namespace twincell

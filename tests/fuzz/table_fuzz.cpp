@@ -10,6 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Table table = read_table(file.path());
     for (const auto& column : table.columns)
       if (column.size() != table.n_rows()) std::abort();
+    for (const auto& name : table.names) (void)table.column(name);
   });
   return 0;
 }

@@ -25,19 +25,6 @@ constexpr std::array<const char*, 16> kQuantities = {
     "frame",  "particle",  "x",  "y",  "z",  "time",    "radius",  "diameter",
     "tracer", "bead_mass", "vx", "vy", "vz", "sigma_x", "sigma_y", "sigma_z"};
 
-std::vector<std::string_view> fields_of(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t at = 0;;) {
-    const std::size_t comma = line.find(',', at);
-    std::string_view field = line.substr(at, comma == std::string_view::npos ? comma : comma - at);
-    while (!field.empty() && (field.front() == ' ' || field.front() == '"')) field.remove_prefix(1);
-    while (!field.empty() && (field.back() == ' ' || field.back() == '"')) field.remove_suffix(1);
-    fields.push_back(field);
-    if (comma == std::string_view::npos) return fields;
-    at = comma + 1;
-  }
-}
-
 class TableReader final : public PictureBeadsReader {
  public:
   TableReader(const std::filesystem::path& file, const ReadOptions& options)

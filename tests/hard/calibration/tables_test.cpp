@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "calibration/fit/table.hpp"
+#include "core/table_text.hpp"
 #include "imaging/benchmark/score.hpp"
 #include "imaging/phase/trigger_list.hpp"
 #include "sim/scene/scene.hpp"
@@ -114,6 +117,32 @@ TEST(Tables, ALineOfNumbersAndSemicolonsAreNamedAsWhatTheyAre) {
   expect_refusal<InputError>([&] { (void)read_table(folder / "t.csv"); }, "t.csv:1:", "semicolons");
   put_file(folder / "t.csv", "time\theight\n0.5\t1\n");
   expect_refusal<InputError>([&] { (void)read_table(folder / "t.csv"); }, "tabs");
+}
+
+// Tables of sweeps begin with the ids of their points.
+TEST(Tables, ColumnsOfTextStandBesideThoseOfNumbers) {
+  const TemporaryFolder folder;
+  put_file(folder / "t.csv", "id,N_l,\"s_b, sigma\",note\n\"a,1\", 6 ,0.5,\n\"b \"\"2\"\"\",8,,x\n");
+  const Table table = read_table(folder / "t.csv");
+  EXPECT_EQ(table.names, (std::vector<std::string>{"id", "N_l", "s_b, sigma", "note"}));
+  EXPECT_EQ(table.column("N_l"), (std::vector<double>{6, 8}));
+  EXPECT_EQ(table.column("s_b, sigma").at(0), 0.5);
+  EXPECT_TRUE(std::isnan(table.column("s_b, sigma").at(1)));
+  expect_refusal<InputError>([&] { (void)table.column("id"); }, "t.csv:2: id: \"a,1\" is not a finite number",
+                             "columns of numbers are N_l, s_b, sigma");
+  expect_refusal<InputError>([&] { (void)table.column("note"); }, "t.csv:3: note: \"x\"");
+  put_file(folder / "t.csv", "a,b\nx,y\n");
+  expect_refusal<InputError>([&] { (void)read_table(folder / "t.csv").column("b"); },
+                             "t.csv:2: b:", "no column holds numbers alone");
+}
+
+TEST(Tables, FieldsOfALine) {
+  using Fields = std::vector<std::string_view>;
+  EXPECT_EQ(fields_of("a, b ,\"c,d\" ,"), (Fields{"a", "b", "c,d", ""}));
+  EXPECT_EQ(fields_of(""), Fields{""});
+  EXPECT_EQ(fields_of("\"open,b"), (Fields{"\"open", "b"}));
+  EXPECT_EQ(fields_of("\"a\"b,c"), (Fields{"\"a\"b", "c"}));
+  EXPECT_EQ(fields_of("\"\",2"), (Fields{"", "2"}));
 }
 
 // A decimal comma splits a number into two fields: the first of them is not a time.
