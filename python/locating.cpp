@@ -96,9 +96,9 @@ std::unique_ptr<FrameSource> prepared_stack(const py::object& stack, const Locat
 
 /// The options of beads and part of a stack, which `locate` and `track` share.
 LocatingRequest locating_request(const py::object& diameter, const std::string& finder, double min_score,
-                                 const std::string& refine, bool bright, bool dark, const std::string& flat,
-                                 const std::string& background, const std::string& roi,
-                                 const std::string& mask, const std::string& frames) {
+                                 double min_explained, const std::string& refine, bool bright, bool dark,
+                                 const std::string& flat, const std::string& background,
+                                 const std::string& roi, const std::string& mask, const std::string& frames) {
   if (bright && dark)
     throw ConfigError({.file = {}, .key = "bright"},
                       "and dark exclude each other; give only one of the two.");
@@ -108,6 +108,7 @@ LocatingRequest locating_request(const py::object& diameter, const std::string& 
   LocatingRequest request;
   request.locator.finder = finder;
   request.locator.find.min_score = min_score;
+  request.locator.judge.min_score = min_explained;
   request.locator.refine.method = refine;
   (void)refiner_named(refine);
   request.locator.preprocess.bright = bright;
@@ -177,6 +178,7 @@ py::object locate_beads_of(const py::object& stack, const LocatingRequest& reque
   settings["diameter"] = diameters;
   settings["locator"] = found.locator.finder;
   settings["min_score"] = found.locator.find.min_score;
+  settings["min_explained"] = found.locator.judge.min_score;
   settings["refine"] = found.locator.refine.method;
   settings[found.locator.preprocess.bright ? "bright" : "dark"] = true;
   settings["flat"] = request.flat;
@@ -259,19 +261,20 @@ void bind_locating(py::module_& module) {
   module.def(
       "locate",
       [](const py::object& stack, const py::object& diameter, const std::string& finder, double min_score,
-         const std::string& refine, bool bright, bool dark, const std::string& flat,
+         double min_explained, const std::string& refine, bool bright, bool dark, const std::string& flat,
          const std::string& background, const std::string& roi, const std::string& mask,
          const std::string& frames, int threads, const py::object& callback) {
         return locate_beads_of(stack,
-                               locating_request(diameter, finder, min_score, refine, bright, dark, flat,
-                                                background, roi, mask, frames),
+                               locating_request(diameter, finder, min_score, min_explained, refine, bright,
+                                                dark, flat, background, roi, mask, frames),
                                threads, callback);
       },
       py::arg("stack"), py::kw_only(), py::arg("diameter") = py::none(), py::arg("locator") = locator.finder,
-      py::arg("min_score") = locator.find.min_score, py::arg("refine") = locator.refine.method,
-      py::arg("bright") = false, py::arg("dark") = false, py::arg("flat") = "", py::arg("background") = "",
-      py::arg("roi") = "", py::arg("mask") = "", py::arg("frames") = "", py::arg("threads") = 0,
-      py::arg("callback") = py::none(), header_text("imaging/track/locate_stack.hpp", "locate_stack"));
+      py::arg("min_score") = locator.find.min_score, py::arg("min_explained") = locator.judge.min_score,
+      py::arg("refine") = locator.refine.method, py::arg("bright") = false, py::arg("dark") = false,
+      py::arg("flat") = "", py::arg("background") = "", py::arg("roi") = "", py::arg("mask") = "",
+      py::arg("frames") = "", py::arg("threads") = 0, py::arg("callback") = py::none(),
+      header_text("imaging/track/locate_stack.hpp", "locate_stack"));
   module.def(
       "track",
       [](const py::object& stack, const std::optional<std::filesystem::path>& output,
@@ -281,10 +284,10 @@ void bind_locating(py::module_& module) {
          std::optional<int> frames_per_cycle, const py::object& phase_lock, std::optional<double> drive_hz,
          std::optional<int> first_phase, std::optional<double> drive_gamma,
          std::optional<double> drive_amplitude, const py::object& diameter, const std::string& finder,
-         double min_score, const std::string& refine, bool bright, bool dark, const std::string& flat,
-         const std::string& background, const std::string& roi, const std::string& mask,
-         const std::string& frames, double range, int memory, bool trust_stated_drive, int shortest,
-         int threads, const py::object& callback) {
+         double min_score, double min_explained, const std::string& refine, bool bright, bool dark,
+         const std::string& flat, const std::string& background, const std::string& roi,
+         const std::string& mask, const std::string& frames, double range, int memory,
+         bool trust_stated_drive, int shortest, int threads, const py::object& callback) {
         TrackCall call;
         call.output = output;
         call.film.request = {
@@ -300,8 +303,8 @@ void bind_locating(py::module_& module) {
             .first_phase = first_phase,
             .phase = {.phase_lock = phase_lock.is_none() ? "" : py::str(phase_lock).cast<std::string>(),
                       .drive_hz = drive_hz}};
-        call.film.locating = locating_request(diameter, finder, min_score, refine, bright, dark, flat,
-                                              background, roi, mask, frames);
+        call.film.locating = locating_request(diameter, finder, min_score, min_explained, refine, bright,
+                                              dark, flat, background, roi, mask, frames);
         call.film.link.range_diameters = range;
         call.film.link.memory = memory;
         require_range({.file = {}, .key = "shortest"}, shortest, 1, std::nullopt);
@@ -318,9 +321,10 @@ void bind_locating(py::module_& module) {
       py::arg("first_phase") = py::none(), py::arg("drive_gamma") = py::none(),
       py::arg("drive_amplitude") = py::none(), py::arg("diameter") = py::none(),
       py::arg("locator") = locator.finder, py::arg("min_score") = locator.find.min_score,
-      py::arg("refine") = locator.refine.method, py::arg("bright") = false, py::arg("dark") = false,
-      py::arg("flat") = "", py::arg("background") = "", py::arg("roi") = "", py::arg("mask") = "",
-      py::arg("frames") = "", py::arg("range") = link.range_diameters, py::arg("memory") = link.memory,
+      py::arg("min_explained") = locator.judge.min_score, py::arg("refine") = locator.refine.method,
+      py::arg("bright") = false, py::arg("dark") = false, py::arg("flat") = "", py::arg("background") = "",
+      py::arg("roi") = "", py::arg("mask") = "", py::arg("frames") = "",
+      py::arg("range") = link.range_diameters, py::arg("memory") = link.memory,
       py::arg("trust_stated_drive") = false, py::arg("shortest") = 1, py::arg("threads") = 0,
       py::arg("callback") = py::none(), header_text("calibration/drive/track_film.hpp", "track_film"));
 }

@@ -13,13 +13,13 @@ from ._frames import Frames, open_frames
 from ._locating import locate
 from ._program import (
     calibrate_beads, calibrate_camera, calibrate_contacts_bounce, calibrate_contacts_collisions,
-    calibrate_contacts_infer, calibrate_contacts_numbers, calibrate_plate, calibrate_walls, compare, match, render,
-    reproduce)
+    calibrate_contacts_infer, calibrate_contacts_numbers, calibrate_plate, calibrate_walls, compare, draw, export, import_,
+    match, render, reproduce)
 
 __all__ = [
     "Box", "ConfigError", "Drive", "Error", "Frames", "InputError", "Interrupted", "Result", "Results", "RunError",
     "Scene", "Simulation", "Trajectory", "__version__", "analyze", "bond_order", "calibrate_beads",
     "calibrate_camera", "calibrate_contacts_bounce", "calibrate_contacts_collisions", "calibrate_contacts_infer",
-    "calibrate_contacts_numbers", "calibrate_plate", "calibrate_walls", "compare", "coordination", "fit",
-    "hexatic_order", "laws", "locate", "match", "neighbours", "open_frames", "preset_names", "render", "reproduce",
+    "calibrate_contacts_numbers", "calibrate_plate", "calibrate_walls", "compare", "coordination", "draw", "export", "fit",
+    "hexatic_order", "import_", "laws", "locate", "match", "neighbours", "open_frames", "preset_names", "render", "reproduce",
     "result_names", "simulate", "sweep", "track", "version", "voronoi"]

@@ -4,8 +4,8 @@ from __future__ import annotations
 from . import _core
 
 
-def locate(stack, *, diameter=None, locator="vote", min_score=0.04, refine="exact", bright=False, dark=False,
-           flat="", background="", roi="", mask="", frames="", threads=0, callback=None):
+def locate(stack, *, diameter=None, locator="vote", min_score=0.04, min_explained=0.5, refine="exact", bright=False,
+           dark=False, flat="", background="", roi="", mask="", frames="", threads=0, callback=None):
     """The beads of a picture, a sequence of pictures or a stack as a DataFrame in the columns of trackpy.
 
     stack: the name of a stack, Frames, an array (rows, columns) or (frames, rows, columns), or any iterable over
@@ -20,8 +20,8 @@ def locate(stack, *, diameter=None, locator="vote", min_score=0.04, refine="exac
     import pandas as pd
 
     columns, report = _core.locate(
-        stack, diameter=diameter, locator=locator, min_score=min_score, refine=refine, bright=bright, dark=dark,
-        flat=flat, background=background, roi=roi, mask=mask, frames=frames, threads=threads, callback=callback)
+        stack, diameter=diameter, locator=locator, min_score=min_score, min_explained=min_explained, refine=refine,
+        bright=bright, dark=dark, flat=flat, background=background, roi=roi, mask=mask, frames=frames, threads=threads, callback=callback)
     table = pd.DataFrame(columns)
     table["tracer"] = table["tracer"].astype(bool)
     table["edge"] = table["edge"].astype(bool)

@@ -1,6 +1,6 @@
-"""Verbs that run as the program: match, compare, render, reproduce, calibrate_*.
+"""Verbs that run as the program: match, compare, render, draw, export, import_, reproduce, calibrate_*.
 
-These verbs read and write files and take hours rather than microseconds. Each function runs the program `twincell` of
+These verbs read and write files, and many take hours rather than microseconds. Each function runs the program `twincell` of
 the same installation with the same options and returns its --json document. The numbers are therefore those of the verb.
 """
 import json
@@ -119,6 +119,31 @@ def render(trajectory, *, callback=None, **options):
     trajectory: H5MD file; output: folder for the frames; movie: film. Otherwise as `match`.
     """
     return _run("render", _positional(trajectory), options, callback)
+
+
+def draw(trajectory, *, output, callback=None, **options):
+    """A trajectory as a picture or a film, without a camera: `twincell draw` (docs/drawing.md).
+
+    trajectory: H5MD file; output: .png, .mp4 or .avi; colour="speed", tracks=5, vectors=True, contacts=True. Otherwise as
+    `match`.
+    """
+    return _run("draw", _positional(trajectory), {"output": output, **options}, callback)
+
+
+def export(input, *, to, output, callback=None, **options):
+    """A trajectory or a scene in the format of another program: `twincell export` (docs/formats.md, docs/lammps.md).
+
+    input: H5MD file or scene file; to: "xyz", "lammps-dump", "csv", ... Otherwise as `match`.
+    """
+    return _run("export", _positional(input), {"to": to, "output": output, **options}, callback)
+
+
+def import_(file, *, output, callback=None, **options):
+    """The beads of another program as a trajectory file: `twincell import` (docs/formats.md).
+
+    file: dump, table, XYZ, GSD or TrackMate file; output: H5MD file, which `Trajectory.open` reads. Otherwise as `match`.
+    """
+    return _run("import", _positional(file), {"output": output, **options}, callback)
 
 
 def reproduce(name, *, callback=None, **options):
