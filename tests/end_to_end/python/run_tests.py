@@ -13,6 +13,19 @@ if missing:
 
 import pytest  # noqa: E402
 
+
+class Outcome:
+    """Whether any test was skipped, and whether any ran."""
+
+    skipped = ran = False
+
+    def pytest_runtest_logreport(self, report):
+        self.skipped = self.skipped or report.skipped
+        self.ran = self.ran or (report.when == "call" and not report.skipped)
+
+
 os.environ["TWINCELL_PROGRAM"] = os.path.abspath(sys.argv[2])
 sys.dont_write_bytecode = True
-sys.exit(pytest.main(["-q", "-p", "no:cacheprovider", sys.argv[1], *sys.argv[3:]]))
+outcome = Outcome()
+code = pytest.main(["-q", "-rs", "-p", "no:cacheprovider", sys.argv[1], *sys.argv[3:]], plugins=[outcome])
+sys.exit(77 if code == 0 and outcome.skipped and not outcome.ran else code)
