@@ -62,15 +62,22 @@ auto unlocked(const py::object& callback, const Work& work) {
   }
 }
 
-/// An array over memory that `owner` keeps alive; read-only unless `writable`.
+/// An array of a type over memory that `owner` keeps alive; read-only unless `writable`.
+template <class Owner>
+py::array view(const void* data, const py::dtype& type, std::vector<py::ssize_t> shape,
+               std::vector<py::ssize_t> strides, std::shared_ptr<Owner> owner, bool writable = false) {
+  const py::capsule base(new std::shared_ptr<const void>(std::move(owner)),
+                         [](void* p) { delete static_cast<std::shared_ptr<const void>*>(p); });
+  py::array array(type, std::move(shape), std::move(strides), data, base);
+  if (!writable) array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+/// The same for numbers, and structures that NumPy knows.
 template <class T, class Owner>
 py::array view(const T* data, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
                std::shared_ptr<Owner> owner, bool writable = false) {
-  const py::capsule base(new std::shared_ptr<const void>(std::move(owner)),
-                         [](void* p) { delete static_cast<std::shared_ptr<const void>*>(p); });
-  py::array array(py::dtype::of<T>(), std::move(shape), std::move(strides), data, base);
-  if (!writable) array.attr("setflags")(py::arg("write") = false);
-  return array;
+  return view(data, py::dtype::of<T>(), std::move(shape), std::move(strides), std::move(owner), writable);
 }
 
 /// An array that takes over the numbers of a vector.

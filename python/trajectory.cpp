@@ -64,6 +64,36 @@ struct Column {
   }
 };
 
+/// The type of an array over contacts; its fields are the members of ContactForce.
+py::dtype contact_dtype() {
+  const ContactForce c;
+  py::list names, formats, offsets;
+  const auto field = [&](const char* name, const char* format, const auto& member) {
+    names.append(name);
+    formats.append(format);
+    offsets.append(reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&c));
+  };
+  field("i", "i4", c.i);
+  field("j", "i4", c.j);
+  field("overlap", "f8", c.overlap);
+  field("normal", "(3,)f8", c.normal);
+  field("normal_force", "f8", c.normal_force);
+  field("tangential_force", "(3,)f8", c.tangential_force);
+  return {names, formats, offsets, sizeof(ContactForce)};
+}
+
+/// The contacts of every frame: contacts[t] is a structured array without a copy.
+struct Contacts {
+  std::shared_ptr<Trajectory> trajectory;
+
+  [[nodiscard]] py::array at(std::size_t t) const {
+    const auto frame = trajectory->frame(t);
+    const std::vector<ContactForce>& values = frame->contact_forces;
+    return view(values.data(), contact_dtype(), {static_cast<py::ssize_t>(values.size())},
+                {sizeof(ContactForce)}, frame);
+  }
+};
+
 /// Number of every frame, from a pass over the file.
 template <class Value>
 py::array of_frames(Trajectory& trajectory, Value value) {
@@ -334,6 +364,17 @@ void bind_trajectory(py::module_& module) {
           },
           py::arg("dtype") = py::none());
 
+  py::class_<Contacts>(
+      module, "Contacts",
+      "The contacts of every frame: contacts[t] is a read-only structured array over the memory of the "
+      "frame, sorted "
+      "by (i, j), with the fields i, j, overlap, normal (3), normal_force and tangential_force (3).")
+      .def("__len__", [](const Contacts& c) { return c.trajectory->n_frames(); })
+      .def(
+          "__getitem__",
+          [](const Contacts& c, py::ssize_t t) { return c.at(index_of(t, c.trajectory->n_frames())); },
+          py::arg("frame"), header_text(kHeader, "ContactForce"));
+
   const auto column = [](bool Columns::*has, std::vector<Vec3> Frame::*member) {
     return [has, member](const std::shared_ptr<Trajectory>& t) -> py::object {
       if (has != nullptr && !(t->info().columns.*has)) return py::none();
@@ -374,6 +415,18 @@ void bind_trajectory(py::module_& module) {
                              header_text(kHeader, "Frame::spin"))
       .def_property_readonly("position_sigma", column(&Columns::position_sigma, &Frame::position_sigma),
                              header_text(kHeader, "Frame::position_sigma"))
+      .def_property_readonly(
+          "contacts",
+          [](const std::shared_ptr<Trajectory>& t) -> py::object {
+            if (!t->info().columns.contact_forces) return py::none();
+            return py::cast(Contacts{t});
+          },
+          "Contacts: contacts[t] has those of frame t with their forces. None if the trajectory does not "
+          "store "
+          "them (simulate --contacts, the key time.contacts).")
+      .def_property_readonly(
+          "walls", [](const Trajectory& t) { return t.info().walls; },
+          header_text(kHeader, "TrajectoryInfo::walls"))
       .def_property_readonly(
           "radii", [](const std::shared_ptr<Trajectory>& t) { return of_slots(t, t->info().radius); },
           header_text(kHeader, "TrajectoryInfo::radius"))

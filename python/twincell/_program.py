@@ -2,6 +2,7 @@
 
 These verbs read and write files, and many take hours rather than microseconds. Each function runs the program `twincell` of
 the same installation with the same options and returns its --json document. The numbers are therefore those of the verb.
+A Trajectory in memory is written to a temporary file for it.
 """
 import json
 import os
@@ -49,8 +50,17 @@ def _words(options):
             yield str(value)
 
 
-def _positional(*words):
-    return [str(word) for word in words if word is not None]
+def _in_file(value, folder):
+    """The name of the file of a trajectory; one in memory is written into `folder`. Other values as they are."""
+    if isinstance(value, (list, tuple)):
+        return type(value)(_in_file(each, folder) for each in value)
+    if not isinstance(value, _core.Trajectory):
+        return value
+    if value.name != "memory" and Path(value.name).is_file():
+        return value.name
+    path = Path(folder) / f"memory-{len(list(Path(folder).iterdir()))}.h5"
+    value.write(path)
+    return str(path)
 
 
 def _raise(code, sentence):
@@ -62,7 +72,13 @@ def _raise(code, sentence):
 
 def _run(verb, positional, options, callback):
     """Runs a verb; its document. Notes become warnings, progress goes to callback(done, 100)."""
-    words = [_program(), *verb.split(), *positional, *_words(options), "--json"]
+    with tempfile.TemporaryDirectory() as folder:
+        positional = [str(_in_file(word, folder)) for word in positional if word is not None]
+        options = {name: _in_file(value, folder) for name, value in options.items()}
+        return _run_words([_program(), *verb.split(), *positional, *_words(options), "--json"], callback)
+
+
+def _run_words(words, callback):
     lines = []
     with tempfile.TemporaryFile("w+") as result:  # a pipe that nobody reads would block the program
         often = {**os.environ, "TWINCELL_PROGRESS_S": "0"}
@@ -89,7 +105,7 @@ def _run(verb, positional, options, callback):
         _raise(code, lines[-1].removeprefix("twincell: ") if lines else f"The program ended with the code {code}.")
     for line in lines:
         if line:
-            warnings.warn(line.removeprefix("twincell: ").removeprefix("note: "), stacklevel=3)
+            warnings.warn(line.removeprefix("twincell: ").removeprefix("note: "), stacklevel=4)
     return json.loads(text)
 
 
@@ -102,13 +118,13 @@ def match(*stacks_and_cells, output, callback=None, **options):
     callback: called with (percent, 100); what it raises stops the program.
     Returns a dict. Notes of the program are warnings, its errors the exceptions of this module with the same sentence.
     """
-    return _run("match", _positional(*stacks_and_cells), {"output": output, **options}, callback)
+    return _run("match", stacks_and_cells, {"output": output, **options}, callback)
 
 
 def compare(*, output, callback=None, **options):
     """Experiments and simulations in one report: `twincell compare` (docs/comparing.md).
 
-    experiment, simulation, stack, sweep: lists of files; output: folder for the report. Otherwise as `match`.
+    experiment, simulation: lists of trajectories or files; stack, sweep: lists of files; output: folder for the report. Otherwise as `match`.
     """
     return _run("compare", [], {"output": output, **options}, callback)
 
@@ -116,26 +132,38 @@ def compare(*, output, callback=None, **options):
 def render(trajectory, *, callback=None, **options):
     """Frames of a trajectory as a camera would record them: `twincell render` (docs/camera.md).
 
-    trajectory: H5MD file; output: folder for the frames; movie: film. Otherwise as `match`.
+    trajectory: Trajectory or H5MD file; output: folder for the frames; movie: film. Otherwise as `match`.
     """
-    return _run("render", _positional(trajectory), options, callback)
+    return _run("render", (trajectory,), options, callback)
 
 
-def draw(trajectory, *, output, callback=None, **options):
+class Picture(bytes):
+    """A picture as the bytes of a PNG file, which a notebook shows."""
+
+    def _repr_png_(self):
+        return bytes(self)
+
+
+def draw(trajectory, *, output=None, callback=None, **options):
     """A trajectory as a picture or a film, without a camera: `twincell draw` (docs/drawing.md).
 
-    trajectory: H5MD file; output: .png, .mp4 or .avi; colour="speed", tracks=5, vectors=True, contacts=True. Otherwise as
-    `match`.
+    trajectory: Trajectory or H5MD file; output: .png, .mp4 or .avi; colour="speed", tracks=5, vectors=True, contacts=True.
+    Without output, the picture of the last frame is returned, which a notebook shows. Otherwise as `match`.
     """
-    return _run("draw", _positional(trajectory), {"output": output, **options}, callback)
+    if output is not None:
+        return _run("draw", (trajectory,), {"output": output, **options}, callback)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "picture.png"
+        _run("draw", (trajectory,), {"output": path, **options}, callback)
+        return Picture(path.read_bytes())
 
 
 def export(input, *, to, output, callback=None, **options):
     """A trajectory or a scene in the format of another program: `twincell export` (docs/formats.md, docs/lammps.md).
 
-    input: H5MD file or scene file; to: "xyz", "lammps-dump", "csv", ... Otherwise as `match`.
+    input: Trajectory, H5MD file or scene file; to: "xyz", "lammps-dump", "csv", ... Otherwise as `match`.
     """
-    return _run("export", _positional(input), {"to": to, "output": output, **options}, callback)
+    return _run("export", (input,), {"to": to, "output": output, **options}, callback)
 
 
 def import_(file, *, output, callback=None, **options):
@@ -143,17 +171,17 @@ def import_(file, *, output, callback=None, **options):
 
     file: dump, table, XYZ, GSD or TrackMate file; output: H5MD file, which `Trajectory.open` reads. Otherwise as `match`.
     """
-    return _run("import", _positional(file), {"output": output, **options}, callback)
+    return _run("import", (file,), {"output": output, **options}, callback)
 
 
 def reproduce(name, *, callback=None, **options):
     """A figure or table of the papers: `twincell reproduce` (docs/reproduce.md). Otherwise as `match`."""
-    return _run("reproduce", _positional(name), options, callback)
+    return _run("reproduce", (name,), options, callback)
 
 
 def _calibration(kind, what):
     def calibrate(*inputs, callback=None, **options):
-        return _run("calibrate " + kind, _positional(*inputs), options, callback)
+        return _run("calibrate " + kind, inputs, options, callback)
 
     calibrate.__name__ = calibrate.__qualname__ = "calibrate_" + kind.replace(" ", "_")
     calibrate.__doc__ = (f"{what}: `twincell calibrate {kind}` (docs/calibrating.md).\n\n"

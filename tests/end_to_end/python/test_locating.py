@@ -7,7 +7,7 @@ import pytest
 pd = pytest.importorskip("pandas")
 
 import twincell  # noqa: E402
-from conftest import DEMO, document, sentence  # noqa: E402
+from conftest import DEMO, document, program, sentence  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -83,10 +83,21 @@ def test_wrong_options_have_the_sentence_of_the_program(tmp_path):
         twincell.locate([np.zeros((40, 40), np.uint8), np.zeros((40, 41), np.uint8)], diameter=10, dark=True)
 
 
+def test_view_is_the_page_of_the_verb(tmp_path):
+    page = tmp_path / "page.html"
+    options = {"frames": "10:13", "diameter": [12.0], "dark": True}
+    table = twincell.locate(DEMO, view=page, **options)
+    assert table.equals(twincell.locate(DEMO, **options))
+    words = ("--frames", "10:13", "--diameter", "12.0", "--dark", "-o", "beads.csv", "--view", "verb.html", "-q")
+    assert program("locate", DEMO, *words, cwd=tmp_path).returncode == 0
+    assert page.read_text() == (tmp_path / "verb.html").read_text()
+    with pytest.raises(ValueError, match="name of a stack"):
+        twincell.locate(np.zeros((40, 40), np.uint8), view=page)
+
+
 def test_options_are_those_of_the_verbs():
     import inspect
     import re
-    from conftest import program
     for verb, function in (("locate", twincell.locate), ("track", twincell.track), ("analyze", twincell.analyze)):
         text = program(verb, "--help").stdout
         options = {o.replace("-", "_") for o in re.findall(r"--([a-z][a-z-]*)", text)}

@@ -23,7 +23,7 @@ NOTEBOOKS = {
     "compare_with_other_programs": (
         {"scipy": "python3-scipy", "MDAnalysis": "python3-mdanalysis", "gsd": "python3-gsd"}, {"lmp": "lammps"}, 5),
     "locate_and_track": ({}, {}, 4),
-    "phase_diagram": ({}, {}, 1),
+    "phase_diagram": ({}, {}, 2),
 }
 
 

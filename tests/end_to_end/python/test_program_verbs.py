@@ -1,6 +1,7 @@
 """The verbs that run as the program, from Python against the command line: same options, same numbers to the bit."""
 import shutil
 
+import numpy as np
 import pytest
 
 import twincell
@@ -51,6 +52,34 @@ def test_render_and_compare(sim_file, tmp_path):
     assert (tmp_path / "film/frame_00003.png").read_bytes() == bytes_of_verb
     verb = document("compare", "--simulation", sim_file, "-o", tmp_path / "report")
     same(twincell.compare(simulation=[sim_file], output=tmp_path / "report"), verb)
+
+
+def test_draw(sim_file, tmp_path):
+    words = ("--colour", "speed", "--tracks", "3", "--frames", ":5")
+    options = {"colour": "speed", "tracks": 3, "frames": ":5"}
+    verb = document("draw", sim_file, "-o", tmp_path / "verb.png", *words)
+    mine = twincell.draw(sim_file, output=tmp_path / "mine.png", **options)
+    verb["output"] = mine["output"]
+    same(mine, verb)
+    bytes_of_verb = (tmp_path / "verb.png").read_bytes()
+    assert (tmp_path / "mine.png").read_bytes() == bytes_of_verb
+    shown = twincell.draw(twincell.Trajectory.open(sim_file), **options)
+    assert shown == bytes_of_verb and shown._repr_png_() == bytes_of_verb and shown.startswith(b"\x89PNG")
+
+
+def test_export_and_import(sim_file, tmp_path):
+    assert program("export", sim_file, "--to", "csv", "-o", tmp_path / "verb.csv", "-q").returncode == 0
+    twincell.export(sim_file, to="csv", output=tmp_path / "mine.csv")
+    assert (tmp_path / "mine.csv").read_bytes() == (tmp_path / "verb.csv").read_bytes()
+    run = twincell.Trajectory.open(sim_file)
+    beads = np.asarray(run.positions)[:3]
+    in_memory = twincell.Trajectory.from_arrays(beads, radii=run.radii)
+    twincell.export(in_memory, to="csv", output=tmp_path / "memory.csv")
+    twincell.import_(tmp_path / "memory.csv", output=tmp_path / "again.h5", cell_origin=[0, 10])
+    again = twincell.Trajectory.open(tmp_path / "again.h5")
+    moved = np.asarray(again.positions) - beads
+    assert np.allclose(moved[:, :, 0], 0, atol=1e-12) and np.allclose(moved[:, :, 2], 10, atol=1e-12)
+    assert np.array_equal(again.radii, run.radii)
 
 
 @pytest.mark.filterwarnings("ignore")

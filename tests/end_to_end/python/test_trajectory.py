@@ -45,6 +45,38 @@ def test_columns_are_views_that_keep_their_memory_alive(sim_file):
     assert np.array_equal(np.full(radii.shape, 0.5), radii)
 
 
+def test_contacts_are_those_of_the_file(scene_file, tmp_path):
+    h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
+    path = tmp_path / "contacts.h5"
+    assert program("simulate", scene_file, "--contacts", "-o", path, "-q").returncode == 0
+    t = twincell.Trajectory.open(path)
+    with h5py.File(path) as file:
+        stored = file["twincell/contact_forces"]
+        count, pairs, values = stored["count"][:], stored["pairs"][:], stored["values"][:]
+    assert [len(c) for c in t.contacts] == count.tolist() and count.sum() > 0
+    contacts = [t.contacts[k] for k in range(len(t))]
+    every = np.concatenate(contacts)
+    assert np.array_equal(np.stack([every["i"], every["j"]], axis=1), pairs)
+    assert np.array_equal(every["normal_force"], values[:, 4].astype(float))
+    k = int(np.argmax(count))
+    here = contacts[k]
+    assert not here.flags.owndata and not here.flags.writeable
+    # Geometry: the normal points from j to i, the overlap is R_i + R_j minus the distance, the tangential force is
+    # perpendicular; single precision in the file.
+    beads = here["j"] >= 0
+    apart = t.positions[k][here["i"]] - t.positions[k][here["j"]]
+    distance = np.linalg.norm(apart, axis=1)
+    assert beads.any()
+    assert np.allclose(here["normal"][beads], (apart / distance[:, None])[beads], atol=1e-6)
+    assert np.allclose(here["overlap"][beads], 1 - distance[beads], atol=1e-6)
+    across = np.einsum("ka,ka->k", here["tangential_force"], here["normal"])
+    assert np.all(np.abs(across) <= 1e-5 * (1 + np.abs(here["normal_force"])))
+    assert len(t.walls) > 0 and here["j"].min() >= -len(t.walls)
+    assert twincell.Trajectory.from_arrays(np.zeros((1, 2, 2))).contacts is None
+    del t, contacts
+    assert np.array_equal(here, every[count[:k].sum():count[:k + 1].sum()])  # the frame lives as long as the array
+
+
 def test_a_million_beads_without_a_copy():
     points = np.zeros((1, 1_000_000, 3))
     points[0, :, 0] = np.arange(1_000_000)
