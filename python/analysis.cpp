@@ -53,6 +53,12 @@ Results analyzed(const std::vector<std::shared_ptr<Trajectory>>& trajectories, c
   });
 }
 
+/// Names of results: a list, or a text with commas as of the verb.
+std::vector<std::string> names_of(const py::object& only) {
+  if (!py::isinstance<py::str>(only)) return only.cast<std::vector<std::string>>();
+  return only.attr("split")(",").cast<std::vector<std::string>>();
+}
+
 }  // namespace
 
 void bind_analysis(py::module_& module) {
@@ -125,10 +131,9 @@ void bind_analysis(py::module_& module) {
   module.def("result_names", &result_names, header_text(kHeader, "result_names"));
   module.def(
       "analyze",
-      [](const py::object& trajectory, const std::vector<std::string>& only, std::int64_t discard,
-         std::int64_t cycles, const std::vector<std::int64_t>& tracers,
-         const std::optional<std::array<double, 2>>& tracer_band, const std::string& s_b,
-         const std::string& neighbours, double cell_radius, double field_cell,
+      [](const py::object& trajectory, const py::object& only, std::int64_t discard, std::int64_t cycles,
+         const std::vector<std::int64_t>& tracers, const std::optional<std::array<double, 2>>& tracer_band,
+         const std::string& s_b, const std::string& neighbours, double cell_radius, double field_cell,
          std::optional<double> rest_height, std::optional<double> cutoff, const py::object& callback) {
         std::vector<std::shared_ptr<Trajectory>> trajectories;
         if (py::isinstance<py::list>(trajectory) || py::isinstance<py::tuple>(trajectory))
@@ -145,11 +150,11 @@ void bind_analysis(py::module_& module) {
                                          .cell_radius = cell_radius,
                                          .field_cell = field_cell,
                                          .rest_height = rest_height,
-                                         .only = only};
+                                         .only = names_of(only)};
         return analyzed(trajectories, options, callback);
       },
-      py::arg("trajectory"), py::arg("only") = std::vector<std::string>{}, py::kw_only(),
-      py::arg("discard") = 0, py::arg("cycles") = 0, py::arg("tracers") = std::vector<std::int64_t>{},
+      py::arg("trajectory"), py::arg("only") = py::list(), py::kw_only(), py::arg("discard") = 0,
+      py::arg("cycles") = 0, py::arg("tracers") = std::vector<std::int64_t>{},
       py::arg("tracer_band") = py::none(), py::arg("s_b") = "variance", py::arg("neighbours") = "cutoff",
       py::arg("cell_radius") = AnalysisOptions{}.cell_radius,
       py::arg("field_cell") = AnalysisOptions{}.field_cell, py::arg("rest_height") = py::none(),

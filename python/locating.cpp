@@ -269,7 +269,7 @@ void bind_locating(py::module_& module) {
                                                 dark, flat, background, roi, mask, frames),
                                threads, callback);
       },
-      py::arg("stack"), py::kw_only(), py::arg("diameter") = py::none(), py::arg("locator") = locator.finder,
+      py::arg("stack"), py::arg("diameter") = py::none(), py::kw_only(), py::arg("locator") = locator.finder,
       py::arg("min_score") = locator.find.min_score, py::arg("min_explained") = locator.judge.min_score,
       py::arg("refine") = locator.refine.method, py::arg("bright") = false, py::arg("dark") = false,
       py::arg("flat") = "", py::arg("background") = "", py::arg("roi") = "", py::arg("mask") = "",

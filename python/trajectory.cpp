@@ -341,7 +341,8 @@ void bind_trajectory(py::module_& module) {
   py::class_<Column>(
       module, "Column",
       "A vector per bead in every frame: column[t] is a read-only array (n_beads, 3) over the memory of "
-      "the frame, column[a:b] and numpy.asarray(column) are copies (frames, n_beads, 3).")
+      "the frame, column[a:b], column[a:b, i] and "
+      "numpy.asarray(column) are copies of (frames, n_beads, 3).")
       .def("__len__", [](const Column& c) { return c.trajectory->n_frames(); })
       .def(
           "__getitem__",
@@ -356,6 +357,12 @@ void bind_trajectory(py::module_& module) {
             return c.stack(start, static_cast<py::ssize_t>(step), length);
           },
           py::arg("frames"))
+      .def(
+          "__getitem__",
+          [](const Column& c, const py::tuple& key) -> py::object {
+            return c.stack(0, 1, c.trajectory->n_frames())[key];
+          },
+          py::arg("key"))
       .def(
           "__array__",
           [](const Column& c, const py::object& dtype) -> py::object {

@@ -44,14 +44,14 @@ class ProgressWatch : public sweep::Watch {
   Progress& progress_;
 };
 
-std::string swept(const std::filesystem::path& plan_file, const std::optional<std::filesystem::path>& output,
+std::string swept(const std::filesystem::path& plan_file, const std::optional<std::filesystem::path>& folder,
                   std::optional<std::uint64_t> seed, bool keep_trajectories, int threads,
                   const py::object& callback) {
   const int n_threads = threads_of(threads);
   return unlocked(callback, [&](Progress& progress) {
     sweep::Plan plan = sweep::read_plan(plan_file);
     if (seed) plan.seed = *seed;
-    const sweep::Store store(output ? *output : std::filesystem::path(plan_file).replace_extension(".sweep"));
+    const sweep::Store store(folder ? *folder : std::filesystem::path(plan_file).replace_extension(".sweep"));
     sweep::Schedule schedule(plan, store);
     sweep::require_memory_together(schedule, n_threads, "threads");
     ProgressWatch watch(progress);
@@ -87,14 +87,14 @@ void bind_verbs(py::module_& module) {
       "Names and formulas of the laws of `fit`.");
   module.def(
       "sweep",
-      [](const std::filesystem::path& plan, const std::optional<std::filesystem::path>& output,
+      [](const std::filesystem::path& plan, const std::optional<std::filesystem::path>& folder,
          std::optional<std::uint64_t> seed, bool keep_trajectories, int threads, const py::object& callback) {
-        return from_json(swept(plan, output, seed, keep_trajectories, threads, callback));
+        return from_json(swept(plan, folder, seed, keep_trajectories, threads, callback));
       },
-      py::arg("plan"), py::arg("output") = py::none(), py::kw_only(), py::arg("seed") = py::none(),
+      py::arg("plan"), py::arg("folder") = py::none(), py::kw_only(), py::arg("seed") = py::none(),
       py::arg("keep_trajectories") = false, py::arg("threads") = 0, py::arg("callback") = py::none(),
       (std::string(
-           "Computes the points of a plan, one on each core, stores them in the folder `output` (default: "
+           "Computes the points of a plan, one on each core, stores them in `folder` (default: "
            "PLAN.sweep), and returns the collected results as a dict. Finished points are not repeated, so "
            "an "
            "interrupted sweep goes on when it is called again.\n\n") +

@@ -8,13 +8,14 @@ from . import _results, _scenes, _tables  # noqa: F401  (they add methods to the
 from ._core import (
     Box, ConfigError, Drive, Error, InputError, Interrupted, Result, Results, RunError, Scene, Simulation, Trajectory,
     __version__, analyze, bond_order, coordination, fit, hexatic_order, laws, neighbours, preset_names,
-    result_names, simulate, sweep, track, version, voronoi)
+    result_names, sweep, track, version, voronoi)
 from ._frames import Frames, open_frames
 from ._locating import locate
 from ._program import (
     calibrate_beads, calibrate_camera, calibrate_contacts_bounce, calibrate_contacts_collisions,
     calibrate_contacts_infer, calibrate_contacts_numbers, calibrate_plate, calibrate_walls, compare, draw, export, import_,
     match, render, reproduce)
+from ._scenes import simulate
 
 __all__ = [
     "Box", "ConfigError", "Drive", "Error", "Frames", "InputError", "Interrupted", "Result", "Results", "RunError",

@@ -9,7 +9,7 @@ from . import _core
 from ._program import _run
 
 
-def locate(stack, *, diameter=None, locator="vote", min_score=0.04, min_explained=0.5, refine="exact", bright=False,
+def locate(stack, diameter=None, *, locator="vote", min_score=0.04, min_explained=0.5, refine="exact", bright=False,
            dark=False, flat="", background="", roi="", mask="", frames="", view=None, threads=0, callback=None):
     """The beads of a picture, a sequence of pictures or a stack as a DataFrame in the columns of trackpy.
 

@@ -2,7 +2,7 @@
 
 These verbs read and write files, and many take hours rather than microseconds. Each function runs the program `twincell` of
 the same installation with the same options and returns its --json document. The numbers are therefore those of the verb.
-A Trajectory in memory is written to a temporary file for it.
+A Trajectory or Scene in memory is written to a temporary file for it.
 """
 import json
 import os
@@ -51,9 +51,13 @@ def _words(options):
 
 
 def _in_file(value, folder):
-    """The name of the file of a trajectory; one in memory is written into `folder`. Other values as they are."""
+    """The name of the file of a trajectory or a scene; one in memory is written into `folder`. Other values as they are."""
     if isinstance(value, (list, tuple)):
         return type(value)(_in_file(each, folder) for each in value)
+    if isinstance(value, _core.Scene):
+        path = Path(folder) / "scene.toml"
+        path.write_text(value.text)
+        return str(path)
     if not isinstance(value, _core.Trajectory):
         return value
     if value.name != "memory" and Path(value.name).is_file():
@@ -161,7 +165,7 @@ def draw(trajectory, *, output=None, callback=None, **options):
 def export(input, *, to, output, callback=None, **options):
     """A trajectory or a scene in the format of another program: `twincell export` (docs/formats.md, docs/lammps.md).
 
-    input: Trajectory, H5MD file or scene file; to: "xyz", "lammps-dump", "csv", ... Otherwise as `match`.
+    input: Trajectory, Scene, H5MD file or scene file; to: "xyz", "lammps-dump", "csv", ... Otherwise as `match`.
     """
     return _run("export", (input,), {"to": to, "output": output, **options}, callback)
 

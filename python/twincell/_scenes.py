@@ -1,4 +1,4 @@
-"""Scenes from words of Python."""
+"""Scenes from words of Python, and their simulation."""
 from __future__ import annotations
 
 import json
@@ -51,6 +51,25 @@ def _preset(name: str, set=()):
 
 def _from_toml(path, set=()):
     return _core.Scene._from_toml(path, assignments(set))
+
+
+def simulate(scene, output=None, *, set=(), relax=False, contacts=False, seed=None, threads=0, callback=None):
+    """Runs a scene and returns its trajectory, in memory or, with `output`, in a file (H5MD): `twincell simulate`.
+
+    scene: Scene, dict, or the name of a file. set: keys to override, {"section.key": value} or ["section.key=value"]; relax:
+    push overlapping beads of the start apart; contacts: store the contacts with their forces; seed: of the random numbers of
+    the start. threads: 0: chosen from the number of beads; the bits do not depend on it. callback: function of (done, total),
+    called at most ten times a second. Ctrl-C stops the run; an unfinished file is removed.
+    """
+    overrides = assignments(set)
+    overrides += [f"start.seed={seed}"] if seed is not None else []
+    overrides += ["start.relax=true"] if relax else []
+    overrides += ["time.contacts=true"] if contacts else []
+    if isinstance(scene, _core.Scene):
+        scene = _core.Scene.from_text(scene.text, "scene", overrides) if overrides else scene
+    else:
+        scene = (_from_dict if isinstance(scene, dict) else _from_toml)(scene, overrides)
+    return _core.simulate(scene, output, threads=threads, callback=callback)
 
 
 _core.Scene._from_toml = _core.Scene.from_toml

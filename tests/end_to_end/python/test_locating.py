@@ -98,12 +98,14 @@ def test_view_is_the_page_of_the_verb(tmp_path):
 def test_options_are_those_of_the_verbs():
     import inspect
     import re
-    for verb, function in (("locate", twincell.locate), ("track", twincell.track), ("analyze", twincell.analyze)):
-        text = program(verb, "--help").stdout
+    verbs = {"locate": {"stack"}, "track": {"stack"}, "analyze": {"trajectory"}, "simulate": {"scene"}, "fit": {"table"},
+             "sweep": {"plan"}}
+    for verb, positional in verbs.items():
+        function = getattr(twincell, verb)
+        text = program(*(("sweep", "run") if verb == "sweep" else (verb,)), "--help").stdout
         options = {o.replace("-", "_") for o in re.findall(r"--([a-z][a-z-]*)", text)}
         try:
             mine = set(inspect.signature(function).parameters)
         except ValueError:  # a function of C++
             mine = set(re.findall(r"(\w+): ", function.__doc__.splitlines()[0]))
-        positional = {"locate": {"stack"}, "track": {"stack"}, "analyze": {"trajectory"}}[verb]
-        assert mine - positional - {"callback"} <= options, verb
+        assert mine > positional and mine - positional - {"callback"} <= options, verb

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import twincell
-from conftest import document, program, sentence
+from conftest import SCENE, document, program, sentence
 
 
 @pytest.fixture(scope="module")
@@ -71,6 +71,9 @@ def test_export_and_import(sim_file, tmp_path):
     assert program("export", sim_file, "--to", "csv", "-o", tmp_path / "verb.csv", "-q").returncode == 0
     twincell.export(sim_file, to="csv", output=tmp_path / "mine.csv")
     assert (tmp_path / "mine.csv").read_bytes() == (tmp_path / "verb.csv").read_bytes()
+    scene = twincell.Scene.from_dict({**SCENE, "time": {**SCENE["time"], "integrator": "verlet"}})
+    deck = twincell.export(scene, to="lammps", output=tmp_path / "deck")
+    assert "--drive-amplitude 1.6" in deck["import"] and (tmp_path / "deck/in.twincell").exists()
     run = twincell.Trajectory.open(sim_file)
     beads = np.asarray(run.positions)[:3]
     in_memory = twincell.Trajectory.from_arrays(beads, radii=run.radii)

@@ -43,6 +43,19 @@ def test_simulate_is_the_verb_to_the_bit(sim_file, scene_file, tmp_path):
     assert twincell.analyze(mine, ["q6", "T_z"]).to_dict() == twincell.analyze(sim_file, ["q6", "T_z"]).to_dict()
 
 
+def test_simulate_takes_files_dicts_and_the_options_of_the_verb(scene_file, tmp_path):
+    path = tmp_path / "verb.h5"
+    words = ("--set", "drive.gamma=1.2", "--seed", "7", "--contacts")
+    assert program("simulate", scene_file, *words, "-o", path, "-q").returncode == 0
+    verb = twincell.Trajectory.open(path)
+    for scene in (scene_file, str(scene_file), SCENE, twincell.Scene.from_dict(SCENE)):
+        mine = twincell.simulate(scene, set={"drive.gamma": 1.2}, seed=7, contacts=True)
+        assert np.array_equal(np.asarray(mine.positions), np.asarray(verb.positions))
+        assert np.allclose(mine.contacts[5]["normal_force"], verb.contacts[5]["normal_force"], rtol=1e-6)
+    with pytest.raises(OSError, match="does not exist"):
+        twincell.simulate(tmp_path / "none.toml")
+
+
 def test_stepping_by_hand_is_the_same_run():
     whole = twincell.simulate(twincell.Scene.from_dict(SCENE))
     sim = twincell.Simulation(twincell.Scene.from_dict(SCENE))

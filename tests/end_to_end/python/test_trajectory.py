@@ -34,6 +34,7 @@ def test_columns_are_views_that_keep_their_memory_alive(sim_file):
     assert np.array_equal(np.asarray(t.velocities), velocities)
     first, again = t.positions[3], t.positions[3]
     assert np.shares_memory(first, again)  # no copy of the frame
+    assert np.array_equal(t.positions[:, 4, 2], positions[:, 4, 2]) and np.array_equal(t.positions[1:5, 0], positions[1:5, 0])
     assert not first.flags.owndata and not first.flags.writeable
     radii = t.radii
     assert np.shares_memory(radii, t.radii)
@@ -103,6 +104,7 @@ def test_from_arrays_analyses_like_the_original(sim_file):
         cycle=t.cycle, time=t.time, step=t.step, plate_height=t.plate_height, box=t.box, drive=t.drive,
         phases_per_cycle=t.phases_per_cycle, tracers=t.tracers, source=t.source)
     # Not those that need what an array cannot carry: spins, and averages over the time between frames.
+    assert twincell.analyze(own, "q6,psi6").keys() == twincell.analyze(own, ["q6", "psi6"]).keys() == ["q6", "psi6"]
     names = ["s_b", "s_c", "q6", "psi4", "holes", "phi_z", "h_cm", "phase"]
     assert twincell.analyze(own, names).to_dict() == twincell.analyze(t, names).to_dict()
 
