@@ -130,7 +130,8 @@ void add_import(CLI::App& program, Common& common) {
       ->capture_default_str();
   verb.add_option("--bead-mass", l.bead_mass,
                   "Bead mass m, the unit of the column mass; default: masses are not read");
-  verb.add_option("--tracer-type", l.tracer_type, "Type that marks tracers; default: no tracers");
+  verb.add_option("--tracer-type", l.tracer_type,
+                  "Type that marks tracers; default: those of the column tracer of a table, otherwise none");
   verb.callback([o, &common] { run(*o, common); });
 }
 

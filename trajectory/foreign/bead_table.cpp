@@ -92,7 +92,7 @@ class TableReader final : public PictureBeadsReader {
     if (options_.dimension == 3 && !column("z")) fail_at(1, "there is no column 'z' (--dimension 3).");
     has_.radius = column("radius") || column("diameter");
     has_.mass = column("bead_mass").has_value();
-    has_.type = column("tracer").has_value();
+    has_.type = has_.tracer = column("tracer").has_value();
     has_.uncertainty = column("sigma_x") && column("sigma_y");
     has_.velocity = {column("vx").has_value(), column("vy").has_value(), column("vz").has_value()};
   }

@@ -121,6 +121,11 @@ struct ForeignTrajectory::Impl {
     return time(s) / info.drive->period() + o.phase_of_step_zero;
   }
 
+  /// Type that marks tracers: that of the options, or of a file that marks them itself.
+  [[nodiscard]] std::optional<long> tracer_type(const SnapshotColumns& columns) const {
+    return columns.tracer && !o.tracer_type ? std::optional(2L) : o.tracer_type;
+  }
+
   /// End of the first pass: sets columns, box and boundaries.
   void complete(const Snapshot& first, const SnapshotColumns& columns) {
     info.n_beads = ids.size();
@@ -142,7 +147,7 @@ struct ForeignTrajectory::Impl {
     if (o.dimension == 2) info.box.upper.y() = (first.upper.z() - first.lower.z()) / o.sigma;
     if (!columns.radius) info.radius.clear();
     if (!columns.mass || !o.bead_mass) info.mass.clear();
-    if (!o.tracer_type) info.tracer.clear();
+    if (!tracer_type(columns)) info.tracer.clear();
     if (o.tracer_type && !columns.type) refuse("--tracer-type", "the file has no types of beads.");
     if (!(info.box.upper.minCoeff() > 0))
       refuse("--cell-origin", "the origin is above or to the right of the file's box.");
@@ -231,7 +236,7 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
     }
     for (const SnapshotBead& a : s.beads)
       seen.emplace(a.id, Bead{a.radius / d.o.sigma, a.mass / d.o.bead_mass.value_or(1),
-                              d.o.tracer_type && a.type == *d.o.tracer_type});
+                              d.tracer_type(reader.columns()) == a.type});
     fewest = std::min(fewest, s.beads.size());
     ++d.n_frames;
     progress.update(reader.done(), reader.size());

@@ -67,6 +67,7 @@ void enclose(Snapshot& s, int dimension);
 /// The quantities that the snapshots of a file have, besides id and position.
 struct SnapshotColumns {
   bool type = false, radius = false, mass = false, uncertainty = false;
+  bool tracer = false;               ///< type 2 marks tracers, whatever else is stated; only when read
   bool phase = false;                ///< only when written
   bool contacts = false;             ///< only when written
   std::vector<std::string> numbers;  ///< names of further numbers of each bead, only when written

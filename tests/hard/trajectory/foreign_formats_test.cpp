@@ -242,6 +242,21 @@ TEST_F(ForeignFormats, ColumnsOfATableAreNamed) {
             std::string::npos);
 }
 
+TEST_F(ForeignFormats, ATableMarksItsTracers) {
+  ForeignOptions options;
+  options.timestep = 1;
+  for (const auto& [no, yes] : {std::pair("0", "1"), std::pair("False", "True")}) {
+    put_file(file(),
+             fmt::format("frame,particle,x,y,tracer\n0,0,1,-1,{0}\n0,1,2,-1,{1}\n0,2,3,-1,{0}\n", no, yes));
+    EXPECT_EQ(read("csv", options).info().tracer, (std::vector<std::uint8_t>{0, 1, 0}));
+  }
+  options.tracer_type = 1;  // the option is stronger
+  EXPECT_EQ(read("csv", options).info().tracer, (std::vector<std::uint8_t>{1, 0, 1}));
+  options.tracer_type.reset();
+  put_file(file(), "frame,particle,x,y\n0,0,1,-1\n");
+  EXPECT_TRUE(read("csv", options).info().tracer.empty());
+}
+
 TEST_F(ForeignFormats, DamagedTables) {
   const std::string head = "frame,particle,x,y\n";
   EXPECT_EQ(refusal("csv", "frame,x,y\n0,1,2\n"),
