@@ -196,17 +196,14 @@ cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double dis
   if (cv::countNonZero(core) == 0) return {};
   cv::Mat1f to_core;
   cv::distanceTransform(~core, to_core, cv::DIST_L2, cv::DIST_MASK_5);
-  const cv::Mat1b coarse =
-      to_core(cv::Rect(pad, pad, size.width, size.height)) < reach + (shrink > 1 ? 1 : 0);
-  cv::Mat1b regions;
+  const cv::Mat1f distance = to_core(cv::Rect(pad, pad, size.width, size.height));
   const auto at_full_size = [&](const cv::Mat1b& blocks) {
     cv::Mat1b full;
     cv::resize(blocks, full, cv::Size(), shrink, shrink, cv::INTER_NEAREST);
     return cv::Mat1b(full(cv::Rect(0, 0, darkness.cols, darkness.rows)));
   };
-  regions = at_full_size(coarse) & dark_pixels;
-  trim_bumps(regions, at_full_size(to_core(cv::Rect(pad, pad, size.width, size.height)) < 0.5 * reach),
-             disc_radius_px);
+  cv::Mat1b regions = at_full_size(distance < reach + (shrink > 1 ? 1 : 0)) & dark_pixels;
+  trim_bumps(regions, at_full_size(distance < 0.5 * reach), disc_radius_px);
   cv::dilate(regions, regions, cv::Mat(), cv::Point(-1, -1), 2);  // includes their blurred edge
   return regions;
 }

@@ -120,10 +120,11 @@ class TableReader final : public PictureBeadsReader {
     };
     const auto whole = [&](const char* quantity) {
       const double value = real(quantity, 0);
-      if (value != std::floor(value) || std::abs(value) > 9e15)
+      const auto integer = integer_of(value);
+      if (!integer)
         throw InputError({.file = file().string(), .line = number, .key = quantity},
                          fmt::format("{:g} is not a whole number.", value));
-      return static_cast<std::int64_t>(value);
+      return *integer;
     };
     BeadOfFrame row;
     row.frame = whole("frame");

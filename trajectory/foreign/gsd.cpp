@@ -314,11 +314,11 @@ class GsdReader final : public SnapshotReader {
   }
 
   [[nodiscard]] std::int64_t whole(const char* name, double value) const {
-    constexpr double kExact = 9e15;  // below it a double holds every whole number
-    if (value != std::floor(value) || std::abs(value) > kExact)
+    const auto integer = integer_of(value);
+    if (!integer)
       fail_at(0, fmt::format("{} of frame {} has {:g}, not a whole number within {:g}.", name, frame_, value,
                              kExact));
-    return static_cast<std::int64_t>(value);
+    return *integer;
   }
 
   template <class Number>

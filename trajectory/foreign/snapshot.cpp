@@ -36,6 +36,11 @@ void SnapshotReader::fail_at(long line, const std::string& complaint) const {
   throw InputError({file_.string(), line, 0, ""}, complaint);
 }
 
+std::optional<std::int64_t> SnapshotReader::integer_of(double value) {
+  if (value != std::floor(value) || std::abs(value) > kExact) return {};
+  return static_cast<std::int64_t>(value);
+}
+
 std::int64_t SnapshotReader::whole_at(long line, std::string_view word) const {
   std::int64_t value = 0;
   if (!parses(word, value))

@@ -102,6 +102,10 @@ class SnapshotReader {
   /// The number that `word` is. \throws InputError as fail_at if it is no whole or no finite number
   [[nodiscard]] std::int64_t whole_at(long line, std::string_view word) const;
   [[nodiscard]] double number_at(long line, std::string_view word) const;
+  /// The integer that `value` is; nothing if it is none, or above kExact in size, where doubles skip
+  /// integers.
+  [[nodiscard]] static std::optional<std::int64_t> integer_of(double value);
+  static constexpr double kExact = 9e15;
 
  private:
   std::filesystem::path file_;
