@@ -10,6 +10,7 @@
 #include "analysis/motion/tracers.hpp"
 #include "analysis/observable/no_such_result.hpp"
 #include "analysis/observable/observable.hpp"
+#include "analysis/observable/timed_analysis.hpp"
 #include "core/cancellation.hpp"
 
 // The list: an observable is NAME.cpp in a room of analysis/, which defines NAME_observable.
@@ -44,7 +45,14 @@ TWINCELL_OBSERVABLES(TWINCELL_DECLARE)
 
 namespace {
 
-/// All observables, in the order of their results.
+/// The names of the list.
+constexpr auto kNames = std::to_array<std::string_view>({
+#define TWINCELL_NAME(name) #name,
+    TWINCELL_OBSERVABLES(TWINCELL_NAME)
+#undef TWINCELL_NAME
+});
+
+/// All observables, in the order of their results and of kNames.
 const std::vector<const ObservableEntry*>& entries() {
 #define TWINCELL_ADDRESS(name) &name##_observable,
   static const std::vector<const ObservableEntry*> list = {TWINCELL_OBSERVABLES(TWINCELL_ADDRESS)};
@@ -216,6 +224,11 @@ const Result& find_result(const std::vector<Result>& results, const std::string&
 
 std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOptions& options,
                             Progress& progress) {
+  return analyze(trajectory, options, progress, nullptr);
+}
+
+std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOptions& options,
+                            Progress& progress, StageTimes* times) {
   check(options);
   if (trajectory.n_frames() == 0)
     throw InputError({.file = trajectory.name(), .key = {}}, "the trajectory contains no frame");
@@ -225,11 +238,16 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
                       "cycles cannot be chosen from a trajectory whose frames have no cycle number");
 
   // Observables: only those with a requested result.
-  std::vector<std::unique_ptr<Observable>> observables;
-  for (const ObservableEntry* entry : entries())
-    if (std::any_of(entry->results.begin(), entry->results.end(),
+  struct Chosen {
+    std::string_view name;
+    std::unique_ptr<Observable> observable;
+  };
+  std::vector<Chosen> chosen;
+  for (std::size_t k = 0; k < entries().size(); ++k)
+    if (const ObservableEntry& entry = *entries()[k];
+        std::any_of(entry.results.begin(), entry.results.end(),
                     [&](const NamedResult& result) { return options.wants(std::string(result.name)); }))
-      observables.push_back(entry->make(context));
+      chosen.push_back({kNames[k], entry.make(context)});
 
   Frame frame;
   std::int64_t first_cycle = -1, cycles = 0;  // cycles: after the skipped ones
@@ -237,7 +255,11 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
   // The number of frames is queried each time: a run that is analysed while it is simulated may end early.
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
     throw_if_cancelled();
-    trajectory.read(f, frame);
+    {
+      Stage reading(times, "reading", "bead-frames");
+      trajectory.read(f, frame);
+      reading.count(static_cast<double>(frame.position.size()));
+    }
     progress.update(static_cast<std::int64_t>(f) + 1, static_cast<std::int64_t>(trajectory.n_frames()));
     if (options.discard_cycles > 0 || options.cycles > 0) {
       if (frame.cycle < 0) continue;
@@ -249,7 +271,11 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
     }
     ++used;
     const FrameView view(frame, context);
-    for (const auto& observable : observables) observable->add(view);
+    for (const auto& [name, observable] : chosen) {
+      Stage adding(times, name, "bead-frames");
+      observable->add(view);
+      adding.count(static_cast<double>(frame.position.size()));
+    }
   }
   if (used == 0)
     throw ConfigError({.file = trajectory.name(), .key = "discard"},
@@ -261,8 +287,9 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
 
   // Results: only those requested, because an observable may have more.
   std::vector<Result> results;
-  for (const auto& observable : observables) {
+  for (const auto& [name, observable] : chosen) {
     throw_if_cancelled();
+    const Stage finishing(times, name);
     for (Result& r : observable->results()) {
       if (!options.wants(r.name)) continue;
       if (!r.shape.empty() && !r.interval && r.no_interval.empty())

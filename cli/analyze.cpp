@@ -12,9 +12,11 @@
 #include "analysis/motion/tracers.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/results.hpp"
+#include "analysis/observable/timed_analysis.hpp"
 #include "analysis/report/spatial_figures.hpp"
 #include "analysis/runs/pooling.hpp"
 #include "cli/output.hpp"
+#include "cli/profile.hpp"
 #include "cli/results_summary.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
@@ -32,6 +34,7 @@ struct AnalyzeOptions {
   std::string s_b = "variance";
   std::string neighbours = "cutoff";
   AnalysisOptions analysis;
+  bool profile = false;
 };
 
 Product figure_folder() {
@@ -67,6 +70,7 @@ double rest_height_of(const std::string& said) {
 }
 
 void run(const Common& common, const AnalyzeOptions& options) {
+  Profile profile(options.profile);
   std::vector<std::unique_ptr<H5mdReader>> readers;
   std::vector<const TrajectorySource*> trajectories;
   for (const std::string& file : options.trajectories) {
@@ -82,15 +86,19 @@ void run(const Common& common, const AnalyzeOptions& options) {
   std::vector<std::vector<Result>> runs;
   for (const TrajectorySource* trajectory : trajectories) {
     ProgressBar progress(common, readers.size() > 1 ? trajectory->name() : "analyze");
-    runs.push_back(analyze(*trajectory, options.analysis, progress));
+    runs.push_back(analyze(*trajectory, options.analysis, progress, profile.times()));
   }
   const std::vector<Result> results = runs.size() > 1 ? pool(runs) : runs.front();
 
   Provenance provenance = common.provenance();
   provenance.inputs.assign(options.trajectories.begin(), options.trajectories.end());
   const std::string provenance_json = provenance.to_json();
-  if (!options.output.empty()) write_results(options.output, results, provenance_json);
+  if (!options.output.empty()) {
+    const Stage writing(profile.times(), "writing");
+    write_results(options.output, results, provenance_json);
+  }
   if (!options.figures.empty()) {
+    const Stage drawing(profile.times(), "figures");
     AtomicPath folder(options.figures, figure_folder());
     for (const Figure& figure : spatial_figures(results, *readers.front(), options.analysis))
       draw(figure, folder.part());
@@ -101,9 +109,10 @@ void run(const Common& common, const AnalyzeOptions& options) {
   document["results"] = nlohmann::json::parse(results_json(results));
   if (runs.size() > 1) document["runs"] = options.trajectories;
   document["provenance"] = nlohmann::json::parse(provenance_json);
-  print_result(
-      common, document,
-      common.verbose ? results_text(results) : results_summary(results, !options.analysis.only.empty()));
+  std::string text =
+      common.verbose ? results_text(results) : results_summary(results, !options.analysis.only.empty());
+  profile.add_to(document, text);
+  print_result(common, document, text);
 }
 
 }  // namespace
@@ -167,6 +176,7 @@ void add_analyze(CLI::App& program, Common& common) {
       ->type_name("SIGMA|FILE");
   verb.add_option("--cutoff", options->analysis.neighbour_cutoff,
                   "Largest distance between neighbours, sigma; default: 1.2, for experiments 1.3");
+  add_profile_option(verb, options->profile);
   verb.callback([&common, options] {
     if (!options->rest_height.empty()) options->analysis.rest_height = rest_height_of(options->rest_height);
     options->analysis.s_b = s_b_named(options->s_b);

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 
 #include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
+#include "cli/profile.hpp"
 #include "cli/verb.hpp"
 #include "core/cancellation.hpp"
 #include "core/error.hpp"
@@ -34,14 +36,15 @@ struct SimulateOptions {
   std::vector<std::string> assignments;
   std::optional<double> checkpoint_every;  ///< s; 0: only at signals
   bool resume = false;
+  bool profile = false;
 };
 
 /// Shows the progress bar. Saves a checkpoint at regular intervals, and before a signal ends the program.
 class SavingProgress : public Progress {
  public:
   SavingProgress(const Common& common, const std::string& label, const sim::Simulation& run,
-                 sim::CheckpointFolder* folder, double seconds)
-      : bar_(common, label), run_(run), folder_(folder), every_(seconds) {
+                 sim::CheckpointFolder* folder, double seconds, StageTimes* times)
+      : bar_(common, label), run_(run), folder_(folder), every_(seconds), times_(times) {
     if (folder != nullptr) finish_.emplace();  // a run can be saved only between steps
   }
 
@@ -55,7 +58,11 @@ class SavingProgress : public Progress {
                                            folder_->path().string() + ".");
     }
     if (!(every_.count() > 0 && Clock::now() - saved_ >= every_)) return;
-    folder_->save(run_.state());
+    {
+      Stage saving(times_, "checkpoints", "checkpoints");
+      folder_->save(run_.state());
+      saving.count(1);
+    }
     saved_ = Clock::now();
   }
 
@@ -65,6 +72,7 @@ class SavingProgress : public Progress {
   const sim::Simulation& run_;
   sim::CheckpointFolder* folder_;
   std::chrono::duration<double> every_;
+  StageTimes* times_;
   std::optional<FinishFirst> finish_;
   Clock::time_point saved_ = Clock::now();
 };
@@ -148,6 +156,16 @@ std::string as_text(const nlohmann::json& d, bool verbose) {
   return s + d["output"].get<std::string>() + "\n";
 }
 
+/// The work of the solver that explains its time.
+void state_counters(const sim::Solver& solver, Profile& profile) {
+  const sim::Solver::Counters counters = solver.counters();
+  profile.state("steps", counters.steps);
+  profile.state("pair_visits", counters.pair_visits);
+  profile.state("wall_visits", counters.wall_visits);
+  profile.state("near_refreshes", counters.near_refreshes);
+  profile.state("list_builds", solver.list_builds());
+}
+
 std::string failed_name(const std::string& output) {
   std::filesystem::path path(output);
   return path.replace_extension(".failed" + path.extension().string()).string();
@@ -187,10 +205,10 @@ std::optional<sim::CheckpointFolder> folder_for(const sim::Scene& scene, const S
 /// Runs the simulation. Its frames go directly to the file, or through a folder of checkpoints. If the run
 /// fails, the frames so far are kept in a file named failed_name(output).
 void run_into(H5mdWriter& writer, sim::Simulation& run, Progress& progress, sim::CheckpointFolder* folder,
-              const std::string& output) {
+              const std::string& output, StageTimes* times) {
   TrajectorySink& sink = folder != nullptr ? static_cast<TrajectorySink&>(*folder) : writer;
   try {
-    run.run(sink, progress);
+    run.run(sink, progress, std::numeric_limits<std::int64_t>::max(), times);
   } catch (const RunError& e) {
     const std::string kept = failed_name(output);
     if (folder != nullptr)
@@ -199,12 +217,14 @@ void run_into(H5mdWriter& writer, sim::Simulation& run, Progress& progress, sim:
       writer.finish_as(kept);
     throw RunError(std::string(e.what()) + " The frames up to that point are in " + kept + ".");
   }
+  const Stage finishing(times, "writing");
   if (folder == nullptr) return writer.finish();
   folder->save(run.state());  // gathering a long run takes time; if it is interrupted, no step is repeated
   folder->gather(writer, [&] { writer.finish(); });
 }
 
 void run_simulate(const SimulateOptions& options, const Common& common) {
+  Profile profile(options.profile);
   std::vector<std::string> assignments = with_seed(options.assignments, common);
   if (options.relax) assignments.emplace_back("start.relax=true");
   if (options.contacts) assignments.emplace_back("time.contacts=true");
@@ -223,11 +243,16 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   if (scene.n_beads) sim::require_disk(scene, sim::make_plan(scene), *scene.n_beads, options.output);
   // The beads are placed once, before the folder of checkpoints is created, so that an impossible start
   // leaves no folder behind.
+  const auto place = [&] {
+    Stage stage(profile.times(), "placing", "beads");
+    sim::RunState placed = sim::placed(scene, placing);
+    stage.count(static_cast<double>(placed.beads.size()));
+    return placed;
+  };
   std::optional<sim::RunState> start;
-  if (!sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output)))
-    start = sim::placed(scene, placing);
+  if (!sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output))) start = place();
   const auto make_provenance = [&] {
-    if (!start) start = sim::placed(scene, placing);
+    if (!start) start = place();
     return scene_provenance(common, scene, start->beads, {options.scene});
   };
   auto checkpoints = folder_for(scene, options, make_provenance, common);
@@ -245,9 +270,9 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   constexpr double kTenMinutes = 600;
   const double every = options.checkpoint_every.value_or(kTenMinutes);
   {
-    SavingProgress settling(common, "settling", run, folder, every);
+    SavingProgress settling(common, "settling", run, folder, every, profile.times());
     try {
-      run.settle(settling);
+      run.settle(settling, profile.times());
     } catch (const RunError&) {
       if (folder != nullptr) folder->remove();
       throw;
@@ -261,13 +286,16 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   info.provenance_json = provenance;
   if (folder != nullptr) folder->announce(info);
   H5mdWriter writer(options.output, std::move(info));
-  SavingProgress simulating(common, "simulating", run, folder, every);
+  SavingProgress simulating(common, "simulating", run, folder, every, profile.times());
   const auto begin = std::chrono::steady_clock::now();
-  run_into(writer, run, simulating, folder, options.output);
+  run_into(writer, run, simulating, folder, options.output, profile.times());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   nlohmann::json document = describe(run, options.output, begun_at, seconds);
   document["warnings"] = warnings;
-  print_result(common, document, as_text(document, common.verbose));
+  std::string text = as_text(document, common.verbose);
+  state_counters(run.kernel(), profile);
+  profile.add_to(document, text);
+  print_result(common, document, text);
 }
 
 }  // namespace
@@ -298,6 +326,7 @@ void add_simulate(CLI::App& program, Common& common) {
   verb.add_flag("--resume", options->resume,
                 "Continue the run in OUTPUT.checkpoint/, or start it if there is none; saves a checkpoint "
                 "every 600 s unless --checkpoint-every is given");
+  add_profile_option(verb, options->profile);
   verb.callback([options, &common] { run_simulate(*options, common); });
 }
 

@@ -14,6 +14,7 @@
 #include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/phase_options.hpp"
+#include "cli/profile.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
@@ -31,6 +32,7 @@ struct TrackOptions {
   std::string stack, output, csv, truth;
   std::vector<double> scored_rows;
   FilmOptions film;
+  bool profile = false;
 };
 
 constexpr const char* kHeading = "y,x,frame,particle,radius,tracer,phase,cycle,sigma_y,sigma_x,ambiguous\n";
@@ -97,16 +99,19 @@ std::string describe(const TrackedStack& stack) {
 }
 
 void run(TrackOptions& o, const Common& common) {
+  Profile profile(o.profile);
   const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
   o.film.folder = parent.empty() ? "." : parent;
   o.film.threads = common.n_threads();
   const auto open = [&](const LocatorOptions& locator) {
     return open_for_locating(o.stack, o.film.locating, locator, common);
   };
-  TrackedFilm film =
-      track_film(open, o.stack, o.film, [&](const std::string& stage) -> std::unique_ptr<Progress> {
+  TrackedFilm film = track_film(
+      open, o.stack, o.film,
+      [&](const std::string& stage) -> std::unique_ptr<Progress> {
         return std::make_unique<ProgressBar>(common, stage);
-      });
+      },
+      profile.times());
   const CellDescription& cell = film.cell;
   const TrackedStack& stack = film.stack;
   TrackPlan& plan = film.plan;
@@ -126,10 +131,14 @@ void run(TrackOptions& o, const Common& common) {
   for (const std::string& file : {o.film.locating.mask, o.film.locating.background})
     if (!file.empty()) provenance.inputs.emplace_back(file);
   plan.info.provenance_json = provenance.to_json();
-  H5mdWriter writer(o.output, plan.info);
-  write_trajectory(stack, plan, writer);
-  writer.finish();
-  if (!o.csv.empty()) write_csv(o.csv, stack, range);
+  {
+    Stage writing(profile.times(), "writing", "frames");
+    H5mdWriter writer(o.output, plan.info);
+    write_trajectory(stack, plan, writer);
+    writer.finish();
+    if (!o.csv.empty()) write_csv(o.csv, stack, range);
+    writing.count(static_cast<double>(stack.frames.size()));
+  }
 
   if (!cell.pixels_per_sigma)
     note(common, fmt::format("no scale was given: sigma is the bead diameter of {:.3f} px.",
@@ -173,6 +182,7 @@ void run(TrackOptions& o, const Common& common) {
         "against the truth: recall {:.4f}, precision {:.4f}, rms {:.4f} px, {} links of which {} wrong\n",
         s.recall(), s.precision(), s.rms, s.links, s.wrong_links);
   }
+  profile.add_to(document, text);
   print_result(common, document, text);
 }
 
@@ -242,6 +252,7 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--scored-rows", o->scored_rows,
                   "First and last row of pixels that is scored, px; default: all rows")
       ->expected(2);
+  add_profile_option(verb, o->profile);
   verb.callback([o, &common] { run(*o, common); });
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Processor time of the calling thread.
+/// Processor time of the calling thread and of the process.
 
 #include <ctime>
 
@@ -10,6 +10,13 @@ namespace twincell {
 inline double cpu_seconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Processor time of all threads of this process since its start, s.
+inline double processor_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 

@@ -6,7 +6,8 @@ namespace twincell {
 
 TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>(const LocatorOptions&)>& open,
                        const std::filesystem::path& film, const FilmOptions& options,
-                       const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress) {
+                       const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress,
+                       StageTimes* times) {
   const TrackRequest& request = options.request;
   CellDescription cell = resolve_cell(request);
   PhaseSource source = phase_source(request.phase, cell, request.cell_file);
@@ -22,13 +23,17 @@ TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>(const Lo
   TrackedStack stack = [&] {
     const auto bar = progress("track");
     return track_stack(*frames, locator, options.link, cell, options.threads, *bar, source, options.folder,
-                       region);
+                       region, times);
   }();
   check_flat(options.locating.flat, stack.locator.preprocess.bright);
-  TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, options.shortest);
+  TrackPlan plan = [&] {
+    const Stage planning(times, "plan");
+    return plan_trajectory(stack, cell, stack.locator.diameter_px, options.shortest);
+  }();
   // Check the stated drive against the motion of the plate, or of the bed if the plate is not visible.
   DriveCheck check{.not_comparable = "the stated drive is trusted"};
   if (!options.trust_stated_drive && plan.info.drive) {
+    const Stage checking(times, "drive check");
     if (!film.empty()) {
       const auto edge = progress("the plate's edge");
       check = check_by_plate(cell, film, options.threads, *edge, source.method == PhaseMethod::fixed);

@@ -10,6 +10,7 @@
 
 #include "calibration/drive/plate_drive.hpp"
 #include "core/progress.hpp"
+#include "core/stage_times.hpp"
 #include "imaging/track/locating_request.hpp"
 #include "imaging/track/track.hpp"
 #include "imaging/track/track_request.hpp"
@@ -43,9 +44,12 @@ struct TrackedFilm {
 /// \param film file or folder of the frames, which is read again for the plate; empty for frames in memory,
 /// whose drive is checked against the bed only
 /// \param progress makes the progress of the stages "track" and "the plate's edge"
+/// \param times receives the times of the stages of track_stack, and of "drive check" and "plan"; null: not
+/// timed
 /// \throws ConfigError, InputError as resolve_cell, phase_source, track_stack
 TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>(const LocatorOptions&)>& open,
                        const std::filesystem::path& film, const FilmOptions& options,
-                       const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress);
+                       const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress,
+                       StageTimes* times = nullptr);
 
 }  // namespace twincell

@@ -30,9 +30,12 @@ struct Detections {
 /// A stack that keeps the size of its frames, and the evidence for their phases, as they are read.
 class Witnessed : public FrameSource {
  public:
-  Witnessed(FrameSource& frames, bool bright) : frames_(frames), bright_(bright) {}
+  Witnessed(FrameSource& frames, bool bright, StageTimes* times)
+      : frames_(frames), bright_(bright), times_(times) {}
   bool next(cv::Mat& frame) override {
+    Stage reading(times_, "reading", "frames");
     if (!frames_.next(frame)) return false;
+    reading.count(1);
     size_ = frame.size();
     if (const auto time = frames_.time_s()) evidence_.times_s.push_back(*time);
     evidence_.plate_px.push_back(plate_height_px(frame, bright_));
@@ -53,13 +56,15 @@ class Witnessed : public FrameSource {
  private:
   FrameSource& frames_;
   bool bright_;
+  StageTimes* times_;
   cv::Size size_;
   LockEvidence evidence_;
 };
 
 Detections detect(FramesAhead& frames, const LocatorOptions& locator, const CellDescription& cell,
                   const Region& region, const cv::Size& picture, int threads, Progress& progress,
-                  const std::filesystem::path& folder) {
+                  const std::filesystem::path& folder, StageTimes* times) {
+  Stage locating(times, "locating", "beads");
   Detections all{.frames = DetectionStore(folder)};
   std::vector<TrackedBead> beads;
   locate_stack(
@@ -68,6 +73,7 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
         all.wrong_radius += static_cast<std::size_t>(
             std::count_if(found.dropped.begin(), found.dropped.end(),
                           [](const Detection& b) { return b.verdict == Verdict::wrong_radius; }));
+        locating.count(static_cast<double>(found.beads.size()));
         beads.clear();
         for (Detection b : found.beads) {
           b.x += region.corner().x;
@@ -102,27 +108,30 @@ double smallest_diameter(const LocatorOptions& locator) {
 
 TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOptions link,
                          const CellDescription& cell, int threads, Progress& progress,
-                         const PhaseSource& source, const std::filesystem::path& folder,
-                         const Region& region) {
+                         const PhaseSource& source, const std::filesystem::path& folder, const Region& region,
+                         StageTimes* times) {
   // An unreadable list of triggers is rejected before the work, not after it.
   if (source.method == PhaseMethod::triggers)
     (void)read_triggers(source.triggers, source.drive_hz, cell.phase_lock.frames_per_cycle);
-  Witnessed witnessed(stack, given.preprocess.bright);
+  Witnessed witnessed(stack, given.preprocess.bright, times);
   RegionFrames seen(witnessed, region);
   FramesAhead frames(seen);
-  const LocatorOptions locator = configure_locator(frames, given).locator;
+  const LocatorOptions locator = [&] {
+    const Stage configuring(times, "settings");
+    return configure_locator(frames, given).locator;
+  }();
   const Detections detected =
-      detect(frames, locator, cell, region, witnessed.size(), threads, progress, folder);
+      detect(frames, locator, cell, region, witnessed.size(), threads, progress, folder, times);
   // If the frame cuts beads, others enter and leave.
   link.closed = cell.sides == Boundary::wall && !detected.cut_by_frame;
   link.diameter_px = smallest_diameter(locator);
-  return {
-      link_detections(detected.frames, link, cell, source, folder, Progress::none(), witnessed.evidence()),
-      locator,
-      witnessed.size().width,
-      witnessed.size().height,
-      detected.outside_cell,
-      detected.wrong_radius};
+  Stage linking(times, "linking", "links");
+  LinkedDetections linked =
+      link_detections(detected.frames, link, cell, source, folder, Progress::none(), witnessed.evidence());
+  linking.count(static_cast<double>(linked.links.links));
+  return {std::move(linked),      locator,
+          witnessed.size().width, witnessed.size().height,
+          detected.outside_cell,  detected.wrong_radius};
 }
 
 }  // namespace twincell

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/progress.hpp"
+#include "core/stage_times.hpp"
 #include "imaging/cell/cell.hpp"
 #include "imaging/link/link.hpp"
 #include "imaging/locate/locator.hpp"
@@ -32,12 +33,14 @@ struct TrackedStack : LinkedDetections {
 ///     temporary files
 /// \param region part of the picture that is searched; positions remain those of the whole picture. Discs cut
 ///     by the mask are left out. The plate is sought in the whole picture
+/// \param times receives the times of the stages "reading", "settings", "locating" (located beads) and
+///     "linking" (links; with the estimate of the phases); null: not timed
 /// \throws InputError if a list of triggers does not have a line for each frame; ConfigError as check_lock
 /// and
 ///     Region::check
 TrackedStack track_stack(FrameSource& frames, const LocatorOptions& locator, LinkOptions link,
                          const CellDescription& cell, int threads, Progress& progress = Progress::none(),
                          const PhaseSource& source = {}, const std::filesystem::path& folder = {},
-                         const Region& region = {});
+                         const Region& region = {}, StageTimes* times = nullptr);
 
 }  // namespace twincell

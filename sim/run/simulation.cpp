@@ -40,6 +40,10 @@ std::int64_t beads_in_contact(const System& s, Progress& progress) {
   return std::count(touching.begin(), touching.end(), 1);
 }
 
+double particle_steps(const System& s, std::int64_t steps) {
+  return static_cast<double>(s.beads.size()) * static_cast<double>(steps);
+}
+
 /// The contact memories of a start in motion, if this plan can read them.
 /// \throws ConfigError if other laws or another integrator wrote them
 std::vector<ContactMemory> readable(const Scene& scene, const Plan& plan,
@@ -182,7 +186,7 @@ Simulation::Simulation(const Scene& scene, Progress& progress, SolverKind kind, 
   settle(progress);
 }
 
-void Simulation::settle(Progress& progress) try {
+void Simulation::settle(Progress& progress, StageTimes* times) try {
   if (driven_) return;
   // Two consecutive checks must find the bed at rest; the energy is checked every ten contact times.
   constexpr int kLooks = 2;
@@ -190,7 +194,12 @@ void Simulation::settle(Progress& progress) try {
   const bool falls = !system_.beads.empty() && scene_.g() > 0;
   const auto most = falls ? static_cast<std::int64_t>(scene_.settle_limit / system_.dt) : 0;
   while (system_.step / block * block < most && quiet_ < kLooks) {
-    kernel_->advance(system_, std::min(block - system_.step % block, steps_per_call(system_.beads.size())));
+    {
+      const std::int64_t steps = std::min(block - system_.step % block, steps_per_call(system_.beads.size()));
+      Stage stage(times, "settling", "particle-steps");
+      kernel_->advance(system_, steps);
+      stage.count(particle_steps(system_, steps));
+    }
     if (system_.step % block == 0) {
       settled_.energy_per_bead = kinetic_energy_per_bead(system_);
       quiet_ = settled_.energy_per_bead < scene_.rest_energy ? quiet_ + 1 : 0;
@@ -341,8 +350,8 @@ void Simulation::take_sample(std::int64_t j) {
   temperature_.steps += sample_at(j) - sample_at(j - 1);
 }
 
-void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most) {
-  settle(progress);
+void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most, StageTimes* times) {
+  settle(progress, times);
   if (!driven_) begin_drive(scene_, plan_, system_);
   driven_ = true;
   const std::int64_t per_phase = steps_per_phase(), samples = samples_per_phase();
@@ -355,8 +364,15 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
       if (handed_over == most) return;
       ++handed_over;
       // May throw, so it comes before any change of state.
+      Stage taking(times, "frames", "frames");
+      taking.count(1);
       const std::int64_t touching = beads_in_contact(system_, progress);
-      sink.append(snapshot(cycle, static_cast<int>(frame % scene_.phases)));
+      const Frame now = snapshot(cycle, static_cast<int>(frame % scene_.phases));
+      {
+        Stage writing(times, "writing", "frames");
+        writing.count(1);
+        sink.append(now);
+      }
       touching_ += touching;
       looked_at_ += static_cast<std::int64_t>(system_.beads.size());
     }
@@ -366,8 +382,16 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
     const bool sampling = samples > 0 && (frame + 1) / scene_.phases >= plan_.cycles_before;
     const std::int64_t next = sampling ? into * samples / per_phase + 1 : 0;
     if (sampling) piece = std::min(piece, sample_at(next) - into);
-    kernel_->advance(system_, piece);
-    if (sampling && into + piece == sample_at(next)) take_sample(next);
+    {
+      Stage stepping(times, "stepping", "particle-steps");
+      kernel_->advance(system_, piece);
+      stepping.count(particle_steps(system_, piece));
+    }
+    if (sampling && into + piece == sample_at(next)) {
+      Stage sample(times, "samples", "samples");
+      take_sample(next);
+      sample.count(1);
+    }
     steps_done_ += piece;
     progress.update(system_.step, last);
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/progress.hpp"
+#include "core/stage_times.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/start/start.hpp"
@@ -89,13 +90,16 @@ class Simulation {
   [[nodiscard]] TrajectoryInfo trajectory_info() const;
 
   /// Completes the settling, if it is not complete.
-  void settle(Progress& progress = Progress::none());
+  /// \param times receives the time of the stage "settling"; null: not timed
+  void settle(Progress& progress = Progress::none(), StageTimes* times = nullptr);
   /// Runs discard + cycles periods and appends the frames of the latter to `sink`, `phases` per cycle, cycle
   /// 0 first.
-  /// \param most ends the call after this number of frames; the next call continues from there
   /// \throws RunError if the run fails (the frames up to there have been appended), Interrupted
+  /// \param most ends the call after this number of frames; the next call continues from there
+  /// \param times receives the times of the stages "stepping", "samples", "frames", "writing"; null: not
+  ///     timed
   void run(TrajectorySink& sink, Progress& progress = Progress::none(),
-           std::int64_t most = std::numeric_limits<std::int64_t>::max());
+           std::int64_t most = std::numeric_limits<std::int64_t>::max(), StageTimes* times = nullptr);
   /// The present state. It is consistent whenever settle() and run() call progress.update: the frames of all
   /// steps before state().step have been appended, and no others.
   [[nodiscard]] RunState state() const;

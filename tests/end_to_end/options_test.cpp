@@ -120,6 +120,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"phase-of-step-zero", "phase of an import's first step"},
     {"phases", "list of phases to write"},
     {"pixels-per-sigma", "scale of the camera"},
+    {"profile", "where the time went"},
     {"quick", "fewer settings"},
     {"quiet", "no progress"},
     {"range", "search range of the linker"},

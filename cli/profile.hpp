@@ -1,0 +1,45 @@
+#pragma once
+/// \file
+/// The option --profile: where the time of a verb went.
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/cpu_clock.hpp"
+#include "core/stage_times.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace twincell::cli {
+
+/// Times the stages of a verb if the user asks for it.
+///
+///     Profile profile(options.profile);
+///     { Stage writing(profile.times(), "writing", "frames"); … }
+///     profile.add_to(document, text);
+///     print_result(common, document, text);
+class Profile {
+ public:
+  /// The time starts now.
+  explicit Profile(bool wanted) : wanted_(wanted) {}
+  /// For functions that time their stages; null if no profile is wanted.
+  [[nodiscard]] StageTimes* times() { return wanted_ ? &times_ : nullptr; }
+  /// A number that explains the times, such as visited pairs. Printed below the table.
+  void state(const std::string& name, std::int64_t value);
+  /// Adds the key "profile" to the document and the table to the text. Does nothing if no profile is wanted.
+  void add_to(nlohmann::json& document, std::string& text) const;
+
+ private:
+  bool wanted_;
+  StageTimes times_;
+  double processor_ = processor_seconds();
+  nlohmann::ordered_json counters_ = nlohmann::ordered_json::object();
+};
+
+/// Adds the option to a verb.
+void add_profile_option(CLI::App& verb, bool& profile);
+
+}  // namespace twincell::cli
