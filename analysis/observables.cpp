@@ -52,6 +52,17 @@ constexpr auto kNames = std::to_array<std::string_view>({
 #undef TWINCELL_NAME
 });
 
+/// Bytes of the numbers per bead that a frame contains.
+double bytes_read(const Frame& f) {
+  return static_cast<double>(
+      sizeof(Vec3) * (f.position.size() + f.position_sigma.size() + f.velocity.size() + f.spin.size()));
+}
+
+/// Bytes that every observable has to read: the positions.
+double bytes_needed(const Frame& f) {
+  return static_cast<double>(sizeof(Vec3) * f.position.size());
+}
+
 /// All observables, in the order of their results and of kNames.
 const std::vector<const ObservableEntry*>& entries() {
 #define TWINCELL_ADDRESS(name) &name##_observable,
@@ -258,7 +269,7 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
     {
       Stage reading(times, "reading", "bead-frames");
       trajectory.read(f, frame);
-      reading.count(static_cast<double>(frame.position.size()));
+      reading.count(static_cast<double>(frame.position.size()), bytes_read(frame));
     }
     progress.update(static_cast<std::int64_t>(f) + 1, static_cast<std::int64_t>(trajectory.n_frames()));
     if (options.discard_cycles > 0 || options.cycles > 0) {
@@ -274,7 +285,7 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
     for (const auto& [name, observable] : chosen) {
       Stage adding(times, name, "bead-frames");
       observable->add(view);
-      adding.count(static_cast<double>(frame.position.size()));
+      adding.count(static_cast<double>(frame.position.size()), bytes_needed(frame));
     }
   }
   if (used == 0)

@@ -111,7 +111,7 @@ void run(const Common& common, const AnalyzeOptions& options) {
   document["provenance"] = nlohmann::json::parse(provenance_json);
   std::string text =
       common.verbose ? results_text(results) : results_summary(results, !options.analysis.only.empty());
-  profile.add_to(document, text);
+  profile.add_to(document, text, 1);
   print_result(common, document, text);
 }
 

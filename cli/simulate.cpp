@@ -294,7 +294,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   document["warnings"] = warnings;
   std::string text = as_text(document, common.verbose);
   state_counters(run.kernel(), profile);
-  profile.add_to(document, text);
+  profile.add_to(document, text, sim::threads_for(run.system().beads.size(), common.threads));
   print_result(common, document, text);
 }
 

@@ -12,6 +12,7 @@
 
 #include "cli/mpi_farm.hpp"
 #include "cli/output.hpp"
+#include "cli/profile.hpp"
 #include "cli/sweep_watch.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
@@ -36,7 +37,7 @@ Product collected_product() {
 struct SweepOptions {
   std::string plan, folder, shard, output, engine;
   sweep::FigureOptions figure;
-  bool mpi = false, keep_trajectories = false;
+  bool mpi = false, keep_trajectories = false, profile = false;
   int jobs = 8;
 };
 
@@ -147,6 +148,7 @@ std::optional<std::string> final_picture(const sweep::Schedule& schedule, const 
 void run_run(const SweepOptions& options, const Common& common) {
   const sweep::Plan plan = plan_of(options, common);
   const sweep::Shard shard = shard_of(options.shard);
+  Profile profile(options.profile);
   std::optional<MpiJob> job;
   if (options.mpi) job.emplace();
   const sweep::Store store(folder_of(options));
@@ -161,7 +163,7 @@ void run_run(const SweepOptions& options, const Common& common) {
     if (job)
       run_on_ranks(schedule ? &*schedule : nullptr, plan, store, options.keep_trajectories, watch);
     else
-      run_here({&*schedule}, store, {common.n_threads(), options.keep_trajectories}, watch);
+      run_here({&*schedule}, store, {common.n_threads(), options.keep_trajectories, profile.sum()}, watch);
   }
   if (!schedule) return;
   nlohmann::json document = as_json(schedule->counts(), store.folder(), schedule->all());
@@ -172,6 +174,7 @@ void run_run(const SweepOptions& options, const Common& common) {
       document["figure"] = *picture;
       text += fmt::format("picture: {}; sweep plot draws other results\n", *picture);
     }
+  profile.add_to(document, text, common.n_threads());
   print_result(common, document, text);
 }
 
@@ -299,6 +302,8 @@ void add_sweep(CLI::App& program, Common& common) {
   run.add_flag("--mpi", options->mpi, "Compute on the ranks of this MPI job, one point on each rank");
   run.add_flag("--keep-trajectories", options->keep_trajectories,
                "Store trajectory.h5 of every point that this command computes");
+  add_profile_option(run, options->profile);
+  run.get_option("--profile")->excludes("--mpi");
   run.callback([options, &common] { run_run(*options, common); });
 
   CLI::App& status = add(

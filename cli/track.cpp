@@ -182,7 +182,7 @@ void run(TrackOptions& o, const Common& common) {
         "against the truth: recall {:.4f}, precision {:.4f}, rms {:.4f} px, {} links of which {} wrong\n",
         s.recall(), s.precision(), s.rms, s.links, s.wrong_links);
   }
-  profile.add_to(document, text);
+  profile.add_to(document, text, common.n_threads());
   print_result(common, document, text);
 }
 

@@ -19,6 +19,19 @@ std::vector<StageTimes::Row> StageTimes::rows() const {
   return all;
 }
 
+void StageTimes::add(const std::vector<Row>& rows, std::vector<Row>& sum) {
+  for (const Row& row : rows) {
+    auto same = std::find_if(sum.begin(), sum.end(), [&](const Row& r) { return r.name == row.name; });
+    if (same == sum.end()) {
+      const bool ends_with_other = !sum.empty() && sum.back().name == kOther;
+      same = sum.insert(ends_with_other ? sum.end() - 1 : sum.end(), {.name = row.name, .unit = row.unit});
+    }
+    same->seconds += row.seconds;
+    same->count += row.count;
+    same->bytes += row.bytes;
+  }
+}
+
 std::size_t StageTimes::change_to(std::size_t stage) {
   const double now = clock_();
   stages_[running_].seconds += now - since_;
@@ -43,8 +56,10 @@ Stage::~Stage() {
   if (times_ != nullptr) times_->change_to(suspended_);
 }
 
-void Stage::count(double pieces) {
-  if (times_ != nullptr) times_->stages_[stage_].count += pieces;
+void Stage::count(double pieces, double bytes) {
+  if (times_ == nullptr) return;
+  times_->stages_[stage_].count += pieces;
+  times_->stages_[stage_].bytes += bytes;
 }
 
 }  // namespace twincell

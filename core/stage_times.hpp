@@ -30,8 +30,11 @@ class StageTimes {
     std::string unit;    ///< kind of the pieces of work, in the plural: "beads"; empty: not counted
     double seconds = 0;  ///< elapsed
     double count = 0;    ///< pieces of work
+    double bytes = 0;    ///< bytes that the work cannot do without moving; 0: not counted
     /// Pieces of work per second; 0 if the work is not counted or took no time.
     [[nodiscard]] double per_second() const { return seconds > 0 ? count / seconds : 0; }
+    /// Bytes per second, to be compared with memory_bandwidth(); 0 likewise.
+    [[nodiscard]] double bytes_per_second() const { return seconds > 0 ? bytes / seconds : 0; }
   };
 
   /// The time starts now. \param clock for tests
@@ -39,6 +42,9 @@ class StageTimes {
 
   /// The stages in the order in which they were first entered, "other" last. Includes the time until now.
   [[nodiscard]] std::vector<Row> rows() const;
+
+  /// Adds the rows of another thread to `sum`, each to the row of its name. "other" stays last.
+  static void add(const std::vector<Row>& rows, std::vector<Row>& sum);
 
   /// A monotonic clock, s.
   static double elapsed_seconds();
@@ -51,7 +57,8 @@ class StageTimes {
   Clock clock_;
   double since_;
   std::size_t running_ = 0;
-  std::vector<Row> stages_{{.name = "other", .unit = {}}};  ///< index 0: no stage
+  static constexpr std::string_view kOther = "other";
+  std::vector<Row> stages_{{.name = std::string(kOther), .unit = {}}};  ///< index 0: no stage
 };
 
 /// Times a stage during the lifetime of the object. To add a stage to a profile, declare one:
@@ -65,8 +72,8 @@ class Stage {
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
   ~Stage();
-  /// Adds to the work of the stage.
-  void count(double pieces);
+  /// Adds to the work of the stage. \param bytes as in Row
+  void count(double pieces, double bytes = 0);
 
  private:
   StageTimes* times_;

@@ -97,6 +97,8 @@ class Farm {
       ++working_;
     }
     CancellationToken progress(closing_);
+    StageTimes own;
+    StageTimes* const times = options_.times != nullptr ? &own : nullptr;
     std::unique_lock lock(mutex_);
     while (!closing_) {
       std::optional<Task> task;
@@ -109,6 +111,7 @@ class Farm {
         }
       if (!task) {
         if (all() || most < 0 || nothing_will_come()) break;
+        const Stage waiting(times, "waiting for points");
         changed_.wait_for(lock, 100ms);
         continue;
       }
@@ -118,8 +121,12 @@ class Farm {
       const std::string result = run_point(
           schedule->plan(), task->point,
           options_.keep_trajectories ? store_.of(task->point) / "trajectory.h5" : std::filesystem::path(),
-          progress);
-      store_.keep(task->point, result);
+          progress, times);
+      {
+        Stage storing(times, "storing", "points");
+        store_.keep(task->point, result);
+        storing.count(1);
+      }
       lock.lock();
       --busy_;
       seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
@@ -127,6 +134,7 @@ class Farm {
       schedule->done(*task, result);
       changed_.notify_all();
     }
+    if (times != nullptr) StageTimes::add(own.rows(), *options_.times);
     --working_;
     changed_.notify_all();
   } catch (...) {

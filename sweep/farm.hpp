@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/machine_memory.hpp"
+#include "core/stage_times.hpp"
 #include "sweep/schedule.hpp"
 
 namespace twincell::sweep {
@@ -25,6 +26,9 @@ class Watch {
 struct FarmOptions {
   int threads = 1;
   bool keep_trajectories = false;
+  /// Receives the times of the stages of run_point, "storing" and "waiting for points", summed over the
+  /// threads; null: not timed.
+  std::vector<StageTimes::Row>* times = nullptr;
 };
 
 /// Checks that the open points with the largest memory demand can run at once. Later rounds of a search count

@@ -19,9 +19,10 @@ class Hand : public TrajectorySink {
 
 }  // namespace
 
-LiveTrajectory::LiveTrajectory(sim::Simulation& run, std::string name, Progress& progress, Watcher watcher)
-    : run_(run), name_(std::move(name)), progress_(progress), watcher_(std::move(watcher)) {
-  run_.settle(progress_);
+LiveTrajectory::LiveTrajectory(sim::Simulation& run, std::string name, Progress& progress, Watcher watcher,
+                               StageTimes* times)
+    : run_(run), name_(std::move(name)), progress_(progress), watcher_(std::move(watcher)), times_(times) {
+  run_.settle(progress_, times_);
   info_ = run_.trajectory_info();
   n_frames_ = static_cast<std::size_t>(run_.scene().cycles) * static_cast<std::size_t>(run_.scene().phases);
 }
@@ -30,7 +31,7 @@ void LiveTrajectory::read(std::size_t index, Frame& frame) const {
   assert(index < n_frames_ && (index == made_ || index + 1 == made_));
   if (index == made_) {
     Hand hand(last_);
-    run_.run(hand, progress_, 1);
+    run_.run(hand, progress_, 1, times_);
     ++made_;
     const bool goes_on = watcher_(last_);
     if (!goes_on && last_.phase + 1 == info_.phases_per_cycle) n_frames_ = made_;

@@ -18,8 +18,10 @@ class LiveTrajectory : public TrajectorySource {
   /// there.
   using Watcher = std::function<bool(const Frame& frame)>;
 
-  /// Settles the bed before the first frame. \param name for messages \throws RunError, Interrupted
-  LiveTrajectory(sim::Simulation& run, std::string name, Progress& progress, Watcher watcher);
+  /// Settles the bed before the first frame. \param name for messages \param times receives the times of the
+  /// stages of the simulation; null: not timed \throws RunError, Interrupted
+  LiveTrajectory(sim::Simulation& run, std::string name, Progress& progress, Watcher watcher,
+                 StageTimes* times = nullptr);
 
   [[nodiscard]] const TrajectoryInfo& info() const override { return info_; }
   /// Number of frames of the whole run, or up to the frame where the watcher ended it.
@@ -33,6 +35,7 @@ class LiveTrajectory : public TrajectorySource {
   std::string name_;
   Progress& progress_;
   Watcher watcher_;
+  StageTimes* times_;
   TrajectoryInfo info_;
   mutable std::size_t n_frames_ = 0, made_ = 0;
   mutable Frame last_;

@@ -1,6 +1,7 @@
 #include "sweep/measure.hpp"
 
 #include "analysis/motion/centre_of_mass.hpp"
+#include "analysis/observable/timed_analysis.hpp"
 #include "sweep/live_trajectory.hpp"
 #include "sweep/precision_rule.hpp"
 
@@ -20,14 +21,17 @@ double height_of_centre(const std::vector<sim::Bead>& beads) {
 }  // namespace
 
 Measured measure(sim::Simulation& run, AnalysisOptions options, const std::string& name, Progress& progress,
-                 const Observer& observer) {
+                 const Observer& observer, StageTimes* times) {
   Measured measured;
   std::optional<PrecisionRule> rule;
-  const LiveTrajectory live(run, name, progress, [&](const Frame& frame) {
-    measured.cycles = frame.cycle + 1;
-    const bool goes_on = observer.frame(frame);
-    return !(rule && rule->reached(frame)) && goes_on;
-  });
+  const LiveTrajectory live(
+      run, name, progress,
+      [&](const Frame& frame) {
+        measured.cycles = frame.cycle + 1;
+        const bool goes_on = observer.frame(frame);
+        return !(rule && rule->reached(frame)) && goes_on;
+      },
+      times);
   const sim::Scene& scene = run.scene();
   if (scene.until) rule.emplace(scene, live.info());
   const bool rests = run.settled().time > 0 && run.settled().energy_per_bead < kAtRest;
@@ -35,7 +39,7 @@ Measured measure(sim::Simulation& run, AnalysisOptions options, const std::strin
     options.rest_height = height_of_centre(run.system().beads);
   measured.rest_height = options.rest_height;
   observer.begin(live.info());
-  measured.results = analyze(live, options);
+  measured.results = analyze(live, options, Progress::none(), times);
   measured.contact_fraction = run.contact_fraction();
   if (rule) {
     measured.precise = rule->is_reached();

@@ -35,8 +35,9 @@ struct Observer {
 /// (precision_rule.hpp). delta_h_cm is relative to the rest height given in the options, else to the height
 /// of this bed after settling on the plate at rest (A = 0). There is no rest height without gravity, or if
 /// the bed still has more than 0.005 m g sigma of energy per bead when settling ends.
+/// \param times receives the times of the stages of the simulation and of each observable; null: not timed
 /// \throws ConfigError, RunError, Interrupted
 Measured measure(sim::Simulation& run, AnalysisOptions options, const std::string& name, Progress& progress,
-                 const Observer& observer = {});
+                 const Observer& observer = {}, StageTimes* times = nullptr);
 
 }  // namespace twincell::sweep

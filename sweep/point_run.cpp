@@ -88,13 +88,17 @@ double asked_of(const Plan& plan, const std::vector<Result>& results) {
 }  // namespace
 
 std::string run_point(const Plan& plan, const Point& point, const std::filesystem::path& trajectory,
-                      Progress& progress) {
+                      Progress& progress, StageTimes* times) {
   const auto begin = std::chrono::steady_clock::now();
   nlohmann::json document = {{"id", point.id}, {"answer", nullptr}};
   std::int64_t cycles = 0;
   try {
     sim::Scene scene = sim::read_scene_text(point.scene, "point " + point.id, {}, plan.scene_folder);
-    sim::RunState state = placed_in_turn(scene, progress);
+    sim::RunState state = [&] {
+      Stage placing(times, "placing", "points");
+      placing.count(1);
+      return placed_in_turn(scene, progress);
+    }();
     const std::int64_t all_cycles = scene.cycles;
     sim::Simulation run(std::move(scene), std::move(state));
     document["conditions"] = conditions_json(run.trajectory_info().conditions);
@@ -120,7 +124,7 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
             }};
     AnalysisOptions options;
     options.only = plan.results;
-    const Measured measured = measure(run, options, "point " + point.id, progress, observer);
+    const Measured measured = measure(run, options, "point " + point.id, progress, observer, times);
     const auto& results = measured.results;
     if (writer) on_disk([&] { writer->finish(); });
     document["results"] = nlohmann::json::parse(results_json(results));

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/progress.hpp"
+#include "core/stage_times.hpp"
 #include "sweep/plan.hpp"
 
 namespace twincell::sweep {
@@ -17,8 +18,9 @@ namespace twincell::sweep {
 /// is the same wherever and whenever the point is run. A failed run would fail again, so the failure counts
 /// as its result.
 /// \param trajectory file for the frames; empty: frames are not stored
-/// \throws Interrupted; Error if the trajectory cannot be written
+/// \param times receives the times of "placing" and of the stages of the simulation and the analysis; null:
+/// not timed \throws Interrupted; Error if the trajectory cannot be written
 std::string run_point(const Plan& plan, const Point& point, const std::filesystem::path& trajectory,
-                      Progress& progress = Progress::none());
+                      Progress& progress = Progress::none(), StageTimes* times = nullptr);
 
 }  // namespace twincell::sweep

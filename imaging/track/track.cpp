@@ -20,6 +20,10 @@ bool outside(const CellDescription& cell, cv::Size picture, const Detection& b) 
   return (cell.width && (r.x() < 0 || r.x() > *cell.width)) || (cell.height && r.z() > *cell.height + 0.5);
 }
 
+double bytes_of(const cv::Mat& frame) {
+  return static_cast<double>(frame.total() * frame.elemSize());
+}
+
 /// The beads of all frames that are inside the cell, and the counts of excluded ones.
 struct Detections {
   DetectionStore frames;
@@ -35,7 +39,7 @@ class Witnessed : public FrameSource {
   bool next(cv::Mat& frame) override {
     Stage reading(times_, "reading", "frames");
     if (!frames_.next(frame)) return false;
-    reading.count(1);
+    reading.count(1, bytes_of(frame));
     size_ = frame.size();
     if (const auto time = frames_.time_s()) evidence_.times_s.push_back(*time);
     evidence_.plate_px.push_back(plate_height_px(frame, bright_));
@@ -69,11 +73,11 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
   std::vector<TrackedBead> beads;
   locate_stack(
       frames, locator, threads,
-      [&](std::int64_t, const cv::Mat&, const Located& found) {
+      [&](std::int64_t, const cv::Mat& grey, const Located& found) {
         all.wrong_radius += static_cast<std::size_t>(
             std::count_if(found.dropped.begin(), found.dropped.end(),
                           [](const Detection& b) { return b.verdict == Verdict::wrong_radius; }));
-        locating.count(static_cast<double>(found.beads.size()));
+        locating.count(static_cast<double>(found.beads.size()), bytes_of(grey));
         beads.clear();
         for (Detection b : found.beads) {
           b.x += region.corner().x;

@@ -95,6 +95,7 @@ class EventDrivenSolver : public Solver {
     Counters c = steps_ ? steps_->counters() : Counters{};
     c.steps += counted_.steps, c.pair_visits += counted_.pair_visits, c.wall_visits += counted_.wall_visits,
         c.near_refreshes += counted_.near_refreshes;
+    c.bytes = 0;  // those of the motion between contacts are not counted
     return c;
   }
 

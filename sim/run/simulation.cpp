@@ -40,10 +40,6 @@ std::int64_t beads_in_contact(const System& s, Progress& progress) {
   return std::count(touching.begin(), touching.end(), 1);
 }
 
-double particle_steps(const System& s, std::int64_t steps) {
-  return static_cast<double>(s.beads.size()) * static_cast<double>(steps);
-}
-
 /// The contact memories of a start in motion, if this plan can read them.
 /// \throws ConfigError if other laws or another integrator wrote them
 std::vector<ContactMemory> readable(const Scene& scene, const Plan& plan,
@@ -194,12 +190,7 @@ void Simulation::settle(Progress& progress, StageTimes* times) try {
   const bool falls = !system_.beads.empty() && scene_.g() > 0;
   const auto most = falls ? static_cast<std::int64_t>(scene_.settle_limit / system_.dt) : 0;
   while (system_.step / block * block < most && quiet_ < kLooks) {
-    {
-      const std::int64_t steps = std::min(block - system_.step % block, steps_per_call(system_.beads.size()));
-      Stage stage(times, "settling", "particle-steps");
-      kernel_->advance(system_, steps);
-      stage.count(particle_steps(system_, steps));
-    }
+    advance(std::min(block - system_.step % block, steps_per_call(system_.beads.size())), times, "settling");
     if (system_.step % block == 0) {
       settled_.energy_per_bead = kinetic_energy_per_bead(system_);
       quiet_ = settled_.energy_per_bead < scene_.rest_energy ? quiet_ + 1 : 0;
@@ -341,6 +332,15 @@ std::int64_t Simulation::sample_at(std::int64_t j) const {
   return (j * steps_per_phase() + samples - 1) / samples;
 }
 
+void Simulation::advance(std::int64_t steps, StageTimes* times, std::string_view stage) {
+  if (times == nullptr) return kernel_->advance(system_, steps);
+  Stage stepping(times, stage, "particle-steps");
+  const double before = kernel_->counters().bytes;
+  kernel_->advance(system_, steps);
+  stepping.count(static_cast<double>(system_.beads.size()) * static_cast<double>(steps),
+                 kernel_->counters().bytes - before);
+}
+
 void Simulation::take_sample(std::int64_t j) {
   sampled_.velocity.clear();
   for (const Bead& b : system_.beads) sampled_.velocity.emplace_back(b.vx, b.vy, b.vz);
@@ -382,11 +382,7 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
     const bool sampling = samples > 0 && (frame + 1) / scene_.phases >= plan_.cycles_before;
     const std::int64_t next = sampling ? into * samples / per_phase + 1 : 0;
     if (sampling) piece = std::min(piece, sample_at(next) - into);
-    {
-      Stage stepping(times, "stepping", "particle-steps");
-      kernel_->advance(system_, piece);
-      stepping.count(particle_steps(system_, piece));
-    }
+    advance(piece, times, "stepping");
     if (sampling && into + piece == sample_at(next)) {
       Stage sample(times, "samples", "samples");
       take_sample(next);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/progress.hpp"
@@ -113,6 +114,7 @@ class Simulation {
   [[nodiscard]] const Solver& kernel() const { return *kernel_; }
 
  private:
+  void advance(std::int64_t steps, StageTimes* times, std::string_view stage);
   [[nodiscard]] Frame snapshot(std::int64_t cycle, int phase) const;
   /// Steps between frames. samples_per_phase(): samples between frames, an even number or 0.
   [[nodiscard]] std::int64_t steps_per_phase() const { return plan_.steps_per_period / scene_.phases; }

@@ -23,6 +23,7 @@ void ActiveSet::find(const PacketLayout& layout, const BeadShare& share, const O
   for (const ContactPackets& wall : walls.walls)
     for (const std::int32_t bead : wall.source) activate(bead);
   active_.clear(), inactive_.clear(), chunk_end_.clear();
+  size_ = 0;
   Size g = 0;
   for (const Chunk& chunk : inner.chunks) {
     const Size of_before = active_.size();  // runs of active beads end with their chunk
@@ -35,6 +36,7 @@ void ActiveSet::find(const PacketLayout& layout, const BeadShare& share, const O
         runs.back().end = end;
       else
         runs.push_back({first, end});
+      if (active) size_ += end - first;
     }
     chunk_end_.push_back(active_.size());
   }

@@ -33,13 +33,16 @@ class ActiveSet {
   void add_step() { ++behind_; }
   /// Advances the inactive beads to the present step.
   void advance_inactive(const Kernels& kernels, double* records, double dt, const double* gravity);
+  /// Number of active beads.
+  [[nodiscard]] std::int64_t size() const { return size_; }
   [[nodiscard]] std::size_t bytes() const { return bytes_of(chunk_end_); }
 
  private:
   std::vector<BeadRange> active_, inactive_;
   std::vector<std::size_t> chunk_end_;  ///< [chunk] end of its active beads in active_
   std::vector<char> is_active_;         ///< [group]
-  std::int64_t behind_ = 0;             ///< steps by which the inactive beads lag
+  std::int64_t size_ = 0;
+  std::int64_t behind_ = 0;  ///< steps by which the inactive beads lag
 };
 
 }  // namespace twincell::sim

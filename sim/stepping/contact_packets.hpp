@@ -40,6 +40,15 @@ struct ContactPackets {
   }
 };
 
+/// Bytes per contact, padding included, that an evaluation of packets reads and writes: the remembered
+/// numbers twice, indices and constants once.
+inline double bytes_per_contact(const ContactPackets& p) {
+  const double bytes = static_cast<double>(
+      sizeof(std::int32_t) * (p.i.size() + p.j.size() + p.force_i.size() + p.force_j.size()) +
+      sizeof(double) * (2 * p.memory.size() + p.constants.size() + p.shift.size()));
+  return p.source.empty() ? 0 : bytes / static_cast<double>(p.source.size());
+}
+
 /// Sizes that the layout of packets depends on.
 struct PacketLayout {
   std::size_t width;      ///< lanes

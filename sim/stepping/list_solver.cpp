@@ -33,7 +33,7 @@ struct Part {
   ActiveSet active;
   double overlap = 0;
   Deviation deviation{};
-  std::int64_t visits = 0, wall_visits = 0;
+  std::int64_t visits = 0, wall_visits = 0, moves = 0;  ///< packets, packets, beads
 };
 
 class ListSolver : public Solver {
@@ -305,6 +305,7 @@ void ListSolver::forces_and_integrate(const System& s, Part& part) {
     packet = chunk.packet_end;
   }
   part.active.add_step();
+  part.moves += part.active.size();
 }
 
 void ListSolver::integrate(Part& part, const BeadRange* runs, Size n, int kicks, bool drift) {
@@ -324,6 +325,7 @@ void ListSolver::integrate(Part& part, int kicks, bool drift) {
   part.deviation = {};
   const BeadRange all = part.share.range();
   integrate(part, &all, 1, kicks, drift);
+  part.moves += static_cast<std::int64_t>(part.share.size());
 }
 
 // --- one step ---
@@ -475,7 +477,10 @@ void ListSolver::advance(System& s, std::int64_t steps) {
   for (Part& part : parts_) {
     counters_.pair_visits += part.visits * target_.width;
     counters_.wall_visits += part.wall_visits * target_.width;
-    part.visits = part.wall_visits = 0;
+    counters_.bytes +=
+        static_cast<double>(part.moves) * beads_.packed.bytes_per_step() +
+        static_cast<double>(part.visits * target_.width) * bytes_per_contact(part.inner.packets);
+    part.visits = part.wall_visits = part.moves = 0;
   }
   beads_.packed.store(s, beads_.order.bead);
   check_motion(s, limits_);

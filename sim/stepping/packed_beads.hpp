@@ -44,6 +44,14 @@ class PackedBeads {
     return records_.bytes() + forces_.bytes() + spins_.bytes() + inv_mass_.bytes() +
            sizeof(double) * (radius_.capacity() + mass_.capacity() + inertia_.capacity() + turn_.capacity());
   }
+  /// Bytes that a step of one bead reads and writes: record, forces and spin twice, the reference of its
+  /// velocity and, of unequal beads, its mass and moment of inertia once.
+  [[nodiscard]] double bytes_per_step() const {
+    const bool flat = plan_->dimension == 2;
+    const int changed =
+        flat ? kRecord<2> + kForceRecord<2> + kSpinRecord<2> : kRecord<3> + kForceRecord<3> + kSpinRecord<3>;
+    return static_cast<double>(sizeof(double)) * (2 * changed + (flat ? 2 : 4) + (equal_ ? 0 : 5));
+  }
   [[nodiscard]] bool equal() const { return equal_; }
   [[nodiscard]] Vec3 position(std::size_t k) const;
   [[nodiscard]] double radius(std::size_t k) const { return radius_[equal_ ? 0 : k]; }

@@ -40,9 +40,11 @@ class Solver {
   /// Instruction set and number of contacts at a time: "AVX-512, 8 contacts at a time".
   [[nodiscard]] virtual std::string description() const = 0;
   /// Totals over all steps so far: steps, visited pairs and wall contacts (with padding), builds of the inner
-  /// list.
+  /// list, and the bytes of the records of beads and contacts that the steps read and wrote, each counted
+  /// once per step. `bytes` is 0 if they are not counted.
   struct Counters {
     std::int64_t steps = 0, pair_visits = 0, wall_visits = 0, near_refreshes = 0;
+    double bytes = 0;
   };
   [[nodiscard]] virtual Counters counters() const { return {}; }
   /// Bytes in use for beads and for listed pairs and wall contacts, and the number of the listed contacts.

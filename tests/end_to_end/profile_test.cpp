@@ -43,7 +43,9 @@ void expect_whole(const Json& document, const std::string& text) {
   EXPECT_EQ(profile["stages"].back()["stage"], "other");
 
   const std::string table = text.substr(text.find("\nstage "));
-  const std::regex percent(R"(([\d.]+) %)");
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
+  const std::regex percent(R"([ mu]s +([\d.]+) %)");  // after the time; the others are shares of the bound
   double sum = 0;
   int rows = 0;
   for (std::sregex_iterator it(table.begin(), table.end(), percent), end; it != end; ++it, ++rows)
@@ -102,6 +104,7 @@ TEST_F(ProfileTest, OfASimulation) {
   EXPECT_EQ(stage(profiled_, "stepping")["unit"], "particle-steps");
   EXPECT_EQ(stage(profiled_, "writing")["count"], 20);
   EXPECT_EQ(stage(profiled_, "placing")["count"], beads);
+  EXPECT_GT(stage(profiled_, "stepping")["bytes"], 100 * 3 * per_period * beads);  // the records of the beads
   const Json& counters = profiled_["profile"]["counters"];
   EXPECT_EQ(counters["list_builds"], profiled_["list_builds"]);
   EXPECT_EQ(counters["steps"].get<double>() * beads, stage(profiled_, "stepping")["count"].get<double>() +
@@ -119,6 +122,7 @@ TEST_F(ProfileTest, OfAnAnalysis) {
   for (const char* name : {"reading", "phase_thresholds", "bond_order", "pair_correlation", "stress"}) {
     EXPECT_EQ(stage(profiled, name)["count"], 20 * 60) << name;
     EXPECT_EQ(stage(profiled, name)["unit"], "bead-frames") << name;
+    EXPECT_GE(stage(profiled, name)["bytes"], 20 * 60 * 24) << name;
   }
   const Json one = json({"analyze", at("plain.h5"), "--only", "g_r", "--profile"});
   EXPECT_EQ(one["profile"]["stages"].size(), 3U) << "reading, pair_correlation, other";
@@ -141,8 +145,44 @@ TEST_F(ProfileTest, OfAFilm) {
   EXPECT_FALSE(bytes_of(at("with.csv")).empty());
   EXPECT_EQ(bytes_of(at("without.csv")), bytes_of(at("with.csv")));
   EXPECT_EQ(stage(profiled, "reading")["count"], 20);
+  EXPECT_EQ(stage(profiled, "reading")["bytes"], stage(profiled, "locating")["bytes"]);
   EXPECT_EQ(stage(profiled, "locating")["count"], profiled["beads_located"]);
   EXPECT_EQ(stage(profiled, "linking")["count"], 19 * 60);
+}
+
+constexpr const char* kPlan = "scene = \"scene.toml\"\n[axes]\nstart.kind = [\"crystal_a\", \"crystal_b\"]\n";
+
+TEST_F(ProfileTest, OfASweep) {
+  put_file(folder_ / "plan.toml", kPlan);
+  const auto run = [&](const std::string& name) {
+    return Words{"sweep", "run", at("plan.toml"), "--folder", at(name), "--threads", "2"};
+  };
+  Words with = run("with");
+  with.emplace_back("--profile");
+  const Json profiled = json(with);
+  (void)json(run("without"));
+  Words again = run("text");
+  again.emplace_back("--profile");
+  expect_whole(profiled, text(again));
+  const Json& whole = profiled["profile"];
+  EXPECT_EQ(whole["threads"], 2);
+  EXPECT_EQ(stage(profiled, "storing")["count"], 2);
+  EXPECT_EQ(stage(profiled, "placing")["count"], 2);
+  EXPECT_EQ(stage(profiled, "stepping")["count"], 2 * 60 * 3 * plain_["steps_per_period"].get<double>());
+  // The times are those of two threads that live from the beginning of the run to its end.
+  EXPECT_LE(whole["seconds"].get<double>(), 2 * whole["elapsed_seconds"].get<double>());
+  EXPECT_GE(whole["seconds"].get<double>(), stage(profiled, "stepping")["seconds"].get<double>());
+
+  std::size_t points = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "with" / "points")) {
+    if (entry.path().filename() != "result.json") continue;
+    Json one = Json::parse(bytes_of(entry.path()));
+    Json other = Json::parse(bytes_of(folder_ / "without" / fs::relative(entry.path(), folder_ / "with")));
+    one.erase("computed"), other.erase("computed");
+    EXPECT_EQ(one, other);
+    ++points;
+  }
+  EXPECT_EQ(points, 2U);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ TEST_F(StageTimesTest, EveryInstantBelongsToOneStage) {
     {
       Stage writing(&times, "writing", "frames");
       now += 4;
-      writing.count(2);
+      writing.count(2, 80);
     }
     now += 20;
     stepping.count(60);
@@ -48,6 +48,7 @@ TEST_F(StageTimesTest, EveryInstantBelongsToOneStage) {
   EXPECT_EQ(rows[1].name, "writing");
   EXPECT_EQ(rows[1].seconds, 4);
   EXPECT_EQ(rows[1].per_second(), 0.5);
+  EXPECT_EQ(rows[1].bytes_per_second(), 20);
   EXPECT_EQ(rows[2].name, "other");
   EXPECT_EQ(rows[2].seconds, 8);
   EXPECT_EQ(rows[0].seconds + rows[1].seconds + rows[2].seconds, now - 100);
@@ -75,6 +76,24 @@ TEST_F(StageTimesTest, RowsIncludeTheStageThatRuns) {
   now += 2;
   EXPECT_EQ(times.rows().front().seconds, 5);
   EXPECT_EQ(times.rows().front().per_second(), 0) << "nothing was counted";
+}
+
+TEST_F(StageTimesTest, RowsOfThreadsAddUpByName) {
+  using Row = StageTimes::Row;
+  std::vector<Row> sum;
+  StageTimes::add({{"stepping", "steps", 3, 30, 300}, {"other", "", 1, 0, 0}}, sum);
+  StageTimes::add({{"writing", "frames", 2, 4, 5}, {"stepping", "steps", 1, 10, 100}, {"other", "", 6, 0, 0}},
+                  sum);
+  ASSERT_EQ(sum.size(), 3U);
+  EXPECT_EQ(sum[0].name, "stepping");
+  EXPECT_EQ(sum[0].seconds, 4);
+  EXPECT_EQ(sum[0].count, 40);
+  EXPECT_EQ(sum[0].bytes, 400);
+  EXPECT_EQ(sum[0].bytes_per_second(), 100);
+  EXPECT_EQ(sum[1].name, "writing");
+  EXPECT_EQ(sum[1].unit, "frames");
+  EXPECT_EQ(sum[2].name, "other");
+  EXPECT_EQ(sum[2].seconds, 7);
 }
 
 TEST_F(StageTimesTest, WithoutTimesNothingIsTimed) {
