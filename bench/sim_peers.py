@@ -14,6 +14,10 @@ integrator, needs for the spin of a bed's impacts to be right to 1 %, rms, and h
 less accurate than that in e, v_t' and w'. The quotient is of the times of the same periods so. LAMMPS's is
 extrapolated: what it takes at n = 50 and at n = 150, along a line in n, since its work is per step but for its lists.
 
+The beds at rest (rest_1600, rest_20k, rest_100k) lie on a plate that barely moves, so that every listed pair touches:
+the rate should not fall with the number of beads. speedup_2 is their rate by the clock with 2 threads divided by that
+with 1, lammps_speedup_2 the same of LAMMPS on 2 ranks and 1; both ask for two free processors.
+
 What cannot be measured is absent, with the reason under "absent".
 """
 
@@ -30,6 +34,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENE = "scene.toml"  # in the folder of a job
@@ -76,13 +81,47 @@ cycles = {cycles}
 phases = 4
 """
 
-# Name, scene, periods in a piece, whether also at equal accuracy.
+# The first paper's beads in a crystal on a plate that moves by 2.5e-7 sigma; a period is some 700 steps.
+# Samples of the temperature would divide so short a period into calls of two steps.
+REST = """
+preset = "fortini-huang-2015"
+[cell]
+width = {width}
+[beads]
+count = {count}
+[drive]
+gamma = 0.01
+omega = 200.0
+[start]
+kind = "crystal_a"
+settle_limit = 0.5
+[time]
+integrator = "verlet"
+steps_per_contact = 50
+discard = 1
+cycles = {cycles}
+phases = 4
+samples = 0
+"""
+
+
+class Job(NamedTuple):
+    name: str
+    scene: str
+    periods: int  # in a piece
+    equal_accuracy: bool = False  # also at equal accuracy
+    threads: int = 1  # also with so many threads, in elapsed time
+
+
 JOBS = [
-    ("shaker_1600", SHAKER.replace("{count}", "1600"), 1, True),
-    ("shaker_1600_unequal", SHAKER.replace("{count}", '1600\nspread = "uniform"\nspread_width = 0.1'), 1, False),
-    ("shaker_400", SHAKER.replace("{count}", "400"), 1, False),
-    ("gas_3d", GAS.replace("{width}", "5.0").replace("{discard}", "50"), 50, False),
-    ("gas_3d_1600", GAS.replace("{width}", "20.0").replace("{discard}", "20"), 3, False),
+    Job("shaker_1600", SHAKER.replace("{count}", "1600"), 1, equal_accuracy=True),
+    Job("shaker_1600_unequal", SHAKER.replace("{count}", '1600\nspread = "uniform"\nspread_width = 0.1'), 1),
+    Job("shaker_400", SHAKER.replace("{count}", "400"), 1),
+    Job("gas_3d", GAS.replace("{width}", "5.0").replace("{discard}", "50"), 50),
+    Job("gas_3d_1600", GAS.replace("{width}", "20.0").replace("{discard}", "20"), 3),
+    Job("rest_1600", REST.replace("{width}", "40.0").replace("{count}", "1600"), 20, threads=2),
+    Job("rest_20k", REST.replace("{width}", "100.0").replace("{count}", "20000"), 4, threads=2),
+    Job("rest_100k", REST.replace("{width}", "250.0").replace("{count}", "100000"), 1, threads=2),
 ]
 
 
@@ -98,10 +137,10 @@ def said(stderr, code):
 class Ours:
     """period_cost, a piece at a time; its states are in a folder beside the scene."""
 
-    def __init__(self, build, scene, periods, folder):
-        states = folder / scene.removesuffix(".toml")
+    def __init__(self, build, scene, periods, folder, threads=1):
+        states = folder / f"{scene.removesuffix('.toml')}_{threads}"
         states.mkdir()
-        self.process = subprocess.Popen([build / "bench/period_cost", scene, str(periods), states], cwd=folder,
+        self.process = subprocess.Popen([build / "bench/period_cost", scene, str(periods), states, str(threads)], cwd=folder,
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def __enter__(self):
@@ -117,14 +156,20 @@ class Ours:
             raise Absent(said(self.process.stderr.read(), self.process.wait()))
         return json.loads(line)
 
-    def run(self):
+    def run(self, clock="cpu_s"):
         self.process.stdin.write("\n")
         self.process.stdin.flush()
-        return self.answer()["cpu_s"]
+        return self.answer()[clock]
 
 
 def lammps_cpu_seconds(build, state, steps, folder, finer=1):
-    """One piece in LAMMPS from the deck that we export, without its dump; in `finer` times as many steps."""
+    """Processor seconds of one piece in LAMMPS; in `finer` times as many steps."""
+    elapsed, use = lammps_loop(build, state, steps, folder, finer)
+    return elapsed * use
+
+
+def lammps_loop(build, state, steps, folder, finer=1, ranks=1):
+    """Elapsed seconds and use of the processor of one piece in LAMMPS from the deck that we export, without its dump."""
     if not shutil.which("lmp"):
         raise Absent("LAMMPS is not installed (Debian: apt-get install lammps)")
     deck = folder / "deck"
@@ -139,13 +184,17 @@ def lammps_cpu_seconds(build, state, steps, folder, finer=1):
     text, runs = re.subn(r"(?m)^run .*$", f"run {steps * finer}", text)
     assert runs == 1, "a deck has one run"
     (deck / "in.twincell").write_text(text)
-    ran = subprocess.run(["lmp", "-in", "in.twincell", "-log", "none"], cwd=deck, capture_output=True, text=True,
-                         env={**os.environ, "OMP_NUM_THREADS": "1"})
-    loop = re.search(r"Loop time of (\S+) on 1 procs", ran.stdout)
+    if ranks > 1 and not shutil.which("mpirun"):
+        raise Absent("mpirun is not installed (Debian: apt-get install openmpi-bin)")
+    launcher = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
+    ran = subprocess.run([*launcher, "lmp", "-in", "in.twincell", "-log", "none"], cwd=deck, capture_output=True, text=True,
+                         env={**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
+                              "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
+    loop = re.search(rf"Loop time of (\S+) on {ranks} procs", ran.stdout)
     use = re.search(r"([\d.]+)% CPU use", ran.stdout)
     if ran.returncode != 0 or not loop or not use:
         raise Absent("LAMMPS stopped: " + (re.findall(r"(?m)^ERROR.*", ran.stdout) or [said(ran.stderr, ran.returncode)])[0])
-    return float(loop[1]) * float(use[1]) / 100
+    return float(loop[1]), float(use[1]) / 100
 
 
 def equal_impacts(build):
@@ -164,8 +213,28 @@ def in_split_steps(scene, n):
     return re.sub(r"(?m)^steps_per_contact = .*$", f"steps_per_contact = {n}", scene.replace('"verlet"', '"split"'))
 
 
-def measure(build, name, scene, periods, equal_accuracy, repetitions):
+def speedup(build, job, folder, repetitions, unless_absent):
+    """How many times as fast a job runs by the clock with its threads as with one: ours, and LAMMPS's with ranks."""
+    ours, lammps = [], []
+    with contextlib.ExitStack() as running:
+        one, many = (running.enter_context(Ours(build, SCENE, job.periods, folder / f"threads_{n}", n)) for n in (1, job.threads))
+        for _ in range(repetitions):
+            piece = one.answer()
+            many.answer()
+            alone = one.run("elapsed_s")
+            ours.append(alone / many.run("elapsed_s"))
+            lammps.append(unless_absent(f"lammps_speedup_{job.threads}", lambda: (
+                lammps_loop(build, piece["state"], piece["steps"], folder)[0]
+                / lammps_loop(build, piece["state"], piece["steps"], folder, ranks=job.threads)[0])))
+    found = {f"speedup_{job.threads}": statistics.median(ours)}
+    if None not in lammps:
+        found[f"lammps_speedup_{job.threads}"] = statistics.median(lammps)
+    return found
+
+
+def measure(build, job, repetitions):
     """Numbers of one job by key, and reasons of those that are absent. Absent if Twincell's own are."""
+    name, scene, periods, equal_accuracy, threads = job
     ours, lammps, finer, cheaper = [], [], [], []  # seconds of the processor, a piece each
     absent = {}
 
@@ -203,8 +272,16 @@ def measure(build, name, scene, periods, equal_accuracy, repetitions):
                 finer.append(unless_absent("ratio_equal_accuracy",
                                            lambda: lammps_cpu_seconds(build, piece["state"], piece["steps"], folder, FINER)))
 
+        # The others wait at their last piece and cost nothing.
+        faster = {}
+        if threads > 1:
+            for n in (1, threads):
+                (folder / f"threads_{n}").mkdir()
+                (folder / f"threads_{n}" / SCENE).write_text(scene)
+            faster = speedup(build, job, folder, repetitions, unless_absent)
+
     work = piece["beads"] * piece["steps"]
-    numbers = {"beads": piece["beads"], "steps": piece["steps"], "twincell": work / statistics.median(ours)}
+    numbers = {"beads": piece["beads"], "steps": piece["steps"], "twincell": work / statistics.median(ours), **faster}
     if "lammps" not in absent:
         numbers["lammps"] = work / statistics.median(lammps)
         numbers["ratio_lammps"] = statistics.median(b / a for a, b in zip(ours, lammps))
@@ -225,7 +302,8 @@ def commit():
     return ran.stdout.strip() or "unknown"
 
 
-COLUMNS = ["date", "commit", "job", "beads", "steps", "repetitions", "twincell", "lammps", "ratio_lammps", "ratio_equal_accuracy"]
+COLUMNS = ["date", "commit", "job", "beads", "steps", "repetitions", "twincell", "lammps", "ratio_lammps", "ratio_equal_accuracy", "speedup_2",
+           "lammps_speedup_2"]
 
 
 def append_row(row):
@@ -262,14 +340,15 @@ def show(heading, document, absent, as_json):
 
 
 def main():
-    options = read_options(__doc__, [job[0] for job in JOBS])
+    options = read_options(__doc__, [job.name for job in JOBS])
     document, absent = {}, {}
-    for name, scene, periods, equal_accuracy in JOBS:
+    for job in JOBS:
+        name = job.name
         if options.job and name not in options.job:
             continue
         print(f"bench: {name}", file=sys.stderr)
         try:
-            numbers, reasons = measure(options.build, name, scene, periods, equal_accuracy, options.repetitions)
+            numbers, reasons = measure(options.build, job, options.repetitions)
         except Absent as why:
             absent[name] = str(why)
             continue
