@@ -28,6 +28,14 @@ void resize_closely(std::vector<T>& v, std::size_t n) {
   v.resize(n);
 }
 
+/// The same, with n times `value`.
+template <class T>
+void assign_closely(std::vector<T>& v, std::size_t n, T value) {
+  v.clear();
+  resize_closely(v, n);
+  if (value != T{}) v.assign(n, value);
+}
+
 /// Contacts in packets: the input of a kernel.
 struct ContactPackets {
   std::vector<std::int32_t> i, j, force_i, force_j;

@@ -6,6 +6,7 @@
 #include <barrier>
 #include <cmath>
 #include <exception>
+#include <optional>
 #include <thread>
 
 #include "core/cancellation.hpp"
@@ -62,6 +63,8 @@ class ListSolver : public Solver {
   void prepare(const System& s);
   void divide_among_threads(const System& s);
   // Lists.
+  template <class Visit>
+  void for_each_remembered(Visit visit) const;
   void build_outer(const System& s);
   void refresh_pairs(const System& s);
   [[nodiscard]] bool is_forced() const { return rebuild_every_ > 0 && calls_ % rebuild_every_ == 0; }
@@ -128,16 +131,18 @@ void ListSolver::divide_among_threads(const System& s) {
   outer_.discard();
 }
 
-std::vector<ContactMemory> ListSolver::contacts() const {
-  std::vector<ContactMemory> all = restored_;
+/// Calls visit(i, j, number) for every contact of the lists with a number that is not 0, with number(m) the
+/// m-th of them.
+template <class Visit>
+void ListSolver::for_each_remembered(Visit visit) const {
   const PacketLayout& layout = beads_.layout;
-  const auto keep = [&](const ContactPackets& p, Size at, std::int32_t i, std::int32_t j) {
-    ContactMemory c{i, j, std::vector<double>(layout.memory)};
-    for (Size m = 0; m < layout.memory; ++m) c.values[m] = p.memory[layout.index(at, layout.memory, m)];
-    if (layout.remembers(c.values.data(), 1)) all.push_back(std::move(c));
-  };
-  if (layout.memory == 0) return all;
+  if (layout.memory == 0) return;
   const auto bead = [&](std::int32_t place) { return beads_.order.bead[static_cast<Size>(place)]; };
+  const auto look_at = [&](const ContactPackets& p, Size at, std::int32_t i, std::int32_t j) {
+    const double* numbers = p.memory.data() + layout.index(at, layout.memory, 0);
+    if (layout.remembers(numbers, layout.width))
+      visit(i, j, [&](Size m) { return numbers[m * layout.width]; });
+  };
   for (const Part& part : parts_) {
     const ContactPackets& pairs = part.inner.packets;
     for (Size r = 0; r < pairs.source.size(); ++r) {
@@ -145,14 +150,23 @@ std::vector<ContactMemory> ListSolver::contacts() const {
       const Size from = static_cast<Size>(pairs.source[r]);
       const std::int32_t i = layout.place(part.outer.i[from]), j = layout.place(part.outer.j[from]);
       // Both threads store a pair that crosses them; only the owner of bead i reports it.
-      if (part.share.owns(i)) keep(pairs, r, bead(i), bead(j));
+      if (part.share.owns(i)) look_at(pairs, r, bead(i), bead(j));
     }
     for (Size w = 0; w < part.walls.walls.size(); ++w) {
       const ContactPackets& wall = part.walls.walls[w];
       for (Size r = 0; r < wall.source.size(); ++r)
-        keep(wall, r, bead(wall.source[r]), -1 - static_cast<std::int32_t>(w));
+        look_at(wall, r, bead(wall.source[r]), -1 - static_cast<std::int32_t>(w));
     }
   }
+}
+
+std::vector<ContactMemory> ListSolver::contacts() const {
+  std::vector<ContactMemory> all = restored_;
+  for_each_remembered([&](std::int32_t i, std::int32_t j, const auto& number) {
+    ContactMemory c{i, j, std::vector<double>(beads_.layout.memory)};
+    for (Size m = 0; m < c.values.size(); ++m) c.values[m] = number(m);
+    all.push_back(std::move(c));
+  });
   std::sort(all.begin(), all.end(), [](const ContactMemory& a, const ContactMemory& b) {
     return a.i != b.i ? a.i < b.i : a.j < b.j;
   });
@@ -180,16 +194,24 @@ void ListSolver::build_outer(const System& given) {
   Size listed = 0;
   for (const Part& part : parts_) listed += part.outer.pairs;
   outer_.adapt_skin(given.dimension, beads_.packed.size(), listed);
-  System s = given;  // the search needs positions by bead
-  beads_.packed.store(s, beads_.order.bead);
-  check_motion(s, limits_);
-  const RememberedContacts remembered(contacts(), s.beads.size());
-  restored_.clear();
-  const std::vector<NearPair> found = outer_.search(s, beads_.order);
+  std::optional<System> s = given;  // the search needs positions by bead
+  beads_.packed.store(*s, beads_.order.bead);
+  check_motion(*s, limits_);
+  s->forces = {}, s->rim_speeds = {};
+  const RememberedContacts remembered(s->beads.size(), beads_.layout.memory, [&](auto visit) {
+    for (const ContactMemory& c : restored_) visit(c.i, c.j, [&](Size m) { return c.values[m]; });
+    for_each_remembered(visit);
+  });
+  // The memory of a run is largest here, so what is no longer needed is released before the search. The
+  // arrays of the outer lists are kept: the new lists are about as long, and pairs that are put into the
+  // holes of old arrays would move them to new memory.
+  restored_ = {};
+  for (Part& part : parts_) part.inner.packets = {};
+  const std::vector<NearPair> found = outer_.search(*s, beads_.order);
+  s.reset();
   for (Part& part : parts_) {
-    part.outer.assign(beads_, part.share, found, remembered, s.period);
-    part.inner.packets = {};
-    part.walls.restore(beads_, part.share, remembered.all);
+    part.outer.assign(beads_, part.share, found, remembered, given.period);
+    part.walls.restore(beads_, part.share, remembered);
   }
   outer_.set_reference(beads_.packed);
   walls_.discard();

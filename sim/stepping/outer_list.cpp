@@ -14,20 +14,31 @@ namespace {
 
 using Size = std::size_t;
 
-/// Sorts by two keys, of which the first is below n: a counting sort by the first key, then a comparison sort
-/// of the few elements with equal first key by the second.
+/// Sorts by two keys, of which the first is below n, without a second array: each element is swapped to the
+/// place that a counting sort by the first key gives it, and a comparison sort orders the few elements with
+/// equal first key by the second. Where no two elements agree in both keys, the result is unique.
 template <class T, class First, class Second>
-std::vector<T> in_order_of(std::vector<T> given, Size n, First first, Second second) {
-  std::vector<Size> end(n + 1, 0);
-  for (const T& t : given) ++end[static_cast<Size>(first(t)) + 1];
-  std::partial_sum(end.begin(), end.end(), end.begin());
-  std::vector<T> sorted(given.size());
-  for (T& t : given) sorted[end[static_cast<Size>(first(t))]++] = std::move(t);
-  for (Size k = 0, begin = 0; k < n; begin = end[k++])
-    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
-              sorted.begin() + static_cast<std::ptrdiff_t>(end[k]),
-              [&](const T& a, const T& b) { return second(a) < second(b); });
-  return sorted;
+void sort_by(std::vector<T>& all, Size n, First first, Second second) {
+  const auto bin = [&](const T& t) { return static_cast<Size>(first(t)); };
+  std::vector<Size> next(n + 1, 0);  // place of the next element of each bin
+  for (const T& t : all) ++next[bin(t) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  const std::vector<Size> begin = next;
+  for (Size k = 0; k < n; ++k) {
+    while (next[k] < begin[k + 1]) {
+      T& t = all[next[k]];
+      const Size home = bin(t);
+      if (home != k) std::swap(t, all[next[home]]);
+      ++next[home];
+    }
+    std::sort(all.begin() + static_cast<std::ptrdiff_t>(begin[k]),
+              all.begin() + static_cast<std::ptrdiff_t>(begin[k + 1]),
+              [&](const T& x, const T& y) { return second(x) < second(y); });
+  }
+}
+
+bool is_own(const BeadShare& share, const NearPair& pair) {
+  return share.owns(pair.i) || share.owns(pair.j);
 }
 
 double base_skin(double usual_radius) {
@@ -36,27 +47,14 @@ double base_skin(double usual_radius) {
 
 }  // namespace
 
-RememberedContacts::RememberedContacts(std::vector<ContactMemory> sorted, Size beads)
-    : all(std::move(sorted)), first_(beads + 1, 0) {
-  for (const ContactMemory& m : all) ++first_[static_cast<Size>(m.i) + 1];
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());
-}
-
-const ContactMemory* RememberedContacts::find(std::int32_t i, std::int32_t j) const {
-  const auto at = [&](Size k) { return all.begin() + static_cast<std::ptrdiff_t>(first_[k]); };
-  const auto end = at(static_cast<Size>(i) + 1);
-  const auto found =
-      std::find_if(at(static_cast<Size>(i)), end, [&](const ContactMemory& m) { return m.j == j; });
-  return found == end ? nullptr : &*found;
-}
-
-void OuterPairs::divide_into_chunks(const BeadShare& share, const std::vector<const NearPair*>& own) {
+void OuterPairs::divide_into_chunks(const BeadShare& share, const std::vector<NearPair>& found) {
   chunk_end.clear();
   Size reached = 0;
+  auto next = found.begin();
   for (Size end = share.begin; end < share.end;) {
     end = std::min(end + kChunkBeads, share.end);
-    while (reached < own.size() && static_cast<Size>(std::min(own[reached]->i, own[reached]->j)) < end)
-      ++reached;
+    for (; next != found.end() && static_cast<Size>(std::min(next->i, next->j)) < end; ++next)
+      if (is_own(share, *next)) ++reached;
     chunk_end.push_back(reached);
   }
 }
@@ -66,23 +64,22 @@ void OuterPairs::assign(const ListedBeads& beads, const BeadShare& share, const 
   const PacketLayout& layout = beads.layout;
   const PackedBeads& packed = beads.packed;
   const bool periodic = period[0] > 0 || period[1] > 0 || period[2] > 0;
-  std::vector<const NearPair*> own;
-  own.reserve(found.size());
-  for (const NearPair& f : found)
-    if (share.owns(f.i) || share.owns(f.j)) own.push_back(&f);
   throw_if_cancelled();
-  divide_into_chunks(share, own);
-  pairs = own.size();
+  divide_into_chunks(share, found);
+  pairs = chunk_end.empty() ? 0 : chunk_end.back();
   const Size packets = layout.packets(pairs), padded = packets * layout.width;
-  i.assign(padded, layout.record(share.dummy)), j.assign(padded, layout.record(share.dummy));
-  near.assign(packets, 0), touching.assign(packets, 0);
-  shift.assign(periodic ? padded * layout.dimension : 0, 0);
-  memory.assign(pairs * layout.memory, 0);
-  reach.assign(packed.equal() ? 0 : padded, 0);
+  assign_closely(i, padded, layout.record(share.dummy)),
+      assign_closely(j, padded, layout.record(share.dummy));
+  assign_closely<std::uint16_t>(near, packets, 0), assign_closely<std::uint16_t>(touching, packets, 0);
+  assign_closely<double>(shift, periodic ? padded * layout.dimension : 0, 0);
+  assign_closely<double>(memory, pairs * layout.memory, 0);
+  assign_closely<double>(reach, packed.equal() ? 0 : padded, 0);
   remembering.clear();
   if (packed.equal() || pairs == 0) constants.clear();
-  for (Size p = 0; p < pairs; ++p) {
-    const NearPair& f = *own[p];
+  Size at = 0;
+  for (const NearPair& f : found) {
+    if (!is_own(share, f)) continue;
+    const Size p = at++;
     const Size a = static_cast<Size>(f.i), b = static_cast<Size>(f.j);
     i[p] = layout.record(f.i), j[p] = layout.record(f.j);
     if (periodic)
@@ -97,10 +94,9 @@ void OuterPairs::assign(const ListedBeads& beads, const BeadShare& share, const 
       std::copy(set.begin(), set.end(), constants.begin() + static_cast<std::ptrdiff_t>(p * set.size()));
       reach[p] = ra + rb;
     }
-    if (layout.memory == 0 || remembered.all.empty()) continue;
-    if (const ContactMemory* m = remembered.find(beads.order.bead[a], beads.order.bead[b])) {
-      std::copy(m->values.begin(), m->values.end(),
-                memory.begin() + static_cast<std::ptrdiff_t>(p * layout.memory));
+    if (layout.memory == 0 || remembered.empty()) continue;
+    if (const double* numbers = remembered.find(beads.order.bead[a], beads.order.bead[b])) {
+      std::copy_n(numbers, layout.memory, memory.begin() + static_cast<std::ptrdiff_t>(p * layout.memory));
       remembering.push_back(static_cast<std::int32_t>(p));
     }
   }
@@ -201,9 +197,10 @@ std::vector<NearPair> OuterList::pairs_within_skin(const System& s, const BeadOr
         found.push_back(pair);
       });
   found_ = found.size();
-  return in_order_of(
-      std::move(found), s.beads.size(), [](const NearPair& f) { return std::min(f.i, f.j); },
+  sort_by(
+      found, s.beads.size(), [](const NearPair& f) { return std::min(f.i, f.j); },
       [](const NearPair& f) { return std::max(f.i, f.j); });
+  return found;
 }
 
 void OuterList::set_reference(const PackedBeads& beads) {

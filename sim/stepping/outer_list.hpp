@@ -10,20 +10,9 @@
 #include <vector>
 
 #include "sim/stepping/listed_beads.hpp"
+#include "sim/stepping/remembered_contacts.hpp"
 
 namespace twincell::sim {
-
-/// Contacts with memory, sorted by (i, j), with the index of the first one of each bead i.
-struct RememberedContacts {
-  RememberedContacts(std::vector<ContactMemory> sorted, std::size_t beads);
-  /// \returns null if the contact of beads i < j has no memory
-  [[nodiscard]] const ContactMemory* find(std::int32_t i, std::int32_t j) const;
-
-  std::vector<ContactMemory> all;
-
- private:
-  std::vector<std::size_t> first_;
-};
 
 /// A pair within the skin.
 struct NearPair {
@@ -50,7 +39,7 @@ struct OuterPairs {
   }
 
  private:
-  void divide_into_chunks(const BeadShare& share, const std::vector<const NearPair*>& own);
+  void divide_into_chunks(const BeadShare& share, const std::vector<NearPair>& found);
 };
 
 /// Beads are processed in chunks of whole groups, each with at least kChunkPackets packets of pairs (if there

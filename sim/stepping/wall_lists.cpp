@@ -62,27 +62,26 @@ void WallLists::refresh(const System& s, const PlateMotion& plate, const Velocit
 }
 
 void WallContacts::restore(const ListedBeads& beads, const BeadShare& share,
-                           const std::vector<ContactMemory>& remembered) {
+                           const RememberedContacts& remembered) {
   const PacketLayout& layout = beads.layout;
   for (Size w = 0; w < walls.size(); ++w) {
-    const auto place_if_here = [&](const ContactMemory& m) {
-      const std::int32_t place = beads.order.place[static_cast<Size>(m.i)];
-      return m.j == -1 - static_cast<std::int32_t>(w) && share.owns(place) ? place : -1;
+    const auto for_each_here = [&](auto visit) {
+      remembered.at_wall(w, [&](std::int32_t bead, const double* numbers) {
+        const std::int32_t place = beads.order.place[static_cast<Size>(bead)];
+        if (share.owns(place)) visit(place, numbers);
+      });
     };
     ContactPackets kept;
-    for (const ContactMemory& m : remembered)
-      if (const std::int32_t place = place_if_here(m); place >= 0) kept.source.push_back(place);
+    for_each_here([&](std::int32_t place, const double*) { kept.source.push_back(place); });
     std::sort(kept.source.begin(), kept.source.end());
     const Size packets = layout.packets(kept.source.size());
     kept.count = static_cast<std::int64_t>(packets);
     kept.memory.assign(packets * layout.memory * layout.width, 0);
-    for (const ContactMemory& m : remembered) {
-      const std::int32_t place = place_if_here(m);
-      if (place < 0) continue;
+    for_each_here([&](std::int32_t place, const double* numbers) {
       const Size at = static_cast<Size>(std::lower_bound(kept.source.begin(), kept.source.end(), place) -
                                         kept.source.begin());
-      for (Size v = 0; v < layout.memory; ++v) kept.memory[layout.index(at, layout.memory, v)] = m.values[v];
-    }
+      for (Size v = 0; v < layout.memory; ++v) kept.memory[layout.index(at, layout.memory, v)] = numbers[v];
+    });
     walls[w] = std::move(kept);
   }
 }

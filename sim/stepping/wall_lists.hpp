@@ -43,8 +43,7 @@ struct WallContacts {
   std::vector<ContactPackets> walls;
 
   /// Begins with the contacts that are remembered.
-  void restore(const ListedBeads& beads, const BeadShare& share,
-               const std::vector<ContactMemory>& remembered);
+  void restore(const ListedBeads& beads, const BeadShare& share, const RememberedContacts& remembered);
   /// Builds the stale lists.
   void build(const System& s, ListedBeads& beads, const BeadShare& share, const WallLists& lists);
 
