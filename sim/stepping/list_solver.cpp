@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <barrier>
 #include <cmath>
 #include <exception>
@@ -32,6 +33,7 @@ struct Part {
   InnerPairs inner;
   WallContacts walls;
   ActiveSet active;
+  bool active_stale = true;  ///< lists have been built since the active set was found
   double overlap = 0;
   Deviation deviation{};
   std::int64_t visits = 0, wall_visits = 0, moves = 0;  ///< packets, packets, beads
@@ -60,7 +62,16 @@ class ListSolver : public Solver {
 
  private:
   // Preparation of a call.
+  /// What the lists depend on besides the beads.
+  struct Surroundings {
+    double dt = 0, plate_drag = 0;
+    Vec3 gravity = Vec3::Zero();
+    std::array<double, 3> period{};
+    std::vector<Wall> walls;
+  };
+  [[nodiscard]] bool is_as_left(const System& s, const PlateMotion& plate) const;
   void prepare(const System& s);
+  void begin_lists(const System& s);
   void divide_among_threads(const System& s);
   // Lists.
   template <class Visit>
@@ -104,11 +115,27 @@ class ListSolver : public Solver {
   double speed_bound_ = 0;                          ///< bound on speeds since the last inner list
   PlateMotion plate_;
   IntegrateArgs integrate_args_{};
+  bool is_left_ = false;       ///< the last call ended without an error
+  Surroundings surroundings_;  ///< at the last begin_lists()
   std::int64_t rebuild_every_ = 0, calls_ = 0;
   Counters counters_;
 };
 
 // --- preparation ---
+
+/// Whether the system is as the last call left it, so that the lists go on. A run that is divided into short
+/// calls, between which its velocities are only read, then builds no more lists than in one call.
+bool ListSolver::is_as_left(const System& s, const PlateMotion& plate) const {
+  if (!is_left_ || rebuild_every_ > 0 || !restored_.empty() || !(plate == plate_)) return false;
+  const Surroundings& was = surroundings_;
+  const auto is_same = [](const Wall& a, const Wall& b) {
+    return a.n == b.n && a.offset == b.offset && a.moves == b.moves;
+  };
+  return s.dt == was.dt && s.plate_drag == was.plate_drag && s.gravity == was.gravity &&
+         s.period == was.period &&
+         std::equal(s.walls.begin(), s.walls.end(), was.walls.begin(), was.walls.end(), is_same) &&
+         beads_.packed.agrees(s, beads_.order.bead);
+}
 
 void ListSolver::prepare(const System& s) {
   outer_.set_limits(s);
@@ -393,10 +420,14 @@ void ListSolver::step(const System& s, Part& part, Then then) {
   if (pairs_stale_)
     part.inner.build(beads_, part.share, part.outer, 2 * inner_.slack(), inner_.horizon(), parts_.size() > 1);
   if (walls_stale_) part.walls.build(s, beads_, part.share, walls_);
-  if (then == Then::nothing) return forces(s, part);
+  if (then == Then::nothing) {
+    part.active_stale = part.active_stale || pairs_stale_ || walls_stale_;
+    return forces(s, part);
+  }
   // Drag acts on all beads.
-  if (pairs_stale_ || walls_stale_)
+  if (pairs_stale_ || walls_stale_ || part.active_stale)
     part.active.find(beads_.layout, part.share, part.outer, part.inner, part.walls, s.plate_drag > 0);
+  part.active_stale = false;
   forces_and_integrate(s, part);
 }
 
@@ -467,19 +498,9 @@ void ListSolver::run_parallel(System& s, std::int64_t steps) {
   if (failure) std::rethrow_exception(failure);
 }
 
-void ListSolver::advance(System& s, std::int64_t steps) {
-  if (s.beads.empty() || steps <= 0) {
-    s.step += std::max<std::int64_t>(0, steps);
-    return;
-  }
-  check_motion(s, limits_);
-  const FlushSubnormals flush;
-  const bool known = s.forces_known && s.forces.size() == s.beads.size();
-  s.forces_known = known;
-  prepare(s);
-  integrate_args_ = beads_.packed.integrate_args(s);
-  plate_ = {s.plate_height(), s.plate_velocity(), s.plate_height_before()};
-  // Lists are refreshed at every call: the caller may have changed the plate and the beads.
+/// The caller may have changed the plate and the beads.
+void ListSolver::begin_lists(const System& s) {
+  surroundings_ = {s.dt, s.plate_drag, s.gravity, s.period, s.walls};
   outer_.distrust();
   walls_.reset(s.walls.size());
   inner_.reset(beads_.layout, s.beads.size());
@@ -488,7 +509,27 @@ void ListSolver::advance(System& s, std::int64_t steps) {
   for (Part& part : parts_) {
     part.inner.build(beads_, part.share, part.outer, 2 * inner_.slack(), inner_.horizon(), parts_.size() > 1);
     part.walls.build(s, beads_, part.share, walls_);
-    part.active.find(beads_.layout, part.share, part.outer, part.inner, part.walls, s.plate_drag > 0);
+    part.active_stale = true;
+  }
+}
+
+void ListSolver::advance(System& s, std::int64_t steps) {
+  if (s.beads.empty() || steps <= 0) {
+    s.step += std::max<std::int64_t>(0, steps);
+    return;
+  }
+  const FlushSubnormals flush;
+  const bool known = s.forces_known && s.forces.size() == s.beads.size();
+  s.forces_known = known;
+  const PlateMotion plate = {s.plate_height(), s.plate_velocity(), s.plate_height_before()};
+  const bool goes_on = is_as_left(s, plate);
+  is_left_ = false;
+  if (!goes_on) {
+    check_motion(s, limits_);
+    prepare(s);
+    integrate_args_ = beads_.packed.integrate_args(s);
+    plate_ = plate;
+    begin_lists(s);
   }
   if (!known) {
     for (Part& part : parts_) forces(s, part);
@@ -506,6 +547,7 @@ void ListSolver::advance(System& s, std::int64_t steps) {
   }
   beads_.packed.store(s, beads_.order.bead);
   check_motion(s, limits_);
+  is_left_ = true;
 }
 
 }  // namespace

@@ -13,6 +13,8 @@ namespace twincell::sim {
 /// Displacement and velocity of the plate, sigma and sigma/t0, and its displacement one step earlier.
 struct PlateMotion {
   double height = 0, velocity = 0, before = 0;
+
+  bool operator==(const PlateMotion&) const = default;
 };
 
 /// Margins of the wall lists. A list contains every bead within the margin of its wall. It remains valid
