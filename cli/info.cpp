@@ -55,7 +55,8 @@ nlohmann::json describe(const H5mdReader& file) {
     d["drive"] = {{"amplitude", t.drive->amplitude},
                   {"omega", t.drive->omega},
                   {"gamma", t.drive->gamma()},
-                  {"k_m", t.drive->k_m()}};
+                  {"k_m", t.drive->k_m()},
+                  {"displacement", t.drive->formula()}};
   if (t.phases_per_cycle > 0) d["phases_per_cycle"] = t.phases_per_cycle;
   if (t.scale.sigma_m) d["scale"]["sigma_m"] = *t.scale.sigma_m;
   if (t.scale.gravity_m_s2) d["scale"]["gravity_m_s2"] = *t.scale.gravity_m_s2;
@@ -104,7 +105,8 @@ std::string as_text(const nlohmann::json& d) {
                      d["last"]["time"].get<double>(), d["first"]["step"].get<long>(),
                      d["last"]["step"].get<long>());
   if (d.contains("drive"))
-    s += fmt::format("  drive       A = {:.6g} sigma, omega = {:.6g}/t0, Gamma = {:.6g}, K_m = {:.6g}\n",
+    s += fmt::format("  drive       {}, A = {:.6g} sigma, omega = {:.6g}/t0, Gamma = {:.6g}, K_m = {:.6g}\n",
+                     d["drive"]["displacement"].get<std::string>(),
                      d["drive"]["amplitude"].get<double>(), d["drive"]["omega"].get<double>(),
                      d["drive"]["gamma"].get<double>(), d["drive"]["k_m"].get<double>());
   s += d.contains("phases_per_cycle")

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
@@ -12,12 +13,79 @@ double Drive::period() const {
   return 2 * std::numbers::pi / omega;
 }
 
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// Phase of the harmonic of order n at `fraction` of a period, radians.
+double angle_of(const Harmonic& harmonic, double n, double fraction) {
+  return kTurn * (n * fraction + harmonic.phase);
+}
+
+/// first + sum_n a_n term(n, harmonic). `first` is returned to the bit if there are no harmonics.
+template <class Term>
+double sum_over(const std::vector<Harmonic>& harmonics, double first, const Term& term) {
+  double n = 1;
+  for (const Harmonic& harmonic : harmonics) {
+    n += 1;
+    first += harmonic.amplitude * term(n, harmonic);
+  }
+  return first;
+}
+
+}  // namespace
+
 double Drive::displacement(double fraction) const {
-  return amplitude * std::sin(2 * std::numbers::pi * fraction);
+  return amplitude * sum_over(harmonics, std::sin(kTurn * fraction), [&](double n, const Harmonic& h) {
+           return std::sin(angle_of(h, n, fraction));
+         });
 }
 
 double Drive::velocity(double fraction) const {
-  return amplitude * omega * std::cos(2 * std::numbers::pi * fraction);
+  return amplitude * omega *
+         sum_over(harmonics, std::cos(kTurn * fraction),
+                  [&](double n, const Harmonic& h) { return n * std::cos(angle_of(h, n, fraction)); });
+}
+
+double Drive::acceleration(double fraction) const {
+  return -omega * omega * amplitude *
+         sum_over(harmonics, std::sin(kTurn * fraction),
+                  [&](double n, const Harmonic& h) { return n * n * std::sin(angle_of(h, n, fraction)); });
+}
+
+double Drive::displacement_bound() const {
+  return amplitude * sum_over(harmonics, 1, [](double, const Harmonic&) { return 1.0; });
+}
+
+double Drive::velocity_bound() const {
+  return amplitude * omega * sum_over(harmonics, 1, [](double n, const Harmonic&) { return n; });
+}
+
+std::string Drive::formula() const {
+  if (harmonics.empty()) return "A sin(omega t)";
+  std::string text = "A (sin(omega t)";
+  for (std::size_t k = 0; k < harmonics.size(); ++k) {
+    const Harmonic& h = harmonics[k];
+    if (h.amplitude == 0) continue;
+    fmt::format_to(std::back_inserter(text), " + {:.4g} sin({} omega t", h.amplitude, k + 2);
+    if (h.phase != 0) fmt::format_to(std::back_inserter(text), " + 2 pi {:.4g}", h.phase);
+    text += ')';
+  }
+  return text + ')';
+}
+
+double Drive::peak_fall() const {
+  if (harmonics.empty()) return amplitude * omega * omega;
+  // Over a hundred samples per cycle of the highest harmonic; a parabola through the lowest and its
+  // neighbours gives the minimum between them.
+  constexpr int kSamples = 4096;
+  const auto at = [&](int k) { return acceleration(static_cast<double>(k) / kSamples); };
+  int lowest = 0;
+  for (int k = 1; k < kSamples; ++k)
+    if (at(k) < at(lowest)) lowest = k;
+  const double before = at(lowest - 1), here = at(lowest), after = at(lowest + 1);
+  const double bend = before - 2 * here + after, slope = after - before;
+  return -(bend > 0 ? here - slope * slope / (8 * bend) : here);
 }
 
 namespace {

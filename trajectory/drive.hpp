@@ -1,9 +1,12 @@
 #pragma once
 /// \file
-/// The sinusoidal drive and its dimensionless numbers.
+/// The drive, a sine with optional harmonics, and its dimensionless numbers.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/config.hpp"
 #include "core/error.hpp"
@@ -11,14 +14,31 @@
 
 namespace twincell {
 
-/// Plate displacement A sin(omega t) along `axis` (Fortini & Huang 2015, eq. 1, with z = 0 at the plate's
-/// mean). A cycle begins at phase 0, where the plate passes its mean height with upward velocity A omega.
+/// Harmonic of order n of a drive: A a sin(n omega t + 2 pi phi), with A the amplitude of the first harmonic.
+struct Harmonic {
+  double amplitude = 0;  ///< a, relative to A, 0 <= a <= kLargestHarmonic
+  double phase = 0;      ///< phi, cycles of this harmonic, 0 <= phi < 1
+};
+
+/// Largest number of harmonics above the first, and largest relative amplitude of one.
+inline constexpr std::size_t kMostHarmonics = 30;
+inline constexpr double kLargestHarmonic = 100;
+
+/// Plate displacement along `axis`, with zero mean:
+///
+///     z(t) = A (sin(omega t) + sum_n a_n sin(n omega t + 2 pi phi_n)),   n = 2, 3, ...
+///
+/// Without harmonics this is A sin(omega t) (Fortini & Huang 2015, eq. 1, with z = 0 at the plate's mean): a
+/// cycle begins at phase 0, where the plate passes its mean height with upward velocity A omega. With
+/// harmonics a cycle begins where the first harmonic does so. Gamma, K_m and V_p are those of the first
+/// harmonic.
 struct Drive {
   Axis axis = Axis::z;
-  double amplitude = 0;  ///< A, sigma
-  double omega = 1;      ///< omega, 1/t0
+  double amplitude = 0;                  ///< A, sigma
+  double omega = 1;                      ///< omega, 1/t0
+  std::vector<Harmonic> harmonics = {};  ///< orders 2, 3, ...; empty: a sine
 
-  /// Gamma = A omega^2 / g, with g in reduced units (1).
+  /// Gamma = A omega^2 / g of the first harmonic, with g in reduced units (1).
   [[nodiscard]] double gamma(double gravity = 1) const { return amplitude * omega * omega / gravity; }
   /// K_m = A^2 omega^2/(sigma g); the same number as W of Bhateja et al. 2016 and S of Eshuis et al. 2007.
   [[nodiscard]] double k_m(double gravity = 1) const {
@@ -33,6 +53,18 @@ struct Drive {
   [[nodiscard]] double displacement(double fraction) const;
   /// Velocity at `fraction` of a period, sigma/t0.
   [[nodiscard]] double velocity(double fraction) const;
+  /// Acceleration at `fraction` of a period, sigma/t0^2.
+  [[nodiscard]] double acceleration(double fraction) const;
+  /// Upper bound of |displacement|, A (1 + sum a_n), sigma; A of a sine.
+  [[nodiscard]] double displacement_bound() const;
+  /// Upper bound of |velocity|, A omega (1 + sum n a_n), sigma/t0; A omega of a sine.
+  [[nodiscard]] double velocity_bound() const;
+  /// Largest downward acceleration of the whole waveform, as a positive number, sigma/t0^2: A omega^2 of a
+  /// sine. A bead at rest on a horizontal plate leaves it if this exceeds g.
+  [[nodiscard]] double peak_fall() const;
+  /// The formula of the displacement: "A sin(omega t)", or with harmonics for example
+  /// "A (sin(omega t) + 0.1 sin(2 omega t + 2 pi 0.25))".
+  [[nodiscard]] std::string formula() const;
 };
 
 /// A drive as the user specifies it: any set of numbers that determines A and omega without contradiction.

@@ -213,9 +213,7 @@ class BedFlight : public Observable {
     // A bed that rested on the plate has h' = h'' = 0 at take-off. Noise separates the two zeros, or keeps h'
     // positive so that it has no zero. The later of the two zeros is then the best estimate.
     const auto rises = [&](double t) { return path.velocity(t) - drive.velocity(turns(t)); };
-    const auto leaves = [&](double t) {
-      return rises(t) > 0 && drive.omega * drive.omega * drive.displacement(turns(t)) > 1;
-    };
+    const auto leaves = [&](double t) { return rises(t) > 0 && drive.acceleration(turns(t)) < -1; };
     const double earliest = std::max(first - 2 * reach, landed_);
     double inside = first + reach;
     if (!thrown_)
@@ -223,7 +221,7 @@ class BedFlight : public Observable {
     double take_off = inside;
     while (take_off > earliest && leaves(take_off)) take_off -= fine;
     if (take_off < inside) take_off = boundary(take_off + fine, take_off, leaves);
-    const bool fast = thrown_ && rises(take_off) > kThrownSpeed * drive.peak_velocity();
+    const bool fast = thrown_ && rises(take_off) > kThrownSpeed * drive.velocity_bound();
     if (take_off < inside && take_off > earliest && !fast) return take_off;
     // A resting bed does not leave a plate whose downward acceleration is below g. A thrown bed may leave at
     // any phase; the second differences contain the throw up to this time.

@@ -305,6 +305,7 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
     if (p.drive) {
       numbers("Gamma", p.drive->gamma(), q.drive->gamma(), kSameDrive);
       numbers("omega", p.drive->omega, q.drive->omega, kSameDrive);
+      words("the drive is", p.drive->formula(), q.drive->formula());
     }
     numbers("the cell's width", p.box.size().x(), q.box.size().x(), kSameDrive);
     numbers("the number of beads", static_cast<double>(ends[0].first.n_present()),

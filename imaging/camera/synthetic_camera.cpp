@@ -81,7 +81,7 @@ SyntheticCamera::SyntheticCamera(const CameraOptions& stated, const TrajectoryIn
   if (options.trigger_jitter > 0) Shutter::require_paths(info, "trigger-jitter");
   if (options.trigger_offset != 0) Shutter::require_paths(info, "trigger-offset");
   const double height = options.max_height > 0 ? options.max_height : info.box.size().z();
-  const double amplitude = info.drive ? info.drive->amplitude : 0;
+  const double amplitude = info.drive ? info.drive->displacement_bound() : 0;
   const double w = info.box.size().x() * options.pixels_per_sigma + 2 * options.margin_px;
   const double h = (height + 2 * amplitude) * options.pixels_per_sigma + 2 * options.margin_px;
   if (!(w >= 1 && h >= 1 && w <= 20000 && h <= 20000))

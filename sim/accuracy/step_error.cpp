@@ -30,7 +30,7 @@ Scene in_empty_space(Scene s, const Plan& plan) {
 
 /// Typical impact speed of the scene, estimated before a run.
 double meeting_speed(const Scene& s, const Plan& plan) {
-  const double fast = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
+  const double fast = std::max({2 * s.drive.velocity_bound(), std::sqrt(2 * s.g()), 1e-3});
   // With the linear law the overlap is at most v t_c/pi.
   const double gentle = std::numbers::pi * plan.overlap_bound / (2 * s.steps_per_contact * plan.dt);
   return std::min({fast, gentle, plan.travel_bound / (2 * plan.dt)});

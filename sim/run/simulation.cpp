@@ -99,10 +99,10 @@ RunState placed(const Scene& scene, Progress& progress) {
   RunState state;
   // High enough never to be reached: top of the bed, stroke of the plate, twice the ballistic height at the
   // peak plate velocity, ten diameters.
-  const double v = scene.drive.peak_velocity(), g = scene.g();
+  const double v = scene.drive.velocity_bound(), g = scene.g();
   const double flight = g > 0 ? v * v / g : 0;
-  state.height =
-      scene.height.value_or(std::ceil(top_of(start.beads) + 2 * scene.drive.amplitude + 2 * flight + 10));
+  state.height = scene.height.value_or(
+      std::ceil(top_of(start.beads) + 2 * scene.drive.displacement_bound() + 2 * flight + 10));
   state.beads = std::move(start.beads);
   state.tracer = std::move(start.tracer);
   if (!scene.in_motion) return state;
@@ -123,13 +123,12 @@ void begin_drive(const Scene& scene, const Plan& plan, System& system) {
   system.drive = scene.drive;
   system.envelope = scene.envelope;
   system.step = first_step(plan, scene.phase.value_or(0));
-  if (system.step > 0) {
+  if (const Vec3 shift = system.plate_displacement(); system.step > 0 || shift != Vec3::Zero()) {
     // The bed rests on the plate at the position of this phase.
-    const Vec3 shift = system.plate_displacement();
     for (Bead& b : system.beads) b.x += shift.x(), b.y += shift.y(), b.z += shift.z();
     system.forces_known = false;
   }
-  // At phase 0 the plate moves at A omega but does not accelerate: beads that move with it are in
+  // At phase 0 a sine moves at A omega but does not accelerate: beads that move with it are in
   // equilibrium. Beads at rest would be hit by a plate at full speed, which alone breaks a crystal.
   if (!scene.comoving) return;
   const double v = system.plate_velocity();

@@ -180,8 +180,12 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
   // Drive, settling and time integration.
   if (s.drive.amplitude > 0)
     add("drive", State::on,
-        fmt::format("A sin(omega t) along {}, Gamma = {:.6g}, {}", "xyz"[static_cast<int>(s.drive.axis)],
-                    s.drive.gamma(s.g() > 0 ? s.g() : 1),
+        fmt::format("{} along {}, Gamma = {:.6g}{}, {}", s.drive.formula(),
+                    "xyz"[static_cast<int>(s.drive.axis)], s.drive.gamma(s.g() > 0 ? s.g() : 1),
+                    s.drive.harmonics.empty()
+                        ? ""
+                        : fmt::format(" of the first harmonic, largest downward acceleration {:.6g} g",
+                                      s.drive.peak_fall() / (s.g() > 0 ? s.g() : 1)),
                     !s.envelope.points.empty()
                         ? fmt::format("amplitude schedule over {:g} cycles", s.envelope.duration())
                     : s.in_motion ? "from the phase of the frame at which the start continues"
@@ -220,6 +224,7 @@ std::string why_not_event_driven(const Scene& scene, const Plan& plan) {
     if (!integrable_alone(laws)) return "the contact law of a wall " + alone;
   if (scene.plate_drag > 0) return "cell.plate_drag slows beads between contacts";
   if (!scene.envelope.points.empty()) return "the drive's amplitude changes";
+  if (!scene.drive.harmonics.empty()) return "the drive has harmonics";
   return "";
 }
 
@@ -414,7 +419,7 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   // Bounds: displacement per step, overlap, and the force at the overlap bound.
   plan.travel_bound = kTravelBound * 2 * std::min_element(sizes.begin(), sizes.end(), smaller)->radius;
   plan.overlap_bound = s.overlap_bound * 2 * plan.usual_radius;
-  const double speed = std::max({2 * s.drive.peak_velocity(), std::sqrt(2 * s.g()), 1e-3});
+  const double speed = std::max({2 * s.drive.velocity_bound(), std::sqrt(2 * s.g()), 1e-3});
   const auto force = [&](const auto& law) { return law.largest_force(plan.overlap_bound); };
   plan.largest_force = std::visit(force, plan.bead.normal);
   for (const ContactLaws& laws : plan.wall_laws)
@@ -445,7 +450,7 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
                                   s.drive.period(), plan.dt, kShortestStep));
   double strongest = 1;  // largest factor on the amplitude in the schedule
   for (const auto& [cycle, factor] : s.envelope.points) strongest = std::max(strongest, factor);
-  if (const double travel = strongest * s.drive.peak_velocity() * plan.dt; !(travel <= plan.travel_bound))
+  if (const double travel = strongest * s.drive.velocity_bound() * plan.dt; !(travel <= plan.travel_bound))
     throw ConfigError(s.where("drive"),
                       fmt::format("the plate moves {:.3g} sigma in one step, the bound is {:g}; raise "
                                   "time.steps_per_contact or contact.k_n.",

@@ -277,6 +277,27 @@ void read_schedule(const Section& s, Envelope& envelope) {
   envelope.points = *points;
 }
 
+void read_harmonics(const Section& s, std::vector<Harmonic>& harmonics) {
+  const auto pairs = s.pairs("harmonics");
+  if (!pairs) return;
+  const Where where = s.where("harmonics");
+  if (pairs->size() > kMostHarmonics)
+    throw ConfigError(where,
+                      fmt::format("has {} harmonics, the bound is {}.", pairs->size(), kMostHarmonics));
+  for (const auto& [amplitude, phase] : *pairs) {
+    const std::size_t order = harmonics.size() + 2;
+    if (!(amplitude >= 0 && amplitude <= kLargestHarmonic))
+      throw ConfigError(where, fmt::format("the amplitude {} of harmonic {}, relative to the first, must be "
+                                           "between 0 and {}.",
+                                           amplitude, order, kLargestHarmonic));
+    if (!(phase >= 0 && phase < 1))
+      throw ConfigError(
+          where, fmt::format("the phase {} of harmonic {} must be at least 0 and less than 1 cycle of it.",
+                             phase, order));
+    harmonics.push_back({amplitude, phase});
+  }
+}
+
 DriveSpec read_drive(const Section& s, Scene& scene) {
   const DriveSpec spec = read_drive_spec(s);
   scene.drive.axis = read_word(s, "axis", {"x", "y", "z"}, Axis::z);
@@ -287,6 +308,7 @@ DriveSpec read_drive(const Section& s, Scene& scene) {
   scene.phase = s.number_in("phase", 0, 1);
   if (scene.phase == 1)
     throw ConfigError(s.where("phase"), "1 is out of range; the value must be less than 1.");
+  read_harmonics(s, scene.drive.harmonics);
   read_schedule(s, scene.envelope);
   const auto ramp = s.number_in("ramp_cycles", 0, 1e6, true);
   if (start == "ramp") {
@@ -535,7 +557,9 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   const ContactChoice& laws = scene.contact;
   check_laws(laws.normal, laws.tangential, laws.rolling, laws.bead);
   for (const auto& [wall, table] : laws.wall) check_laws(laws.normal, laws.tangential, laws.rolling, table);
-  scene.drive = solve_drive(spec, g, drive.where(""), scene.drive.axis);
+  const Drive solved = solve_drive(spec, g, drive.where(""), scene.drive.axis);
+  scene.drive.amplitude = solved.amplitude;
+  scene.drive.omega = solved.omega;
   const bool from_file = start_row(scene.start).from_file;
   if (!scene.n_beads && !from_file)
     throw ConfigError(beads.where("count"), "the number of beads is missing.");

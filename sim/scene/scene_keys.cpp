@@ -234,19 +234,23 @@ void add_drive(Rows& rows) {
       {"drive.frequency", "1/t0", "", "0.16", "f = ω/2π"},
       {"drive.frequency_per_t0", "1/t0", "", "0.16", ""},
       {"drive.frequency_hz", "1/s", "", "11.0", "", laboratory},
-      {"drive.gamma", "1", "", "2.0", "Γ = Aω²/g; needs gravity"},
+      {"drive.gamma", "1", "", "2.0", "Γ = Aω²/g; needs gravity; with harmonics, that of the first"},
       {"drive.peak_acceleration_g", "g", "", "2.0", ""},
       {"drive.peak_acceleration_m_s2", "m/s²", "", "19.6", "", laboratory},
       {"drive.k_m", "1", "", "4.0", "K_m = A²ω²/(gσ), also called W and S; needs gravity"},
       {"drive.peak_velocity", "v0", "", "2.0", "Aω"},
       {"drive.peak_velocity_v0", "v0", "", "2.0", ""},
       {"drive.peak_velocity_mm_s", "mm/s", "", "280.0", "", laboratory},
+      {"drive.harmonics", "", "", "[[0.1, 0.25], [0.02, 0.0]]",
+       "[[a_2, φ_2], [a_3, φ_3], …]: displacement A (sin ωt + Σ a_n sin(nωt + 2πφ_n)), at most 30 harmonics; "
+       "a_n is relative to A, 0 to 100; φ_n in cycles of the harmonic, from 0 to below 1"},
       {"drive.axis", "", "\"z\"", "\"x\"", "direction; \"y\" in 3D only"},
       {"drive.start", "", "\"comoving\"", "\"abrupt\"",
        "comoving: beads start with the velocity of the plate; abrupt: beads start at rest and the plate hits "
        "them; ramp: the amplitude increases from 0"},
       {"drive.phase", "cycles", "0; of a start in motion that of the frame", "0.25",
-       "below 1: initial phase of the plate, rounded to the nearest step; 0.25 is its highest point. The "
+       "below 1: initial phase of the plate, rounded to the nearest step; 0.25 is the highest point of a "
+       "sine. The "
        "settled bed is moved there with the plate. The cycle in which the drive begins counts as one of "
        "time.discard and time.cycles"},
       {"drive.ramp_cycles", "cycles", "10", "20.0", "duration of the ramp", {"drive.start=ramp"}},

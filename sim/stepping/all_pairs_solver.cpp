@@ -234,7 +234,7 @@ class AllPairsSolver : public Solver {
   /// Whether no bead can touch a wall, for any position of the plate.
   [[nodiscard]] bool is_far(const System& s, const Wall& wall) const {
     if (wall.moves && !s.envelope.points.empty()) return false;
-    const double swing = wall.moves ? std::abs(s.drive.amplitude) : 0;
+    const double swing = wall.moves ? std::abs(s.drive.displacement_bound()) : 0;
     for (Size i = 0; i < beads_.size(); ++i)
       if (!(wall.n.dot(beads_.position(i)) - wall.offset - beads_.radius(i) > swing)) return false;
     return true;

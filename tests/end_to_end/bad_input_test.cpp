@@ -180,6 +180,7 @@ TEST_F(BadInput, ScenesThatLammpsHasNoWordsFor) {
   refused("cell.plate_drag=0.1", {"cell.plate_drag"});
   refused("time.integrator=split", {"time.integrator", "split"});
   refused("drive.start=ramp", {"drive", "no ramp"});
+  refused("drive.harmonics=[[0.1, 0.25]]", {"s.toml", "drive.harmonics", "without harmonics"});
   expect_refusal(
       {"export", at("s.toml"), "--to", "lammps", "-o", at("deck"), "--set", "contact.restitution=0.9",
        "--set", "beads.spread=uniform", "--set", "beads.spread_width=0.1"},

@@ -33,7 +33,7 @@ void set_box(Snapshot& s, const TrajectoryInfo& info, const ExportUnits& units) 
   Vec3 lower = box.lower, upper = box.upper;
   if (info.drive && !box.periodic(info.drive->axis)) {
     const int axis = static_cast<int>(info.drive->axis);
-    lower[axis] -= info.drive->amplitude;
+    lower[axis] -= info.drive->displacement_bound();
   }
   const auto is_periodic = [&](Axis axis) { return box.periodic(axis); };
   if (box.dimension == 2) {

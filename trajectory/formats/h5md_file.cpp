@@ -169,9 +169,15 @@ void H5mdWriter::Impl::create_parameters() {
     const h5::Handle drive = h5::create_group(parameters.get(), "drive");
     h5::write_attribute(drive.get(), "axis", std::string(1, "xyz"[static_cast<int>(info.drive->axis)]));
     h5::write_attribute(drive.get(), "phase_convention",
-                        std::string("A sin(omega t), cycle begins at mean height moving up"));
+                        info.drive->harmonics.empty()
+                            ? std::string("A sin(omega t), cycle begins at mean height moving up")
+                            : info.drive->formula() + ", cycle begins at omega t = 0");
     h5::write_scalar(drive.get(), "amplitude", info.drive->amplitude);
     h5::write_scalar(drive.get(), "omega", info.drive->omega);
+    std::vector<double> harmonics;
+    for (const Harmonic& h : info.drive->harmonics) harmonics.insert(harmonics.end(), {h.amplitude, h.phase});
+    if (!harmonics.empty())
+      h5::write_dataset(drive.get(), "harmonics", harmonics.data(), {harmonics.size() / 2, 2});
   }
   if (info.phases_per_cycle > 0)
     h5::write_dataset(parameters.get(), "phases_per_cycle", &info.phases_per_cycle, {});
@@ -432,6 +438,15 @@ void H5mdReader::Impl::require_ranges() const {
     if (!(info.drive->omega >= 0 && info.drive->omega <= 1e9))
       refuse("parameters/drive/omega",
              fmt::format("is {:g}; it must be between 0 and 1e9.", info.drive->omega));
+    if (info.drive->harmonics.size() > kMostHarmonics)
+      refuse("parameters/drive/harmonics",
+             fmt::format("has {} harmonics, the bound is {}.", info.drive->harmonics.size(), kMostHarmonics));
+    for (const Harmonic& h : info.drive->harmonics)
+      if (!(h.amplitude >= 0 && h.amplitude <= kLargestHarmonic && h.phase >= 0 && h.phase < 1))
+        refuse("parameters/drive/harmonics",
+               fmt::format("contains [{:g}, {:g}]; a relative amplitude must be between 0 and {:g}, a phase "
+                           "at least 0 and less than 1.",
+                           h.amplitude, h.phase, kLargestHarmonic));
   }
   for (const auto& [name, value] : {std::pair{"sigma_m", info.scale.sigma_m},
                                     {"gravity_m_s2", info.scale.gravity_m_s2},
@@ -613,8 +628,15 @@ void H5mdReader::Impl::read_parameters() {
       drive.axis = static_cast<Axis>(k);
     }
     if (h5::read_scalar(group.get(), "amplitude", drive.amplitude) &&
-        h5::read_scalar(group.get(), "omega", drive.omega))
+        h5::read_scalar(group.get(), "omega", drive.omega)) {
+      if (h5::exists(group.get(), "harmonics")) {
+        const auto pairs = h5::read_dataset<double>(group.get(), "harmonics");
+        if (pairs.empty() || pairs.size() % 2 != 0)
+          refuse("parameters/drive/harmonics", "must be pairs of a relative amplitude and a phase.");
+        for (std::size_t k = 0; k < pairs.size(); k += 2) drive.harmonics.push_back({pairs[k], pairs[k + 1]});
+      }
       info.drive = drive;
+    }
   }
   double value = 0;
   if (h5::exists(file.get(), "parameters/phases_per_cycle") &&

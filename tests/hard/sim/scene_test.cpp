@@ -1,5 +1,6 @@
 // Invalid scenes: each is refused with one sentence that states the place and the reason.
 
+#include "sim/scene/plan.hpp"
 #include "sim/scene/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -478,6 +479,40 @@ TEST(DriveOfAScene, RampAndSchedule) {
   EXPECT_NE(
       complaint(kGood, {"drive.ramp_cycles=5"}).find("drive.ramp_cycles: is given, but drive.start is not"),
       std::string::npos);
+}
+
+TEST(DriveOfAScene, Harmonics) {
+  EXPECT_TRUE(good({}).drive.harmonics.empty());
+  const Scene shaken = good({"drive.harmonics=[[0.1, 0.25], [0.02, 0]]", "drive.axis=x"});
+  ASSERT_EQ(shaken.drive.harmonics.size(), 2);
+  EXPECT_EQ(shaken.drive.harmonics[0].amplitude, 0.1);
+  EXPECT_EQ(shaken.drive.harmonics[0].phase, 0.25);
+  EXPECT_EQ(shaken.drive.axis, Axis::x);
+  EXPECT_EQ(shaken.drive.amplitude, good({}).drive.amplitude);
+  EXPECT_NE(shaken.resolved.find("harmonics"), std::string::npos) << "a checkpoint keeps the harmonics";
+  EXPECT_FALSE(make_plan(shaken).event_driven);
+  const auto refused = [](const std::string& harmonics) {
+    return complaint(kGood, {"drive.harmonics=" + harmonics});
+  };
+  EXPECT_NE(refused("[[0.1, 0], [-0.2, 0]]")
+                .find("drive.harmonics: the amplitude -0.2 of harmonic 3, relative to the first, must be "
+                      "between 0 and 100."),
+            std::string::npos);
+  EXPECT_NE(refused("[[101, 0]]").find("the amplitude 101 of harmonic 2"), std::string::npos);
+  EXPECT_NE(refused("[[0.1, 1]]").find("the phase 1 of harmonic 2 must be at least 0 and less than 1 cycle"),
+            std::string::npos);
+  EXPECT_NE(refused("[0.1]").find("a list of pairs of numbers is needed"), std::string::npos);
+  std::string many = "[[0.1, 0]";
+  for (int k = 0; k < 30; ++k) many += ", [0.1, 0]";
+  EXPECT_NE(refused(many + "]").find("has 31 harmonics, the bound is 30."), std::string::npos);
+  const Scene event = good({"drive.harmonics=[[0.1, 0]]", "time.stepping=event-driven",
+                            "contact.tangential=none", "contact.mu=0"});
+  try {
+    (void)make_plan(event);
+    FAIL() << "event-driven motion accepted harmonics";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("the drive has harmonics"), std::string::npos) << e.what();
+  }
 }
 
 TEST(Presets, AreThePapersCells) {

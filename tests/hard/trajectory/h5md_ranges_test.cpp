@@ -70,6 +70,9 @@ TEST(H5mdRanges, WhatNoCellCanBeIsRefusedByEveryVerb) {
       {"mass", [](TrajectoryInfo& t) { t.mass[0] = 0; }},
       {"amplitude", [](TrajectoryInfo& t) { t.drive->amplitude = std::nan(""); }},
       {"omega", [](TrajectoryInfo& t) { t.drive->omega = -1; }},
+      {"harmonics", [](TrajectoryInfo& t) { t.drive->harmonics = {{std::nan(""), 0}}; }},
+      {"harmonics", [](TrajectoryInfo& t) { t.drive->harmonics = {{0.1, 0}, {0.1, 1}}; }},
+      {"harmonics", [](TrajectoryInfo& t) { t.drive->harmonics.resize(31); }},
       {"sigma_m", [](TrajectoryInfo& t) { t.scale.sigma_m = 0; }}};
   for (const auto& [what, spoil] : faults) {
     TrajectoryInfo info = sound();

@@ -31,6 +31,7 @@ std::string told(const Assignments& assignments) {
   tell(s.contact.normal, s.contact.tangential, s.contact.rolling, s.overlap_bound, s.drive.amplitude,
        s.drive.omega, static_cast<int>(s.drive.axis), s.comoving, s.phase.value_or(0));
   for (const auto& [cycle, factor] : s.envelope.points) tell(cycle, factor);
+  for (const Harmonic& harmonic : s.drive.harmonics) tell(harmonic.amplitude, harmonic.phase);
   tell(static_cast<int>(s.start), s.seed, s.from.string(), s.frame, s.in_motion, s.perturbation,
        s.velocity_scale, s.rest_energy, s.settle_limit, s.relax, s.steps_per_contact, s.allow_unstable_step,
        s.integrator, static_cast<int>(s.stepping), s.discard, s.cycles, s.phases, s.springs, s.contacts,

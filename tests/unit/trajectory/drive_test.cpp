@@ -63,13 +63,46 @@ TEST(Drive, PlateAtRest) {
   EXPECT_EQ(d.displacement(0.37), 0);
 }
 
-TEST(Drive, VelocityIsTheDerivativeOfDisplacement) {
-  const Drive d{Axis::z, 1.3, 0.8};
-  for (const double f : {0.0, 0.21, 0.5, 0.83}) {
-    const double h = 1e-6;
-    const double slope = (d.displacement(f + h) - d.displacement(f - h)) / (2 * h * d.period());
-    EXPECT_NEAR(d.velocity(f), slope, 1e-8);
+TEST(Drive, VelocityAndAccelerationAreDerivatives) {
+  for (const Drive& d :
+       {Drive{Axis::z, 1.3, 0.8}, Drive{Axis::z, 1.3, 0.8, {{0.2, 0.1}, {0.0, 0.5}, {0.05, 0.9}}}})
+    for (const double f : {0.0, 0.21, 0.5, 0.83}) {
+      const double h = 1e-6, span = 2 * h * d.period();
+      EXPECT_NEAR(d.velocity(f), (d.displacement(f + h) - d.displacement(f - h)) / span, 1e-8);
+      EXPECT_NEAR(d.acceleration(f), (d.velocity(f + h) - d.velocity(f - h)) / span, 1e-8);
+    }
+}
+
+// A plate without harmonics, and one whose harmonics have no amplitude, move as a sine to the last bit.
+TEST(Drive, NoHarmonicsAreASineToTheBit) {
+  const double a = 1.3, w = 0.8;
+  for (const Drive& d : {Drive{Axis::z, a, w}, Drive{Axis::z, a, w, {{0, 0.3}, {0, 0}}}})
+    for (int k = 0; k < 1000; ++k) {
+      const double f = k / 1000.0;
+      EXPECT_EQ(d.displacement(f), a * std::sin(2 * std::numbers::pi * f));
+      EXPECT_EQ(d.velocity(f), a * w * std::cos(2 * std::numbers::pi * f));
+    }
+  const Drive sine{Axis::z, a, w};
+  EXPECT_EQ(sine.displacement_bound(), a);
+  EXPECT_EQ(sine.velocity_bound(), sine.peak_velocity());
+  EXPECT_EQ(sine.peak_fall(), sine.gamma());
+  EXPECT_EQ(sine.formula(), "A sin(omega t)");
+}
+
+// z = A (sin t + cos(2t)/4), z'' = -A (sin t + cos 2t) with sin t + cos 2t = s + 1 - 2s^2: at most 9/8, at
+// s = 1/4. With the opposite sign of cos 2t it is s - 1 + 2s^2: at most 2, at s = 1.
+TEST(Drive, PeakFallOfTwoHarmonics) {
+  EXPECT_NEAR((Drive{Axis::z, 2, 1, {{0.25, 0.25}}}.peak_fall()), 2 * 1.125, 1e-9);
+  EXPECT_NEAR((Drive{Axis::z, 2, 1, {{0.25, 0.75}}}.peak_fall()), 2 * 2.0, 1e-9);
+  const Drive d{Axis::z, 2, 1.5, {{0.25, 0.1}, {0.1, 0.7}}};
+  for (int k = 0; k < 1000; ++k) {
+    EXPECT_LE(std::abs(d.displacement(k / 1000.0)), d.displacement_bound());
+    EXPECT_LE(std::abs(d.velocity(k / 1000.0)), d.velocity_bound());
+    EXPECT_LE(-d.acceleration(k / 1000.0), d.peak_fall());
   }
+  EXPECT_DOUBLE_EQ(d.displacement_bound(), 2 * 1.35);
+  EXPECT_DOUBLE_EQ(d.velocity_bound(), 3 * 1.8);
+  EXPECT_EQ(d.formula(), "A (sin(omega t) + 0.25 sin(2 omega t + 2 pi 0.1) + 0.1 sin(3 omega t + 2 pi 0.7))");
 }
 
 }  // namespace

@@ -71,6 +71,23 @@ RunConditions conditions_through_file(const TrajectoryInfo& info) {
   return H5mdReader(folder / "run.h5").info().conditions;
 }
 
+TEST(H5mdFile, TheHarmonicsOfTheDriveAreStored) {
+  const TemporaryFolder folder;
+  TrajectoryInfo info = experiment_info();
+  const auto read_back = [&] {
+    H5mdWriter writer(folder / "run.h5", info);
+    writer.append(frame_number(0));
+    writer.finish();
+    return H5mdReader(folder / "run.h5").info().drive.value();
+  };
+  EXPECT_TRUE(read_back().harmonics.empty());
+  info.drive->harmonics = {{0.1, 0.25}, {0.02, 1.0 / 3}};
+  const Drive drive = read_back();
+  ASSERT_EQ(drive.harmonics.size(), 2);
+  EXPECT_EQ(drive.displacement(0.3), info.drive->displacement(0.3));
+  EXPECT_EQ(drive.harmonics[1].phase, 1.0 / 3);
+}
+
 TEST(H5mdFile, TheConditionsOfARunAreStored) {
   TrajectoryInfo info = experiment_info();
   info.conditions = {.n_l = 20.05, .gamma = 1.8, .start = "crystal_a"};
