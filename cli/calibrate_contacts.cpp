@@ -13,12 +13,12 @@
 #include "calibration/contact/contact_figures.hpp"
 #include "calibration/contact/contact_numbers.hpp"
 #include "calibration/contact/walton.hpp"
-#include "calibration/fit/table.hpp"
 #include "cli/calibrate.hpp"
 #include "cli/numbers.hpp"
 #include "cli/stack_info.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/table.hpp"
 #include "sim/laws/linear_collision.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 

@@ -103,6 +103,7 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, s
                       {"k_m", s.g() > 0 ? nlohmann::json(s.drive.k_m(s.g())) : nlohmann::json()},
                       {"amplitude", s.drive.amplitude},
                       {"omega", s.drive.omega},
+                      {"displacement", s.drive.formula()},
                       {"cycles", s.cycles},
                       {"discarded", s.discard},
                       {"continued_from_step", begun_at > 0 ? nlohmann::json(begun_at) : nlohmann::json()},
@@ -124,7 +125,8 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, s
 std::string as_text(const nlohmann::json& d, bool verbose) {
   std::string s = fmt::format("{} beads, {}\n", d["beads"].get<long>(), d["kernel"].get<std::string>());
   if (d["gamma"].is_number())
-    s += fmt::format("Gamma = {:.6g}, K_m = {:.6g}\n", d["gamma"].get<double>(), d["k_m"].get<double>());
+    s += fmt::format("Gamma = {:.6g}, K_m = {:.6g}, displacement {}\n", d["gamma"].get<double>(),
+                     d["k_m"].get<double>(), d["displacement"].get<std::string>());
   s += fmt::format("{} steps per period, dt = {:.6e} t0\n", d["steps_per_period"].get<long>(),
                    d["dt"].get<double>());
   const auto& start = d["start"];

@@ -184,8 +184,18 @@ void bind_box(py::module_& module) {
       .def_property_readonly(
           "k_m", [](const Drive& d) { return d.k_m(); }, header_text("trajectory/drive.hpp", "Drive::k_m"))
       .def_property_readonly("period", &Drive::period, header_text("trajectory/drive.hpp", "Drive::period"))
+      .def_property_readonly("formula", &Drive::formula,
+                             header_text("trajectory/drive.hpp", "Drive::formula"))
+      .def("displacement", &Drive::displacement, py::arg("fraction"), py::arg("cycle") = 0,
+           header_text("trajectory/drive.hpp", "Drive::displacement"))
+      .def("velocity", &Drive::velocity, py::arg("fraction"), py::arg("cycle") = 0,
+           header_text("trajectory/drive.hpp", "Drive::velocity"))
+      .def("acceleration", &Drive::acceleration, py::arg("fraction"), py::arg("cycle") = 0,
+           header_text("trajectory/drive.hpp", "Drive::acceleration"))
       .def("__repr__", [](const Drive& d) {
-        return fmt::format("Drive(amplitude={:g}, omega={:g})", d.amplitude, d.omega);
+        const bool sine = d.harmonics.empty() && !d.recorded;
+        return fmt::format("Drive(amplitude={:g}, omega={:g}{})", d.amplitude, d.omega,
+                           sine ? "" : ", displacement=" + d.formula());
       });
 }
 

@@ -12,9 +12,9 @@
 
 #include "analysis/observable/observable.hpp"
 #include "analysis/report/colours.hpp"
-#include "calibration/fit/table.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/table.hpp"
 #include "reproduce/is_arrested.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/reproduction.hpp"

@@ -9,9 +9,9 @@
 
 #include "calibration/fit/curve_fit.hpp"
 #include "calibration/fit/fit_figure.hpp"
-#include "calibration/fit/table.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/table.hpp"
 #include "reproduce/gas.hpp"
 
 namespace twincell::reproduce {

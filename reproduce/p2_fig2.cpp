@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "calibration/fit/table.hpp"
+#include "core/table.hpp"
 #include "reproduce/gas.hpp"
 
 namespace twincell::reproduce {

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 #include <vector>
+
+#include "trajectory/recorded_motion.hpp"
 
 namespace twincell {
 
@@ -35,33 +38,49 @@ double sum_over(const std::vector<Harmonic>& harmonics, double first, const Term
 
 }  // namespace
 
-double Drive::displacement(double fraction) const {
+double Drive::displacement(double fraction, std::int64_t cycle) const {
+  if (recorded) return recorded->at(cycle, fraction, period()).z;
   return amplitude * sum_over(harmonics, std::sin(kTurn * fraction), [&](double n, const Harmonic& h) {
            return std::sin(angle_of(h, n, fraction));
          });
 }
 
-double Drive::velocity(double fraction) const {
+double Drive::velocity(double fraction, std::int64_t cycle) const {
+  if (recorded) return recorded->at(cycle, fraction, period()).v;
   return amplitude * omega *
          sum_over(harmonics, std::cos(kTurn * fraction),
                   [&](double n, const Harmonic& h) { return n * std::cos(angle_of(h, n, fraction)); });
 }
 
-double Drive::acceleration(double fraction) const {
+double Drive::acceleration(double fraction, std::int64_t cycle) const {
+  if (recorded) return recorded->at(cycle, fraction, period()).a;
   return -omega * omega * amplitude *
          sum_over(harmonics, std::sin(kTurn * fraction),
                   [&](double n, const Harmonic& h) { return n * n * std::sin(angle_of(h, n, fraction)); });
 }
 
+std::int64_t Drive::cycle_at(double time, double fraction) const {
+  constexpr double kLargest = 1e15;  // beyond which a double has no fraction
+  const double cycles = time / period() - fraction;
+  return recorded && std::abs(cycles) < kLargest ? std::llround(cycles) : 0;
+}
+
 double Drive::displacement_bound() const {
+  if (recorded) return std::max(recorded->range().highest, -recorded->range().lowest);
   return amplitude * sum_over(harmonics, 1, [](double, const Harmonic&) { return 1.0; });
 }
 
 double Drive::velocity_bound() const {
+  if (recorded) return recorded->range().speed;
   return amplitude * omega * sum_over(harmonics, 1, [](double n, const Harmonic&) { return n; });
 }
 
 std::string Drive::formula() const {
+  if (recorded) {
+    const RecordInfo& info = recorded->info();
+    return fmt::format("recorded in {} (SHA-256 {}...){}", info.file, info.sha256.substr(0, 8),
+                       info.cycles > 0 ? fmt::format(", {} cycles repeated", info.cycles) : "");
+  }
   if (harmonics.empty()) return "A sin(omega t)";
   std::string text = "A (sin(omega t)";
   for (std::size_t k = 0; k < harmonics.size(); ++k) {
@@ -75,6 +94,7 @@ std::string Drive::formula() const {
 }
 
 double Drive::peak_fall() const {
+  if (recorded) return recorded->range().fall;
   if (harmonics.empty()) return amplitude * omega * omega;
   // Over a hundred samples per cycle of the highest harmonic; a parabola through the lowest and its
   // neighbours gives the minimum between them.
@@ -117,6 +137,36 @@ std::vector<Term> terms_of(const DriveSpec& s, double gravity, const Where& wher
 }
 
 }  // namespace
+
+std::string harmonics_text(const std::vector<Harmonic>& harmonics) {
+  std::string text;
+  for (const Harmonic& h : harmonics)
+    text += fmt::format("{}[{:.17g}, {:.17g}]", text.empty() ? "" : ", ", h.amplitude, h.phase);
+  return "[" + text + "]";
+}
+
+std::vector<Harmonic> read_harmonics(const ConfigSection& drive) {
+  std::vector<Harmonic> harmonics;
+  const auto pairs = drive.pairs("harmonics");
+  if (!pairs) return harmonics;
+  const Where where = drive.where("harmonics");
+  if (pairs->size() > kMostHarmonics)
+    throw ConfigError(where,
+                      fmt::format("has {} harmonics, the bound is {}.", pairs->size(), kMostHarmonics));
+  for (const auto& [amplitude, phase] : *pairs) {
+    const std::size_t order = harmonics.size() + 2;
+    if (!(amplitude >= 0 && amplitude <= kLargestHarmonic))
+      throw ConfigError(where, fmt::format("the amplitude {} of harmonic {}, relative to the first, must be "
+                                           "between 0 and {}.",
+                                           amplitude, order, kLargestHarmonic));
+    if (!(phase >= 0 && phase < 1))
+      throw ConfigError(
+          where, fmt::format("the phase {} of harmonic {} must be at least 0 and less than 1 cycle of it.",
+                             phase, order));
+    harmonics.push_back({amplitude, phase});
+  }
+  return harmonics;
+}
 
 DriveSpec read_drive_spec(const ConfigSection& drive) {
   const auto positive = [&](const char* key) { return drive.number_in(key, 0, std::nullopt, true); };

@@ -1,9 +1,10 @@
 #pragma once
 /// \file
-/// The drive, a sine with optional harmonics, and its dimensionless numbers.
+/// The drive, a sine with optional harmonics or a recorded motion, and its dimensionless numbers.
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@
 #include "trajectory/box.hpp"
 
 namespace twincell {
+
+class RecordedMotion;
 
 /// Harmonic of order n of a drive: A a sin(n omega t + 2 pi phi), with A the amplitude of the first harmonic.
 struct Harmonic {
@@ -32,13 +35,18 @@ inline constexpr double kLargestHarmonic = 100;
 /// cycle begins at phase 0, where the plate passes its mean height with upward velocity A omega. With
 /// harmonics a cycle begins where the first harmonic does so. Gamma, K_m and V_p are those of the first
 /// harmonic.
+///
+/// A recorded motion replaces the formula. A sin(omega t) is then its component at omega, by least squares,
+/// to which Gamma, K_m and V_p refer, and the cycles begin where this component passes its mean height
+/// upwards.
 struct Drive {
   Axis axis = Axis::z;
-  double amplitude = 0;                  ///< A, sigma
-  double omega = 1;                      ///< omega, 1/t0
-  std::vector<Harmonic> harmonics = {};  ///< orders 2, 3, ...; empty: a sine
+  double amplitude = 0;                                 ///< A, sigma
+  double omega = 1;                                     ///< omega, 1/t0
+  std::vector<Harmonic> harmonics = {};                 ///< orders 2, 3, ...; empty: a sine
+  std::shared_ptr<const RecordedMotion> recorded = {};  ///< null: the formula above
 
-  /// Gamma = A omega^2 / g of the first harmonic, with g in reduced units (1).
+  /// Gamma = A omega^2 / g of the first harmonic or of the component at omega, with g in reduced units (1).
   [[nodiscard]] double gamma(double gravity = 1) const { return amplitude * omega * omega / gravity; }
   /// K_m = A^2 omega^2/(sigma g); the same number as W of Bhateja et al. 2016 and S of Eshuis et al. 2007.
   [[nodiscard]] double k_m(double gravity = 1) const {
@@ -50,11 +58,19 @@ struct Drive {
   [[nodiscard]] double period() const;
   /// Displacement at `fraction` of a period (0 <= fraction < 1), sigma. The argument is the fraction rather
   /// than the time, so that the plate is periodic to the last bit in a run of any length.
-  [[nodiscard]] double displacement(double fraction) const;
+  /// \param cycle number of whole periods before; only a recorded motion depends on it
+  [[nodiscard]] double displacement(double fraction, std::int64_t cycle = 0) const;
   /// Velocity at `fraction` of a period, sigma/t0.
-  [[nodiscard]] double velocity(double fraction) const;
+  [[nodiscard]] double velocity(double fraction, std::int64_t cycle = 0) const;
   /// Acceleration at `fraction` of a period, sigma/t0^2.
-  [[nodiscard]] double acceleration(double fraction) const;
+  [[nodiscard]] double acceleration(double fraction, std::int64_t cycle = 0) const;
+  /// The cycle of a frame at `time` since cycle 0 began, whose phase is `fraction`; 0 without a recorded
+  /// motion, as no other drive depends on it.
+  [[nodiscard]] std::int64_t cycle_at(double time, double fraction) const;
+  /// Whether the plate moves.
+  [[nodiscard]] bool moves() const { return amplitude > 0 || recorded != nullptr; }
+  /// A plate at rest at its mean position, with the same axis and period.
+  [[nodiscard]] Drive at_rest() const { return {.axis = axis, .amplitude = 0, .omega = omega}; }
   /// Upper bound of |displacement|, A (1 + sum a_n), sigma; A of a sine.
   [[nodiscard]] double displacement_bound() const;
   /// Upper bound of |velocity|, A omega (1 + sum n a_n), sigma/t0; A omega of a sine.
@@ -63,7 +79,9 @@ struct Drive {
   /// sine. A bead at rest on a horizontal plate leaves it if this exceeds g.
   [[nodiscard]] double peak_fall() const;
   /// The formula of the displacement: "A sin(omega t)", or with harmonics for example
-  /// "A (sin(omega t) + 0.1 sin(2 omega t + 2 pi 0.25))".
+  /// "A (sin(omega t) + 0.1 sin(2 omega t + 2 pi 0.25))"; of a recorded motion its file and the first digits
+  /// of the SHA-256, "recorded in trace.csv (SHA-256 1f2e3d4c...)", and of a repeated one the number of its
+  /// cycles.
   [[nodiscard]] std::string formula() const;
 };
 
@@ -76,6 +94,12 @@ struct DriveSpec {
   std::optional<double> k_m;            ///< A^2 omega^2/(sigma g); also W, S
   std::optional<double> peak_velocity;  ///< A omega
 };
+
+/// The harmonics as the value of the key `harmonics`: "[[0.1, 0.25], [0.02, 0]]", to the last bit.
+std::string harmonics_text(const std::vector<Harmonic>& harmonics);
+/// Reads `harmonics` of the `[drive]` table of a scene or a cell. \throws ConfigError for more than
+/// kMostHarmonics, and for an amplitude or a phase out of range
+std::vector<Harmonic> read_harmonics(const ConfigSection& drive);
 
 /// Reads the six keys of a DriveSpec from the `[drive]` table of a scene or a cell.
 DriveSpec read_drive_spec(const ConfigSection& drive);

@@ -210,10 +210,11 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
           ? fmt::format("side_tilt = [{:.17g}, {:.17g}]\n", (*cell.side_tilt)[0], (*cell.side_tilt)[1])
           : "";
   const std::string stated = fmt::format(
-      "[cell]\nwidth = {:.17g}\nsides = \"{}\"\n{}[drive]\namplitude = {:.17g}\nomega = {:.17g}\n"
+      "[cell]\nwidth = {:.17g}\nsides = \"{}\"\n{}[drive]\namplitude = {:.17g}\nomega = {:.17g}\n{}"
       "[start]\nkind = \"trajectory\"\nfrom = '''{}'''\nframe = {}\n[time]\ndiscard = 0\ncycles = {}\nphases "
       "= {}\n",
       *cell.width, word_of_sides(cell, "the cell"), tilt, cell.drive()->amplitude, cell.drive()->omega,
+      cell.harmonics.empty() ? "" : "harmonics = " + harmonics_text(cell.harmonics) + "\n",
       experiment.string(), frame, cycles, cell.phase_lock.frames_per_cycle);
   std::string scale;
   if (cell.scale.sigma_m) scale += fmt::format("sigma_m = {:.17g}\n", *cell.scale.sigma_m);

@@ -77,7 +77,7 @@ class BedFlight : public Observable {
       : info_(context.info),
         stride_(std::max<std::int64_t>(
             1, std::llround(static_cast<double>(context.info.phases_per_cycle) / kInstantsPerCycle))) {
-    if (!info_.drive || info_.drive->amplitude == 0)
+    if (!info_.drive || !info_.drive->moves())
       reason_ = "the trajectory does not state its drive";
     else if (info_.drive->axis != Axis::z)
       reason_ = "the drive is not along z";
@@ -169,10 +169,10 @@ class BedFlight : public Observable {
     }
   }
 
-  /// Phase of the drive at `time`, as a fraction of the period in [0, 1).
-  [[nodiscard]] double turns(double time) const {
-    const double turns = time / info_.drive->period();
-    return turns - std::floor(turns);
+  /// Calls a function of Drive at `time`.
+  [[nodiscard]] double plate(double (Drive::*function)(double, std::int64_t) const, double time) const {
+    const double turns = time / info_.drive->period(), whole = std::floor(turns);
+    return (*info_.drive.*function)(turns - whole, static_cast<std::int64_t>(whole));
   }
 
   /// Evaluates a flight that has ended before `carried`, the first instant at which the plate supports the
@@ -203,17 +203,16 @@ class BedFlight : public Observable {
 
   /// Height of the parabola above the plate.
   [[nodiscard]] double above(const Parabola& path, double t) const {
-    return path.height(t) - info_.drive->displacement(turns(t));
+    return path.height(t) - plate(&Drive::displacement, t);
   }
 
   /// Take-off time of the flight. Absent if the bed cannot have left the plate.
   [[nodiscard]] std::optional<double> taken_off(const Parabola& path, double reach, double frame) const {
     const double first = flight_.front().time, fine = frame / 32;
-    const Drive& drive = *info_.drive;
     // A bed that rested on the plate has h' = h'' = 0 at take-off. Noise separates the two zeros, or keeps h'
     // positive so that it has no zero. The later of the two zeros is then the best estimate.
-    const auto rises = [&](double t) { return path.velocity(t) - drive.velocity(turns(t)); };
-    const auto leaves = [&](double t) { return rises(t) > 0 && drive.acceleration(turns(t)) < -1; };
+    const auto rises = [&](double t) { return path.velocity(t) - plate(&Drive::velocity, t); };
+    const auto leaves = [&](double t) { return rises(t) > 0 && plate(&Drive::acceleration, t) < -1; };
     const double earliest = std::max(first - 2 * reach, landed_);
     double inside = first + reach;
     if (!thrown_)
@@ -221,7 +220,7 @@ class BedFlight : public Observable {
     double take_off = inside;
     while (take_off > earliest && leaves(take_off)) take_off -= fine;
     if (take_off < inside) take_off = boundary(take_off + fine, take_off, leaves);
-    const bool fast = thrown_ && rises(take_off) > kThrownSpeed * drive.velocity_bound();
+    const bool fast = thrown_ && rises(take_off) > kThrownSpeed * info_.drive->velocity_bound();
     if (take_off < inside && take_off > earliest && !fast) return take_off;
     // A resting bed does not leave a plate whose downward acceleration is below g. A thrown bed may leave at
     // any phase; the second differences contain the throw up to this time.

@@ -129,9 +129,11 @@ std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& fr
     return std::nullopt;
   }
   Vec3 of_plate = Vec3::Zero();
-  if (info.drive && frame.phase >= 0 && info.phases_per_cycle > 0)
+  if (info.drive && frame.phase >= 0 && info.phases_per_cycle > 0) {
+    const double fraction = static_cast<double>(frame.phase) / info.phases_per_cycle;
     of_plate[static_cast<int>(info.drive->axis)] =
-        info.drive->velocity(static_cast<double>(frame.phase) / info.phases_per_cycle);
+        info.drive->velocity(fraction, info.drive->cycle_at(frame.time, fraction));
+  }
   double riding = 0, still = 0, n = 0;
   for (std::size_t i = 0; i < frame.velocity.size(); ++i) {
     if (!frame.present(i) || !frame.velocity[i].allFinite()) continue;

@@ -142,7 +142,8 @@ std::optional<double> plate_height(const TrajectoryInfo& info, const Frame& fram
   if (std::isfinite(frame.plate_height)) return frame.plate_height;
   if (!info.drive || info.phases_per_cycle <= 0 || frame.phase < 0) return std::nullopt;
   if (info.drive->axis != Axis::z) return 0.0;
-  return info.drive->displacement(static_cast<double>(frame.phase) / info.phases_per_cycle);
+  const double fraction = static_cast<double>(frame.phase) / info.phases_per_cycle;
+  return info.drive->displacement(fraction, info.drive->cycle_at(frame.time, fraction));
 }
 
 }  // namespace twincell

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "calibration/drive/drive_fit.hpp"
-#include "calibration/fit/table.hpp"
 #include "core/error.hpp"
+#include "core/table.hpp"
 
 namespace twincell {
 

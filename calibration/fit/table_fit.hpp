@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calibration/fit/curve_fit.hpp"
-#include "calibration/fit/table.hpp"
+#include "core/table.hpp"
 
 namespace twincell {
 

@@ -75,6 +75,10 @@ std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info,
   if (info.drive)
     text += fmt::format("\n[drive]\namplitude{} = {:.17g}\nomega{} = {:.17g}\n", sigma, info.drive->amplitude,
                         info.scale.sigma_m ? "_per_t0" : "", info.drive->omega);
+  if (info.drive && !info.drive->harmonics.empty())
+    text += "harmonics = " + harmonics_text(info.drive->harmonics) + "\n";
+  if (info.drive && info.drive->recorded)
+    text += "# The drive was recorded; this is its sine.\n";
   if (info.scale.sigma_m || info.scale.gravity_m_s2) text += "\n[scale]\n";
   if (info.scale.sigma_m) text += fmt::format("sigma_m = {:.17g}\n", *info.scale.sigma_m);
   if (info.scale.gravity_m_s2) text += fmt::format("gravity_m_s2 = {:.17g}\n", *info.scale.gravity_m_s2);

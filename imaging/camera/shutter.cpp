@@ -66,9 +66,10 @@ Vec3 Shutter::position(const Exposure& exposure, std::size_t slot, double tau) c
 
 double Shutter::plate(const Exposure& exposure, double tau) const {
   if (drive_ && phases_per_cycle_ > 0 && exposure.now->phase >= 0) {
-    const double fraction =
-        static_cast<double>(exposure.now->phase) / phases_per_cycle_ + tau / drive_->period();
-    return drive_->displacement(fraction - std::floor(fraction));
+    const double now = static_cast<double>(exposure.now->phase) / phases_per_cycle_,
+                 turns = now + tau / drive_->period(), whole = std::floor(turns);
+    return drive_->displacement(turns - whole,
+                                drive_->cycle_at(exposure.now->time, now) + static_cast<std::int64_t>(whole));
   }
   const double z = exposure.now->plate_height;
   if (!std::isfinite(z)) return 0;

@@ -9,7 +9,9 @@ namespace twincell {
 std::optional<Drive> CellDescription::drive() const {
   const DriveSpec& s = drive_spec;
   if (!s.amplitude && !s.omega && !s.frequency && !s.gamma && !s.k_m && !s.peak_velocity) return std::nullopt;
-  return solve_drive(s, 1, Where{.file = {}, .key = "drive"});
+  Drive solved = solve_drive(s, 1, Where{.file = {}, .key = "drive"});
+  solved.harmonics = harmonics;
+  return solved;
 }
 
 PixelFrame CellDescription::pixel_frame(cv::Size picture, double scale_px, PixelPoint zero) const {
@@ -64,6 +66,7 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
 
   const ConfigSection drive = root.section("drive");
   cell.drive_spec = read_drive_spec(drive);
+  cell.harmonics = read_harmonics(drive);
   constexpr double kLargest = 1e8;
   for (const char* key : {"amplitude", "gamma", "k_m", "peak_velocity"})
     (void)drive.number_in(key, 0, kLargest);

@@ -58,10 +58,11 @@ struct CellDescription {
   std::optional<double> width, height;             ///< sigma, > 0
   std::optional<std::array<double, 2>> side_tilt;  ///< degrees outward, left and right
   Boundary sides = Boundary::wall;
-  DriveSpec drive_spec;  ///< empty: unknown
-  Scale scale;           ///< pixels_per_sigma is not repeated here
-  Included included;     ///< values taken from a calibration
-  std::string text;      ///< the resolved configuration as TOML, for provenance
+  DriveSpec drive_spec;             ///< empty: unknown
+  std::vector<Harmonic> harmonics;  ///< of the drive; empty: a sine
+  Scale scale;                      ///< pixels_per_sigma is not repeated here
+  Included included;                ///< values taken from a calibration
+  std::string text;                 ///< the resolved configuration as TOML, for provenance
 
   /// Map between a picture of this size and the cell. \pre origin and pixels_per_sigma are known
   [[nodiscard]] PixelFrame pixel_frame(cv::Size picture) const {
@@ -69,7 +70,7 @@ struct CellDescription {
   }
   /// The same with scale and origin given.
   [[nodiscard]] PixelFrame pixel_frame(cv::Size picture, double scale_px, PixelPoint zero) const;
-  /// A and omega; absent if no drive is stated. \throws ConfigError as solve_drive
+  /// A, omega and the harmonics; absent if no drive is stated. \throws ConfigError as solve_drive
   [[nodiscard]] std::optional<Drive> drive() const;
 };
 

@@ -59,6 +59,8 @@ std::vector<KeyRow> rows() {
       {"drive.peak_velocity_mm_s", "mm/s", "", "250.0", "A ω", laboratory},
       {"drive.peak_velocity_v0", "v0", "", "1.8", ""},
       {"drive.peak_velocity", "v0", "", "1.8", "the same, in a file without scale.sigma_mm"},
+      {"drive.harmonics", "", "", "[[0.1, 0.25], [0.02, 0.0]]",
+       "[[a_2, φ_2], [a_3, φ_3], …]: displacement A (sin ωt + Σ a_n sin(nωt + 2πφ_n)), as in a scene"},
       {"scale.sigma_mm", "mm", "lengths stay in σ", "2.0", "bead diameter σ"},
       {"scale.sigma_m", "m", "", "0.002", ""},
       {"scale.gravity_m_s2", "m/s²", "needed with sigma_mm for seconds", "9.81", "gravity"},

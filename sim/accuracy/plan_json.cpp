@@ -60,6 +60,7 @@ std::string cost_json(const Scene& scene, const Cost& cost) {
 std::string scene_provenance(Provenance provenance, const Scene& scene, const std::vector<Bead>& beads,
                              int threads) {
   if (!scene.from.empty()) provenance.inputs.push_back(scene.from);
+  if (!scene.record.file.empty()) provenance.inputs.push_back(scene.record.file);
   provenance.config = scene.resolved;
   Plan plan = make_plan(scene, beads);
   state_step_error(scene, plan);

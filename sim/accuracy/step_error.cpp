@@ -20,7 +20,7 @@ Scene in_empty_space(Scene s, const Plan& plan) {
   s.sides = s.plates = s.bottom = Edge::absent;
   s.lid = false;
   s.height.reset();
-  s.drive.amplitude = 0;
+  s.drive = s.drive.at_rest();
   s.spread = SizeSpread::none;
   s.intruder.reset();
   s.start = StartKind::crystal_a;

@@ -174,6 +174,7 @@ Model model_of(const Scene& scene, const Plan& plan) {
     refuse(scene, "time.integrator",
            fmt::format("LAMMPS integrates as \"verlet\", not as \"{}\".", scene.integrator));
   if (!scene.envelope.points.empty()) refuse(scene, "drive", "LAMMPS's walls have no ramp and no schedule.");
+  if (scene.drive.recorded) refuse(scene, "drive.file", "LAMMPS's walls move as a sine, not as a record.");
   if (!scene.drive.harmonics.empty())
     refuse(scene, "drive.harmonics", "LAMMPS's walls move as a sine, without harmonics.");
   if (scene.plate_drag > 0) refuse(scene, "cell.plate_drag", "LAMMPS has no drag against a moving cell.");

@@ -71,7 +71,7 @@ double seconds_per_step_at_rest(Scene scene, double seconds, int threads, Progre
   const Plan plan = make_plan(scene, state.beads);
   if (!start_row(scene.start).from_file) enlarge_to_touch(state.beads, scene.intruder ? 1 : 0);
   System system = make_system(scene, plan);
-  system.drive.amplitude = 0;
+  system.drive = scene.drive.at_rest();
   system.beads = std::move(state.beads);
   const auto solver = make_solver(plan, guard_limits(plan), SolverKind::best, threads);
   // Beads of a crystal touch without overlap and fall together. Those above the sound wave that starts at the
@@ -94,7 +94,7 @@ Cost measure_cost(const Scene& scene, double seconds, int threads, Progress& pro
   cost.plan = make_plan(scene, state.beads);
   const Plan& plan = cost.plan;
   System system = make_system(scene, plan);
-  if (!state.driven) system.drive.amplitude = 0;
+  if (!state.driven) system.drive = scene.drive.at_rest();
   system.step = state.step;
   system.beads = std::move(state.beads);
   const auto solver = make_solver(plan, guard_limits(plan), SolverKind::best, threads);

@@ -160,7 +160,7 @@ Simulation::Simulation(Scene scene, RunState state, SolverKind kind, int threads
   if (driven_)
     system_.envelope = scene_.envelope;
   else
-    system_.drive.amplitude = 0;  // the plate is at rest at its mean position
+    system_.drive = scene_.drive.at_rest();
   system_.step = state.step;
   system_.beads = std::move(state.beads);
   for (const Bead& b : system_.beads) masses_.push_back(b.mass);

@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "sim/kernels/kernels.hpp"
+#include "sim/scene/recorded_drive.hpp"
 
 namespace twincell::sim {
 
@@ -178,14 +179,11 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
         s.height ? "the run stops with an error if a bead reaches cell.height"
                  : "open top; the height that beads reach is monitored");
   // Drive, settling and time integration.
-  if (s.drive.amplitude > 0)
+  if (s.drive.moves())
     add("drive", State::on,
         fmt::format("{} along {}, Gamma = {:.6g}{}, {}", s.drive.formula(),
                     "xyz"[static_cast<int>(s.drive.axis)], s.drive.gamma(s.g() > 0 ? s.g() : 1),
-                    s.drive.harmonics.empty()
-                        ? ""
-                        : fmt::format(" of the first harmonic, largest downward acceleration {:.6g} g",
-                                      s.drive.peak_fall() / (s.g() > 0 ? s.g() : 1)),
+                    beyond_the_sine(s.drive, s.g()),
                     !s.envelope.points.empty()
                         ? fmt::format("amplitude schedule over {:g} cycles", s.envelope.duration())
                     : s.in_motion ? "from the phase of the frame at which the start continues"
@@ -225,6 +223,7 @@ std::string why_not_event_driven(const Scene& scene, const Plan& plan) {
   if (scene.plate_drag > 0) return "cell.plate_drag slows beads between contacts";
   if (!scene.envelope.points.empty()) return "the drive's amplitude changes";
   if (!scene.drive.harmonics.empty()) return "the drive has harmonics";
+  if (scene.drive.recorded) return "the drive is recorded";
   return "";
 }
 
@@ -332,6 +331,7 @@ std::vector<BeadScale> fastest(const std::vector<BeadScale>& all) {
 void warn(const Scene& s, Plan& plan) {
   constexpr double kManySteps = 2e6;
   for (const VoidKey& key : s.void_keys) plan.warnings.push_back(key.text());
+  for (const std::string& doubt : warnings_of_record(s.drive)) plan.warnings.push_back(doubt);
   const auto slides_freely = [](const ContactLaws& laws) {
     const auto* dashpot = std::get_if<DashpotSlider>(&laws.tangential);
     return dashpot != nullptr && dashpot->damping.eta(1) == 0;
@@ -458,6 +458,7 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   // Number of cycles: a schedule of the amplitude precedes the cycles that are discarded.
   plan.cycles_before = static_cast<std::int64_t>(std::ceil(s.envelope.duration())) + s.discard;
   plan.steps = (plan.cycles_before + s.cycles) * plan.steps_per_period;
+  require_record_lasts(s.drive, plan.cycles_before + s.cycles, s.where("drive.file"));
   list_effects(s, chosen, plan);
   choose_stepping(s, beads.empty() ? s.n_beads.value_or(0) : beads.size(), plan);
   warn(s, plan);

@@ -13,6 +13,7 @@
 #include "sim/laws/axes.hpp"
 #include "sim/scene/presets.hpp"
 #include "trajectory/calibration_file.hpp"
+#include "trajectory/recorded_motion.hpp"
 #include "trajectory/unit_keys.hpp"
 
 namespace twincell::sim {
@@ -277,28 +278,25 @@ void read_schedule(const Section& s, Envelope& envelope) {
   envelope.points = *points;
 }
 
-void read_harmonics(const Section& s, std::vector<Harmonic>& harmonics) {
-  const auto pairs = s.pairs("harmonics");
-  if (!pairs) return;
-  const Where where = s.where("harmonics");
-  if (pairs->size() > kMostHarmonics)
-    throw ConfigError(where,
-                      fmt::format("has {} harmonics, the bound is {}.", pairs->size(), kMostHarmonics));
-  for (const auto& [amplitude, phase] : *pairs) {
-    const std::size_t order = harmonics.size() + 2;
-    if (!(amplitude >= 0 && amplitude <= kLargestHarmonic))
-      throw ConfigError(where, fmt::format("the amplitude {} of harmonic {}, relative to the first, must be "
-                                           "between 0 and {}.",
-                                           amplitude, order, kLargestHarmonic));
-    if (!(phase >= 0 && phase < 1))
-      throw ConfigError(
-          where, fmt::format("the phase {} of harmonic {} must be at least 0 and less than 1 cycle of it.",
-                             phase, order));
-    harmonics.push_back({amplitude, phase});
+void read_record(const Section& s, const std::filesystem::path& folder, Scene& scene) {
+  if (const auto file = s.text("file")) {
+    if (file->empty())
+      throw ConfigError(s.where("file"), "is empty; it names a file of times and displacements.");
+    scene.record.file = folder / *file;
+  }
+  scene.record.repeats = s.boolean("repeat").value_or(false);
+  scene.record.sha256 = s.text("file_sha256").value_or("");
+  if (scene.record.file.empty()) {
+    if (scene.record.repeats)
+      throw ConfigError(s.where("repeat"), "repeats a record, but drive.file names none.");
+    if (!scene.record.sha256.empty())
+      throw ConfigError(s.where("file_sha256"), "is the digest of a record, but drive.file names none.");
+  } else if (!scene.drive.harmonics.empty()) {
+    throw ConfigError(s.where("harmonics"), "contradicts drive.file: the record contains all harmonics.");
   }
 }
 
-DriveSpec read_drive(const Section& s, Scene& scene) {
+DriveSpec read_drive(const Section& s, const std::filesystem::path& folder, Scene& scene) {
   const DriveSpec spec = read_drive_spec(s);
   scene.drive.axis = read_word(s, "axis", {"x", "y", "z"}, Axis::z);
   if (scene.dimension == 2 && scene.drive.axis == Axis::y)
@@ -308,7 +306,8 @@ DriveSpec read_drive(const Section& s, Scene& scene) {
   scene.phase = s.number_in("phase", 0, 1);
   if (scene.phase == 1)
     throw ConfigError(s.where("phase"), "1 is out of range; the value must be less than 1.");
-  read_harmonics(s, scene.drive.harmonics);
+  scene.drive.harmonics = read_harmonics(s);
+  read_record(s, folder, scene);
   read_schedule(s, scene.envelope);
   const auto ramp = s.number_in("ramp_cycles", 0, 1e6, true);
   if (start == "ramp") {
@@ -512,8 +511,7 @@ void check_gravity(const Scene& s, const Section& cell) {
 
 void check_drive(const Scene& s, const Section& drive) {
   const auto walls = s.walls();
-  if (s.drive.amplitude > 0 &&
-      std::none_of(walls.begin(), walls.end(), [](const Wall& w) { return w.moves; }))
+  if (s.drive.moves() && std::none_of(walls.begin(), walls.end(), [](const Wall& w) { return w.moves; }))
     throw ConfigError(drive.where(""), "moves nothing: no wall rides with the plate.");
 }
 
@@ -545,7 +543,7 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   const double g = read_cell(cell, scene, voids);
   read_beads(beads, scene, voids);
   read_contact(contact, scene, voids);
-  const DriveSpec spec = read_drive(drive, scene);
+  const DriveSpec spec = read_drive(drive, folder, scene);
   read_start(root.section("start"), folder, scene, voids);
   read_time(root.section("time"), scene);
   read_until(root.section("until"), scene);
@@ -557,9 +555,12 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   const ContactChoice& laws = scene.contact;
   check_laws(laws.normal, laws.tangential, laws.rolling, laws.bead);
   for (const auto& [wall, table] : laws.wall) check_laws(laws.normal, laws.tangential, laws.rolling, table);
-  const Drive solved = solve_drive(spec, g, drive.where(""), scene.drive.axis);
+  const Drive solved = scene.record.file.empty()
+                           ? solve_drive(spec, g, drive.where(""), scene.drive.axis)
+                           : recorded_drive(scene.record, spec, g, scene.scale, drive, scene.drive.axis);
   scene.drive.amplitude = solved.amplitude;
   scene.drive.omega = solved.omega;
+  scene.drive.recorded = solved.recorded;
   const bool from_file = start_row(scene.start).from_file;
   if (!scene.n_beads && !from_file)
     throw ConfigError(beads.where("count"), "the number of beads is missing.");
@@ -576,6 +577,9 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   if (!time.has("integrator")) config.assign(fmt::format("time.integrator={}", scene.integrator));
   if (!time.has("steps_per_contact"))
     config.assign(fmt::format("time.steps_per_contact={}", scene.steps_per_contact));
+  // The same scene with another record is another run.
+  if (scene.drive.recorded && !drive.has("file_sha256"))
+    config.assign("drive.file_sha256=" + scene.drive.recorded->info().sha256);
   scene.resolved = resolved_text(config);
   return scene;
 }
@@ -590,6 +594,16 @@ std::size_t count_drive_words(const Config& config) {
   const Section drive = config.root().section("drive");
   return static_cast<std::size_t>(std::count_if(drive_words().begin(), drive_words().end(),
                                                 [&](const std::string& word) { return drive.has(word); }));
+}
+
+/// Removes from `lower` the amplitude of the drive, however it is stated, if `upper` names a record: its
+/// motion has an amplitude of its own, which a stated one would scale.
+void yield_to_record(Config& lower, const Config& upper) {
+  if (!upper.root().section("drive").has("file")) return;
+  for (const char* key : {"file_sha256", "repeat", "harmonics", "amplitude", "amplitude_sigma",
+                          "amplitude_mm", "gamma", "peak_acceleration_g", "peak_acceleration_m_s2", "k_m",
+                          "peak_velocity", "peak_velocity_v0", "peak_velocity_mm_s"})
+    lower.erase(std::string("drive.") + key);
 }
 
 /// Removes keys from `lower` that `upper` replaces by an equivalent key: restitution replaces gamma_n, layers
@@ -611,6 +625,7 @@ void assign(Config& config, const std::vector<std::string>& assignments) {
     displace_spellings(config, assignment);
   }
   displace(config, upper);
+  yield_to_record(config, upper);
   config.yield_to(upper, "drive", {"gamma", "k_m", "peak_velocity"});
   for (const auto& assignment : assignments) config.assign(assignment);
 }
@@ -630,6 +645,7 @@ Scene resolve(Config config, const std::string& name, const std::vector<std::str
   lower.push_back("preset " + *preset);
   Config base = Config::from_text(chosen->second, lower.back());
   displace(base, config);
+  yield_to_record(base, config);
   // Two measured quantities, or a stated and a measured one, define the whole drive.
   if (std::any_of(included.taken.begin(), included.taken.end(),
                   [](const std::string& taken) { return taken.starts_with("drive."); }) &&

@@ -15,6 +15,7 @@
 #include "core/config.hpp"
 #include "sim/laws/parameters.hpp"
 #include "sim/scene/integrators.hpp"
+#include "sim/scene/recorded_drive.hpp"
 #include "sim/scene/starts.hpp"
 #include "sim/system/system.hpp"
 #include "trajectory/drive.hpp"
@@ -109,6 +110,7 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
 
   // Drive
   Drive drive;
+  DriveRecord record;           ///< the file of a recorded drive
   Envelope envelope;            ///< preparation cycles, run before `discard` begins
   std::optional<double> phase;  ///< initial phase of the plate, cycles, 0 <= phase < 1; absent: 0, or that of
                                 ///< the frame from which a start in motion continues

@@ -244,6 +244,28 @@ void add_drive(Rows& rows) {
       {"drive.harmonics", "", "", "[[0.1, 0.25], [0.02, 0.0]]",
        "[[a_2, φ_2], [a_3, φ_3], …]: displacement A (sin ωt + Σ a_n sin(nωt + 2πφ_n)), at most 30 harmonics; "
        "a_n is relative to A, 0 to 100; φ_n in cycles of the harmonic, from 0 to below 1"},
+      {"drive.file", "", "", "\"trace.csv\"",
+       "CSV file of a recorded motion, which replaces the formula: columns time_s (time_ms, time_t0) and one "
+       "of "
+       "position_mm (_m, _sigma), velocity_mm_s (_m_s, _v0), acceleration_m_s2 (_g), positive along `axis`. "
+       "A relative "
+       "name is resolved from the folder of the scene file. Needs the frequency; an amplitude, Γ, K_m or "
+       "peak velocity "
+       "scales the record"},
+      {"drive.repeat",
+       "",
+       "the record is not repeated",
+       "true",
+       "true: the record contains whole cycles, without the first sample of the next, and is repeated; of "
+       "one cycle if no "
+       "frequency is stated",
+       {"drive.file=trace.csv"}},
+      {"drive.file_sha256",
+       "",
+       "that of the file",
+       "\"e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855\"",
+       "SHA-256 of drive.file; another file is refused. Stored and resumed scenes state it",
+       {"drive.file=trace.csv"}},
       {"drive.axis", "", "\"z\"", "\"x\"", "direction; \"y\" in 3D only"},
       {"drive.start", "", "\"comoving\"", "\"abrupt\"",
        "comoving: beads start with the velocity of the plate; abrupt: beads start at rest and the plate hits "

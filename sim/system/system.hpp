@@ -75,13 +75,13 @@ struct System {
   [[nodiscard]] double phase() const { return phase_at(step); }
   [[nodiscard]] double cycles() const { return cycles_at(step); }
   [[nodiscard]] double time() const { return static_cast<double>(step) * dt; }
-  /// Displacement of the plate along drive.axis, f A sin(omega t).
+  /// Displacement of the plate along drive.axis.
   [[nodiscard]] double plate_height() const { return plate_height_at(step); }
   [[nodiscard]] double plate_velocity() const {
-    const double v = drive.velocity(phase());
+    const double v = drive.velocity(phase(), cycle_of(step));
     if (envelope.points.empty()) return v;
     return envelope.at(cycles()) * v +
-           envelope.slope(cycles()) / drive.period() * drive.displacement(phase());
+           envelope.slope(cycles()) / drive.period() * drive.displacement(phase(), cycle_of(step));
   }
   /// Displacement of the plate at the previous step, with the same bits as then.
   [[nodiscard]] double plate_height_before() const { return plate_height_at(step - 1); }
@@ -94,13 +94,14 @@ struct System {
     const std::int64_t n = steps_per_period;
     return static_cast<double>((k + n) % n) / static_cast<double>(n);  // k >= -1
   }
+  [[nodiscard]] std::int64_t cycle_of(std::int64_t k) const {
+    return (k + steps_per_period) / steps_per_period - 1;
+  }
   [[nodiscard]] double cycles_at(std::int64_t k) const {
-    const std::int64_t n = steps_per_period;
-    const std::int64_t whole = (k + n) / n - 1;
-    return static_cast<double>(whole) + phase_at(k);
+    return static_cast<double>(cycle_of(k)) + phase_at(k);
   }
   [[nodiscard]] double plate_height_at(std::int64_t k) const {
-    const double s = drive.displacement(phase_at(k));
+    const double s = drive.displacement(phase_at(k), cycle_of(k));
     return envelope.points.empty() ? s : envelope.at(cycles_at(k)) * s;
   }
 };

@@ -166,6 +166,38 @@ TEST_F(BadInput, OtherProgramsDumps) {
   expect_only({"cut.dump", "text.dump", "whole.dump"});
 }
 
+TEST_F(BadInput, RecordsOfTheDrive) {
+  write(at("s.toml"),
+        "preset = \"fortini-huang-2015\"\n[beads]\ncount = 10\n[drive]\nfile = \"trace.csv\"\n");
+  std::string rows = "time_t0,position_sigma\n";
+  for (int i = 0; i < 400; ++i) rows += fmt::format("{},{}\n", 0.2 * i, 1.5 * std::sin(0.2 * i));
+  const auto refused = [&](const std::string& text, int code, const std::vector<std::string>& words) {
+    fs::remove(at("trace.csv"));
+    if (!text.empty()) write(at("trace.csv"), text);
+    for (const char* verb : {"simulate", "explain"}) {
+      std::vector<std::string> command = {verb, at("s.toml")};
+      if (verb == std::string("simulate")) command.insert(command.end(), {"-o", at("o.h5")});
+      expect_refusal(command, code, words);
+    }
+  };
+  refused("", kInput, {"trace.csv", "does not exist"});
+  refused(rows + "80.0,nan\n", kInput, {"trace.csv", "position_sigma", "row 401 has no number"});
+  refused(rows + "79.0,0.1\n", kInput, {"trace.csv", "time_t0", "row 401 is not later"});
+  refused(rows + "90.0,0.1\n", kInput, {"trace.csv", "rows are missing"});
+  refused(rows + "80.0\n", kInput, {"trace.csv:402", "1 fields"});
+  refused(rows, kUsage, {"s.toml:5", "drive.file", "trace.csv lasts 12.7 cycles", "the run needs 210"});
+  refused(std::string(100, '\0'), kInput, {"trace.csv", "zero bytes"});
+  fs::remove(at("trace.csv"));
+  write(at("trace.csv"), rows);
+  expect_refusal({"export", at("s.toml"), "--to", "lammps", "-o", at("deck"), "--set", "time.cycles=5",
+                  "--set", "time.discard=0"},
+                 kUsage, {"s.toml:5", "drive.file", "not as a record"});
+  fs::remove(at("trace.csv"));
+  fs::create_directory(at("trace.csv"));
+  expect_refusal({"explain", at("s.toml")}, kInput, {"trace.csv"});
+  expect_only({"s.toml", "trace.csv"});
+}
+
 TEST_F(BadInput, ScenesThatLammpsHasNoWordsFor) {
   write(at("s.toml"), "preset = \"fortini-huang-2015\"\n[beads]\ncount = 10\n[drive]\ngamma = 1.5\n");
   const auto refused = [&](const std::string& assignment, const std::vector<std::string>& mentioned) {

@@ -469,6 +469,11 @@ TEST(Match, TheCellsDriveDisplacesTheScenes) {
   EXPECT_EQ(scene.frame, 4U);
   EXPECT_EQ(scene.cycles, 7);
   EXPECT_EQ(scene.contact.tangential, "spring");  // the preset of paper 1
+  EXPECT_TRUE(scene.drive.harmonics.empty());
+  cell.harmonics = {{0.1, 0.25}, {1.0 / 3, 0}};
+  const sim::Scene shaken = sim::read_scene_text(twin_scene("", "", cell, "exp.h5", 4, 7), "twin");
+  EXPECT_EQ(shaken.drive.displacement(0.3), cell.drive()->displacement(0.3));
+  EXPECT_EQ(shaken.drive.harmonics.size(), 2);
 }
 
 }  // namespace twincell

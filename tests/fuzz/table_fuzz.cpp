@@ -1,6 +1,6 @@
 // Fuzz target: a table of comma-separated numbers.
 
-#include "calibration/fit/table.hpp"
+#include "core/table.hpp"
 #include "tests/fuzz/input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,6 +6,8 @@
 
 #include <string>
 
+#include "core/error.hpp"
+
 namespace twincell {
 
 /// Expects `action` to throw an E whose message contains all of `wanted`.
@@ -19,6 +21,17 @@ void expect_refusal(ContactLoad action, const Words&... wanted) {
     for (const std::string& words : {std::string(wanted)...})
       EXPECT_NE(said.find(words), std::string::npos) << "wanted: " << words << "\nsaid:   " << said;
   }
+}
+
+/// The message of the error that an action throws; empty if it throws none.
+template <class Action>
+std::string complaint_of(Action action) {
+  try {
+    action();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
 }
 
 }  // namespace twincell

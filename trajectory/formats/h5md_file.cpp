@@ -12,6 +12,7 @@
 #include "core/hdf5.hpp"
 #include "core/hdf5_self_contained.hpp"
 #include "trajectory/formats/contact_lists.hpp"
+#include "trajectory/formats/recorded_group.hpp"
 #include "twincell_version.hpp"
 
 namespace twincell {
@@ -169,7 +170,9 @@ void H5mdWriter::Impl::create_parameters() {
     const h5::Handle drive = h5::create_group(parameters.get(), "drive");
     h5::write_attribute(drive.get(), "axis", std::string(1, "xyz"[static_cast<int>(info.drive->axis)]));
     h5::write_attribute(drive.get(), "phase_convention",
-                        info.drive->harmonics.empty()
+                        info.drive->recorded
+                            ? info.drive->formula() + ", cycle begins where the component A sin(omega t) does"
+                        : info.drive->harmonics.empty()
                             ? std::string("A sin(omega t), cycle begins at mean height moving up")
                             : info.drive->formula() + ", cycle begins at omega t = 0");
     h5::write_scalar(drive.get(), "amplitude", info.drive->amplitude);
@@ -178,6 +181,7 @@ void H5mdWriter::Impl::create_parameters() {
     for (const Harmonic& h : info.drive->harmonics) harmonics.insert(harmonics.end(), {h.amplitude, h.phase});
     if (!harmonics.empty())
       h5::write_dataset(drive.get(), "harmonics", harmonics.data(), {harmonics.size() / 2, 2});
+    if (info.drive->recorded) write_recorded(drive.get(), *info.drive->recorded);
   }
   if (info.phases_per_cycle > 0)
     h5::write_dataset(parameters.get(), "phases_per_cycle", &info.phases_per_cycle, {});
@@ -635,6 +639,8 @@ void H5mdReader::Impl::read_parameters() {
           refuse("parameters/drive/harmonics", "must be pairs of a relative amplitude and a phase.");
         for (std::size_t k = 0; k < pairs.size(); k += 2) drive.harmonics.push_back({pairs[k], pairs[k + 1]});
       }
+      if (h5::exists(group.get(), "recorded"))
+        drive.recorded = read_recorded(group.get(), {path.string(), 0, 0, "parameters/drive/recorded"});
       info.drive = drive;
     }
   }

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "calibration/fit/table.hpp"
+#include "core/table.hpp"
 #include "core/table_text.hpp"
 #include "imaging/benchmark/score.hpp"
 #include "imaging/phase/trigger_list.hpp"

@@ -1,6 +1,5 @@
 // Invalid scenes: each is refused with one sentence that states the place and the reason.
 
-#include "sim/scene/plan.hpp"
 #include "sim/scene/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -11,6 +10,11 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "sim/scene/plan.hpp"
+#include "tests/support/complaint.hpp"
+#include "tests/support/put_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "trajectory/recorded_motion.hpp"
 
 namespace twincell::sim {
 namespace {
@@ -513,6 +517,93 @@ TEST(DriveOfAScene, Harmonics) {
   } catch (const ConfigError& e) {
     EXPECT_NE(std::string(e.what()).find("the drive has harmonics"), std::string::npos) << e.what();
   }
+}
+
+/// The lines of a record of `cycles` cycles of 40 samples of 2 sin t, to which `value` may add.
+template <class Value>
+std::string record_of(int cycles, Value value) {
+  std::string text = "time_t0,position_sigma\n";
+  for (int i = 0; i < 40 * cycles; ++i) {
+    const double t = 2 * std::numbers::pi * i / 40;
+    text += fmt::format("{:.15g},{:.15g}\n", t, 2 * std::sin(t) + value(t));
+  }
+  return text;
+}
+
+TEST(DriveOfAScene, Recorded) {
+  const TemporaryFolder folder;
+  const auto put = [&](const std::string& text) { put_file(folder / "trace.csv", text); };
+  const std::string scene =
+      "preset = \"fortini-huang-2015\"\n[beads]\ncount = 5\n[time]\ndiscard = 0\ncycles = 3\n";
+  const auto read = [&](std::vector<std::string> with) {
+    with.insert(with.begin(), "drive.file=trace.csv");
+    return read_scene_text(scene, "scene.toml", with, folder.path());
+  };
+  const auto refusal = [&](const std::vector<std::string>& with) {
+    return complaint_of([&] { (void)make_plan(read(with)); });
+  };
+  const auto expect = [&](const std::vector<std::string>& with, const std::string& words) {
+    const std::string said = refusal(with);
+    EXPECT_NE(said.find(words), std::string::npos) << words << " is not in: " << said;
+  };
+  put(record_of(5, [](double t) { return 0.2 * std::cos(2 * t); }));
+  // omega = 1 is that of the preset. A and Gamma are those of the sine.
+  const Scene plain = read({});
+  EXPECT_NEAR(plain.drive.amplitude, 2, 5e-3);
+  EXPECT_EQ(plain.drive.gamma(), plain.drive.amplitude);
+  EXPECT_EQ(plain.drive.omega, 1);
+  EXPECT_NE(plain.resolved.find("file_sha256"), std::string::npos);
+  EXPECT_FALSE(make_plan(plain).event_driven);
+  // z'' = -2 sin t - 0.8 cos 2t = -2s - 0.8 + 1.6 s^2 is lowest at s = 5/8: -1.425; at s = -1 it is 2.8.
+  EXPECT_NEAR(plain.drive.peak_fall(), 1.425, 0.01);
+  // A stated strength scales the record, and a record replaces the amplitude of lower layers.
+  const Scene scaled = read({"drive.gamma=3.0"});
+  EXPECT_EQ(scaled.drive.gamma(), 3);
+  EXPECT_NEAR(scaled.drive.displacement(0.3, 1), 3 / plain.drive.gamma() * plain.drive.displacement(0.3, 1),
+              1e-12);
+  EXPECT_NEAR(scaled.drive.peak_fall() / plain.drive.peak_fall(), 3 / plain.drive.gamma(), 1e-9);
+  const Scene replaced = read_scene_text(scene + "[drive]\ngamma = 9.0\n", "scene.toml",
+                                         {"drive.file=trace.csv"}, folder.path());
+  EXPECT_EQ(replaced.drive.amplitude, plain.drive.amplitude);
+  // Repeated: the frequency follows from the record.
+  const Scene repeated = read({"drive.repeat=true", "drive.frequency=0.16", "time.cycles=1000"});
+  EXPECT_NEAR(repeated.drive.omega, 1, 1e-12);
+  EXPECT_EQ(repeated.drive.recorded->info().cycles, 5);
+  EXPECT_EQ(refusal({"drive.repeat=true", "time.cycles=1000"}), "");
+  // What does not fit together.
+  expect({"time.cycles=5"},
+         "drive.file: trace.csv lasts 4.975 cycles from its first phase 0, but the run needs 5 (");
+  expect({"time.discard=2"}, "but the run needs 5 (");
+  expect({"drive.start=ramp", "drive.ramp_cycles=2"}, "but the run needs 5 (");
+  expect({"drive.repeat=true", "drive.frequency=0.2"}, "drive.repeat: ");
+  expect({"drive.repeat=true", "drive.frequency=0.2"}, "trace.csv has 6.283 cycles of the stated frequency");
+  expect({"drive.harmonics=[[0.1, 0]]"}, "drive.harmonics: contradicts drive.file");
+  expect({"drive.file_sha256=12ab"}, "but drive.file_sha256 is 12ab: the record has changed.");
+  expect({"drive.file=none.csv"}, "none.csv");
+  expect({"time.stepping=event-driven", "contact.tangential=none", "contact.mu=0"}, "the drive is recorded");
+  EXPECT_NE(complaint(kGood, {"drive.repeat=true"})
+                .find("drive.repeat: repeats a record, but drive.file names none."),
+            std::string::npos);
+  EXPECT_NE(complaint("beads.count = 5\n", {"drive.file=trace.csv"})
+                .find("drive.file: needs drive.frequency or drive.omega too"),
+            std::string::npos);
+  // A stored scene refuses a record that has changed.
+  put(record_of(5, [](double t) { return 0.3 * std::cos(2 * t); }));
+  EXPECT_NE(complaint_of([&] {
+              (void)read_scene_text(plain.resolved, "stored", {}, folder.path());
+            }).find("the record has changed"),
+            std::string::npos);
+  // Doubts: hardly a sine; noise.
+  const auto warned = [&](const std::string& words) {
+    const Plan plan = make_plan(read({}));
+    return std::ranges::any_of(plan.warnings,
+                               [&](const std::string& w) { return w.find(words) != std::string::npos; });
+  };
+  EXPECT_FALSE(warned("trace.csv"));
+  put(record_of(5, [](double t) { return 6 * std::cos(3 * t); }));
+  EXPECT_TRUE(warned("has only 10 % of the mean square of trace.csv"));
+  put(record_of(5, [](double t) { return 0.2 * std::cos(18 * t); }));
+  EXPECT_TRUE(warned("the largest acceleration of trace.csv is "));
 }
 
 TEST(Presets, AreThePapersCells) {

@@ -11,6 +11,7 @@
 #include "tests/support/hdf5_elsewhere.hpp"
 #include "tests/support/program.hpp"
 #include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/recorded_motion.hpp"
 
 namespace twincell {
 namespace {
@@ -54,6 +55,10 @@ void expect_refused(const std::string& file, const std::string& what) {
   EXPECT_FALSE(std::filesystem::exists(file + ".frames"));
 }
 
+std::shared_ptr<const RecordedMotion> record(std::vector<MotionSample> samples, RecordInfo info = {}) {
+  return std::make_shared<RecordedMotion>(std::move(samples), std::move(info));
+}
+
 TEST(H5mdRanges, WhatNoCellCanBeIsRefusedByEveryVerb) {
   const TemporaryFolder folder;
   const std::string file = folder / "t.h5";
@@ -70,9 +75,35 @@ TEST(H5mdRanges, WhatNoCellCanBeIsRefusedByEveryVerb) {
       {"mass", [](TrajectoryInfo& t) { t.mass[0] = 0; }},
       {"amplitude", [](TrajectoryInfo& t) { t.drive->amplitude = std::nan(""); }},
       {"omega", [](TrajectoryInfo& t) { t.drive->omega = -1; }},
-      {"harmonics", [](TrajectoryInfo& t) { t.drive->harmonics = {{std::nan(""), 0}}; }},
-      {"harmonics", [](TrajectoryInfo& t) { t.drive->harmonics = {{0.1, 0}, {0.1, 1}}; }},
+      {"harmonics",
+       [](TrajectoryInfo& t) {
+         t.drive->harmonics = {{std::nan(""), 0}};
+       }},
+      {"harmonics",
+       [](TrajectoryInfo& t) {
+         t.drive->harmonics = {{0.1, 0}, {0.1, 1}};
+       }},
       {"harmonics", [](TrajectoryInfo& t) { t.drive->harmonics.resize(31); }},
+      {"recorded",
+       [](TrajectoryInfo& t) {
+         t.drive->recorded = record({{0, 0, 0}, {0, std::nan(""), 0}});
+       }},
+      {"recorded",
+       [](TrajectoryInfo& t) {
+         t.drive->recorded = record({{0, 0, 0}, {2e6, 0, 0}});
+       }},
+      {"recorded",
+       [](TrajectoryInfo& t) {
+         t.drive->recorded = record({{0, 0, 0}, {0, 0, 0}}, {.interval = 0});
+       }},
+      {"recorded",
+       [](TrajectoryInfo& t) {
+         t.drive->recorded = record({{0, 0, 0}, {0, 0, 0}}, {.start = HUGE_VAL});
+       }},
+      {"recorded",
+       [](TrajectoryInfo& t) {
+         t.drive->recorded = record({{0, 0, 0}, {0, 0, 0}}, {.cycles = -1});
+       }},
       {"sigma_m", [](TrajectoryInfo& t) { t.scale.sigma_m = 0; }}};
   for (const auto& [what, spoil] : faults) {
     TrajectoryInfo info = sound();

@@ -107,6 +107,9 @@ TEST(BedDrive, IsNotShownByBedsThatFlyTooLongOrAreNone) {
   EXPECT_NE(few.not_comparable.find("columns of beads"), std::string::npos) << few.not_comparable;
   const auto brief = drive_seen(test::rigid_bed({.gamma = 0.9, .rows = 5, .cycles = 2}), 0.2, 1, 1);
   EXPECT_FALSE(brief.not_comparable.empty());
+  TrajectoryInfo shaken = test::rigid_bed({.gamma = 0.9, .rows = 5, .cycles = 6}).info();
+  shaken.drive->harmonics = {{0.1, 0}};
+  EXPECT_EQ(drive_of_bed(BedSteps(shaken), shaken).not_comparable, "the drive is not a sine");
 }
 
 TEST(BedDrive, OfARigidBedIsExactAndItsErrorHonest) {

@@ -37,6 +37,16 @@ TEST(CellKeys, StatedDefaultsChangeNothing) {
   EXPECT_GE(expect_defaults_change_nothing(cell_keys(), told), 7);
 }
 
+TEST(CellKeys, TheDriveHasItsHarmonics) {
+  const Assignments sine = {"drive.gamma=2.0", "drive.omega=1.0"};
+  Assignments shaken = sine;
+  shaken.emplace_back("drive.harmonics=[[0.1, 0.25], [0.02, 0.0]]");
+  EXPECT_TRUE(read_cell("", sine).drive()->harmonics.empty());
+  const Drive drive = read_cell("", shaken).drive().value();
+  EXPECT_EQ(drive.amplitude, 2);
+  EXPECT_EQ(drive.formula(), "A (sin(omega t) + 0.1 sin(2 omega t + 2 pi 0.25) + 0.02 sin(3 omega t))");
+}
+
 TEST(CameraKeys, ExamplesAreReadAndWhatIsOutOfRangeIsRefused) {
   expect_examples_and_ranges(camera_keys());
 }

@@ -10,6 +10,7 @@
 #include "core/hdf5.hpp"
 #include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trajectory/recorded_motion.hpp"
 
 namespace twincell {
 namespace {
@@ -86,6 +87,31 @@ TEST(H5mdFile, TheHarmonicsOfTheDriveAreStored) {
   ASSERT_EQ(drive.harmonics.size(), 2);
   EXPECT_EQ(drive.displacement(0.3), info.drive->displacement(0.3));
   EXPECT_EQ(drive.harmonics[1].phase, 1.0 / 3);
+}
+
+TEST(H5mdFile, TheRecordOfTheDriveIsStored) {
+  const TemporaryFolder folder;
+  TrajectoryInfo info = experiment_info();
+  const std::vector<MotionSample> samples = {{0.1, 1, -2}, {0.3, 0.5, 1.0 / 3}, {-0.2, 0, 0}};
+  for (const int cycles : {0, 2}) {
+    const RecordInfo record{
+        .interval = 0.7, .start = 0.25, .cycles = cycles, .file = "trace.csv", .sha256 = "12ab34cd56"};
+    info.drive->recorded = std::make_shared<RecordedMotion>(samples, record);
+    H5mdWriter writer(folder / "run.h5", info);
+    writer.append(frame_number(0));
+    writer.finish();
+    const Drive drive = H5mdReader(folder / "run.h5").info().drive.value();
+    ASSERT_NE(drive.recorded, nullptr);
+    for (const double fraction : {0.0, 0.03, 0.1})
+      for (const int cycle : {0, 1}) {
+        EXPECT_EQ(drive.displacement(fraction, cycle), info.drive->displacement(fraction, cycle));
+        EXPECT_EQ(drive.velocity(fraction, cycle), info.drive->velocity(fraction, cycle));
+        EXPECT_EQ(drive.acceleration(fraction, cycle), info.drive->acceleration(fraction, cycle));
+      }
+    EXPECT_EQ(drive.formula(), info.drive->formula());
+    EXPECT_EQ(drive.formula(), std::string("recorded in trace.csv (SHA-256 12ab34cd...)") +
+                                   (cycles > 0 ? ", 2 cycles repeated" : ""));
+  }
 }
 
 TEST(H5mdFile, TheConditionsOfARunAreStored) {

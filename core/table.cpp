@@ -1,4 +1,4 @@
-#include "calibration/fit/table.hpp"
+#include "core/table.hpp"
 
 #include <fmt/format.h>
 
