@@ -118,6 +118,31 @@ TEST_F(Checkpoints, AnotherSceneIsRefusedByTheKeyThatDiffers) {
   EXPECT_TRUE(fs::exists(place_ / "state.h5"));
 }
 
+TEST_F(Checkpoints, ARecordedDriveGoesOnAndAChangedRecordIsRefused) {
+  const auto put_record = [&](double a) {
+    std::ofstream record(folder_ / "trace.csv");
+    record << "time_t0,position_sigma\n";
+    for (int i = 0; i < 3500; ++i)
+      record << fmt::format("{:.4f},{:.9f}\n", 0.1 * i, a * std::sin(0.6 * i * 0.1));
+  };
+  put_record(4);
+  {
+    std::ofstream scene(scene_);
+    scene
+        << "preset = \"fortini-huang-2015\"\n[beads]\ncount = 60\n[cell]\nwidth = 8.0\n[drive]\nfile = "
+           "\"trace.csv\"\nomega = 0.6\n[start]\nkind = \"random\"\n[time]\nsteps_per_contact = 10\ncycles = "
+           "30\ndiscard = 1\n";
+  }
+  const auto whole = uninterrupted();
+  EXPECT_TRUE(whole.contains("parameters/drive/recorded/samples"));
+  ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
+  put_record(4.1);
+  expect_refusal({"--resume"}, kUsage, {"drive.file_sha256", "in the run that is to be resumed"});
+  put_record(4);
+  EXPECT_EQ(run_program(words({"--resume"})).code, kDone);
+  EXPECT_EQ(datasets_of(output_), whole);
+}
+
 TEST_F(Checkpoints, WhatAnotherVersionWroteIsRefused) {
   ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
   {
