@@ -33,6 +33,8 @@ constexpr std::array kInputs = {
     Input{"demo/gamma-1.6", "gamma-1.6", "the same cell at Gamma = 1.6"},
     Input{"demo/twin.toml", "twin.toml", "contact model of the twins: match --scene"},
     Input{"example/scene.toml", "scene.toml", "a small bed: explain, simulate, export, calibrate infer"},
+    Input{"example/recorded.toml", "recorded.toml", "a bed on a recorded plate: explain, simulate"},
+    Input{"example/plate.csv", "plate.csv", "the accelerometer's record of that plate"},
     Input{"example/few.toml", "few.toml", "a bed to render: simulate, render"},
     Input{"example/CAMERA.toml", "CAMERA.toml", "a camera with lens faults and dust: render --camera"},
     Input{"example/gas.toml", "gas.toml", "a dilute gas: measure"},

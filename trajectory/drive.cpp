@@ -141,7 +141,7 @@ std::vector<Term> terms_of(const DriveSpec& s, double gravity, const Where& wher
 std::string harmonics_text(const std::vector<Harmonic>& harmonics) {
   std::string text;
   for (const Harmonic& h : harmonics)
-    text += fmt::format("{}[{:.17g}, {:.17g}]", text.empty() ? "" : ", ", h.amplitude, h.phase);
+    text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", h.amplitude, h.phase);
   return "[" + text + "]";
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Dense>
+#include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -251,6 +252,28 @@ Component close(std::vector<MotionSample>& samples, double h, double omega) {
   return sine;
 }
 
+/// Solves (1 + lambda D'D) y = x, D the second differences, for one lambda and several x.
+class Whittaker {
+ public:
+  Whittaker(std::size_t n, double lambda) {
+    constexpr int kTerms = 3;
+    constexpr double kSecond[kTerms] = {1, -2, 1};
+    std::vector<Eigen::Triplet<double>> entries;
+    const int size = static_cast<int>(n);
+    for (int i = 0; i < size; ++i) entries.emplace_back(i, i, 1);
+    for (int k = 0; k + kTerms <= size; ++k)
+      for (int i = 0; i < kTerms; ++i)
+        for (int j = 0; j <= i; ++j) entries.emplace_back(k + i, k + j, lambda * kSecond[i] * kSecond[j]);
+    Eigen::SparseMatrix<double> matrix(size, size);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    solver_.compute(matrix);
+  }
+  [[nodiscard]] Eigen::VectorXd operator()(const Eigen::VectorXd& x) const { return solver_.solve(x); }
+
+ private:
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> solver_;
+};
+
 void require_closed(const MotionRecord& record) {
   constexpr double kLargestJump = 3;
   const std::vector<double>& y = record.values;
@@ -283,6 +306,25 @@ MotionRecord read_motion_record(const std::filesystem::path& path, const Scale& 
           .derivative = motion.column->derivative,
           .interval = step_of(time.values, {.file = table.file, .key = time.column->name}),
           .values = std::move(motion.values)};
+}
+
+MotionRecord smoothed(MotionRecord record, double cutoff, bool repeats) {
+  const std::size_t n = record.values.size();
+  const double at_cutoff = 2 * std::sin(std::numbers::pi * cutoff * record.interval);
+  // Beyond its ends a repeated record is continued by ten periods of the cutoff, of which the filter forgets
+  // nearly all.
+  constexpr double kForgotten = 10;
+  const std::size_t beside =
+      repeats ? static_cast<std::size_t>(std::ceil(kForgotten / (cutoff * record.interval))) : 0;
+  const std::size_t offset = (n - beside % n) % n;
+  Eigen::VectorXd x(static_cast<Eigen::Index>(n + 2 * beside));
+  for (std::size_t i = 0; i < n + 2 * beside; ++i)
+    x[static_cast<Eigen::Index>(i)] = record.values[(i + offset) % n];
+  const Whittaker filter(n + 2 * beside, 1 / std::pow(at_cutoff, 4));
+  Eigen::VectorXd y = filter(x);
+  y += filter(x - y);
+  for (std::size_t i = 0; i < n; ++i) record.values[i] = y[static_cast<Eigen::Index>(i + beside)];
+  return record;
 }
 
 FittedMotion fit_motion(const MotionRecord& record, double omega, int cycles) {

@@ -32,6 +32,14 @@ struct MotionRecord {
 /// unit requires
 MotionRecord read_motion_record(const std::filesystem::path& path, const Scale& scale, const Where& where);
 
+/// The record without its noise at high frequencies: y minimises sum (x - y)^2 + lambda sum (second
+/// differences of y)^2 (Whittaker 1923), and the same filter of what it left out, x - y, is added. A sine of
+/// frequency f keeps its phase and the share 1 - (r/(1 + r))^2 of its amplitude, r = (sin(pi f h)/sin(pi f_c
+/// h))^4, h the interval; straight lines are kept. \param cutoff frequency f_c, of which 3/4 of the amplitude
+/// remain, 1/t0; above 0 and below half the sampling rate \param repeats whether the first value follows the
+/// last
+MotionRecord smoothed(MotionRecord record, double cutoff, bool repeats);
+
 /// The motion of a record, and the amplitude of its component at the frequency of the drive.
 struct FittedMotion {
   RecordedMotion motion;

@@ -31,6 +31,8 @@ constexpr std::array kSpellings = {
     Spelling{"drive", "amplitude", "amplitude_mm", Unit::length_mm, Sign::not_negative},
     Spelling{"drive", "frequency", "frequency_per_t0", Unit::one, Sign::positive},
     Spelling{"drive", "frequency", "frequency_hz", Unit::rate_per_s, Sign::positive},
+    Spelling{"drive", "cutoff", "cutoff_per_t0", Unit::one, Sign::positive},
+    Spelling{"drive", "cutoff", "cutoff_hz", Unit::rate_per_s, Sign::positive},
     Spelling{"drive", "omega", "omega_per_t0", Unit::one, Sign::positive},
     Spelling{"drive", "omega", "omega_rad_s", Unit::rate_per_s, Sign::positive},
     Spelling{"drive", "peak_velocity", "peak_velocity_v0", Unit::one, Sign::not_negative},
@@ -66,6 +68,7 @@ struct Dimensional {
 constexpr std::array kDimensional = {
     Dimensional{"drive", "amplitude", "amplitude_sigma", "amplitude_mm"},
     Dimensional{"drive", "frequency", "frequency_per_t0", "frequency_hz"},
+    Dimensional{"drive", "cutoff", "cutoff_per_t0", "cutoff_hz"},
     Dimensional{"drive", "omega", "omega_per_t0", "omega_rad_s"},
     Dimensional{"drive", "peak_velocity", "peak_velocity_v0", "peak_velocity_mm_s"},
     Dimensional{"cell", "width", "width_sigma", "width_mm"},

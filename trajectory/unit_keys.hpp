@@ -8,6 +8,7 @@
 ///     drive.amplitude               amplitude_mm                     amplitude_sigma
 ///     drive.frequency               frequency_hz                     frequency_per_t0
 ///     drive.omega                   omega_rad_s                      omega_per_t0
+///     drive.cutoff                  cutoff_hz                        cutoff_per_t0
 ///     drive.peak_velocity           peak_velocity_mm_s               peak_velocity_v0
 ///     drive.gamma                   peak_acceleration_m_s2, _g       gamma
 ///     cell.width, height, depth     width_mm, ...                    width_sigma, ...

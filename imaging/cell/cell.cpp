@@ -52,7 +52,8 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
 
   const ConfigSection box = root.section("cell");
   // The conversion of units also knows keys of scenes, so that refuse_unknown_keys() does not see these.
-  for (const auto& [section, key] : {std::pair{box, "depth"}, std::pair{root, "beads"}})
+  for (const auto& [section, key] :
+       {std::pair{box, "depth"}, std::pair{root, "beads"}, std::pair{root.section("drive"), "cutoff"}})
     if (section.has(key))
       throw ConfigError(section.where(key), "is a key of a scene; a cell description does not have it.");
   cell.width = box.number_in("width", 0, kLongest, true);

@@ -35,6 +35,24 @@ int cycles_in(const MotionRecord& record, double omega, const Where& where) {
   return static_cast<int>(cycles);
 }
 
+/// The cutoff if it can remove noise and keeps the sine of the drive.
+double admitted(double cutoff, double omega, const MotionRecord& record, const Where& where) {
+  constexpr double kLeast = 2;
+  const double frequency = omega / kTurn, rate = 1 / record.interval;
+  if (!(cutoff >= kLeast * frequency))
+    throw ConfigError(
+        where,
+        fmt::format("{:.4g}/t0 would weaken the drive, whose frequency is {:.4g}/t0; it must be at least "
+                    "{:g} times as high.",
+                    cutoff, frequency, kLeast));
+  if (!(cutoff < rate / 2))
+    throw ConfigError(where,
+                      fmt::format("{:.4g}/t0 removes nothing: it must be below half the sampling rate of {}, "
+                                  "{:.4g}/t0.",
+                                  cutoff, record.file, rate / 2));
+  return cutoff;
+}
+
 }  // namespace
 
 Drive recorded_drive(const DriveRecord& record, DriveSpec spec, double gravity, const Scale& scale,
@@ -43,7 +61,7 @@ Drive recorded_drive(const DriveRecord& record, DriveSpec spec, double gravity, 
   if (omega == 0 && !record.repeats)
     throw ConfigError(drive.where("file"),
                       "needs drive.frequency or drive.omega too: frames and phases are counted in cycles.");
-  const MotionRecord read = read_motion_record(record.file, scale, drive.where("file"));
+  MotionRecord read = read_motion_record(record.file, scale, drive.where("file"));
   if (!record.sha256.empty() && record.sha256 != read.sha256)
     throw InputError({.file = read.file, .key = {}},
                      fmt::format("has the SHA-256 {}, but drive.file_sha256 is {}: the record has changed.",
@@ -56,6 +74,8 @@ Drive recorded_drive(const DriveRecord& record, DriveSpec spec, double gravity, 
     spec.omega = omega;
     spec.frequency.reset();
   }
+  if (record.cutoff > 0)
+    read = smoothed(read, admitted(record.cutoff, omega, read, drive.where("cutoff")), record.repeats);
   const FittedMotion fit = fit_motion(read, omega, cycles);
   const bool scaled = spec.amplitude || spec.gamma || spec.k_m || spec.peak_velocity;
   if (!scaled) spec.amplitude = fit.amplitude;
@@ -127,7 +147,7 @@ std::vector<std::string> warnings_of_record(const Drive& drive) {
   if (largest > kNoisy * of_sine)
     all.push_back(fmt::format(
         "the largest acceleration of {} is {:.3g} times that of its sine; if this is noise of the "
-        "instrument, smooth the record, because the beads feel it.",
+        "instrument, set drive.cutoff, because the beads feel it.",
         name, largest / of_sine));
   return all;
 }

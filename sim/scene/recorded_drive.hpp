@@ -13,20 +13,23 @@
 
 namespace twincell::sim {
 
-/// The keys `file`, `repeat` and `file_sha256` of `[drive]`.
+/// The keys `file`, `repeat`, `cutoff` and `file_sha256` of `[drive]`.
 struct DriveRecord {
   std::filesystem::path file;  ///< relative to the scene's folder; empty: the drive is a formula
   bool repeats = false;        ///< the record contains whole cycles and is repeated
   std::string sha256;          ///< the digest that the file must have; empty: any
+  double cutoff = 0;           ///< frequency above which the record is smoothed, 1/t0; 0: it is not
 };
 
 /// Reads the record and makes the drive of it. omega is the frequency that `spec` states; a repeated record
 /// may instead set it, and has one cycle if none is stated. A number of `spec` that fixes the amplitude
-/// scales the record so that its sine has this amplitude; without one it is as recorded. \param drive the
-/// table, for messages \param gravity magnitude of g, to which Gamma and K_m refer \throws ConfigError if
-/// omega is missing, if the cycles of a repeated record are not a whole number within 1 %, or if a record
-/// without motion at omega is to be scaled; InputError if the file has another digest; as read_motion_record,
-/// fit_motion and solve_drive
+/// scales the record so that its sine has this amplitude; without one it is as recorded.
+/// \param gravity magnitude of g, to which Gamma and K_m refer
+/// \param drive the table, for messages
+/// \throws ConfigError if omega is missing, if the cycles of a repeated record are not a whole number within
+/// 1 %, if the cutoff is below twice the frequency or not below half the sampling rate, or if a record
+/// without motion at omega is to be scaled; InputError if the file has another digest; as
+/// read_motion_record, fit_motion and solve_drive
 Drive recorded_drive(const DriveRecord& record, DriveSpec spec, double gravity, const Scale& scale,
                      const ConfigSection& drive, Axis axis);
 

@@ -286,11 +286,14 @@ void read_record(const Section& s, const std::filesystem::path& folder, Scene& s
   }
   scene.record.repeats = s.boolean("repeat").value_or(false);
   scene.record.sha256 = s.text("file_sha256").value_or("");
+  scene.record.cutoff = s.number_in("cutoff", 0, std::nullopt, true).value_or(0);
   if (scene.record.file.empty()) {
     if (scene.record.repeats)
       throw ConfigError(s.where("repeat"), "repeats a record, but drive.file names none.");
     if (!scene.record.sha256.empty())
       throw ConfigError(s.where("file_sha256"), "is the digest of a record, but drive.file names none.");
+    if (scene.record.cutoff > 0)
+      throw ConfigError(s.where("cutoff"), "smooths a record, but drive.file names none.");
   } else if (!scene.drive.harmonics.empty()) {
     throw ConfigError(s.where("harmonics"), "contradicts drive.file: the record contains all harmonics.");
   }
@@ -600,9 +603,10 @@ std::size_t count_drive_words(const Config& config) {
 /// motion has an amplitude of its own, which a stated one would scale.
 void yield_to_record(Config& lower, const Config& upper) {
   if (!upper.root().section("drive").has("file")) return;
-  for (const char* key : {"file_sha256", "repeat", "harmonics", "amplitude", "amplitude_sigma",
-                          "amplitude_mm", "gamma", "peak_acceleration_g", "peak_acceleration_m_s2", "k_m",
-                          "peak_velocity", "peak_velocity_v0", "peak_velocity_mm_s"})
+  for (const char* key :
+       {"file_sha256", "repeat", "cutoff", "cutoff_per_t0", "cutoff_hz", "harmonics", "amplitude",
+        "amplitude_sigma", "amplitude_mm", "gamma", "peak_acceleration_g", "peak_acceleration_m_s2", "k_m",
+        "peak_velocity", "peak_velocity_v0", "peak_velocity_mm_s"})
     lower.erase(std::string("drive.") + key);
 }
 

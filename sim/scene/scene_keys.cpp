@@ -224,6 +224,8 @@ void add_contact(Rows& rows) {
 
 void add_drive(Rows& rows) {
   const std::vector<std::string> laboratory = {"scale.sigma_mm=2.0", "scale.gravity_m_s2=9.81"};
+  const std::vector<std::string> recorded = {"scale.sigma_mm=2.0", "scale.gravity_m_s2=9.81",
+                                             "drive.file=trace.csv"};
   const Rows drive = {
       {"drive.amplitude", "σ", "two quantities are required", "1.5", "A"},
       {"drive.amplitude_sigma", "σ", "", "1.5", ""},
@@ -260,6 +262,17 @@ void add_drive(Rows& rows) {
        "one cycle if no "
        "frequency is stated",
        {"drive.file=trace.csv"}},
+      {"drive.cutoff",
+       "1/t0",
+       "the record is not smoothed",
+       "2.0",
+       "frequency above which noise of the record is removed: of the amplitude of a sine of frequency f "
+       "remains "
+       "1 − (r/(1 + r))², r = (f/f_c)⁴ for frequencies far below the sampling rate; at least twice that of "
+       "the drive",
+       {"drive.file=trace.csv"}},
+      {"drive.cutoff_per_t0", "1/t0", "", "2.0", "", {"drive.file=trace.csv"}},
+      {"drive.cutoff_hz", "1/s", "", "200.0", "", recorded},
       {"drive.file_sha256",
        "",
        "that of the file",

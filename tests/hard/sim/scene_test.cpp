@@ -587,6 +587,13 @@ TEST(DriveOfAScene, Recorded) {
   EXPECT_NE(complaint("beads.count = 5\n", {"drive.file=trace.csv"})
                 .find("drive.file: needs drive.frequency or drive.omega too"),
             std::string::npos);
+  EXPECT_NE(complaint(kGood, {"drive.cutoff=1.0"})
+                .find("drive.cutoff: smooths a record, but drive.file names none."),
+            std::string::npos);
+  expect({"drive.cutoff=0.3"}, "drive.cutoff: 0.3/t0 would weaken the drive, whose frequency is 0.1592/t0;");
+  expect({"drive.cutoff=4.0"},
+         "drive.cutoff: 4/t0 removes nothing: it must be below half the sampling rate of ");
+  EXPECT_EQ(refusal({"drive.cutoff=1.6"}), "");
   // A stored scene refuses a record that has changed.
   put(record_of(5, [](double t) { return 0.3 * std::cos(2 * t); }));
   EXPECT_NE(complaint_of([&] {
@@ -604,6 +611,12 @@ TEST(DriveOfAScene, Recorded) {
   EXPECT_TRUE(warned("has only 10 % of the mean square of trace.csv"));
   put(record_of(5, [](double t) { return 0.2 * std::cos(18 * t); }));
   EXPECT_TRUE(warned("the largest acceleration of trace.csv is "));
+  EXPECT_TRUE(warned("set drive.cutoff"));
+  // The noise has 18 times the frequency of the drive; of its amplitude 0.2 remains less than 0.1 %.
+  const double fall = read({"drive.cutoff=0.4"}).drive.peak_fall();
+  EXPECT_GT(read({}).drive.peak_fall(), 30);
+  EXPECT_GT(fall, 1.9);
+  EXPECT_LT(fall, 2.3);
 }
 
 TEST(Presets, AreThePapersCells) {

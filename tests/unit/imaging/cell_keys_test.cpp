@@ -20,8 +20,8 @@ TEST(CellKeys, EveryKeyThatIsReadHasARow) {
 }
 
 TEST(CellKeys, AKeyWithoutARowIsRefused) {
-  for (const char* key :
-       {"camera.exposure_s", "cell.depth_mm", "drive.phase", "scale.mass_kg", "beads.radius_sigma"})
+  for (const char* key : {"camera.exposure_s", "cell.depth_mm", "drive.phase", "drive.cutoff_hz",
+                          "scale.mass_kg", "beads.radius_sigma"})
     EXPECT_THROW((void)read_cell("", {"scale.sigma_mm=2.0", std::string(key) + "=1.0"}), ConfigError) << key;
 }
 

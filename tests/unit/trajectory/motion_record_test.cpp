@@ -116,6 +116,45 @@ TEST(RecordedMotion, ConstantsOfIntegrationAreRemoved) {
   EXPECT_NEAR(motion.range().speed, 1, 1e-3);
 }
 
+/// Share of the amplitude of a sine of frequency f that is kept.
+double kept(double f, double cutoff, double h) {
+  const double r = std::pow(std::sin(kTurn / 2 * f * h) / std::sin(kTurn / 2 * cutoff * h), 4);
+  return 1 - std::pow(r / (1 + r), 2);
+}
+
+// The filter of a record that repeats multiplies each Fourier component; of a record with ends it does so
+// away from them, and it keeps a straight line to its ends.
+TEST(RecordedMotion, SmoothingKeepsLowFrequencies) {
+  const double h = 0.01, cutoff = 4;
+  for (const double f : {1.0, 2.0, 4.0, 8.0, 20.0}) {
+    const MotionRecord sine = sine_record(0, 1, kTurn * f, 0.3, h, 500);
+    const MotionRecord repeated = smoothed(sine, cutoff, true), once = smoothed(sine, cutoff, false);
+    for (std::size_t i = 0; i < 500; ++i) {
+      EXPECT_NEAR(repeated.values[i], kept(f, cutoff, h) * sine.values[i], 1e-9) << f << ' ' << i;
+      if (i < 150 || i >= 350) continue;
+      EXPECT_NEAR(once.values[i], kept(f, cutoff, h) * sine.values[i], 1e-6) << f;
+    }
+  }
+  EXPECT_GT(kept(1, cutoff, h), 0.9999);
+  EXPECT_NEAR(kept(4, cutoff, h), 0.75, 1e-12);
+  EXPECT_LT(kept(20, cutoff, h), 0.01);
+  MotionRecord line{.file = "line.csv", .interval = h};
+  for (int i = 0; i < 100; ++i) line.values.push_back(3 - 0.2 * i);
+  const MotionRecord straight = smoothed(line, cutoff, false);
+  for (std::size_t i = 0; i < 100; ++i) EXPECT_NEAR(straight.values[i], line.values[i], 1e-9);
+}
+
+// A spline through values that alternate by +-e has the curvature 12 e/h^2 at them.
+TEST(RecordedMotion, SmoothingRemovesNoise) {
+  const double h = kTurn / 200, e = 0.001, cutoff = 10 / kTurn;
+  MotionRecord noisy = sine_record(0, 1, 1, 0, h, 1000);
+  for (std::size_t i = 0; i < noisy.values.size(); ++i) noisy.values[i] += i % 2 == 0 ? e : -e;
+  EXPECT_NEAR(fit_motion(noisy, 1, 5).motion.range().fall, 1 + 12 * e / (h * h), 0.01);
+  const FittedMotion fit = fit_motion(smoothed(noisy, cutoff, true), 1, 5);
+  EXPECT_NEAR(fit.motion.range().fall, 1 + 12 * e / (h * h) * kept(1 / (2 * h), cutoff, h), 0.001);
+  EXPECT_NEAR(fit.amplitude, 1, 1e-6);
+}
+
 TEST(RecordedMotion, ARepeatedRecordHasTheSameBitsInEveryRepetition) {
   const RecordedMotion motion = fit_motion(sine_record(0, 1, 1, 0.3, kTurn / 40, 120), 1, 3).motion;
   for (int k = 0; k < 100; ++k)
