@@ -75,7 +75,7 @@ void check(const AnalysisOptions& options) {
   const auto names = result_names();
   for (const std::string& name : options.only)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      throw ConfigError({.file = {}, .key = "only"}, no_such_result(name));
+      throw ConfigError({.file = {}, .key = "only"}, no_such_result(name) + '.');
   if (options.discard_cycles < 0)
     throw ConfigError({.file = {}, .key = "discard"},
                       fmt::format("{} cycles cannot be left out; at least 0", options.discard_cycles));

@@ -21,10 +21,13 @@ constexpr const char* kPlain = "plain";  ///< the word of --colour for beads of 
 struct DrawOptions {
   std::string trajectory, frames, colour = kPlain;
   std::vector<double> range;
+  bool fps_said = false;
   DrawJob job;
 };
 
 void run(DrawOptions& o, const Common& common) {
+  if (o.fps_said && !o.job.film())
+    throw ConfigError({.file = {}, .key = "--fps"}, "applies to a film; the output is a picture.");
   require_output(o.job.output, o.job.film() ? Product::film() : Product::picture());
   if (!o.frames.empty()) o.job.frames = read_frame_range(o.frames, "--frames");
   if (!o.range.empty()) o.job.colours.range = {o.range[0], o.range[1]};
@@ -100,8 +103,12 @@ void add_draw(CLI::App& program, Common& common) {
   verb.add_option("--pixels-per-sigma", o->job.pixels_per_sigma,
                   "Scale; default: the longer side of the cell is about 900 px")
       ->check(CLI::Range(0.1, 1000.0));
-  verb.add_option("--fps", o->job.frames_per_second, "Frames per second of the film; default: 25");
-  verb.callback([o, &common] { run(*o, common); });
+  CLI::Option* const fps =
+      verb.add_option("--fps", o->job.frames_per_second, "Frames per second of the film; default: 25");
+  verb.callback([o, fps, &common] {
+    o->fps_said = fps->count() > 0;
+    run(*o, common);
+  });
 }
 
 }  // namespace twincell::cli

@@ -12,6 +12,7 @@
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
+#include "core/counted.hpp"
 #include "core/escape.hpp"
 #include "core/output_rules.hpp"
 #include "sim/lammps/export_lammps.hpp"
@@ -81,26 +82,29 @@ void export_beads(const ExportOptions& o, const Common& common) {
   if (format.create == nullptr) refuse("--to", "this format is only read.");
   const Product product =
       format.folder ? Product::whole_folder(fmt::format("a folder of {} files", format.word))
-                    : Product{.name = fmt::format("a file in the format {}", format.word), .mark = {}};
+                    : Product{.name = fmt::format("a file in the format {}", format.word),
+                              .sign = format.mark.empty() ? Product::Sign::none : Product::Sign::head,
+                              .mark = std::string(format.mark)};
   const std::filesystem::path output = require_output(o.output, product);
   const H5mdReader trajectory(o.input);
-  const ExportUnits units =
-      o.units == "mm" ? ExportUnits::laboratory(trajectory.info(), "--units") : ExportUnits::reduced();
+  const ExportUnits units = o.units == "mm" ? ExportUnits::laboratory(trajectory.info(), "--units")
+                                            : ExportUnits::reduced(trajectory.info());
   AtomicPath written(o.output, product);
   ProgressBar progress(common, "writing");
   const std::size_t frames =
       export_trajectory(trajectory, format, units, written.part(), output.stem().string(), progress,
                         bond_orders(trajectory.info()));
   written.commit();
-  print_result(common,
-               {{"output", o.output},
-                {"format", format.word},
-                {"frames", frames},
-                {"beads", trajectory.info().n_beads},
-                {"length_unit", units.length_unit},
-                {"time_unit", units.time_unit}},
-               fmt::format("{} frames of {} beads, lengths in {}, times in {}\n{}\n", frames,
-                           trajectory.info().n_beads, units.length_unit, units.time_unit, o.output));
+  print_result(
+      common,
+      {{"output", o.output},
+       {"format", format.word},
+       {"frames", frames},
+       {"beads", trajectory.info().n_beads},
+       {"length_unit", units.length_unit},
+       {"time_unit", units.time_unit}},
+      fmt::format("{} of {}, lengths in {}, times in {}\n{}\n", counted(frames, "frame"),
+                  counted(trajectory.info().n_beads, "bead"), units.length_unit, units.time_unit, o.output));
 }
 
 void run(const ExportOptions& o, const Common& common) {

@@ -7,7 +7,9 @@
 #include <memory>
 
 #include "cli/output.hpp"
+#include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "trajectory/foreign/foreign_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -24,6 +26,9 @@ struct ImportOptions {
 };
 
 void run(ImportOptions& o, const Common& common) {
+  if (is_trajectory(o.file))
+    throw ConfigError({o.file, 0, 0, ""},
+                      "this is a trajectory (H5MD) already; analyze, draw and export read it as it is.");
   for (std::size_t k = 0; k < o.origin.size(); ++k) o.foreign.origin[static_cast<int>(k)] = o.origin[k];
   const ForeignFormat& format =
       o.format.empty() ? format_of_file(o.file) : foreign_format(o.format, "--format");
@@ -49,14 +54,17 @@ void run(ImportOptions& o, const Common& common) {
   ProgressBar writing(common, "writing");
   source.copy_to(writer, writing);
   writer.finish();
+  if (info.box.dimension == 3 && source.is_flat())
+    note(common, "all beads are in one plane in every frame; for a two-dimensional system: --dimension 2.");
   if (!info.drive) note(common, "no drive was given: the phases and the height of the plate are absent.");
-  print_result(common,
-               {{"output", o.output},
-                {"frames", source.n_frames()},
-                {"beads", info.n_beads},
-                {"missing_beads", info.columns.identity}},
-               fmt::format("{} frames of {} beads{}\n{}\n", source.n_frames(), info.n_beads,
-                           info.columns.identity ? ", not all of them in every frame" : "", o.output));
+  print_result(
+      common,
+      {{"output", o.output},
+       {"frames", source.n_frames()},
+       {"beads", info.n_beads},
+       {"missing_beads", info.columns.identity}},
+      fmt::format("{} of {}{}\n{}\n", counted(source.n_frames(), "frame"), counted(info.n_beads, "bead"),
+                  info.columns.identity ? ", not all of them in every frame" : "", o.output));
 }
 
 }  // namespace

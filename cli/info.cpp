@@ -11,6 +11,7 @@
 #include "cli/verb.hpp"
 #include "core/json_text.hpp"
 #include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/time_unit.hpp"
 
 namespace twincell::cli {
 
@@ -70,6 +71,7 @@ nlohmann::json describe(const H5mdReader& file) {
     fewest = std::min(fewest, frame.n_present());
     most = std::max(most, frame.n_present());
   }
+  d["time_unit"] = time_is_frame_number(t) ? "frame" : "t0";
   d["beads_per_frame"] = {{"fewest", file.n_frames() > 0 ? fewest : 0}, {"most", most}};
   d["provenance"] = nlohmann::json();
   if (!t.provenance_json.empty()) {
@@ -101,14 +103,15 @@ std::string as_text(const nlohmann::json& d) {
     s += fmt::format("  side walls  lean outward by {:g} and {:g} degrees\n",
                      box["side_tilt"][0].get<double>(), box["side_tilt"][1].get<double>());
   if (d.contains("first"))
-    s += fmt::format("  time        {:.6g} to {:.6g} t0, steps {} to {}\n", d["first"]["time"].get<double>(),
-                     d["last"]["time"].get<double>(), d["first"]["step"].get<long>(),
-                     d["last"]["step"].get<long>());
+    s += fmt::format("  time        {:.6g} to {:.6g} {}, steps {} to {}\n", d["first"]["time"].get<double>(),
+                     d["last"]["time"].get<double>(),
+                     d["time_unit"] == "frame" ? "(number of the frame)" : d["time_unit"].get<std::string>(),
+                     d["first"]["step"].get<long>(), d["last"]["step"].get<long>());
   if (d.contains("drive"))
     s += fmt::format("  drive       {}, A = {:.6g} sigma, omega = {:.6g}/t0, Gamma = {:.6g}, K_m = {:.6g}\n",
-                     d["drive"]["displacement"].get<std::string>(),
-                     d["drive"]["amplitude"].get<double>(), d["drive"]["omega"].get<double>(),
-                     d["drive"]["gamma"].get<double>(), d["drive"]["k_m"].get<double>());
+                     d["drive"]["displacement"].get<std::string>(), d["drive"]["amplitude"].get<double>(),
+                     d["drive"]["omega"].get<double>(), d["drive"]["gamma"].get<double>(),
+                     d["drive"]["k_m"].get<double>());
   s += d.contains("phases_per_cycle")
            ? fmt::format("  phases      {} per cycle\n", d["phases_per_cycle"].get<int>())
            : "  phases      not phase-locked\n";

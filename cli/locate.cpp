@@ -19,6 +19,7 @@
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "imaging/benchmark/score.hpp"
 #include "imaging/disc/position_error.hpp"
@@ -144,6 +145,14 @@ void run(LocateOptions& o, const Common& common) {
   const LocatorOptions given = locator_of(o.locating);
   const Region region = region_of(o.locating);
   const FrameRange range = frames_of(o.locating);
+  const std::string ending = std::filesystem::path(o.view).extension();
+  for (const char* other : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".pdf", ".csv", ".json"})
+    if (ending == other)
+      throw ConfigError(Where{.file = {}, .key = "--view"},
+                        fmt::format("writes a page, .html, not {}; --overlay writes a picture.", other));
+  if (o.overlay_frame >= 0 && o.overlay.empty() && o.debug_folder.empty())
+    throw ConfigError(Where{.file = {}, .key = "--frame"},
+                      "names the frame of --overlay or --debug-dir, but neither is given.");
   if (o.overlay_frame < 0) o.overlay_frame = range.first;
   const auto frames = open_for_locating(o.stack, o.locating, given, common);
   const std::int64_t announced = range.number(static_cast<std::int64_t>(frames->announced()));
@@ -179,8 +188,8 @@ void run(LocateOptions& o, const Common& common) {
         for (const std::vector<Detection>* list : {&located.beads, &located.dropped})
           for (const Detection& b : *list) candidates << candidate_row(b, frame);
         nlohmann::json f = {{"frame", frame}, {"beads", located.beads.size()}, {"blur_px", located.blur_px}};
-        std::string line = fmt::format("frame {}: {} beads, edge blur {:.2f} px", frame, located.beads.size(),
-                                       located.blur_px);
+        std::string line = fmt::format("frame {}: {}, edge blur {:.2f} px", frame,
+                                       counted(located.beads.size(), "bead"), located.blur_px);
         motion.add(located);
         std::string stages;
         for (const StageReport& stage : located.stages) {
@@ -243,8 +252,9 @@ void run(LocateOptions& o, const Common& common) {
   if (!locator.other_diameters_px.empty()) document["other_diameters_px"] = locator.other_diameters_px;
   document["refine"] = locator.refine.method;
   document["bright"] = locator.preprocess.bright;
-  text =
-      fmt::format("{} frames, {} beads{}\n", n, beads, common.verbose ? "" : "; -v prints each frame") + text;
+  text = fmt::format("{}, {}{}\n", counted(n, "frame"), counted(beads, "bead"),
+                     common.verbose ? "" : "; -v prints each frame") +
+         text;
   const std::string shown = settings_frame == 0 ? "the first frame" : fmt::format("frame {}", settings_frame);
   if (find_diameter || find_polarity) document["settings_frame"] = settings_frame;
   if (find_diameter) {

@@ -1,10 +1,14 @@
 // Entry point of the program: the table of verbs, and the error messages and exit codes of exceptions.
 
+#include <poll.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <iostream>
 #include <new>
 #include <string>
 #include <vector>
@@ -138,6 +142,26 @@ int complain_of_fault(int argc, char** argv, const std::string& kind, const char
                   ExitCode::failed);
 }
 
+/// The complaint with the dashes of the option that it begins with: the libraries name an option by its key.
+std::string with_dashes(const CLI::App& program, const std::string& complaint) {
+  const CLI::App* verb = &program;
+  while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().front();
+  const std::string key = complaint.substr(0, complaint.find(": "));
+  const bool is_option =
+      !key.empty() && key.size() < complaint.size() && verb->get_option_no_throw("--" + key) != nullptr;
+  return is_option ? "--" + complaint : complaint;
+}
+
+/// Writes out what is still buffered. A reader that went away is no error.
+int finish_output() {
+  std::cout.flush();
+  const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout;
+  struct pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+  const bool reader_gone = ::poll(&output, 1, 0) == 1 && (output.revents & (POLLERR | POLLHUP)) != 0;
+  if (!failed || reader_gone) return 0;
+  return complain("The result cannot be written to standard output.", ExitCode::failed);
+}
+
 int run(int argc, char** argv) {
   Common common;
   common.command_line = joined(argc, argv);
@@ -165,9 +189,12 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
     if (program.get_subcommands().empty()) std::printf("%s", program.help().c_str());
-    return 0;
+    return finish_output();
   } catch (const CLI::Success& wanted) {  // --help, --version
-    return program.exit(wanted);
+    program.exit(wanted);
+    return finish_output();
+  } catch (const Error& e) {
+    return complain(with_dashes(program, e.what()), e.exit_code());
   } catch (const CLI::ParseError& e) {
     // An option that is misspelled is the cause, also where CLI11 misses the right one first.
     if (const std::string complaint = unknown_option(program, argc, argv); !complaint.empty())

@@ -12,7 +12,9 @@
 #include "cli/phase_options.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
+#include "core/counted.hpp"
 #include "core/output_rules.hpp"
+#include "imaging/cell/implausible.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/track_request.hpp"
 #include "twin/cell_names.hpp"
@@ -77,16 +79,16 @@ nlohmann::json as_json(const Twin& twin) {
 
 std::string as_text(const Twin& twin) {
   return (twin.drive.empty() ? "" : "drive " + twin.drive + "\n") + phases_in_words(twin.phases) +
-         fmt::format(
-             "{} beads in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} twins "
-             "over {} cycles; {}\n",
-             twin.beads, twin.pixels_per_sigma, twin.position_error, twin.simulations.size(), twin.cycles,
-             twin.scene.string());
+         fmt::format("{} in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} over {}; {}\n",
+                     counted(twin.beads, "bead"), twin.pixels_per_sigma, twin.position_error,
+                     counted(twin.simulations.size(), "twin"), counted(twin.cycles, "cycle"),
+                     twin.scene.string());
 }
 
 /// The options of a twin with what the command line and the cell say about beads and phases.
 TwinOptions configure_twin(const MatchOptions& o, TwinOptions options, const Common& common) {
   CellDescription cell = read_cell(options.cell_file);
+  for (const std::string& doubt : implausible_numbers(shaken_cell(cell))) note(common, doubt);
   options.phases = phase_source(o.phase, cell, options.cell_file.string());
   options.phase_lock = lock_of_chosen(cell.phase_lock, frames_of(o.locating));
   options.locator = locator_of(o.locating, cell.pixels_per_sigma, cell.bright);

@@ -71,14 +71,15 @@ std::optional<double> ask(const std::string& question, const std::string& otherw
 }
 
 /// Asks for what no stack shows, unless options have answered it.
-void ask_for_the_rest(CellAnswers& a, const CellSurvey& s) {
+/// \param several whether the answers also hold for other stacks, which differ in Gamma
+void ask_for_the_rest(CellAnswers& a, const CellSurvey& s, bool several) {
   if (!a.sigma_mm) a.sigma_mm = ask("Diameter of a bead in mm", "unknown");
   if (a.sigma_mm && !a.width_mm && !s.has_walls())
     a.width_mm = ask("Distance of the side walls in mm", "unknown");
   const bool rate = s.drive && (a.frame_rate_hz || s.frame_rate_hz);
   if (a.sigma_mm && !a.frequency_hz && !a.gamma && !rate)
     a.frequency_hz = ask("Frequency of the shaker in Hz", "unknown");
-  if (!a.gamma && (!s.drive || !a.sigma_mm || (!a.frequency_hz && !rate)))
+  if (!several && !a.gamma && (!s.drive || !a.sigma_mm || (!a.frequency_hz && !rate)))
     a.gamma = ask("Peak acceleration of the plate over g (Gamma)", "unknown");
 }
 
@@ -126,7 +127,7 @@ nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& st
   const CellSurvey survey = survey_cell(stack, {.diameter_px = o.diameter_px, .threads = common.n_threads()},
                                         progress_bars(common));
   if (first && ::isatty(STDIN_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0 && !common.quiet && !common.json)
-    ask_for_the_rest(o.answers, survey);
+    ask_for_the_rest(o.answers, survey, o.stacks.size() > 1);
   const CellDraft draft = draft_cell(survey, o.answers);
   for (const auto* sentences : {&survey.notes, &draft.notes})
     for (const std::string& sentence : *sentences) note(common, sentence);
@@ -155,6 +156,12 @@ void run(const Common& common, NewOptions& o) {
   if (!several && fs::path(output).extension() != ".toml")
     throw ConfigError({.file = output, .key = "-o"},
                       "must end in .toml; the picture next to it ends in .png.");
+  if (several && o.answers.gamma)
+    throw ConfigError(
+        {.file = {}, .key = "--drive-gamma"},
+        fmt::format("is one strength, but there are {} stacks; state --drive-hz and --sigma-mm, "
+                    "which give the Gamma of each stack, or call new for each stack.",
+                    o.stacks.size()));
   for (const std::string& stack : o.stacks) protect_input(file_of_stack(stack));
   const std::vector<std::string> names = names_of_stacks({o.stacks.begin(), o.stacks.end()});
   if (several) claim_shared_folder(output, cells_folder());

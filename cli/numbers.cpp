@@ -23,10 +23,12 @@ bool reads_as(const std::string& text, Number& value) {
 std::string complaint_of_real(const std::string& text) {
   double value = 0;
   if (reads_as(text, value) && std::isfinite(value)) return {};
-  if (std::string point = text; point.find(',') != std::string::npos) {
-    point.replace(point.find(','), 1, ".");
+  const std::size_t comma = text.find(',');
+  if (std::string point = text; comma != std::string::npos) {
+    point.replace(comma, 1, ".");
     if (reads_as(point, value))
-      return fmt::format("'{}' is not a number; write {} with a decimal point", text, point);
+      return fmt::format("'{}' is not a number; write one with a decimal point, {}, or several as {} {}",
+                         text, point, text.substr(0, comma), text.substr(comma + 1));
   }
   return fmt::format("'{}' is not a finite number", text);
 }

@@ -8,6 +8,7 @@
 
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "imaging/camera/synthetic_camera.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -59,7 +60,7 @@ void run(RenderOptions& o, const Common& common) {
   }
   nlohmann::json document = {
       {"frames", done.frames}, {"dropped", done.dropped}, {"doubled", done.doubled}, {"seed", camera.seed}};
-  std::string text = fmt::format("{} frames", done.frames);
+  std::string text = counted(done.frames, "frame");
   if (!o.job.folder.empty()) {
     document["output"] = o.job.folder.string();
     text += fmt::format(", truth.csv, frames.csv, CELL.toml and CAMERA.toml in {}", o.job.folder.string());
@@ -86,9 +87,11 @@ void add_render(CLI::App& program, Common& common) {
          verb.add_option("-o,--output", o->job.folder,
                          "Folder for the frames, truth.csv, frames.csv, CELL.toml and CAMERA.toml"),
          rendered_stack());
-  writes(common, verb, verb.add_option("--movie", o->job.movie, "Film to write (.mp4 or .avi), 8 bit"),
-         Product::film());
-  verb.add_option("--fps", o->job.frames_per_second, "Frames per second of the film; default: 25");
+  CLI::Option* const movie =
+      writes(common, verb, verb.add_option("--movie", o->job.movie, "Film to write (.mp4 or .avi), 8 bit"),
+             Product::film());
+  verb.add_option("--fps", o->job.frames_per_second, "Frames per second of the film; default: 25")
+      ->needs(movie);
   verb.add_option("--camera", o->camera_file,
                   "CAMERA.toml with any of the options below; options on the command line take precedence");
   const auto list = camera_option_list(o->flags);

@@ -2,6 +2,7 @@
 // progress.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -47,6 +48,9 @@ fs::path folder_of(const SweepOptions& options) {
 }
 
 sweep::Plan plan_of(const SweepOptions& options, const Common& common) {
+  if (std::error_code ec; fs::is_directory(options.plan, ec))
+    throw ConfigError({options.plan, 0, 0, "plan"},
+                      "is a folder; name the plan (TOML), and the folder of the sweep with --folder.");
   sweep::Plan plan = sweep::read_plan(options.plan);
   if (common.seed) plan.seed = *common.seed;
   return plan;
@@ -206,6 +210,10 @@ void run_status(const SweepOptions& options, const Common& common) {
 
 void run_collect(const SweepOptions& options, const Common& common) {
   const sweep::Plan plan = plan_of(options, common);
+  // The place of the table follows from the name of the output. It is checked before any work, as that is.
+  if (!options.output.empty() && options.output != kStandardOutput)
+    require_output(fs::path(options.output).replace_extension(".csv"),
+                   Product::text("a table of a sweep", "id,"));
   const sweep::Store store = store_of(options);
   const fs::path output = options.output.empty() ? store.folder() / "results.json" : fs::path(options.output);
   const sweep::Schedule schedule(plan, store);
@@ -224,8 +232,14 @@ void run_collect(const SweepOptions& options, const Common& common) {
   write_text_file(output, json, collected_product());
   write_text_file(table, csv, Product::table(csv));
   if (!pooled.empty()) write_text_file(pooled_table, pooled, Product::table(pooled));
+  // Curves of results that the plan does not name are not missed.
+  if (const auto outside = sweep::results_outside_csv(schedule); !plan.results.empty() && !outside.empty())
+    note(common,
+         fmt::format("no single numbers, so only in {}: {}.", output.string(), fmt::join(outside, ", ")));
   if (!schedule.all()) note(common, "not all points are done; the file states how many are open.");
-  print_result(common, nlohmann::json::parse(json), collected_text(schedule) + output.string() + "\n");
+  print_result(common, nlohmann::json::parse(json),
+               fmt::format("{}{}\n{}\n{}", collected_text(schedule), output.string(), table.string(),
+                           pooled.empty() ? "" : pooled_table.string() + "\n"));
 }
 
 void run_plot(const SweepOptions& options, const Common& common) {
@@ -314,10 +328,15 @@ void add_sweep(CLI::App& program, Common& common) {
   CLI::App& collect = add("collect", "Write all results to one file, as JSON and as CSV tables",
                           "twincell sweep collect plan.toml -o results.json");
   writes(common, collect,
-         collect.add_option(
-             "-o,--output", options->output,
-             "Output file FILE.json; FILE.csv and, for several seeds, FILE.pooled.csv are written next to "
-             "it; '-': only the JSON, to standard output; default: results.json in the folder of the sweep"),
+         collect
+             .add_option("-o,--output", options->output,
+                         "Output file FILE.json or FILE.csv; both are written and, for several seeds, "
+                         "FILE.pooled.csv; '-': only the JSON, to standard output; default: results.json in "
+                         "the folder of the sweep")
+             ->transform([](const std::string& said) {
+               const fs::path name(said);
+               return name.extension() == ".csv" ? fs::path(name).replace_extension(".json").string() : said;
+             }),
          collected_product());
   collect.callback([options, &common] { run_collect(*options, common); });
 

@@ -18,8 +18,10 @@
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "imaging/benchmark/score.hpp"
+#include "imaging/cell/implausible.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/write_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -119,6 +121,7 @@ void run(TrackOptions& o, const Common& common) {
     note(common,
          fmt::format("values in {} take precedence over those measured in {}: {}", o.film.request.cell_file,
                      cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
+  for (const std::string& doubt : implausible_numbers(shaken_cell(cell))) note(common, doubt);
   if (!film.check.disagreement.empty())
     note(common,
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
@@ -161,9 +164,10 @@ void run(TrackOptions& o, const Common& common) {
   document.update(nlohmann::json::parse(plan.info.tracking_json));
   if (const nlohmann::json said = restrictions(o.film.locating); !said.is_null())
     document["restrictions"] = said;
-  std::string text = fmt::format(
-      "{} frames, {} beads located, {} tracks ({} written), {} detections outside the cell left out\n",
-      stack.frames.size(), beads, stack.n_tracks, plan.info.n_beads, stack.outside_cell);
+  std::string text = fmt::format("{}, {} located, {} ({} written), {} outside the cell left out\n",
+                                 counted(stack.frames.size(), "frame"), counted(beads, "bead"),
+                                 counted(stack.n_tracks, "track"), plan.info.n_beads,
+                                 counted(stack.outside_cell, "detection"));
   if (constexpr double kMany = 0.02;
       static_cast<double>(stack.wrong_radius) > kMany * static_cast<double>(beads))
     text += fmt::format(

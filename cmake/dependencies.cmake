@@ -11,5 +11,8 @@ find_package(CLI11 2.1 REQUIRED)
 find_package(tomlplusplus 3.3 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt 9.1 REQUIRED)
+find_package(pugixml 1.13 REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio>=1.5)
 # Only for `sweep run --mpi`; without it that option says what to install.
 find_package(MPI QUIET COMPONENTS C)

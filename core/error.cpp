@@ -33,10 +33,11 @@ void require_range(const Where& where, double value, std::optional<double> lower
   const bool below = !upper || value <= *upper;
   if (std::isfinite(value) && above && below) return;
   std::string bound;
-  if (lower) bound += fmt::format("{} {}", open_lower ? "greater than" : "at least", *lower);
-  if (upper) bound += fmt::format("{}at most {}", lower ? " and " : "", *upper);
+  // Twelve digits: a bound that is computed is not shown as 0.20000000000000007.
+  if (lower) bound += fmt::format("{} {:.12g}", open_lower ? "greater than" : "at least", *lower);
+  if (upper) bound += fmt::format("{}at most {:.12g}", lower ? " and " : "", *upper);
   if (bound.empty()) bound = "finite";
-  throw ConfigError(where, fmt::format("{} is out of range; the value must be {}.", value, bound));
+  throw ConfigError(where, fmt::format("{:.12g} is out of range; the value must be {}.", value, bound));
 }
 
 }  // namespace twincell

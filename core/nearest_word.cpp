@@ -28,7 +28,8 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   std::string nearest;
   std::size_t smallest = 4;
   for (const std::string& candidate : known)
-    if (const std::size_t d = edit_distance(candidate, word); d < smallest) {
+    if (const std::size_t d = edit_distance(candidate, word);
+        d < smallest && d < std::max(candidate.size(), word.size())) {
       smallest = d;
       nearest = candidate;
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <vector>
 
 #include "core/hdf5.hpp"
@@ -68,6 +69,13 @@ bool is_product(const std::filesystem::path& file, const Product& product) {
     }
     case Product::Sign::beginning:
       return head_of(file, product.mark.size()) == product.mark;
+    case Product::Sign::head: {
+      const std::string head = head_of(file, 4096);
+      std::istringstream marks(product.mark);
+      for (std::string mark; std::getline(marks, mark);)
+        if (head.find(mark) != std::string::npos) return true;
+      return false;
+    }
     case Product::Sign::ending: {
       std::ifstream stream(file, std::ios::binary);
       stream.seekg(-static_cast<std::streamoff>(product.mark.size()), std::ios::end);

@@ -20,6 +20,7 @@ struct Product {
     first_line,       ///< the first line is `mark`
     beginning,        ///< the text begins with `mark`
     ending,           ///< the bytes end with `mark`
+    head,             ///< the first 4 KiB hold one of the lines of `mark`
     json_member,      ///< a JSON object with the member `mark`
     picture_software  ///< PNG whose text chunk "Software" is "twincell"
   };

@@ -96,8 +96,13 @@ void require_file(const fs::path& final, const Product& product, const Where& wh
     if (fs::exists(status) && same_file(final, input))
       throw ConfigError(where,
                         fmt::format("the output is an input of the same command, '{}'.", input.string()));
-    if (fs::exists(status) && fs::is_directory(input, ec) && lies_in(final, input) &&
-        !is_product(final, product))
+    if (!fs::is_directory(input, ec)) continue;
+    if (product.sign == Product::Sign::picture_software && same_file(final.parent_path(), input))
+      throw ConfigError(where,
+                        fmt::format("the folder '{}' is an input, and a picture in it would be one of its "
+                                    "frames; name a file elsewhere.",
+                                    input.string()));
+    if (fs::exists(status) && lies_in(final, input) && !is_product(final, product))
       throw ConfigError(where, fmt::format("the output is a file of the input '{}'.", input.string()));
   }
   if (!fs::exists(status)) return;
@@ -107,9 +112,10 @@ void require_file(const fs::path& final, const Product& product, const Where& wh
     throw ConfigError(where, "the output is not a regular file (a device, pipe or socket).");
   if (!may_replace(final, product))
     throw ConfigError(where,
-                      fmt::format("the file exists and is not {} made by twincell; choose another name, or "
-                                  "replace it with --force.",
-                                  product.name));
+                      fmt::format("the file exists and {}; choose another name, or replace it with --force.",
+                                  product.sign == Product::Sign::none
+                                      ? fmt::format("{} does not state which program made it", product.name)
+                                      : fmt::format("is not {} made by twincell", product.name)));
 }
 
 void require_folder(const fs::path& final, const Product& product, const Where& where) {

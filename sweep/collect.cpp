@@ -223,6 +223,17 @@ std::string collected_csv(const Schedule& schedule) {
                   {"replica", "seed", "answer", "n_cycles", "failed"});
 }
 
+std::vector<std::string> results_outside_csv(const Schedule& schedule) {
+  std::set<std::string> names;
+  const json document = document_of(schedule);
+  for (const json& point : document["points"]) {
+    if (!point.contains("results")) continue;
+    for (const auto& [name, result] : point["results"].items())
+      if (result.contains("value") && result["value"].is_array()) names.insert(name);
+  }
+  return {names.begin(), names.end()};
+}
+
 std::string pooled_csv(const Schedule& schedule) {
   const json pooled = document_of(schedule)["pooled"];
   return pooled.empty() ? std::string() : table_of(pooled, {}, {"runs"});

@@ -3,6 +3,7 @@
 /// Collected results of a sweep as JSON, CSV or text.
 
 #include <string>
+#include <vector>
 
 #include "sweep/schedule.hpp"
 
@@ -23,6 +24,10 @@ std::string collected_json(const Schedule& schedule);
 /// CSV with one line per point: id, axes, replica, seed, answer, number of cycles, failure, then value, low
 /// and high of every scalar result; empty fields for absent values.
 std::string collected_csv(const Schedule& schedule);
+
+/// Names of the results that are no single numbers, such as spectra and tensors, and that collected_csv()
+/// therefore leaves out, in alphabetical order.
+std::vector<std::string> results_outside_csv(const Schedule& schedule);
 
 /// CSV of `pooled`, one line per set of axes; empty if no point has two runs.
 std::string pooled_csv(const Schedule& schedule);

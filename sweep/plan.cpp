@@ -167,6 +167,8 @@ void read_results(Plan& plan, const ConfigSection& root) {
   for (const TomlLeaf& leaf : toml_leaves(plan.text, ""))
     if (leaf.path == "results")
       for (const std::string& item : leaf.items) plan.results.push_back(unquoted(item));
+  if (plan.results.empty())
+    throw ConfigError(where, "the list is empty; without this key the sweep computes all results.");
   for (const std::string& name : plan.results) require_result(where, name);
   if (plan.verdict &&
       std::find(plan.results.begin(), plan.results.end(), plan.verdict->result) == plan.results.end())

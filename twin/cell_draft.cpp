@@ -8,6 +8,7 @@
 
 #include "core/escape.hpp"
 #include "core/placeholder.hpp"
+#include "imaging/cell/implausible.hpp"
 
 namespace twincell {
 namespace {
@@ -35,6 +36,7 @@ class Draft {
     cell();
     drive();
     laboratory();
+    doubts();
     return std::move(out_);
   }
 
@@ -247,6 +249,12 @@ class Draft {
       open("scale.sigma_mm", "bead diameter in mm", "");
     if (sigma_mm_ || needs_sigma_ || a_.width_mm)
       stated("scale.gravity_m_s2", fmt::format("{:.10g}", a_.gravity_m_s2), "");
+  }
+
+  void doubts() {
+    ShakenCell numbers{.sigma_mm = a_.sigma_mm, .frequency_hz = a_.frequency_hz, .gamma = a_.gamma};
+    if (out_.gamma) numbers.gamma = out_.gamma->value;
+    for (const std::string& doubt : implausible_numbers(numbers)) out_.notes.push_back(doubt);
   }
 
   const CellSurvey& s_;

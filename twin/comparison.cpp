@@ -50,6 +50,34 @@ Sides read_sides(const ComparingOptions& options) {
   return sides;
 }
 
+/// Refuses a file on both sides, and two- and three-dimensional runs on one side, whose phase boundaries
+/// would be pooled. Notes what is unusual. \throws ConfigError
+void check_sides(const Sides& sides, const ComparingOptions& options, std::vector<std::string>& notes) {
+  for (const fs::path& experiment : options.experiments)
+    for (const fs::path& simulation : options.simulations)
+      if (std::error_code ec; fs::equivalent(experiment, simulation, ec))
+        throw ConfigError({.file = {}, .key = "--simulation"},
+                          fmt::format("{} is the same file as the experiment {}.", simulation.string(),
+                                      experiment.string()));
+  const auto dimension = [&](std::size_t i) { return sides.trajectories[i]->info().box.dimension; };
+  for (std::size_t i = 0; i < sides.trajectories.size(); ++i) {
+    const H5mdReader& run = *sides.trajectories[i];
+    const std::size_t first = sides.side_of(i) == Side::experiment ? 0 : sides.n_experiments;
+    if (dimension(i) != dimension(first))
+      throw ConfigError({.file = run.name(), .key = "--" + side_name(sides.side_of(i))},
+                        fmt::format("has {} dimensions, and {} has {}; compare them in two calls.",
+                                    dimension(i), sides.trajectories[first]->name(), dimension(first)));
+    if (sides.side_of(i) == Side::experiment && run.info().source == "simulation")
+      notes.push_back(fmt::format("{} is a simulation and is given as experiment.", run.name()));
+  }
+  const std::size_t n = sides.n_experiments;
+  if (n > 0 && n < sides.trajectories.size() && dimension(0) != dimension(n))
+    notes.push_back(
+        fmt::format("the experiment has {} dimensions and the simulation {}; N_l = N sigma/L_x counts "
+                    "all beads along the depth.",
+                    dimension(0), dimension(n)));
+}
+
 /// Number of snapshots that the report can show of each run.
 std::size_t snapshots_of_each(const Sides& sides) {
   std::size_t slots = 0;
@@ -271,6 +299,7 @@ void limit_pictures(std::vector<Run>& runs) {
 Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress,
                         std::vector<std::string>& notes) {
   const Sides sides = read_sides(options);
+  check_sides(sides, options, notes);
   Comparison c;
   c.runs = analyse(sides, options, progress, notes, c.checks);
   refuse_repeated_runs(c.runs);

@@ -12,6 +12,7 @@
 #include "imaging/camera/movie.hpp"
 #include "imaging/track/annotation.hpp"
 #include "imaging/track/overlay.hpp"
+#include "trajectory/time_unit.hpp"
 
 namespace twincell {
 
@@ -126,7 +127,7 @@ double round_length(double most) {
 View view_for(const TrajectoryInfo& info, const DrawJob& job, const Extremes& e) {
   Box seen = info.box;
   seen.lower -= e.shift, seen.upper += e.shift;
-  return {seen, e.bottom, e.top, job.pixels_per_sigma};
+  return {seen, e.bottom, e.top, static_cast<bool>(job.colours.of), job.pixels_per_sigma};
 }
 
 class Painter {
@@ -296,8 +297,9 @@ class Painter {
   }
 
   [[nodiscard]] std::string title() const {
-    std::string text =
-        frame_.cycle >= 0 ? fmt::format("cycle {}", frame_.cycle) : fmt::format("t = {:.4g} t0", frame_.time);
+    std::string text = frame_.cycle >= 0             ? fmt::format("cycle {}", frame_.cycle)
+                       : time_is_frame_number(info_) ? fmt::format("frame {:g}", frame_.time)
+                                                     : fmt::format("t = {:.4g} t0", frame_.time);
     if (frame_.phase >= 0 && info_.phases_per_cycle > 0)
       text += fmt::format("   phase {}/{}", frame_.phase, info_.phases_per_cycle);
     if (info_.conditions.gamma) text += fmt::format("   Gamma {:.4g}", *info_.conditions.gamma);

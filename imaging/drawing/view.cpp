@@ -13,12 +13,12 @@ namespace twincell {
 namespace {
 
 // Room for the texts and the colour bar, px.
-constexpr int kLeft = 24, kRight = 176, kTop = 40, kBottom = 56;
+constexpr int kLeft = 24, kRight = 24, kColourBar = 152, kTop = 40, kBottom = 56;
 constexpr double kTurn = std::numbers::pi / 6, kTilt = std::numbers::pi / 12;
 
 }  // namespace
 
-View::View(const Box& box, double bottom, double top, double pixels_per_sigma)
+View::View(const Box& box, double bottom, double top, bool colour_bar, double pixels_per_sigma)
     : planar_(box.dimension == 2), centre_((box.lower + box.upper) / 2), height_(top - bottom) {
   centre_.z() = (bottom + top) / 2;
   Vec3 low = box.lower, high = box.upper;
@@ -44,12 +44,13 @@ View::View(const Box& box, double bottom, double top, double pixels_per_sigma)
                       fmt::format("{:.4g} makes a picture of {:.0f} px; at most {:.0f} are drawn.", scale_,
                                   std::max(width, height) * scale_, kLargest));
   // Labels need some width and height even if the cell is narrow.
-  constexpr int kNarrowest = 300, kLowest = 120;
-  const int columns = std::max(static_cast<int>(std::ceil(width * scale_)), kNarrowest);
+  constexpr int kNarrowest = 452, kLowest = 120;
+  const int bar = colour_bar ? kColourBar : 0;
+  const int columns = std::max(static_cast<int>(std::ceil(width * scale_)), kNarrowest - bar);
   const int rows = std::max(static_cast<int>(std::ceil(height * scale_)), kLowest);
   cell_ = {kLeft, kTop, columns, rows};
   // Films need even sides.
-  size_ = {(kLeft + columns + kRight + 1) / 2 * 2, (kTop + rows + kBottom + 1) / 2 * 2};
+  size_ = {(kLeft + columns + bar + kRight + 1) / 2 * 2, (kTop + rows + kBottom + 1) / 2 * 2};
   origin_ = {kLeft + (columns - width * scale_) / 2 - least[0] * scale_, kTop + rows + least[1] * scale_};
 }
 

@@ -21,9 +21,10 @@ struct Projected {
 /// and above: turned by 30 degrees about z and tilted by 15 degrees, from a distance of three diagonals.
 class View {
  public:
-  /// \param pixels_per_sigma in the middle of the cell; 0: so that the longer side of the picture of the
-  /// cell is about 900 px \throws ConfigError if a picture would have a side above 8000 px
-  View(const Box& box, double bottom, double top, double pixels_per_sigma);
+  /// \param colour_bar whether room for it is left at the right \param pixels_per_sigma in the middle of the
+  /// cell; 0: so that the longer side of the picture of the cell is about 900 px \throws ConfigError if a
+  /// picture would have a side above 8000 px
+  View(const Box& box, double bottom, double top, bool colour_bar, double pixels_per_sigma);
 
   [[nodiscard]] Projected project(const Vec3& r) const;
   [[nodiscard]] double pixels_per_sigma() const { return scale_; }

@@ -49,6 +49,7 @@ class EventLoop {
   void load(ArchiveReader& in);
 
  private:
+  static constexpr double kTolerance = 1e-7;  ///< of a collision
   template <class Self, class Archive>
   static void archive(Self& k, Archive& a);
   template <class Self, class Run, class Archive>

@@ -2,7 +2,7 @@
 
 usage: export_clients_test.py TWINCELL SOURCE_DIR FOLDER CLIENT
 
-CLIENT is mdanalysis, lammps, pandas, ase, gsd, vtk or xml. Exit code 77 means that the client is not installed.
+CLIENT is mdanalysis, lammps, pandas, ase, gsd, vtk, xml or scipy. Exit code 77 means that the client is not installed.
 """
 
 import math
@@ -219,6 +219,26 @@ def xml(twincell, folder, truth):
     same("TrackMate x", seen["POSITION_X"], truth["x"], 0)
     same("TrackMate y, downwards", -seen["POSITION_Y"], truth["z"], 0)
     same("TrackMate t", seen["POSITION_T"], np.broadcast_to(truth["time"][:, None], truth["x"].shape), 0)
+    listed = ElementTree.parse(export(twincell, "isbi", "isbi.xml", folder)).getroot()
+    particles = listed.findall("TrackContestISBI2012/particle")
+    assert listed.tag == "root" and len(particles) == 60
+    for k, axis in enumerate("xy"):
+        found = [[float(d.get(axis)) for d in sorted(p, key=lambda d: int(d.get("t")))] for p in particles]
+        same(f"ISBI {axis}", (1, -1)[k] * np.transpose(found), truth["xz"[k]], 0)
+
+
+def scipy(twincell, folder, truth):
+    try:
+        from scipy.io import loadmat
+    except ImportError:
+        sys.exit(SKIPPED)
+    mat = loadmat(export(twincell, "mat", "run.mat", folder))
+    for name, expected in {"x": "x", "y": "z", "vx": "vx", "vy": "vz"}.items():
+        same(f"MAT {name}", mat[name].T, truth[expected], 0)
+    same("MAT time", mat["time"][0], truth["time"], 0)
+    same("MAT radius", mat["radius"][:, 0], np.full(60, 0.5), 0)
+    assert mat["omega_z"].shape == mat["q6"].shape == mat["x"].shape
+    assert list(mat["length_unit"]) == ["sigma"] and list(mat["time_unit"]) == ["t0"]
 
 
 def main():
@@ -228,8 +248,8 @@ def main():
     folder.mkdir(parents=True)
     truth = trajectory(pathlib.Path(twincell), pathlib.Path(source), folder)
     assert truth["x"].shape[1] == 60 and not math.isnan(truth["x"].sum())
-    {"mdanalysis": mdanalysis, "lammps": lammps, "pandas": pandas, "ase": ase, "gsd": gsd, "vtk": vtk, "xml": xml}[client](
-        twincell, folder, truth)
+    {"mdanalysis": mdanalysis, "lammps": lammps, "pandas": pandas, "ase": ase, "gsd": gsd, "vtk": vtk, "xml": xml,
+     "scipy": scipy}[client](twincell, folder, truth)
 
 
 main()

@@ -244,6 +244,30 @@ TEST(Outputs, ATableBesideTheCollectedFileIsHeldToTheSameRules) {
   EXPECT_TRUE(fs::exists("r.pooled.csv"));
 }
 
+TEST(Outputs, CollectedResultsMayBeNamedByTheirTable) {
+  const Sandbox sandbox;
+  write("plan.toml", "scene = \"scene.toml\"\nresults = [\"s_b\", \"S_q\"]\n[axes]\ndrive.gamma = [1.3]\n");
+  EXPECT_EQ(run_program({"sweep", "run", "plan.toml", "--folder", "swept", "-q"}).code, 0);
+  const Ran ran = run_program({"sweep", "collect", "plan.toml", "--folder", "swept", "-o", "r.csv"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("r.json\nr.csv\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.err.find("only in r.json: S_q."), std::string::npos) << ran.err;
+  std::string table, json;
+  std::getline(std::ifstream("r.csv") >> std::ws, table);
+  std::getline(std::ifstream("r.json") >> std::ws, json);
+  EXPECT_EQ(table.rfind("id,", 0), 0U) << table;
+  EXPECT_EQ(json, "{");
+}
+
+TEST(Outputs, AFullDiskUnderTheHelpIsReported) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "/dev/full is not there";
+  for (const char* words : {"help", "--version", "help track", "keys", "completion bash"}) {
+    std::string command = TWINCELL_PROGRAM;
+    command.append(" ").append(words).append(" > /dev/full 2> /dev/null");
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1) << words;
+  }
+}
+
 TEST(Outputs, AnInputIsNeverAnOutputThroughAnyName) {
   const Sandbox sandbox;
   fs::create_hard_link("scene.toml", "hard.toml");
@@ -350,14 +374,32 @@ TEST(Outputs, FilesAreReplacedByTheirOwnKindOrByForce) {
       {"draw", "sim.h5", "-o", "d.png"},
       {"draw", "sim.h5", "-o", "d.avi", "--frames", ":2"},
       {"fit", "table.csv", "--law", "line", "-o", "fit"},
-      {"export", "scene.toml", "--to", "lammps", "-o", "deck"}};
+      {"export", "scene.toml", "--to", "lammps", "-o", "deck"},
+      {"export", "sim.h5", "--to", "xyz", "-o", "e.xyz"},
+      {"export", "sim.h5", "--to", "csv", "-o", "e.csv"},
+      {"export", "sim.h5", "--to", "gsd", "-o", "e.gsd"},
+      {"export", "sim.h5", "--to", "trackmate", "-o", "e.xml"},
+      {"export", "sim.h5", "--to", "isbi", "-o", "i.xml"},
+      {"export", "sim.h5", "--to", "mat", "-o", "e.mat"},
+      {"export", "sim.h5", "--to", "vtk", "-o", "e"}};
   for (auto words : twice) {
     words.emplace_back("-q");
     EXPECT_EQ(run_program(words).code, 0) << words[0];
     const Ran again = run_program(words);
     EXPECT_EQ(again.code, 0) << words[0] << ": " << again.err;
   }
+  // The format of a dump has no place for its maker, which the refusal says.
+  const std::vector<std::string> dump = {"export", "sim.h5", "--to", "lammps-dump", "-o", "e.dump", "-q"};
+  EXPECT_EQ(run_program(dump).code, 0);
+  const Ran refused = run_program(dump);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("does not state which program made it"), std::string::npos) << refused.err;
   // An output of one kind does not replace one of another kind.
+  write("user.xyz", "1\nProperties=species:S:1:pos:R:3\nX 0 0 0\n");
+  write("user.csv", "frame,particle,x,y\n0,0,1,2\n");
+  EXPECT_EQ(run_program({"export", "sim.h5", "--to", "xyz", "-o", "user.xyz", "-q"}).code, 2);
+  EXPECT_EQ(run_program({"export", "sim.h5", "--to", "csv", "-o", "user.csv", "-q"}).code, 2);
+  EXPECT_EQ(run_program({"export", "sim.h5", "--to", "xyz", "-o", "e.csv", "-q"}).code, 2);
   EXPECT_EQ(run_program({"analyze", "sim.h5", "-o", "a.h5", "-q"}).code, 2);
   EXPECT_EQ(run_program({"locate", "frames", "-o", "t.csv", "-q"}).code, 2);
   EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "notes.txt", "-q"}).code, 2);

@@ -52,6 +52,15 @@ class Refusals : public ::testing::Test {
       empty_cell.append(frame);
     }
     write_run("nobeads.h5", empty_cell);
+    TrajectoryInfo deep = bed.info();
+    deep.box.dimension = 3;
+    deep.box.boundary = {Boundary::wall, Boundary::wall, Boundary::wall};
+    MemoryTrajectory deep_bed(deep);
+    for (const Frame& frame : bed.frames()) deep_bed.append(frame);
+    write_run("deep.h5", deep_bed);
+    put_file(at("deep.csv"), "frame,particle,x,y,z\n0,0,1,2,0.5\n0,1,3,2,0.7\n1,0,1,2,0.5\n1,1,3,2,0.7\n");
+    put_file(at("beads.csv"), "frame,x,y\n0,1,2\n0,3,2\n");
+    put_file(at("nothing.toml"), "scene = \"s.toml\"\nresults = []\n[axes]\ndrive.gamma = [1.2, 1.4]\n");
     put_file(at("g.csv"), "x,y\n1,2.1\n2,3.9\n3,6.2\n4,7.8\n5,10.1\n");
     put_file(at("p.csv"), "x,y,trials,s\n1,0.1,5,0.1\n2,0.5,5,-1\n3,0.9,5.5,0.1\n");
     std::string flights = "time,height\n";
@@ -304,6 +313,31 @@ TEST_F(Refusals, NumbersInOptions) {
        {"match @mixed @s.toml -o @new --twins 0", kUsage, {"--twins", "1 to 1000"}},
        {"reproduce p1-fig1 -o @new --budget nan", kUsage, {"--budget", "'nan'"}},
        {"sweep run @s.toml --folder @new --shard 0/2", kUsage, {"s.toml", "scene"}}});
+}
+
+// What belongs to another output, another number of stacks, another dimension or another side.
+TEST_F(Refusals, WordsThatDoNotGoTogether) {
+  const std::string film = "locate @mixed -o @new.csv ", table = "import @deep.csv --timestep 1 -o @new.h5 ";
+  expect(
+      {{"draw @t.h5 -o @new.png --fps 10", kUsage, {"--fps", "picture"}},
+       {"render @t.h5 -o @new --fps 10", kUsage, {"--fps", "--movie"}},
+       {film + "--frame 1", kUsage, {"--frame", "--overlay"}},
+       {film + "--view @new.png", kUsage, {"--view", ".html", "--overlay"}},
+       {film + "--overlay @mixed/o.png", kUsage, {"o.png", "is an input", "one of its frames"}},
+       {film + "--diameter 12,13", kUsage, {"--diameter", "decimal point, 12.13", "several as 12 13"}},
+       {"analyze @t.h5 --only nothing", kUsage, {"--only: there is no result"}},
+       {"new @mixed @folder -o @new --drive-gamma 2", kUsage, {"--drive-gamma", "2 stacks", "--drive-hz"}},
+       {"import @t.h5 -o @new.h5", kUsage, {"t.h5", "already"}},
+       {"import @g.csv -o @new.h5", kInput, {"g.csv:1", "no column 'frame'"}},
+       {"import @beads.csv -o @new.h5", kInput, {"beads.csv:1", "'particle'", "track"}},
+       {"import @text.png -o @new.h5", kInput, {"text.png:1", "not a text dump of LAMMPS", "csv"}},
+       {table + "--dimension 3", kUsage, {"--cell-origin", "y of this file increases downwards"}},
+       {table, kInput, {"deep.csv:3", "z = 0.7", "--dimension 3"}},
+       {table + "--columns y=x", kUsage, {"--columns", "'x' is both x and y"}},
+       {"sweep status @folder", kUsage, {"folder", "plan", "--folder"}},
+       {"compare --experiment @t.h5 --simulation @link.h5 -o @new", kUsage, {"link.h5", "same file"}},
+       {"compare --simulation @t.h5 @deep.h5 -o @new", kUsage, {"--simulation", "has 3 dimensions", "has 2"}},
+       {"sweep plan @nothing.toml --folder @new", kUsage, {"results", "empty"}}});
 }
 
 TEST_F(Refusals, FilesOfAnotherKind) {

@@ -83,12 +83,22 @@ class TableReader final : public PictureBeadsReader {
     for (std::size_t q = 0; q < kQuantities.size(); ++q) {
       const auto renamed = options_.columns.find(kQuantities[q]);
       at_[q] = find(renamed == options_.columns.end() ? kQuantities[q] : renamed->second);
+      const auto twin = std::find(at_.begin(), at_.begin() + static_cast<std::ptrdiff_t>(q), at_[q]);
+      if (at_[q] && *twin == at_[q] && twin != at_.begin() + static_cast<std::ptrdiff_t>(q))
+        throw ConfigError(
+            {"", 0, 0, "--columns"},
+            fmt::format("the column '{}' is both {} and {}.", names[*at_[q]],
+                        kQuantities[static_cast<std::size_t>(twin - at_.begin())], kQuantities[q]));
     }
     for (const char* needed : {"frame", "particle", "x", "y"})
       if (!column(needed))
-        fail_at(1,
-                fmt::format("there is no column '{}'; --columns {}=NAME states another name. There are: {}.",
-                            needed, needed, fmt::join(names, ", ")));
+        fail_at(1, fmt::format("there is no column '{}'; --columns {}=NAME states another name. There are: "
+                               "{}.{}",
+                               needed, needed, fmt::join(names, ", "),
+                               std::string_view(needed) == "particle"
+                                   ? " Beads that are not linked, such as those of locate, have no particle; "
+                                     "track locates and links a stack."
+                                   : ""));
     if (options_.dimension == 3 && !column("z")) fail_at(1, "there is no column 'z' (--dimension 3).");
     has_.radius = column("radius") || column("diameter");
     has_.mass = column("bead_mass").has_value();
@@ -131,8 +141,9 @@ class TableReader final : public PictureBeadsReader {
     if (column("time")) row.time = real("time", 0);
     row.bead.line = number;
     row.bead.id = whole("particle");
-    const bool deep = options_.dimension == 3;
-    row.bead.position = upright(Vec3(real("x", 0), real("y", 0), deep ? real("z", 0) : 0));
+    // A plane needs no z; the reader of the trajectory refuses one that differs between beads.
+    const double z = real("z", 0, options_.dimension == 2);
+    row.bead.position = upright(Vec3(real("x", 0), real("y", 0), std::isfinite(z) ? z : 0));
     row.bead.velocity = upright(Vec3(real("vx", 0), real("vy", 0), real("vz", 0)));
     const Vec3 u(real("sigma_x", 0, true), real("sigma_y", 0, true), real("sigma_z", 0, true));
     row.bead.uncertainty = upright(u).cwiseAbs();  // has no direction
@@ -222,6 +233,7 @@ const ForeignFormat bead_table_format = {
         -> std::unique_ptr<SnapshotReader> { return std::make_unique<TableReader>(file, options); },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
         -> std::unique_ptr<SnapshotWriter> { return std::make_unique<TableWriter>(part, options); },
+    .mark = "frame,particle,x,y,step,time\nframe,particle,x,y,z,step,time",
     .source = "unknown"};
 
 }  // namespace twincell

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "trajectory/time_unit.hpp"
 
 namespace twincell {
 
@@ -72,13 +73,23 @@ void add_contacts(Snapshot& s, const Frame& frame, const TrajectoryInfo& info, c
 
 }  // namespace
 
+ExportUnits ExportUnits::reduced(const TrajectoryInfo& info) {
+  ExportUnits units;
+  if (time_is_frame_number(info)) units.time_unit = "frame";
+  return units;
+}
+
 ExportUnits ExportUnits::laboratory(const TrajectoryInfo& info, const std::string& option) {
   const auto t0 = info.scale.t0_s();
   if (!t0)
     throw ConfigError({"", 0, 0, option},
                       "the trajectory does not state the bead diameter in mm and g; sigma and t0 can be "
                       "written.");
-  return {.length = *info.scale.sigma_m * 1e3, .time = *t0, .length_unit = "mm", .time_unit = "s"};
+  const bool numbered = time_is_frame_number(info);
+  return {.length = *info.scale.sigma_m * 1e3,
+          .time = numbered ? 1 : *t0,
+          .length_unit = "mm",
+          .time_unit = numbered ? "frame" : "s"};
 }
 
 Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units,

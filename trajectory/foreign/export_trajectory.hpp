@@ -19,8 +19,10 @@ struct ExportUnits {
   double length = 1, time = 1;  ///< of sigma and of t0
   std::string length_unit = "sigma", time_unit = "t0";
 
-  static ExportUnits reduced() { return {}; }
-  /// mm and s. \throws ConfigError at `option` if the trajectory does not state its scale
+  /// sigma and t0, or the number of the frame where that is the time.
+  static ExportUnits reduced(const TrajectoryInfo& info);
+  /// mm and s, or the number of the frame where that is the time. \throws ConfigError at `option` if the
+  /// trajectory does not state its scale
   static ExportUnits laboratory(const TrajectoryInfo& info, const std::string& option);
 };
 

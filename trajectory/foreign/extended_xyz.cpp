@@ -195,6 +195,8 @@ class XyzReader final : public SnapshotReader {
   std::int64_t n_frames_ = 0;
 };
 
+constexpr const char* kCreator = "creator=twincell";
+
 /// The species is X, ASE's symbol of no element; tracers have type 2.
 class XyzWriter final : public SnapshotWriter {
  public:
@@ -212,7 +214,7 @@ class XyzWriter final : public SnapshotWriter {
     if (s.phase) fmt::format_to(text, " phase={}", *s.phase);
     if (s.cycle) fmt::format_to(text, " cycle={}", *s.cycle);
     if (s.plate_height) fmt::format_to(text, " plate_height={}", *s.plate_height);
-    fmt::format_to(text, " length_unit={} time_unit={} Properties=species:S:1:pos:R:3:id:I:1",
+    fmt::format_to(text, " {} length_unit={} time_unit={} Properties=species:S:1:pos:R:3:id:I:1", kCreator,
                    options_.length_unit, options_.time_unit);
     if (has_.radius) out_.text() += ":radius:R:1";
     if (has_.mass) out_.text() += ":mass:R:1";
@@ -256,6 +258,7 @@ const ForeignFormat extended_xyz_format = {
         -> std::unique_ptr<SnapshotReader> { return std::make_unique<XyzReader>(file, options); },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
         -> std::unique_ptr<SnapshotWriter> { return std::make_unique<XyzWriter>(part, options); },
-    .numbers = true};
+    .numbers = true,
+    .mark = kCreator};
 
 }  // namespace twincell

@@ -43,6 +43,8 @@ struct ForeignTrajectory::Impl {
   std::vector<std::int64_t> ids;  ///< of the slots, ascending
   double t0 = 1;
   std::int64_t first_cycle = 0;
+  std::optional<Vec3> first_position;
+  std::array<bool, 2> flat = {true, true};  ///< all beads have the same y; the same z
 
   /// Converts a vector from the axes of Snapshot to those of Box. In 2D, y of the snapshot is our z, and -z
   /// is our y.
@@ -93,10 +95,13 @@ struct ForeignTrajectory::Impl {
     }
     for (const SnapshotBead& a : s.beads) {
       constexpr double kFlat = 1e-9;
-      if (o.dimension == 2 && std::abs(a.position.z()) > kFlat * o.sigma)
-        reader.fail_at(a.line, fmt::format("bead {} is at z = {:g}, not in the plane z = 0; is this a "
-                                           "three-dimensional system (--dimension 3)?",
-                                           a.id, a.position.z()));
+      if (!first_position) first_position = a.position;
+      for (const int k : {1, 2})
+        if (std::abs(a.position[k] - (*first_position)[k]) > kFlat * o.sigma) flat[k - 1] = false;
+      if (o.dimension == 2 && !flat[1])
+        reader.fail_at(a.line, fmt::format("bead {} is at z = {:g}, not in the plane z = {:g} of the first "
+                                           "bead; is this a three-dimensional system (--dimension 3)?",
+                                           a.id, a.position.z(), first_position->z()));
     }
     const Vec3 upper = turned(s.upper - o.origin) / o.sigma;
     info.box.upper = n_frames == 0 ? upper : Vec3(info.box.upper.cwiseMax(upper));
@@ -127,7 +132,8 @@ struct ForeignTrajectory::Impl {
   }
 
   /// End of the first pass: sets columns, box and boundaries.
-  void complete(const Snapshot& first, const SnapshotColumns& columns) {
+  /// \param y_down whether y of the file increases downwards
+  void complete(const Snapshot& first, const SnapshotColumns& columns, bool y_down) {
     info.n_beads = ids.size();
     info.source = format->source;
     const auto all = [&](const std::array<bool, 3>& of) {
@@ -150,7 +156,11 @@ struct ForeignTrajectory::Impl {
     if (!tracer_type(columns)) info.tracer.clear();
     if (o.tracer_type && !columns.type) refuse("--tracer-type", "the file has no types of beads.");
     if (!(info.box.upper.minCoeff() > 0))
-      refuse("--cell-origin", "the origin is above or to the right of the file's box.");
+      refuse(
+          "--cell-origin",
+          fmt::format(
+              "the origin of the cell, its lower left corner, is above or to the right of all beads.{}",
+              y_down ? " y of this file increases downwards; --y-up is for a table whose y does not." : ""));
   }
 
   [[nodiscard]] std::size_t slot_of(const SnapshotReader& reader, const SnapshotBead& a) const {
@@ -249,7 +259,8 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
     d.info.tracer.push_back(bead.tracer ? 1 : 0);
   }
   d.info.columns.identity = fewest < d.ids.size();
-  d.complete(first, reader.columns());
+  const Vec3 along_y = reader.upright(Vec3(0, 1, 0));
+  d.complete(first, reader.columns(), along_y.minCoeff() < 0);
 }
 
 ForeignTrajectory::~ForeignTrajectory() = default;
@@ -260,6 +271,10 @@ const TrajectoryInfo& ForeignTrajectory::info() const {
 
 std::size_t ForeignTrajectory::n_frames() const {
   return impl_->n_frames;
+}
+
+bool ForeignTrajectory::is_flat() const {
+  return impl_->info.n_beads > 1 && (impl_->flat[0] || impl_->flat[1]);
 }
 
 void ForeignTrajectory::copy_to(TrajectorySink& sink, Progress& progress) const {

@@ -51,6 +51,8 @@ class ForeignTrajectory {
 
   [[nodiscard]] const TrajectoryInfo& info() const;
   [[nodiscard]] std::size_t n_frames() const;
+  /// Whether several beads have the same y, or the same z (upwards for 3D), in all frames.
+  [[nodiscard]] bool is_flat() const;
   /// Appends all frames to `sink` in order.
   void copy_to(TrajectorySink& sink, Progress& progress = Progress::none()) const;
 

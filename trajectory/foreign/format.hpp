@@ -39,8 +39,11 @@ struct ForeignFormat {
   std::unique_ptr<SnapshotReader> (*open)(const std::filesystem::path& file, const ReadOptions& options);
   /// Null: the format is only read.
   std::unique_ptr<SnapshotWriter> (*create)(const std::filesystem::path& part, const WriteOptions& options);
-  bool folder = false;                ///< the output is a folder with a file for each frame
-  bool numbers = false;               ///< it carries SnapshotColumns::numbers
+  bool folder = false;   ///< the output is a folder with a file for each frame
+  bool numbers = false;  ///< it carries SnapshotColumns::numbers
+  /// Lines, one of which is in the first 4 KiB of every file that twincell writes in this format, and none in
+  /// the files of other programs; empty: the format has no place for it.
+  std::string_view mark;
   const char* source = "simulation";  ///< TrajectoryInfo::source of what is read
 };
 

@@ -9,12 +9,12 @@
 namespace twincell {
 
 extern const ForeignFormat extended_xyz_format, lammps_dump_format, vtk_format, gsd_format, bead_table_format,
-    track_mate_format;
+    track_mate_format, isbi_format, mat_format;
 
 const std::vector<const ForeignFormat*>& foreign_formats() {
-  static const std::vector<const ForeignFormat*> all = {&extended_xyz_format, &lammps_dump_format,
-                                                        &vtk_format,          &gsd_format,
-                                                        &bead_table_format,   &track_mate_format};
+  static const std::vector<const ForeignFormat*> all = {
+      &extended_xyz_format, &lammps_dump_format, &vtk_format,  &gsd_format,
+      &bead_table_format,   &track_mate_format,  &isbi_format, &mat_format};
   return all;
 }
 

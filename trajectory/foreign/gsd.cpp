@@ -23,6 +23,7 @@ constexpr std::uint64_t kMagic = 0x65DF65DF65DF65DF;
 constexpr std::uint32_t kFileVersion = 2U << 16;         // 2.0
 constexpr std::uint32_t kSchemaVersion = 1U << 16 | 4U;  // 1.4
 constexpr std::size_t kNameBytes = 64;
+constexpr const char* kApplication = "twincell";
 
 struct Header {
   std::uint64_t magic = kMagic, index_at = 0, index_entries = 0, names_at = 0, name_entries = 0;
@@ -128,7 +129,7 @@ class GsdWriter final : public SnapshotWriter {
 
   void finish() override {
     Header header;
-    std::strncpy(header.application, "twincell", sizeof header.application - 1);
+    std::strncpy(header.application, kApplication, sizeof header.application - 1);
     std::strncpy(header.schema, "hoomd", sizeof header.schema - 1);
     header.index_at = at_;
     // The index is sorted by frame, then by id of the name; unused entries at its end are zero.
@@ -391,6 +392,7 @@ const ForeignFormat gsd_format = {
     .open = [](const std::filesystem::path& file, const ReadOptions& options)
         -> std::unique_ptr<SnapshotReader> { return std::make_unique<GsdReader>(file, options); },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
-        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<GsdWriter>(part, options); }};
+        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<GsdWriter>(part, options); },
+    .mark = kApplication};
 
 }  // namespace twincell

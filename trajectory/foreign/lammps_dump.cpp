@@ -52,8 +52,11 @@ class DumpReader final : public SnapshotReader {
       begun = true;
       line_.erase(line_.find_last_not_of(" \t\r") + 1);
       if (line_.rfind("ITEM: ", 0) != 0)
-        fail(in_.number() == 1 ? "'ITEM: TIMESTEP' is missing; this is not a text dump of LAMMPS."
-                               : fmt::format("'ITEM:' is missing, '{}' was found.", excerpt()));
+        fail(in_.number() == 1
+                 ? fmt::format("'ITEM: TIMESTEP' is missing; this is not a text dump of LAMMPS. "
+                               "Formats that are read: {}.",
+                               read_formats())
+                 : fmt::format("'ITEM:' is missing, '{}' was found.", excerpt()));
       const std::string section = line_.substr(6);
       if (section == "UNITS") {
         need_line("the units");

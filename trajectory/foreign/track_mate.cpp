@@ -1,7 +1,7 @@
 // TrackMate, the tracker of Fiji: its own file (spots, edges, tracks), and read also the simple list of
-// tracks that its action "Export tracks to XML file" writes. y increases downwards, as in a picture. Source:
-// TrackMate's manual, "TrackMate XML file format"; fiji.plugin.trackmate.io.TmXmlReader,
-// action.ExportTracksToXML.
+// tracks that its action "Export tracks to XML file" writes and that of the ISBI challenge. y increases
+// downwards, as in a picture. Source: TrackMate's manual, "TrackMate XML file format";
+// fiji.plugin.trackmate.io.TmXmlReader, action.ExportTracksToXML.
 
 #include <fmt/format.h>
 
@@ -9,9 +9,10 @@
 #include <array>
 #include <functional>
 #include <map>
-#include <optional>
+#include <pugixml.hpp>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "core/escape.hpp"
 #include "core/table_text.hpp"
@@ -23,191 +24,114 @@ namespace twincell {
 
 namespace {
 
-/// A tag of an XML text.
-struct Tag {
-  std::string_view name;
-  bool ends = false;  ///< </name>
-  long line = 0;
-  std::vector<std::pair<std::string_view, std::string_view>> attributes;
-
-  [[nodiscard]] const std::string_view* attribute(std::string_view wanted) const {
-    for (const auto& [known, value] : attributes)
-      if (known == wanted) return &value;
-    return nullptr;
-  }
-};
-
-/// The tags of an XML text, one after another. Text between tags, comments and declarations are skipped;
-/// entities in values stay as they are, because numbers have none.
-class Tags {
+/// An XML text and its elements, which know their lines.
+class XmlText {
  public:
   /// \param fail called with line and complaint; does not return
-  Tags(std::string_view text, std::function<void(long, std::string)> fail)
-      : text_(text), fail_(std::move(fail)) {}
-
-  /// \returns false at the end of the text
-  bool next(Tag& tag) {
-    for (;;) {
-      move_to(std::min(text_.find('<', at_), text_.size()));
-      if (at_ == text_.size()) return false;
-      if (skip("<!--", "-->") || skip("<![CDATA[", "]]>") || skip("<?", "?>") || skip("<!", ">")) continue;
-      break;
-    }
-    tag = {.line = line_};
-    move_to(at_ + 1);
-    if (peek() == '/') {
-      tag.ends = true;
-      move_to(at_ + 1);
-    }
-    tag.name = word();
-    if (tag.name.empty()) fail_(line_, "'<' without the name of an element.");
-    for (;;) {
-      space();
-      if (peek() == '/') move_to(at_ + 1);
-      if (peek() == '>') break;
-      const std::string_view name = word();
-      space();
-      if (name.empty() || peek() != '=')
-        fail_(line_, fmt::format("the element '{}' is malformed.", tag.name));
-      move_to(at_ + 1);
-      space();
-      const char quote = peek();
-      const std::size_t end =
-          quote == '"' || quote == '\'' ? text_.find(quote, at_ + 1) : std::string_view::npos;
-      if (end == std::string_view::npos)
-        fail_(line_, fmt::format("the value of '{}' has no closing quote.", name));
-      tag.attributes.emplace_back(name, text_.substr(at_ + 1, end - at_ - 1));
-      move_to(end + 1);
-    }
-    move_to(at_ + 1);
-    return true;
+  XmlText(std::string text, const std::function<void(long, std::string)>& fail) : text_(std::move(text)) {
+    for (std::size_t at = text_.find('\n'); at != std::string::npos; at = text_.find('\n', at + 1))
+      line_ends_.push_back(static_cast<std::ptrdiff_t>(at));
+    const pugi::xml_parse_result parsed = tree_.load_buffer(text_.data(), text_.size());
+    if (!parsed)
+      fail(line_of(parsed.offset), fmt::format("this is no well-formed XML ({}).", parsed.description()));
   }
-  [[nodiscard]] long line() const { return line_; }
+  [[nodiscard]] pugi::xml_node root() const { return tree_.document_element(); }
+  [[nodiscard]] long line_of(const pugi::xml_node& node) const { return line_of(node.offset_debug()); }
 
  private:
-  void move_to(std::size_t to) {
-    line_ += std::count(text_.begin() + static_cast<std::ptrdiff_t>(at_),
-                        text_.begin() + static_cast<std::ptrdiff_t>(to), '\n');
-    at_ = to;
+  [[nodiscard]] long line_of(std::ptrdiff_t offset) const {
+    return 1 +
+           std::distance(line_ends_.begin(), std::lower_bound(line_ends_.begin(), line_ends_.end(), offset));
   }
-  /// The next character. An element that is open at the end of the text is refused.
-  [[nodiscard]] char peek() const {
-    if (at_ >= text_.size()) fail_(line_, "the file ends inside an element.");
-    return text_[at_];
-  }
-  bool skip(std::string_view begin, std::string_view end) {
-    if (!text_.substr(at_).starts_with(begin)) return false;
-    const std::size_t to = text_.find(end, at_ + begin.size());
-    if (to == std::string_view::npos)
-      fail_(line_, fmt::format("'{}' is never followed by '{}'.", begin, end));
-    move_to(to + end.size());
-    return true;
-  }
-  void space() { move_to(std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size())); }
-  std::string_view word() {
-    const std::size_t begin = at_;
-    move_to(std::min(text_.find_first_of(" \t\r\n=/>\"'<", at_), text_.size()));
-    return text_.substr(begin, at_ - begin);
-  }
-
-  std::string_view text_;
-  std::function<void(long, std::string)> fail_;
-  std::size_t at_ = 0;
-  long line_ = 1;
+  std::string text_;
+  std::vector<std::ptrdiff_t> line_ends_;
+  pugi::xml_document tree_;
 };
 
 class TrackMateReader final : public PictureBeadsReader {
  public:
   TrackMateReader(const std::filesystem::path& file, const ReadOptions& options)
-      : PictureBeadsReader(file, options) {
-    const std::string text = read_table_text(file);
-    Tags tags(text, [this](long line, const std::string& what) { fail_at(line, what); });
-    Tag tag;
-    if (!tags.next(tag)) fail_at(0, "there is no XML element.");
-    if (tag.name == "TrackMate")
-      read_model(tags);
-    else if (tag.name == "Tracks")
-      read_list(tags);
+      : PictureBeadsReader(file, options),
+        xml_(read_table_text(file), [this](long line, const std::string& what) { fail_at(line, what); }) {
+    const pugi::xml_node root = xml_.root();
+    const std::string_view name = root.name();
+    if (name == "TrackMate")
+      read_model(root.child("Model"));
+    else if (name == "Tracks")
+      read_list(root);
+    else if (name == "root" && root.child("TrackContestISBI2012"))
+      read_list(root.child("TrackContestISBI2012"));
     else
-      fail_at(tag.line,
-              fmt::format("the element '{}' is neither TrackMate nor Tracks.", tag.name.substr(0, 60)));
+      fail_at(xml_.line_of(root),
+              fmt::format("the element '{}' is neither TrackMate nor Tracks nor that of an "
+                          "ISBI file.",
+                          name.substr(0, 60)));
     if (beads_.empty()) fail_at(0, "the file has no tracks.");
     sort_by_frame();
   }
 
  private:
-  [[nodiscard]] std::string_view needed(const Tag& tag, std::string_view name) const {
-    const std::string_view* value = tag.attribute(name);
-    if (value == nullptr) fail_at(tag.line, fmt::format("'{}' has no attribute '{}'.", tag.name, name));
-    return *value;
+  [[nodiscard]] std::string_view needed(const pugi::xml_node& node, const char* name) const {
+    const pugi::xml_attribute value = node.attribute(name);
+    if (!value) fail_at(xml_.line_of(node), fmt::format("'{}' has no attribute '{}'.", node.name(), name));
+    return value.value();
   }
-  [[nodiscard]] std::int64_t whole(const Tag& tag, std::string_view name) const {
-    return whole_at(tag.line, needed(tag, name));
+  [[nodiscard]] std::int64_t whole(const pugi::xml_node& node, const char* name) const {
+    return whole_at(xml_.line_of(node), needed(node, name));
   }
-  [[nodiscard]] double number(const Tag& tag, std::string_view name) const {
-    return number_at(tag.line, needed(tag, name));
+  [[nodiscard]] double number(const pugi::xml_node& node, const char* name) const {
+    return number_at(xml_.line_of(node), needed(node, name));
   }
-  [[nodiscard]] Vec3 position(const Tag& tag, const std::array<const char*, 3>& names) const {
-    const bool deep = options_.dimension == 3;
-    return upright(Vec3(number(tag, names[0]), number(tag, names[1]), deep ? number(tag, names[2]) : 0));
+  [[nodiscard]] BeadOfFrame spot(const pugi::xml_node& node, const char* frame,
+                                 const std::array<const char*, 3>& axes) const {
+    const bool has_z = options_.dimension == 3 || node.attribute(axes[2]);
+    BeadOfFrame spot{.frame = whole(node, frame)};
+    spot.bead.line = xml_.line_of(node);
+    spot.bead.type = 1;
+    spot.bead.position =
+        upright(Vec3(number(node, axes[0]), number(node, axes[1]), has_z ? number(node, axes[2]) : 0));
+    return spot;
   }
 
   /// A list of tracks: <particle><detection t x y z/>...</particle>.
-  void read_list(Tags& tags) {
-    Tag tag;
-    std::int64_t particle = -1;
-    while (tags.next(tag)) {
-      if (tag.name == "particle" && !tag.ends) ++particle;
-      if (tag.name != "detection" || tag.ends) continue;
-      if (particle < 0) fail_at(tag.line, "a detection belongs to no particle.");
-      BeadOfFrame spot{.frame = whole(tag, "t")};
-      spot.bead.id = particle;
-      spot.bead.line = tag.line;
-      spot.bead.type = 1;
-      spot.bead.position = position(tag, {"x", "y", "z"});
-      beads_.push_back(spot);
+  void read_list(const pugi::xml_node& list) {
+    std::int64_t particle = 0;
+    for (const pugi::xml_node& track : list.children("particle")) {
+      for (const pugi::xml_node& detection : track.children("detection")) {
+        beads_.push_back(spot(detection, "t", {"x", "y", "z"}));
+        beads_.back().bead.id = particle;
+      }
+      ++particle;
     }
   }
 
   /// A file of TrackMate: all spots, the edges of all tracks, and the tracks that passed the filters.
-  void read_model(Tags& tags) {
+  void read_model(const pugi::xml_node& model) {
     std::unordered_map<std::int64_t, std::size_t> place;  // ID -> entry of beads_
-    std::unordered_map<std::int64_t, std::int64_t> track_of;
-    std::set<std::int64_t> shown;
-    bool filtered = false;
-    std::int64_t track = -1;
-    Tag tag;
     has_.radius = true;
-    while (tags.next(tag)) {
-      if (tag.ends) continue;
-      if (tag.name == "Spot") {
-        BeadOfFrame spot{.frame = whole(tag, "FRAME")};
-        if (tag.attribute("POSITION_T") != nullptr) spot.time = number(tag, "POSITION_T");
-        spot.bead.line = tag.line;
-        spot.bead.type = 1;
-        spot.bead.radius = tag.attribute("RADIUS") != nullptr ? number(tag, "RADIUS") : 0;
-        has_.radius = has_.radius && spot.bead.radius > 0;
-        spot.bead.position = position(tag, {"POSITION_X", "POSITION_Y", "POSITION_Z"});
-        if (!place.emplace(whole(tag, "ID"), beads_.size()).second)
-          fail_at(tag.line, fmt::format("the spot {} occurs twice.", needed(tag, "ID")));
-        beads_.push_back(spot);
-      } else if (tag.name == "Track") {
-        track = whole(tag, "TRACK_ID");
-      } else if (tag.name == "Edge") {
-        for (const char* end : {"SPOT_SOURCE_ID", "SPOT_TARGET_ID"}) {
-          const std::int64_t id = whole(tag, end);
-          if (!place.contains(id)) fail_at(tag.line, fmt::format("there is no spot {}.", id));
-          if (track < 0) fail_at(tag.line, "an edge belongs to no track.");
-          if (const auto [known, fresh] = track_of.emplace(id, track); !fresh && known->second != track)
-            fail_at(tag.line,
-                    fmt::format("the spot {} belongs to the tracks {} and {}.", id, known->second, track));
-        }
-      } else if (tag.name == "FilteredTracks") {
-        filtered = true;
-      } else if (tag.name == "TrackID") {
-        shown.insert(whole(tag, "TRACK_ID"));
+    for (const pugi::xml_node& frame : model.child("AllSpots").children("SpotsInFrame"))
+      for (const pugi::xml_node& node : frame.children("Spot")) {
+        BeadOfFrame found = spot(node, "FRAME", {"POSITION_X", "POSITION_Y", "POSITION_Z"});
+        if (node.attribute("POSITION_T")) found.time = number(node, "POSITION_T");
+        found.bead.radius = node.attribute("RADIUS") ? number(node, "RADIUS") : 0;
+        has_.radius = has_.radius && found.bead.radius > 0;
+        if (!place.emplace(whole(node, "ID"), beads_.size()).second)
+          fail_at(found.bead.line, fmt::format("the spot {} occurs twice.", needed(node, "ID")));
+        beads_.push_back(found);
       }
-    }
+    std::unordered_map<std::int64_t, std::int64_t> track_of;
+    for (const pugi::xml_node& track : model.child("AllTracks").children("Track"))
+      for (const pugi::xml_node& edge : track.children("Edge"))
+        for (const char* end : {"SPOT_SOURCE_ID", "SPOT_TARGET_ID"}) {
+          const std::int64_t id = whole(edge, end), number = whole(track, "TRACK_ID");
+          if (!place.contains(id)) fail_at(xml_.line_of(edge), fmt::format("there is no spot {}.", id));
+          if (const auto [known, fresh] = track_of.emplace(id, number); !fresh && known->second != number)
+            fail_at(xml_.line_of(edge),
+                    fmt::format("the spot {} belongs to the tracks {} and {}.", id, known->second, number));
+        }
+    std::set<std::int64_t> shown;
+    const pugi::xml_node filtered = model.child("FilteredTracks");
+    for (const pugi::xml_node& track : filtered.children("TrackID")) shown.insert(whole(track, "TRACK_ID"));
     keep_tracked(place, track_of, filtered ? &shown : nullptr);
   }
 
@@ -231,17 +155,20 @@ class TrackMateReader final : public PictureBeadsReader {
       if (kept[k]) tracked.push_back(beads_[k]);
     beads_ = std::move(tracked);
   }
+
+  XmlText xml_;
 };
+
+constexpr const char* kWriter = "<!-- written by twincell -->";
 
 class TrackMateWriter final : public SnapshotWriter {
  public:
   TrackMateWriter(const std::filesystem::path& part, const WriteOptions& options)
       : out_(part), options_(options) {
     out_.text() += fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<TrackMate version=\"7.11.1\">\n<Model "
-        "spatialunits=\"{}\" "
-        "timeunits=\"{}\">\n<FeatureDeclarations>\n<SpotFeatures>\n",
-        html_text(options_.length_unit), html_text(options_.time_unit));
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}\n<TrackMate version=\"7.11.1\">\n<Model "
+        "spatialunits=\"{}\" timeunits=\"{}\">\n<FeatureDeclarations>\n<SpotFeatures>\n",
+        kWriter, html_text(options_.length_unit), html_text(options_.time_unit));
     constexpr const char* kFeatures[][4] = {
         {"QUALITY", "Quality", "QUALITY", "false"}, {"POSITION_X", "X", "POSITION", "false"},
         {"POSITION_Y", "Y", "POSITION", "false"},   {"POSITION_Z", "Z", "POSITION", "false"},
@@ -321,6 +248,7 @@ const ForeignFormat track_mate_format = {
         -> std::unique_ptr<SnapshotReader> { return std::make_unique<TrackMateReader>(file, options); },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
         -> std::unique_ptr<SnapshotWriter> { return std::make_unique<TrackMateWriter>(part, options); },
+    .mark = kWriter,
     .source = "experiment"};
 
 }  // namespace twincell

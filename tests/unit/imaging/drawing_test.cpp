@@ -102,6 +102,19 @@ TEST(Drawing, ABeadHasTheColourOfItsNumberAtItsPlace) {
   EXPECT_GT(at(picture, view.project(Vec3(5, 0.5, 0.4)).at)[0], 250);
 }
 
+// The room for the colour bar at the right is there only with a colour bar.
+TEST(Drawing, WithoutColoursThePictureEndsAtTheCell) {
+  const MemoryTrajectory trajectory = three_beads();
+  DrawJob job;
+  job.pixels_per_sigma = 80;
+  const View plain = view_of(trajectory, job);
+  job.colours = by_slot();
+  const View coloured = view_of(trajectory, job);
+  EXPECT_EQ(plain.cell().width, coloured.cell().width);
+  EXPECT_LE(plain.size().width - plain.cell().br().x, 30);
+  EXPECT_GE(coloured.size().width - coloured.cell().br().x, 150);
+}
+
 TEST(Drawing, OnlyTheChosenFramesAndThePresentBeadsAreDrawn) {
   const MemoryTrajectory trajectory = three_beads();
   DrawJob job;

@@ -137,6 +137,20 @@ TEST(CellDraft, AStatedGammaThatThePlateContradictsIsNoted) {
   EXPECT_NE(draft.notes[0].find("Gamma = 3 is stated"), std::string::npos);
 }
 
+// Metres for millimetres, kilohertz for hertz: Gamma = 1.5 sigma (2 pi f)^2/g by hand in both cases.
+TEST(CellDraft, NumbersThatNoShakerReachesAreDoubted) {
+  const CellSurvey s = survey();
+  const CellDraft small = draft_cell(s, {.sigma_mm = 0.002, .frequency_hz = 20});
+  ASSERT_EQ(small.notes.size(), 2U);
+  EXPECT_NE(small.notes[0].find("bead diameter is 0.002 mm"), std::string::npos) << small.notes[0];
+  EXPECT_NE(small.notes[1].find("is 0.00483,"), std::string::npos) << small.notes[1];
+  const CellDraft fast = draft_cell(s, {.sigma_mm = 2, .frequency_hz = 20000});
+  ASSERT_EQ(fast.notes.size(), 2U);
+  EXPECT_NE(fast.notes[0].find("2e+04 Hz"), std::string::npos) << fast.notes[0];
+  EXPECT_NE(fast.notes[1].find("is 4.83e+06,"), std::string::npos) << fast.notes[1];
+  EXPECT_TRUE(draft_cell(s, {.sigma_mm = 2, .frequency_hz = 20}).notes.empty());
+}
+
 TEST(CellDraft, WhatNobodyKnowsIsRefusedByName) {
   const CellSurvey s = survey();
   const CellDraft draft = draft_cell(s, {});

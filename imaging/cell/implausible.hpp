@@ -1,0 +1,27 @@
+#pragma once
+/// \file
+/// Doubts about the numbers of a cell that most likely have a wrong unit.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "imaging/cell/cell.hpp"
+
+namespace twincell {
+
+/// Numbers of a shaken cell. Absent values are unknown.
+struct ShakenCell {
+  std::optional<double> sigma_mm;      ///< bead diameter
+  std::optional<double> frequency_hz;  ///< of the plate
+  std::optional<double> gamma;         ///< A omega^2/g
+};
+
+/// The numbers of a cell description, as far as it states them. \throws ConfigError as CellDescription::drive
+ShakenCell shaken_cell(const CellDescription& cell);
+
+/// One sentence for each number outside the range that shaken beads have: diameters of 0.02 to 100 mm,
+/// frequencies of 0.1 to 2000 Hz, Gamma of 0.01 to 300. Empty if all are inside.
+std::vector<std::string> implausible_numbers(const ShakenCell& cell);
+
+}  // namespace twincell
