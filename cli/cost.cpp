@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 #include "analysis/report/figures.hpp"
 #include "cli/cost_calibration.hpp"
 #include "cli/cost_gas.hpp"
@@ -276,10 +277,13 @@ Figure figure(const Measured& m) {
     int point;
   };
   // Each colour also has its own point shape.
-  constexpr std::array<Style, 3> kStyles = {
-      {{"verlet", colours::kBlue, 7}, {"predicted", colours::kOrange, 5}, {"split", colours::kVermilion, 9}}};
-  Figure f{
-      .name = "work_precision", .title = "Accuracy against computing time", .width = 1380, .height = 460};
+  constexpr std::array<Style, 3> kStyles = {{{"verlet", colours::kBlue, figure_style::kCircle},
+                                             {"predicted", colours::kOrange, figure_style::kSquare},
+                                             {"split", colours::kVermilion, figure_style::kTriangle}}};
+  Figure f{.name = "work_precision", .title = "Accuracy against computing time", .width = 720, .height = 760};
+  figure_style::Axis time{.label = "processor time, µs per bead and t_0", .logarithmic = true};
+  std::array<figure_style::Axis, 3> errors;
+  errors.fill({.label = "error", .logarithmic = true});
   std::vector<double> stiffnesses;
   for (const WorkPrecision& w : m.all)
     if (std::find(stiffnesses.begin(), stiffnesses.end(), w.setting.k_n) == stiffnesses.end())
@@ -292,34 +296,42 @@ Figure figure(const Measured& m) {
           fmt::format("# {} k_n {:g}: us a bead and t0, largest error of e, of v_t'/v_t, rms of R w', n\n",
                       style.integrator, k_n);
       for (const WorkPrecision& w : m.all)
-        if (w.setting.k_n == k_n && w.setting.integrator == style.integrator)
+        if (w.setting.k_n == k_n && w.setting.integrator == style.integrator) {
+          time.show(1e6 * w.cost.seconds_per_time);
+          errors[0].show(w.collision.restitution());
+          errors[1].show(w.collision.sticking());
+          errors[2].show(w.impacts.spin.rms);
           f.data +=
               fmt::format("{:.4g} {:.3e} {:.3e} {:.3e} {:g}\n", 1e6 * w.cost.seconds_per_time,
                           w.collision.restitution(), w.collision.sticking(), w.impacts.spin.rms, w.setting.n);
+        }
       f.data += "\n\n";
       const bool bold = k_n == kPaperStiffness;
       for (std::size_t panel = 0; panel < clauses.size(); ++panel)
         clauses[panel] += fmt::format(
-            "{}'{}.dat' index {} using 1:{} with linespoints pt {} ps {} lw {} lc rgb '{}' {}",
+            "{}'{}.dat' index {} using 1:{} with linespoints pt {} ps {} lw {} lc rgb '{}' notitle",
             clauses[panel].empty() ? "" : ", ", f.name, index, panel + 2, style.point, bold ? 0.9 : 0.4,
-            bold ? 2 : 0.7, style.colour, bold ? fmt::format("title '{}'", style.integrator) : "notitle");
+            bold ? figure_style::kCurve : 0.7, style.colour);
       ++index;
     }
-  f.plot = fmt::format(
-      "set multiplot layout 1,3\n"
-      "set logscale xy\n"
-      "set format y '10^{{%T}}'\n"
-      "set key bottom left\n"
-      "set xlabel 'processor time, µs per bead and t_0'\n"
-      "set title 'head-on: largest |e − e_{{exact}}|'\n"
-      "plot {}\n"
-      "set title 'oblique, no slip: largest error of v_t^′/v_t'\n"
-      "unset key\n"
-      "plot {}\n"
-      "set title 'impacts of a bed: rms error of Rω^′/v'\n"
-      "plot {}\n"
-      "unset multiplot\n",
-      clauses[0], clauses[1], clauses[2]);
+  constexpr std::array<const char*, 3> kTitles = {"head-on: largest |e − e_{exact}|",
+                                                  "oblique, no slip: largest, v_t^′/v_t",
+                                                  "impacts of a bed: rms, Rω^′/v"};
+  const figure_style::Panels panels(2, 2, f.width, f.height, 1);
+  f.plot = figure_style::Panels::begin();
+  for (std::size_t panel = 0; panel < clauses.size(); ++panel)
+    f.plot += panels.panel(panel) + figure_style::axes(time, errors[panel]) +
+              figure_style::panel_title("abc"[panel], kTitles[panel]) +
+              fmt::format("plot {}\n", clauses[panel]);
+  std::vector<std::string> key;
+  for (const Style& style : kStyles)
+    key.push_back(fmt::format("keyentry with linespoints pt {} ps 0.9 lc rgb '{}' title '{}'", style.point,
+                              style.colour, style.integrator));
+  f.plot += panels.end(key);
+  f.caption =
+      "Errors of single collisions and of the impacts of a bed against the processor time. Bold: k_n of the "
+      "papers; "
+      "thin: other k_n.";
   return f;
 }
 

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
+#include "analysis/report/gnuplot_text.hpp"
 #include "calibration/accuracy/calibration_cost.hpp"
 #include "cli/calibrate.hpp"
 
@@ -71,8 +72,10 @@ std::string as_text(const CalibrationCost& cost) {
 Figure figure(const CalibrationCost& cost) {
   Figure f{.name = "calibrating",
            .title = "Accuracy of calibration against number of frames",
-           .width = 760,
+           .width = 720,
            .height = 460};
+  figure_style::Axis frames{.label = "frames", .logarithmic = true},
+      error{.label = "standard error, in the unit of the key", .logarithmic = true};
   std::string clauses;
   int index = 0;
   for (const std::string& name : names_of(cost)) {
@@ -81,25 +84,19 @@ Figure figure(const CalibrationCost& cost) {
     for (const CalibrationPrecision& p : cost.numbers)
       if (p.name == name && p.stated > 0) {
         f.data += fmt::format("{} {:.4g}\n", p.frames, p.stated);
+        frames.show(p.frames);
+        error.show(p.stated);
         unit = p.unit;
       }
     f.data += "\n\n";
     std::string title = name + (unit == "1" ? "" : ", " + unit);
     std::replace(title.begin(), title.end(), '_', ' ');
-    clauses += fmt::format(
-        "{}'calibrating.dat' index {} using 1:2 with linespoints pt {} ps 0.9 lw 2 lc rgb '{}' title '{}'",
-        index > 0 ? ", " : "", index, 4 + index,
-        colours::kCurves[static_cast<std::size_t>(index) % colours::kCurves.size()], title);
+    clauses += fmt::format("{}'calibrating.dat' index {} using 1:2 with linespoints lt {} title '{}'",
+                           index > 0 ? ", " : "", index, index + 1, gnuplot_text(title));
     ++index;
   }
-  f.plot = fmt::format(
-      "set logscale xy\n"
-      "set format y '10^{{%T}}'\n"
-      "set key outside right\n"
-      "set xlabel 'frames'\n"
-      "set ylabel 'standard error'\n"
-      "plot {}\n",
-      clauses);
+  f.plot = fmt::format("{}set key outside right top vertical\nplot {}\n", figure_style::axes(frames, error),
+                       clauses);
   return f;
 }
 

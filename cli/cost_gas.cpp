@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/report/figure_style.hpp"
 #include "sim/accuracy/work_precision.hpp"
 
 namespace twincell::cli {
@@ -62,14 +63,18 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
   Figure& figure = report.figure;
   figure = {.name = "gas_cost",
             .title = "Accuracy against computing time: T_z of a gas",
-            .width = 960,
-            .height = 460};
+            .width = 720,
+            .height = static_cast<int>(380 * all.size())};
   std::string panels;
+  std::size_t panel = 0;
   int index = 0;
   for (const std::vector<GasTemperature>& of_system : all) {
     const GasTemperature& first = of_system.front();
     report.text += fmt::format("\n{}\n", first.gas.system);
-    panels += fmt::format("set title '{}'\nplot ", first.gas.system);
+    figure_style::Axis time{.label = "processor time, s", .logarithmic = true},
+        error{.label = "standard error of T_z/T_z", .logarithmic = true};
+    error.show(accuracy);
+    std::string clauses;
     const GasTemperature* cheapest = &first;
     for (const GasTemperature& g : of_system) {
       const double per_period = 1e3 * g.seconds / g.periods, to = g.seconds_to(accuracy);
@@ -92,31 +97,31 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
                                         {"errors_from_first", apart}});
       figure.data += fmt::format("# {}, {}: s of processor time, relative standard error of T_z\n",
                                  g.gas.system, name_of(g));
-      for (const double times : {0.1, 1.0, 10.0, 100.0})
-        figure.data +=
-            fmt::format("{:.4g} {:.4g}\n", times * g.seconds, g.standard_error / g.value / std::sqrt(times));
+      for (const double times : {0.1, 1.0, 10.0, 100.0}) {
+        const double seconds = times * g.seconds, relative = g.standard_error / g.value / std::sqrt(times);
+        time.show(seconds);
+        error.show(relative);
+        figure.data += fmt::format("{:.4g} {:.4g}\n", seconds, relative);
+      }
       figure.data += "\n\n";
       // A line shows the error of longer and shorter runs; a point marks the run that was made.
-      panels += fmt::format(
-          "'{0}.dat' index {1} with lines dt {2} lw 2 lc {3} title '{4}', '' index {1} every ::1::1 "
-          "with points pt 7 lc {3} notitle, ",
-          figure.name, index, g.gas.event_driven ? 1 : 2, 1 + index % 5, name_of(g));
+      clauses += fmt::format(
+          "'{0}.dat' index {1} with lines dt {2} lw {3} lt {4} title '{5}', '' index {1} every ::1::1 "
+          "with points lt {4} notitle, ",
+          figure.name, index, g.gas.event_driven ? 1 : 2, figure_style::kCurve, 1 + &g - &first, name_of(g));
       ++index;
     }
-    panels += fmt::format("{} with lines lc rgb 'grey' notitle\n", accuracy);
+    panels += figure_style::axes(time, error) +
+              figure_style::panel_title(static_cast<char>('a' + panel++), first.gas.system) +
+              fmt::format("plot {}{} with lines {} notitle\n", clauses, accuracy, figure_style::kStated);
     const double gain = first.seconds / first.periods / (cheapest->seconds / cheapest->periods);
     report.text += fmt::format("  {} needs {:.1f} times less time per period than {}\n", name_of(*cheapest),
                                gain, name_of(first));
     report.document["gain"][first.gas.system] = gain;
   }
-  figure.plot = fmt::format(
-      "set multiplot layout 1,{}\n"
-      "set logscale xy\n"
-      "set key bottom left\n"
-      "set xlabel 'processor time, s'\n"
-      "set ylabel 'standard error of T_z / T_z'\n"
-      "{}unset multiplot\n",
-      all.size(), panels);
+  figure.plot =
+      fmt::format("set multiplot layout {},1\nset key outside right top vertical\n{}unset multiplot\n",
+                  all.size(), panels);
   report.document["accuracy"] = accuracy;
   return report;
 }

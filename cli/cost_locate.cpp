@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 #include "imaging/benchmark/locating_cost.hpp"
 
 namespace twincell::cli {
@@ -193,31 +194,46 @@ std::string as_text(const Measured& m) {
 class Panels {
  public:
   explicit Panels(std::string name) : name_(std::move(name)) {}
-  void next() { clauses_.emplace_back(); }
+  void next(const char* error) {
+    clauses_.emplace_back();
+    errors_.push_back({.label = error, .logarithmic = true});
+  }
   void curve(const std::vector<LocatePrecision>& points, const std::string& title, const char* colour,
              int shape, bool relative, bool line = true) {
     if (points.empty()) return;
     data_ += fmt::format("# {}: ms per frame, rms, bound, sweeps\n", title);
     for (const LocatePrecision& p : points) {
       const double unit = relative ? p.setting.diameter_px : 1;
+      time_.show(1e3 * p.seconds);
+      errors_.back().show(p.rms / unit);
+      errors_.back().show(p.bound / unit);
       data_ += fmt::format("{:.4g} {:.4e} {:.4e} {}\n", 1e3 * p.seconds, p.rms / unit, p.bound / unit,
                            p.setting.sweeps);
     }
     data_ += "\n\n";
-    add(fmt::format("'{}.dat' index {} using 1:2 with {} pt {} ps 0.9 lw 2 lc rgb '{}' title '{}'", name_,
-                    index_, line ? "linespoints" : "points", shape, colour, title));
+    add(fmt::format("'{}.dat' index {} using 1:2 with {} pt {} ps 0.9 lw {} lc rgb '{}' title '{}'", name_,
+                    index_, line ? "linespoints" : "points", shape, figure_style::kCurve, colour, title));
     if (line)
       add(fmt::format("'{}.dat' index {} using 1:3 with lines lw 1 dt 2 lc rgb '{}' notitle", name_, index_,
                       colour));
     ++index_;
   }
   [[nodiscard]] const std::string& data() const { return data_; }
-  [[nodiscard]] const std::string& clauses(std::size_t panel) const { return clauses_[panel]; }
+  /// Commands of a panel. \param clauses more clauses
+  [[nodiscard]] std::string plot(std::size_t panel, const std::string& title, int beads,
+                                 const std::string& more = {}) const {
+    figure_style::Axis time = time_;
+    time.label = fmt::format("processor time, ms per frame of {} beads", beads);
+    return figure_style::axes(time, errors_[panel]) + figure_style::panel_title("abc"[panel], title) +
+           fmt::format("plot {}{}\n", clauses_[panel], more);
+  }
 
  private:
   void add(const std::string& clause) { clauses_.back() += (clauses_.back().empty() ? "" : ", ") + clause; }
   std::string name_, data_;
   std::vector<std::string> clauses_;
+  figure_style::Axis time_{.label = {}, .logarithmic = true};
+  std::vector<figure_style::Axis> errors_;  ///< of each panel
   int index_ = 0;
 };
 
@@ -225,9 +241,9 @@ Figure figure(const Measured& m) {
   // Each colour also has its own point shape.
   constexpr auto kColours = colours::kCurves;
   constexpr std::array<int, 7> kShapes = {7, 9, 5, 11, 13, 6, 4};
-  Figure f{.name = "locating", .title = "Accuracy against computing time", .width = 1260, .height = 440};
+  Figure f{.name = "locating", .title = "Accuracy against computing time", .width = 720, .height = 1080};
   Panels panels(f.name);
-  panels.next();
+  panels.next("rms error per coordinate, px");
   panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && is_usual_way(s); }),
                "vote, then 0, 1, 2 … sweeps", kColours[0], kShapes[0], false);
   panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && s.finder == "hough"; }),
@@ -238,7 +254,7 @@ Figure figure(const Measured& m) {
     return is_usual_picture(s) && s.finder == kUsual.finder && s.ring_px != kUsual.ring_px;
   }),
                "rings of 1.5 to 5 px", kColours[2], kShapes[2], false, false);
-  panels.next();
+  panels.next("rms error per coordinate, px");
   std::size_t k = 0;
   for (const double snr : m.noise()) {
     panels.curve(m.those([&](const LocateSetting& s) {
@@ -247,7 +263,7 @@ Figure figure(const Measured& m) {
                  fmt::format("SNR {:g}", snr), kColours[k % 7], kShapes[k % 7], false);
     ++k;
   }
-  panels.next();
+  panels.next("rms error per coordinate, σ");
   k = 0;
   std::vector<double> diameters;
   for (const LocatePrecision& p : m.all)
@@ -262,25 +278,13 @@ Figure figure(const Measured& m) {
     ++k;
   }
   f.data = panels.data();
-  f.plot = fmt::format(
-      "set multiplot layout 1,3\n"
-      "set logscale xy\n"
-      "set format y '10^{{%T}}'\n"
-      "set key top right\n"
-      "set yrange [1e-3:5]\n"
-      "set xlabel 'processor time, ms per frame of {} beads'\n"
-      "set ylabel 'rms error per coordinate, px'\n"
-      "set title '15 px, SNR 51; dashed: Cramér–Rao bound'\n"
-      "plot {}\n"
-      "set title 'noise, 15 px'\n"
-      "plot {}\n"
-      "set title 'pixels per bead, SNR 51'\n"
-      "set yrange [*:*]\n"
-      "set key outside right\n"
-      "set ylabel 'rms error per coordinate, σ'\n"
-      "plot {}, 1./30 with lines lc rgb grey title 'σ/30'\n"
-      "unset multiplot\n",
-      m.scene.beads, panels.clauses(0), panels.clauses(1), panels.clauses(2));
+  const int beads = m.scene.beads;
+  f.plot = "set multiplot layout 3,1\nset key outside right top vertical\n" +
+           panels.plot(0, "15 px, SNR 51; dashed: Cramér–Rao bound", beads) +
+           panels.plot(1, "noise, 15 px", beads) +
+           panels.plot(2, "pixels per bead, SNR 51", beads,
+                       fmt::format(", 1./30 with lines {} title 'σ/30'", figure_style::kStated)) +
+           "unset multiplot\n";
   return f;
 }
 

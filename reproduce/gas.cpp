@@ -1,6 +1,7 @@
 #include "reproduce/gas.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "analysis/report/colours.hpp"
 #include "core/json_text.hpp"
 
 namespace twincell::reproduce {
@@ -383,39 +383,67 @@ Series series_of(const std::string& title, const std::vector<GasPoint>& points, 
   return s;
 }
 
-Figure series_figure(const std::string& name, const std::string& title, const std::string& x_label,
-                     const std::string& y_label, const std::vector<Series>& all, const std::string& setup,
-                     const std::string& caption) {
-  static constexpr std::array<const char*, 8> kColours = {
-      colours::kVermilion, colours::kBlue, colours::kGreen, colours::kPurple,
-      colours::kOrange,    colours::kSky,  colours::kBlack, colours::kGrey};
-  static constexpr std::array<int, 6> kPoints = {7, 9, 5, 13, 11, 6};
-  Figure f{.name = name, .title = title, .caption = caption, .width = 640, .height = 460};
-  std::string plot;
-  int index = 0, points = 0, lines = 0;
+void add_series(std::vector<Series>& all, const std::string& title, const std::vector<GasPoint>& points,
+                const std::string& result, const std::function<Estimate(const Estimate&, double)>& of_value) {
+  const auto number = static_cast<std::size_t>(
+      std::count_if(all.begin(), all.end(), [](const Series& s) { return !s.line && !s.solid; }));
+  Series gas{.title = title, .x = {}, .y = {}},
+      solid{.title = title + ", solid", .x = {}, .y = {}, .of = number, .solid = true};
+  for (const GasPoint& p : points)
+    if (const auto e = p.get(result)) {
+      Series& s = p.solid() ? solid : gas;
+      s.x.push_back(p.at);
+      s.y.push_back(of_value ? of_value(*e, p.at) : *e);
+    }
+  all.push_back(gas);
+  if (!solid.x.empty()) all.push_back(solid);
+}
+
+figure_style::Axis w_axis() {
+  return {.label = "W = V_p^2/(d g)", .logarithmic = true};
+}
+
+Figure series_figure(SeriesFigure figure, const std::vector<Series>& all) {
+  Figure f{
+      .name = figure.name, .title = figure.title, .caption = figure.caption, .width = 640, .height = 480};
+  std::vector<std::string> clauses;
+  std::size_t points = 0, lines = 0;
+  bool any_solid = false;
   for (const Series& s : all) {
+    const std::size_t turn = s.of.value_or(s.line ? lines : points);
+    (s.line ? lines : points) += s.solid ? 0 : 1;
     if (s.x.empty()) continue;
     f.data += "# " + s.title + "\n";
-    for (std::size_t k = 0; k < s.x.size(); ++k)
-      f.data += fmt::format("{} {} {} {}\n", s.x[k], s.y[k].value, s.y[k].low.value_or(s.y[k].value),
-                            s.y[k].high.value_or(s.y[k].value));
+    bool bars = false;
+    for (std::size_t k = 0; k < s.x.size(); ++k) {
+      const double low = s.y[k].low.value_or(s.y[k].value), high = s.y[k].high.value_or(s.y[k].value);
+      f.data += fmt::format("{} {} {} {}\n", s.x[k], s.y[k].value, low, high);
+      bars = bars || low < high;
+      figure.x.show(s.x[k]);
+      for (const double y : {low, s.y[k].value, high}) figure.y.show(y);
+    }
     f.data += "\n\n";
-    const auto turn = static_cast<std::size_t>(s.line ? lines++ : points++);
-    plot += fmt::format("{}'{}.dat' index {} using 1:2{} with {} lc rgb '{}' title '{}'",
-                        plot.empty() ? "" : ", ", f.name, index++, s.line ? "" : ":3:4",
-                        s.line ? fmt::format("lines lw 1.3 dt {}", s.dash)
-                               : fmt::format("yerrorbars lw 1 ps 0.8 pt {}", kPoints[turn % kPoints.size()]),
-                        kColours[s.of.value_or(turn) % kColours.size()], s.title);
+    const std::string look =
+        s.line    ? fmt::format("lines lt {} lw {} dt {}", turn + 1, figure_style::kCurve, s.dash)
+        : s.solid ? fmt::format("points lt {} pt {}", turn + 1,
+                                figure_style::unfilled(figure_style::series_point(turn)))
+                  : fmt::format("{} lt {}", bars ? "yerrorbars" : "points", turn + 1);
+    clauses.push_back(
+        fmt::format("'{}.dat' index {} using {} with {} {}", f.name, clauses.size(),
+                    s.line || s.solid || !bars ? "1:2" : "1:2:3:4", look,
+                    s.solid || s.title.empty() ? "notitle" : fmt::format("title '{}'", s.title)));
+    any_solid = any_solid || s.solid;
   }
-  if (plot.empty()) {  // gnuplot rejects an empty plot
+  if (clauses.empty()) {  // gnuplot rejects an empty plot
     f.data = "# nothing measured\n";
-    f.plot =
-        "set xrange [0:1]\nset yrange [0:1]\nset label 'not measured at this budget' at 0.5,0.5 center\n"
-        "plot -1 notitle\n";
+    f.plot = figure_style::axes(figure.x, figure.y) +
+             "set label 'not measured at this budget' at graph 0.5,0.5 center\nplot NaN notitle\n";
     return f;
   }
-  f.plot = fmt::format("set xlabel '{}'\nset ylabel '{}'\nset key above\n{}\nplot {}\n", x_label, y_label,
-                       setup, plot);
+  if (any_solid) clauses.emplace_back("keyentry with points pt 6 lc rgb '#555555' title 'open: solid bed'");
+  clauses.insert(clauses.end(), figure.entries.begin(), figure.entries.end());
+  f.plot = figure_style::axes(figure.x, figure.y) + figure_style::panel_title(figure.panel, figure.title) +
+           figure.marks + fmt::format("plot {}\n", fmt::join(clauses, ", \\\n     "));
   return f;
 }
 

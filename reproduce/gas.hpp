@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/report/figure_style.hpp"
 #include "analysis/report/figures.hpp"
 #include "reproduce/reproduction.hpp"
 #include "sweep/schedule.hpp"
@@ -134,15 +135,32 @@ struct Series {
   std::vector<Estimate> y;
   bool line = false;  ///< drawn as a line without points
   int dash = 1;
-  /// For a line: the series of points, counted from 0, whose colour it has; absent: that of its own number.
+  /// The series of points, counted from 0, whose colour and shape it has; absent: those of its own number.
   std::optional<std::size_t> of = {};
+  bool solid = false;  ///< points of solid beds: the open shape of `of`
 };
 /// A result of the points against their key, without the points that lack it.
 Series series_of(const std::string& title, const std::vector<GasPoint>& points, const std::string& result);
-/// Figure with error bars for points, and with lines. \param setup gnuplot commands before the plot
-Figure series_figure(const std::string& name, const std::string& title, const std::string& x_label,
-                     const std::string& y_label, const std::vector<Series>& all, const std::string& setup,
-                     const std::string& caption);
+/// Adds a result of the points to the series of a figure: the beds that are a gas, and apart from them the
+/// solid ones (GasPoint::solid), which the figure draws with open symbols. \param of_value what to draw of a
+/// result at its key; empty: the result
+void add_series(std::vector<Series>& all, const std::string& title, const std::vector<GasPoint>& points,
+                const std::string& result,
+                const std::function<Estimate(const Estimate&, double)>& of_value = {});
+
+/// The axis W = V_p^2/(d g), logarithmic.
+figure_style::Axis w_axis();
+/// A figure of series with error bars, and of lines. The ranges of its axes grow to hold the series.
+struct SeriesFigure {
+  std::string name;
+  char panel;         ///< letter of the panel in the paper's figure; 0: none
+  std::string title;  ///< what is drawn and of which system, as enhanced text
+  figure_style::Axis x, y;
+  std::string caption;
+  std::string marks = {};                 ///< gnuplot commands before the plot
+  std::vector<std::string> entries = {};  ///< clauses after those of the series: marks in the key
+};
+Figure series_figure(SeriesFigure figure, const std::vector<Series>& all);
 
 /// Maximum of T_bar_z(W), at W_f.
 struct Peak {

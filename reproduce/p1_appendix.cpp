@@ -11,6 +11,7 @@
 #include "analysis/motion/phase_thresholds.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 #include "core/cancellation.hpp"
 #include "core/json_text.hpp"
 #include "reproduce/p1_scene.hpp"
@@ -105,7 +106,7 @@ double duration_of(const std::vector<Moment>& moments) {
 void add_contacts(Reproduction& r, json& measured) {
   const sim::CollisionErrors errors =
       sim::collision_errors({.integrator = "verlet", .n = kSteps, .k_n = 1e6});
-  std::string data, clauses_overlap, clauses_force;
+  std::string data, clauses_overlap, clauses_force, key;
   int index = 0;
   for (const Contact& c : kContacts) {
     const bool pair = c.m_eff < 1;
@@ -146,12 +147,16 @@ void add_contacts(Reproduction& r, json& measured) {
     const std::string slope = fmt::format("exp(-{0:.9g}*x)*({1:.9g}*cos({1:.9g}*x)-{0:.9g}*sin({1:.9g}*x))",
                                           form.beta * 1e-3, w * 1e-3);
     const std::string look = fmt::format("lc rgb '{}'", pair ? colours::kBlue : colours::kVermilion);
+    const int symbol = figure_style::unfilled(pair ? figure_style::kCircle : figure_style::kTriangle);
+    key += fmt::format("{}keyentry with points pt {} {} title '{}'", key.empty() ? "" : ", ", symbol, look,
+                       kind);
     const std::string range = fmt::format("[0:{:.6g}]", 1e3 * c.t_c);
     const auto clause = [&](std::string& clauses, int column, const std::string& curve) {
       clauses += fmt::format(
-          "{0}'p1-appendix-a.dat' index {1} using 1:{2} with points pt {3} ps 0.7 {4} title "
-          "'{5}', {6} {7} with lines lw 1.3 {4} notitle",
-          clauses.empty() ? "" : ", ", index, column, pair ? 6 : 8, look, kind, range, curve);
+          "{0}'p1-appendix-a.dat' index {1} using 1:{2} with points pt {3} ps 0.7 {4} notitle, {5} {6} with "
+          "lines lw "
+          "{7} {4} notitle",
+          clauses.empty() ? "" : ", ", index, column, symbol, look, range, curve, figure_style::kLine);
     };
     clause(clauses_overlap, 2, fmt::format("{:.9g}*{}", 1e4 / w, wave));
     clause(clauses_force, 3,
@@ -164,15 +169,21 @@ void add_contacts(Reproduction& r, json& measured) {
   r.targets.push_back(near("steps a period at n = 50", 141333, 0, steps, "{:.0f}"));
   measured.push_back({{"steps_per_period", steps}});
   // Figure of overlap and force against time.
-  Figure f{.name = "p1-appendix-a", .title = "One collision", .width = 760, .height = 360};
+  Figure f{.name = "p1-appendix-a", .title = "One collision", .width = 720, .height = 400};
   f.data = data;
-  f.plot =
-      "set multiplot layout 1,2\nset xrange [0:3.4]\nset xlabel 't / 10^{-3} t_0'\nset key top right\n"
-      "set ylabel 'overlap δ / 10^{-4} σ'\nset yrange [0:12.5]\nplot " +
-      clauses_overlap +
-      "\nset ylabel 'normal force F_n / 10^2 m g'\nset yrange [-2:12.5]\nset xzeroaxis lw 1 lc rgb "
-      "'#444444'\nplot " +
-      clauses_force + "\nunset multiplot\n";
+  const figure_style::Panels panels(1, 2, f.width, f.height, 1);
+  figure_style::Axis time{.label = "t / 10^{-3} t_0", .low = 0},
+      overlap{.label = "overlap δ / 10^{-4} σ", .low = 0},
+      force{.label = "normal force F_n / 10^2 m g", .low = -1};
+  time.show(1e3 * kContacts[1].t_c);
+  overlap.show(10);
+  force.show(10);
+  f.plot = figure_style::Panels::begin() + panels.panel(0) + figure_style::axes(time, overlap) +
+           figure_style::panel_title('a', "overlap") + "plot " + clauses_overlap + "\n" + panels.panel(1) +
+           figure_style::axes(time, force) + figure_style::panel_title('b', "force") +
+           "set xzeroaxis lw 1 lc rgb '#444444'\nplot " + clauses_force + "\n" +
+           panels.end({key, fmt::format("keyentry with lines lw {} lc rgb '#333333' title 'closed form'",
+                                        figure_style::kCurve)});
   f.caption = fmt::format(
       "A bead meets another, and a wall, with unit speed. Points: run with Verlet steps, n = {:g}; lines: "
       "closed "
@@ -277,21 +288,25 @@ void add_measures(Reproduction& r, json& measured) {
   measured.push_back({{"sheared_line_s_c", found}, {"closed_form", s_c}});
 
   // Figure of s_b against Gamma.
-  Figure f{.name = "p1-appendix-b", .title = "s_b of a rigid inelastic bed", .width = 540, .height = 400};
+  Figure f{.name = "p1-appendix-b", .title = "s_b of a rigid inelastic bed", .width = 640, .height = 480};
+  figure_style::Axis strength{.label = "Γ = A ω^2/g"}, s_b{.label = "s_b/σ", .logarithmic = true};
+  for (const auto& [at, variance, rest_form] : kTable) {
+    strength.show(at);
+    s_b.show(variance);
+    s_b.show(rest_form);
+  }
   f.data = "# Gamma, s_b found by the analysis: variance, about rest; closed form: variance, about rest\n" +
            points;
   f.plot = fmt::format(
-      "set logscale y\nset xrange [1.03:2.03]\nset yrange [0.002:2]\nset xlabel 'Γ'\nset ylabel 's_b / "
-      "σ'\nset key bottom right\n"
-      "set arrow 1 from first {0:.5f},graph 0 to first {0:.5f},first {1:.6f} nohead dt 2 lc rgb blue\n"
+      "{3}set arrow 1 from first {0:.5f},graph 0 to first {0:.5f},first {1:.6f} nohead dt 2 lc rgb blue\n"
       "set label 1 'Γ = {0:.4f}' at first {0:.5f},graph 0.05 offset 0.7,0\n"
-      "plot {1:.6f} with lines dt 4 lw 1.5 lc rgb '#666666' title 'σ/30', '{2}.dat' using 1:4 with lines lw "
+      "plot {1:.6f} with lines {4} title 'σ/30', '{2}.dat' using 1:4 with lines lw "
       "1.3 "
       "lc rgb blue notitle, '' using 1:2 with points pt 7 ps 0.9 lc rgb blue title 'variance over "
       "phases', "
       "'' using 1:5 with lines lw 1.3 lc rgb vermilion notitle, '' using 1:3 with points pt 6 ps 0.9 lc rgb "
       "vermilion title 'about the height at rest'\n",
-      gamma, kBouncingThreshold, f.name);
+      gamma, kBouncingThreshold, f.name, figure_style::axes(strength, s_b), figure_style::kStated);
   f.caption =
       "s_b (eq. B4) of a completely inelastic rigid bed, found by the analysis of a synthetic trajectory "
       "(points) "

@@ -106,9 +106,11 @@ Figure figure_of(const Packings& all) {
   if (const Packing* crystal = all.crystal("crystal_a")) add(*crystal);
   for (std::size_t i = 0; i < std::min<std::size_t>(2, all.random.size()); ++i) add(all.random[i]);
   // Omit the seeds, which are long numbers; the table contains them.
-  for (std::size_t i = 0; i < panels.size(); ++i)
+  for (std::size_t i = 0; i < panels.size(); ++i) {
     if (panels[i].title.starts_with("random"))
-      panels[i].title = panels.size() == 3 && i == 2 ? "random, another seed" : "random";
+      panels[i].title = panels.size() == 3 && i == 2 ? "another seed" : "random";
+    panels[i].title = fmt::format("({}) {}", "abc"[i], panels[i].title);
+  }
   Figure f = beads_figure(panels, "p1-fig1", fmt::format("Beds before the drive, N_l = {}", all.layers),
                           panels.size());
   f.caption += " Form of Fortini & Huang 2015, Fig. 1.";

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 #include "reproduce/p1_packings.hpp"
 
 namespace twincell::reproduce {
@@ -21,6 +22,8 @@ struct Orientation {
 };
 constexpr Orientation kA = {"crystal_a", "A", colours::kSky, 0},
                       kB = {"crystal_b", "B", colours::kOrange, 30};
+
+constexpr const char* kBetween = "#DDDDDD";
 
 double share(const Packing& p, const char* name) {
   return p.scalars.at(name);
@@ -71,7 +74,7 @@ std::vector<Target> targets_of(const Packings& all) {
 Figure figure_of(const Packings& all) {
   constexpr double kSide = 6;  // sigma; enough rows to show the orientation
   Figure f{
-      .name = "p1-fig2", .title = "Orientations of the lattice at a side wall", .width = 760, .height = 360};
+      .name = "p1-fig2", .title = "Orientations of the lattice at a side wall", .width = 720, .height = 330};
   f.plot = "set multiplot\nunset grid\n";
   // Left panels: a corner of the crystal in each orientation.
   int index = 0;
@@ -86,17 +89,19 @@ Figure figure_of(const Packings& all) {
                               crystal->radius.empty() ? 0.5 : crystal->radius[i]);
     }
     f.data += "\n\n";
-    const double left = 0.02 + 0.32 * index;
+    const double left = 0.01 + 0.31 * index;
     f.plot += fmt::format(
-        "set lmargin at screen {0}\nset rmargin at screen {1}\nset bmargin at screen 0.14\nset tmargin at "
-        "screen 0.9\nset size ratio -1\nunset tics\nunset border\nunset key\nset xrange [-0.6:{2}]\nset "
+        "set lmargin at screen {0}\nset rmargin at screen {1}\nset bmargin at screen 0.16\nset tmargin at "
+        "screen 0.86\nset size ratio -1\nunset tics\nunset border\nunset key\nset xrange [-0.6:{2}]\nset "
         "yrange "
-        "[-0.6:{2}]\nset title 'orientation {3}'\nset object 1 rectangle from -0.5,0 to 0,{2} fs solid 0.6 "
+        "[-0.6:{2}]\n{3}set object 1 rectangle from -0.5,0 to 0,{2} fs solid 0.6 "
         "noborder fc rgb '#888888' front\nset object 2 rectangle from -0.5,-0.5 to {2},0 fs solid 0.6 "
         "noborder fc "
         "rgb '#888888' front\nplot '{4}.dat' index {5} using 1:2:3 with circles fs solid border lc rgb "
         "'#333333' fc rgb '{6}'\nunset object 1\nunset object 2\n",
-        left, left + 0.3, kSide, o.name, f.name, index, o.colour);
+        left, left + 0.29, kSide,
+        figure_style::panel_title("ab"[index], fmt::format("orientation {}", o.name)), f.name, index,
+        o.colour);
     ++index;
   }
   // Right panel: shares of the orientations in the random beds.
@@ -107,29 +112,33 @@ Figure figure_of(const Packings& all) {
       f.data += fmt::format("{} {:.5f} {:.5f} {:.5f}\n", i + 1, a, 1 - a - b, b);
     }
     f.plot += fmt::format(
-        "set lmargin at screen 0.76\nset rmargin at screen 0.97\nset tmargin at screen 0.68\nset size "
-        "noratio\nset "
-        "border\nset tics\nset xtics 1 scale 0\nset ytics 0.2\nset xrange [0.3:{0}]\nset yrange [0:1]\nset "
-        "title "
-        "'random beds' offset 0,4.2\nset xlabel 'bed' offset 0,0.4\nset ylabel 'share of ordered beads' "
-        "offset "
-        "1,0\nset key at screen 0.965,0.9 vertical samplen 1.2 spacing 0.95\nset boxwidth 0.8\nset style "
-        "fill "
-        "solid border lc rgb '#333333'\n"
-        "plot '{1}.dat' index {2} using 1:($2+$3+$4) with boxes lc rgb orange title 'B', '' index {2} "
-        "using "
-        "1:($2+$3) with boxes lc rgb '#DDDDDD' title 'between', '' index {2} using 1:2 with boxes lc rgb "
-        "sky title 'A'\n",
-        static_cast<double>(all.random.size()) + 0.7, f.name, index);
+        "set lmargin at screen 0.74\nset rmargin at screen 0.98\nset tmargin at screen 0.86\nset bmargin at "
+        "screen 0.36\nset size noratio\nset border\nset tics\nset xtics 1 scale 0\nset ytics 0.2\n"
+        "set xrange [0.3:{0}]\nset yrange [0:1]\n{1}"
+        "set xlabel 'number of the bed'\nset ylabel 'share of ordered beads' offset 1,0\nset boxwidth 0.8\n"
+        "set style fill solid border lc rgb '#333333'\n"
+        "plot '{2}.dat' index {3} using 1:($2+$3+$4) with boxes lc rgb '{4}' notitle, '' index {3} using "
+        "1:($2+$3) with boxes lc rgb '{5}' notitle, '' index {3} using 1:2 with boxes lc rgb '{6}' notitle, "
+        "1./3 "
+        "with lines {7} notitle, 2./3 with lines {7} notitle\n",
+        static_cast<double>(all.random.size()) + 0.7,
+        figure_style::panel_title('c', fmt::format("random, N_l = {}", all.layers)), f.name, index, kB.colour,
+        kBetween, kA.colour, figure_style::kStated);
   }
-  f.plot += "unset multiplot\n";
+  const auto box = [](const char* colour, const char* title) {
+    return fmt::format("keyentry with boxes lc rgb '{}' title '{}'", colour, title);
+  };
+  f.plot += figure_style::Panels(1, 3, f.width, f.height, 1)
+                .end({box(kA.colour, "A"), box(kBetween, "between"), box(kB.colour, "B"),
+                      fmt::format("keyentry with lines {} title 'by chance'", figure_style::kStated)});
   f.caption =
-      "Left: crystals in the two orientations at the side wall and the floor. Right: of the ordered beads "
-      "(psi6 > 0.9) of each random bed, the shares whose close-packed rows are within 10 degrees of the "
-      "floor "
-      "(A) and of the side walls (B); lattices that lie anyhow would give a third each. Form of Fortini & "
-      "Huang "
-      "2015, Fig. 2.";
+      "(a), (b) Crystals in the two orientations at the side wall and the floor. (c) Of the ordered beads "
+      "(psi6 > "
+      "0.9) of each random bed, the shares whose close-packed rows are within 10 degrees of the floor (A) "
+      "and of "
+      "the side walls (B); lattices that lie anyhow would give a third each (dashed). The paper's random "
+      "beds "
+      "favour A. Form of Fortini & Huang 2015, Fig. 2.";
   return f;
 }
 

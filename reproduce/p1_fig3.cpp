@@ -12,6 +12,7 @@
 
 #include "analysis/observable/observable.hpp"
 #include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 #include "core/table.hpp"
@@ -61,6 +62,7 @@ const Size& size_for(const Request& request) {
 
 constexpr int kLayersOfA1 = 20;
 constexpr double kOmega = 1;
+constexpr double kConvectionKm = 3.3;  ///< the paper's onset of convection of random beds
 
 P1Run run_of(int layers, bool random, int cycles) {
   return {layers, random ? "random" : "crystal_a", cycles};
@@ -291,7 +293,7 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
   {
     // The paper does not state N_l of its Figs. 4 and 5. The best verdict counts, of the heights at which the
     // slips of Fig. 5 are defined: lower beds have too few beads in bonds that can be counted.
-    constexpr double kLow = 3.3 * 0.75, kHigh = 3.3 * 1.25;
+    constexpr double kLow = kConvectionKm * 0.75, kHigh = kConvectionKm * 1.25;
     constexpr int kLowestWithSlips = 20;
     Target t{
         "onset of convection, random, at the N_l of Figs. 4, 5", "K_m 3.3 +- 25 %", "", Verdict::absent,
@@ -349,7 +351,9 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
 /// Values with error bars if the interval is closed, arrows for one-sided limits. Random and crystal points
 /// are shifted slightly to the left and right of their N_l, so that the bars do not overlap.
 Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
-  Figure f{.name = "p1-fig3", .title = "Onsets of bouncing and convection", .width = 620, .height = 480};
+  Figure f{.name = "p1-fig3", .title = "Onsets of bouncing and convection", .width = 640, .height = 520};
+  figure_style::Axis n_l{.label = "N_l σ"}, gamma{.label = "Γ = A ω^2/g"};
+  gamma.show(1);
   struct Style {
     bool random, convecting;
     int point;
@@ -368,6 +372,9 @@ Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& fil
       if (b.random != style.random || b.convecting != style.convecting || !b.begun()) continue;
       const Onset& o = b.onset();
       const double x = b.layers + (b.random ? -0.5 : 0.5);
+      n_l.show(x);
+      for (const auto& end : {o.value, o.low, o.high})
+        if (end) gamma.show(*end);
       if (o.value && o.low && o.high)
         values += fmt::format("{} {} {} {}\n", x, *o.value, *o.low, *o.high);
       else if (o.low)
@@ -380,7 +387,7 @@ Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& fil
       plot += fmt::format("{}'{}.dat' index {} using 1:2:3:4 with {} lc rgb '{}' {}",
                           plot.empty() ? "" : ", ", f.name, index++, drawn, style.colour, title);
     };
-    add(values, fmt::format("yerrorlines lw 1.3 ps 1.2 pt {}", style.point),
+    add(values, fmt::format("yerrorlines lw {} ps 1.2 pt {}", figure_style::kLine, style.point),
         fmt::format("title '{}'", style.title));
     add(limits, "vectors head filled lw 1.5", "notitle");
   }
@@ -388,7 +395,11 @@ Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& fil
   const auto add_filmed = [&](double Filmed::*onset, int point, const char* title) {
     std::string block;
     for (const Filmed& p : filmed)
-      if (std::isfinite(p.*onset)) block += fmt::format("{} {}\n", p.layers, p.*onset);
+      if (std::isfinite(p.*onset)) {
+        block += fmt::format("{} {}\n", p.layers, p.*onset);
+        n_l.show(p.layers);
+        gamma.show(p.*onset);
+      }
     if (block.empty()) return;
     f.data += fmt::format("# {}\n{}\n\n", title, block);
     plot +=
@@ -397,21 +408,28 @@ Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& fil
   };
   add_filmed(&Filmed::convection, 5, "convection, experiment");
   add_filmed(&Filmed::bouncing, 4, "bouncing, experiment");
+  plot += ", " + figure_style::stated_line_entry("paper: K_m = 3.3");
   // K_m = Gamma^2 at omega = 1: the ticks of K_m are at Gamma = sqrt(K_m).
   std::vector<std::string> ticks;
   for (const double k_m : {1.0, 2.0, 4.0, 6.0, 9.0, 12.0, 16.0, 20.0, 25.0})
     ticks.push_back(fmt::format("'{:g}' {:.6f}", k_m, std::sqrt(k_m) / kOmega));
   f.plot = fmt::format(
-      "set xrange [0:*]\nset yrange [0.9:*]\nset link y2\nset offsets 0,0,graph 0.06,0\nset xlabel 'N_l "
-      "σ'\nset ylabel 'Γ'\nset y2label "
-      "'K_m'\n"
-      "set ytics nomirror\nset y2tics ({})\nset key above\nplot {}\n",
-      fmt::join(ticks, ", "), plot);
+      "{}set link y2\nset y2label 'K_m = A^2 ω^2/(σ g)'\nset ytics nomirror\nset y2tics ({})\nset key "
+      "maxcols 2\n"
+      "{}plot {}\n",
+      figure_style::axes(n_l, gamma), fmt::join(ticks, ", "),
+      figure_style::stated_y(std::sqrt(kConvectionKm) / kOmega), plot);
   f.caption =
       "Onset of bouncing (open) and of convection (filled) against the height of the bed, from random starts "
-      "(triangles) and "
-      "from crystals (circles), with 95 % intervals; arrows are one-sided limits; connected squares: "
-      "experiment, where --data gave one. Form of Fortini & Huang 2015, Fig. 3.";
+      "(triangles) and from crystals (circles), drawn a little to the left and to the right, with 95 % "
+      "intervals; "
+      "arrows are one-sided limits.";
+  f.caption += filmed.empty() ? " The paper's experiment is a drawing without numbers; --data draws yours as "
+                                "connected squares."
+                              : " Connected squares: the experiment of --data.";
+  f.caption +=
+      " Dashed: the paper's onset of convection of random beds, at an N_l that it does not state. Form of "
+      "Fortini & Huang 2015, Fig. 3.";
   return f;
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 #include "reproduce/p1_sweep.hpp"
 
 namespace twincell::reproduce {
@@ -20,6 +20,8 @@ std::vector<DataPoint> points_of(const StrengthSweep& sweep, double above = 0, d
       points.push_back({r.k_m(), r.mean_temperature().value, 0, 0});
   return points;
 }
+
+constexpr double kBreak = 3.3, kBreakError = 0.8;  ///< K_m of the paper's change of slope
 
 constexpr std::size_t kRunsForScatter = 3;  ///< runs from which the interval covers the scatter between beds
 
@@ -84,7 +86,6 @@ std::optional<CurveFit> bend_of(const StrengthSweeps& all) {
 
 std::vector<Target> targets_of(const StrengthSweeps& all, const std::optional<CurveFit>& bend) {
   std::vector<Target> targets = {rise_of(all.random)};
-  constexpr double kBreak = 3.3, kBreakError = 0.8;
   Target at{"(a) random: change of slope", "K_m 3.3 +- 0.8", "", Verdict::absent, ""};
   Target same{"(a) random: change of slope where convection begins",
               "the same K_m within 0.8, the error of the first", "", Verdict::absent, ""};
@@ -124,36 +125,25 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const std::optional<Cu
   return targets;
 }
 
-/// gnuplot commands for a dashed line at K_m.
-std::string border(double k_m, int arrow) {
-  return fmt::format(
-      "set arrow {0} from first {1:.5g},graph 0 to first {1:.5g},graph 1 nohead dt 2 lw 1.3 lc rgb "
-      "'#666666'\n",
-      arrow, k_m);
-}
 /// gnuplot commands for the name of a region between two K_m.
-std::string region(const char* name, double from, double to, int label) {
-  return fmt::format("set label {} '{}' at first {:.5g},graph 0.06 center\n", label, name,
-                     std::sqrt(from * to));
+std::string region(const char* name, double from, double to) {
+  return fmt::format("set label '{}' at first {:.5g},graph 0.06 center\n", name, std::sqrt(from * to));
 }
 
 Figure figure_of(const StrengthSweeps& all, const std::optional<CurveFit>& bend) {
-  Figure f{.name = "p1-fig4", .title = "Granular temperature", .width = 820, .height = 400};
-  constexpr double kFrom = 0.7, kTo = 36;
-  double low = 1, high = 0;  // whole decades around the drawn points
+  Figure f{.name = "p1-fig4", .title = "Granular temperature", .width = 720, .height = 450};
+  figure_style::Axis k_m{.label = "K_m = A^2 ω^2/(σ g)", .logarithmic = true},
+      t_g{.label = "T_g/(m g σ)", .logarithmic = true};
   for (const StrengthSweep* l : {&all.random, &all.crystal})
     for (const SweepPoint& r : l->points) {
-      const double t = r.mean_temperature().value;
-      if (!(t > 0)) continue;
-      low = std::min(low, std::pow(10, std::floor(std::log10(t))));
-      high = std::max(high, std::pow(10, std::ceil(std::log10(t))));
+      const Estimate t = r.mean_temperature();
+      k_m.show(r.k_m());
+      t_g.show(t.value);
+      t_g.show(t.high.value_or(t.value));
     }
-  if (high <= low) high = 10 * low;
-  f.plot = fmt::format(
-      "set multiplot layout 1,2\nset logscale xy\nset xrange [{}:{}]\nset yrange [{:.3g}:{:.3g}]\nset format "
-      "y '10^{{%L}}'\nset xlabel "
-      "'K_m'\nset ylabel 'T_g^{{*}}' offset 0.5,0\nset lmargin 9\n",
-      kFrom, kTo, low, high);
+  const figure_style::Panels panels(1, 2, f.width, f.height, 3);
+  f.plot = figure_style::Panels::begin() + figure_style::axes(k_m, t_g);
+  const double last = k_m.with_margin().high, floor = t_g.with_margin().low;
   // One panel per start: points, borders of the regions, fitted line.
   int index = 0;
   for (const StrengthSweep* l : {&all.random, &all.crystal}) {
@@ -161,46 +151,51 @@ Figure figure_of(const StrengthSweeps& all, const std::optional<CurveFit>& bend)
     for (const SweepPoint& r : l->points) {
       const Estimate t = r.mean_temperature();
       f.data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {:.3g}\n", r.k_m(), t.value,
-                            std::max(t.low.value_or(t.value), t.value / 1e3), t.high.value_or(t.value),
+                            std::max(t.low.value_or(t.value), floor), t.high.value_or(t.value),
                             static_cast<double>(r.convecting) / static_cast<double>(r.runs));
     }
     if (l->points.empty()) f.data += "? ? ? ? ?\n";
     f.data += "\n\n";
-    f.plot += "unset arrow\nunset label\n";
-    f.plot += fmt::format("set title '({}) {}, N_l = {}'\n", l->is_random() ? 'a' : 'b',
-                          l->is_random() ? "random" : "crystal", all.layers);
+    f.plot += panels.panel(static_cast<std::size_t>(index)) + "unset arrow\nunset label\n" +
+              figure_style::panel_title(
+                  l->is_random() ? 'a' : 'b',
+                  fmt::format("{}, N_l = {}", l->is_random() ? "random" : "crystal", all.layers));
+    if (l->is_random()) f.plot += figure_style::stated_x(kBreak);
     if (l->convection) {
-      f.plot += border(l->convection->value, 1) + region("B", l->convection->value, kTo, 1);
+      f.plot += border_of_region(l->convection->value) + region("B", l->convection->value, last);
       const double a_from = 1.35;
       if (l->is_random() || !l->first_slips || l->first_slips->value >= l->convection->value)
-        f.plot += region("A", a_from, l->convection->value, 2);
+        f.plot += region("A", a_from, l->convection->value);
       else
-        f.plot += border(l->first_slips->value, 2) + region("A_1", a_from, l->first_slips->value, 2) +
-                  region("A_2", l->first_slips->value, l->convection->value, 3);
+        f.plot += border_of_region(l->first_slips->value) + region("A_1", a_from, l->first_slips->value) +
+                  region("A_2", l->first_slips->value, l->convection->value);
     }
     std::string law;
     if (l->is_random() && bend) {
-      const double x = parameter(*bend, "x_b").value, y = parameter(*bend, "ln_y_b").value;
+      const double x = parameter(*bend, "x_b").value, y = std::log(bend->at(x));
       f.plot += fmt::format("f(x) = exp({:.8g} + (x < {:.8g} ? {:.8g} : {:.8g})*log(x/{:.8g}))\n", y, x,
                             parameter(*bend, "s_1").value, parameter(*bend, "s_2").value, x);
-      law = ", [1.4:*] f(x) with lines lw 1.5 lc rgb '#333333' notitle";
+      law = fmt::format(", [1.4:*] f(x) with lines lw {} lc rgb '#333333' notitle", figure_style::kCurve);
     }
-    const char* colour = l->is_random() ? colours::kGreen : colours::kBlue;
     f.plot += l->points.empty()
                   ? std::string("plot NaN notitle\n")
                   : fmt::format(
-                        "plot '{0}.dat' index {1} using 1:2:3:4 with yerrorbars pt {2} ps 1 lw 1.3 lc rgb "
-                        "'{3}' notitle{4}\n",
-                        f.name, index, l->is_random() ? 9 : 7, colour, law);
+                        "plot '{}.dat' index {} using 1:2:3:4 with yerrorbars pt {} lc rgb '{}' notitle{}\n",
+                        f.name, index, symbol_of(*l), colour_of(*l), law);
     ++index;
   }
-  f.plot += "unset multiplot\n";
+  f.plot += panels.end(
+      {key_of_starts(),
+       fmt::format("keyentry with lines lw {} lc rgb '#333333' title 'two power laws'", figure_style::kCurve),
+       key_of_border(), figure_style::stated_line_entry("paper: bend at K_m = 3.3")});
   f.caption =
-      "T_g* against K_m from random beds (a) and crystals (b), mean over runs. Dashed: onset of convection "
-      "(s_c > "
-      "σ), right of which is region B; in (b) also the first slips, left of which is A1. Line: two power "
-      "laws that meet. Form of Fortini & "
-      "Huang 2015, Fig. 4.";
+      "T_g* against K_m from random beds (a) and crystals (b), mean over runs with 95 % intervals. Thin "
+      "dashed: "
+      "onset of convection (s_c > σ), right of which is region B; in (b) also the first slips, left of which "
+      "is A1. "
+      "Line: two power laws that meet. Thick dashed: where the paper's slope changes. Form of Fortini & "
+      "Huang 2015, "
+      "Fig. 4.";
   return f;
 }
 

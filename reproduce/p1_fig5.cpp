@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 #include "reproduce/p1_sweep.hpp"
 
 namespace twincell::reproduce {
@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kBarrier = 7, kBarrierError = 1;           ///< random, and crystal in B
 constexpr double kNucleation = 130, kNucleationError = 20;  ///< crystal in A2
+
+constexpr int kLimitSymbol = figure_style::unfilled(figure_style::kDown);
 
 /// Points with slips. Rows of beads slip together, so the scatter is not binomial and all points have equal
 /// weight.
@@ -128,87 +130,117 @@ std::vector<Target> targets_of(const StrengthSweeps& all, const Barriers& fits) 
   return targets;
 }
 
-/// Clause of a gnuplot command that draws an Arrhenius law against 1/K_m between two K_m.
-std::string line_of(const std::optional<CurveFit>& fit, double from, double to, const char* dash) {
-  if (!fit) return "";
+/// Clause of a gnuplot command that draws exp(c - e_b/K_m) against 1/K_m between two K_m.
+std::string line_of(double c, double e_b, double from, double to, const std::string& look) {
+  return fmt::format(", [{:.6g}:{:.6g}] exp({:.8g} - {:.8g}*x) with lines {} notitle", 1 / to, 1 / from, c,
+                     e_b, look);
+}
+
+/// The fitted law, and the paper's barrier through the mean of the same points: the paper does not state its
+/// prefactor.
+std::string lines_of(const std::optional<CurveFit>& fit, const std::vector<DataPoint>& points, double paper,
+                     double from, double to) {
+  if (!fit || points.empty()) return "";
   const Estimate e = parameter(*fit, "E_b");
-  const double c = std::log(fit->at(1.0)) + e.value;
-  return fmt::format(
-      ", [{:.6g}:{:.6g}] exp({:.8g} - {:.8g}*x) with lines lw 1.6 dt {} lc rgb '#333333' title "
-      "'E_b = {:.3g}'",
-      1 / to, 1 / from, c, e.value, dash, e.value);
+  double mean_x = 0, mean_ln_y = 0;
+  for (const DataPoint& p : points) {
+    mean_x += 1 / p.x / static_cast<double>(points.size());
+    mean_ln_y += std::log(p.y) / static_cast<double>(points.size());
+  }
+  return line_of(std::log(fit->at(1.0)) + e.value, e.value, from, to,
+                 fmt::format("lw {} lc rgb '#333333'", figure_style::kCurve)) +
+         line_of(mean_ln_y + paper * mean_x, paper, from, to, figure_style::kStated);
+}
+
+/// "E_b = 10.6 (paper 7)" at a place of the panel.
+std::string barrier_label(const char* of, const std::optional<CurveFit>& fit, double paper, double line) {
+  if (!fit) return "";
+  return fmt::format("set label '{}E_b = {:.3g} (paper {:g})' at graph 0.97,{:.3f} right\n", of,
+                     parameter(*fit, "E_b").value, paper, 0.93 - 0.09 * line);
 }
 
 Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
-  Figure f{.name = "p1-fig5", .title = "Slip probability", .width = 820, .height = 400};
-  f.plot =
-      "set multiplot layout 1,2\nset logscale y\nset xrange [0:0.75]\nset yrange [3e-7:2]\nset format y "
-      "'10^{%L}'\nset xlabel '1/K_m'\nset ylabel 'p_s' offset 0.5,0\nset key top right\nset lmargin 9\n";
-  // One panel per start: counted slips, upper limits, borders of the regions, Arrhenius lines.
+  Figure f{.name = "p1-fig5", .title = "Slip probability", .width = 720, .height = 430};
+  const figure_style::Panels panels(1, 2, f.width, f.height, 2);
+  f.plot = figure_style::Panels::begin();
+  figure_style::Axis p_s{.label = "p_s", .logarithmic = true};
+  for (const StrengthSweep* l : {&all.random, &all.crystal})
+    for (const SweepPoint& r : l->points)
+      if (r.eligible > 0) p_s.show(r.slips > 0 ? r.p_s() : r.upper_limit());
+  p_s.show(3);  // above the points, for the barriers
+  // One panel per start: counted slips, upper limits where the bed bounces, borders of the regions, Arrhenius
+  // lines.
   int index = 0;
   for (const StrengthSweep* l : {&all.random, &all.crystal}) {
+    figure_style::Axis inverse{.label = "1/K_m", .low = 0};
     std::string counted, none;
     for (const SweepPoint& r : l->points) {
       if (!(r.eligible > 0)) continue;
       if (r.slips > 0)
         counted += fmt::format("{:.6g} {:.6g}\n", 1 / r.k_m(), r.p_s());
-      else
+      else if (r.bouncing > 0)
         none += fmt::format("{:.6g} {:.6g}\n", 1 / r.k_m(), r.upper_limit());
+      if (r.slips > 0 || r.bouncing > 0) inverse.show(1 / r.k_m());
     }
     f.data +=
         fmt::format("# {}: 1/K_m, p_s\n{}\n\n# {}, no slip: 1/K_m, 95 % upper limit of p_s\n{}\n\n", l->start,
                     counted.empty() ? "? ?\n" : counted, l->start, none.empty() ? "? ?\n" : none);
     const double last = l->points.empty() ? 30 : l->points.back().k_m(), first = 1.34;
-    f.plot += "unset arrow\nunset label\n";
-    f.plot += fmt::format("set title '({}) {}, N_l = {}'\n", l->is_random() ? 'a' : 'b',
-                          l->is_random() ? "random" : "crystal", all.layers);
+    f.plot += panels.panel(static_cast<std::size_t>(index / 2)) + figure_style::axes(inverse, p_s) +
+              "unset arrow\nunset label\n" +
+              figure_style::panel_title(
+                  l->is_random() ? 'a' : 'b',
+                  fmt::format("{}, N_l = {}", l->is_random() ? "random" : "crystal", all.layers));
     std::string lines;
-    const auto border = [&](double k_m) {
-      f.plot += fmt::format(
-          "set arrow from first {0:.5g},graph 0 to first {0:.5g},graph 1 nohead dt 2 lw 1.3 lc "
-          "rgb '#666666'\n",
-          1 / k_m);
-    };
     const auto name = [&](const char* region, double from, double to) {
       f.plot +=
           fmt::format("set label '{}' at first {:.5g},graph 0.06 center\n", region, (1 / from + 1 / to) / 2);
     };
     if (l->convection) {
-      border(l->convection->value);
+      f.plot += border_of_region(1 / l->convection->value);
       name("B", l->convection->value, 1e3);
     }
     if (l->is_random()) {
-      lines = line_of(fits.random, points_of(*l).empty() ? first : points_of(*l).front().x, last, "1");
+      const auto points = points_of(*l);
+      lines = lines_of(fits.random, points, kBarrier, points.empty() ? first : points.front().x, last);
+      f.plot += barrier_label("", fits.random, kBarrier, 0);
       if (l->convection) name("A", l->convection->value, first);
     } else if (l->convection) {
-      const double slips = l->first_slips ? *l->first_slips->high : first;
-      lines = line_of(fits.a2, std::min(slips, l->convection->value), l->convection->value, "1") +
-              line_of(fits.b, l->convection->value, last, "4");
-      if (l->first_slips && l->first_slips->value < l->convection->value) {
-        border(l->first_slips->value);
-        name("A_2", l->convection->value, l->first_slips->value);
+      const double onset = l->convection->value, slips = l->first_slips ? *l->first_slips->high : first;
+      lines = lines_of(fits.a2, points_of(*l, 0, onset), kNucleation, std::min(slips, onset), onset) +
+              lines_of(fits.b, points_of(*l, onset), kBarrier, onset, last);
+      f.plot += barrier_label("A_2: ", fits.a2, kNucleation, 0) + barrier_label("B: ", fits.b, kBarrier, 1);
+      if (l->first_slips && l->first_slips->value < onset) {
+        f.plot += border_of_region(1 / l->first_slips->value);
+        name("A_2", onset, l->first_slips->value);
         name("A_1", l->first_slips->value, first);
       }
     }
-    const char* colour = l->is_random() ? colours::kGreen : colours::kBlue;
     std::string clauses = "NaN notitle";
     if (!counted.empty())
-      clauses += fmt::format(", '{}.dat' index {} using 1:2 with points pt {} ps 1.1 lc rgb '{}' notitle",
-                             f.name, index, l->is_random() ? 9 : 7, colour);
+      clauses += fmt::format(", '{}.dat' index {} using 1:2 with points pt {} lc rgb '{}' notitle", f.name,
+                             index, symbol_of(*l), colour_of(*l));
     if (!none.empty())
-      clauses += fmt::format(
-          ", '{}.dat' index {} using 1:2 with points pt 10 ps 1 lw 1.3 lc rgb '{}' title 'no "
-          "slip: 95 % limit'",
-          f.name, index + 1, colour);
+      clauses += fmt::format(", '{}.dat' index {} using 1:2 with points pt {} lc rgb '{}' notitle", f.name,
+                             index + 1, kLimitSymbol, colour_of(*l));
     f.plot += fmt::format("plot {}{}\n", clauses, lines);
     index += 2;
   }
-  f.plot += "unset multiplot\n";
+  f.plot += panels.end(
+      {key_of_starts(),
+       fmt::format("keyentry with points pt {} lc rgb '#333333' title 'no slip: limit'", kLimitSymbol),
+       fmt::format("keyentry with lines lw {} lc rgb '#333333' title 'Arrhenius law'", figure_style::kCurve),
+       key_of_border(), figure_style::stated_line_entry("paper’s E_b")});
   f.caption =
       "Slip probability against 1/K_m from random beds (a) and crystals (b), counted over all runs; open "
-      "triangles: no slip, drawn at the 95 % limit. Lines: Arrhenius laws, all points alike. Dashed: regions "
-      "of "
-      "Fig. 4. Form of Fortini & Huang 2015, Fig. 5.";
+      "symbols: no "
+      "slip in a bed that bounces, drawn at the 95 % limit. The points have no error bars: slips come in "
+      "rows of "
+      "beads, so their number does not give the error. Lines: Arrhenius laws, all points alike; thick "
+      "dashed: the "
+      "paper's barriers through the mean of the same points, as the paper states no prefactor. Thin dashed: "
+      "regions "
+      "of Fig. 4. Form of Fortini & Huang 2015, Fig. 5.";
   return f;
 }
 

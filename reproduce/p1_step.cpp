@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 #include "analysis/statistics/statistics.hpp"
 #include "core/json_text.hpp"
 #include "reproduce/p1_scene.hpp"
@@ -43,10 +44,10 @@ struct Quantity {
     return relative ? kTolerance * value : std::max(kTolerance * value, kFloor);
   }
 };
-constexpr std::array<Quantity, 4> kQuantities = {{{"T_g", "T_g^{*}/T_g^{*}(converged)", true},
+constexpr std::array<Quantity, 4> kQuantities = {{{"T_g", "T_g^{*}/converged", true},
                                                   {"p_s", "p_s", false},
-                                                  {"s_b", "s_b/s_b(converged)", true},
-                                                  {"s_c", "s_c/{/Symbol s}", false}}};
+                                                  {"s_b", "s_b/converged", true},
+                                                  {"s_c", "s_c/σ", false}}};
 
 /// Extent of the study at a given budget.
 struct Size {
@@ -216,25 +217,25 @@ std::string json_of(const Values& values) {
   return json_text(all);
 }
 
+constexpr int kVerlet = figure_style::kCircle, kSplit = figure_style::unfilled(figure_style::kSquare);
+constexpr const char* kStepTics = "set xtics (6.37, 12.5, 25, 50, 100, 200, 400)\n";
+
 /// Curves over n: Verlet with filled symbols and solid lines, split with open symbols and dashed lines, one
 /// colour for each Gamma.
 Figure figure_of(const Values& values, const Size& size) {
-  Figure f{.name = "p1-step", .title = "What the step does to the physics", .width = 1180, .height = 620};
+  Figure f{.name = "p1-step", .title = "What the step does to the physics", .width = 720, .height = 1160};
   const double finest = size.split.back();
-  f.plot = fmt::format(
-      "set multiplot layout {},{}\nset logscale x\nset xrange [5:{:g}]\nset xlabel 'steps per contact "
-      "n'\nset lmargin 8\n"
-      "set xtics (6.37, 12.5, 25, 50, 100, 200, 400)\nset xtics rotate by -45\n",
-      kStarts.size(), kQuantities.size(), 1.4 * size.verlet.back());
+  const figure_style::Panels panels(kQuantities.size(), kStarts.size(), f.width, f.height, 2);
+  f.plot = figure_style::Panels::begin();
+  figure_style::Axis steps{.label = "steps per contact n", .logarithmic = true};
+  for (const std::string& integrator : kIntegrators)
+    for (const double n : size.steps(integrator)) steps.show(n);
   int block = 0;
-  for (const std::string& start : kStarts)
-    for (const Quantity& q : kQuantities) {
-      f.plot +=
-          fmt::format("set title '{}'\nset ylabel '{}' offset 1.5,0\n{}\n", words_of(start), q.label,
-                      q.relative                                             ? "unset key"
-                      : std::string(q.name) == "p_s" && start == "crystal_a" ? "set key top left samplen 1"
-                                                                             : "unset key");
-      f.plot += q.relative ? "set yrange [*:*]\n" : "set yrange [0:*]\n";
+  std::size_t panel = 0;
+  for (const Quantity& q : kQuantities)
+    for (const std::string& start : kStarts) {
+      figure_style::Axis value{.label = q.label};
+      if (!q.relative) value.show(0);
       std::vector<std::string> curves;
       for (std::size_t g = 0; g < kGammas.size(); ++g)
         for (const std::string& integrator : kIntegrators) {
@@ -243,23 +244,36 @@ Figure figure_of(const Values& values, const Size& size) {
           std::string points;
           for (const double n : size.steps(integrator))
             if (const auto e = estimate(values, {q.name, start, integrator, kGammas[g], n}))
-              // Shifted slightly, so that error bars do not overlap.
-              points += fmt::format("{:.5g} {:.6g} {:.6g} {:.6g}\n",
-                                    n * (1 + 0.04 * (static_cast<double>(g) - 1.5)), e->value / unit,
-                                    e->low.value_or(e->value) / unit, e->high.value_or(e->value) / unit);
+            // Shifted slightly, so that error bars do not overlap.
+            {
+              const double low = e->low.value_or(e->value) / unit, high = e->high.value_or(e->value) / unit;
+              for (const double v : {e->value / unit, low, high}) value.show(v);
+              points +=
+                  fmt::format("{:.5g} {:.6g} {:.6g} {:.6g}\n",
+                              n * (1 + 0.04 * (static_cast<double>(g) - 1.5)), e->value / unit, low, high);
+            }
           if (points.empty()) continue;
           f.data += fmt::format("# {}, {}, Gamma = {:g}, {}: n, value, low, high\n{}\n\n", words_of(start),
                                 q.name, kGammas[g], integrator, points);
           const bool verlet = integrator == "verlet";
           curves.push_back(fmt::format(
-              "'{}.dat' index {} using 1:2:3:4 with yerrorlines pt {} ps 0.8 lw 1.2 {} lc rgb '{}' {}",
-              f.name, block++, verlet ? 7 : 4, verlet ? "dt 1" : "dt 2", colours::kCurves[g],
-              verlet ? fmt::format("title '{{/Symbol G}} = {:g}'", kGammas[g]) : "notitle"));
+              "'{}.dat' index {} using 1:2:3:4 with yerrorlines pt {} ps 0.7 lw {} dt {} lc rgb '{}' notitle",
+              f.name, block++, verlet ? kVerlet : kSplit, figure_style::kLine, verlet ? 1 : 2,
+              colours::kCurves[g]));
         }
-      f.plot += curves.empty() ? "plot [][0:1] NaN notitle\n"
-                               : fmt::format("plot {}\n", fmt::join(curves, ", \\\n     "));
+      if (curves.empty()) curves.emplace_back("NaN notitle");
+      f.plot += panels.panel(panel) + figure_style::axes(steps, value) + kStepTics +
+                figure_style::panel_title(static_cast<char>('a' + panel), words_of(start)) +
+                fmt::format("plot {}\n", fmt::join(curves, ", \\\n     "));
+      ++panel;
     }
-  f.plot += "unset multiplot\n";
+  std::vector<std::string> key;
+  for (std::size_t g = 0; g < kGammas.size(); ++g)
+    key.push_back(fmt::format("keyentry with lines lw {} lc rgb '{}' title 'Γ = {:g}'", figure_style::kCurve,
+                              colours::kCurves[g], kGammas[g]));
+  key.push_back(fmt::format("keyentry with linespoints pt {} lc rgb '#333333' title 'Verlet'", kVerlet));
+  key.push_back(fmt::format("keyentry with linespoints pt {} dt 2 lc rgb '#333333' title 'split'", kSplit));
+  f.plot += panels.end(key);
   f.caption = fmt::format(
       "Granular temperature, slip probability, s_b and s_c of beds of N_l = {} against the steps per contact "
       "n. Filled "

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 #include "analysis/statistics/statistics.hpp"
 #include "core/json_text.hpp"
 #include "reproduce/p1_scene.hpp"
@@ -342,6 +344,31 @@ Estimate parameter(const CurveFit& fit, const std::string& name) {
     e.high = fit.intervals[i]->high;
   }
   return e;
+}
+
+namespace {
+constexpr const char *kRandomColour = colours::kGreen, *kCrystalColour = colours::kBlue;
+constexpr const char* kBorder = "lw 1 dt 2 lc rgb '#666666'";
+}  // namespace
+
+const char* colour_of(const StrengthSweep& sweep) {
+  return sweep.is_random() ? kRandomColour : kCrystalColour;
+}
+int symbol_of(const StrengthSweep& sweep) {
+  return sweep.is_random() ? figure_style::kTriangle : figure_style::kCircle;
+}
+std::string border_of_region(double x) {
+  return fmt::format("set arrow from first {0:.5g},graph 0 to first {0:.5g},graph 1 nohead {1}\n", x,
+                     kBorder);
+}
+std::string key_of_starts() {
+  return fmt::format(
+      "keyentry with points pt {} lc rgb '{}' title 'random', keyentry with points pt {} lc rgb '{}' title "
+      "'crystal'",
+      figure_style::kTriangle, kRandomColour, figure_style::kCircle, kCrystalColour);
+}
+std::string key_of_border() {
+  return fmt::format("keyentry with lines {} title 'border of a region'", kBorder);
 }
 
 }  // namespace twincell::reproduce

@@ -80,6 +80,14 @@ std::vector<Target> slip_targets(const StrengthSweeps& sweeps);
 /// Common output of the figures: K_m, T_g and slips of every point as text and as JSON, and the conditions.
 Reproduction reproduction_of(const StrengthSweeps& sweeps, const std::string& title);
 
+/// Look of both figures: colour and gnuplot point type of a start, and gnuplot commands for the border of a
+/// region at a value of the x axis; entries in the key for the starts and the borders.
+const char* colour_of(const StrengthSweep& sweep);
+int symbol_of(const StrengthSweep& sweep);
+std::string border_of_region(double x);
+std::string key_of_starts();
+std::string key_of_border();
+
 /// Least-squares fit of a law; empty if the fit fails, for example for too few points.
 std::optional<CurveFit> fitted(const std::string& law, const std::vector<DataPoint>& points);
 /// A parameter of a fit with its interval.

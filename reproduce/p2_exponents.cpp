@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -54,6 +55,8 @@ struct Exponent {
   std::vector<DataPoint> points;  ///< V_p, y; y = 0 for a solid bed
   std::optional<CurveFit> fit;
   std::string why_not;
+  std::optional<double> printed = {};   ///< the paper's exponent over this window
+  std::vector<Estimate> measured = {};  ///< y of the points with its interval; empty for the user's points
 
   [[nodiscard]] Estimate alpha() const {
     Estimate e{.value = fit->fit.value("alpha"), .low = {}, .high = {}};
@@ -98,6 +101,14 @@ std::vector<DataPoint> of_gas(const std::vector<GasPoint>& points, bool of_heigh
   return all;
 }
 
+/// The same values with their intervals.
+std::vector<Estimate> measured_of(const std::vector<GasPoint>& points, bool of_height) {
+  std::vector<Estimate> all;
+  for (const GasPoint& p : points)
+    if (const auto y = p.get(of_height ? "delta_h_cm" : "T_z")) all.push_back(*y);
+  return all;
+}
+
 /// Points from the user's columns W and T_bar_z (or delta_h_bar): y is the second column times V_p^2 = W.
 std::vector<DataPoint> of_user(const std::filesystem::path& path, bool of_height) {
   const Table table = read_table(path);
@@ -131,21 +142,27 @@ Target target_of(const Study& study, const Exponent* e, bool of_height) {
   return t;
 }
 
-Figure figure_of(const std::string& name, const std::vector<Exponent>& all, bool of_height) {
+/// The figure of the fits. The windows of earlier experiments lie inside [W_f, W_2], so that their points are
+/// drawn last, over the same points of the wider window.
+Figure figure_of(const std::string& name, std::vector<Exponent> all, bool of_height) {
+  std::stable_sort(all.begin(), all.end(), [](const Exponent& a, const Exponent& b) {
+    return a.printed.has_value() < b.printed.has_value();
+  });
   std::vector<Series> series;
+  std::size_t number = 0;
   for (const Exponent& e : all) {
     if (!e.fit) continue;
-    Series points{.title = e.name, .x = {}, .y = {}};
-    for (const DataPoint& p : e.points) {
+    Series points{.title = fmt::format("{}: {} = {:.3f}{}", e.name, of_height ? "α_h" : "α", e.alpha().value,
+                                       e.printed ? fmt::format(", paper {:.2f}", *e.printed) : ""),
+                  .x = {},
+                  .y = {}};
+    for (std::size_t k = 0; k < e.points.size(); ++k) {
+      const DataPoint& p = e.points[k];
       if (!(p.y > 0) || p.x * p.x < e.low || p.x * p.x > e.high) continue;
       points.x.push_back(p.x);
-      points.y.push_back({.value = p.y, .low = {}, .high = {}});
+      points.y.push_back(e.measured.empty() ? Estimate{.value = p.y, .low = {}, .high = {}} : e.measured[k]);
     }
-    Series line{.title = fmt::format("{} = {:.3f}", symbol(of_height), e.alpha().value),
-                .x = {},
-                .y = {},
-                .line = true,
-                .dash = 1};
+    Series line{.title = "", .x = {}, .y = {}, .line = true, .of = number++};
     for (const double x : {points.x.front(), points.x.back()}) {
       line.x.push_back(x);
       line.y.push_back({.value = e.fit->at(x), .low = {}, .high = {}});
@@ -154,10 +171,17 @@ Figure figure_of(const std::string& name, const std::vector<Exponent>& all, bool
     series.push_back(line);
   }
   if (series.empty()) series.push_back({.title = "no window with enough points", .x = {}, .y = {}});
-  return series_figure(name, of_height ? "Lift of the centre of mass against V_p" : "T_z against V_p",
-                       "V_p/(g d)^{1/2}", of_height ? "dh_cm/d" : "T_z/(m g d)", series,
-                       "set logscale xy\nset key outside right top\n",
-                       "Power laws over windows of W, unweighted least squares in the logarithms.");
+  return series_figure(
+      {.name = name,
+       .panel = 0,
+       .title = of_height ? "Lift of the centre of mass, A = d, N = 4" : "Power laws of T_z, A = d, N = 4",
+       .x = {.label = "V_p/(g d)^{1/2}", .logarithmic = true},
+       .y = {.label = of_height ? "Δh_{cm}/d" : "T_z/(m g d)", .logarithmic = true},
+       .caption = "Power laws over windows of W, unweighted least squares in the logarithms; [W_f, W_2] "
+                  "contains the "
+                  "window of Warr et al. Bars: 95 % intervals, mostly smaller than the symbols.",
+       .marks = "set key maxcols 1\n"},
+      series);
 }
 
 Reproduction run(const Request& request, bool of_height) {
@@ -189,18 +213,20 @@ Reproduction run(const Request& request, bool of_height) {
     const double low = study.low == kFromPeak ? peak->grid * (1 - 1e-9) : study.low;
     fitted.push_back(exponent_of(fmt::format("{}, {}D rough", study.name, study.dimension),
                                  of_gas(points, of_height), low, std::min(study.high, kEndOfData)));
+    fitted.back().printed = study.expected;
+    fitted.back().measured = measured_of(points, of_height);
     r.targets.push_back(target_of(study, &fitted.back(), of_height));
   }
   // The universal window of the paper's sec. V, and the user's window.
   for (const std::size_t k : rough) {
     const auto peak = peak_of(gas.points(k));
     const auto w_2 = w_2_of(gas.points(k));
-    if (peak && w_2)
-      fitted.push_back(exponent_of(gas.curve(k).name + ", [W_f, W_2]", of_gas(gas.points(k), of_height),
-                                   peak->grid * (1 - 1e-9), *w_2 * (1 + 1e-9)));
-    if (request.window)
-      fitted.push_back(exponent_of(gas.curve(k).name + ", your window", of_gas(gas.points(k), of_height),
-                                   request.window->first, request.window->second));
+    const auto add = [&](const char* window, double low, double high) {
+      fitted.push_back(exponent_of(gas.curve(k).name + window, of_gas(gas.points(k), of_height), low, high));
+      fitted.back().measured = measured_of(gas.points(k), of_height);
+    };
+    if (peak && w_2) add(", [W_f, W_2]", peak->grid * (1 - 1e-9), *w_2 * (1 + 1e-9));
+    if (request.window) add(", your window", request.window->first, request.window->second);
   }
   if (!own.empty()) {
     const auto window = request.window.value_or(std::pair(1e-300, 1e300));

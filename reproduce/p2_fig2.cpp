@@ -198,7 +198,7 @@ std::optional<Series> own_of(const Request& request) {
 Figure figure_of(const Gas& gas, const Runs& runs, const Request& request, const std::optional<Series>& own) {
   std::vector<Series> all;
   for (std::size_t k = 0; k < runs.systems.size(); ++k)
-    all.push_back(series_of(gas_systems()[k].name(), gas.points(runs.systems[k]), "T_bar_z"));
+    add_series(all, gas_systems()[k].name(), gas.points(runs.systems[k]), "T_bar_z");
   for (const int dimension : {2, 3}) {
     Series s{.title = fmt::format("Table III, {}D rough", dimension),
              .x = {},
@@ -212,21 +212,33 @@ Figure figure_of(const Gas& gas, const Runs& runs, const Request& request, const
     all.push_back(s);
   }
   if (own) all.push_back(*own);
-  std::string setup =
-      "set xrange [0.4:150]\nset logscale x\nset yrange [0:*]\n"
-      "set arrow from 0.5,graph 0.95 to 9,graph 0.95 heads size graph 0.01,90 lc rgb '#777777'\n"
-      "set label 'Warr et al.' at 0.52,graph 0.975 font ',9' tc rgb '#777777'\n"
-      "set arrow from 44,graph 0.48 to 135,graph 0.48 heads size graph 0.01,90 lc rgb '#777777'\n"
-      "set label 'Feitosa, Menon' at 44,graph 0.505 font ',9' tc rgb '#777777'\n";
-  if (request.window)
-    setup += fmt::format(
-        "set arrow from {},graph 0.02 to {},graph 0.02 heads size graph 0.01,90 lw 2\n"
-        "set label 'your window' at {},graph 0.045 font ',9'\n",
-        request.window->first, request.window->second, request.window->first);
-  return series_figure(
-      "p2-fig2", "T_z/(m V_p^2) against W", "W = V_p^2/(d g)", "T_z/(m V_p^2)", all, setup,
-      "Scaled temperature, T_z = m <w'^2> about the instantaneous centre of mass, with 95 % intervals, "
-      "and the algebraic curves of Table III. Form of Bhateja et al. 2016, Fig. 2.");
+  SeriesFigure figure{
+      .name = "p2-fig2",
+      .panel = 0,
+      .title = "Temperature of four systems, A = d, N = 4",
+      .x = w_axis(),
+      .y = {.label = "T_z/(m V_p^2)", .low = 0},
+      .caption =
+          "Scaled temperature, T_z = m <w'^2> about the instantaneous centre of mass, with 95 % intervals, "
+          "and the algebraic curves of Table III. Open symbols: solid beds, T_z < 10⁻⁴ m V_p², which are "
+          "left out of all fits. "
+          "Bars at the top: windows of W of earlier experiments. Form of Bhateja et al. 2016, Fig. 2."};
+  // The windows of earlier experiments lie above all points.
+  constexpr double kWindows = 1.14, kTop = 1.28;
+  figure.x.show(0.5);
+  figure.x.show(135);
+  figure.y.show(kTop);
+  const auto window = [&](const char* who, double low, double high, double at, const char* colour) {
+    figure.marks += fmt::format(
+        "set arrow from {0},{2} to {1},{2} heads size graph 0.01,90 lw 1.5 lc rgb '{3}'\n"
+        "set label '{4}' at {5:.4g},{6} {7} tc rgb '{3}'\n",
+        low, high, at, colour, who, high > 100 ? high : std::sqrt(low * high), at + 0.08,
+        high > 100 ? "right" : "center");
+  };
+  window("Warr et al.", 0.5, 9, kWindows, "#555555");
+  window("Feitosa and Menon", 44, 135, kWindows, "#555555");
+  if (request.window) window("your window", request.window->first, request.window->second, -0.1, "#222222");
+  return series_figure(figure, all);
 }
 
 Reproduction run(const Request& request) {

@@ -59,24 +59,64 @@ class Mobility : public TrajectorySink {
   std::array<double, kLayers> seen_{}, moved_{};
 };
 
-Figure snapshot_figure(const std::string& name, double w, const Frame& frame, const Box& box) {
-  Figure f{.name = name, .title = fmt::format("W = {:.3g}", w), .width = 420, .height = 420};
-  f.data = "# x z radius speed about the centre of mass\n";
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& v : frame.velocity) mean += v / static_cast<double>(frame.velocity.size());
-  for (std::size_t i = 0; i < frame.position.size(); ++i) {
-    const Vec3 r = box.wrap(frame.position[i]);
-    f.data += fmt::format("{} {} 0.5 {}\n", r.x(), r.z(), (frame.velocity[i] - mean).norm() / std::sqrt(w));
+/// A bed at the beginning of a cycle.
+struct BedSnapshot {
+  double w;
+  Frame frame;
+  Box box;
+
+  /// Speed of bead i about the centre of mass, over V_p.
+  [[nodiscard]] double speed(std::size_t i) const {
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& v : frame.velocity) mean += v / static_cast<double>(frame.velocity.size());
+    return (frame.velocity[i] - mean).norm() / std::sqrt(w);
   }
-  f.plot = fmt::format(
-      "set xrange [0:10]\nset yrange [-1:9]\nset size ratio -1\nset style fill solid 0.9 border -1\n"
-      "set palette defined (0 '#F0F0F0', 1 vermilion)\nset cbrange [0:1]\nset cblabel 'speed about the "
-      "centre of mass/V_p'\n"
-      "set xlabel 'x/d'\nset ylabel 'z/d'\nunset key\n"
-      "plot '{}.dat' using 1:2:3:4 with circles fc palette, {} lw 3 lc rgb '#222222'\n",
-      name, frame.plate_height);
-  f.caption = "A smooth bed of the plane at the beginning of a cycle. Form of Bhateja et al. 2016, Fig. 3.";
-  return f;
+};
+
+/// One figure for each snapshot, all with the same scales of length and of speed.
+std::vector<Figure> snapshot_figures(const std::vector<BedSnapshot>& all) {
+  static constexpr std::array<const char*, 3> kRelations = {"below W_f", "just below W_f", "at W_f"};
+  constexpr double kShown = 12;  // a bead thrown high must not shrink the bed
+  double top = 0, fastest = 0;
+  for (const BedSnapshot& s : all)
+    for (std::size_t i = 0; i < s.frame.position.size(); ++i) {
+      top = std::max(top, std::min(kShown, s.frame.position[i].z() + 1));
+      fastest = std::max(fastest, s.speed(i));
+    }
+  std::vector<Figure> figures;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const BedSnapshot& s = all[k];
+    const double wide = s.box.size().x();
+    Figure f{.name = fmt::format("p2-fig3{}", "abc"[k]),
+             .title = fmt::format("W = {:.3g}", s.w),
+             .width = 480,
+             .height = static_cast<int>(150 + 330 * (top + 1) / wide)};
+    f.data = "# x z radius speed about the centre of mass/V_p\n";
+    for (std::size_t i = 0; i < s.frame.position.size(); ++i) {
+      const Vec3 r = s.box.wrap(s.frame.position[i]);
+      // A bead at one side of the periodic cell is drawn at the other side too.
+      for (const double image : {-wide, 0.0, wide})
+        if (const double x = r.x() + image; x > s.box.lower.x() - 0.5 && x < s.box.upper.x() + 0.5)
+          f.data += fmt::format("{} {} 0.5 {}\n", x, r.z(), s.speed(i));
+    }
+    f.plot =
+        fmt::format(
+            "set size ratio -1\nset xlabel 'x/d'\nset ylabel 'z/d'\nset xrange [{}:{}]\nset yrange "
+            "[-1:{:.3g}]\n",
+            s.box.lower.x(), s.box.upper.x(), top) +
+        figure_style::panel_title("abc"[k], fmt::format("2D smooth, W = {:.3g}, {}", s.w, kRelations[k])) +
+        fmt::format(
+            "set style fill solid border lc rgb '#444444'\nset cbrange [0:{:.3g}]\nset cblabel 'speed about "
+            "the centre of mass/V_p'\nunset key\n"
+            "plot '{}.dat' using 1:2:3:4 with circles fc palette, {} lw 3 lc rgb '#222222'\n",
+            fastest, f.name, s.frame.plate_height);
+    f.caption =
+        "A smooth bed of the plane at the beginning of a cycle, up to 12 d; the scale of speed is the same "
+        "in (a), "
+        "(b) and (c). Form of Bhateja et al. 2016, Fig. 3.";
+    figures.push_back(f);
+  }
+  return figures;
 }
 
 Reproduction run(const Request& request) {
@@ -84,6 +124,7 @@ Reproduction run(const Request& request) {
   r.title = "Bhateja et al. 2016, Fig. 3: which layers of a smooth bed move";
   const int cycles = request.full ? 400 : 100;
   std::vector<std::array<double, kLayers>> mobile;
+  std::vector<BedSnapshot> snapshots;
   nlohmann::json measured = nlohmann::json::array();
   for (const int rpm : kRpm) {
     const double w = w_of_rpm(rpm);
@@ -104,9 +145,9 @@ Reproduction run(const Request& request) {
         "  W = {:.4g}: share of mobile beads a cycle, from the lowest layer up: {:.2f} {:.2f} {:.2f} "
         "{:.2f}\n",
         w, shares[0], shares[1], shares[2], shares[3]);
-    r.figures.push_back(
-        snapshot_figure(fmt::format("p2-fig3{}", "abc"[r.figures.size()]), w, mobility.last, box));
+    snapshots.push_back({w, mobility.last, box});
   }
+  r.figures = snapshot_figures(snapshots);
   const auto said = [&](std::size_t k) {
     return fmt::format("lowest {:.2f}, highest {:.2f}", mobile[k][0], mobile[k][kLayers - 1]);
   };

@@ -61,23 +61,30 @@ Reproduction run(const Request& request) {
     const GasSystem& system = gas_systems()[k];
     r.targets.push_back(order_of(system, gas.points(k)));
     r.targets.push_back(same_shape(system, gas.points(k)));
-    Series x = series_of(system.name(), gas.points(k), "T_x");
-    for (std::size_t i = 0; i < x.x.size(); ++i)
-      x.y[i] = quotient(x.y[i], {.value = x.x[i], .low = x.x[i], .high = x.x[i]});
-    horizontal.push_back(x);
-    total.push_back(series_of(system.name(), gas.points(k), "T_bar"));
+    add_series(horizontal, system.name(), gas.points(k), "T_x",
+               [](const Estimate& t, double w) { return quotient(t, {.value = w, .low = w, .high = w}); });
+    add_series(total, system.name(), gas.points(k), "T_bar");
   }
   r.table = gas.table();
   r.measured = gas.as_json();
   r.conditions = gas.conditions();
   r.runs = gas.runs_text();
   r.cheaper = gas.cheaper();
-  const std::string axes = "set logscale x\nset xrange [0.4:150]\nset yrange [0:*]\n";
-  r.figures = {
-      series_figure("p2-fig4a", "T_x/(m V_p^2) against W", "W = V_p^2/(d g)", "T_x/(m V_p^2)", horizontal,
-                    axes, "Horizontal temperature m <u'^2>. Form of Bhateja et al. 2016, Fig. 4."),
-      series_figure("p2-fig4b", "T/(m V_p^2) against W", "W = V_p^2/(d g)", "T/(m V_p^2)", total, axes,
-                    "Mean of the components. Form of Bhateja et al. 2016, Fig. 4.")};
+  const std::string form = " Open symbols: solid beds. Form of Bhateja et al. 2016, Fig. 4.";
+  r.figures = {series_figure({.name = "p2-fig4a",
+                              .panel = 'a',
+                              .title = "horizontal temperature, A = d, N = 4",
+                              .x = w_axis(),
+                              .y = {.label = "T_x/(m V_p^2)", .low = 0},
+                              .caption = "Horizontal temperature m <u'^2>." + form},
+                             horizontal),
+               series_figure({.name = "p2-fig4b",
+                              .panel = 'b',
+                              .title = "mean of the components, A = d, N = 4",
+                              .x = w_axis(),
+                              .y = {.label = "T/(m V_p^2)", .low = 0},
+                              .caption = "Mean of the components of the temperature." + form},
+                             total)};
   return r;
 }
 

@@ -137,10 +137,16 @@ Reproduction run(const Request& request) {
                                     size.depth, std::lround(kBeadsPerDepth * size.depth)));
   r.cheaper.push_back(fmt::format("{} frequencies", size.rpm.size()));
   r.figures = {series_figure(
-      "p2-fig5", "A channel shaken sideways", "W = V_p^2/(d g)", "T_z/(m V_p^2)", series,
-      "set logscale x\nset xrange [0.5:600]\nset yrange [0:*]\n",
-      "Vertical temperature, drive along x, e = 0.3, smooth; without gravity the abscissa is the "
-      "same V_p. Form of Bhateja et al. 2016, Fig. 5.")};
+      {.name = "p2-fig5",
+       .panel = 0,
+       .title = "Channel shaken sideways, 3D smooth, e = 0.3, A = 10 d",
+       .x = w_axis(),
+       .y = {.label = "T_z/(m V_p^2)", .logarithmic = true},
+       .caption =
+           "Vertical temperature, drive along x, e = 0.3, smooth, with 95 % intervals; without gravity the "
+           "abscissa is the same V_p. The paper: constant without gravity; with gravity a rise, a decay to a "
+           "constant, and a second, smaller peak. Form of Bhateja et al. 2016, Fig. 5."},
+      series)};
   return r;
 }
 

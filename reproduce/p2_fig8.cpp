@@ -137,7 +137,13 @@ Reproduction run(const Request& request, bool coefficients) {
   r.table = "  Measured (printed)\n";
   for (std::size_t k = 0; k < 2; ++k) {
     const int dimension = gas_systems()[k].dimension;
-    all.push_back(series_of(gas.curve(k).name, gas.points(k), "T_bar_z"));
+    Series fluid{.title = gas.curve(k).name, .x = {}, .y = {}};
+    for (const GasPoint& p : gas.points(k))
+      if (const auto t = p.get("T_bar_z"); t && !p.solid()) {
+        fluid.x.push_back(p.at);
+        fluid.y.push_back(*t);
+      }
+    all.push_back(fluid);
     for (const bool algebraic : {true, false}) {
       const Fitted f = fit_of(dimension, algebraic, gas.points(k));
       add_targets(r.targets, f, coefficients);
@@ -151,8 +157,8 @@ Reproduction run(const Request& request, bool coefficients) {
       all.push_back(s);
       Figure residuals =
           fit_figure(*f.fit, f.points, "W", "T̄_z",
-                     fmt::format("p2-fig8-{}d-{}", dimension, algebraic ? "algebraic" : "exponential"));
-      residuals.title = f.name();
+                     fmt::format("p2-fig8-{}d-{}", dimension, algebraic ? "algebraic" : "exponential"),
+                     fmt::format("{}: {}", f.name(), f.fit->law->formula));
       r.figures.push_back(residuals);
       fits.push_back(
           {{"system", gas.curve(k).name},
@@ -173,10 +179,14 @@ Reproduction run(const Request& request, bool coefficients) {
   r.figures.insert(
       r.figures.begin(),
       series_figure(
-          "p2-fig8", "Fits of T_z/(m V_p^2)", "W = V_p^2/(d g)", "T_z/(m V_p^2)", all,
-          "set logscale xy\nset xrange [1:150]\nset yrange [0.03:1]\nset key inside vertical bottom left\n",
-          "Algebraic and exponential fits from W_f on. Form of Bhateja et al. 2016, Fig. 8(b); "
-          "residuals in the figures beside it."));
+          {.name = "p2-fig8",
+           .panel = 0,
+           .title = "Algebraic and exponential fits from W_f on, A = d, N = 4",
+           .x = w_axis(),
+           .y = {.label = "T_z/(m V_p^2)", .logarithmic = true},
+           .caption = "Algebraic and exponential fits from W_f on, with the points and their 95 % intervals. "
+                      "Form of Bhateja et al. 2016, Fig. 8(b); residuals in the figures beside it."},
+          all));
   return r;
 }
 

@@ -2,6 +2,7 @@
 // friction and layers.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,9 +36,24 @@ constexpr double kSoftest = 1e5;
 std::string symbol_text(const Panel& p) {
   return p.symbol == "mu" ? "μ" : p.symbol;
 }
+/// The parameter as the label of an axis.
+std::string axis_text(const Panel& p) {
+  return p.symbol == "e"    ? "coefficient of restitution e"
+         : p.symbol == "mu" ? "friction coefficient μ"
+                            : "number of layers N";
+}
 std::string legend_text(const Panel& p, double value) {
   return p.symbol == "k_n" ? fmt::format("k_n = 10^{{{:g}}}", std::log10(value))
                            : fmt::format("{} = {:g}", symbol_text(p), value);
+}
+
+/// The values of the other parameters: "e = 0.9, μ = 0.4, N = 4".
+std::string held_text(const Panel& p) {
+  std::vector<std::string> held;
+  for (const auto& [symbol, text] :
+       {std::pair{"e", "e = 0.9"}, std::pair{"mu", "μ = 0.4"}, std::pair{"N", "N = 4"}})
+    if (p.symbol != symbol) held.emplace_back(text);
+  return fmt::format("{}", fmt::join(held, ", "));
 }
 
 constexpr double kSoftUpTo = 23;  ///< W above which beads of k_n = 1e5 overlap by more than 5 %
@@ -173,11 +189,17 @@ Reproduction run_9(const Request& request) {
   for (const Panel& p : study.all) {
     std::vector<Series> series;
     for (std::size_t k = 0; k < p.values.size(); ++k)
-      series.push_back(series_of(legend_text(p, p.values[k]), gas.points(p.curves[k]), "T_bar_z"));
+      add_series(series, legend_text(p, p.values[k]), gas.points(p.curves[k]), "T_bar_z");
     r.figures.push_back(series_figure(
-        "p2-fig9" + p.name, "T_z/(m V_p^2) with " + symbol_text(p), "W = V_p^2/(d g)", "T_z/(m V_p^2)",
-        series, "set logscale x\nset xrange [1:150]\nset yrange [0:*]\n",
-        fmt::format("2D rough, {} varied. Form of Bhateja et al. 2016, Fig. 9({}).", p.symbol, p.name)));
+        {.name = "p2-fig9" + p.name,
+         .panel = p.name.front(),
+         .title = fmt::format("2D rough, {}", held_text(p)),
+         .x = w_axis(),
+         .y = {.label = "T_z/(m V_p^2)", .low = 0},
+         .caption =
+             fmt::format("2D rough, {} varied, with 95 % intervals. Form of Bhateja et al. 2016, Fig. 9({}).",
+                         symbol_text(p), p.name)},
+        series));
   }
   r.table = gas.table();
   return r;
@@ -208,7 +230,7 @@ Reproduction run_10(const Request& request) {
   Gas& gas = study.gas;
   Reproduction r = begun(study, "Bhateja et al. 2016, Fig. 10: alpha over [W_f, W_2] with e, mu and N");
   for (const Panel& p : study.all) {
-    Series s{.title = "alpha", .x = {}, .y = {}};
+    Series s{.title = "α over [W_f, W_2]", .x = {}, .y = {}};
     std::string said;
     for (std::size_t k = 0; k < p.values.size(); ++k) {
       std::string window = "no window";
@@ -252,10 +274,24 @@ Reproduction run_10(const Request& request) {
       r.targets.push_back(t);
       r.targets.push_back(deep);
     }
-    r.figures.push_back(
-        series_figure("p2-fig10-" + p.symbol, "α over [W_f, W_2] with " + symbol_text(p), symbol_text(p), "α",
-                      {s}, "set yrange [0:2.5]\nset offsets graph 0.05, graph 0.05, 0, 0\nunset key\n",
-                      "Form of Bhateja et al. 2016, Fig. 10."));
+    SeriesFigure figure{
+        .name = "p2-fig10-" + p.symbol,
+        .panel = p.symbol == "e"    ? 'a'
+                 : p.symbol == "mu" ? 'b'
+                                    : 'c',
+        .title = fmt::format("2D rough, {}", held_text(p)),
+        .x = {.label = axis_text(p)},
+        .y = {.label = "α"},
+        .caption =
+            "Exponent α of T_z with V_p over [W_f, W_2], 2D rough, with 95 % intervals. Form of "
+            "Bhateja et al. 2016, Fig. 10."};
+    // One range for the three panels, so that they can be compared.
+    for (const double end : {0.7, 2.1}) figure.y.show(end);
+    if (p.symbol == "N") {
+      figure.marks = "set arrow from 6,1 to 8,1 nohead " + std::string(figure_style::kStated) + "\n";
+      figure.entries = {figure_style::stated_line_entry("paper: about 1 for N ≥ 6")};
+    }
+    r.figures.push_back(series_figure(figure, {s}));
   }
   r.table += gas.table();
   return r;

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 #include "analysis/report/gnuplot_text.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
@@ -175,6 +176,10 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
   std::stable_sort(values.begin(), values.end(), [&](const Value& a, const Value& b) {
     return a.axes.value(x, 0.0) < b.axes.value(x, 0.0);
   });
+  const std::string y = onsets ? fmt::format("{} at the onset of {}", document["onsets"][0].value("key", ""),
+                                             document["onsets"][0].value("verdict", ""))
+                               : result;
+  figure_style::Axis x_axis{.label = gnuplot_text(x)}, y_axis{.label = gnuplot_text(y)};
   // Curves in the order of their first value of the second axis, not of its text.
   std::vector<std::string> curves;
   std::map<std::string, Rows> rows;
@@ -190,6 +195,9 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
     if (!rows.contains(curve)) curves.push_back(curve);
     Rows& r = rows[curve];
     const double at = v.axes.at(x).get<double>();
+    x_axis.show(at);
+    for (const auto& end : {v.value, v.low, v.high})
+      if (end) y_axis.show(*end);
     if (v.value) {
       r.whole +=
           fmt::format("{} {} {} {}\n", at, *v.value, v.low.value_or(*v.value), v.high.value_or(*v.value));
@@ -210,7 +218,15 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
         fmt::format("{}'{}.dat' index {} using {} {}", block > 0 ? ", " : "", f.name, block, columns, style);
     ++block;
   };
-  constexpr std::array kSymbols = {7, 5, 13, 6, 4, 12};
+  // Without triangles, which are limits.
+  constexpr int kCircle = figure_style::kCircle, kSquare = figure_style::kSquare,
+                kDiamond = figure_style::kDiamond;
+  constexpr std::array kSymbols = {kCircle,
+                                   kSquare,
+                                   kDiamond,
+                                   figure_style::unfilled(kCircle),
+                                   figure_style::unfilled(kSquare),
+                                   figure_style::unfilled(kDiamond)};
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const Rows& r = rows[curves[c]];
     const std::string title =
@@ -220,8 +236,9 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
     if (r.points > 1) add(r.whole, "1:2", fmt::format("with lines lc rgb '{}' notitle", colour));
     if (r.points > 0)
       add(r.whole, "1:2:3:4",
-          fmt::format("with yerrorbars pt {} ps 1.1 lw 1.3 lc rgb '{}' {}", symbol, colour, title));
-    constexpr int kUp = 9, kDown = 11;
+          fmt::format("with yerrorbars pt {} ps 1.1 lw {} lc rgb '{}' {}", symbol, figure_style::kLine,
+                      colour, title));
+    constexpr int kUp = figure_style::kTriangle, kDown = figure_style::kDown;
     bool named = r.points > 0;
     for (const auto& [data, limit] : {std::pair(&r.lower, kUp), std::pair(&r.upper, kDown)})
       if (!data->empty()) {
@@ -233,15 +250,9 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
   if (block == 0)
     throw InputError({.file = {}, .key = "the sweep"},
                      "has no value to draw yet; sweep run computes its points.");
-  const std::string y = onsets ? fmt::format("{} at the onset of {}", document["onsets"][0].value("key", ""),
-                                             document["onsets"][0].value("verdict", ""))
-                               : result;
   f.title = y + " against " + x;
-  f.plot = fmt::format(
-      "set xlabel '{}' noenhanced\nset ylabel '{}' noenhanced\nset offsets graph 0.06, graph 0.06, graph "
-      "0.06, graph 0.06\n"
-      "set key outside below center vertical maxrows 4 samplen 1 spacing 1.1 Left reverse\nplot {}\n",
-      gnuplot_plain_text(x), gnuplot_plain_text(y), clauses);
+  f.plot =
+      fmt::format("{}set key vertical maxrows 4\nplot {}\n", figure_style::axes(x_axis, y_axis), clauses);
   f.caption = y + " with its 95 % intervals.";
   return f;
 }

@@ -11,8 +11,10 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 
 #include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 #include "analysis/report/gnuplot_text.hpp"
 #include "core/atomic_file.hpp"
 #include "core/cancellation.hpp"
@@ -58,26 +60,6 @@ int phase_point(BedPhase phase, Side side) {
   return 2 + filled;
 }
 
-/// Colour of curve i of n in an ordered set: viridis, from dark blue to yellow in equal steps of lightness.
-std::string ordered_colour(std::size_t i, std::size_t n) {
-  static constexpr std::array<std::array<double, 3>, 5> stops = {
-      {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {222, 195, 30}}};
-  const double x = n < 2 ? 0.25 : 4.0 * static_cast<double>(i) / static_cast<double>(n - 1);
-  const auto low = std::min<std::size_t>(3, static_cast<std::size_t>(x));
-  const double w = x - static_cast<double>(low);
-  const auto mix = [&](std::size_t c) {
-    return static_cast<int>(std::lround((1 - w) * stops[low][c] + w * stops[low + 1][c]));
-  };
-  return fmt::format("#{:02X}{:02X}{:02X}", mix(0), mix(1), mix(2));
-}
-
-/// Commands at the beginning of all figures.
-const char* kStyle =
-    "set encoding utf8\n"
-    "set border lw 1 lc rgb '#444444'\n"
-    "set tics textcolor rgb '#222222'\n"
-    "set grid lw 0.5 lc rgb '#DDDDDD'\n"
-    "set datafile missing '?'\n";
 std::string phase_key(const std::vector<Run>& runs) {
   std::string entries;
   for (const Side side : kSides)
@@ -154,7 +136,7 @@ std::vector<double> distinct_gammas(const std::vector<Run>& runs) {
 std::string gamma_colour(const std::vector<double>& gammas, double gamma) {
   const auto above = std::upper_bound(gammas.begin(), gammas.end(), gamma);
   const auto i = above == gammas.begin() ? 0 : static_cast<std::size_t>(above - gammas.begin()) - 1;
-  return ordered_colour(i, gammas.size());
+  return figure_style::ordered_colour(i, gammas.size());
 }
 
 /// One panel per side with one curve per run, coloured in order of Gamma. `points(run)` returns the data
@@ -395,31 +377,17 @@ void draw(const Figure& figure, const std::filesystem::path& folder) {
     throw RunError(
         fmt::format("A figure cannot be named '{}': letters, digits, '_', '-' and '.' only.", figure.name));
   const bool own_svg = !figure.svg.empty();
-  const std::string script = fmt::format(
-      "# {0}\n# gnuplot {1}.gp draws {2}\n{12}"
-      "do for [kind in '{3}'] {{\n"
-      "if (kind eq 'svg') {{\n"
-      "  set terminal svg size {4},{5} dynamic enhanced font 'Arial,15' background 'white'\n"
-      "}}\n"
-      "if (kind eq 'pdf') {{\n"
-      "  set terminal pdfcairo size {10}in,{11}in enhanced font 'sans,9' background 'white'\n"
-      "}}\n"
-      "if (kind eq 'png') {{\n"
-      "  set terminal pngcairo size {6},{7} enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale "
-      "1.6 "
-      "background 'white'\n"
-      "}}\n"
-      "set output '{1}.' . kind\n"
-      "{8}{9}"
-      "unset output\n"
-      "reset\n"
-      "}}\n",
-      gnuplot_plain_text(figure.title), figure.name,
-      own_svg ? fmt::format("{0}.pdf and {0}.png", figure.name)
-              : fmt::format("{0}.svg, {0}.pdf and {0}.png", figure.name),
-      own_svg ? "pdf png" : "svg pdf png", figure.width, figure.height, figure.width * 8 / 5,
-      figure.height * 8 / 5, kStyle, figure.plot, figure.width / 90.0, figure.height / 90.0,
-      colours::for_gnuplot());
+  std::string script = fmt::format("# {0}\n# gnuplot {1}.gp draws {2}\ndo for [kind in '{3}'] {{\n",
+                                   gnuplot_plain_text(figure.title), figure.name,
+                                   own_svg ? fmt::format("{0}.pdf and {0}.png", figure.name)
+                                           : fmt::format("{0}.svg, {0}.pdf and {0}.png", figure.name),
+                                   own_svg ? "pdf png" : "svg pdf png");
+  for (const char* kind : {"svg", "pdf", "png"})
+    if (!own_svg || kind != std::string_view("svg"))
+      script += fmt::format("if (kind eq '{}') {{\n  {}}}\n", kind,
+                            figure_style::terminal(kind, figure.width, figure.height));
+  script += fmt::format("set output '{}.' . kind\n{}{}unset output\nreset\n}}\n", figure.name,
+                        figure_style::head(), figure.plot);
   write_text_file(folder / (figure.name + ".dat"), figure.data);
   write_text_file(folder / (figure.name + ".gp"), script);
   if (own_svg) write_text_file(folder / (figure.name + ".svg"), figure.svg);

@@ -9,6 +9,7 @@
 #include "analysis/neighbours/bond_order.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/report/colours.hpp"
+#include "analysis/report/figure_style.hpp"
 
 namespace twincell {
 namespace {
@@ -95,23 +96,33 @@ Figure profiles_figure(const std::vector<Result>& results) {
   for (std::size_t k = 0; k < z.values.size(); ++k)
     f.data +=
         fmt::format("{} {} {} {}\n", z.values[k], column("phi_z", k), column("T_z_z", k), column("T_x_z", k));
-  const bool hot = find("T_z_z") != results.end();
-  f.plot = fmt::format(
-      "set multiplot layout 1,2\nset ylabel 'z / σ'\nset key top right samplen 1.5\nset xrange [0:*]\nset "
-      "yrange "
-      "[{2}:{3}]\nset xtics 0.2\nset xlabel 'packing fraction'\n"
-      "plot '{0}.dat' using 2:1 with linespoints pt 7 ps 0.6 lw 1.8 lc rgb '{1}' notitle\n"
-      "set xtics autofreq\nset xlabel 'temperature / m g σ'\n",
-      f.name, kBlue, z.values.front() - 1, z.values.back() + 1);
-  f.plot += hot ? fmt::format(
-                      "plot '{0}.dat' using 3:1 with linespoints pt 7 ps 0.6 lw 1.8 lc rgb '{1}' title "
-                      "'vertical', '' "
-                      "using 4:1 with linespoints pt 6 ps 0.6 lw 1.8 lc rgb '{2}' title 'horizontal'\n",
-                      f.name, kVermilion, kBlue)
-                : "set label 9 'no value' at graph 0.5,0.5 center\nplot NaN notitle\nunset label 9\n";
-  f.plot += "unset multiplot\n";
+  figure_style::Axis height{.label = "z/σ"}, packing{.label = "packing fraction", .low = 0},
+      temperature{.label = "temperature/(m g σ)", .low = 0};
+  const auto show = [&](figure_style::Axis& axis, const char* name) {
+    if (const auto r = find(name); r != results.end())
+      for (const double v : r->values) axis.show(v);
+  };
+  show(height, "profile_z");
+  show(packing, "phi_z");
+  for (const char* name : {"T_z_z", "T_x_z"}) show(temperature, name);
+  const figure_style::Panels panels(1, 2, f.width, f.height, 1);
+  const std::string line = fmt::format("with linespoints pt {} ps 0.6 lw {} lc rgb", figure_style::kCircle,
+                                       figure_style::kCurve),
+                    open = fmt::format("with linespoints pt {} ps 0.6 lw {} lc rgb",
+                                       figure_style::unfilled(figure_style::kCircle), figure_style::kCurve);
+  f.plot =
+      figure_style::Panels::begin() + panels.panel(0) + figure_style::axes(packing, height) +
+      figure_style::panel_title('a', "packing") +
+      fmt::format("plot '{}.dat' using 2:1 {} '{}' notitle\n", f.name, line, kGreen) + panels.panel(1) +
+      figure_style::axes(temperature, height) + figure_style::panel_title('b', "temperature") +
+      (temperature.empty() ? "set label 'no value' at graph 0.5,0.5 center\nplot NaN notitle\n"
+                           : fmt::format("plot '{0}.dat' using 3:1 {1} '{2}' notitle, '' using 4:1 {3} '{4}' "
+                                         "notitle\n",
+                                         f.name, line, kVermilion, open, kBlue)) +
+      panels.end({fmt::format("keyentry {} '{}' title 'vertical'", line, kVermilion),
+                  fmt::format("keyentry {} '{}' title 'horizontal'", open, kBlue)});
   f.caption =
-      "Slabs one σ thick, mean over all frames. Left: share of the slab that is filled by beads. Right: m⟨(v "
+      "Slabs one σ thick, mean over all frames. (a) share of the slab that is filled by beads. (b) m⟨(v "
       "− ⟨v⟩)²⟩ of the beads whose centres are in the slab.";
   return f;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/report/figure_style.hpp"
 #include "analysis/report/gnuplot_text.hpp"
 
 namespace twincell {
@@ -12,27 +13,35 @@ namespace twincell {
 Figure bounce_figure(const BounceFit& fit) {
   Figure f{.name = "bounce", .title = "Restitution of each impact", .width = 560, .height = 400};
   f.data = "# speed, e_n, error\n";
-  for (const BounceImpact& i : fit.impacts)
+  figure_style::Axis speed{.label = "impact speed"}, e_n{.label = "e_n"};
+  for (const BounceImpact& i : fit.impacts) {
+    speed.show(i.speed);
+    e_n.show(i.restitution - i.error);
+    e_n.show(i.restitution + i.error);
     f.data += fmt::format("{:.6g} {:.6g} {:.3g}\n", i.speed, i.restitution, i.error);
+  }
   f.plot = fmt::format(
-      "set xlabel 'impact speed'\nset ylabel 'e_n'\nset key top left\n"
-      "plot [*:*] {:.8g} with lines lw 2 lc rgb blue title 'mean', {:.8g} with lines dt 2 lc rgb "
+      "{}plot {:.8g} with lines lw 2 lc rgb blue title 'mean', {:.8g} with lines dt 2 lc rgb "
       "blue title "
       "'± 95 %', {:.8g} with lines dt 2 lc rgb blue notitle, 'bounce.dat' using 1:2:3 with yerrorbars "
       "pt 7 lc rgb "
       "'#222222' title 'impacts'\n",
-      fit.restitution, fit.restitution + 1.96 * fit.restitution_error,
+      figure_style::axes(speed, e_n), fit.restitution, fit.restitution + 1.96 * fit.restitution_error,
       fit.restitution - 1.96 * fit.restitution_error);
   f.caption = fmt::format("{} impacts between {} flights", fit.impacts.size(), fit.flights);
   return f;
 }
 
 Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, double shape) {
-  Figure f{.name = "collisions", .title = "Collisions of two beads", .width = 900, .height = 420};
+  Figure f{.name = "collisions", .title = "Collisions of two beads", .width = 720, .height = 400};
   double largest = 0;
+  figure_style::Axis speed{.label = "impact speed, σ/t_0", .low = 0},
+      e_n{.label = "e_n", .low = 0, .high = 1}, psi_1{.label = "Ψ_1", .low = 0}, psi_2{.label = "Ψ_2"};
   f.data = "# speed, e_n, psi_1, psi_2\n";
   for (const Impact& i : found.impacts) {
     f.data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}\n", i.speed, i.restitution, i.psi_1, i.psi_2);
+    speed.show(i.speed);
+    e_n.show(i.restitution);
     if (std::isfinite(i.psi_1)) largest = std::max(largest, i.psi_1);
   }
   std::string curve;
@@ -40,21 +49,25 @@ Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, dou
     const double mu = fit.tangential.values[0], beta = fit.tangential.values[1],
                  reach = (1 + fit.restitution) * (1 + 1 / shape);
     curve = fmt::format(
-        "(-({:.8g})*x > x-({:.8g})) ? -({:.8g})*x : x-({:.8g}) with lines lw 2 lc rgb blue title "
-        "'fit', ",
-        beta, mu * reach, beta, mu * reach);
+        "(-({:.8g})*x > x-({:.8g})) ? -({:.8g})*x : x-({:.8g}) with lines lw 2 lc rgb blue notitle, ", beta,
+        mu * reach, beta, mu * reach);
   }
-  f.plot = fmt::format(
-      "set multiplot layout 1,2\nset xlabel 'impact speed, σ/t_0'\nset ylabel 'e_n'\nset yrange [0:1.1]\n"
-      "plot {:.8g} with lines lw 2 lc rgb blue title 'mean', 'collisions.dat' using 1:2 with points pt "
-      "7 ps 0.4 lc "
-      "rgb '#222222' title 'collisions'\n"
-      "set xlabel 'Ψ_1'\nset ylabel 'Ψ_2'\nset yrange [*:*]\nset xrange [0:{:.6g}]\nset key top left\nset "
-      "samples 600\n"
-      "plot {}{}\nunset multiplot\n",
-      fit.restitution, std::min(std::max(largest, 1.0), 8.0), curve,
-      found.spins ? "'collisions.dat' using 3:4 with points pt 7 ps 0.4 lc rgb '#222222' title 'collisions'"
-                  : "NaN title 'no spins'");
+  constexpr double kShown = 8;  // largest Psi_1 drawn
+  psi_1.show(std::min(std::max(largest, 1.0), kShown));
+  for (const Impact& i : found.impacts)
+    if (i.psi_1 <= kShown) psi_2.show(i.psi_2);
+  const figure_style::Panels panels(1, 2, f.width, f.height, 1);
+  constexpr const char* kPoints = "with points pt 7 ps 0.4 lc rgb '#222222' notitle";
+  f.plot = figure_style::Panels::begin() + panels.panel(0) + figure_style::axes(speed, e_n) +
+           figure_style::panel_title('a', "restitution") +
+           fmt::format("plot {:.8g} with lines lw 2 lc rgb blue notitle, 'collisions.dat' using 1:2 {}\n",
+                       fit.restitution, kPoints) +
+           panels.panel(1) + figure_style::axes(psi_1, psi_2) + "set samples 600\n" +
+           figure_style::panel_title('b', found.spins ? "tangential impact" : "tangential impact: no spins") +
+           fmt::format("plot {}{}\n", curve,
+                       found.spins ? fmt::format("'collisions.dat' using 3:4 {}", kPoints) : "NaN notitle") +
+           panels.end({"keyentry with lines lw 2 lc rgb blue title 'mean, fit'",
+                       "keyentry with points pt 7 ps 0.4 lc rgb '#222222' title 'collisions'"});
   f.caption = fmt::format("{} collisions", fit.impacts);
   return f;
 }
@@ -98,7 +111,7 @@ Figure curve_figure(const std::string& name, const std::vector<double>& measured
   std::string label = name;
   std::replace(label.begin(), label.end(), '_', ' ');
   f.plot = fmt::format(
-      "set xlabel 'element'\nset ylabel '{0}'\nset key top right\n"
+      "set xlabel 'element'\nset ylabel '{0}'\n"
       "plot '{1}.dat' using 1:2 with points pt 7 lc rgb '#222222' title 'measured', '{1}.dat' using 1:3 with "
       "lines lw 2 lc rgb blue title 'best parameters'\n",
       gnuplot_text(label), name);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/report/figure_style.hpp"
+
 namespace twincell {
 
 Figure drive_fit_figure(const DriveFit& lock) {
@@ -17,10 +19,15 @@ Figure drive_fit_figure(const DriveFit& lock) {
            (lock.fit.values[4] * std::sin(2 * theta) + lock.fit.values[5] * std::cos(2 * theta));
     return z;
   };
+  figure_style::Axis phases{.label = "phase of the drive, cycles", .low = 0, .high = 1},
+      height{.label = "height, px"}, off{.label = "residual, px"};
+  off.show(0);
   std::string kinds[2];
   for (const LockedFrame& frame : lock.frames) {
     if (frame.lock == FrameLock::unseen) continue;
     const double phase = frame.cycles - std::floor(frame.cycles);
+    height.show(value(phase) + frame.residual);
+    off.show(frame.residual);
     kinds[frame.lock == FrameLock::locked ? 0 : 1] +=
         fmt::format("{:.6f} {:.6f} {:.6f}\n", phase, value(phase) + frame.residual, frame.residual);
   }
@@ -29,18 +36,19 @@ Figure drive_fit_figure(const DriveFit& lock) {
   const bool others = !kinds[1].empty();
   if (others) f.data += "\n\n# out of lock\n" + kinds[1];
   f.plot = fmt::format(
-      "set multiplot\nset lmargin at screen 0.14\nset rmargin at screen 0.96\nset xrange [0:1]\n"
-      "set tmargin at screen 0.95\nset bmargin at screen 0.42\nset format x ''\nset ylabel 'height, px'\n"
-      "plot 'plate.dat' index 1 using 1:2 with lines lw 2 lc rgb blue title 'fit', 'plate.dat' index 0 "
+      "set multiplot\nset lmargin at screen 0.14\nset rmargin at screen 0.96\n"
+      "{}set format x ''\nset xlabel ''\nset tmargin at screen 0.95\nset bmargin at screen 0.47\n"
+      "set key at screen 0.5,0.01 center bottom horizontal\n"
+      "plot 'plate.dat' index 1 using 1:2 with lines lw {} lc rgb blue title 'fit', 'plate.dat' index 0 "
       "using 1:2 "
       "with points pt 7 ps 0.5 lc rgb '#222222' title 'frames'{}\n"
-      "unset key\nset tmargin at screen 0.37\nset bmargin at screen 0.12\nset format x '%g'\n"
-      "set xlabel 'phase of the drive, cycles'\nset ylabel 'residual, px'\n"
-      "plot 0 with lines lw 1.5 lc rgb blue, 'plate.dat' index 0 using 1:3 with points pt 7 ps 0.5 lc "
-      "rgb "
+      "unset key\n{}set tmargin at screen 0.43\nset bmargin at screen 0.20\n"
+      "plot 0 with lines lw {} lc rgb blue, 'plate.dat' index 0 using 1:3 with points pt 7 ps 0.5 lc rgb "
       "'#222222'\nunset multiplot\n",
+      figure_style::axes(phases, height), figure_style::kCurve,
       others ? ", 'plate.dat' index 2 using 1:2 with points pt 2 ps 0.9 lc rgb vermilion title 'out of lock'"
-             : "");
+             : "",
+      figure_style::axes(phases, off), figure_style::kLine);
   f.caption = fmt::format("{} frames locked, {} out of lock", lock.locked, lock.out_of_lock);
   return f;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/report/figure_style.hpp"
 #include "analysis/report/gnuplot_text.hpp"
 
 namespace twincell {
@@ -28,33 +29,41 @@ std::string reading(const std::string& name, std::string plot) {
 }  // namespace
 
 Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, const std::string& x_name,
-                  const std::string& y_name, const std::string& name) {
+                  const std::string& y_name, const std::string& name, const std::string& title) {
   const Law& law = *fit.law;
   const auto drawn = [&](double x) { return law.axis == Law::Axis::reciprocal ? 1 / x : x; };
   Figure f{.name = name, .title = law.formula, .width = 560, .height = 640};
 
   double low = INFINITY, high = -INFINITY;
   std::string used, left_out, limits;
-  double left = INFINITY, right = -INFINITY;  // range of the x axis
+  const std::string x_label =
+      law.axis == Law::Axis::reciprocal ? "1/" + gnuplot_symbol(x_name) : gnuplot_symbol(x_name);
+  figure_style::Axis x_axis{.label = x_label, .logarithmic = law.axis == Law::Axis::logarithmic},
+      y_axis{.label = gnuplot_symbol(y_name), .logarithmic = law.logarithmic},
+      off_axis{.label = fit.weighted      ? "residual/error"
+                        : law.logarithmic ? "residual in ln y"
+                                          : "residual"};
+  off_axis.show(0);
   std::size_t limit = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const DataPoint& p = points[i];
-    if (fit.use[i] != PointUse::invalid) {
-      left = std::min(left, drawn(p.x));
-      right = std::max(right, drawn(p.x));
-    }
+    if (fit.use[i] != PointUse::invalid) x_axis.show(drawn(p.x));
     if (fit.use[i] == PointUse::used) {
       low = std::min(low, p.x);
       high = std::max(high, p.x);
       const double error = error_of(p), curve = fit.at(p.x);
       const double off = law.logarithmic ? std::log(p.y / curve) : p.y - curve;
       const double unit = !fit.weighted ? 1 : law.logarithmic ? error / p.y : error;
-      used += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", drawn(p.x), p.y,
-                          law.logarithmic ? p.y * std::exp(-error / p.y) : p.y - error,
-                          law.logarithmic ? p.y * std::exp(error / p.y) : p.y + error, off / unit);
+      const double least = law.logarithmic ? p.y * std::exp(-error / p.y) : p.y - error,
+                   most = law.logarithmic ? p.y * std::exp(error / p.y) : p.y + error;
+      used += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", drawn(p.x), p.y, least, most, off / unit);
+      for (const double y : {p.y, least, most}) y_axis.show(y);
+      off_axis.show(off / unit);
     } else if (fit.use[i] == PointUse::zero && p.trials > 0) {
+      y_axis.show(fit.upper_limits[limit]);
       limits += fmt::format("{:.9g} {:.9g}\n", drawn(p.x), fit.upper_limits[limit++]);
     } else if (fit.use[i] == PointUse::outside && (!law.logarithmic || p.y > 0)) {
+      y_axis.show(p.y);
       left_out += fmt::format("{:.9g} {:.9g}\n", drawn(p.x), p.y);
     }
   }
@@ -88,37 +97,28 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
         "'zero: 95 % upper limit'",
         index++);
   }
-  // Set the x range explicitly: gnuplot would choose a different one for each panel.
-  const bool ratio = law.axis == Law::Axis::logarithmic;
-  const double pad = ratio ? std::pow(right / left, 0.04) : 0.04 * (right - left);
-  const std::string x_range = ratio ? fmt::format("[{:.9g}:{:.9g}]", left / pad, right * pad)
-                                    : fmt::format("[{:.9g}:{:.9g}]", left - pad, right + pad);
+  y_axis.show(fit.at(low));
+  y_axis.show(fit.at(high));
   std::string law_label = law.name;
   std::replace(law_label.begin(), law_label.end(), '_', ' ');
-  const std::string x_label =
-      law.axis == Law::Axis::reciprocal ? "1/" + gnuplot_symbol(x_name) : gnuplot_symbol(x_name);
+  // Both panels have the same x axis; the upper one leaves its numbers to the lower one.
   f.plot = fmt::format(
-      "set multiplot\nset lmargin at screen 0.19\nset rmargin at screen 0.95\nset xrange {}\n"
-      "{}{}set tmargin at screen 0.95\nset bmargin at screen 0.40\nset format x ''\nset ylabel '{}'\n"
-      "set key top {} samplen 2\n"
-      "plot 'fit.dat' index 1 using 1:3:4 with filledcurves fc rgb sky fs transparent solid 0.35 "
-      "noborder "
-      "title '95 % band', 'fit.dat' index 1 using 1:2 with lines lw 2 lc rgb blue title '{}', 'fit.dat' "
-      "index 0 using 1:2:3:4 with yerrorbars pt 7 ps 0.9 lw 1.3 lc rgb '#222222' title 'points'{}\n"
-      "unset logscale y\nset ytics autofreq\nunset key\nset tmargin at screen 0.35\nset bmargin at screen "
-      "0.12\nset format x '%g'\n"
-      "set format y '%g'\nset xlabel '{}'\nset ylabel '{}'\nset yrange [*:*]\n"
-      "plot 0 with lines lw 1.5 lc rgb blue, 'fit.dat' index 0 using 1:5 with impulses lw 1.3 lc rgb "
-      "grey, 'fit.dat' index 0 using 1:5 with points pt 7 ps 0.9 lc rgb '#222222'\nunset multiplot\n",
-      x_range, ratio ? "set logscale x\n" : "",
-      law.logarithmic ? "set logscale y\nset format y '10^{%T}'\n" : "", gnuplot_symbol(y_name),
-      law.axis == Law::Axis::reciprocal || (law.logarithmic && fit.at(high) < fit.at(low)) || !law.logarithmic
-          ? "right"
-          : "left",
-      gnuplot_text(law_label), more, x_label,
-      fit.weighted      ? "residual/error"
-      : law.logarithmic ? "residual in ln y"
-                        : "residual");
+      "set multiplot\nset lmargin at screen 0.19\nset rmargin at screen 0.95\n"
+      "{}set format x ''\nset xlabel ''\nset title '{}'\nset tmargin at screen 0.92\nset bmargin at screen "
+      "0.44\n"
+      "set key at screen 0.5,0.01 center bottom horizontal maxcols 3\n"
+      "plot 'fit.dat' index 1 using 1:3:4 with filledcurves fc rgb sky fs transparent solid 0.35 noborder "
+      "title "
+      "'95 % band', 'fit.dat' index 1 using 1:2 with lines lw {} lc rgb blue title '{}', 'fit.dat' index 0 "
+      "using "
+      "1:2:3:4 with yerrorbars pt {} lc rgb '#222222' title 'points'{}\n"
+      "unset key\nunset title\n{}set tmargin at screen 0.40\nset bmargin at screen 0.20\n"
+      "plot 0 with lines lw {} lc rgb blue, 'fit.dat' index 0 using 1:5 with impulses lw {} lc rgb grey, "
+      "'fit.dat' "
+      "index 0 using 1:5 with points pt {} lc rgb '#222222'\nunset multiplot\n",
+      figure_style::axes(x_axis, y_axis), gnuplot_text(title.empty() ? law.formula : title),
+      figure_style::kCurve, gnuplot_text(law_label), figure_style::kCircle, more,
+      figure_style::axes(x_axis, off_axis), figure_style::kLine, figure_style::kLine, figure_style::kCircle);
   f.plot = reading(name, f.plot);
   f.caption = law.formula + ", fitted to " + fmt::format("{} points", fit.n_used);
   return f;

@@ -1,5 +1,16 @@
 # Granular temperature
 # gnuplot p1-fig4.gp draws p1-fig4.svg, p1-fig4.pdf and p1-fig4.png
+do for [kind in 'svg pdf png'] {
+if (kind eq 'svg') {
+  set terminal svg size 720,450 dynamic enhanced font 'Arial,15' background 'white'
+}
+if (kind eq 'pdf') {
+  set terminal pdfcairo size 8in,5in enhanced font 'sans,9' background 'white'
+}
+if (kind eq 'png') {
+  set terminal pngcairo size 1152,720 enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale 1.6 background 'white'
+}
+set output 'p1-fig4.' . kind
 blue = '#0072B2'
 orange = '#E69F00'
 vermilion = '#D55E00'
@@ -7,47 +18,83 @@ green = '#009E73'
 sky = '#56B4E9'
 purple = '#CC79A7'
 grey = '#9A9A9A'
-do for [kind in 'svg pdf png'] {
-if (kind eq 'svg') {
-  set terminal svg size 820,400 dynamic enhanced font 'Arial,15' background 'white'
-}
-if (kind eq 'pdf') {
-  set terminal pdfcairo size 9.11111111111111in,4.444444444444445in enhanced font 'sans,9' background 'white'
-}
-if (kind eq 'png') {
-  set terminal pngcairo size 1312,640 enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale 1.6 background 'white'
-}
-set output 'p1-fig4.' . kind
 set encoding utf8
 set border lw 1 lc rgb '#444444'
 set tics textcolor rgb '#222222'
 set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
-set multiplot layout 1,2
-set logscale xy
-set xrange [0.7:36]
-set yrange [1e-10:10]
-set format y '10^{%L}'
-set xlabel 'K_m'
-set ylabel 'T_g^{*}' offset 0.5,0
-set lmargin 9
+set key outside below center horizontal Left reverse samplen 1.5 spacing 1.15
+set title offset 0,-0.3
+set xlabel offset 0,0.5
+set pointintervalbox 0
+set bars small
+set palette defined (0 '#F4F1E6', 0.35 sky, 0.7 blue, 1 '#3B0F70')
+set linetype 1 lc rgb '#0072B2' pt 7 ps 0.9 lw 1.3
+set linetype 2 lc rgb '#D55E00' pt 9 ps 0.9 lw 1.3
+set linetype 3 lc rgb '#009E73' pt 5 ps 0.9 lw 1.3
+set linetype 4 lc rgb '#CC79A7' pt 13 ps 0.9 lw 1.3
+set linetype 5 lc rgb '#E69F00' pt 11 ps 0.9 lw 1.3
+set linetype 6 lc rgb '#56B4E9' pt 15 ps 0.9 lw 1.3
+set linetype 7 lc rgb '#000000' pt 6 ps 0.9 lw 1.3
+set linetype 8 lc rgb '#9A9A9A' pt 4 ps 0.9 lw 1.3
+set multiplot
+unset key
+set xlabel 'K_m = A^2 ω^2/(σ g)'
+set xrange [0.700802116:34.9635074]
+set logscale x
+set xtics autofreq
+set format x '10^{%T}'
+set ylabel 'T_g/(m g σ)'
+set yrange [1.60278014e-10:2.49614007]
+set logscale y
+set ytics autofreq
+set format y '10^{%T}'
+set lmargin at screen 0.1167
+set rmargin at screen 0.4778
+set tmargin at screen 0.9111
+set bmargin at screen 0.3200
 unset arrow
 unset label
-set title '(a) random, N_l = 20'
-set arrow 1 from first 4.7852,graph 0 to first 4.7852,graph 1 nohead dt 2 lw 1.3 lc rgb '#666666'
-set label 1 'B' at first 13.125,graph 0.06 center
-set label 2 'A' at first 2.5416,graph 0.06 center
+set title '{/:Bold (a)} random, N_l = 20'
+set arrow from first 3.3,graph 0 to first 3.3,graph 1 nohead lw 1.5 dt 4 lc rgb '#555555'
+set arrow from first 4.7852,graph 0 to first 4.7852,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
+set label 'B' at first 12.935,graph 0.06 center
+set label 'A' at first 2.5416,graph 0.06 center
 f(x) = exp(-1.1092056 + (x < 5.0769107 ? 3.7772562 : 0.57845163)*log(x/5.0769107))
-plot 'p1-fig4.dat' index 0 using 1:2:3:4 with yerrorbars pt 9 ps 1 lw 1.3 lc rgb '#009E73' notitle, [1.4:*] f(x) with lines lw 1.5 lc rgb '#333333' notitle
+plot 'p1-fig4.dat' index 0 using 1:2:3:4 with yerrorbars pt 9 lc rgb '#009E73' notitle, [1.4:*] f(x) with lines lw 1.8 lc rgb '#333333' notitle
+set lmargin at screen 0.6167
+set rmargin at screen 0.9778
+set tmargin at screen 0.9111
+set bmargin at screen 0.3200
 unset arrow
 unset label
-set title '(b) crystal, N_l = 20'
-set arrow 1 from first 7.0889,graph 0 to first 7.0889,graph 1 nohead dt 2 lw 1.3 lc rgb '#666666'
-set label 1 'B' at first 15.975,graph 0.06 center
-set arrow 2 from first 4.4,graph 0 to first 4.4,graph 1 nohead dt 2 lw 1.3 lc rgb '#666666'
-set label 2 'A_1' at first 2.4372,graph 0.06 center
-set label 3 'A_2' at first 5.5849,graph 0.06 center
-plot 'p1-fig4.dat' index 1 using 1:2:3:4 with yerrorbars pt 7 ps 1 lw 1.3 lc rgb '#0072B2' notitle
+set title '{/:Bold (b)} crystal, N_l = 20'
+set arrow from first 7.0889,graph 0 to first 7.0889,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
+set label 'B' at first 15.743,graph 0.06 center
+set arrow from first 4.4,graph 0 to first 4.4,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
+set label 'A_1' at first 2.4372,graph 0.06 center
+set label 'A_2' at first 5.5849,graph 0.06 center
+plot 'p1-fig4.dat' index 1 using 1:2:3:4 with yerrorbars pt 7 lc rgb '#0072B2' notitle
+set lmargin at screen 0
+set rmargin at screen 1
+set tmargin at screen 0.1778
+set bmargin at screen 0
+unset title
+unset xlabel
+unset ylabel
+unset arrow
+unset label
+unset object
+unset border
+unset tics
+unset grid
+unset logscale
+unset xzeroaxis
+set key at screen 0.5,0.0133 center bottom horizontal
+plot [0:1][0:1] NaN notitle, keyentry with points pt 9 lc rgb '#009E73' title 'random', keyentry with points pt 7 lc rgb '#0072B2' title 'crystal', \
+     keyentry with lines lw 1.8 lc rgb '#333333' title 'two power laws', \
+     keyentry with lines lw 1 dt 2 lc rgb '#666666' title 'border of a region', \
+     keyentry with lines lw 1.5 dt 4 lc rgb '#555555' title 'paper: bend at K_m = 3.3'
 unset multiplot
 unset output
 reset

@@ -1,12 +1,5 @@
 # Contact of two beads
 # gnuplot p1-fig6.gp draws p1-fig6.svg, p1-fig6.pdf and p1-fig6.png
-blue = '#0072B2'
-orange = '#E69F00'
-vermilion = '#D55E00'
-green = '#009E73'
-sky = '#56B4E9'
-purple = '#CC79A7'
-grey = '#9A9A9A'
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 540,360 dynamic enhanced font 'Arial,15' background 'white'
@@ -18,11 +11,32 @@ if (kind eq 'png') {
   set terminal pngcairo size 864,576 enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale 1.6 background 'white'
 }
 set output 'p1-fig6.' . kind
+blue = '#0072B2'
+orange = '#E69F00'
+vermilion = '#D55E00'
+green = '#009E73'
+sky = '#56B4E9'
+purple = '#CC79A7'
+grey = '#9A9A9A'
 set encoding utf8
 set border lw 1 lc rgb '#444444'
 set tics textcolor rgb '#222222'
 set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
+set key outside below center horizontal Left reverse samplen 1.5 spacing 1.15
+set title offset 0,-0.3
+set xlabel offset 0,0.5
+set pointintervalbox 0
+set bars small
+set palette defined (0 '#F4F1E6', 0.35 sky, 0.7 blue, 1 '#3B0F70')
+set linetype 1 lc rgb '#0072B2' pt 7 ps 0.9 lw 1.3
+set linetype 2 lc rgb '#D55E00' pt 9 ps 0.9 lw 1.3
+set linetype 3 lc rgb '#009E73' pt 5 ps 0.9 lw 1.3
+set linetype 4 lc rgb '#CC79A7' pt 13 ps 0.9 lw 1.3
+set linetype 5 lc rgb '#E69F00' pt 11 ps 0.9 lw 1.3
+set linetype 6 lc rgb '#56B4E9' pt 15 ps 0.9 lw 1.3
+set linetype 7 lc rgb '#000000' pt 6 ps 0.9 lw 1.3
+set linetype 8 lc rgb '#9A9A9A' pt 4 ps 0.9 lw 1.3
 set size ratio -1
 unset tics
 unset border

@@ -1,5 +1,16 @@
-# T_z against V_p
+# Power laws of T_z, A = d, N = 4
 # gnuplot p2-table1.gp draws p2-table1.svg, p2-table1.pdf and p2-table1.png
+do for [kind in 'svg pdf png'] {
+if (kind eq 'svg') {
+  set terminal svg size 640,480 dynamic enhanced font 'Arial,15' background 'white'
+}
+if (kind eq 'pdf') {
+  set terminal pdfcairo size 7.111111111111111in,5.333333333333333in enhanced font 'sans,9' background 'white'
+}
+if (kind eq 'png') {
+  set terminal pngcairo size 1024,768 enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale 1.6 background 'white'
+}
+set output 'p2-table1.' . kind
 blue = '#0072B2'
 orange = '#E69F00'
 vermilion = '#D55E00'
@@ -7,29 +18,45 @@ green = '#009E73'
 sky = '#56B4E9'
 purple = '#CC79A7'
 grey = '#9A9A9A'
-do for [kind in 'svg pdf png'] {
-if (kind eq 'svg') {
-  set terminal svg size 640,460 dynamic enhanced font 'Arial,15' background 'white'
-}
-if (kind eq 'pdf') {
-  set terminal pdfcairo size 7.111111111111111in,5.111111111111111in enhanced font 'sans,9' background 'white'
-}
-if (kind eq 'png') {
-  set terminal pngcairo size 1024,736 enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale 1.6 background 'white'
-}
-set output 'p2-table1.' . kind
 set encoding utf8
 set border lw 1 lc rgb '#444444'
 set tics textcolor rgb '#222222'
 set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
+set key outside below center horizontal Left reverse samplen 1.5 spacing 1.15
+set title offset 0,-0.3
+set xlabel offset 0,0.5
+set pointintervalbox 0
+set bars small
+set palette defined (0 '#F4F1E6', 0.35 sky, 0.7 blue, 1 '#3B0F70')
+set linetype 1 lc rgb '#0072B2' pt 7 ps 0.9 lw 1.3
+set linetype 2 lc rgb '#D55E00' pt 9 ps 0.9 lw 1.3
+set linetype 3 lc rgb '#009E73' pt 5 ps 0.9 lw 1.3
+set linetype 4 lc rgb '#CC79A7' pt 13 ps 0.9 lw 1.3
+set linetype 5 lc rgb '#E69F00' pt 11 ps 0.9 lw 1.3
+set linetype 6 lc rgb '#56B4E9' pt 15 ps 0.9 lw 1.3
+set linetype 7 lc rgb '#000000' pt 6 ps 0.9 lw 1.3
+set linetype 8 lc rgb '#9A9A9A' pt 4 ps 0.9 lw 1.3
 set xlabel 'V_p/(g d)^{1/2}'
+set xrange [1.54347173:10.1395244]
+set logscale x
+set xtics (2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10)
+set format x '%g'
 set ylabel 'T_z/(m g d)'
-set key above
-set logscale xy
-set key outside right top
-
-plot 'p2-table1.dat' index 0 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 7 lc rgb '#D55E00' title 'Warr et al., 2D rough', 'p2-table1.dat' index 1 using 1:2 with lines lw 1.3 dt 1 lc rgb '#D55E00' title 'alpha = 1.510', 'p2-table1.dat' index 2 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 9 lc rgb '#0072B2' title 'Feitosa and Menon, 2D rough', 'p2-table1.dat' index 3 using 1:2 with lines lw 1.3 dt 1 lc rgb '#0072B2' title 'alpha = 1.954', 'p2-table1.dat' index 4 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 5 lc rgb '#009E73' title '2D rough, [W_f, W_2]', 'p2-table1.dat' index 5 using 1:2 with lines lw 1.3 dt 1 lc rgb '#009E73' title 'alpha = 1.594', 'p2-table1.dat' index 6 using 1:2:3:4 with yerrorbars lw 1 ps 0.8 pt 13 lc rgb '#CC79A7' title '3D rough, [W_f, W_2]', 'p2-table1.dat' index 7 using 1:2 with lines lw 1.3 dt 1 lc rgb '#CC79A7' title 'alpha = 1.239'
+set yrange [0.624476969:38.1606568]
+set logscale y
+set ytics ('' 0.7 1, '' 0.8 1, '' 0.9 1, 1, 2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1)
+set format y '%g'
+set title 'Power laws of T_z, A = d, N = 4'
+set key maxcols 1
+plot 'p2-table1.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough, [W_f, W_2]: α = 1.594', \
+     'p2-table1.dat' index 1 using 1:2 with lines lt 1 lw 1.8 dt 1 notitle, \
+     'p2-table1.dat' index 2 using 1:2:3:4 with yerrorbars lt 2 title '3D rough, [W_f, W_2]: α = 1.239', \
+     'p2-table1.dat' index 3 using 1:2 with lines lt 2 lw 1.8 dt 1 notitle, \
+     'p2-table1.dat' index 4 using 1:2:3:4 with yerrorbars lt 3 title 'Warr et al., 2D rough: α = 1.510, paper 1.49', \
+     'p2-table1.dat' index 5 using 1:2 with lines lt 3 lw 1.8 dt 1 notitle, \
+     'p2-table1.dat' index 6 using 1:2:3:4 with yerrorbars lt 4 title 'Feitosa and Menon, 2D rough: α = 1.954, paper 1.92', \
+     'p2-table1.dat' index 7 using 1:2 with lines lt 4 lw 1.8 dt 1 notitle
 unset output
 reset
 }
