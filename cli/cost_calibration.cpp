@@ -95,7 +95,7 @@ Figure figure(const CalibrationCost& cost) {
                            index > 0 ? ", " : "", index, index + 1, gnuplot_text(title));
     ++index;
   }
-  f.plot = fmt::format("{}set key outside right top vertical\nplot {}\n", figure_style::axes(frames, error),
+  f.plot = fmt::format("{}plot {}\n", figure_style::axes(frames, error),
                        clauses);
   return f;
 }

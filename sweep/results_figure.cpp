@@ -179,7 +179,8 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
   const std::string y = onsets ? fmt::format("{} at the onset of {}", document["onsets"][0].value("key", ""),
                                              document["onsets"][0].value("verdict", ""))
                                : result;
-  figure_style::Axis x_axis{.label = gnuplot_text(x)}, y_axis{.label = gnuplot_text(y)};
+  figure_style::Axis x_axis{.label = gnuplot_text(x)},
+      y_axis{.label = onsets ? gnuplot_text(y) : gnuplot_symbol(y)};
   // Curves in the order of their first value of the second axis, not of its text.
   std::vector<std::string> curves;
   std::map<std::string, Rows> rows;

@@ -113,7 +113,7 @@ std::string head() {
        "set tics textcolor rgb '#222222'\n"
        "set grid lw 0.5 lc rgb '#DDDDDD'\n"
        "set datafile missing '?'\n"
-       "set key outside below center horizontal Left reverse samplen 1.5 spacing 1.15\n"
+       "set key outside below center horizontal Left reverse samplen 1.5 spacing 1.15 height 0.6\n"
        "set title offset 0,-0.3\n"
        "set xlabel offset 0,0.5\n"
        "set pointintervalbox 0\n"

@@ -168,7 +168,7 @@ std::string curve_panels(const std::vector<Run>& runs, const std::string& name, 
       }
     }
     if (!any) clauses.emplace_back("NaN notitle");
-    plot += fmt::format("set title '{}'\n", side_name(side));
+    plot += figure_style::panel_title(side == kSides.front() ? 'a' : 'b', side_name(side));
     if (!any) plot += "set label 99 'no value' at graph 0.5,0.5 center\n";
     plot += fmt::format("plot {}\nunset label 99\n", fmt::join(clauses, ", "));
   }
@@ -403,10 +403,9 @@ Figure phase_diagram_figure(const std::vector<Run>& runs) {
            .plot = {},
            .data = {},
            .svg = {}};
-  Range n_l, k_m;
+  Range n_l;
   bool one_omega = true;
   for (const Run& run : runs) {
-    k_m.add(run.k_m);
     n_l.add(run.n_l);
     one_omega = one_omega && std::abs(run.omega - runs.front().omega) <= 1e-3 * runs.front().omega;
   }
@@ -421,11 +420,13 @@ Figure phase_diagram_figure(const std::vector<Run>& runs) {
   f.plot =
       fmt::format("set xlabel 'N_l σ'\nset ylabel 'Γ = A ω^2 / g'\nset xrange [{}:{}]\nset yrange [{}:{}]\n",
                   x.low, x.high, y.low, y.high);
-  if (one_omega)
+  if (one_omega) {
+    const double square = runs.front().omega * runs.front().omega;
     f.plot += fmt::format(
         "set ytics nomirror\nset y2label 'K_m = A^2 ω^2 / σ g'\nset link y2 via y**2/{0} inverse "
         "sqrt(y*{0})\nset y2tics {1}\n",
-        runs.front().omega * runs.front().omega, tic_step(k_m));
+        square, tic_step({y.low * y.low / square, y.high * y.high / square}));
+  }
   f.plot +=
       "set key outside below center vertical maxrows 3 samplen 1 spacing 1.1 width -2 Left reverse\nplot " +
       clauses + phase_key(runs) + "\n";
@@ -557,7 +558,7 @@ Figure s_k_figure(const std::vector<Run>& runs) {
   f.plot = fmt::format(
       "set multiplot layout 2,1\nset xrange [0:1]\nset yrange [{}:{}]\nset xlabel 'phase k / N_k'\nset "
       "ylabel 's(k) − mean, σ'\nset lmargin 9\n"
-      "set key outside right top samplen 1.5 Left reverse\n{}unset multiplot\n",
+      "set key outside right top vertical samplen 1.5 Left reverse\n{}unset multiplot\n",
       range.low, range.high, panels);
   f.caption =
       "Mean height of the tracers above the plate in each phase of the drive, minus its mean over the cycle; "
@@ -593,7 +594,7 @@ Figure s_j_figure(const std::vector<Run>& runs) {
   f.plot = fmt::format(
       "set multiplot layout 2,1\nset yrange [{}:{}]\nset xlabel 'cycle j since the first analysed'\nset "
       "ylabel 's_j / σ'\nset lmargin "
-      "9\nset key outside right top samplen 1.5 Left reverse\n"
+      "9\nset key outside right top vertical samplen 1.5 Left reverse\n"
       "{}unset multiplot\n",
       range.low, range.high, panels);
   f.caption =

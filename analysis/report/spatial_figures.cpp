@@ -132,13 +132,16 @@ Figure defect_evolution_figure(const std::vector<Result>& results) {
   f.height = 340;
   const Result& series = find_result(results, "defect_fraction_j");
   f.data = fmt::format("# {}, share of enclosed beads that do not have 6 neighbours\n", series.n_of);
-  for (std::size_t j = 0; j < series.values.size(); ++j)
+  figure_style::Axis time{.label = series.n_of + " since the first analysed"},
+      share{.label = "share of beads without 6 neighbours", .low = 0};
+  for (std::size_t j = 0; j < series.values.size(); ++j) {
     f.data += fmt::format("{} {}\n", j, cell_text(series.values[j]));
-  f.plot = fmt::format(
-      "set xlabel '{} since the first analysed'\nset ylabel 'share of beads without 6 neighbours'\nset "
-      "yrange "
-      "[0:*]\nplot '{}.dat' using 1:2 with linespoints pt 7 ps 0.6 lw 1.8 lc rgb '{}' notitle\n",
-      series.n_of, f.name, kBlue);
+    time.show(static_cast<double>(j));
+    share.show(series.values[j]);
+  }
+  f.plot = figure_style::axes(time, share) +
+           fmt::format("plot '{}.dat' using 1:2 with linespoints pt {} ps 0.6 lw {} lc rgb '{}' notitle\n",
+                       f.name, figure_style::kCircle, figure_style::kCurve, kBlue);
   f.caption =
       "Share of the beads that do not have six neighbours, without beads at walls, free surfaces and holes.";
   return f;

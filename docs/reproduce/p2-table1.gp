@@ -23,7 +23,7 @@ set border lw 1 lc rgb '#444444'
 set tics textcolor rgb '#222222'
 set grid lw 0.5 lc rgb '#DDDDDD'
 set datafile missing '?'
-set key outside below center horizontal Left reverse samplen 1.5 spacing 1.15
+set key outside below center horizontal Left reverse samplen 1.5 spacing 1.15 height 0.6
 set title offset 0,-0.3
 set xlabel offset 0,0.5
 set pointintervalbox 0
