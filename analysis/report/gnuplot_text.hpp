@@ -20,6 +20,10 @@ std::string gnuplot_plain_text(std::string_view text);
 /// As gnuplot_text, with the text after the first underscore as a subscript: `T_z` becomes `T_{z}`.
 std::string gnuplot_symbol(std::string_view name);
 
+/// A formula in words as it is printed: subscripts and exponents, Greek letters, `ln_C` as the logarithm of
+/// C. `ln y = ln_C + alpha ln x` becomes `ln y = ln C + α ln x`, and `x^-b` `x^{-b}`.
+std::string gnuplot_formula(std::string_view formula);
+
 /// True if `name` can be a figure's file name in a script: letters, digits, `_`, `-`, `.` of ASCII, not
 /// beginning with `-` or `.`.
 bool is_figure_name(std::string_view name);

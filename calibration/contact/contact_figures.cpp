@@ -14,6 +14,7 @@ Figure bounce_figure(const BounceFit& fit) {
   Figure f{.name = "bounce", .title = "Restitution of each impact", .width = 560, .height = 400};
   f.data = "# speed, e_n, error\n";
   figure_style::Axis speed{.label = "impact speed"}, e_n{.label = "e_n"};
+  for (const double side : {-1.96, 1.96}) e_n.show(fit.restitution + side * fit.restitution_error);
   for (const BounceImpact& i : fit.impacts) {
     speed.show(i.speed);
     e_n.show(i.restitution - i.error);

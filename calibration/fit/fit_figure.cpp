@@ -70,15 +70,20 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
   std::string curve;
   const double reach = fit.weighted ? student_t_95(1e9)
                                     : student_t_95(static_cast<double>(fit.n_used - fit.fit.values.size()));
+  // A band as wide as the data on either side must not shrink the points.
+  const double length = law.logarithmic ? y_axis.high / y_axis.low : y_axis.high - y_axis.low;
+  const double floor = law.logarithmic ? y_axis.low / length : y_axis.low - length,
+               ceiling = law.logarithmic ? y_axis.high * length : y_axis.high + length;
   const bool steps_in_ratio = law.axis == Law::Axis::logarithmic && low > 0;
   for (int s = 0; s <= kSteps; ++s) {
     const double share = static_cast<double>(s) / kSteps;
     const double x = steps_in_ratio ? low * std::pow(high / low, share) : low + (high - low) * share;
     const double y = fit.at(x), error = fit.error_at(x);
     const double half = std::isfinite(error) ? reach * error : 0;
-    curve += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", drawn(x), y,
-                         law.logarithmic ? y * std::exp(-half) : y - half,
-                         law.logarithmic ? y * std::exp(half) : y + half);
+    const double least = law.logarithmic ? y * std::exp(-half) : y - half,
+                 most = law.logarithmic ? y * std::exp(half) : y + half;
+    curve += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}\n", drawn(x), y, least, most);
+    for (const double end : {least, y, most}) y_axis.show(std::max(floor, std::min(end, ceiling)));
   }
   f.data = "# points used: x, y, low, high, residual\n" + used + "\n\n# curve: x, y, 95 % band\n" + curve;
   std::string more;
@@ -97,8 +102,6 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
         "'zero: 95 % upper limit'",
         index++);
   }
-  y_axis.show(fit.at(low));
-  y_axis.show(fit.at(high));
   std::string law_label = law.name;
   std::replace(law_label.begin(), law_label.end(), '_', ' ');
   // Both panels have the same x axis; the upper one leaves its numbers to the lower one.
@@ -112,11 +115,11 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
       "'95 % band', 'fit.dat' index 1 using 1:2 with lines lw {} lc rgb blue title '{}', 'fit.dat' index 0 "
       "using "
       "1:2:3:4 with yerrorbars pt {} lc rgb '#222222' title 'points'{}\n"
-      "unset key\nunset title\n{}set tmargin at screen 0.40\nset bmargin at screen 0.20\n"
+      "unset key\nunset title\n{}set tmargin at screen 0.40\nset bmargin at screen 0.21\n"
       "plot 0 with lines lw {} lc rgb blue, 'fit.dat' index 0 using 1:5 with impulses lw {} lc rgb grey, "
       "'fit.dat' "
       "index 0 using 1:5 with points pt {} lc rgb '#222222'\nunset multiplot\n",
-      figure_style::axes(x_axis, y_axis), gnuplot_text(title.empty() ? law.formula : title),
+      figure_style::axes(x_axis, y_axis), gnuplot_formula(title.empty() ? law.formula : title),
       figure_style::kCurve, gnuplot_text(law_label), figure_style::kCircle, more,
       figure_style::axes(x_axis, off_axis), figure_style::kLine, figure_style::kLine, figure_style::kCircle);
   f.plot = reading(name, f.plot);

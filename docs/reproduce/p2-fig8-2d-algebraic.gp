@@ -46,13 +46,13 @@ set logscale x
 set xtics ('' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100)
 set format x '%g'
 set ylabel 'T̄_{z}'
-set yrange [0.342012466:0.618925645]
+set yrange [0.336090718:0.634095133]
 unset logscale y
 set ytics 0.05
 set format y '%g'
 set format x ''
 set xlabel ''
-set title '2D rough, algebraic: y = a (1 + c x\^-b)'
+set title '2D rough, algebraic: y = a (1 + c x^{-b})'
 set tmargin at screen 0.92
 set bmargin at screen 0.44
 set key at screen 0.5,0.01 center bottom horizontal maxcols 3
@@ -70,7 +70,7 @@ unset logscale y
 set ytics 0.01
 set format y '%g'
 set tmargin at screen 0.40
-set bmargin at screen 0.20
+set bmargin at screen 0.21
 plot 0 with lines lw 1.3 lc rgb blue, 'p2-fig8-2d-algebraic.dat' index 0 using 1:5 with impulses lw 1.3 lc rgb grey, 'p2-fig8-2d-algebraic.dat' index 0 using 1:5 with points pt 7 lc rgb '#222222'
 unset multiplot
 unset output

@@ -46,7 +46,7 @@ unset logscale x
 set xtics 20
 set format x '%g'
 set ylabel 'T̄_{z}'
-set yrange [0.0754044248:0.282785079]
+set yrange [0.075262754:0.28646852]
 unset logscale y
 set ytics 0.05
 set format y '%g'
@@ -70,7 +70,7 @@ unset logscale y
 set ytics 0.005
 set format y '%g'
 set tmargin at screen 0.40
-set bmargin at screen 0.20
+set bmargin at screen 0.21
 plot 0 with lines lw 1.3 lc rgb blue, 'p2-fig8-3d-exponential.dat' index 0 using 1:5 with impulses lw 1.3 lc rgb grey, 'p2-fig8-3d-exponential.dat' index 0 using 1:5 with points pt 7 lc rgb '#222222'
 unset multiplot
 unset output

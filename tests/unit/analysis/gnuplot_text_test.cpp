@@ -34,6 +34,11 @@ TEST(GnuplotText, NothingEndsTheString) {
   EXPECT_EQ(gnuplot_text("\xFF\xC0\xAF\xED\xA0\x80"), "\uFFFD\uFFFD\uFFFD\uFFFD\uFFFD\uFFFD");
   EXPECT_EQ(gnuplot_plain_text("a_b{c}'"), "a_b{c}’");
   EXPECT_EQ(gnuplot_symbol("T_z_tau"), "T_{z\\_tau}");
+  EXPECT_EQ(gnuplot_formula("ln y = ln_C + alpha ln x"), "ln y = ln C + α ln x");
+  EXPECT_EQ(gnuplot_formula("ln y = c - E_b/x"), "ln y = c - E_{b}/x");
+  EXPECT_EQ(gnuplot_formula("y = a (1 + c x^-b)"), "y = a (1 + c x^{-b})");
+  EXPECT_EQ(gnuplot_formula("2D rough, alpha: x^2 '@'"), "2D rough, α: x^{2} ’\\@’");
+  EXPECT_EQ(gnuplot_formula("x^"), "x^{}");
   for (const char* name : {"", "-e", "< cmd", "|cmd", "a'b", "../a", "a\nb", ".x"})
     EXPECT_FALSE(is_figure_name(name)) << name;
   EXPECT_TRUE(is_figure_name("s_b-1.25"));
