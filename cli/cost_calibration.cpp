@@ -95,8 +95,7 @@ Figure figure(const CalibrationCost& cost) {
                            index > 0 ? ", " : "", index, index + 1, gnuplot_text(title));
     ++index;
   }
-  f.plot = fmt::format("{}plot {}\n", figure_style::axes(frames, error),
-                       clauses);
+  f.plot = fmt::format("{}plot {}\n", figure_style::axes(frames, error), clauses);
   return f;
 }
 

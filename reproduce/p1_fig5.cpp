@@ -167,7 +167,8 @@ Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
   for (const StrengthSweep* l : {&all.random, &all.crystal})
     for (const SweepPoint& r : l->points)
       if (r.eligible > 0) p_s.show(r.slips > 0 ? r.p_s() : r.upper_limit());
-  p_s.show(3);  // above the points, for the barriers
+  p_s.show(3);            // above the points, for the barriers
+  p_s.show(p_s.low / 5);  // below them, for the names of the regions
   // One panel per start: counted slips, upper limits where the bed bounces, borders of the regions, Arrhenius
   // lines.
   int index = 0;

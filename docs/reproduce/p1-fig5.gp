@@ -49,7 +49,7 @@ unset logscale x
 set xtics 0.2
 set format x '%g'
 set ylabel 'p_s'
-set yrange [1.56062917e-05:4.7901064]
+set yrange [2.92665086e-06:5.10862424]
 set logscale y
 set ytics autofreq
 set format y '10^{%T}'
@@ -71,7 +71,7 @@ unset logscale x
 set xtics 0.1
 set format x '%g'
 set ylabel 'p_s'
-set yrange [1.56062917e-05:4.7901064]
+set yrange [2.92665086e-06:5.10862424]
 set logscale y
 set ytics autofreq
 set format y '10^{%T}'

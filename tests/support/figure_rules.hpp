@@ -13,7 +13,8 @@
 /// The rules that the commands of a figure break, in sentences; empty if none. Every panel with tics has
 /// labels and fixed ranges on both axes, unless its x axis leaves its numbers to the panel below; the axes of
 /// a logarithmic pair have one format, powers of ten or plain numbers; the key lies outside of the panels;
-/// several panels with titles have the letters (a), (b), …; Greek letters are not written out.
+/// several panels with titles have the letters (a), (b), …; Greek letters
+/// are not written out, except in keys such as `drive.gamma`.
 inline std::vector<std::string> broken_figure_rules(const std::string& commands) {
   std::vector<std::string> broken;
   std::map<std::string, std::string> label, range, format;
@@ -25,7 +26,8 @@ inline std::vector<std::string> broken_figure_rules(const std::string& commands)
   const std::regex set_label("set ([xy])label '(.*?)'.*"), set_range(R"(set ([xy])range \[(.*)\])"),
       set_format("set format ([xy]) '(.*)'"), set_title("set title '(.*)'.*"),
       log("(un)?set logscale ([xy]+).*"), number(R"([-+.0-9eE]+:[-+.0-9eE]+)"),
-      greek(R"(\b(alpha|beta|gamma|Gamma|delta|mu|phi|psi|sigma|omega)\b)"), quoted("'([^']*)'");
+      greek(R"((^|[^.\w])(alpha|beta|gamma|Gamma|delta|mu|phi|psi|sigma|omega)\b)"), quoted("'([^']*)'");
+  const std::regex place(R"(\b(outside|inside|above|below|top|bottom|left|right|at)\b)");
   std::istringstream lines(commands);
   for (std::string line; std::getline(lines, line);) {
     while (line.ends_with("\\")) {  // a continued command
@@ -46,9 +48,7 @@ inline std::vector<std::string> broken_figure_rules(const std::string& commands)
     if (line == "unset tics") tics = false;
     if (line == "set tics") tics = true;
     if (line == "unset key") key = "none";
-    if (line.starts_with("set key") && line.find("maxcols 1") == std::string::npos &&
-        line.find("maxcols 2") == std::string::npos)
-      key = line;
+    if (line.starts_with("set key") && std::regex_search(line, place)) key = line;
     for (auto q = std::sregex_iterator(line.begin(), line.end(), quoted); q != std::sregex_iterator(); ++q)
       if (std::string text = (*q)[1]; !text.ends_with(".dat") && std::regex_search(text, greek))
         broken.push_back(fmt::format("Greek written out: '{}'", text));

@@ -5,6 +5,7 @@
 
 #include "core/error.hpp"
 #include "tests/support/complaint.hpp"
+#include "tests/support/figure_rules.hpp"
 
 namespace twincell::sweep {
 namespace {
@@ -34,6 +35,15 @@ TEST(ResultsFigure, OnsetsAreTheDefaultAndLimitsAreTriangles) {
   EXPECT_EQ(f.data, "20 2.1 2 2.3\n\n\n10 2.9\n");
   EXPECT_NE(f.plot.find("with points pt 9"), std::string::npos);  // a triangle that points up
   EXPECT_EQ(f.title, "drive.gamma at the onset of convecting against beads.layers");
+}
+
+TEST(ResultsFigure, KeepsTheRulesOfFigures) {
+  const Figure f = results_figure(kGrid, {.result = "s_b", .over = {"drive.gamma", "beads.layers"}});
+  EXPECT_EQ(broken_figure_rules(f.plot), std::vector<std::string>());
+  // The range holds the intervals, 0.25 to 1, and Gamma, 1.5 to 2.5, with a margin of 4 %.
+  EXPECT_NE(f.plot.find("set xrange [1.46:2.54]\n"), std::string::npos) << f.plot;
+  EXPECT_NE(f.plot.find("set yrange [0.22:1.03]\n"), std::string::npos) << f.plot;
+  EXPECT_NE(f.plot.find("set ylabel 's_{b}'"), std::string::npos) << f.plot;
 }
 
 TEST(ResultsFigure, WrongNamesAreRefusedWithTheRightOnes) {
