@@ -58,8 +58,8 @@ void require_sides(const CompareOptions& o) {
                       "results of a --sweep.");
 }
 
-ComparingOptions configuration(const CompareOptions& o, const Common& common) {
-  ComparingOptions options = comparing_options(o.flags, common);
+twin::ComparingOptions configuration(const CompareOptions& o, const Common& common) {
+  twin::ComparingOptions options = comparing_options(o.flags, common);
   options.experiments = o.experiments;
   options.simulations = o.simulations;
   options.stacks = o.stacks;
@@ -68,7 +68,7 @@ ComparingOptions configuration(const CompareOptions& o, const Common& common) {
 }
 
 void run(const Common& common, const CompareOptions& o) {
-  const ComparingOptions options = configuration(o, common);
+  const twin::ComparingOptions options = configuration(o, common);
   require_sides(o);
   if (!o.trust_stated_drive) require_drive_of_film(o.experiments);
   const NotedComparison compared = compare_sides(common, options);

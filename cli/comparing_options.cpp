@@ -30,9 +30,9 @@ void add_comparing_flags(CLI::App& verb, ComparingFlags& flags) {
                 "then remains unknown");
 }
 
-ComparingOptions comparing_options(const ComparingFlags& flags, const Common& common) {
+twin::ComparingOptions comparing_options(const ComparingFlags& flags, const Common& common) {
   require_range({.file = {}, .key = "--tolerance"}, flags.tolerance, 0, 0.5);
-  ComparingOptions options;
+  twin::ComparingOptions options;
   options.analysis.discard_cycles = flags.discard_cycles;
   options.analysis.neighbour_cutoff = flags.neighbour_cutoff;
   options.analysis.s_b = s_b_named(flags.s_b);
@@ -44,22 +44,22 @@ ComparingOptions comparing_options(const ComparingFlags& flags, const Common& co
   return options;
 }
 
-ProgressOf progress_bars(const Common& common) {
+twin::ProgressOf progress_bars(const Common& common) {
   return [&common](const std::string& stage) -> std::unique_ptr<Progress> {
     return std::make_unique<ProgressBar>(common, stage);
   };
 }
 
-NotedComparison compare_sides(const Common& common, const ComparingOptions& options) {
+NotedComparison compare_sides(const Common& common, const twin::ComparingOptions& options) {
   NotedComparison noted;
-  noted.comparison = compare_runs(options, progress_bars(common), noted.notes);
+  noted.comparison = twin::compare_runs(options, progress_bars(common), noted.notes);
   for (const std::string& sentence : noted.notes) note(common, sentence);
   return noted;
 }
 
-void report_comparison(const Common& common, const ComparingOptions& options, const NotedComparison& noted,
-                       const std::filesystem::path& folder, nlohmann::json result,
-                       const std::string& result_text) {
+void report_comparison(const Common& common, const twin::ComparingOptions& options,
+                       const NotedComparison& noted, const std::filesystem::path& folder,
+                       nlohmann::json result, const std::string& result_text) {
   Provenance provenance = common.provenance();
   for (const auto* files : {&options.experiments, &options.simulations, &options.sweeps})
     provenance.inputs.insert(provenance.inputs.end(), files->begin(), files->end());

@@ -25,7 +25,7 @@ struct ComparingFlags {
   bool no_film = false;
   std::optional<double> neighbour_cutoff;
   std::int64_t discard_cycles = AnalysisOptions{}.discard_cycles;
-  double tolerance = ComparingOptions{}.tolerance;
+  double tolerance = twin::ComparingOptions{}.tolerance;
 };
 
 /// --discard, --s-b, --cutoff, --tolerance, --camera, --no-film.
@@ -33,10 +33,10 @@ void add_comparing_flags(CLI::App& verb, ComparingFlags& flags);
 
 /// The options of a comparison that the flags state; the files of both sides are still to be added.
 /// \throws ConfigError, InputError
-ComparingOptions comparing_options(const ComparingFlags& flags, const Common& common);
+twin::ComparingOptions comparing_options(const ComparingFlags& flags, const Common& common);
 
 /// Returns a function with which the library makes a progress bar for each stage.
-ProgressOf progress_bars(const Common& common);
+twin::ProgressOf progress_bars(const Common& common);
 
 /// A comparison with the sentences that the user should read.
 struct NotedComparison {
@@ -45,12 +45,12 @@ struct NotedComparison {
 };
 
 /// Compares the runs and prints the notes. \throws as compare_runs
-NotedComparison compare_sides(const Common& common, const ComparingOptions& options);
+NotedComparison compare_sides(const Common& common, const twin::ComparingOptions& options);
 
 /// Writes the report of a comparison into `folder` and prints the result. \param result, result_text results
 /// of the verb itself, printed after those of the comparison, as JSON and as text
-void report_comparison(const Common& common, const ComparingOptions& options, const NotedComparison& noted,
-                       const std::filesystem::path& folder, nlohmann::json result,
-                       const std::string& result_text);
+void report_comparison(const Common& common, const twin::ComparingOptions& options,
+                       const NotedComparison& noted, const std::filesystem::path& folder,
+                       nlohmann::json result, const std::string& result_text);
 
 }  // namespace twincell::cli

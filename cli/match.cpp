@@ -24,7 +24,7 @@ namespace twincell::cli {
 namespace {
 
 struct MatchOptions {
-  TwinOptions twin;
+  twin::TwinOptions twin;
   std::vector<std::filesystem::path> stacks_and_cells;
   PhaseRequest phase;
   LocatingRequest locating;
@@ -32,8 +32,8 @@ struct MatchOptions {
   ComparingFlags flags;
 };
 
-TwinProvenance provenance_of(const Common& common, const TwinOptions& options,
-                             const LocatingRequest& locating) {
+twin::TwinProvenance provenance_of(const Common& common, const twin::TwinOptions& options,
+                                   const LocatingRequest& locating) {
   return {.of_experiment =
               [&common, &options, &locating](const CellDescription& cell) {
                 Provenance p = common.provenance();
@@ -57,13 +57,13 @@ void note_overridden(const Common& common, const std::filesystem::path& cell_fil
                            cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
 }
 
-ComparingOptions configuration(const MatchOptions& o, const Common& common) {
-  ComparingOptions options = comparing_options(o.flags, common);
+twin::ComparingOptions configuration(const MatchOptions& o, const Common& common) {
+  twin::ComparingOptions options = comparing_options(o.flags, common);
   options.scratch = o.output;
   return options;
 }
 
-nlohmann::json as_json(const Twin& twin) {
+nlohmann::json as_json(const twin::Twin& twin) {
   std::vector<std::string> simulations;
   for (const auto& file : twin.simulations) simulations.push_back(file.string());
   return {{"experiment", twin.experiment.string()},
@@ -77,7 +77,7 @@ nlohmann::json as_json(const Twin& twin) {
           {"cycles", twin.cycles}};
 }
 
-std::string as_text(const Twin& twin) {
+std::string as_text(const twin::Twin& twin) {
   return (twin.drive.empty() ? "" : "drive " + twin.drive + "\n") + phases_in_words(twin.phases) +
          fmt::format("{} in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} over {}; {}\n",
                      counted(twin.beads, "bead"), twin.pixels_per_sigma, twin.position_error,
@@ -86,7 +86,7 @@ std::string as_text(const Twin& twin) {
 }
 
 /// The options of a twin with what the command line and the cell say about beads and phases.
-TwinOptions configure_twin(const MatchOptions& o, TwinOptions options, const Common& common) {
+twin::TwinOptions configure_twin(const MatchOptions& o, twin::TwinOptions options, const Common& common) {
   CellDescription cell = read_cell(options.cell_file);
   for (const std::string& doubt : implausible_numbers(shaken_cell(cell))) note(common, doubt);
   options.phases = phase_source(o.phase, cell, options.cell_file.string());
@@ -100,11 +100,12 @@ TwinOptions configure_twin(const MatchOptions& o, TwinOptions options, const Com
 }
 
 /// Makes the twin of one stack in `folder` and adds its trajectories to the comparison.
-Twin add_twin(const Common& common, const MatchOptions& o, const TwinOptions& of_stack,
-              const std::filesystem::path& folder, ComparingOptions& comparing) {
+twin::Twin add_twin(const Common& common, const MatchOptions& o, const twin::TwinOptions& of_stack,
+                    const std::filesystem::path& folder, twin::ComparingOptions& comparing) {
   note_overridden(common, of_stack.cell_file);
-  const TwinOptions options = configure_twin(o, of_stack, common);
-  Twin twin = make_twin(options, folder, provenance_of(common, options, o.locating), progress_bars(common));
+  const twin::TwinOptions options = configure_twin(o, of_stack, common);
+  twin::Twin twin =
+      twin::make_twin(options, folder, provenance_of(common, options, o.locating), progress_bars(common));
   if (!twin.phases.warning.empty()) note(common, twin.phases.warning + ".");
   comparing.experiments.push_back(twin.experiment);
   comparing.simulations.insert(comparing.simulations.end(), twin.simulations.begin(), twin.simulations.end());
@@ -112,15 +113,15 @@ Twin add_twin(const Common& common, const MatchOptions& o, const TwinOptions& of
 }
 
 /// Makes the twins of all stacks, each in a folder of its own if there are several.
-std::vector<Twin> make_twins(const Common& common, const MatchOptions& o, const StacksAndCells& pairs,
-                             ComparingOptions& comparing) {
+std::vector<twin::Twin> make_twins(const Common& common, const MatchOptions& o,
+                                   const twin::StacksAndCells& pairs, twin::ComparingOptions& comparing) {
   const std::filesystem::path folder = o.output;
-  const std::vector<std::string> names = names_of_stacks(pairs.stacks);
+  const std::vector<std::string> names = twin::names_of_stacks(pairs.stacks);
   const bool several = pairs.stacks.size() > 1;
-  if (several) claim_shared_folder(folder, twin_folder());
-  TwinOptions options = o.twin;
+  if (several) claim_shared_folder(folder, twin::twin_folder());
+  twin::TwinOptions options = o.twin;
   options.threads = common.n_threads();
-  std::vector<Twin> twins;
+  std::vector<twin::Twin> twins;
   for (std::size_t i = 0; i < pairs.stacks.size(); ++i) {
     options.stack = pairs.stacks[i];
     options.cell_file = pairs.cells[i];
@@ -129,21 +130,21 @@ std::vector<Twin> make_twins(const Common& common, const MatchOptions& o, const 
   return twins;
 }
 
-nlohmann::json as_json(const std::vector<Twin>& twins) {
+nlohmann::json as_json(const std::vector<twin::Twin>& twins) {
   if (twins.size() == 1) return as_json(twins.front());
   nlohmann::json json;
-  for (const Twin& twin : twins) json["stacks"].push_back(as_json(twin));
+  for (const twin::Twin& twin : twins) json["stacks"].push_back(as_json(twin));
   return json;
 }
 
 void run(const Common& common, const MatchOptions& o) {
-  ComparingOptions options = configuration(o, common);
-  const StacksAndCells pairs = pair_stacks(o.stacks_and_cells);
+  twin::ComparingOptions options = configuration(o, common);
+  const twin::StacksAndCells pairs = twin::pair_stacks(o.stacks_and_cells);
   // A mistake in the last cell must not appear after the first hour.
   for (const auto& cell : pairs.cells) (void)read_cell(cell);
-  const std::vector<Twin> twins = make_twins(common, o, pairs, options);
+  const std::vector<twin::Twin> twins = make_twins(common, o, pairs, options);
   std::string text;
-  for (const Twin& twin : twins) text += as_text(twin);
+  for (const twin::Twin& twin : twins) text += as_text(twin);
   const NotedComparison compared = compare_sides(common, options);
   report_comparison(common, options, compared, std::filesystem::path(o.output) / "report", as_json(twins),
                     text);
@@ -173,7 +174,7 @@ void add_match(CLI::App& program, Common& common) {
                  "Folder for experiment.h5, scene.toml, simulation-N.h5 and report/; several stacks get a "
                  "folder each in it")
              ->required(),
-         twin_folder());
+         twin::twin_folder());
   verb.add_option("--scene", o->twin.scene,
                   "Scene file (TOML) with the settings that the cell does not state, such as contacts and "
                   "steps; default: the preset fortini-huang-2015");

@@ -34,7 +34,7 @@ struct NewOptions {
   std::vector<std::string> stacks;
   std::optional<std::string> output;
   double diameter_px = 0;
-  CellAnswers answers;
+  twin::CellAnswers answers;
 };
 
 constexpr const char* kHead = "# Cell description, written by: ";
@@ -72,7 +72,7 @@ std::optional<double> ask(const std::string& question, const std::string& otherw
 
 /// Asks for what no stack shows, unless options have answered it.
 /// \param several whether the answers also hold for other stacks, which differ in Gamma
-void ask_for_the_rest(CellAnswers& a, const CellSurvey& s, bool several) {
+void ask_for_the_rest(twin::CellAnswers& a, const twin::CellSurvey& s, bool several) {
   if (!a.sigma_mm) a.sigma_mm = ask("Diameter of a bead in mm", "unknown");
   if (a.sigma_mm && !a.width_mm && !s.has_walls())
     a.width_mm = ask("Distance of the side walls in mm", "unknown");
@@ -83,32 +83,32 @@ void ask_for_the_rest(CellAnswers& a, const CellSurvey& s, bool several) {
     a.gamma = ask("Peak acceleration of the plate over g (Gamma)", "unknown");
 }
 
-std::string table_of(const CellDraft& draft) {
+std::string table_of(const twin::CellDraft& draft) {
   std::string text;
-  for (const DraftKey& k : draft.keys) {
+  for (const twin::DraftKey& k : draft.keys) {
     const std::size_t colon = k.comment.find(':');
     const std::string error = k.measured.empty() ? "" : k.comment.substr(0, colon);
     text += fmt::format("  {:<26} {:<24} {}\n", k.key, k.open ? "still needed" : k.value, error);
   }
   if (draft.gamma && draft.gamma->error > 0)
-    text += fmt::format("  {:<26} {:<24} +- {}\n", "Gamma = A omega^2/g", value_text(*draft.gamma),
-                        error_text(draft.gamma->error));
+    text += fmt::format("  {:<26} {:<24} +- {}\n", "Gamma = A omega^2/g", twin::value_text(*draft.gamma),
+                        twin::error_text(draft.gamma->error));
   return text;
 }
 
-nlohmann::json json_of(const CellSurvey& s, const CellDraft& draft) {
+nlohmann::json json_of(const twin::CellSurvey& s, const twin::CellDraft& draft) {
   nlohmann::json d = {
       {"stack", s.stack.string()}, {"frames", s.n_frames}, {"measured", nlohmann::json::object()}};
   d["open"] = nlohmann::json::array();
   d["not_measured"] = nlohmann::json::array();
-  for (const DraftKey& k : draft.keys) {
+  for (const twin::DraftKey& k : draft.keys) {
     if (k.open) d["open"].push_back(k.key);
     for (const Estimate& e : k.measured)
       d["measured"][k.key].push_back(
           {{"value", e.value},
            {"standard_error", std::isfinite(e.error) ? nlohmann::json(e.error) : nlohmann::json()}});
   }
-  for (const NotMeasured& m : s.missing)
+  for (const twin::NotMeasured& m : s.missing)
     d["not_measured"].push_back({{"what", m.what}, {"why", m.why}, {"remedy", m.remedy}});
   if (s.drive && s.drive->frames_per_cycle > 0) {
     d["frames_per_cycle"] = s.drive->frames_per_cycle;
@@ -124,17 +124,17 @@ nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& st
   keep_earlier(cell, common);
   require_output(cell, cell_file());
   require_output(picture, Product::picture());
-  const CellSurvey survey = survey_cell(stack, {.diameter_px = o.diameter_px, .threads = common.n_threads()},
-                                        progress_bars(common));
+  const twin::CellSurvey survey = twin::survey_cell(
+      stack, {.diameter_px = o.diameter_px, .threads = common.n_threads()}, progress_bars(common));
   if (first && ::isatty(STDIN_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0 && !common.quiet && !common.json)
     ask_for_the_rest(o.answers, survey, o.stacks.size() > 1);
-  const CellDraft draft = draft_cell(survey, o.answers);
+  const twin::CellDraft draft = twin::draft_cell(survey, o.answers);
   for (const auto* sentences : {&survey.notes, &draft.notes})
     for (const std::string& sentence : *sentences) note(common, sentence);
-  write_text_file(cell, cell_text(draft, survey, kHead + one_line(common.command_line)), cell_file());
-  write_png(picture, draw_cell(survey, draft));
+  write_text_file(cell, twin::cell_text(draft, survey, kHead + one_line(common.command_line)), cell_file());
+  write_png(picture, twin::draw_cell(survey, draft));
   said += stack.string() + "\n" + table_of(draft);
-  for (const NotMeasured& m : survey.missing)
+  for (const twin::NotMeasured& m : survey.missing)
     said += fmt::format("  not measured: {}, because {}; {}\n", m.what, m.why, m.remedy);
   said += fmt::format("{}\npicture: {}\n", cell.string(), picture.string());
   nlohmann::json document = json_of(survey, draft);
@@ -163,8 +163,8 @@ void run(const Common& common, NewOptions& o) {
                     "which give the Gamma of each stack, or call new for each stack.",
                     o.stacks.size()));
   for (const std::string& stack : o.stacks) protect_input(file_of_stack(stack));
-  const std::vector<std::string> names = names_of_stacks({o.stacks.begin(), o.stacks.end()});
-  if (several) claim_shared_folder(output, cells_folder());
+  const std::vector<std::string> names = twin::names_of_stacks({o.stacks.begin(), o.stacks.end()});
+  if (several) claim_shared_folder(output, twin::cells_folder());
   nlohmann::json cells = nlohmann::json::array();
   std::string said;
   std::size_t open = 0;

@@ -10,7 +10,7 @@
 #include "core/placeholder.hpp"
 #include "imaging/cell/implausible.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 namespace {
 
 /// Errors beyond which a small quantity is written as a key instead of a comment.
@@ -319,4 +319,4 @@ std::string cell_text(const CellDraft& draft, const CellSurvey& survey, const st
   return text;
 }
 
-}  // namespace twincell
+}  // namespace twincell::twin

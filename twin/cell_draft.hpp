@@ -9,7 +9,7 @@
 
 #include "twin/cell_survey.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 
 /// What no camera says of a cell. Absent values are unknown.
 struct CellAnswers {
@@ -59,4 +59,4 @@ std::string cell_text(const CellDraft& draft, const CellSurvey& survey, const st
 std::string value_text(const Estimate& e);
 std::string error_text(double error);
 
-}  // namespace twincell
+}  // namespace twincell::twin

@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "imaging/stack/open_frames.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,4 +91,4 @@ StacksAndCells pair_stacks(const std::vector<fs::path>& arguments) {
   return p;
 }
 
-}  // namespace twincell
+}  // namespace twincell::twin

@@ -8,7 +8,7 @@
 
 #include "core/output_kind.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 
 /// Output kind of a folder of cell files.
 inline Product cells_folder() {
@@ -30,4 +30,4 @@ struct StacksAndCells {
 /// \throws ConfigError if no stack is named, or a stack has no cell file
 StacksAndCells pair_stacks(const std::vector<std::filesystem::path>& arguments);
 
-}  // namespace twincell
+}  // namespace twincell::twin

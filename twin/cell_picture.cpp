@@ -11,7 +11,7 @@
 #include "imaging/track/annotation.hpp"
 #include "imaging/track/overlay.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 namespace {
 
 const cv::Scalar kWall(220, 110, 20), kPlate(50, 40, 215), kAxis(160, 0, 140), kText(40, 40, 40),
@@ -191,4 +191,4 @@ cv::Mat3b draw_cell(const CellSurvey& s, const CellDraft& draft) {
   return page;
 }
 
-}  // namespace twincell
+}  // namespace twincell::twin

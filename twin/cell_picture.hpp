@@ -4,7 +4,7 @@
 
 #include "twin/cell_draft.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 
 /// The surveyed frame, enlarged, with the located beads (green; orange if the frame cuts them), the side
 /// walls (blue), the plate at its mean height (red) and at its extremes (red, dashed), the origin with the
@@ -13,4 +13,4 @@ namespace twincell {
 /// named in the panel. Lines follow the distortion of the picture.
 cv::Mat3b draw_cell(const CellSurvey& survey, const CellDraft& draft);
 
-}  // namespace twincell
+}  // namespace twincell::twin

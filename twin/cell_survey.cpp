@@ -10,7 +10,7 @@
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/stack/open_frames.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 namespace {
 
 /// The frames of a stack up to the first one that cannot be read.
@@ -181,4 +181,4 @@ CellSurvey survey_cell(const std::filesystem::path& stack, const SurveyOptions& 
   return s;
 }
 
-}  // namespace twincell
+}  // namespace twincell::twin

@@ -16,7 +16,7 @@
 #include "imaging/stack/frame_source.hpp"
 #include "twin/comparison.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 
 /// A quantity that the stack does not give.
 struct NotMeasured {
@@ -62,4 +62,4 @@ struct CellSurvey {
 CellSurvey survey_cell(const std::filesystem::path& stack, const SurveyOptions& options,
                        const ProgressOf& progress);
 
-}  // namespace twincell
+}  // namespace twincell::twin

@@ -17,7 +17,7 @@
 #include "twin/sweep_results.hpp"
 #include "twin/virtual_experiment.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 namespace {
 
 namespace fs = std::filesystem;
@@ -312,4 +312,4 @@ Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progr
   return c;
 }
 
-}  // namespace twincell
+}  // namespace twincell::twin

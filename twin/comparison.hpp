@@ -13,7 +13,7 @@
 #include "analysis/runs/comparison.hpp"
 #include "imaging/camera/options.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 
 /// Options of compare_runs.
 struct ComparingOptions {
@@ -43,4 +43,4 @@ using ProgressOf = std::function<std::unique_ptr<Progress>(const std::string& st
 Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress,
                         std::vector<std::string>& notes);
 
-}  // namespace twincell
+}  // namespace twincell::twin

@@ -12,7 +12,7 @@
 #include "core/json_view.hpp"
 #include "sweep/conditions.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ void add_sweep(const fs::path& file, Comparison& comparison) {
   add_onsets(document, comparison);
 }
 
-}  // namespace twincell
+}  // namespace twincell::twin

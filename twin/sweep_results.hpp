@@ -6,7 +6,7 @@
 
 #include "analysis/runs/comparison.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 
 /// Reads a file "twincell sweep 1" (JSON) and adds to `comparison` its points with a known phase, and its
 /// onsets of bouncing and convecting, at the N_l, Gamma and start that the file states for each
@@ -14,4 +14,4 @@ namespace twincell {
 /// version that did not store the conditions
 void add_sweep(const std::filesystem::path& file, Comparison& comparison);
 
-}  // namespace twincell
+}  // namespace twincell::twin

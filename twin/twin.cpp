@@ -21,7 +21,7 @@
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/unit_keys.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 namespace {
 
 namespace fs = std::filesystem;
@@ -275,4 +275,4 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   return twin;
 }
 
-}  // namespace twincell
+}  // namespace twincell::twin

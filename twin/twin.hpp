@@ -21,7 +21,7 @@
 #include "sim/scene/scene.hpp"
 #include "twin/comparison.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 
 /// Options of make_twin.
 struct TwinOptions {
@@ -80,4 +80,4 @@ std::string twin_scene(const std::string& base, const std::string& base_name, co
 Twin make_twin(const TwinOptions& options, const std::filesystem::path& folder,
                const TwinProvenance& provenance, const ProgressOf& progress);
 
-}  // namespace twincell
+}  // namespace twincell::twin

@@ -11,7 +11,7 @@
 #include "imaging/track/write_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 namespace {
 
 /// Adds the pictures of the snapshots that were filmed, and the camera.
@@ -72,4 +72,4 @@ void film_and_track(const TrajectorySource& simulation, const CameraOptions& cam
   add_pictures(simulation, frames, cell, stack, show);
 }
 
-}  // namespace twincell
+}  // namespace twincell::twin

@@ -11,7 +11,7 @@
 #include "imaging/camera/options.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 
 /// The first `n` frames of a trajectory, as a trajectory.
 class Beginning : public TrajectorySource {
@@ -38,4 +38,4 @@ void film_and_track(const TrajectorySource& simulation, const CameraOptions& cam
                     const std::filesystem::path& tracked, int threads, Show& show,
                     Progress& progress = Progress::none());
 
-}  // namespace twincell
+}  // namespace twincell::twin

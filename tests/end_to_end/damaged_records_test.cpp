@@ -165,7 +165,7 @@ TEST_F(DamagedRecords, CollectedResults) {
   put_file(file, whole.dump());
   const auto use = [&] {
     Comparison c;
-    add_sweep(file, c);
+    twin::add_sweep(file, c);
   };
   use();
   std::size_t refusals = 0;
@@ -228,11 +228,11 @@ TEST_F(DamagedRecords, RecordsOfATrajectory) {
   std::vector<std::string> notes;
   const auto use = [&] {
     notes.clear();
-    ComparingOptions options;
+    twin::ComparingOptions options;
     options.experiments = {at("e.h5")};
     options.film = false;
     const auto silent = [](const std::string&) { return std::make_unique<Progress>(); };
-    const Comparison c = compare_runs(options, silent, notes);
+    const Comparison c = twin::compare_runs(options, silent, notes);
     if (const auto& camera = c.runs.front().show.camera) {
       EXPECT_GT(camera->pixels_per_sigma, 0);
       EXPECT_GT(camera->width, 0);

@@ -458,11 +458,11 @@ TEST(Match, TheCellsDriveDisplacesTheScenes) {
   cell.phase_lock.frames_per_cycle = 20;
   cell.drive_spec.gamma = 2;
   cell.drive_spec.omega = 2;
-  const std::string text =
-      twin_scene("[drive]\nk_m = 3\nfrequency = 1\n[contact]\nmu = 0.3\n", "base.toml", cell, "exp.h5", 4, 7);
+  const std::string text = twin::twin_scene("[drive]\nk_m = 3\nfrequency = 1\n[contact]\nmu = 0.3\n",
+                                            "base.toml", cell, "exp.h5", 4, 7);
   EXPECT_EQ(text.find("k_m"), std::string::npos) << text;
   EXPECT_NE(text.find("[contact]"), std::string::npos) << text;
-  const sim::Scene scene = sim::read_scene_text(twin_scene("", "", cell, "exp.h5", 4, 7), "twin");
+  const sim::Scene scene = sim::read_scene_text(twin::twin_scene("", "", cell, "exp.h5", 4, 7), "twin");
   EXPECT_DOUBLE_EQ(scene.drive.amplitude, 0.5);
   EXPECT_DOUBLE_EQ(scene.drive.omega, 2);
   EXPECT_DOUBLE_EQ(scene.width, 12);
@@ -471,7 +471,7 @@ TEST(Match, TheCellsDriveDisplacesTheScenes) {
   EXPECT_EQ(scene.contact.tangential, "spring");  // the preset of paper 1
   EXPECT_TRUE(scene.drive.harmonics.empty());
   cell.harmonics = {{0.1, 0.25}, {1.0 / 3, 0}};
-  const sim::Scene shaken = sim::read_scene_text(twin_scene("", "", cell, "exp.h5", 4, 7), "twin");
+  const sim::Scene shaken = sim::read_scene_text(twin::twin_scene("", "", cell, "exp.h5", 4, 7), "twin");
   EXPECT_EQ(shaken.drive.displacement(0.3), cell.drive()->displacement(0.3));
   EXPECT_EQ(shaken.drive.harmonics.size(), 2);
 }

@@ -8,7 +8,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,4 +81,4 @@ TEST(CellNames, NumbersThatDoNotFitAreRefused) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::twin

@@ -9,7 +9,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::twin {
 namespace {
 
 constexpr const char* kResults = R"({"format": "twincell sweep 1", "plan": "", "open": 0, "points": [
@@ -66,7 +66,8 @@ TEST(SweepResults, AFileWithoutConditionsIsToBeCollectedAgain) {
             [{"axes": {}, "key": "drive.gamma", "verdict": "bouncing", "runs": 3}]})"}) {
     put_file(folder / "results.json", text);
     Comparison c;
-    expect_refusal<InputError>([&] { add_sweep(folder / "results.json", c); }, "does not state its N_l, Gamma and start",
+    expect_refusal<InputError>([&] { add_sweep(folder / "results.json", c); },
+                               "does not state its N_l, Gamma and start",
                                "collect it again with `twincell sweep collect`");
   }
 }
@@ -92,4 +93,4 @@ TEST(SweepResults, AnythingElseIsRefused) {
   }
 }
 
-}  // namespace twincell
+}  // namespace twincell::twin
