@@ -105,18 +105,18 @@ CellDescription cell_of(const CalibrateFlags& flags) {
   return flags.cell_file.empty() ? CellDescription{} : read_cell(flags.cell_file);
 }
 
-CellGeometry geometry_of(const CalibrateFlags& flags, const CellDescription& cell, const Common& common,
-                         StackEdges& edges) {
+calibration::CellGeometry geometry_of(const CalibrateFlags& flags, const CellDescription& cell,
+                                      const Common& common, calibration::StackEdges& edges) {
   const bool bright = flags.bright || cell.bright;
-  const double diameter = diameter_for_edges(
+  const double diameter = calibration::diameter_for_edges(
       flags.stack, bright, flags.diameter_px > 0 ? flags.diameter_px : cell.pixels_per_sigma.value_or(0));
   const auto frames = open_stack(flags.stack, common);
   {
     ProgressBar bar(common, "edges");
-    edges = read_stack_edges(*frames, bright, diameter, common.n_threads(), bar);
+    edges = calibration::read_stack_edges(*frames, bright, diameter, common.n_threads(), bar);
   }
   try {
-    return fit_cell_geometry(edges);
+    return calibration::fit_cell_geometry(edges);
   } catch (const InputError& e) {
     throw InputError({.file = flags.stack, .key = {}}, e.what());
   }
@@ -129,7 +129,7 @@ std::optional<Measurement> calibrated(const CellDescription& cell, const std::st
   return *file.find(name);
 }
 
-std::optional<KnownNumber> scale_of(const CellDescription& cell, const CellGeometry& geometry) {
+std::optional<KnownNumber> scale_of(const CellDescription& cell, const calibration::CellGeometry& geometry) {
   if (cell.pixels_per_sigma) {
     KnownNumber scale{.value = *cell.pixels_per_sigma, .error = std::nullopt, .from = "the cell's scale"};
     if (const auto m = calibrated(cell, "camera.pixels_per_sigma"); m && std::isfinite(m->standard_error[0]))

@@ -35,8 +35,8 @@ CellDescription cell_of(const CalibrateFlags& flags);
 
 /// The geometry of the cell, fitted to the edges in the stack. \param edges output: the edges, and the bead
 /// diameter with which they were read
-CellGeometry geometry_of(const CalibrateFlags& flags, const CellDescription& cell, const Common& common,
-                         StackEdges& edges);
+calibration::CellGeometry geometry_of(const CalibrateFlags& flags, const CellDescription& cell,
+                                      const Common& common, calibration::StackEdges& edges);
 
 /// Method of a scale that was derived from the known width of the cell.
 inline constexpr const char* kScaleByWalls = "distance of the side walls over cell.width";
@@ -49,7 +49,7 @@ struct KnownNumber {
 };
 /// Pixels per sigma: from the cell description, otherwise the distance of the walls over cell.width. Absent
 /// if neither is known.
-std::optional<KnownNumber> scale_of(const CellDescription& cell, const CellGeometry& geometry);
+std::optional<KnownNumber> scale_of(const CellDescription& cell, const calibration::CellGeometry& geometry);
 /// The measurement of that name in the calibration file of the cell. Absent if the cell does not take the
 /// quantity from there.
 std::optional<Measurement> calibrated(const CellDescription& cell, const std::string& name);

@@ -25,13 +25,13 @@ struct BeadOptions {
 void run(const BeadOptions& o, const Common& common) {
   const CellDescription cell = cell_of(o.flags);
   CalibrationResult out;
-  SizeStatistics c;
+  calibration::SizeStatistics c;
   double unit_px = 1;  // px in the unit of length of `c`
   std::optional<double> width = cell.width;
   double width_error = 0;
   if (is_trajectory(o.flags.stack)) {
     const H5mdReader trajectory(o.flags.stack);
-    c = count_beads(beads_of(trajectory, o.frames));
+    c = calibration::count_beads(calibration::beads_of(trajectory, o.frames));
     const TrajectoryInfo& info = trajectory.info();
     unit_px = info.scale.pixels_per_sigma.value_or(std::nan(""));
     if (info.box.boundary[0] != Boundary::open) width = info.box.size().x();
@@ -48,12 +48,13 @@ void run(const BeadOptions& o, const Common& common) {
       lens = Lens(first.size(), cell.rotation_deg, cell.distortion);
     }
     ProgressBar bar(common, "beads");
-    c = count_beads(locate_beads(*frames, locator, lens, o.frames, common.n_threads(), bar));
+    c = calibration::count_beads(
+        calibration::locate_beads(*frames, locator, lens, o.frames, common.n_threads(), bar));
     if (const auto m = calibrated(cell, "cell.width")) width_error = m->standard_error[0];
   }
   const std::string data = data_hash(o.flags.stack);
   const std::string method = fmt::format("{} discs in {} frames", c.sizes, c.frames);
-  const auto add = [&](const std::string& name, const Estimate& e, const std::string& how) {
+  const auto add = [&](const std::string& name, const calibration::Estimate& e, const std::string& how) {
     out.measured.push_back(
         {.name = name, .value = {e.value}, .standard_error = {e.error}, .method = how, .data = data});
   };
@@ -83,7 +84,7 @@ void run(const BeadOptions& o, const Common& common) {
                             c.spacing->value * unit_px, c.spacing->error * unit_px,
                             c.spacing->value / c.diameter.value);
   if (c.spread.value < 2 * c.spread.error) out.text += "sizes: no spread beyond the error of locating them\n";
-  out.figures = {size_statistics_figure(c, unit_px)};
+  out.figures = {calibration::size_statistics_figure(c, unit_px)};
   finish_calibration(o.flags, common, std::move(out));
 }
 

@@ -32,9 +32,10 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Row of the plate's mean height in the undistorted picture: from a fit of its harmonic motion, or the mean
 /// over the frames if the plate is at rest.
-Estimate mean_row(const CellGeometry& g) {
+calibration::Estimate mean_row(const calibration::CellGeometry& g) {
   try {
-    const DriveFit lock = fit_drive(g.heights_px(), {.model_error = kHeightModelError_px});
+    const calibration::DriveFit lock =
+        calibration::fit_drive(g.heights_px(), {.model_error = calibration::kHeightModelError_px});
     return {g.plate_row - lock.z0, std::hypot(lock.z0_error, g.plate_row_error_of_map)};
   } catch (const InputError&) {
     return {g.plate_row, g.plate_row_error};
@@ -53,7 +54,7 @@ void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text
   if (points.empty())
     throw InputError({.file = o.target, .key = {}}, fmt::format("shows no complete {} of {} x {} points.",
                                                                 o.kind, pattern.columns, pattern.rows));
-  const TargetFit t = fit_target(points, pattern, picture.size());
+  const calibration::TargetFit t = calibration::fit_target(points, pattern, picture.size());
   nlohmann::json& out = d["target"];
   out["rms_px"] = t.rms_px;
   text += fmt::format("target: {} points, rms {:.3f} px\n", points.size(), t.rms_px);
@@ -84,16 +85,17 @@ void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text
 struct Measured {
   const CameraCalibration& options;
   const CellDescription& cell;
-  const CellGeometry& geometry;
-  std::string data;                      // hash of the stack
-  std::optional<SizeStatistics> census;  // of the beads; absent if none are found
-  std::optional<Estimate> by_walls;      // pixels per sigma; absent if a wall or their distance is unknown
+  const calibration::CellGeometry& geometry;
+  std::string data;                                   // hash of the stack
+  std::optional<calibration::SizeStatistics> census;  // of the beads; absent if none are found
+  std::optional<calibration::Estimate>
+      by_walls;  // pixels per sigma; absent if a wall or their distance is unknown
 };
 
 /// Sizes of the beads, located in the picture after correction of rotation and distortion.
-std::optional<SizeStatistics> census_of(const CameraCalibration& o, const CellDescription& cell,
-                                        const CellGeometry& g, const Common& common,
-                                        std::vector<std::string>& notes) {
+std::optional<calibration::SizeStatistics> census_of(const CameraCalibration& o, const CellDescription& cell,
+                                                     const calibration::CellGeometry& g, const Common& common,
+                                                     std::vector<std::string>& notes) {
   LocatorOptions locator;
   locator.preprocess.bright = o.flags.bright || cell.bright;
   locator.diameter_px = o.flags.diameter_px > 0 ? o.flags.diameter_px : cell.pixels_per_sigma.value_or(0);
@@ -102,7 +104,8 @@ std::optional<SizeStatistics> census_of(const CameraCalibration& o, const CellDe
   try {
     const auto frames = open_stack(o.flags.stack, common);
     ProgressBar bar(common, "beads");
-    return count_beads(locate_beads(*frames, locator, lens, o.frames, common.n_threads(), bar));
+    return calibration::count_beads(
+        calibration::locate_beads(*frames, locator, lens, o.frames, common.n_threads(), bar));
   } catch (const InputError& e) {
     notes.push_back(fmt::format("no scale from the beads: {}", e.what()));
     return std::nullopt;
@@ -110,16 +113,17 @@ std::optional<SizeStatistics> census_of(const CameraCalibration& o, const CellDe
 }
 
 /// Pixels per sigma from the distance of the walls over the known width of the cell.
-std::optional<Estimate> scale_by_walls(const CellDescription& cell, const CellGeometry& g) {
+std::optional<calibration::Estimate> scale_by_walls(const CellDescription& cell,
+                                                    const calibration::CellGeometry& g) {
   if (!g.has_left || !g.has_right || !cell.width) return std::nullopt;
   double e = g.width_error_px() / *cell.width;
   if (const auto m = calibrated(cell, "cell.width"))
     e = std::hypot(e, g.width_px() / *cell.width * m->standard_error[0] / *cell.width);
-  return Estimate{g.width_px() / *cell.width, e};
+  return calibration::Estimate{g.width_px() / *cell.width, e};
 }
 
 struct Scale {
-  Estimate pixels_per_sigma;
+  calibration::Estimate pixels_per_sigma;
   std::string method;
 };
 
@@ -134,8 +138,9 @@ Scale scale_of(const Measured& m) {
 }
 
 /// Adds scale, origin, rotation and distortion.
-void add_quantities(CalibrationResult& out, const Measured& m, const Scale& scale, const Estimate& row) {
-  const CellGeometry& g = m.geometry;
+void add_quantities(CalibrationResult& out, const Measured& m, const Scale& scale,
+                    const calibration::Estimate& row) {
+  const calibration::CellGeometry& g = m.geometry;
   const auto add = [&](const std::string& name, std::vector<double> value, std::vector<double> error,
                        const std::string& how) {
     out.measured.push_back({.name = name,
@@ -162,8 +167,9 @@ void add_quantities(CalibrationResult& out, const Measured& m, const Scale& scal
 
 /// Adds the covariance of the stored quantities. The rows of `map` lead from the parameters of the fit to
 /// these quantities.
-void add_covariance(CalibrationResult& out, const Measured& m, const Scale& scale, const Estimate& row) {
-  const CellGeometry& g = m.geometry;
+void add_covariance(CalibrationResult& out, const Measured& m, const Scale& scale,
+                    const calibration::Estimate& row) {
+  const calibration::CellGeometry& g = m.geometry;
   if (!g.has_left || !g.has_plate || g.fit.covariance.size() == 0) return;
   const auto place = [&](const char* name) {
     return std::find(g.fit.names.begin(), g.fit.names.end(), name) - g.fit.names.begin();
@@ -190,7 +196,7 @@ void add_covariance(CalibrationResult& out, const Measured& m, const Scale& scal
 }
 
 /// Perspective: only walls and beads together distinguish a tilted camera from tilted walls.
-void report_perspective(CalibrationResult& out, const SizeStatistics& census, cv::Size size) {
+void report_perspective(CalibrationResult& out, const calibration::SizeStatistics& census, cv::Size size) {
   constexpr double kSure = 4, kWorthSaying = 2e-3;
   const double change_x = census.gradient_x.value * size.width,
                error_x = census.gradient_x.error * size.width,
@@ -216,7 +222,7 @@ void report_perspective(CalibrationResult& out, const SizeStatistics& census, cv
 /// Comparison of the scales, printed only.
 void report_scales(CalibrationResult& out, const Measured& m) {
   nlohmann::json& d = out.document;
-  const auto scale_line = [&](const char* what, const Estimate& e) {
+  const auto scale_line = [&](const char* what, const calibration::Estimate& e) {
     d["scales"][what] = {{"value", e.value}, {"standard_error", finite(e.error)}};
     out.text += fmt::format("  {:<10} {:.5f} +- {:.5f}\n", what, e.value, e.error);
   };
@@ -228,7 +234,7 @@ void report_scales(CalibrationResult& out, const Measured& m) {
     report_perspective(out, *m.census, m.geometry.size);
   }
   if (m.by_walls && m.census) {
-    const Estimate &beads = m.census->diameter, &walls = *m.by_walls;
+    const calibration::Estimate &beads = m.census->diameter, &walls = *m.by_walls;
     const double apart = (beads.value - walls.value) / std::hypot(beads.error, walls.error);
     d["scales"]["standard_errors_apart"] = finite(apart);
     out.text += fmt::format("  walls and diameters are {:.1f} standard errors apart\n", std::abs(apart));
@@ -236,12 +242,12 @@ void report_scales(CalibrationResult& out, const Measured& m) {
 }
 
 /// Distortion as fitted, residuals of the edges, blur.
-void report_edges(CalibrationResult& out, const CellGeometry& g) {
+void report_edges(CalibrationResult& out, const calibration::CellGeometry& g) {
   if (g.distortion_found)
     out.text += fmt::format("distortion k1 = {:.2g} +- {:.1g}{}\n", *g.distortion_found, *g.distortion_error,
                             g.distortion == 0 ? ": not significant" : "");
   double squares = 0;
-  for (const EdgeResidual& r : g.residuals) squares += r.distance_px * r.distance_px;
+  for (const calibration::EdgeResidual& r : g.residuals) squares += r.distance_px * r.distance_px;
   const double rms = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, g.residuals.size())));
   out.document["residuals"] = {{"points", g.residuals.size()}, {"rms_px", rms}};
   out.document["blur_px"] = g.blur_px;
@@ -253,19 +259,19 @@ void run(const CameraCalibration& o, const Common& common) {
   const CellDescription cell = cell_of(o.flags);
   CalibrationResult out;
   out.document["stack"] = o.flags.stack;
-  StackEdges edges;
-  const CellGeometry g = geometry_of(o.flags, cell, common, edges);
+  calibration::StackEdges edges;
+  const calibration::CellGeometry g = geometry_of(o.flags, cell, common, edges);
   Measured m{o, cell, g, data_hash(o.flags.stack), {}, {}};
   m.census = census_of(o, cell, g, common, out.notes);
   m.by_walls = scale_by_walls(cell, g);
   const Scale scale = scale_of(m);
-  const Estimate row = mean_row(g);
+  const calibration::Estimate row = mean_row(g);
   add_quantities(out, m, scale, row);
   add_covariance(out, m, scale, row);
   report_scales(out, m);
   report_edges(out, g);
   if (!o.target.empty()) add_target(o, out.document, out.text);
-  out.figures = {edge_map_figure(g)};
+  out.figures = {calibration::edge_map_figure(g)};
   finish_calibration(o.flags, common, std::move(out));
 }
 

@@ -35,8 +35,8 @@ struct BounceFlags {
   bool no_drag = false;
 };
 
-std::vector<BounceSample> samples_of(const BounceFlags& o, std::optional<Drive>& drive) {
-  std::vector<BounceSample> samples;
+std::vector<calibration::BounceSample> samples_of(const BounceFlags& o, std::optional<Drive>& drive) {
+  std::vector<calibration::BounceSample> samples;
   if (is_trajectory(o.source)) {
     const H5mdReader trajectory(o.source);
     const std::size_t bead = o.bead.value_or(0), n = trajectory.info().n_beads;
@@ -70,7 +70,7 @@ std::vector<BounceSample> samples_of(const BounceFlags& o, std::optional<Drive>&
 
 void run_bounce(const BounceFlags& o, const Common& common) {
   std::optional<Drive> drive;
-  const std::vector<BounceSample> samples = samples_of(o, drive);
+  const std::vector<calibration::BounceSample> samples = samples_of(o, drive);
   if (o.amplitude || o.omega) {
     if (!o.amplitude || !o.omega)
       throw ConfigError({.file = {}, .key = "--drive-amplitude"},
@@ -82,17 +82,17 @@ void run_bounce(const BounceFlags& o, const Common& common) {
         {.file = {}, .key = "--drive-phase"},
         fmt::format("is {:g}, but the plate does not vibrate; give --drive-amplitude and --drive-omega too.",
                     *o.phase));
-  BounceOptions options{.gravity = o.gravity, .drag = !o.no_drag, .plate = {}};
+  calibration::BounceOptions options{.gravity = o.gravity, .drag = !o.no_drag, .plate = {}};
   if (drive && drive->amplitude > 0) {
     const double phase = o.phase.value_or(0);
     options.plate = [d = *drive, phase](double t) {
       const double theta = d.omega * t + phase;
-      return PlateAt{d.amplitude * std::sin(theta), d.amplitude * d.omega * std::cos(theta)};
+      return calibration::PlateAt{d.amplitude * std::sin(theta), d.amplitude * d.omega * std::cos(theta)};
     };
   }
-  BounceFit fit;
+  calibration::BounceFit fit;
   try {
-    fit = fit_bounces(samples, options);
+    fit = calibration::fit_bounces(samples, options);
   } catch (const InputError& e) {
     throw InputError({.file = o.source, .key = {}}, e.what());
   }
@@ -120,7 +120,7 @@ void run_bounce(const BounceFlags& o, const Common& common) {
     out.text +=
         fmt::format("drag: {:.3g} +- {:.1g} of the velocity per unit time\n", fit.drag, fit.drag_error);
   out.text += "  time        impact speed  e_n\n";
-  for (const BounceImpact& i : fit.impacts) {
+  for (const calibration::BounceImpact& i : fit.impacts) {
     d["impacts"].push_back({{"time", i.time},
                             {"speed", i.speed},
                             {"restitution", i.restitution},
@@ -128,7 +128,7 @@ void run_bounce(const BounceFlags& o, const Common& common) {
     out.text +=
         fmt::format("  {:<10.5g}  {:<12.5g}  {:.5f} +- {:.5f}\n", i.time, i.speed, i.restitution, i.error);
   }
-  out.figures = {bounce_figure(fit)};
+  out.figures = {calibration::bounce_figure(fit)};
   finish_calibration(o.out, common, std::move(out));
 }
 
@@ -137,16 +137,16 @@ void run_bounce(const BounceFlags& o, const Common& common) {
 struct CollisionFlags {
   CalibrateFlags out;
   std::string trajectory;
-  CollisionOptions options;
+  calibration::CollisionOptions options;
   std::string shape = "disc";
 };
 
 void run_collisions(const CollisionFlags& o, const Common& common) {
   const H5mdReader trajectory(o.trajectory);
-  const FoundCollisions found = find_collisions(trajectory, o.options);
-  WaltonFit fit;
+  const calibration::FoundCollisions found = calibration::find_collisions(trajectory, o.options);
+  calibration::WaltonFit fit;
   try {
-    fit = fit_walton(found.impacts, o.shape == "disc" ? 0.5 : 0.4);
+    fit = calibration::fit_walton(found.impacts, o.shape == "disc" ? 0.5 : 0.4);
   } catch (const InputError& e) {
     throw InputError({.file = o.trajectory, .key = {}},
                      fmt::format("{} ({} pairs collided between frames, {} of them with a third body)",
@@ -202,7 +202,7 @@ void run_collisions(const CollisionFlags& o, const Common& common) {
   out.text += "\n";
   if (fit.has_tangential) out.text += fmt::format("{} impacts stick, {} slide\n", fit.sticking, fit.sliding);
   if (!d["undetermined"].empty()) out.text += "undetermined: " + json_text(d["undetermined"]) + "\n";
-  out.figures = {collisions_figure(found, fit, o.shape == "disc" ? 0.5 : 0.4)};
+  out.figures = {calibration::collisions_figure(found, fit, o.shape == "disc" ? 0.5 : 0.4)};
   finish_calibration(o.out, common, std::move(out));
 }
 
@@ -222,11 +222,11 @@ void run_numbers(const NumberFlags& o, const Common& common) {
                       "and --contact-time give k_n and gamma_n, --k-n and --gamma-n give the reverse; give "
                       "exactly one of the two pairs.");
   double e = 0, t_c = 0;
-  SpringDashpot s;
+  calibration::SpringDashpot s;
   if (back) {
     e = *o.restitution;
     t_c = *o.contact_time;
-    s = spring_of(e, t_c, o.m_eff);
+    s = calibration::spring_of(e, t_c, o.m_eff);
   } else {
     const sim::LinearCollision c(*o.k_n, *o.gamma_n * o.m_eff, o.m_eff);
     e = c.restitution();

@@ -52,9 +52,9 @@ double number_of(const std::string& text) {
   return value;
 }
 
-Sought sought_of(const std::string& said) {
+calibration::Sought sought_of(const std::string& said) {
   const auto equals = said.find('='), colon = said.find(':', equals == std::string::npos ? 0 : equals);
-  Sought s;
+  calibration::Sought s;
   try {
     if (equals == std::string::npos || colon == std::string::npos) throw std::invalid_argument("form");
     s = {said.substr(0, equals), number_of(said.substr(equals + 1, colon - equals - 1)),
@@ -78,7 +78,7 @@ struct MeasuredOnset {
     return phase == BedPhase::bouncing ? kBouncingThreshold : kConvectionThreshold;
   }
   /// Range of Gamma in which runs search for the onset: three errors, and at least 15 %, to both sides.
-  [[nodiscard]] Sought tried() const {
+  [[nodiscard]] calibration::Sought tried() const {
     const double reach = std::max(3 * error, 0.15 * gamma);
     return {"drive.gamma", std::max(gamma - reach, 0.1 * gamma), gamma + reach};
   }
@@ -165,12 +165,12 @@ std::vector<Observed> of_film(const InferFlags& o) {
 /// All runs of the simulator: at the drive of the film, and at drives around each onset.
 class Runs {
  public:
-  Runs(const InferFlags& o, const Common& common, std::vector<Sought> sought,
+  Runs(const InferFlags& o, const Common& common, std::vector<calibration::Sought> sought,
        const std::vector<Observed>& measured, const std::vector<MeasuredOnset>& onsets)
       : o_(o), common_(common), sought_(std::move(sought)), measured_(measured), onsets_(onsets) {
-    std::vector<Sought> ranges = sought_;
+    std::vector<calibration::Sought> ranges = sought_;
     for (const MeasuredOnset& onset : onsets_) ranges.push_back(onset.tried());
-    places_ = spread_points(ranges, o.runs);
+    places_ = calibration::spread_points(ranges, o.runs);
     of_film.resize(places_.size());
     of_onset.assign(onsets_.size(), std::vector<double>(places_.size(), kNaN));
   }
@@ -239,7 +239,7 @@ class Runs {
 
   const InferFlags& o_;
   const Common& common_;
-  std::vector<Sought> sought_;
+  std::vector<calibration::Sought> sought_;
   const std::vector<Observed>& measured_;
   const std::vector<MeasuredOnset>& onsets_;
   std::vector<std::vector<double>> places_;  ///< parameters, then Gamma for each onset
@@ -248,19 +248,20 @@ class Runs {
 /// A measured curve and the curves of the runs, reduced to numbers.
 struct ComparedCurve {
   Observed measured;
-  CurveComponents components;
+  calibration::CurveComponents components;
   std::size_t first = 0;  ///< index of its first number among the observables
 };
 
 /// The input of infer_parameters(), and the curves that are part of it.
 struct Question {
-  std::vector<MeasuredObservable> measured;
-  std::vector<SimulatedPoint> runs;
+  std::vector<calibration::MeasuredObservable> measured;
+  std::vector<calibration::SimulatedPoint> runs;
   std::vector<ComparedCurve> curves;
 
   /// Adds one observable: its measured value and its value in each run. \param at condition of each run;
   /// empty if the observable has none
-  void add(MeasuredObservable number, const std::vector<double>& of_runs, const std::vector<double>& at) {
+  void add(calibration::MeasuredObservable number, const std::vector<double>& of_runs,
+           const std::vector<double>& at) {
     measured.push_back(std::move(number));
     for (std::size_t i = 0; i < runs.size(); ++i) {
       runs[i].y.push_back(of_runs[i]);
@@ -276,7 +277,7 @@ void add_curve(Question& question, const Runs& runs, std::size_t k, const Observ
     const Observed& run = runs.of_film[i][k];
     curves.push_back(run.absent.empty() ? run.values : std::vector<double>{});
   }
-  ComparedCurve c{measured, components_of(curves), question.measured.size()};
+  ComparedCurve c{measured, calibration::components_of(curves), question.measured.size()};
   const std::vector<double> numbers = c.components.numbers(measured.values);
   for (std::size_t form = 0; form < numbers.size(); ++form) {
     std::vector<double> of_runs;
@@ -306,7 +307,7 @@ Question question_of(const Runs& runs, const std::vector<Observed>& measured,
     question.add({.name = onsets[k].name(),
                   .value = level(onsets[k].threshold(), onsets[k].threshold()),
                   .error = 0,
-                  .at = Condition{onsets[k].tried(), onsets[k].gamma, onsets[k].error}},
+                  .at = calibration::Condition{onsets[k].tried(), onsets[k].gamma, onsets[k].error}},
                  runs.of_onset[k], at);
   }
   return question;
@@ -314,10 +315,11 @@ Question question_of(const Runs& runs, const std::vector<Observed>& measured,
 
 /// Reports each observable: measured value, value at the best parameters, and scatter of one run. An onset is
 /// converted to a drive strength.
-void tell_observables(const Question& question, const Inference& inference, CalibrationResult& out) {
+void tell_observables(const Question& question, const calibration::Inference& inference,
+                      CalibrationResult& out) {
   out.text += "observable            measured      best fit      scatter of one run\n";
   for (std::size_t i = 0; i < question.measured.size(); ++i) {
-    const MeasuredObservable& m = question.measured[i];
+    const calibration::MeasuredObservable& m = question.measured[i];
     double value = m.value, error = m.error, predicted = inference.predicted[i],
            scatter = inference.scatter[i];
     if (m.at) {
@@ -336,7 +338,7 @@ void tell_observables(const Question& question, const Inference& inference, Cali
   }
 }
 
-void tell_curves(const Question& question, const Inference& inference, CalibrationResult& out) {
+void tell_curves(const Question& question, const calibration::Inference& inference, CalibrationResult& out) {
   constexpr double kFar = 3;
   for (const ComparedCurve& c : question.curves) {
     const auto first = inference.predicted.begin() + static_cast<std::ptrdiff_t>(c.first);
@@ -355,18 +357,18 @@ void tell_curves(const Question& question, const Inference& inference, Calibrati
           fmt::format("{} has a shape that no run has: its residual is {:.2g}, that of the curves of the "
                       "runs {:.2g} (rms)",
                       c.measured.name, misfit, c.components.left_out));
-    out.figures.push_back(curve_figure(c.measured.name, c.measured.values, predicted));
+    out.figures.push_back(calibration::curve_figure(c.measured.name, c.measured.values, predicted));
   }
 }
 
-void tell_profiles(const InferFlags& o, const Question& question, const Inference& inference,
+void tell_profiles(const InferFlags& o, const Question& question, const calibration::Inference& inference,
                    CalibrationResult& out) {
   const auto& known = quantities();
   std::vector<std::string> by = o.measured.empty() ? std::vector<std::string>{} : o.observables;
-  for (const MeasuredObservable& m : question.measured)
+  for (const calibration::MeasuredObservable& m : question.measured)
     if (m.at) by.push_back(m.name);
   out.text = "profile likelihood, 95 % intervals\n";
-  for (const Profile& p : inference.profiles) {
+  for (const calibration::Profile& p : inference.profiles) {
     out.document["profiles"].push_back({{"parameter", p.sought.name},
                                         {"best", p.best},
                                         {"low", p.low},
@@ -412,7 +414,7 @@ void check_observables(const std::vector<std::string>& names) {
 }
 
 void run_infer(const InferFlags& o, const Common& common) {
-  std::vector<Sought> sought;
+  std::vector<calibration::Sought> sought;
   refuse_contradictory_assignments(o.assignments);
   for (const std::string& said : o.vary) {
     sought.push_back(sought_of(said));
@@ -437,7 +439,7 @@ void run_infer(const InferFlags& o, const Common& common) {
                           fmt::format("names the {} twice; give the mean of the two.", onsets.back().name()));
   }
   // These keys are set for every run: the seed always, Gamma in the search for an onset.
-  for (const Sought& s : sought)
+  for (const calibration::Sought& s : sought)
     if (s.name == "start.seed" ||
         (!onsets.empty() && (s.name == "drive.gamma" || s.name.starts_with("drive.peak_acceleration"))))
       throw ConfigError(
@@ -451,7 +453,8 @@ void run_infer(const InferFlags& o, const Common& common) {
   Runs runs(o, common, sought, measured, onsets);
   runs.simulate();
   const Question question = question_of(runs, measured, onsets);
-  const Inference inference = infer_parameters(sought, question.runs, question.measured);
+  const calibration::Inference inference =
+      calibration::infer_parameters(sought, question.runs, question.measured);
 
   CalibrationResult out;
   out.notes = inference.notes;
@@ -461,7 +464,7 @@ void run_infer(const InferFlags& o, const Common& common) {
   tell_profiles(o, question, inference, out);
   tell_observables(question, inference, out);
   out.text += fmt::format("chi^2 = {:.3g}, {:g} degrees of freedom\n", inference.chi2, inference.freedom);
-  out.figures = {profile_figure(inference)};
+  out.figures = {calibration::profile_figure(inference)};
   tell_curves(question, inference, out);
   finish_calibration(o.out, common, std::move(out));
 }

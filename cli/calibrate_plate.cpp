@@ -30,7 +30,7 @@ struct PlateOptions {
 constexpr double kSameRate = 0.01;
 constexpr const char* kPhaseHeading = "frame,cycles\n";
 
-void write_phases(const std::string& path, const DriveFit& lock) {
+void write_phases(const std::string& path, const calibration::DriveFit& lock) {
   AtomicPath file(path, Product::table(kPhaseHeading));
   {
     std::ofstream out(file.part());
@@ -44,7 +44,7 @@ void write_phases(const std::string& path, const DriveFit& lock) {
   file.commit();
 }
 
-std::string list_of(const DriveFit& lock, FrameLock kind) {
+std::string list_of(const calibration::DriveFit& lock, calibration::FrameLock kind) {
   constexpr int kMostNamed = 12;
   std::string s;
   int n = 0;
@@ -53,11 +53,13 @@ std::string list_of(const DriveFit& lock, FrameLock kind) {
   return n > kMostNamed ? s + ", ..." : s;
 }
 
-DriveFit lock_of(const PlateOptions& o, const CellDescription& cell, const CellGeometry& g) {
+calibration::DriveFit lock_of(const PlateOptions& o, const CellDescription& cell,
+                              const calibration::CellGeometry& g) {
   try {
     const int known = o.frames_per_cycle > 0 ? o.frames_per_cycle : cell.phase_lock.frames_per_cycle;
-    return fit_drive(g.heights_px(),
-                     {.frames_per_cycle = known, .mend = true, .model_error = kHeightModelError_px});
+    return calibration::fit_drive(
+        g.heights_px(),
+        {.frames_per_cycle = known, .mend = true, .model_error = calibration::kHeightModelError_px});
   } catch (const InputError& e) {
     throw InputError({.file = o.flags.stack, .key = {}}, e.what());
   }
@@ -67,8 +69,8 @@ DriveFit lock_of(const PlateOptions& o, const CellDescription& cell, const CellG
 struct Measured {
   const PlateOptions& options;
   const CellDescription& cell;
-  const CellGeometry& geometry;
-  DriveFit lock;
+  const calibration::CellGeometry& geometry;
+  calibration::DriveFit lock;
   std::optional<KnownNumber> scale;  // pixels per sigma
   std::optional<double> rate;        // frames per second
   std::string data;                  // hash of the stack
@@ -78,20 +80,20 @@ struct Measured {
 };
 
 /// Frames per second; a note where the stack contradicts the rate that was stated.
-std::optional<double> rate_of(const PlateOptions& o, const CellDescription& cell, const StackEdges& edges,
-                              std::vector<std::string>& notes) {
+std::optional<double> rate_of(const PlateOptions& o, const CellDescription& cell,
+                              const calibration::StackEdges& edges, std::vector<std::string>& notes) {
   const std::optional<double> stated = o.frame_rate_hz ? o.frame_rate_hz : cell.frame_rate_hz;
   if (stated)
-    if (const auto seen = frame_rate_of({}, edges, o.flags.stack);
+    if (const auto seen = calibration::frame_rate_of({}, edges, o.flags.stack);
         seen && std::abs(*seen / *stated - 1) > kSameRate)
       notes.push_back(fmt::format(
           "the stack states {:.7g} frames per second, but the given rate of {:.7g} is used", *seen, *stated));
-  return frame_rate_of(stated, edges, o.flags.stack);
+  return calibration::frame_rate_of(stated, edges, o.flags.stack);
 }
 
 /// Adds the quantities of camera and drive.
 void add_quantities(CalibrationResult& out, const Measured& m) {
-  const DriveFit& lock = m.lock;
+  const calibration::DriveFit& lock = m.lock;
   const auto add = [&](const std::string& name, double value, double error, const std::string& method) {
     out.measured.push_back(
         {.name = name, .value = {value}, .standard_error = {error}, .method = method, .data = m.data});
@@ -131,7 +133,7 @@ void note_scale(CalibrationResult& out, const Measured& m) {
 
 /// Adds what only this kind has to the document: the motion of the plate.
 void describe_motion(nlohmann::json& d, const Measured& m) {
-  const DriveFit& lock = m.lock;
+  const calibration::DriveFit& lock = m.lock;
   d["plate"] = {
       {"z0_px", lock.z0},
       {"row_px", m.geometry.plate_row - lock.z0},
@@ -153,7 +155,7 @@ void describe_motion(nlohmann::json& d, const Measured& m) {
 
 /// Adds the phase of each frame to the document.
 void describe_frames(nlohmann::json& d, const Measured& m) {
-  const DriveFit& lock = m.lock;
+  const calibration::DriveFit& lock = m.lock;
   d["frames"] = {{"locked", lock.locked},
                  {"out_of_lock", lock.out_of_lock},
                  {"unseen", lock.unseen},
@@ -172,13 +174,14 @@ void describe_frames(nlohmann::json& d, const Measured& m) {
 
 /// The same as text.
 std::string text_of(const Measured& m) {
-  const DriveFit& lock = m.lock;
+  const calibration::DriveFit& lock = m.lock;
   std::string text = fmt::format(
       "A = {:.4f} +- {:.4f} px about row {:.3f}; rms residual {:.3f} px, edge blur {:.2f} px\n",
       lock.amplitude, lock.amplitude_error, m.geometry.plate_row - lock.z0, lock.rms, m.geometry.blur_px);
   text += fmt::format("frames: {} locked, {} out of lock, {} without a plate, {} dropped, {} doubled\n",
                       lock.locked, lock.out_of_lock, lock.unseen, lock.dropped, lock.doubled);
-  if (lock.out_of_lock > 0) text += "out of lock: " + list_of(lock, FrameLock::out_of_lock) + "\n";
+  if (lock.out_of_lock > 0)
+    text += "out of lock: " + list_of(lock, calibration::FrameLock::out_of_lock) + "\n";
   if (!lock.jitter) text += fmt::format("jitter: below {:.2g} frames\n", lock.jitter_limit);
   if (lock.p_sinusoidal)
     text += fmt::format("second harmonic: {:.2g} +- {:.1g} of A, p = {:.2g} for a pure sine\n",
@@ -187,7 +190,7 @@ std::string text_of(const Measured& m) {
 }
 
 /// A omega^2 from the picture next to that of the accelerometer. \pre scale and rate are known
-void compare_acceleration(CalibrationResult& out, const Measured& m, const VibrationFit& v) {
+void compare_acceleration(CalibrationResult& out, const Measured& m, const calibration::VibrationFit& v) {
   const double f = m.frequency_hz(), e = m.frequency_error_hz(), w = 2 * M_PI * f;
   const double metres = m.lock.amplitude / m.scale->value * *m.cell.scale.sigma_m, seen = metres * w * w;
   const double error =
@@ -201,8 +204,8 @@ void compare_acceleration(CalibrationResult& out, const Measured& m, const Vibra
 }
 
 /// Comparison with the accelerometer: frequency, and A omega^2 if the scale is known.
-void compare_with(const VibrationTable& vibration, CalibrationResult& out, const Measured& m) {
-  const VibrationFit v = fit_vibration(vibration);
+void compare_with(const calibration::VibrationTable& vibration, CalibrationResult& out, const Measured& m) {
+  const calibration::VibrationFit v = calibration::fit_vibration(vibration);
   nlohmann::json& d = out.document["accelerometer"];
   d = {{"frequency_hz", {{"value", v.frequency_hz}, {"standard_error", v.frequency_error}}},
        {"acceleration", {{"value", v.acceleration}, {"standard_error", v.acceleration_error}}}};
@@ -222,12 +225,12 @@ void compare_with(const VibrationTable& vibration, CalibrationResult& out, const
 
 void run(const PlateOptions& o, const Common& common) {
   const CellDescription cell = cell_of(o.flags);
-  const std::optional<VibrationTable> vibration =
-      o.accelerometer.empty() ? std::nullopt : std::optional(read_vibration(o.accelerometer));
-  StackEdges edges;
-  const CellGeometry g = geometry_of(o.flags, cell, common, edges);
+  const std::optional<calibration::VibrationTable> vibration =
+      o.accelerometer.empty() ? std::nullopt : std::optional(calibration::read_vibration(o.accelerometer));
+  calibration::StackEdges edges;
+  const calibration::CellGeometry g = geometry_of(o.flags, cell, common, edges);
   Measured m{o, cell, g, lock_of(o, cell, g), scale_of(cell, g), {}, data_hash(o.flags.stack)};
-  DriveFit& lock = m.lock;
+  calibration::DriveFit& lock = m.lock;
   lock.amplitude_error = std::hypot(lock.amplitude_error, lock.amplitude * g.stretch_error);
 
   CalibrationResult out;
@@ -248,7 +251,7 @@ void run(const PlateOptions& o, const Common& common) {
     out.document["phases"] = o.phases;
     out.text += o.phases + "\n";
   }
-  out.figures = {drive_fit_figure(lock)};
+  out.figures = {calibration::drive_fit_figure(lock)};
   finish_calibration(o.flags, common, std::move(out));
 }
 

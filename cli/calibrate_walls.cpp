@@ -27,7 +27,7 @@ Measurement tilts(double left, double left_error, double right, double right_err
 
 void of_trajectory(const CalibrateFlags& flags, const Common& common) {
   const H5mdReader trajectory(flags.stack);
-  const BeadWalls w = walls_from_beads(trajectory);
+  const calibration::BeadWalls w = calibration::walls_from_beads(trajectory);
   const std::string data = data_hash(flags.stack);
   CalibrationResult out;
   const std::string method = fmt::format("outermost beads in {} heights", w.rows);
@@ -49,8 +49,8 @@ void of_trajectory(const CalibrateFlags& flags, const Common& common) {
 
 void of_stack(const CalibrateFlags& flags, const Common& common) {
   const CellDescription cell = cell_of(flags);
-  StackEdges edges;
-  const CellGeometry g = geometry_of(flags, cell, common, edges);
+  calibration::StackEdges edges;
+  const calibration::CellGeometry g = geometry_of(flags, cell, common, edges);
   if (!g.has_left || !g.has_right)
     throw InputError({.file = flags.stack, .key = {}},
                      fmt::format("shows no {} wall: each needs a dark border of 3 px with light next to it.",
@@ -109,7 +109,7 @@ void of_stack(const CalibrateFlags& flags, const Common& common) {
                           : lean > 0                      ? "wider"
                                                           : "narrower",
                           lean, lean_error);
-  out.figures = {edge_map_figure(g)};
+  out.figures = {calibration::edge_map_figure(g)};
   finish_calibration(flags, common, std::move(out));
 }
 

@@ -33,13 +33,13 @@ std::string drive_disagreement(const H5mdReader& experiment) {
     if (tracking.contains("drive_check")) return {};
   }
   if (info.source != "experiment" || !info.drive) return {};
-  BedSteps bed(info);
+  calibration::BedSteps bed(info);
   Frame frame;
   for (std::size_t f = 0; f < experiment.n_frames(); ++f) {
     experiment.read(f, frame);
     bed.append(frame);
   }
-  return check_by_bed(bed, info, std::nullopt).disagreement;
+  return calibration::check_by_bed(bed, info, std::nullopt).disagreement;
 }
 
 /// \throws ConfigError if the film of an experiment shows another drive than its cell states

@@ -14,41 +14,41 @@
 namespace twincell::cli {
 namespace {
 
-std::vector<std::string> names_of(const CalibrationCost& cost) {
+std::vector<std::string> names_of(const calibration::CalibrationCost& cost) {
   std::vector<std::string> names;
-  for (const CalibrationPrecision& p : cost.numbers)
+  for (const calibration::CalibrationPrecision& p : cost.numbers)
     if (std::find(names.begin(), names.end(), p.name) == names.end()) names.push_back(p.name);
   return names;
 }
 
-nlohmann::json as_json(const CalibrationCost& cost) {
+nlohmann::json as_json(const calibration::CalibrationCost& cost) {
   nlohmann::json d;
-  for (const CalibrationPrecision& p : cost.numbers)
+  for (const calibration::CalibrationPrecision& p : cost.numbers)
     d["numbers"].push_back({{"name", p.name},
                             {"unit", p.unit},
                             {"frames", p.frames},
                             {"standard_error", finite(p.stated)},
                             {"actual_error", finite(p.actual)}});
-  for (const CalibrationTime& t : cost.times)
+  for (const calibration::CalibrationTime& t : cost.times)
     d["times"].push_back(
         {{"frames", t.frames}, {"edges_s", t.edges_s}, {"fit_s", t.fit_s}, {"beads_s", t.beads_s}});
   return d;
 }
 
-std::string as_text(const CalibrationCost& cost) {
+std::string as_text(const calibration::CalibrationCost& cost) {
   std::string s = fmt::format(
       "Stated standard error; in brackets the actual error (value minus truth). Frames of {} x {} px with 12 "
       "x 6 beads of 14.3 px.\n\n",
       cost.width_px, cost.height_px);
   s += fmt::format("{:<26}", "frames");
-  for (const CalibrationTime& t : cost.times) s += fmt::format("  {:>20}", t.frames);
+  for (const calibration::CalibrationTime& t : cost.times) s += fmt::format("  {:>20}", t.frames);
   s += "\n";
   for (const std::string& name : names_of(cost)) {
     std::string unit, row;
-    for (const CalibrationTime& t : cost.times) {
-      const auto at =
-          std::find_if(cost.numbers.begin(), cost.numbers.end(),
-                       [&](const CalibrationPrecision& p) { return p.name == name && p.frames == t.frames; });
+    for (const calibration::CalibrationTime& t : cost.times) {
+      const auto at = std::find_if(
+          cost.numbers.begin(), cost.numbers.end(),
+          [&](const calibration::CalibrationPrecision& p) { return p.name == name && p.frames == t.frames; });
       if (at == cost.numbers.end()) {
         row += fmt::format("  {:>20}", "-");
         continue;
@@ -58,18 +58,18 @@ std::string as_text(const CalibrationCost& cost) {
     }
     s += fmt::format("{:<26}{}  {}\n", name, row, unit);
   }
-  const auto line = [&](const char* what, double CalibrationTime::*member) {
+  const auto line = [&](const char* what, double calibration::CalibrationTime::*member) {
     s += fmt::format("{:<26}", what);
-    for (const CalibrationTime& t : cost.times) s += fmt::format("  {:>20.3g}", t.*member);
+    for (const calibration::CalibrationTime& t : cost.times) s += fmt::format("  {:>20.3g}", t.*member);
     s += "  s\n";
   };
-  line("time: edges", &CalibrationTime::edges_s);
-  line("time: fits", &CalibrationTime::fit_s);
-  line("time: beads", &CalibrationTime::beads_s);
+  line("time: edges", &calibration::CalibrationTime::edges_s);
+  line("time: fits", &calibration::CalibrationTime::fit_s);
+  line("time: beads", &calibration::CalibrationTime::beads_s);
   return s;
 }
 
-Figure figure(const CalibrationCost& cost) {
+Figure figure(const calibration::CalibrationCost& cost) {
   Figure f{.name = "calibrating",
            .title = "Accuracy of calibration against number of frames",
            .width = 720,
@@ -81,7 +81,7 @@ Figure figure(const CalibrationCost& cost) {
   for (const std::string& name : names_of(cost)) {
     f.data += fmt::format("# {}: frames, standard error\n", name);
     std::string unit;
-    for (const CalibrationPrecision& p : cost.numbers)
+    for (const calibration::CalibrationPrecision& p : cost.numbers)
       if (p.name == name && p.stated > 0) {
         f.data += fmt::format("{} {:.4g}\n", p.frames, p.stated);
         frames.show(p.frames);
@@ -103,8 +103,8 @@ Figure figure(const CalibrationCost& cost) {
 
 CostReport cost_of_calibrating(bool quick, const Common& common) {
   ProgressBar bar(common, "calibrating");
-  const CalibrationCost cost =
-      measure_calibration(quick ? std::vector{20, 60} : std::vector{20, 40, 100, 200, 400, 1000}, bar);
+  const calibration::CalibrationCost cost = calibration::measure_calibration(
+      quick ? std::vector{20, 60} : std::vector{20, 40, 100, 200, 400, 1000}, bar);
   return {as_json(cost), as_text(cost), figure(cost)};
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 struct FitOptions {
   std::string table, law, output;
-  FitColumns columns;
+  calibration::FitColumns columns;
   std::optional<std::array<double, 2>> window;
 };
 
@@ -27,8 +27,8 @@ Product fit_folder() {
   return Product::whole_folder("a fit");
 }
 
-std::string text_of(const CurveFit& fit) {
-  const FitReport& report = fit.fit;
+std::string text_of(const calibration::CurveFit& fit) {
+  const calibration::FitReport& report = fit.fit;
   std::string text = fmt::format("{}: {}   ({})\n{} points used", fit.law->name, fit.law->formula,
                                  fit.law->source, fit.n_used);
   if (fit.n_outside > 0) text += fmt::format(", {} outside the window", fit.n_outside);
@@ -66,19 +66,20 @@ std::string text_of(const CurveFit& fit) {
 }
 
 void run(const Common& common, FitOptions o) {
-  check_fit(o.law, o.window);
+  calibration::check_fit(o.law, o.window);
   std::optional<AtomicPath> folder;  // opened first: an unwritable folder is reported before the work
   if (!o.output.empty()) folder.emplace(o.output, fit_folder());
-  const TableFit result = fit_table(read_table(o.table), o.law, o.columns, o.window);
-  const CurveFit& fit = result.fit;
+  const calibration::TableFit result =
+      calibration::fit_table(read_table(o.table), o.law, o.columns, o.window);
+  const calibration::CurveFit& fit = result.fit;
 
   Provenance provenance = common.provenance();
   provenance.inputs = {o.table};
-  nlohmann::json document = nlohmann::json::parse(fit_json(result));
+  nlohmann::json document = nlohmann::json::parse(calibration::fit_json(result));
   document["provenance"] = nlohmann::json::parse(provenance.to_json());
   std::string text = text_of(fit);
   if (folder) {
-    draw(fit_figure(fit, result.points, result.columns.x, result.columns.y), folder->part());
+    draw(calibration::fit_figure(fit, result.points, result.columns.x, result.columns.y), folder->part());
     write_text_file(folder->part() / "fit.json", json_text(document, 2) + "\n");
     folder->commit();
     text += fmt::format("picture: {}\n", (folder->final() / "fit.svg").string());
@@ -95,7 +96,7 @@ void add_fit(CLI::App& program, Common& common) {
                             "twincell fit p_s.csv --law arrhenius --x K_m --y p_s --trials trials -o fit/");
   auto o = std::make_shared<FitOptions>();
   std::string names;
-  for (const Law* law : laws()) names += (names.empty() ? "" : ", ") + law->name;
+  for (const calibration::Law* law : calibration::laws()) names += (names.empty() ? "" : ", ") + law->name;
   verb.add_option("table", o->table, "Table to fit (CSV with a header line)")->required();
   verb.add_option("--law", o->law, "Law to fit, docs/fitting.md: " + names)->required()->type_name(kWord);
   verb.add_option("--x", o->columns.x, "Column of the abscissa; default: the first")->type_name(kWord);

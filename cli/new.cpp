@@ -103,7 +103,7 @@ nlohmann::json json_of(const twin::CellSurvey& s, const twin::CellDraft& draft) 
   d["not_measured"] = nlohmann::json::array();
   for (const twin::DraftKey& k : draft.keys) {
     if (k.open) d["open"].push_back(k.key);
-    for (const Estimate& e : k.measured)
+    for (const calibration::Estimate& e : k.measured)
       d["measured"][k.key].push_back(
           {{"value", e.value},
            {"standard_error", std::isfinite(e.error) ? nlohmann::json(e.error) : nlohmann::json()}});

@@ -33,7 +33,7 @@ namespace {
 struct TrackOptions {
   std::string stack, output, csv, truth;
   std::vector<double> scored_rows;
-  FilmOptions film;
+  calibration::FilmOptions film;
   bool profile = false;
 };
 
@@ -108,7 +108,7 @@ void run(TrackOptions& o, const Common& common) {
   const auto open = [&](const LocatorOptions& locator) {
     return open_for_locating(o.stack, o.film.locating, locator, common);
   };
-  TrackedFilm film = track_film(
+  calibration::TrackedFilm film = calibration::track_film(
       open, o.stack, o.film,
       [&](const std::string& stage) -> std::unique_ptr<Progress> {
         return std::make_unique<ProgressBar>(common, stage);

@@ -206,7 +206,7 @@ py::object locate_beads_of(const py::object& stack, const LocatingRequest& reque
 }
 
 struct TrackCall {
-  FilmOptions film;
+  calibration::FilmOptions film;
   std::optional<std::filesystem::path> output;
 };
 
@@ -222,8 +222,8 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
     void update(std::int64_t done, std::int64_t total) override { to_.update(done, total); }
     Progress& to_;
   };
-  TrackedFilm film = unlocked(callback, [&](Progress& progress) {
-    return track_film(
+  calibration::TrackedFilm film = unlocked(callback, [&](Progress& progress) {
+    return calibration::track_film(
         [&](const LocatorOptions& locator) {
           const py::gil_scoped_acquire lock;
           return prepared_stack(stack, call.film.locating, locator);

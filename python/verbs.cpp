@@ -68,8 +68,9 @@ void bind_verbs(py::module_& module) {
       [](const py::object& table, const std::string& law, const std::string& x, const std::string& y,
          const std::string& sigma, const std::string& trials,
          const std::optional<std::array<double, 2>>& window) {
-        check_fit(law, window);
-        return from_json(fit_json(fit_table(table_of(table), law, {x, y, sigma, trials}, window)));
+        calibration::check_fit(law, window);
+        return from_json(calibration::fit_json(
+            calibration::fit_table(table_of(table), law, {x, y, sigma, trials}, window)));
       },
       py::arg("table"), py::arg("law"), py::kw_only(), py::arg("x") = "", py::arg("y") = "",
       py::arg("sigma") = "", py::arg("trials") = "", py::arg("window") = py::none(),
@@ -81,7 +82,7 @@ void bind_verbs(py::module_& module) {
       "laws",
       [] {
         py::dict d;
-        for (const Law* law : laws()) d[py::str(law->name)] = law->formula;
+        for (const calibration::Law* law : calibration::laws()) d[py::str(law->name)] = law->formula;
         return d;
       },
       "Names and formulas of the laws of `fit`.");

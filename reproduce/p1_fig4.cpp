@@ -13,8 +13,9 @@ namespace twincell::reproduce {
 namespace {
 
 /// Points whose bed leaves the plate. At weaker drives T_g only measures vibrations at contacts.
-std::vector<DataPoint> points_of(const StrengthSweep& sweep, double above = 0, double below = 1e300) {
-  std::vector<DataPoint> points;
+std::vector<calibration::DataPoint> points_of(const StrengthSweep& sweep, double above = 0,
+                                              double below = 1e300) {
+  std::vector<calibration::DataPoint> points;
   for (const SweepPoint& r : sweep.points)
     if (r.bouncing > 0 && r.k_m() >= above && r.k_m() <= below)
       points.push_back({r.k_m(), r.mean_temperature().value, 0, 0});
@@ -79,12 +80,12 @@ Slopes slopes_of(const StrengthSweep& crystal) {
 }
 
 /// Two power laws that meet, from random beds.
-std::optional<CurveFit> bend_of(const StrengthSweeps& all) {
+std::optional<calibration::CurveFit> bend_of(const StrengthSweeps& all) {
   const auto points = points_of(all.random);
   return points.size() >= 6 ? fitted("slope_break", points) : std::nullopt;
 }
 
-std::vector<Target> targets_of(const StrengthSweeps& all, const std::optional<CurveFit>& bend) {
+std::vector<Target> targets_of(const StrengthSweeps& all, const std::optional<calibration::CurveFit>& bend) {
   std::vector<Target> targets = {rise_of(all.random)};
   Target at{"(a) random: change of slope", "K_m 3.3 +- 0.8", "", Verdict::absent, ""};
   Target same{"(a) random: change of slope where convection begins",
@@ -130,7 +131,7 @@ std::string region(const char* name, double from, double to) {
   return fmt::format("set label '{}' at first {:.5g},graph 0.06 center\n", name, std::sqrt(from * to));
 }
 
-Figure figure_of(const StrengthSweeps& all, const std::optional<CurveFit>& bend) {
+Figure figure_of(const StrengthSweeps& all, const std::optional<calibration::CurveFit>& bend) {
   Figure f{.name = "p1-fig4", .title = "Granular temperature", .width = 720, .height = 450};
   figure_style::Axis k_m{.label = "K_m = A^2 ω^2/(σ g)", .logarithmic = true},
       t_g{.label = "T_g/(m g σ)", .logarithmic = true};

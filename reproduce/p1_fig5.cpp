@@ -18,8 +18,9 @@ constexpr int kLimitSymbol = figure_style::unfilled(figure_style::kDown);
 
 /// Points with slips. Rows of beads slip together, so the scatter is not binomial and all points have equal
 /// weight.
-std::vector<DataPoint> points_of(const StrengthSweep& sweep, double above = 0, double below = 1e300) {
-  std::vector<DataPoint> points;
+std::vector<calibration::DataPoint> points_of(const StrengthSweep& sweep, double above = 0,
+                                              double below = 1e300) {
+  std::vector<calibration::DataPoint> points;
   for (const SweepPoint& r : sweep.points)
     if (r.slips > 0 && r.k_m() >= above && r.k_m() <= below) points.push_back({r.k_m(), r.p_s(), 0, 0});
   return points;
@@ -27,7 +28,7 @@ std::vector<DataPoint> points_of(const StrengthSweep& sweep, double above = 0, d
 
 /// The Arrhenius laws of the figure.
 struct Barriers {
-  std::optional<CurveFit> random, random_bent, a2, b;
+  std::optional<calibration::CurveFit> random, random_bent, a2, b;
 };
 Barriers barriers_of(const StrengthSweeps& all) {
   Barriers fits;
@@ -40,8 +41,8 @@ Barriers barriers_of(const StrengthSweeps& all) {
   return fits;
 }
 
-Target barrier_target(const std::string& name, const std::optional<CurveFit>& fit, double expected,
-                      double error, const char* none) {
+Target barrier_target(const std::string& name, const std::optional<calibration::CurveFit>& fit,
+                      double expected, double error, const char* none) {
   Target t{name, fmt::format("E_b = {:g} +- {:g}", expected, error), "", Verdict::absent, ""};
   if (!fit) {
     t.reason = none;
@@ -138,12 +139,13 @@ std::string line_of(double c, double e_b, double from, double to, const std::str
 
 /// The fitted law, and the paper's barrier through the mean of the same points: the paper does not state its
 /// prefactor.
-std::string lines_of(const std::optional<CurveFit>& fit, const std::vector<DataPoint>& points, double paper,
-                     double from, double to) {
+std::string lines_of(const std::optional<calibration::CurveFit>& fit,
+                     const std::vector<calibration::DataPoint>& points, double paper, double from,
+                     double to) {
   if (!fit || points.empty()) return "";
   const Estimate e = parameter(*fit, "E_b");
   double mean_x = 0, mean_ln_y = 0;
-  for (const DataPoint& p : points) {
+  for (const calibration::DataPoint& p : points) {
     mean_x += 1 / p.x / static_cast<double>(points.size());
     mean_ln_y += std::log(p.y) / static_cast<double>(points.size());
   }
@@ -153,7 +155,8 @@ std::string lines_of(const std::optional<CurveFit>& fit, const std::vector<DataP
 }
 
 /// "E_b = 10.6 (paper 7)" at a place of the panel.
-std::string barrier_label(const char* of, const std::optional<CurveFit>& fit, double paper, double line) {
+std::string barrier_label(const char* of, const std::optional<calibration::CurveFit>& fit, double paper,
+                          double line) {
   if (!fit) return "";
   return fmt::format("set label '{}E_b = {:.3g} (paper {:g})' at graph 0.97,{:.3f} right\n", of,
                      parameter(*fit, "E_b").value, paper, 0.93 - 0.09 * line);

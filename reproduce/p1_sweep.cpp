@@ -327,15 +327,16 @@ Reproduction reproduction_of(const StrengthSweeps& sweeps, const std::string& ti
   return r;
 }
 
-std::optional<CurveFit> fitted(const std::string& law, const std::vector<DataPoint>& points) {
+std::optional<calibration::CurveFit> fitted(const std::string& law,
+                                            const std::vector<calibration::DataPoint>& points) {
   try {
-    return fit_curve(law_named(law), points);
+    return calibration::fit_curve(calibration::law_named(law), points);
   } catch (const Error&) {
     return std::nullopt;
   }
 }
 
-Estimate parameter(const CurveFit& fit, const std::string& name) {
+Estimate parameter(const calibration::CurveFit& fit, const std::string& name) {
   const auto at = std::find(fit.fit.names.begin(), fit.fit.names.end(), name) - fit.fit.names.begin();
   const auto i = static_cast<std::size_t>(at);
   Estimate e{fit.fit.values[i], {}, {}};

@@ -89,8 +89,9 @@ std::string key_of_starts();
 std::string key_of_border();
 
 /// Least-squares fit of a law; empty if the fit fails, for example for too few points.
-std::optional<CurveFit> fitted(const std::string& law, const std::vector<DataPoint>& points);
+std::optional<calibration::CurveFit> fitted(const std::string& law,
+                                            const std::vector<calibration::DataPoint>& points);
 /// A parameter of a fit with its interval.
-Estimate parameter(const CurveFit& fit, const std::string& name);
+Estimate parameter(const calibration::CurveFit& fit, const std::string& name);
 
 }  // namespace twincell::reproduce

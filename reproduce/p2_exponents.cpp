@@ -52,8 +52,8 @@ const std::vector<Study>& studies(bool of_height) {
 struct Exponent {
   std::string name;
   double low = 0, high = 0;
-  std::vector<DataPoint> points;  ///< V_p, y; y = 0 for a solid bed
-  std::optional<CurveFit> fit;
+  std::vector<calibration::DataPoint> points;  ///< V_p, y; y = 0 for a solid bed
+  std::optional<calibration::CurveFit> fit;
   std::string why_not;
   std::optional<double> printed = {};   ///< the paper's exponent over this window
   std::vector<Estimate> measured = {};  ///< y of the points with its interval; empty for the user's points
@@ -74,7 +74,7 @@ struct Exponent {
   }
 };
 
-Exponent exponent_of(std::string name, std::vector<DataPoint> points, double low, double high) {
+Exponent exponent_of(std::string name, std::vector<calibration::DataPoint> points, double low, double high) {
   Exponent e{.name = std::move(name),
              .low = low,
              .high = high,
@@ -82,19 +82,20 @@ Exponent exponent_of(std::string name, std::vector<DataPoint> points, double low
              .fit = {},
              .why_not = {}};
   std::size_t inside = 0;
-  for (const DataPoint& p : e.points)
+  for (const calibration::DataPoint& p : e.points)
     if (const double w = p.x * p.x; w >= low && w <= high && p.y > 0) ++inside;
   constexpr std::size_t kFewest = 3;
   if (inside < kFewest)
     e.why_not = fmt::format("{} fluid points lie within W = {:.3g} to {:.3g}, {} are needed", inside, low,
                             high, kFewest);
   else
-    e.fit = fit_curve(law_named("power"), e.points, {.low = std::sqrt(low), .high = std::sqrt(high)});
+    e.fit = calibration::fit_curve(calibration::law_named("power"), e.points,
+                                   {.low = std::sqrt(low), .high = std::sqrt(high)});
   return e;
 }
 
-std::vector<DataPoint> of_gas(const std::vector<GasPoint>& points, bool of_height) {
-  std::vector<DataPoint> all;
+std::vector<calibration::DataPoint> of_gas(const std::vector<GasPoint>& points, bool of_height) {
+  std::vector<calibration::DataPoint> all;
   for (const GasPoint& p : points)
     if (const auto y = p.get(of_height ? "delta_h_cm" : "T_z"))
       all.push_back({.x = std::sqrt(p.at), .y = p.solid() ? 0 : y->value});
@@ -110,10 +111,10 @@ std::vector<Estimate> measured_of(const std::vector<GasPoint>& points, bool of_h
 }
 
 /// Points from the user's columns W and T_bar_z (or delta_h_bar): y is the second column times V_p^2 = W.
-std::vector<DataPoint> of_user(const std::filesystem::path& path, bool of_height) {
+std::vector<calibration::DataPoint> of_user(const std::filesystem::path& path, bool of_height) {
   const Table table = read_table(path);
   const auto &w = table.column("W"), &y = table.column(of_height ? "delta_h_bar" : "T_bar_z");
-  std::vector<DataPoint> all;
+  std::vector<calibration::DataPoint> all;
   for (std::size_t k = 0; k < w.size(); ++k) all.push_back({.x = std::sqrt(w[k]), .y = y[k] * w[k]});
   return all;
 }
@@ -157,7 +158,7 @@ Figure figure_of(const std::string& name, std::vector<Exponent> all, bool of_hei
                   .x = {},
                   .y = {}};
     for (std::size_t k = 0; k < e.points.size(); ++k) {
-      const DataPoint& p = e.points[k];
+      const calibration::DataPoint& p = e.points[k];
       if (!(p.y > 0) || p.x * p.x < e.low || p.x * p.x > e.high) continue;
       points.x.push_back(p.x);
       points.y.push_back(e.measured.empty() ? Estimate{.value = p.y, .low = {}, .high = {}} : e.measured[k]);
@@ -186,7 +187,8 @@ Figure figure_of(const std::string& name, std::vector<Exponent> all, bool of_hei
 
 Reproduction run(const Request& request, bool of_height) {
   const GasSize& size = gas_size_for(request);
-  std::vector<DataPoint> own;  // read before the runs, so that an invalid table is reported early
+  std::vector<calibration::DataPoint>
+      own;  // read before the runs, so that an invalid table is reported early
   if (!request.data.empty()) own = of_user(request.data, of_height);
   Gas gas(request);
   std::vector<std::size_t> rough;

@@ -38,15 +38,15 @@ std::size_t add_run(Gas& gas, const Setting& s, double v_p, double k_n, const Ga
        .discard = 50});
 }
 
-std::optional<CurveFit> slope_of(const Gas& gas, const std::vector<std::size_t>& curves) {
-  std::vector<DataPoint> points;
+std::optional<calibration::CurveFit> slope_of(const Gas& gas, const std::vector<std::size_t>& curves) {
+  std::vector<calibration::DataPoint> points;
   for (std::size_t k = 0; k < curves.size(); ++k)
     if (const auto t = gas.points(curves[k]).front().get("T_z"))
       points.push_back({.x = kPeakVelocities[k],
                         .y = t->value,
                         .sigma = t->low ? (*t->high - *t->low) / 4 : 0.02 * t->value});
   if (points.size() < std::size(kPeakVelocities)) return std::nullopt;
-  return fit_curve(law_named("power"), points);
+  return calibration::fit_curve(calibration::law_named("power"), points);
 }
 
 Target bitwise(const Gas& gas, const Setting& s) {

@@ -26,8 +26,8 @@ Printed printed(int dimension, bool algebraic) {
 struct Fitted {
   int dimension = 2;
   bool algebraic = true;
-  std::vector<DataPoint> points;
-  std::optional<CurveFit> fit;
+  std::vector<calibration::DataPoint> points;
+  std::optional<calibration::CurveFit> fit;
   [[nodiscard]] std::string name() const {
     return fmt::format("{}D rough, {}", dimension, algebraic ? "algebraic" : "exponential");
   }
@@ -43,11 +43,11 @@ Fitted fit_of(int dimension, bool algebraic, const std::vector<GasPoint>& points
   constexpr std::size_t kFewest = 5;  // three parameters and two degrees of freedom
   // Unweighted, as in plotting programs; the paper does not state its weights.
   if (f.points.size() >= kFewest)
-    f.fit = fit_curve(law_named(algebraic ? "algebraic" : "exponential"), f.points);
+    f.fit = calibration::fit_curve(calibration::law_named(algebraic ? "algebraic" : "exponential"), f.points);
   return f;
 }
 
-double value_of(const CurveFit& fit, const char* name) {
+double value_of(const calibration::CurveFit& fit, const char* name) {
   return fit.fit.value(name);
 }
 
@@ -155,10 +155,10 @@ Reproduction run(const Request& request, bool coefficients) {
         s.y.push_back({.value = f.fit->at(w), .low = {}, .high = {}});
       }
       all.push_back(s);
-      Figure residuals =
-          fit_figure(*f.fit, f.points, "W", "T̄_z",
-                     fmt::format("p2-fig8-{}d-{}", dimension, algebraic ? "algebraic" : "exponential"),
-                     fmt::format("{}: {}", f.name(), f.fit->law->formula));
+      Figure residuals = calibration::fit_figure(
+          *f.fit, f.points, "W", "T̄_z",
+          fmt::format("p2-fig8-{}d-{}", dimension, algebraic ? "algebraic" : "exponential"),
+          fmt::format("{}: {}", f.name(), f.fit->law->formula));
       r.figures.push_back(residuals);
       fits.push_back(
           {{"system", gas.curve(k).name},

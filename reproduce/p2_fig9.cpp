@@ -210,13 +210,13 @@ std::optional<Estimate> alpha_of(const std::vector<GasPoint>& points, std::strin
   const auto peak = peak_of(points);
   const auto w_2 = w_2_of(points);
   if (!peak || !w_2) return std::nullopt;
-  std::vector<DataPoint> data;
+  std::vector<calibration::DataPoint> data;
   for (const GasPoint& p : points)
     if (const auto t = p.get("T_z"); t && p.at >= peak->grid && p.at <= *w_2 && !p.solid())
       data.push_back({.x = std::sqrt(p.at), .y = t->value});
   window = fmt::format("[{:.3g}, {:.3g}]", peak->grid, *w_2);
   if (data.size() < 3) return std::nullopt;
-  const CurveFit fit = fit_curve(law_named("power"), data);
+  const calibration::CurveFit fit = calibration::fit_curve(calibration::law_named("power"), data);
   Estimate e{.value = fit.fit.value("alpha"), .low = {}, .high = {}};
   if (fit.intervals[1]) {
     e.low = fit.intervals[1]->low;

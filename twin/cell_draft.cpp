@@ -16,12 +16,12 @@ namespace {
 /// Errors beyond which a small quantity is written as a key instead of a comment.
 constexpr double kSignificant = 4;
 
-double relative(const Estimate& e) {
+double relative(const calibration::Estimate& e) {
   return std::isfinite(e.error) ? e.error / e.value : 0;
 }
 
 /// Estimate of a product of powers, with the sum of the squared relative errors.
-Estimate with_errors(double value, std::initializer_list<double> relative_errors) {
+calibration::Estimate with_errors(double value, std::initializer_list<double> relative_errors) {
   double squares = 0;
   for (const double r : relative_errors) squares += r * r;
   return {value, std::abs(value) * std::sqrt(squares)};
@@ -41,7 +41,7 @@ class Draft {
   }
 
  private:
-  void measured(const std::string& key, const Estimate& e, const std::string& how) {
+  void measured(const std::string& key, const calibration::Estimate& e, const std::string& how) {
     out_.keys.push_back({key, value_text(e), fmt::format("+- {}: {}", error_text(e.error), how), {e}});
   }
   void stated(const std::string& key, const std::string& value, const std::string& comment) {
@@ -53,10 +53,10 @@ class Draft {
 
   /// Scale and the diameter of a bead in mm.
   void scale() {
-    sigma_mm_ = a_.sigma_mm ? std::optional(Estimate{*a_.sigma_mm, 0}) : std::nullopt;
-    std::optional<Estimate> width;
-    if (s_.has_walls()) width = Estimate{s_.geometry->width_px(), s_.geometry->width_error_px()};
-    std::optional<Estimate> diameter;
+    sigma_mm_ = a_.sigma_mm ? std::optional(calibration::Estimate{*a_.sigma_mm, 0}) : std::nullopt;
+    std::optional<calibration::Estimate> width;
+    if (s_.has_walls()) width = calibration::Estimate{s_.geometry->width_px(), s_.geometry->width_error_px()};
+    std::optional<calibration::Estimate> diameter;
     if (s_.beads) diameter = s_.beads->diameter;
     if (width && a_.width_mm && a_.sigma_mm) {
       scale_ = with_errors(width->value * *a_.sigma_mm / *a_.width_mm, {relative(*width)});
@@ -106,7 +106,7 @@ class Draft {
              "stated frequency times the frames per cycle; the film's own rate is that of playback");
   }
 
-  void significant(const std::string& key, const Estimate& e, const std::string& how) {
+  void significant(const std::string& key, const calibration::Estimate& e, const std::string& how) {
     if (std::abs(e.value) > kSignificant * e.error) measured(key, e, how);
   }
 
@@ -116,7 +116,8 @@ class Draft {
         "distortion";
     const bool left = s_.geometry && s_.geometry->has_left;
     if (left && s_.plate_row) {
-      const Estimate x{s_.geometry->fit.value("x_left"), s_.geometry->fit.standard_error("x_left")};
+      const calibration::Estimate x{s_.geometry->fit.value("x_left"),
+                                    s_.geometry->fit.standard_error("x_left")};
       out_.keys.push_back(
           {"camera.origin_px",
            fmt::format("[{}, {}]", value_text(x), value_text(*s_.plate_row)),
@@ -141,7 +142,7 @@ class Draft {
            "phase 0: the plate passes its mean height upwards");
       return;
     }
-    const DriveFit& d = *s_.drive;
+    const calibration::DriveFit& d = *s_.drive;
     if (d.frames_per_cycle == 0) return;
     stated("camera.frames_per_cycle", fmt::format("{}", d.frames_per_cycle),
            fmt::format("period of the plate: {} +- {} frames", value_text({d.period, d.period_error}),
@@ -156,7 +157,7 @@ class Draft {
     if (a_.width_mm) {
       stated("cell.width_mm", fmt::format("{:.10g}", *a_.width_mm), "as stated");
     } else if (s_.has_walls() && scale_) {
-      const Estimate w{s_.geometry->width_px(), s_.geometry->width_error_px()};
+      const calibration::Estimate w{s_.geometry->width_px(), s_.geometry->width_error_px()};
       measured("cell.width_sigma", with_errors(w.value / scale_->value, {relative(w), relative(*scale_)}),
                fmt::format("walls {} px apart at the plate", value_text(w)));
     } else {
@@ -167,7 +168,7 @@ class Draft {
     if (s_.has_walls()) {
       stated("cell.sides", "\"walls\"", "both walls are seen");
       const auto& fit = s_.geometry->fit;
-      const Estimate l{fit.value("tilt_left"), fit.standard_error("tilt_left")},
+      const calibration::Estimate l{fit.value("tilt_left"), fit.standard_error("tilt_left")},
           r{fit.value("tilt_right"), fit.standard_error("tilt_right")};
       if (std::abs(l.value) > kSignificant * l.error || std::abs(r.value) > kSignificant * r.error)
         out_.keys.push_back(
@@ -181,17 +182,17 @@ class Draft {
   }
 
   /// The frequency in hertz, stated or measured.
-  [[nodiscard]] std::optional<Estimate> frequency() const {
-    if (a_.frequency_hz) return Estimate{*a_.frequency_hz, 0};
+  [[nodiscard]] std::optional<calibration::Estimate> frequency() const {
+    if (a_.frequency_hz) return calibration::Estimate{*a_.frequency_hz, 0};
     const auto rate = a_.frame_rate_hz ? a_.frame_rate_hz : s_.frame_rate_hz;
     if (!rate || !s_.drive) return std::nullopt;
     return with_errors(*rate / s_.drive->period, {s_.drive->period_error / s_.drive->period});
   }
 
   void drive() {
-    std::optional<Estimate> amplitude;
+    std::optional<calibration::Estimate> amplitude;
     if (s_.drive && scale_) {
-      const Estimate px{s_.drive->amplitude, s_.drive->amplitude_error};
+      const calibration::Estimate px{s_.drive->amplitude, s_.drive->amplitude_error};
       amplitude = with_errors(px.value / scale_->value, {relative(px), relative(*scale_)});
       measured("drive.amplitude_sigma", *amplitude,
                fmt::format("plate's edge, {} +- {} px", value_text(px), error_text(px.error)));
@@ -209,7 +210,7 @@ class Draft {
     if (by_gamma || (a_.gamma && (!amplitude || !hertz))) {
       stated("drive.gamma", fmt::format("{:.10g}", *a_.gamma), "A omega^2/g, as stated");
       if (amplitude) {
-        out_.gamma = Estimate{*a_.gamma, 0};
+        out_.gamma = calibration::Estimate{*a_.gamma, 0};
         return;
       }
     }
@@ -260,7 +261,7 @@ class Draft {
   const CellSurvey& s_;
   const CellAnswers& a_;
   CellDraft out_;
-  std::optional<Estimate> scale_, sigma_mm_;
+  std::optional<calibration::Estimate> scale_, sigma_mm_;
   std::string how_scale_, how_sigma_;
   bool needs_sigma_ = false;
 };
@@ -273,7 +274,7 @@ int decimals(double error) {
 
 }  // namespace
 
-std::string value_text(const Estimate& e) {
+std::string value_text(const calibration::Estimate& e) {
   const int n = decimals(e.error);
   return n < 0 ? fmt::format("{:.10g}", e.value) : fmt::format("{:.{}f}", e.value, n);
 }

@@ -23,18 +23,19 @@ struct CellAnswers {
 
 /// One key of the draft.
 struct DraftKey {
-  std::string key;                 ///< "camera.pixels_per_sigma"
-  std::string value;               ///< TOML
-  std::string comment;             ///< error and method; for a placeholder how to find the value
-  std::vector<Estimate> measured;  ///< one per number of a measured value; empty: stated or a placeholder
-  bool open = false;               ///< a placeholder
+  std::string key;      ///< "camera.pixels_per_sigma"
+  std::string value;    ///< TOML
+  std::string comment;  ///< error and method; for a placeholder how to find the value
+  std::vector<calibration::Estimate>
+      measured;       ///< one per number of a measured value; empty: stated or a placeholder
+  bool open = false;  ///< a placeholder
 };
 
 /// A cell description in preparation.
 struct CellDraft {
-  std::vector<DraftKey> keys;      ///< grouped by table
-  std::vector<std::string> notes;  ///< sentences: contradictions between answers and stack
-  std::optional<Estimate> gamma;   ///< A omega^2/g, if drive and scale are known
+  std::vector<DraftKey> keys;                  ///< grouped by table
+  std::vector<std::string> notes;              ///< sentences: contradictions between answers and stack
+  std::optional<calibration::Estimate> gamma;  ///< A omega^2/g, if drive and scale are known
   std::optional<double> pixels_per_sigma;
 
   [[nodiscard]] const DraftKey* find(const std::string& key) const;
@@ -56,7 +57,7 @@ std::string cell_text(const CellDraft& draft, const CellSurvey& survey, const st
 
 /// Value and error in decimals: the error has two significant digits. {12.34567, 0.0021} is "12.3457",
 /// "0.0021".
-std::string value_text(const Estimate& e);
+std::string value_text(const calibration::Estimate& e);
 std::string error_text(double error);
 
 }  // namespace twincell::twin

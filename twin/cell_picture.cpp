@@ -56,7 +56,7 @@ void draw_edges(cv::Mat3b& picture, int enlarge, const CellSurvey& s, const Cell
   Canvas canvas(picture, enlarge, lens);
   const double w = s.size.width, h = s.size.height;
   if (s.geometry) {
-    const CellGeometry& g = *s.geometry;
+    const calibration::CellGeometry& g = *s.geometry;
     constexpr double kDegree = std::numbers::pi / 180;
     const double base = s.plate_row ? s.plate_row->value : g.has_plate ? g.plate_row : h;
     if (g.has_left) {
@@ -100,7 +100,7 @@ struct Entry {
   cv::Scalar colour;
 };
 
-std::string with_error(const Estimate& e, const char* unit) {
+std::string with_error(const calibration::Estimate& e, const char* unit) {
   return fmt::format("{} +- {} {}", value_text(e), error_text(e.error), unit);
 }
 
@@ -143,7 +143,7 @@ std::vector<Entry> entries(const CellSurvey& s, const CellDraft& draft) {
 
 /// Heights of the plate over the first three cycles, with the fit.
 void draw_motion(cv::Mat3b& picture, cv::Rect area, const CellSurvey& s) {
-  const DriveFit& d = *s.drive;
+  const calibration::DriveFit& d = *s.drive;
   constexpr double kCycles = 3, kHeadroom = 1.15;
   const double last = std::min(kCycles * d.period, static_cast<double>(d.frames.size() - 1));
   const auto place = [&](double frame, double height) {

@@ -83,7 +83,8 @@ void survey_beads(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
   try {
     ReadableFrames frames(s.stack);
     const auto bar = progress("beads");
-    s.beads = count_beads(locate_beads(frames, found, std::nullopt, kFrames, options.threads, *bar));
+    s.beads = calibration::count_beads(
+        calibration::locate_beads(frames, found, std::nullopt, kFrames, options.threads, *bar));
   } catch (const InputError& e) {
     s.missing.push_back({"the bead diameter", fmt::format("too few beads are seen ({})", e.what()), remedy});
   }
@@ -116,9 +117,10 @@ void survey_plate(CellSurvey& s) {
   if (static_cast<double>(seen) < kSeen * static_cast<double>(heights.size()))
     return unseen(fmt::format("its edge is seen in only {} of {} frames", seen, heights.size()));
   if (beads_below_plate(s)) return unseen("beads are seen below the lowest edge, so this edge is no plate");
-  s.plate_row = Estimate{s.geometry->plate_row, s.geometry->plate_row_error};
+  s.plate_row = calibration::Estimate{s.geometry->plate_row, s.geometry->plate_row_error};
   try {
-    s.drive = fit_drive(heights, {.frames_per_cycle = 0, .mend = true, .model_error = kHeightModelError_px});
+    s.drive = calibration::fit_drive(
+        heights, {.frames_per_cycle = 0, .mend = true, .model_error = calibration::kHeightModelError_px});
   } catch (const InputError& e) {
     s.missing.push_back({"the plate's motion", e.what(),
                          "give at least one whole cycle of frames, or state the drive by hand"});
@@ -127,8 +129,8 @@ void survey_plate(CellSurvey& s) {
     if (heights.size() < 2 || !(*high - *low < 1)) s.plate_row.reset();
     return;
   }
-  s.plate_row = Estimate{s.geometry->plate_row - s.drive->z0,
-                         std::hypot(s.drive->z0_error, s.geometry->plate_row_error_of_map)};
+  s.plate_row = calibration::Estimate{s.geometry->plate_row - s.drive->z0,
+                                      std::hypot(s.drive->z0_error, s.geometry->plate_row_error_of_map)};
   s.drive->amplitude_error =
       std::hypot(s.drive->amplitude_error, s.drive->amplitude * s.geometry->stretch_error);
   s.notes.insert(s.notes.end(), s.drive->notes.begin(), s.drive->notes.end());
@@ -142,16 +144,17 @@ void survey_plate(CellSurvey& s) {
 }
 
 void survey_edges(CellSurvey& s, const SurveyOptions& options, const ProgressOf& progress) {
-  const double diameter = diameter_for_edges(s.stack, s.bright, s.diameter_px);
+  const double diameter = calibration::diameter_for_edges(s.stack, s.bright, s.diameter_px);
   ReadableFrames frames(s.stack);
   const auto bar = progress("edges of walls and plate");
-  const StackEdges edges = read_stack_edges(frames, s.bright, diameter, options.threads, *bar);
+  const calibration::StackEdges edges =
+      calibration::read_stack_edges(frames, s.bright, diameter, options.threads, *bar);
   s.n_frames = frames.read();
   s.unreadable = frames.unreadable();
-  s.frame_rate_hz = frame_rate_of({}, edges, s.stack);
+  s.frame_rate_hz = calibration::frame_rate_of({}, edges, s.stack);
   if (s.info.playback) s.playback_hz = s.info.frame_rate_hz;
   try {
-    s.geometry = fit_cell_geometry(edges);
+    s.geometry = calibration::fit_cell_geometry(edges);
   } catch (const InputError&) {
     s.missing.push_back({"the walls and the plate", "no edge of the cell is seen in the picture",
                          "state camera.origin_px, cell.width and the drive by hand"});

@@ -41,10 +41,10 @@ struct CellSurvey {
   bool bright = false;       ///< beads are brighter than the background
   double diameter_px = 0;    ///< bead diameter of the locator; 0: no beads were found
   std::vector<double> other_diameters_px;  ///< of discs of further sizes
-  std::optional<SizeStatistics> beads;
-  std::optional<CellGeometry> geometry;
-  std::optional<DriveFit> drive;        ///< motion of the plate; times in frames
-  std::optional<Estimate> plate_row;    ///< mean height of the plate, row of the ideal picture
+  std::optional<calibration::SizeStatistics> beads;
+  std::optional<calibration::CellGeometry> geometry;
+  std::optional<calibration::DriveFit> drive;      ///< motion of the plate; times in frames
+  std::optional<calibration::Estimate> plate_row;  ///< mean height of the plate, row of the ideal picture
   std::optional<double> frame_rate_hz;  ///< of the stamps or of the stack; not the playback rate of a video
   std::optional<double> playback_hz;    ///< frame rate that a video states
   std::size_t frame = 0;                ///< number of the frame below

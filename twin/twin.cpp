@@ -106,10 +106,10 @@ FilmedCell read_filmed_cell(const TwinOptions& options, const ProgressOf& progre
   (void)word_of_sides(filmed.cell, options.cell_file);
   // Phases from the bed or a list need no lock to the drive.
   const bool locked = options.phases.method == PhaseMethod::fixed;
-  if (lacks_drive(filmed.cell, locked)) {
+  if (calibration::lacks_drive(filmed.cell, locked)) {
     const auto bar = progress("the plate's edge");
-    filmed.drive =
-        complete_drive(filmed.cell, locked, options.cell_file, options.stack, options.threads, *bar);
+    filmed.drive = calibration::complete_drive(filmed.cell, locked, options.cell_file, options.stack,
+                                               options.threads, *bar);
   }
   return filmed;
 }
@@ -130,18 +130,19 @@ bool checks_drive(const FilmedCell& filmed, const TwinOptions& options) {
 }
 
 /// \throws ConfigError if the frames show another drive than the cell states
-void require_agreement(const DriveCheck& check, const TwinOptions& options) {
+void require_agreement(const calibration::DriveCheck& check, const TwinOptions& options) {
   if (!check.disagreement.empty())
     throw ConfigError({.file = options.cell_file.string(), .key = "drive"},
                       check.disagreement + "; correct one of them, or use --trust-stated-drive.");
 }
 
 /// Checks a stated drive against the plate in the frames.
-DriveCheck check_plate(const FilmedCell& filmed, const TwinOptions& options, const ProgressOf& progress) {
+calibration::DriveCheck check_plate(const FilmedCell& filmed, const TwinOptions& options,
+                                    const ProgressOf& progress) {
   if (!checks_drive(filmed, options)) return {.not_comparable = "the stated drive is trusted"};
   const auto bar = progress("the plate's edge");
-  DriveCheck check = check_by_plate(filmed.cell, options.stack, options.threads, *bar,
-                                    options.phases.method == PhaseMethod::fixed);
+  calibration::DriveCheck check = calibration::check_by_plate(
+      filmed.cell, options.stack, options.threads, *bar, options.phases.method == PhaseMethod::fixed);
   require_agreement(check, options);
   return check;
 }
@@ -155,8 +156,9 @@ LocatorOptions locator_for(const CellDescription& cell, const TwinOptions& optio
 
 /// Tracks the film into `output`. If the plate showed no drive, the bed checks the stated one before the
 /// trajectory is kept. Completes the frames per cycle of the cell, and scale and phases of the twin.
-void track_experiment(FrameSource& frames, FilmedCell& filmed, DriveCheck check, const TwinOptions& options,
-                      const TwinProvenance& provenance, const ProgressOf& progress, Twin& twin) {
+void track_experiment(FrameSource& frames, FilmedCell& filmed, calibration::DriveCheck check,
+                      const TwinOptions& options, const TwinProvenance& provenance,
+                      const ProgressOf& progress, Twin& twin) {
   CellDescription& cell = filmed.cell;
   const auto bar = progress("tracking");
   PhaseSource phases = options.phases;
@@ -168,12 +170,12 @@ void track_experiment(FrameSource& frames, FilmedCell& filmed, DriveCheck check,
   twin.phases = stack.phases;
   TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
   if (checks_drive(filmed, options) && check.by.empty()) {
-    BedSteps bed(plan.info);
+    calibration::BedSteps bed(plan.info);
     write_trajectory(stack, plan, bed);
-    check = check_by_bed(bed, plan.info, check.frame_rate_hz);
+    check = calibration::check_by_bed(bed, plan.info, check.frame_rate_hz);
     require_agreement(check, options);
   }
-  if (filmed.drive.empty()) record(check, plan.info);
+  if (filmed.drive.empty()) calibration::record(check, plan.info);
   plan.info.provenance_json = provenance.of_experiment(cell);
   H5mdWriter writer(twin.experiment, plan.info);
   write_trajectory(stack, plan, writer);
@@ -259,7 +261,7 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   check_scene(filmed.cell, [&] {
     (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
   });
-  const DriveCheck check = check_plate(filmed, options, progress);
+  const calibration::DriveCheck check = check_plate(filmed, options, progress);
   const auto frames = options.open_stack ? options.open_stack() : open_frames(options.stack);
   claim_shared_folder(folder, twin_folder());
 

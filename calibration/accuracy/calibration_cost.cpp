@@ -11,7 +11,7 @@
 #include "imaging/camera/random.hpp"
 #include "imaging/camera/synthetic_camera.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr int kPhases = 20, kColumns = 12, kRows = 6;
@@ -127,4 +127,4 @@ CalibrationCost measure_calibration(const std::vector<int>& frames, Progress& pr
   return cost;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

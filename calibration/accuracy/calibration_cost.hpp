@@ -8,7 +8,7 @@
 
 #include "core/progress.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// One calibrated number, obtained from `frames` frames.
 struct CalibrationPrecision {
@@ -40,4 +40,4 @@ struct CalibrationCost {
 /// in rising order
 CalibrationCost measure_calibration(const std::vector<int>& frames, Progress& progress = Progress::none());
 
-}  // namespace twincell
+}  // namespace twincell::calibration

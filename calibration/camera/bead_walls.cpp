@@ -12,7 +12,7 @@
 #include "calibration/fit/curve_fit.hpp"
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr double kSlice = 0.5;       // sigma
@@ -81,4 +81,4 @@ BeadWalls walls_from_beads(const TrajectorySource& trajectory) {
   return w;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

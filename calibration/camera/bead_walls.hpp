@@ -6,7 +6,7 @@
 
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Walls x = x_left - tan(tilt_left) z and x = x_left + width + tan(tilt_right) z. Lengths are in sigma,
 /// tilts in degrees outward, and z counts from the plate.
@@ -24,4 +24,4 @@ struct BeadWalls {
 /// enough beads
 BeadWalls walls_from_beads(const TrajectorySource& trajectory);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -16,7 +16,7 @@
 #include "imaging/settings/auto_configuration.hpp"
 #include "imaging/stack/open_frames.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -710,4 +710,4 @@ CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion) {
   return g;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

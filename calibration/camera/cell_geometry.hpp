@@ -19,7 +19,7 @@
 #include "imaging/cell/cell_edges.hpp"
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Systematic error of edges in px, from the model of light and blur; no number of points or frames averages
 /// it away. Measured over synthetic stacks with uneven light and with blur, rotation and distortion of many
@@ -97,4 +97,4 @@ struct CellGeometry {
 /// the plate nor a wall is detected
 CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion = true);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace twincell {
+namespace twincell::calibration {
 
 Figure edge_map_figure(const CellGeometry& geometry) {
   Figure f{.name = "edges", .title = "Residuals of walls and plate", .width = 640, .height = 520};
@@ -33,4 +33,4 @@ Figure edge_map_figure(const CellGeometry& geometry) {
   return f;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

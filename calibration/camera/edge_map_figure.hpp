@@ -5,9 +5,9 @@
 #include "analysis/report/figures.hpp"
 #include "calibration/camera/cell_geometry.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// "edges": map of the residuals in px over the picture, at most 8000 points.
 Figure edge_map_figure(const CellGeometry& geometry);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

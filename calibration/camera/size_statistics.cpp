@@ -15,7 +15,7 @@
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/track/locate_stack.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -281,4 +281,4 @@ SizeStatistics count_beads(const BeadFrames& beads) {
   return c;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

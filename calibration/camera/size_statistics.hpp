@@ -14,7 +14,7 @@
 #include "imaging/stack/frame_source.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// One measured bead; lengths in pixels of the ideal picture (or in sigma, from a trajectory).
 struct SizedBead {
@@ -68,4 +68,4 @@ struct SizeStatistics {
 /// InputError for fewer than 3 beads
 SizeStatistics count_beads(const BeadFrames& beads);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

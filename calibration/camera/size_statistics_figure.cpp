@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace twincell {
+namespace twincell::calibration {
 
 Figure size_statistics_figure(const SizeStatistics& census, double unit_px) {
   Figure f{.name = "beads", .title = "Diameters of the beads", .width = 560, .height = 400};
@@ -31,4 +31,4 @@ Figure size_statistics_figure(const SizeStatistics& census, double unit_px) {
   return f;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -5,10 +5,10 @@
 #include "analysis/report/figures.hpp"
 #include "calibration/camera/size_statistics.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// "beads": histogram of the diameters. \param unit_px pixels per length unit of `census`; NaN: the axis is
 /// in the unit of `census`, sigma
 Figure size_statistics_figure(const SizeStatistics& census, double unit_px);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 struct PointResidual {
@@ -76,4 +76,4 @@ TargetFit fit_target(const std::vector<PixelPoint>& points, const TargetPattern&
   return t;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -8,7 +8,7 @@
 #include "calibration/fit/fit.hpp"
 #include "imaging/cell/calibration_target.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Model of the target. The point (a, b) of the target, in spacings from its centre, appears in the ideal
 /// picture (camera/lens.hpp) at
@@ -27,4 +27,4 @@ struct TargetFit {
 /// for other than columns x rows points
 TargetFit fit_target(const std::vector<PixelPoint>& points, const TargetPattern& pattern, cv::Size picture);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -12,7 +12,7 @@
 #include "core/error.hpp"
 #include "core/median.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr std::size_t kFewestSamples = 6;  // of a flight
@@ -518,4 +518,4 @@ BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& op
   return fit.result();
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -16,7 +16,7 @@
 
 #include "calibration/fit/fit.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Measured height of the bead at one time.
 struct BounceSample {
@@ -58,4 +58,4 @@ struct BounceFit {
 /// InputError if fewer than two flights of at least 6 samples are found
 BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& options = {});
 
-}  // namespace twincell
+}  // namespace twincell::calibration

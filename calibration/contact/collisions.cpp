@@ -9,7 +9,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -154,4 +154,4 @@ FoundCollisions find_collisions(const TrajectorySource& trajectory, const Collis
   return best;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -8,7 +8,7 @@
 #include "calibration/contact/walton.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Options of find_collisions.
 struct CollisionOptions {
@@ -38,4 +38,4 @@ struct FoundCollisions {
 /// unknown. \throws InputError for fewer than 2 frames, or 4 if the file has no velocities
 FoundCollisions find_collisions(const TrajectorySource& trajectory, const CollisionOptions& options = {});
 
-}  // namespace twincell
+}  // namespace twincell::calibration

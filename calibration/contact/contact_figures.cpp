@@ -8,7 +8,7 @@
 #include "analysis/report/figure_style.hpp"
 #include "analysis/report/gnuplot_text.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 Figure bounce_figure(const BounceFit& fit) {
   Figure f{.name = "bounce", .title = "Restitution of each impact", .width = 560, .height = 400};
@@ -121,4 +121,4 @@ Figure curve_figure(const std::string& name, const std::vector<double>& measured
   return f;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -11,7 +11,7 @@
 #include "calibration/contact/inference.hpp"
 #include "calibration/contact/walton.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// "bounce": e_n of each impact against its speed, with the mean and its error.
 Figure bounce_figure(const BounceFit& fit);
@@ -23,4 +23,4 @@ Figure profile_figure(const Inference& inference);
 Figure curve_figure(const std::string& name, const std::vector<double>& measured,
                     const std::vector<double>& predicted);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

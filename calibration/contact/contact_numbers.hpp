@@ -11,7 +11,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Spring and dashpot of the linear law, reduced units.
 struct SpringDashpot {
@@ -31,4 +31,4 @@ inline SpringDashpot spring_of(double restitution, double contact_time, double m
   return {.k_n = m_eff * (w * w + beta * beta), .gamma_n = 2 * beta, .c_n = 2 * beta * m_eff};
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -13,7 +13,7 @@
 #include "analysis/statistics/statistics.hpp"
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -360,4 +360,4 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
   return out;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// One parameter and its search range.
 struct Sought {
@@ -84,4 +84,4 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
 /// shorter one. \pre at most six ranges
 std::vector<std::vector<double>> spread_points(const std::vector<Sought>& sought, int n);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

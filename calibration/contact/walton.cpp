@@ -11,7 +11,7 @@
 #include "core/error.hpp"
 #include "core/median.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -205,4 +205,4 @@ WaltonFit fit_walton(const std::vector<Impact>& impacts, double shape) {
   return out;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

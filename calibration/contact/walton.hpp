@@ -16,7 +16,7 @@
 
 #include "calibration/fit/fit.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// One collision. An error of 0 is unknown; then all collisions have equal weight.
 struct Impact {
@@ -43,4 +43,4 @@ struct WaltonFit {
 /// \throws InputError for fewer than 3 finite impacts
 WaltonFit fit_walton(const std::vector<Impact>& impacts, double shape);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "core/table.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 VibrationTable read_vibration(const std::filesystem::path& file) {
   const Table table = read_table(file);
@@ -43,4 +43,4 @@ VibrationFit fit_vibration(const VibrationTable& table) {
           .acceleration_error = lock.amplitude_error};
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// An accelerometer record: columns `time_s` and `acceleration_m_s2` of a CSV table.
 struct VibrationTable {
@@ -25,4 +25,4 @@ struct VibrationFit {
 /// more than 1 % of the record
 VibrationFit fit_vibration(const VibrationTable& table);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -9,7 +9,7 @@
 
 #include "core/median.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -169,4 +169,4 @@ BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
   return found ? *found : because(why);
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -20,7 +20,7 @@
 #include "trajectory/drive.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Interval, in fractions of a cycle, in which a body that does not rebound rests on the plate: from its
 /// landing, negative if that was in the previous cycle, to its take-off. The whole cycle for Gamma <= 1; no
@@ -62,4 +62,4 @@ struct BedDrive {
 /// amplitude. \pre `info` states the drive
 BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

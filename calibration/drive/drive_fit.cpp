@@ -15,7 +15,7 @@
 #include "core/median.hpp"
 #include "imaging/phase/sine_slips.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -500,4 +500,4 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
   return lock;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -16,7 +16,7 @@
 
 #include "calibration/fit/fit.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// How a frame relates to the fitted motion.
 enum class FrameLock : std::uint8_t {
@@ -73,4 +73,4 @@ struct DriveFit {
 /// \throws InputError for fewer than 8 heights, or heights that do not change by more than their scatter
 DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& options = {});
 
-}  // namespace twincell
+}  // namespace twincell::calibration

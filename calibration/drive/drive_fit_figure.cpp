@@ -7,7 +7,7 @@
 
 #include "analysis/report/figure_style.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 Figure drive_fit_figure(const DriveFit& lock) {
   Figure f{.name = "plate", .title = "The plate's motion", .width = 640, .height = 520};
@@ -53,4 +53,4 @@ Figure drive_fit_figure(const DriveFit& lock) {
   return f;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -5,9 +5,9 @@
 #include "analysis/report/figures.hpp"
 #include "calibration/drive/drive_fit.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// "plate": heights and fit above, residuals below, against the phase of the drive.
 Figure drive_fit_figure(const DriveFit& lock);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

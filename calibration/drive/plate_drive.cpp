@@ -14,7 +14,7 @@
 #include "core/json_text.hpp"
 #include "imaging/stack/open_frames.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 /// Number of stated drive quantities other than the amplitude.
@@ -275,4 +275,4 @@ DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info,
   return check;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -11,7 +11,7 @@
 #include "core/progress.hpp"
 #include "imaging/cell/cell.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Whether the cell description lacks the amplitude or frequency of the drive, or, if `phases` are wanted,
 /// the frames per cycle.
@@ -56,4 +56,4 @@ DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::pa
 /// above five standard errors and 3 %. \pre `info` states the drive
 DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info, std::optional<double> frame_rate_hz);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -10,7 +10,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 /// z0 + A sin(omega t + phi) - z with omega a parameter.
@@ -91,4 +91,4 @@ PlateMotion fit_plate_motion(const std::vector<HeightSample>& samples, double om
   return motion;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -7,7 +7,7 @@
 
 #include "calibration/fit/fit.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Height `z` at time `t`, any units.
 struct HeightSample {
@@ -34,4 +34,4 @@ struct PlateMotion {
 /// \throws InputError for fewer samples than parameters, or omega not positive
 PlateMotion fit_plate_motion(const std::vector<HeightSample>& samples, double omega, bool fit_omega = false);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -2,7 +2,7 @@
 
 #include "imaging/preprocess/open_flattened.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>(const LocatorOptions&)>& open,
                        const std::filesystem::path& film, const FilmOptions& options,
@@ -48,4 +48,4 @@ TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>(const Lo
   return {std::move(cell), std::move(stack), std::move(plan), std::move(check)};
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

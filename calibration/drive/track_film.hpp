@@ -16,7 +16,7 @@
 #include "imaging/track/track_request.hpp"
 #include "imaging/track/write_trajectory.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Options of track_film.
 struct FilmOptions {
@@ -52,4 +52,4 @@ TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>(const Lo
                        const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress,
                        StageTimes* times = nullptr);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

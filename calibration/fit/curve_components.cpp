@@ -9,7 +9,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr double kEnough = 0.999;  // share of the variance
@@ -75,4 +75,4 @@ CurveComponents components_of(const std::vector<std::vector<double>>& curves, st
   return out;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

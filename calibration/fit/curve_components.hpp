@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// curve ~ mean + sum_i number_i form_i. The forms (principal components) are orthogonal, of unit length, and
 /// in falling order of the variance they explain.
@@ -28,4 +28,4 @@ struct CurveComponents {
 /// equal length \throws InputError for fewer than three finite curves
 CurveComponents components_of(const std::vector<std::vector<double>>& curves, std::size_t most = 4);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -13,7 +13,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -331,4 +331,4 @@ CurveFit fit_curve(const Law& law, const std::vector<DataPoint>& points, const F
   return result;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

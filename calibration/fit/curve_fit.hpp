@@ -12,7 +12,7 @@
 #include "calibration/fit/fit.hpp"
 #include "calibration/fit/law.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// One measured point.
 struct DataPoint {
@@ -79,4 +79,4 @@ struct CurveFit {
 /// fewer points than parameters remain; RunError if the fit converges from no start
 CurveFit fit_curve(const Law& law, const std::vector<DataPoint>& points, const FitWindow& window = {});
 
-}  // namespace twincell
+}  // namespace twincell::calibration

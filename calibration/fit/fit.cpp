@@ -13,7 +13,7 @@
 #include <cmath>
 #include <limits>
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr double kLargestCondition = 1e12;
@@ -201,4 +201,4 @@ FitReport solve(ceres::Problem& problem, double* parameters, const std::vector<s
   return report;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -10,7 +10,7 @@ namespace ceres {
 class Problem;
 }
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Result of a fit and its reliability.
 struct FitReport {
@@ -49,4 +49,4 @@ enum class Residuals {
 FitReport solve(ceres::Problem& problem, double* parameters, const std::vector<std::string>& names,
                 Residuals residuals = Residuals::unweighted);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

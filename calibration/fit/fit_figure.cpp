@@ -8,7 +8,7 @@
 #include "analysis/report/figure_style.hpp"
 #include "analysis/report/gnuplot_text.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 constexpr int kSteps = 200;
@@ -127,4 +127,4 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
   return f;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

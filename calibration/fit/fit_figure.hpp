@@ -8,7 +8,7 @@
 #include "analysis/report/figures.hpp"
 #include "calibration/fit/curve_fit.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Upper panel: the points used, points outside the window (open), upper limits of zeros (triangles), and the
 /// curve with its 95 % band. Lower panel: the residuals in the fitted ordinate, in units of their errors if
@@ -17,4 +17,4 @@ namespace twincell {
 Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, const std::string& x_name,
                   const std::string& y_name, const std::string& name = "fit", const std::string& title = {});
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -4,7 +4,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 const Law& constant_law();
 const Law& line_law();
@@ -33,4 +33,4 @@ const Law& law_named(const std::string& name) {
                     fmt::format("there is no law called \"{}\"; the laws are {}", name, names));
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -13,7 +13,7 @@ namespace ceres {
 class CostFunction;
 }
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// A point in the ordinate of the fit: y, or ln y for a logarithmic law.
 struct FitPoint {
@@ -53,4 +53,4 @@ const std::vector<const Law*>& laws();
 /// The law of that name. \throws ConfigError naming all of them
 const Law& law_named(const std::string& name);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 namespace {
 
@@ -166,4 +166,4 @@ std::string fit_json(const TableFit& fit) {
   return json_text(json_of(fit.fit, fit.points));
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

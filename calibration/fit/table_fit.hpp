@@ -10,7 +10,7 @@
 #include "calibration/fit/curve_fit.hpp"
 #include "core/table.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// The columns of a table that enter a fit.
 struct FitColumns {
@@ -40,4 +40,4 @@ void check_fit(const std::string& law, const std::optional<std::array<double, 2>
 /// diagnostics, and every point with its use.
 std::string fit_json(const TableFit& fit);
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -2,7 +2,7 @@
 
 #include "calibration/laws/model.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 struct Algebraic {
@@ -33,4 +33,4 @@ const Law& algebraic_law() {
   return law;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -1,6 +1,6 @@
 #include "calibration/laws/model.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 struct Arrhenius {
@@ -30,4 +30,4 @@ const Law& arrhenius_law() {
   return law;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -1,6 +1,6 @@
 #include "calibration/laws/model.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 struct ArrheniusBreak {
@@ -40,4 +40,4 @@ const Law& arrhenius_break_law() {
   return law;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -2,7 +2,7 @@
 
 #include "calibration/laws/model.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 struct Exponential {
@@ -35,4 +35,4 @@ const Law& exponential_law() {
   return law;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

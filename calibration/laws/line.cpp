@@ -1,6 +1,6 @@
 #include "calibration/laws/model.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 struct Line {
@@ -26,4 +26,4 @@ const Law& line_law() {
   return law;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -13,7 +13,7 @@
 
 #include "calibration/fit/law.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 
 /// Residual (Model::value(x, p) - y)/error.
 template <class Model>
@@ -104,4 +104,4 @@ inline std::vector<std::vector<double>> decay_starts(const std::vector<FitPoint>
   return starts;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

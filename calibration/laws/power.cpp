@@ -2,7 +2,7 @@
 
 #include "calibration/laws/model.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 struct Power {
@@ -32,4 +32,4 @@ const Law& power_law() {
   return law;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

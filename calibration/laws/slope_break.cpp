@@ -2,7 +2,7 @@
 
 #include "calibration/laws/model.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 struct SlopeBreak {
@@ -43,4 +43,4 @@ const Law& slope_break_law() {
   return law;
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -15,7 +15,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 /// Reads a table of two columns with one of the readers and returns the numbers of the second row.
@@ -184,4 +184,4 @@ TEST(Tables, TruthHasWholeFramesAndRadii) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::calibration

@@ -13,7 +13,7 @@
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell {
+namespace twincell::calibration {
 namespace {
 
 /// Camera view of a run: positions have an uncertainty of a fiftieth of a bead, and nothing below `lowest` is
@@ -141,4 +141,4 @@ TEST(BedDrive, TimeOnThePlateIsThatOfABodyThatDoesNotRebound) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::calibration

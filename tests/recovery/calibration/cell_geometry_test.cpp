@@ -17,6 +17,7 @@
 #include "tests/support/filmed_plate.hpp"
 
 using namespace twincell;
+using namespace twincell::calibration;
 
 namespace {
 

@@ -14,6 +14,7 @@
 #include "tests/support/complaint.hpp"
 
 using namespace twincell;
+using namespace twincell::calibration;
 
 namespace {
 

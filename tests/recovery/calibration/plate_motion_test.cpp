@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 
 using namespace twincell;
+using namespace twincell::calibration;
 
 namespace {
 

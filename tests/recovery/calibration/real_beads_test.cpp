@@ -11,6 +11,7 @@
 #include "imaging/stack/open_frames.hpp"
 
 using namespace twincell;
+using namespace twincell::calibration;
 
 namespace {
 

@@ -56,7 +56,7 @@ TEST(Targets, TheSweepFindsTheRegionsAndBarriersThatWerePutIn) {
   EXPECT_NEAR(*sweep.first_slips->high, 2.5 * 2.5, 1e-12);
   EXPECT_GT(sweep.convection->value, 2.9 * 2.9);
   EXPECT_LT(sweep.convection->value, 3.1 * 3.1);
-  std::vector<DataPoint> a2, b;
+  std::vector<calibration::DataPoint> a2, b;
   for (const SweepPoint& r : sweep.points)
     if (r.slips > 0) (r.k_m() < sweep.convection->value ? a2 : b).push_back({r.k_m(), r.p_s(), 0, 0});
   const auto steep = fitted("arrhenius", a2), flat = fitted("arrhenius", b);

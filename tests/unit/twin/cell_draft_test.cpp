@@ -18,8 +18,8 @@ namespace {
 /// 12 px per bead, walls 120 px apart, plate at row 200 with A = 18 px, 20 frames per cycle.
 CellSurvey survey() {
   CellSurvey s{.stack = "frames", .size = {160, 240}, .n_frames = 60};
-  s.beads = SizeStatistics{.frames = 12, .sizes = 900, .diameter = {12, 0.006}};
-  CellGeometry g{.size = s.size, .has_plate = true, .has_left = true, .has_right = true};
+  s.beads = calibration::SizeStatistics{.frames = 12, .sizes = 900, .diameter = {12, 0.006}};
+  calibration::CellGeometry g{.size = s.size, .has_plate = true, .has_left = true, .has_right = true};
   g.fit.names = {"x_left", "tilt_left", "x_right", "tilt_right", "rotation"};
   g.fit.values = {20, 0, 140, 0, 0};
   g.fit.standard_errors = {0.002, 0.001, 0.002, 0.001, 0.001};
@@ -29,7 +29,7 @@ CellSurvey survey() {
   g.plate_row = 200;
   g.heights.assign(60, {});
   s.geometry = g;
-  DriveFit d;
+  calibration::DriveFit d;
   d.amplitude = 18;
   d.amplitude_error = 0.004;
   d.period = 20;
@@ -38,7 +38,7 @@ CellSurvey survey() {
   d.first_phase = 3;
   d.phase_offset_error = 0.01;
   s.drive = d;
-  s.plate_row = Estimate{200, 0.004};
+  s.plate_row = calibration::Estimate{200, 0.004};
   return s;
 }
 
