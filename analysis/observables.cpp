@@ -37,7 +37,7 @@
   EACH(contact_force)              \
   EACH(stress)
 
-namespace twincell {
+namespace twincell::analysis {
 
 #define TWINCELL_DECLARE(name) extern const ObservableEntry name##_observable;
 TWINCELL_OBSERVABLES(TWINCELL_DECLARE)
@@ -311,4 +311,4 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
   return results;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

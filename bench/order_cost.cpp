@@ -48,12 +48,13 @@ int main(int argc, char** argv) {
     q6.clear();
     const double start = cpu_seconds();
     for (const Frame& frame : frames) {
-      BondOrder order;
+      analysis::BondOrder order;
       if (rule == "cutoff") {
-        order = bond_order(find_neighbours(frame, box, 1.2));
+        order = analysis::bond_order(analysis::find_neighbours(frame, box, 1.2));
       } else {
-        const VoronoiCells cells = voronoi_cells(frame, box);
-        order = rule == "voronoi" ? bond_order(cells.neighbours, cells.edge) : bond_order(cells.neighbours);
+        const analysis::VoronoiCells cells = analysis::voronoi_cells(frame, box);
+        order = rule == "voronoi" ? analysis::bond_order(cells.neighbours, cells.edge)
+                                  : analysis::bond_order(cells.neighbours);
       }
       q6.insert(q6.end(), order.q6.begin(), order.q6.end());
     }

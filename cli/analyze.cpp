@@ -33,7 +33,7 @@ struct AnalyzeOptions {
   std::string rest_height;
   std::string s_b = "variance";
   std::string neighbours = "cutoff";
-  AnalysisOptions analysis;
+  analysis::AnalysisOptions analysis;
   bool profile = false;
 };
 
@@ -51,7 +51,7 @@ double rest_height_of(const std::string& said) {
   Frame frame;
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
     trajectory.read(f, frame);
-    const auto plate = plate_height(trajectory.info(), frame);
+    const auto plate = analysis::plate_height(trajectory.info(), frame);
     const double height = centre_of_mass_height(frame, trajectory.info().mass) - plate.value_or(std::nan(""));
     if (!std::isfinite(height))
       throw InputError({.file = said, .key = "--rest-height"},
@@ -79,38 +79,39 @@ void run(const Common& common, const AnalyzeOptions& options) {
     if (readers.back()->n_frames() == 0)
       throw InputError({.file = file, .key = {}}, "the trajectory contains no frame");
   }
-  require_one_condition(trajectories);
+  analysis::require_one_condition(trajectories);
   if (readers.size() > 1 && !options.figures.empty())
     throw ConfigError({.file = {}, .key = "--figures"},
                       fmt::format("draws one trajectory; {} were given", readers.size()));
-  std::vector<std::vector<Result>> runs;
+  std::vector<std::vector<analysis::Result>> runs;
   for (const TrajectorySource* trajectory : trajectories) {
     ProgressBar progress(common, readers.size() > 1 ? trajectory->name() : "analyze");
-    runs.push_back(analyze(*trajectory, options.analysis, progress, profile.times()));
+    runs.push_back(analysis::analyze(*trajectory, options.analysis, progress, profile.times()));
   }
-  const std::vector<Result> results = runs.size() > 1 ? pool(runs) : runs.front();
+  const std::vector<analysis::Result> results = runs.size() > 1 ? analysis::pool(runs) : runs.front();
 
   Provenance provenance = common.provenance();
   provenance.inputs.assign(options.trajectories.begin(), options.trajectories.end());
   const std::string provenance_json = provenance.to_json();
   if (!options.output.empty()) {
     const Stage writing(profile.times(), "writing");
-    write_results(options.output, results, provenance_json);
+    analysis::write_results(options.output, results, provenance_json);
   }
   if (!options.figures.empty()) {
     const Stage drawing(profile.times(), "figures");
     AtomicPath folder(options.figures, figure_folder());
-    for (const Figure& figure : spatial_figures(results, *readers.front(), options.analysis))
-      draw(figure, folder.part());
+    for (const analysis::Figure& figure :
+         analysis::spatial_figures(results, *readers.front(), options.analysis))
+      analysis::draw(figure, folder.part());
     folder.commit();
   }
 
   nlohmann::json document;
-  document["results"] = nlohmann::json::parse(results_json(results));
+  document["results"] = nlohmann::json::parse(analysis::results_json(results));
   if (runs.size() > 1) document["runs"] = options.trajectories;
   document["provenance"] = nlohmann::json::parse(provenance_json);
-  std::string text =
-      common.verbose ? results_text(results) : results_summary(results, !options.analysis.only.empty());
+  std::string text = common.verbose ? analysis::results_text(results)
+                                    : results_summary(results, !options.analysis.only.empty());
   profile.add_to(document, text, 1);
   print_result(common, document, text);
 }
@@ -179,8 +180,8 @@ void add_analyze(CLI::App& program, Common& common) {
   add_profile_option(verb, options->profile);
   verb.callback([&common, options] {
     if (!options->rest_height.empty()) options->analysis.rest_height = rest_height_of(options->rest_height);
-    options->analysis.s_b = s_b_named(options->s_b);
-    options->analysis.neighbours = neighbour_rule_named(options->neighbours);
+    options->analysis.s_b = analysis::s_b_named(options->s_b);
+    options->analysis.neighbours = analysis::neighbour_rule_named(options->neighbours);
     run(common, *options);
   });
 }

@@ -152,8 +152,8 @@ void finish_calibration(const CalibrateFlags& flags, const Common& common, Calib
   document["notes"] = result.notes;
   if (!flags.figures.empty()) {
     AtomicPath folder(flags.figures, calibration_figures());
-    for (const Figure& f : result.figures) {
-      draw(f, folder.part());
+    for (const analysis::Figure& f : result.figures) {
+      analysis::draw(f, folder.part());
       const std::string file = (std::filesystem::path(flags.figures) / (f.name + ".svg")).string();
       document["figures"].push_back(file);
       text += "picture: " + file + "\n";

@@ -60,7 +60,7 @@ struct CalibrationResult {
   std::optional<MeasuredCovariance> camera;
   nlohmann::json document;  ///< the results that only this kind has
   std::string text;         ///< the same as text, printed after the table
-  std::vector<Figure> figures;
+  std::vector<analysis::Figure> figures;
   std::vector<std::string> notes;
 };
 /// Prints table and text, or with --json the document with "measured" added. Writes the calibration file and

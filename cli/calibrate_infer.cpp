@@ -69,13 +69,16 @@ calibration::Sought sought_of(const std::string& said) {
 
 /// The measured drive strength Gamma at which a bed begins to bounce or to convect.
 struct MeasuredOnset {
-  BedPhase phase = BedPhase::bouncing;
+  analysis::BedPhase phase = analysis::BedPhase::bouncing;
   double gamma = 0, error = 0;
-  [[nodiscard]] std::string name() const { return "onset of " + phase_name(phase); }
+  [[nodiscard]] std::string name() const { return "onset of " + analysis::phase_name(phase); }
   /// The observable whose crossing of its threshold defines the onset.
-  [[nodiscard]] std::string observable() const { return phase == BedPhase::bouncing ? "s_b" : "s_c"; }
+  [[nodiscard]] std::string observable() const {
+    return phase == analysis::BedPhase::bouncing ? "s_b" : "s_c";
+  }
   [[nodiscard]] double threshold() const {
-    return phase == BedPhase::bouncing ? kBouncingThreshold : kConvectionThreshold;
+    return phase == analysis::BedPhase::bouncing ? analysis::kBouncingThreshold
+                                                 : analysis::kConvectionThreshold;
   }
   /// Range of Gamma in which runs search for the onset: three errors, and at least 15 %, to both sides.
   [[nodiscard]] calibration::Sought tried() const {
@@ -98,8 +101,8 @@ MeasuredOnset onset_of(const std::string& said) {
   if (equals == std::string::npos || error == std::string::npos || error < equals)
     throw bad("is not bouncing=GAMMA+-ERROR or convecting=GAMMA+-ERROR");
   MeasuredOnset o;
-  o.phase = phase_named(said.substr(0, equals));
-  if (o.phase != BedPhase::bouncing && o.phase != BedPhase::convecting)
+  o.phase = analysis::phase_named(said.substr(0, equals));
+  if (o.phase != analysis::BedPhase::bouncing && o.phase != analysis::BedPhase::convecting)
     throw bad("names neither bouncing nor convecting");
   try {
     o.gamma = number_of(said.substr(equals + 1, error - equals - 1));
@@ -123,19 +126,19 @@ struct Observed {
 
 std::vector<Observed> observe(const TrajectorySource& trajectory, const std::vector<std::string>& names,
                               std::int64_t discard) {
-  AnalysisOptions options;
+  analysis::AnalysisOptions options;
   options.discard_cycles = discard;
   options.only = names;
-  const std::vector<Result> results = analyze(trajectory, options);
+  const std::vector<analysis::Result> results = analysis::analyze(trajectory, options);
   std::vector<Observed> all;
   for (const std::string& name : names) {
-    const Result& r = find_result(results, name);
+    const analysis::Result& r = analysis::find_result(results, name);
     if (!r.text.empty())
       throw ConfigError({.file = {}, .key = "--observables"},
                         fmt::format("'{}' is neither a number nor a curve.", name));
     Observed o{.name = name, .values = {kNaN}, .curve = !r.shape.empty(), .absent = r.absent};
     if (r.present()) o.values = r.values;
-    if (r.present() && r.interval) o.error = standard_error(*r.interval);
+    if (r.present() && r.interval) o.error = analysis::standard_error(*r.interval);
     all.push_back(std::move(o));
   }
   return all;
@@ -400,14 +403,14 @@ void check_observables(const std::vector<std::string>& names) {
   const auto refuse = [](const std::string& complaint) {
     throw ConfigError({.file = {}, .key = "--observables"}, complaint);
   };
-  const std::vector<std::string> known = result_names();
+  const std::vector<std::string> known = analysis::result_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == "onset")
       refuse(
           "'onset' cannot be computed from one film; give the measured onset with --onset "
           "bouncing=GAMMA+-ERROR.");
     if (std::find(known.begin(), known.end(), names[k]) == known.end())
-      refuse(no_such_result(names[k]) + '.');
+      refuse(analysis::no_such_result(names[k]) + '.');
     for (std::size_t m = 0; m < k; ++m)
       if (names[m] == names[k]) refuse(fmt::format("names {} twice.", names[k]));
   }

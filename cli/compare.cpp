@@ -95,7 +95,7 @@ void add_compare(CLI::App& program, Common& common) {
   verb.add_option("--sweep", o->sweeps,
                   "Collected results of sweeps (JSON), whose points and onsets are added to the comparison");
   writes(common, verb, verb.add_option("-o,--output", o->output, "Folder for the report")->required(),
-         report_folder());
+         analysis::report_folder());
   add_comparing_flags(verb, o->flags);
   verb.add_flag("--trust-stated-drive", o->trust_stated_drive,
                 "Use the drive that the experiments' cells state, even if the plate or the bed in the film "

@@ -35,7 +35,7 @@ twin::ComparingOptions comparing_options(const ComparingFlags& flags, const Comm
   twin::ComparingOptions options;
   options.analysis.discard_cycles = flags.discard_cycles;
   options.analysis.neighbour_cutoff = flags.neighbour_cutoff;
-  options.analysis.s_b = s_b_named(flags.s_b);
+  options.analysis.s_b = analysis::s_b_named(flags.s_b);
   options.tolerance = flags.tolerance;
   options.film = !flags.no_film;
   options.threads = common.n_threads();
@@ -66,15 +66,15 @@ void report_comparison(const Common& common, const twin::ComparingOptions& optio
   const std::string origin = provenance.to_json();
   {
     ProgressBar progress(common, "figures");
-    write_report(folder, noted.comparison, origin, progress);
+    analysis::write_report(folder, noted.comparison, origin, progress);
   }
   const std::string report = (folder / "report.html").string();
-  result.update(nlohmann::json::parse(comparison_json(noted.comparison)));
+  result.update(nlohmann::json::parse(analysis::comparison_json(noted.comparison)));
   result["notes"] = noted.notes;
   result["report"] = report;
   result["provenance"] = nlohmann::json::parse(origin);
   print_result(common, result,
-               comparison_summary(noted.comparison) + result_text + "report: " + report + "\n");
+               analysis::comparison_summary(noted.comparison) + result_text + "report: " + report + "\n");
 }
 
 }  // namespace twincell::cli

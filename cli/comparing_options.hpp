@@ -24,7 +24,7 @@ struct ComparingFlags {
   std::string camera_file, s_b = "variance";
   bool no_film = false;
   std::optional<double> neighbour_cutoff;
-  std::int64_t discard_cycles = AnalysisOptions{}.discard_cycles;
+  std::int64_t discard_cycles = analysis::AnalysisOptions{}.discard_cycles;
   double tolerance = twin::ComparingOptions{}.tolerance;
 };
 
@@ -40,7 +40,7 @@ twin::ProgressOf progress_bars(const Common& common);
 
 /// A comparison with the sentences that the user should read.
 struct NotedComparison {
-  Comparison comparison;
+  analysis::Comparison comparison;
   std::vector<std::string> notes;
 };
 

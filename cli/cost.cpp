@@ -270,17 +270,19 @@ std::string as_text(const Measured& m) {
 /// Figure of three panels against time: error of head-on collisions, error of oblique collisions without
 /// slip, and error of the spin in the impacts of a bed. One curve per integrator; the curves at the papers'
 /// k_n are bold.
-Figure figure(const Measured& m) {
+analysis::Figure figure(const Measured& m) {
   struct Style {
     const char* integrator;
     const char* colour;
     int point;
   };
   // Each colour also has its own point shape.
-  constexpr std::array<Style, 3> kStyles = {{{"verlet", colours::kBlue, figure_style::kCircle},
-                                             {"predicted", colours::kOrange, figure_style::kSquare},
-                                             {"split", colours::kVermilion, figure_style::kTriangle}}};
-  Figure f{.name = "work_precision", .title = "Accuracy against computing time", .width = 720, .height = 760};
+  constexpr std::array<Style, 3> kStyles = {
+      {{"verlet", analysis::colours::kBlue, figure_style::kCircle},
+       {"predicted", analysis::colours::kOrange, figure_style::kSquare},
+       {"split", analysis::colours::kVermilion, figure_style::kTriangle}}};
+  analysis::Figure f{
+      .name = "work_precision", .title = "Accuracy against computing time", .width = 720, .height = 760};
   figure_style::Axis time{.label = "processor time, µs per bead and t_0", .logarithmic = true};
   std::array<figure_style::Axis, 3> errors;
   errors.fill({.label = "error", .logarithmic = true});
@@ -357,7 +359,7 @@ void run(const CostOptions& options, const Common& common) {
                                       : cost_of_stepping(options, common);
   report.document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
   if (folder) {
-    draw(report.figure, folder->part());
+    analysis::draw(report.figure, folder->part());
     write_text_file(folder->part() / "table.txt", report.text);
     folder->commit();
     report.document["output"] = options.output;

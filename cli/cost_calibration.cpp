@@ -69,11 +69,11 @@ std::string as_text(const calibration::CalibrationCost& cost) {
   return s;
 }
 
-Figure figure(const calibration::CalibrationCost& cost) {
-  Figure f{.name = "calibrating",
-           .title = "Accuracy of calibration against number of frames",
-           .width = 720,
-           .height = 460};
+analysis::Figure figure(const calibration::CalibrationCost& cost) {
+  analysis::Figure f{.name = "calibrating",
+                     .title = "Accuracy of calibration against number of frames",
+                     .width = 720,
+                     .height = 460};
   figure_style::Axis frames{.label = "frames", .logarithmic = true},
       error{.label = "standard error, in the unit of the key", .logarithmic = true};
   std::string clauses;
@@ -92,7 +92,7 @@ Figure figure(const calibration::CalibrationCost& cost) {
     std::string title = name + (unit == "1" ? "" : ", " + unit);
     std::replace(title.begin(), title.end(), '_', ' ');
     clauses += fmt::format("{}'calibrating.dat' index {} using 1:2 with linespoints lt {} title '{}'",
-                           index > 0 ? ", " : "", index, index + 1, gnuplot_text(title));
+                           index > 0 ? ", " : "", index, index + 1, analysis::gnuplot_text(title));
     ++index;
   }
   f.plot = fmt::format("{}plot {}\n", figure_style::axes(frames, error), clauses);

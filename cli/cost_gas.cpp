@@ -60,7 +60,7 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
       "statistical error is {:g} of its value (this error falls with the square root of the length of a "
       "run).\n",
       kStrong, accuracy);
-  Figure& figure = report.figure;
+  analysis::Figure& figure = report.figure;
   figure = {.name = "gas_cost",
             .title = "Accuracy against computing time: T_z of a gas",
             .width = 720,

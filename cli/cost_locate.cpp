@@ -237,11 +237,12 @@ class Panels {
   int index_ = 0;
 };
 
-Figure figure(const Measured& m) {
+analysis::Figure figure(const Measured& m) {
   // Each colour also has its own point shape.
-  constexpr auto kColours = colours::kCurves;
+  constexpr auto kColours = analysis::colours::kCurves;
   constexpr std::array<int, 7> kShapes = {7, 9, 5, 11, 13, 6, 4};
-  Figure f{.name = "locating", .title = "Accuracy against computing time", .width = 720, .height = 1080};
+  analysis::Figure f{
+      .name = "locating", .title = "Accuracy against computing time", .width = 720, .height = 1080};
   Panels panels(f.name);
   panels.next("rms error per coordinate, px");
   panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && is_usual_way(s); }),

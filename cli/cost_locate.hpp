@@ -14,7 +14,7 @@ namespace twincell::cli {
 struct CostReport {
   nlohmann::json document;
   std::string text;
-  Figure figure;
+  analysis::Figure figure;
 };
 
 /// \param accuracy_px requested rms error per coordinate

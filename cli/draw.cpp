@@ -33,7 +33,7 @@ void run(DrawOptions& o, const Common& common) {
   if (!o.range.empty()) o.job.colours.range = {o.range[0], o.range[1]};
   const H5mdReader trajectory(o.trajectory);
   if (o.colour != kPlain) {
-    const Colouring& colouring = colouring_named(o.colour, trajectory, "--colour");
+    const analysis::Colouring& colouring = analysis::colouring_named(o.colour, trajectory, "--colour");
     o.job.colours.name = colouring.word;
     o.job.colours.unit = colouring.unit;
     o.job.colours.of = [&](std::size_t index, const Frame& frame) {
@@ -81,7 +81,7 @@ void add_draw(CLI::App& program, Common& common) {
                   "B; default: all");
   std::string help = "Number that the colour of a bead shows. plain: none";
   std::vector<std::string> words = {kPlain};
-  for (const Colouring& colouring : colourings()) {
+  for (const analysis::Colouring& colouring : analysis::colourings()) {
     help += fmt::format("; {}: {}", colouring.word, colouring.help);
     words.emplace_back(colouring.word);
   }

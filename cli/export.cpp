@@ -67,9 +67,10 @@ void export_scene(const ExportOptions& o, const Common& common) {
 /// q6 and |psi6| of the beads of a planar trajectory, by the neighbour rule of `analyze` without options.
 BeadNumbers bond_orders(const TrajectoryInfo& info) {
   if (info.box.dimension != 2) return {};
-  const double cutoff = neighbour_cutoff(info, {});
+  const double cutoff = analysis::neighbour_cutoff(info, {});
   return {{"q6", "psi6"}, [&info, cutoff](const Frame& frame) {
-            BondOrder order = bond_order(find_neighbours(frame, info.box, cutoff));
+            analysis::BondOrder order =
+                analysis::bond_order(analysis::find_neighbours(frame, info.box, cutoff));
             return std::vector{std::move(order.q6), std::move(order.psi6)};
           }};
 }

@@ -79,7 +79,8 @@ void run(const Common& common, FitOptions o) {
   document["provenance"] = nlohmann::json::parse(provenance.to_json());
   std::string text = text_of(fit);
   if (folder) {
-    draw(calibration::fit_figure(fit, result.points, result.columns.x, result.columns.y), folder->part());
+    analysis::draw(calibration::fit_figure(fit, result.points, result.columns.x, result.columns.y),
+                   folder->part());
     write_text_file(folder->part() / "fit.json", json_text(document, 2) + "\n");
     folder->commit();
     text += fmt::format("picture: {}\n", (folder->final() / "fit.svg").string());

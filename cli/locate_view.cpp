@@ -14,15 +14,11 @@
 #include "imaging/settings/settings_choice.hpp"
 #include "imaging/track/encoded_frame.hpp"
 
-namespace twincell {
+namespace twincell::cli {
 
 namespace embedded {  // embedded into the program by cmake/embed.cmake
 extern const std::string_view locate_page_css, locate_page_js;
 }
-
-}  // namespace twincell
-
-namespace twincell::cli {
 
 namespace {
 
@@ -170,7 +166,7 @@ void LocateView::add(std::int64_t number, const cv::Mat& grey, const Located& lo
                        {"y", region_.corner().y},
                        {"width", grey.cols},
                        {"height", grey.rows},
-                       {"picture", data_uri(picture.type, picture.bytes)}});
+                       {"picture", analysis::data_uri(picture.type, picture.bytes)}});
   beads_ += located.beads.size();
   dropped_ += located.dropped.size();
   stored_.front().frames.push_back(candidates_json(located));
@@ -208,7 +204,7 @@ std::string LocateView::page(const std::string& stack, const std::string& output
   html += fmt::format(
       "<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, "
       "initial-scale=1\">\n<title>{}</title><style>{}{}</style></head><body>\n<header><h1>{}</h1></header>\n",
-      title, page_style(), embedded::locate_page_css, title);
+      title, analysis::page_style(), embedded::locate_page_css, title);
   html += fmt::format("<p id=\"summary\">{} of {} frames: {} beads, {} dropped candidates.</p>\n",
                       pictures_.size(), frames, beads_, dropped_);
   html += kBody;
@@ -237,8 +233,9 @@ std::string LocateView::page(const std::string& stack, const std::string& output
   }
   html += "</details>\n";
   html += kNotes;
-  html += "<script type=\"application/json\" id=\"data\">" + json_script_text(data(command)) + "</script>\n";
-  return html + "<script>" + script_text(embedded::locate_page_js) + "</script>\n</body></html>\n";
+  html += "<script type=\"application/json\" id=\"data\">" + analysis::json_script_text(data(command)) +
+          "</script>\n";
+  return html + "<script>" + analysis::script_text(embedded::locate_page_js) + "</script>\n</body></html>\n";
 }
 
 }  // namespace twincell::cli

@@ -31,7 +31,7 @@ constexpr const char* kFluidised = "drive.schedule=[[0, 2], [20, 2], [30, 1]]";
 struct MeasureOptions {
   std::string scene, output;
   std::vector<std::string> assignments;
-  AnalysisOptions analysis;
+  analysis::AnalysisOptions analysis;
   bool both_starts = false;
 };
 
@@ -85,14 +85,14 @@ std::string as_text(const Run& run, bool verbose, bool requested) {
                      about["contact_fraction"].get<double>() > 0.1
                          ? ", more than the 0.1 up to which they behave like hard beads"
                          : "");
-  return s +
-         (verbose ? results_text(run.measured.results) : results_summary(run.measured.results, requested));
+  return s + (verbose ? analysis::results_text(run.measured.results)
+                      : results_summary(run.measured.results, requested));
 }
 
 /// Compares T_z of both starts: the starts agree if their intervals overlap.
 std::string compared(const Run& rest, const Run& boiling) {
-  const auto t_z = [](const Run& r) { return seek_result(r.measured.results, "T_z"); };
-  const Result *a = t_z(rest), *b = t_z(boiling);
+  const auto t_z = [](const Run& r) { return analysis::seek_result(r.measured.results, "T_z"); };
+  const analysis::Result *a = t_z(rest), *b = t_z(boiling);
   if (a == nullptr || b == nullptr || !a->interval || !b->interval)
     return "the starts cannot be compared: T_z does not have an interval for both";
   const bool apart = a->interval->low > b->interval->high || b->interval->low > a->interval->high;
@@ -103,9 +103,10 @@ std::string compared(const Run& rest, const Run& boiling) {
 void run(const MeasureOptions& options, const Common& common) {
   const std::vector<std::string> assignments = with_seed(options.assignments, common);
   const Run first = run_once(options, assignments, "as in the scene", common);
-  if (!options.output.empty()) write_results(options.output, first.measured.results, first.provenance);
+  if (!options.output.empty())
+    analysis::write_results(options.output, first.measured.results, first.provenance);
   json document = first.about;
-  document["results"] = json::parse(results_json(first.measured.results));
+  document["results"] = json::parse(analysis::results_json(first.measured.results));
   document["provenance"] = json::parse(first.provenance);
   std::string text = as_text(first, common.verbose, !options.analysis.only.empty());
   if (options.both_starts) {
@@ -114,7 +115,7 @@ void run(const MeasureOptions& options, const Common& common) {
     const Run second = run_once(options, boiling,
                                 "boiling: twice the amplitude for 20 cycles, then reduced within 10", common);
     document["other_start"] = second.about;
-    document["other_start"]["results"] = json::parse(results_json(second.measured.results));
+    document["other_start"]["results"] = json::parse(analysis::results_json(second.measured.results));
     document["starts"] = compared(first, second);
     text += "\n" + as_text(second, common.verbose, !options.analysis.only.empty()) + "\n" +
             document["starts"].get<std::string>() + "\n";

@@ -179,8 +179,9 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
   }
   if (!r.figures.empty()) {
     AtomicPath files(folder, Product::runs());
-    for (const Figure& figure : r.figures)
-      draw(figure, files.part());  // last, so that the results are stored even if gnuplot is missing
+    for (const analysis::Figure& figure : r.figures)
+      analysis::draw(figure,
+                     files.part());  // last, so that the results are stored even if gnuplot is missing
     files.commit();
   }
   return {document, text};

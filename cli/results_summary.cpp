@@ -11,7 +11,7 @@ namespace twincell::cli {
 namespace {
 
 /// The number, or the count and the extremes of a list.
-std::string value_text(const Result& r) {
+std::string value_text(const analysis::Result& r) {
   if (r.shape.empty()) return fmt::format("{:.6g}", r.value());
   std::vector<double> finite;
   std::copy_if(r.values.begin(), r.values.end(), std::back_inserter(finite),
@@ -21,7 +21,7 @@ std::string value_text(const Result& r) {
   return fmt::format("{} values, {:.4g} to {:.4g}", r.values.size(), *low, *high);
 }
 
-std::string row(const Result& r) {
+std::string row(const analysis::Result& r) {
   if (!r.present()) return fmt::format("{:<25} absent: {}\n", r.name, r.absent);
   const std::string interval =
       r.interval ? fmt::format("[{:.6g}, {:.6g}]", r.interval->low, r.interval->high) : "-";
@@ -32,10 +32,10 @@ std::string row(const Result& r) {
 
 }  // namespace
 
-std::string results_summary(const std::vector<Result>& results, bool requested) {
+std::string results_summary(const std::vector<analysis::Result>& results, bool requested) {
   std::string text, rows;
   std::size_t lists = 0, absent = 0;
-  for (const Result& r : results) {
+  for (const analysis::Result& r : results) {
     if (r.present() && !r.text.empty())
       text += fmt::format("{}: {} ({})\n", r.name, r.text, r.convention);
     else if (requested || (r.present() && r.shape.empty()))

@@ -13,6 +13,6 @@ namespace twincell::cli {
 /// \param requested the results were asked for by name: lists and absent ones are rows, too; otherwise they
 /// are
 ///   only counted, and results_text() has them
-std::string results_summary(const std::vector<Result>& results, bool requested);
+std::string results_summary(const std::vector<analysis::Result>& results, bool requested);
 
 }  // namespace twincell::cli

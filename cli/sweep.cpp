@@ -128,9 +128,9 @@ Product figures_folder() {
 /// Draws a result into `folder`. \return the path of the SVG
 std::string draw_results(const sweep::Schedule& schedule, const sweep::FigureOptions& options,
                          const fs::path& folder) {
-  const Figure figure = sweep::results_figure(collected_json(schedule), options);
+  const analysis::Figure figure = sweep::results_figure(collected_json(schedule), options);
   AtomicPath output(folder, figures_folder());
-  draw(figure, output.part());
+  analysis::draw(figure, output.part());
   output.commit();
   return (folder / (figure.name + ".svg")).string();
 }

@@ -16,24 +16,24 @@ constexpr const char* kHeader = "analysis/observable/observable.hpp";
 
 /// Results of one call, in order.
 struct Results {
-  std::vector<Result> all;
+  std::vector<analysis::Result> all;
   std::string provenance_json;
 };
 
-py::object value_of(const Result& r) {
+py::object value_of(const analysis::Result& r) {
   if (!r.present()) return py::none();
   if (!r.text.empty()) return py::str(r.text);
   if (r.shape.empty()) return py::float_(r.value());
   return array_of(r.values, {r.shape.begin(), r.shape.end()});
 }
 
-py::object interval_of(const Result& r) {
+py::object interval_of(const analysis::Result& r) {
   if (!r.interval) return py::none();
   return py::make_tuple(r.interval->low, r.interval->high);
 }
 
-Results analyzed(const std::vector<std::shared_ptr<Trajectory>>& trajectories, const AnalysisOptions& options,
-                 const py::object& callback) {
+Results analyzed(const std::vector<std::shared_ptr<Trajectory>>& trajectories,
+                 const analysis::AnalysisOptions& options, const py::object& callback) {
   std::vector<const TrajectorySource*> sources;
   Provenance provenance = provenance_of("twincell.analyze (Python)");
   for (const auto& t : trajectories) {
@@ -44,12 +44,13 @@ Results analyzed(const std::vector<std::shared_ptr<Trajectory>>& trajectories, c
       provenance.inputs.emplace_back(t->source().name());
   }
   if (sources.empty()) throw ConfigError({.file = {}, .key = "trajectory"}, "the list has no trajectory.");
-  require_one_condition(sources);
+  analysis::require_one_condition(sources);
   return unlocked(callback, [&](Progress& progress) {
-    std::vector<std::vector<Result>> runs;
+    std::vector<std::vector<analysis::Result>> runs;
     runs.reserve(sources.size());
-    for (const TrajectorySource* source : sources) runs.push_back(analyze(*source, options, progress));
-    return Results{runs.size() > 1 ? pool(runs) : runs.front(), provenance.to_json()};
+    for (const TrajectorySource* source : sources)
+      runs.push_back(analysis::analyze(*source, options, progress));
+    return Results{runs.size() > 1 ? analysis::pool(runs) : runs.front(), provenance.to_json()};
   });
 }
 
@@ -62,27 +63,30 @@ std::vector<std::string> names_of(const py::object& only) {
 }  // namespace
 
 void bind_analysis(py::module_& module) {
-  py::class_<Result>(module, "Result", header_text(kHeader, "Result"))
-      .def_readonly("name", &Result::name, "Name of the result.")
+  py::class_<analysis::Result>(module, "Result", header_text(kHeader, "Result"))
+      .def_readonly("name", &analysis::Result::name, "Name of the result.")
       .def_property_readonly("value", &value_of,
                              "A number, a word, or an array; None if the result is absent (see `absent`).")
       .def_property_readonly("interval", &interval_of, "(low, high) of the confidence interval, or None.")
       .def_property_readonly(
           "level",
-          [](const Result& r) { return r.interval ? std::optional(r.interval->level) : std::nullopt; },
+          [](const analysis::Result& r) {
+            return r.interval ? std::optional(r.interval->level) : std::nullopt;
+          },
           "Confidence level of the interval.")
       .def_property_readonly(
-          "method", [](const Result& r) { return r.interval ? r.interval->method : std::string(); },
+          "method", [](const analysis::Result& r) { return r.interval ? r.interval->method : std::string(); },
           header_text("analysis/statistics/statistics.hpp", "Interval::method"))
-      .def_readonly("unit", &Result::unit, header_text(kHeader, "Result::unit"))
-      .def_readonly("n", &Result::n, header_text(kHeader, "Result::n"))
-      .def_readonly("n_of", &Result::n_of, header_text(kHeader, "Result::n_of"))
-      .def_readonly("no_interval", &Result::no_interval, header_text(kHeader, "Result::no_interval"))
-      .def_readonly("convention", &Result::convention, header_text(kHeader, "Result::convention"))
-      .def_readonly("source", &Result::source, header_text(kHeader, "Result::source"))
-      .def_readonly("absent", &Result::absent, header_text(kHeader, "Result::absent"))
-      .def_readonly("of_runs", &Result::of_runs, header_text(kHeader, "Result::of_runs"))
-      .def("__float__", [](const Result& r) {
+      .def_readonly("unit", &analysis::Result::unit, header_text(kHeader, "Result::unit"))
+      .def_readonly("n", &analysis::Result::n, header_text(kHeader, "Result::n"))
+      .def_readonly("n_of", &analysis::Result::n_of, header_text(kHeader, "Result::n_of"))
+      .def_readonly("no_interval", &analysis::Result::no_interval,
+                    header_text(kHeader, "Result::no_interval"))
+      .def_readonly("convention", &analysis::Result::convention, header_text(kHeader, "Result::convention"))
+      .def_readonly("source", &analysis::Result::source, header_text(kHeader, "Result::source"))
+      .def_readonly("absent", &analysis::Result::absent, header_text(kHeader, "Result::absent"))
+      .def_readonly("of_runs", &analysis::Result::of_runs, header_text(kHeader, "Result::of_runs"))
+      .def("__float__", [](const analysis::Result& r) {
         if (!r.present()) throw ConfigError({.file = {}, .key = r.name}, "is absent: " + r.absent);
         if (!r.text.empty() || !r.shape.empty())
           throw ConfigError({.file = {}, .key = r.name}, "is not a single number.");
@@ -93,12 +97,14 @@ void bind_analysis(py::module_& module) {
       .def("__len__", [](const Results& r) { return r.all.size(); })
       .def(
           "__contains__",
-          [](const Results& r, const std::string& name) { return seek_result(r.all, name) != nullptr; },
+          [](const Results& r, const std::string& name) {
+            return analysis::seek_result(r.all, name) != nullptr;
+          },
           py::arg("name"))
       .def(
           "__getitem__",
           [](const Results& r, const std::string& name) {
-            const Result* found = seek_result(r.all, name);
+            const analysis::Result* found = analysis::seek_result(r.all, name);
             if (found == nullptr) throw py::key_error(name);
             return *found;
           },
@@ -107,28 +113,28 @@ void bind_analysis(py::module_& module) {
           "keys",
           [](const Results& r) {
             std::vector<std::string> names;
-            for (const Result& one : r.all) names.push_back(one.name);
+            for (const analysis::Result& one : r.all) names.push_back(one.name);
             return names;
           },
           "Names of the results, in order.")
       .def(
           "values", [](const Results& r) { return r.all; }, "The results, in order.")
       .def(
-          "to_dict", [](const Results& r) { return from_json(results_json(r.all)); },
+          "to_dict", [](const Results& r) { return from_json(analysis::results_json(r.all)); },
           header_text("analysis/observable/results.hpp", "results_json"))
       .def(
           "write",
           [](const Results& r, const std::filesystem::path& path) {
-            write_results(path, r.all, r.provenance_json);
+            analysis::write_results(path, r.all, r.provenance_json);
           },
           py::arg("path"), header_text("analysis/observable/results.hpp", "write_results"))
       .def_property_readonly(
           "provenance", [](const Results& r) { return from_json(r.provenance_json); },
           "What produced the results, as a dict.")
-      .def("__str__", [](const Results& r) { return results_text(r.all); })
+      .def("__str__", [](const Results& r) { return analysis::results_text(r.all); })
       .def("__repr__",
            [](const Results& r) { return fmt::format("<twincell.Results: {} results>", r.all.size()); });
-  module.def("result_names", &result_names, header_text(kHeader, "result_names"));
+  module.def("result_names", &analysis::result_names, header_text(kHeader, "result_names"));
   module.def(
       "analyze",
       [](const py::object& trajectory, const py::object& only, std::int64_t discard, std::int64_t cycles,
@@ -140,24 +146,24 @@ void bind_analysis(py::module_& module) {
           for (const py::handle one : trajectory) trajectories.push_back(trajectory_of(one));
         else
           trajectories.push_back(trajectory_of(trajectory));
-        const AnalysisOptions options = {.discard_cycles = discard,
-                                         .cycles = cycles,
-                                         .tracers = tracers,
-                                         .tracer_band = tracer_band,
-                                         .s_b = s_b_named(s_b),
-                                         .neighbours = neighbour_rule_named(neighbours),
-                                         .neighbour_cutoff = cutoff,
-                                         .cell_radius = cell_radius,
-                                         .field_cell = field_cell,
-                                         .rest_height = rest_height,
-                                         .only = names_of(only)};
+        const analysis::AnalysisOptions options = {.discard_cycles = discard,
+                                                   .cycles = cycles,
+                                                   .tracers = tracers,
+                                                   .tracer_band = tracer_band,
+                                                   .s_b = analysis::s_b_named(s_b),
+                                                   .neighbours = analysis::neighbour_rule_named(neighbours),
+                                                   .neighbour_cutoff = cutoff,
+                                                   .cell_radius = cell_radius,
+                                                   .field_cell = field_cell,
+                                                   .rest_height = rest_height,
+                                                   .only = names_of(only)};
         return analyzed(trajectories, options, callback);
       },
       py::arg("trajectory"), py::arg("only") = py::list(), py::kw_only(), py::arg("discard") = 0,
       py::arg("cycles") = 0, py::arg("tracers") = std::vector<std::int64_t>{},
       py::arg("tracer_band") = py::none(), py::arg("s_b") = "variance", py::arg("neighbours") = "cutoff",
-      py::arg("cell_radius") = AnalysisOptions{}.cell_radius,
-      py::arg("field_cell") = AnalysisOptions{}.field_cell, py::arg("rest_height") = py::none(),
+      py::arg("cell_radius") = analysis::AnalysisOptions{}.cell_radius,
+      py::arg("field_cell") = analysis::AnalysisOptions{}.field_cell, py::arg("rest_height") = py::none(),
       py::arg("cutoff") = py::none(), py::arg("callback") = py::none(), header_text(kHeader, "analyze"));
 }
 

@@ -54,7 +54,7 @@ double checked_length(const char* name, double value) {
 }
 
 /// The Voronoi cells of points. \throws ConfigError for a periodic box too narrow for them
-VoronoiCells cells_of(const Frame& frame, const Box& box, double cell_radius) {
+analysis::VoronoiCells cells_of(const Frame& frame, const Box& box, double cell_radius) {
   checked_length("cell_radius", cell_radius);
   for (const Axis axis : {Axis::x, Axis::z})
     if (const double width = box.size()[static_cast<int>(axis)];
@@ -62,14 +62,14 @@ VoronoiCells cells_of(const Frame& frame, const Box& box, double cell_radius) {
       throw ConfigError({.file = {}, .key = "box"},
                         fmt::format("has the period {:g}; Voronoi cells of radius {:g} need more than {:g}.",
                                     width, cell_radius, 4 * cell_radius));
-  return voronoi_cells(frame, box, cell_radius);
+  return analysis::voronoi_cells(frame, box, cell_radius);
 }
 
 py::array indices_of(const std::vector<std::size_t>& values) {
   return array_of(std::vector<std::int64_t>(values.begin(), values.end()));
 }
 
-py::dict dict_of(const Neighbours& n) {
+py::dict dict_of(const analysis::Neighbours& n) {
   std::vector<std::int64_t> from;
   std::vector<double> bonds;
   for (std::size_t i = 0; i + 1 < n.first.size(); ++i)
@@ -84,7 +84,7 @@ py::dict dict_of(const Neighbours& n) {
 }
 
 struct Bonds {
-  Neighbours neighbours;
+  analysis::Neighbours neighbours;
   std::vector<double> weight;
 };
 
@@ -92,12 +92,12 @@ Bonds bonds_of(const py::object& points, const py::object& box, const std::strin
                double cell_radius) {
   const Frame frame = frame_of(points);
   const Box cell = box_of(box);
-  const NeighbourRule named = neighbour_rule_named(rule);
-  if (named == NeighbourRule::cutoff)
-    return {find_neighbours(frame, cell, checked_length("cutoff", cutoff)), {}};
-  VoronoiCells cells = cells_of(frame, cell, cell_radius);
+  const analysis::NeighbourRule named = analysis::neighbour_rule_named(rule);
+  if (named == analysis::NeighbourRule::cutoff)
+    return {analysis::find_neighbours(frame, cell, checked_length("cutoff", cutoff)), {}};
+  analysis::VoronoiCells cells = cells_of(frame, cell, cell_radius);
   return {std::move(cells.neighbours),
-          named == NeighbourRule::voronoi ? std::move(cells.edge) : std::vector<double>{}};
+          named == analysis::NeighbourRule::voronoi ? std::move(cells.edge) : std::vector<double>{}};
 }
 
 }  // namespace
@@ -113,7 +113,8 @@ void bind_observables(py::module_& module) {
   module.def(
       "neighbours",
       [](const py::object& points, const py::object& box, double cutoff) {
-        return dict_of(find_neighbours(frame_of(points), box_of(box), checked_length("cutoff", cutoff)));
+        return dict_of(
+            analysis::find_neighbours(frame_of(points), box_of(box), checked_length("cutoff", cutoff)));
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("cutoff") = kCutoff,
       (header_text("analysis/neighbours/neighbours.hpp", "find_neighbours") + points_text +
@@ -130,14 +131,14 @@ void bind_observables(py::module_& module) {
         return array_of(std::move(counts));
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
-      py::arg("cutoff") = kCutoff, py::arg("cell_radius") = kCellRadius,
+      py::arg("cutoff") = kCutoff, py::arg("cell_radius") = analysis::kCellRadius,
       ("Number of neighbours of every bead." + bonds_text).c_str());
   module.def(
       "bond_order",
       [](const py::object& points, const py::object& box, const std::string& neighbours, double cutoff,
          double cell_radius) {
         const Bonds bonds = bonds_of(points, box, neighbours, cutoff, cell_radius);
-        BondOrder order = bond_order(bonds.neighbours, bonds.weight);
+        analysis::BondOrder order = analysis::bond_order(bonds.neighbours, bonds.weight);
         py::dict d;
         d["q6"] = array_of(std::move(order.q6));
         d["psi6"] = array_of(std::move(order.psi6));
@@ -147,14 +148,14 @@ void bind_observables(py::module_& module) {
         return d;
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
-      py::arg("cutoff") = kCutoff, py::arg("cell_radius") = kCellRadius,
+      py::arg("cutoff") = kCutoff, py::arg("cell_radius") = analysis::kCellRadius,
       (header_text("analysis/neighbours/bond_order.hpp", "bond_order") + bonds_text).c_str());
   module.def(
       "hexatic_order",
       [](const py::object& points, const py::object& box, const std::string& neighbours, double cutoff,
          double cell_radius) {
         const Bonds bonds = bonds_of(points, box, neighbours, cutoff, cell_radius);
-        const BondOrder order = bond_order(bonds.neighbours, bonds.weight);
+        const analysis::BondOrder order = analysis::bond_order(bonds.neighbours, bonds.weight);
         std::vector<std::complex<double>> psi;
         for (std::size_t i = 0; i < order.psi6.size(); ++i)
           psi.push_back(std::isfinite(order.angle[i])
@@ -163,7 +164,7 @@ void bind_observables(py::module_& module) {
         return array_of(std::move(psi));
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
-      py::arg("cutoff") = kCutoff, py::arg("cell_radius") = kCellRadius,
+      py::arg("cutoff") = kCutoff, py::arg("cell_radius") = analysis::kCellRadius,
       ("Complex hexatic order psi6 = <exp(6 i phi)> of every bead (`bond_order`): phi is the angle of a bond "
        "in the "
        "plane (x, z). NaN for fewer than 2 bonds." +
@@ -172,13 +173,13 @@ void bind_observables(py::module_& module) {
   module.def(
       "voronoi",
       [](const py::object& points, const py::object& box, double cell_radius) {
-        VoronoiCells cells = cells_of(frame_of(points), box_of(box), cell_radius);
+        analysis::VoronoiCells cells = cells_of(frame_of(points), box_of(box), cell_radius);
         py::dict d = dict_of(cells.neighbours);
         d["edge"] = array_of(std::move(cells.edge));
         d["enclosed"] = array_of(std::move(cells.enclosed)).attr("astype")("bool");
         return d;
       },
-      py::arg("points"), py::arg("box") = py::none(), py::arg("cell_radius") = kCellRadius,
+      py::arg("points"), py::arg("box") = py::none(), py::arg("cell_radius") = analysis::kCellRadius,
       (header_text("analysis/neighbours/voronoi.hpp", "voronoi_cells") + points_text +
        "\n\nReturns a dict of arrays: i, j, bond and edge (length of the shared edge) with one entry per "
        "bond, "

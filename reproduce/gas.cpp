@@ -403,8 +403,8 @@ figure_style::Axis w_axis() {
   return {.label = "W = V_p^2/(d g)", .logarithmic = true};
 }
 
-Figure series_figure(SeriesFigure figure, const std::vector<Series>& all) {
-  Figure f{
+analysis::Figure series_figure(SeriesFigure figure, const std::vector<Series>& all) {
+  analysis::Figure f{
       .name = figure.name, .title = figure.title, .caption = figure.caption, .width = 640, .height = 480};
   std::vector<std::string> clauses;
   std::size_t points = 0, lines = 0;

@@ -160,7 +160,7 @@ struct SeriesFigure {
   std::string marks = {};                 ///< gnuplot commands before the plot
   std::vector<std::string> entries = {};  ///< clauses after those of the series: marks in the key
 };
-Figure series_figure(SeriesFigure figure, const std::vector<Series>& all);
+analysis::Figure series_figure(SeriesFigure figure, const std::vector<Series>& all);
 
 /// Maximum of T_bar_z(W), at W_f.
 struct Peak {

@@ -146,7 +146,8 @@ void add_contacts(Reproduction& r, json& measured) {
     const std::string wave = fmt::format("exp(-{0:.9g}*x)*sin({1:.9g}*x)", form.beta * 1e-3, w * 1e-3);
     const std::string slope = fmt::format("exp(-{0:.9g}*x)*({1:.9g}*cos({1:.9g}*x)-{0:.9g}*sin({1:.9g}*x))",
                                           form.beta * 1e-3, w * 1e-3);
-    const std::string look = fmt::format("lc rgb '{}'", pair ? colours::kBlue : colours::kVermilion);
+    const std::string look =
+        fmt::format("lc rgb '{}'", pair ? analysis::colours::kBlue : analysis::colours::kVermilion);
     const int symbol = figure_style::unfilled(pair ? figure_style::kCircle : figure_style::kTriangle);
     key += fmt::format("{}keyentry with points pt {} {} title '{}'", key.empty() ? "" : ", ", symbol, look,
                        kind);
@@ -169,7 +170,7 @@ void add_contacts(Reproduction& r, json& measured) {
   r.targets.push_back(near("steps a period at n = 50", 141333, 0, steps, "{:.0f}"));
   measured.push_back({{"steps_per_period", steps}});
   // Figure of overlap and force against time.
-  Figure f{.name = "p1-appendix-a", .title = "One collision", .width = 720, .height = 400};
+  analysis::Figure f{.name = "p1-appendix-a", .title = "One collision", .width = 720, .height = 400};
   f.data = data;
   const figure_style::Panels panels(1, 2, f.width, f.height, 1);
   figure_style::Axis time{.label = "t / 10^{-3} t_0", .low = 0},
@@ -193,8 +194,8 @@ void add_contacts(Reproduction& r, json& measured) {
 }
 
 /// Fig. 6: sketch of the symbols of a contact.
-Figure contact_sketch() {
-  Figure f{.name = "p1-fig6", .title = "Contact of two beads", .width = 540, .height = 360};
+analysis::Figure contact_sketch() {
+  analysis::Figure f{.name = "p1-fig6", .title = "Contact of two beads", .width = 540, .height = 360};
   f.data = "# centres and radii\n-0.84 -0.24 1\n0.84 0.24 1\n";
   f.plot =
       "set size ratio -1\nunset tics\nunset border\nunset grid\nunset key\nset xrange [-2.1:2.1]\nset yrange "
@@ -220,21 +221,22 @@ Figure contact_sketch() {
 
 // --- Appendix B ---
 
-double s_b_of_rigid_bed(double gamma, SbForm form) {
-  AnalysisOptions options;
+double s_b_of_rigid_bed(double gamma, analysis::SbForm form) {
+  analysis::AnalysisOptions options;
   options.s_b = form;
   options.only = {"s_b"};
-  return find_result(analyze(rigid_bed({.gamma = gamma, .columns = 6, .rows = 5, .phases = 240, .cycles = 2}),
-                             options),
-                     "s_b")
+  return analysis::find_result(
+             analysis::analyze(
+                 rigid_bed({.gamma = gamma, .columns = 6, .rows = 5, .phases = 240, .cycles = 2}), options),
+             "s_b")
       .value();
 }
 
-double threshold_gamma(SbForm form) {
+double threshold_gamma(analysis::SbForm form) {
   double low = 1.1, high = 1.25;
   for (int i = 0; i < 14; ++i) {
     const double middle = (low + high) / 2;
-    (s_b_of_rigid_bed(middle, form) < kBouncingThreshold ? low : high) = middle;
+    (s_b_of_rigid_bed(middle, form) < analysis::kBouncingThreshold ? low : high) = middle;
   }
   return (low + high) / 2;
 }
@@ -254,8 +256,8 @@ void add_measures(Reproduction& r, json& measured) {
   std::string points;
   double worst = 0, worst_rest = 0;
   for (const auto& [gamma, variance, rest] : kTable) {
-    const double v = s_b_of_rigid_bed(gamma, SbForm::variance),
-                 a = s_b_of_rigid_bed(gamma, SbForm::about_rest);
+    const double v = s_b_of_rigid_bed(gamma, analysis::SbForm::variance),
+                 a = s_b_of_rigid_bed(gamma, analysis::SbForm::about_rest);
     worst = std::max(worst, std::abs(v - variance));
     worst_rest = std::max(worst_rest, std::abs(a - rest));
     points += fmt::format("{} {:.6f} {:.6f} {} {}\n", gamma, v, a, variance, rest);
@@ -264,7 +266,8 @@ void add_measures(Reproduction& r, json& measured) {
   r.targets.push_back(
       near("B3, B4: s_b of the rigid bed at nine Gamma, variance, largest error", 0, 1e-3, worst, "{:.5f}"));
   r.targets.push_back(near("B3, B4: the same about rest", 0, 1e-3, worst_rest, "{:.5f}"));
-  const double gamma = threshold_gamma(SbForm::variance), rest = threshold_gamma(SbForm::about_rest);
+  const double gamma = threshold_gamma(analysis::SbForm::variance),
+               rest = threshold_gamma(analysis::SbForm::about_rest);
   r.targets.push_back(
       near("B4: Gamma at which s_b of the rigid bed is sigma/30, variance", 1.1636, 2e-4, gamma, "{:.4f}"));
   r.targets.push_back(near("B4: the same about rest", 1.1542, 2e-4, rest, "{:.4f}"));
@@ -275,20 +278,22 @@ void add_measures(Reproduction& r, json& measured) {
   // B1, B2: a line of tracers at unit distances, sheared by a x j: var(x) = (n^2 - 1)/12.
   constexpr double kShear = 0.03;
   constexpr int kCycles = 12;
-  const auto results = analyze(rigid_bed({.gamma = 1.5, .cycles = kCycles, .shear_per_cycle = kShear}));
-  const Result& tracers = find_result(results, "tracers");
+  const auto results =
+      analysis::analyze(rigid_bed({.gamma = 1.5, .cycles = kCycles, .shear_per_cycle = kShear}));
+  const analysis::Result& tracers = analysis::find_result(results, "tracers");
   const auto n = static_cast<double>(tracers.values.size());
   double mean_j2 = 0;
   for (int j = 0; j < kCycles; ++j) mean_j2 += static_cast<double>(j) * j / kCycles;
   const double s_c = kShear * std::sqrt((n * n - 1) / 12 * mean_j2);
-  const double found = find_result(results, "s_c").value();
+  const double found = analysis::find_result(results, "s_c").value();
   r.targets.push_back(
       near("B1, B2: s_c of a line sheared by 0.03 a cycle, 12 cycles, sigma", s_c, 1e-9, found, "{:.9f}"));
   r.table += fmt::format("  sheared line of {:g} tracers: s_c {:.9f}, closed form {:.9f}\n", n, found, s_c);
   measured.push_back({{"sheared_line_s_c", found}, {"closed_form", s_c}});
 
   // Figure of s_b against Gamma.
-  Figure f{.name = "p1-appendix-b", .title = "s_b of a rigid inelastic bed", .width = 640, .height = 480};
+  analysis::Figure f{
+      .name = "p1-appendix-b", .title = "s_b of a rigid inelastic bed", .width = 640, .height = 480};
   figure_style::Axis strength{.label = "Γ = A ω^2/g"}, s_b{.label = "s_b/σ", .logarithmic = true};
   for (const auto& [at, variance, rest_form] : kTable) {
     strength.show(at);
@@ -306,7 +311,7 @@ void add_measures(Reproduction& r, json& measured) {
       "phases', "
       "'' using 1:5 with lines lw 1.3 lc rgb vermilion notitle, '' using 1:3 with points pt 6 ps 0.9 lc rgb "
       "vermilion title 'about the height at rest'\n",
-      gamma, kBouncingThreshold, f.name, figure_style::axes(strength, s_b), figure_style::kStated);
+      gamma, analysis::kBouncingThreshold, f.name, figure_style::axes(strength, s_b), figure_style::kStated);
   f.caption =
       "s_b (eq. B4) of a completely inelastic rigid bed, found by the analysis of a synthetic trajectory "
       "(points) "

@@ -23,7 +23,7 @@ struct Bulk {
 };
 
 Bulk bulk_of(const Packing& p) {
-  const VoronoiCells cells = voronoi_cells(p.moment.frame, p.box);
+  const analysis::VoronoiCells cells = analysis::voronoi_cells(p.moment.frame, p.box);
   Bulk b;
   for (std::size_t i = 0; i < cells.enclosed.size(); ++i) {
     if (cells.enclosed[i] == 0) continue;
@@ -41,7 +41,7 @@ Bulk bulk_of(const Packing& p) {
 /// the share of defects that touch another defect, divided by that share at random positions, 1 - (1 - f)^6,
 /// where f is the share of defects.
 double clustering_of(const Packing& p) {
-  const VoronoiCells cells = voronoi_cells(p.moment.frame, p.box);
+  const analysis::VoronoiCells cells = analysis::voronoi_cells(p.moment.frame, p.box);
   const auto defect = [&](std::size_t i) { return cells.enclosed[i] != 0 && cells.neighbours.count(i) != 6; };
   double inside = 0, defects = 0, joined = 0;
   for (std::size_t i = 0; i < cells.enclosed.size(); ++i) {
@@ -100,8 +100,8 @@ std::vector<Target> targets_of(const Packings& all) {
   return targets;
 }
 
-Figure figure_of(const Packings& all) {
-  std::vector<BeadPanel> panels;
+analysis::Figure figure_of(const Packings& all) {
+  std::vector<analysis::BeadPanel> panels;
   const auto add = [&](const Packing& p) { panels.push_back({p.title(), &p.moment, p.box, p.radius}); };
   if (const Packing* crystal = all.crystal("crystal_a")) add(*crystal);
   for (std::size_t i = 0; i < std::min<std::size_t>(2, all.random.size()); ++i) add(all.random[i]);
@@ -111,8 +111,8 @@ Figure figure_of(const Packings& all) {
       panels[i].title = panels.size() == 3 && i == 2 ? "another seed" : "random";
     panels[i].title = fmt::format("({}) {}", "abc"[i], panels[i].title);
   }
-  Figure f = beads_figure(panels, "p1-fig1", fmt::format("Beds before the drive, N_l = {}", all.layers),
-                          panels.size());
+  analysis::Figure f = analysis::beads_figure(
+      panels, "p1-fig1", fmt::format("Beds before the drive, N_l = {}", all.layers), panels.size());
   f.caption += " Form of Fortini & Huang 2015, Fig. 1.";
   return f;
 }

@@ -20,8 +20,8 @@ struct Orientation {
   const char *start, *name, *colour;
   double angle;  ///< of close-packed rows to the floor, degrees; the lattice repeats every 60 degrees
 };
-constexpr Orientation kA = {"crystal_a", "A", colours::kSky, 0},
-                      kB = {"crystal_b", "B", colours::kOrange, 30};
+constexpr Orientation kA = {"crystal_a", "A", analysis::colours::kSky, 0},
+                      kB = {"crystal_b", "B", analysis::colours::kOrange, 30};
 
 constexpr const char* kBetween = "#DDDDDD";
 
@@ -71,9 +71,9 @@ std::vector<Target> targets_of(const Packings& all) {
   return targets;
 }
 
-Figure figure_of(const Packings& all) {
+analysis::Figure figure_of(const Packings& all) {
   constexpr double kSide = 6;  // sigma; enough rows to show the orientation
-  Figure f{
+  analysis::Figure f{
       .name = "p1-fig2", .title = "Orientations of the lattice at a side wall", .width = 720, .height = 330};
   f.plot = "set multiplot\nunset grid\n";
   // Left panels: a corner of the crystal in each orientation.

@@ -70,7 +70,7 @@ P1Run run_of(int layers, bool random, int cycles) {
 
 /// Whether the analysis has the result "slips".
 bool has_slips() {
-  const auto names = result_names();
+  const auto names = analysis::result_names();
   return std::find(names.begin(), names.end(), "slips") != names.end();
 }
 
@@ -350,8 +350,9 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
 
 /// Values with error bars if the interval is closed, arrows for one-sided limits. Random and crystal points
 /// are shifted slightly to the left and right of their N_l, so that the bars do not overlap.
-Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
-  Figure f{.name = "p1-fig3", .title = "Onsets of bouncing and convection", .width = 640, .height = 520};
+analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
+  analysis::Figure f{
+      .name = "p1-fig3", .title = "Onsets of bouncing and convection", .width = 640, .height = 520};
   figure_style::Axis n_l{.label = "N_l σ"}, gamma{.label = "Γ = A ω^2/g"};
   gamma.show(1);
   struct Style {
@@ -359,10 +360,11 @@ Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& fil
     int point;
     const char *colour, *title;
   };
-  static constexpr std::array<Style, 4> kStyles = {{{true, true, 9, colours::kGreen, "convection, random"},
-                                                    {false, true, 7, colours::kBlue, "convection, crystal"},
-                                                    {true, false, 8, colours::kGreen, "bouncing, random"},
-                                                    {false, false, 6, colours::kBlue, "bouncing, crystal"}}};
+  static constexpr std::array<Style, 4> kStyles = {
+      {{true, true, 9, analysis::colours::kGreen, "convection, random"},
+       {false, true, 7, analysis::colours::kBlue, "convection, crystal"},
+       {true, false, 8, analysis::colours::kGreen, "bouncing, random"},
+       {false, false, 6, analysis::colours::kBlue, "bouncing, crystal"}}};
   // Onsets of the runs, one data block of values and one of limits for each style.
   std::string plot;
   int index = 0;
@@ -404,7 +406,7 @@ Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& fil
     f.data += fmt::format("# {}\n{}\n\n", title, block);
     plot +=
         fmt::format(", '{}.dat' index {} using 1:2 with linespoints lw 1 ps 1 pt {} lc rgb '{}' title '{}'",
-                    f.name, index++, point, colours::kBlack, title);
+                    f.name, index++, point, analysis::colours::kBlack, title);
   };
   add_filmed(&Filmed::convection, 5, "convection, experiment");
   add_filmed(&Filmed::bouncing, 4, "bouncing, experiment");

@@ -131,8 +131,8 @@ std::string region(const char* name, double from, double to) {
   return fmt::format("set label '{}' at first {:.5g},graph 0.06 center\n", name, std::sqrt(from * to));
 }
 
-Figure figure_of(const StrengthSweeps& all, const std::optional<calibration::CurveFit>& bend) {
-  Figure f{.name = "p1-fig4", .title = "Granular temperature", .width = 720, .height = 450};
+analysis::Figure figure_of(const StrengthSweeps& all, const std::optional<calibration::CurveFit>& bend) {
+  analysis::Figure f{.name = "p1-fig4", .title = "Granular temperature", .width = 720, .height = 450};
   figure_style::Axis k_m{.label = "K_m = A^2 ω^2/(σ g)", .logarithmic = true},
       t_g{.label = "T_g/(m g σ)", .logarithmic = true};
   for (const StrengthSweep* l : {&all.random, &all.crystal})

@@ -162,8 +162,8 @@ std::string barrier_label(const char* of, const std::optional<calibration::Curve
                      parameter(*fit, "E_b").value, paper, 0.93 - 0.09 * line);
 }
 
-Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
-  Figure f{.name = "p1-fig5", .title = "Slip probability", .width = 720, .height = 430};
+analysis::Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
+  analysis::Figure f{.name = "p1-fig5", .title = "Slip probability", .width = 720, .height = 430};
   const figure_style::Panels panels(1, 2, f.width, f.height, 2);
   f.plot = figure_style::Panels::begin();
   figure_style::Axis p_s{.label = "p_s", .logarithmic = true};

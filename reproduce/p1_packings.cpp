@@ -56,7 +56,7 @@ Packing packing_of(const sweep::Point& point, const std::string& start, const st
   const H5mdReader trajectory(store.of(point) / "trajectory.h5");
   p.box = trajectory.info().box;
   p.radius = trajectory.info().radius;
-  p.moment = snapshot(trajectory, 0, kCutoff);
+  p.moment = analysis::snapshot(trajectory, 0, kCutoff);
   return p;
 }
 
@@ -80,7 +80,7 @@ Estimate Packings::over_random(const std::function<double(const Packing&)>& of) 
   for (const Packing& p : random) values.push_back(of(p));
   Estimate e;
   for (const double v : values) e.value += v / static_cast<double>(values.size());
-  if (const auto interval = mean_interval(values, "random beds")) {
+  if (const auto interval = analysis::mean_interval(values, "random beds")) {
     e.low = interval->low;
     e.high = interval->high;
   }
@@ -128,7 +128,7 @@ Packings settle_packings(const Request& request) {
 Reproduction reproduction_of(const Packings& all, const std::string& title, std::vector<Target> targets,
                              const std::function<std::string(const Packing&)>& line,
                              const std::function<json(const Packing&)>& more,
-                             const std::function<Figure(const Packings&)>& figure) {
+                             const std::function<analysis::Figure(const Packings&)>& figure) {
   Reproduction r{.title = title,
                  .targets = std::move(targets),
                  .cheaper = all.cheaper,

@@ -24,7 +24,7 @@ struct Packing {
   std::map<std::string, double> scalars;  ///< results of the analysis, by name
   Box box;
   std::vector<double> radius;
-  Snapshot moment;  ///< neighbours within 1.2 sigma
+  analysis::Snapshot moment;  ///< neighbours within 1.2 sigma
 
   /// "crystal A", "crystal B", "random, seed 7"
   [[nodiscard]] std::string title() const;
@@ -47,7 +47,7 @@ struct Packings {
 Reproduction reproduction_of(const Packings& all, const std::string& title, std::vector<Target> targets,
                              const std::function<std::string(const Packing&)>& line,
                              const std::function<nlohmann::json(const Packing&)>& more,
-                             const std::function<Figure(const Packings&)>& figure);
+                             const std::function<analysis::Figure(const Packings&)>& figure);
 
 /// Settles the beds, or reads those that are in Request::runs. Small budgets mean lower beds and fewer seeds.
 Packings settle_packings(const Request& request);

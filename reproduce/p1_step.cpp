@@ -124,7 +124,7 @@ std::optional<Estimate> estimate(const Values& values, const Place& place) {
   const std::vector<double>& runs = at->second;
   Estimate e;
   for (const double v : runs) e.value += v / static_cast<double>(runs.size());
-  if (const auto interval = mean_interval(runs, "runs")) {
+  if (const auto interval = analysis::mean_interval(runs, "runs")) {
     e.low = place.quantity == kAliasing ? interval->low : std::max(0.0, interval->low);
     e.high = interval->high;
   }
@@ -134,7 +134,7 @@ std::optional<Estimate> estimate(const Values& values, const Place& place) {
     double all = 0;
     for (const double n : trials->second) all += n;
     if (all > 0) {
-      const Interval none = binomial_interval(0, all, "bead-cycles");
+      const analysis::Interval none = analysis::binomial_interval(0, all, "bead-cycles");
       e.low = none.low;
       e.high = none.high;
     }
@@ -222,8 +222,9 @@ constexpr const char* kStepTics = "set xtics (6.37, 12.5, 25, 50, 100, 200, 400)
 
 /// Curves over n: Verlet with filled symbols and solid lines, split with open symbols and dashed lines, one
 /// colour for each Gamma.
-Figure figure_of(const Values& values, const Size& size) {
-  Figure f{.name = "p1-step", .title = "What the step does to the physics", .width = 720, .height = 1160};
+analysis::Figure figure_of(const Values& values, const Size& size) {
+  analysis::Figure f{
+      .name = "p1-step", .title = "What the step does to the physics", .width = 720, .height = 1160};
   const double finest = size.split.back();
   const figure_style::Panels panels(kQuantities.size(), kStarts.size(), f.width, f.height, 2);
   f.plot = figure_style::Panels::begin();
@@ -259,7 +260,7 @@ Figure figure_of(const Values& values, const Size& size) {
           curves.push_back(fmt::format(
               "'{}.dat' index {} using 1:2:3:4 with yerrorlines pt {} ps 0.7 lw {} dt {} lc rgb '{}' notitle",
               f.name, block++, verlet ? kVerlet : kSplit, figure_style::kLine, verlet ? 1 : 2,
-              colours::kCurves[g]));
+              analysis::colours::kCurves[g]));
         }
       if (curves.empty()) curves.emplace_back("NaN notitle");
       f.plot += panels.panel(panel) + figure_style::axes(steps, value) + kStepTics +
@@ -270,7 +271,7 @@ Figure figure_of(const Values& values, const Size& size) {
   std::vector<std::string> key;
   for (std::size_t g = 0; g < kGammas.size(); ++g)
     key.push_back(fmt::format("keyentry with lines lw {} lc rgb '{}' title 'Γ = {:g}'", figure_style::kCurve,
-                              colours::kCurves[g], kGammas[g]));
+                              analysis::colours::kCurves[g], kGammas[g]));
   key.push_back(fmt::format("keyentry with linespoints pt {} lc rgb '#333333' title 'Verlet'", kVerlet));
   key.push_back(fmt::format("keyentry with linespoints pt {} dt 2 lc rgb '#333333' title 'split'", kSplit));
   f.plot += panels.end(key);

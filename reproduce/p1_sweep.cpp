@@ -132,7 +132,7 @@ Estimate SweepPoint::mean_temperature() const {
   for (const Estimate& t : temperature) values.push_back(t.value);
   Estimate e;
   for (const double t : values) e.value += t / static_cast<double>(values.size());
-  if (const auto interval = mean_interval(values, "runs")) {
+  if (const auto interval = analysis::mean_interval(values, "runs")) {
     e.low = interval->low;
     e.high = interval->high;
   }
@@ -146,8 +146,8 @@ StrengthSweep make_strength_sweep(const std::string& start, const std::vector<Sw
     point.gamma = run.gamma;
     ++point.runs;
     point.temperature.push_back(run.temperature);
-    point.bouncing += run.s_b > kBouncingThreshold ? 1 : 0;
-    point.convecting += run.s_c > kConvectionThreshold ? 1 : 0;
+    point.bouncing += run.s_b > analysis::kBouncingThreshold ? 1 : 0;
+    point.convecting += run.s_c > analysis::kConvectionThreshold ? 1 : 0;
     point.slips += run.slips;
     point.eligible += run.eligible;
   }
@@ -348,7 +348,7 @@ Estimate parameter(const calibration::CurveFit& fit, const std::string& name) {
 }
 
 namespace {
-constexpr const char *kRandomColour = colours::kGreen, *kCrystalColour = colours::kBlue;
+constexpr const char *kRandomColour = analysis::colours::kGreen, *kCrystalColour = analysis::colours::kBlue;
 constexpr const char* kBorder = "lw 1 dt 2 lc rgb '#666666'";
 }  // namespace
 

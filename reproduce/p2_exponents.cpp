@@ -145,7 +145,7 @@ Target target_of(const Study& study, const Exponent* e, bool of_height) {
 
 /// The figure of the fits. The windows of earlier experiments lie inside [W_f, W_2], so that their points are
 /// drawn last, over the same points of the wider window.
-Figure figure_of(const std::string& name, std::vector<Exponent> all, bool of_height) {
+analysis::Figure figure_of(const std::string& name, std::vector<Exponent> all, bool of_height) {
   std::stable_sort(all.begin(), all.end(), [](const Exponent& a, const Exponent& b) {
     return a.printed.has_value() < b.printed.has_value();
   });

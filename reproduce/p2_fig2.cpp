@@ -195,7 +195,8 @@ std::optional<Series> own_of(const Request& request) {
   return s;
 }
 
-Figure figure_of(const Gas& gas, const Runs& runs, const Request& request, const std::optional<Series>& own) {
+analysis::Figure figure_of(const Gas& gas, const Runs& runs, const Request& request,
+                           const std::optional<Series>& own) {
   std::vector<Series> all;
   for (std::size_t k = 0; k < runs.systems.size(); ++k)
     add_series(all, gas_systems()[k].name(), gas.points(runs.systems[k]), "T_bar_z");

@@ -74,7 +74,7 @@ struct BedSnapshot {
 };
 
 /// One figure for each snapshot, all with the same scales of length and of speed.
-std::vector<Figure> snapshot_figures(const std::vector<BedSnapshot>& all) {
+std::vector<analysis::Figure> snapshot_figures(const std::vector<BedSnapshot>& all) {
   static constexpr std::array<const char*, 3> kRelations = {"below W_f", "just below W_f", "at W_f"};
   constexpr double kShown = 12;  // a bead thrown high must not shrink the bed
   double top = 0, fastest = 0;
@@ -83,14 +83,14 @@ std::vector<Figure> snapshot_figures(const std::vector<BedSnapshot>& all) {
       top = std::max(top, std::min(kShown, s.frame.position[i].z() + 1));
       fastest = std::max(fastest, s.speed(i));
     }
-  std::vector<Figure> figures;
+  std::vector<analysis::Figure> figures;
   for (std::size_t k = 0; k < all.size(); ++k) {
     const BedSnapshot& s = all[k];
     const double wide = s.box.size().x();
-    Figure f{.name = fmt::format("p2-fig3{}", "abc"[k]),
-             .title = fmt::format("W = {:.3g}", s.w),
-             .width = 480,
-             .height = static_cast<int>(150 + 330 * (top + 1) / wide)};
+    analysis::Figure f{.name = fmt::format("p2-fig3{}", "abc"[k]),
+                       .title = fmt::format("W = {:.3g}", s.w),
+                       .width = 480,
+                       .height = static_cast<int>(150 + 330 * (top + 1) / wide)};
     f.data = "# x z radius speed about the centre of mass/V_p\n";
     for (std::size_t i = 0; i < s.frame.position.size(); ++i) {
       const Vec3 r = s.box.wrap(s.frame.position[i]);

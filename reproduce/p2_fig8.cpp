@@ -155,7 +155,7 @@ Reproduction run(const Request& request, bool coefficients) {
         s.y.push_back({.value = f.fit->at(w), .low = {}, .high = {}});
       }
       all.push_back(s);
-      Figure residuals = calibration::fit_figure(
+      analysis::Figure residuals = calibration::fit_figure(
           *f.fit, f.points, "W", "T̄_z",
           fmt::format("p2-fig8-{}d-{}", dimension, algebraic ? "algebraic" : "exponential"),
           fmt::format("{}: {}", f.name(), f.fit->law->formula));

@@ -323,11 +323,11 @@ Pair pair_of(const Gas& gas, const Reading& reading) {
   return pair;
 }
 
-std::vector<Figure> pair_figures(const std::string& name, const Pair& pair, bool of_packing,
-                                 const Reading& reading) {
+std::vector<analysis::Figure> pair_figures(const std::string& name, const Pair& pair, bool of_packing,
+                                           const Reading& reading) {
   // Limit the axis: a single bead far above the bed would compress the bed into a corner of the figure.
   constexpr double kShown = 1e-3;
-  std::vector<Figure> figures;
+  std::vector<analysis::Figure> figures;
   for (const bool rough : {false, true}) {
     std::vector<Series> series;
     double top = 0;
@@ -422,7 +422,8 @@ Reproduction run_14(const Request& request) {
   for (const Reading& reading : kReadings) {
     const Pair pair = pair_of(gas, reading);
     by_reading.push_back(targets_14(pair));
-    for (Figure& figure : pair_figures("p2-fig14", pair, false, reading)) r.figures.push_back(figure);
+    for (analysis::Figure& figure : pair_figures("p2-fig14", pair, false, reading))
+      r.figures.push_back(figure);
   }
   r.targets = better_of(by_reading[0], by_reading[1]);
   return r;

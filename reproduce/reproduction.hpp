@@ -50,7 +50,7 @@ struct Reproduction {
   std::string runs = {};  ///< seeds and cycles behind the numbers: "3 runs a point, 200 cycles"
   std::string table;      ///< measured values as a text table
   std::string measured;   ///< measured values as JSON
-  std::vector<Figure> figures;
+  std::vector<analysis::Figure> figures;
   bool complete = false;  ///< false if the time ran out; the same command continues
 };
 

@@ -107,7 +107,7 @@ json onset_json(const Plan& plan, const Curve& curve, const json& points) {
 /// Runs that differ only in the seed.
 struct Group {
   json axes;
-  std::vector<std::vector<Result>> runs;
+  std::vector<std::vector<analysis::Result>> runs;
   std::size_t repeats = 0;  ///< runs left out because they equal another run bit for bit
 };
 
@@ -122,14 +122,14 @@ std::vector<Group> groups_of(const json& points) {
     axes.erase("start.seed");
     const auto [place, is_new] = number.emplace(json_text(axes), groups.size());
     if (is_new) groups.push_back({axes, {}});
-    std::vector<Result> run =
-        results_from_json(JsonView::parse(json_text(point["results"]), "the collected results"));
-    std::erase_if(run, [](const Result& r) { return !r.shape.empty(); });
+    std::vector<analysis::Result> run =
+        analysis::results_from_json(JsonView::parse(json_text(point["results"]), "the collected results"));
+    std::erase_if(run, [](const analysis::Result& r) { return !r.shape.empty(); });
     groups[place->second].runs.push_back(std::move(run));
   }
   for (Group& group : groups) {
-    const std::vector<std::size_t> first = repeated_runs(group.runs);
-    std::vector<std::vector<Result>> different;
+    const std::vector<std::size_t> first = analysis::repeated_runs(group.runs);
+    std::vector<std::vector<analysis::Result>> different;
     for (std::size_t i = 0; i < first.size(); ++i)
       if (first[i] == i) different.push_back(std::move(group.runs[i]));
     group.repeats = first.size() - different.size();
@@ -145,7 +145,7 @@ json pooled_json(const json& points) {
     if (group.runs.size() < 2 && group.repeats == 0) continue;
     pooled.push_back({{"axes", group.axes},
                       {"runs", group.runs.size()},
-                      {"results", json::parse(results_json(pool(group.runs)))}});
+                      {"results", json::parse(analysis::results_json(analysis::pool(group.runs)))}});
     if (group.repeats > 0) pooled.back()["repeats_left_out"] = group.repeats;
   }
   return pooled;

@@ -20,8 +20,8 @@ double height_of_centre(const std::vector<sim::Bead>& beads) {
 
 }  // namespace
 
-Measured measure(sim::Simulation& run, AnalysisOptions options, const std::string& name, Progress& progress,
-                 const Observer& observer, StageTimes* times) {
+Measured measure(sim::Simulation& run, analysis::AnalysisOptions options, const std::string& name,
+                 Progress& progress, const Observer& observer, StageTimes* times) {
   Measured measured;
   std::optional<PrecisionRule> rule;
   const LiveTrajectory live(
@@ -34,12 +34,12 @@ Measured measure(sim::Simulation& run, AnalysisOptions options, const std::strin
       times);
   const sim::Scene& scene = run.scene();
   if (scene.until) rule.emplace(scene, live.info());
-  const bool rests = run.settled().time > 0 && run.settled().energy_per_bead < kAtRest;
+  const bool rests = run.settled().time > 0 && run.settled().energy_per_bead < analysis::kAtRest;
   if (!options.rest_height && scene.g() > 0 && rests && !run.system().beads.empty())
     options.rest_height = height_of_centre(run.system().beads);
   measured.rest_height = options.rest_height;
   observer.begin(live.info());
-  measured.results = analyze(live, options, Progress::none(), times);
+  measured.results = analysis::analyze(live, options, Progress::none(), times);
   measured.contact_fraction = run.contact_fraction();
   if (rule) {
     measured.precise = rule->is_reached();

@@ -16,7 +16,7 @@ namespace twincell::sweep {
 
 /// Results of a run.
 struct Measured {
-  std::vector<Result> results;
+  std::vector<analysis::Result> results;
   std::int64_t cycles = 0;            ///< cycles that were run and analysed
   std::optional<bool> precise;        ///< whether the scene's [until] was reached; empty without [until]
   std::string until;                  ///< the precision reached, in a sentence
@@ -37,7 +37,7 @@ struct Observer {
 /// the bed still has more than 0.005 m g sigma of energy per bead when settling ends.
 /// \param times receives the times of the stages of the simulation and of each observable; null: not timed
 /// \throws ConfigError, RunError, Interrupted
-Measured measure(sim::Simulation& run, AnalysisOptions options, const std::string& name, Progress& progress,
-                 const Observer& observer = {}, StageTimes* times = nullptr);
+Measured measure(sim::Simulation& run, analysis::AnalysisOptions options, const std::string& name,
+                 Progress& progress, const Observer& observer = {}, StageTimes* times = nullptr);
 
 }  // namespace twincell::sweep

@@ -42,7 +42,7 @@ std::string unquoted(const std::string& literal) {
 }
 
 void require_result(const Where& where, const std::string& name) {
-  const auto names = result_names();
+  const auto names = analysis::result_names();
   if (std::find(names.begin(), names.end(), name) == names.end())
     throw ConfigError(where, fmt::format("the analysis gives no result called '{}'; it gives {}.", name,
                                          fmt::join(names, ", ")));
@@ -62,8 +62,8 @@ Verdict read_verdict(const ConfigSection& s) {
   if (word && (result || above))
     throw ConfigError(s.where("verdict"),
                       "is given together with 'result' or 'above'; give only one of the two.");
-  if (word && *word == "bouncing") return {"bouncing", "s_b", kBouncingThreshold};
-  if (word) return {"convecting", "s_c", kConvectionThreshold};
+  if (word && *word == "bouncing") return {"bouncing", "s_b", analysis::kBouncingThreshold};
+  if (word) return {"convecting", "s_c", analysis::kConvectionThreshold};
   if (!result || !above)
     throw ConfigError(
         s.where("verdict"),

@@ -76,8 +76,8 @@ sim::RunState placed_in_turn(const sim::Scene& scene, Progress& progress) {
 }
 
 /// Value of the plan's verdict quantity; NaN if the run has none.
-double asked_of(const Plan& plan, const std::vector<Result>& results) {
-  const Result& result = find_result(results, plan.verdict->result);
+double asked_of(const Plan& plan, const std::vector<analysis::Result>& results) {
+  const analysis::Result& result = analysis::find_result(results, plan.verdict->result);
   if (!result.shape.empty() || !result.text.empty())
     throw ConfigError({.file = plan.file, .key = "search.result"},
                       fmt::format("'{}' is {}; a search compares one number", result.name,
@@ -122,12 +122,12 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
               if (writer) on_disk([&] { writer->append(frame); });
               return !rule || !rule->settled(frame);
             }};
-    AnalysisOptions options;
+    analysis::AnalysisOptions options;
     options.only = plan.results;
     const Measured measured = measure(run, options, "point " + point.id, progress, observer, times);
     const auto& results = measured.results;
     if (writer) on_disk([&] { writer->finish(); });
-    document["results"] = nlohmann::json::parse(results_json(results));
+    document["results"] = nlohmann::json::parse(analysis::results_json(results));
     if (measured.precise) document["until"] = {{"reached", *measured.precise}, {"text", measured.until}};
     if (measured.rest_height) document["rest_height"] = *measured.rest_height;
     if (measured.contact_fraction) document["contact_fraction"] = *measured.contact_fraction;

@@ -41,7 +41,7 @@ class PrecisionRule {
   std::vector<double> mass_;
   int phases_, dimension_;
   double v_p_;
-  BlockAverage cycles_;
+  analysis::BlockAverage cycles_;
   double sum_ = 0;
   std::int64_t next_look_;
   bool reached_ = false;

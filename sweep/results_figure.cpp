@@ -151,7 +151,7 @@ struct Rows {
 
 }  // namespace
 
-Figure results_figure(const std::string& collected, const FigureOptions& options) {
+analysis::Figure results_figure(const std::string& collected, const FigureOptions& options) {
   constexpr std::size_t kMostAxes = 2;
   if (options.over.size() > kMostAxes)
     throw ConfigError({.file = {}, .key = "--over"},
@@ -179,8 +179,8 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
   const std::string y = onsets ? fmt::format("{} at the onset of {}", document["onsets"][0].value("key", ""),
                                              document["onsets"][0].value("verdict", ""))
                                : result;
-  figure_style::Axis x_axis{.label = gnuplot_text(x)},
-      y_axis{.label = onsets ? gnuplot_text(y) : gnuplot_symbol(y)};
+  figure_style::Axis x_axis{.label = analysis::gnuplot_text(x)},
+      y_axis{.label = onsets ? analysis::gnuplot_text(y) : analysis::gnuplot_symbol(y)};
   // Curves in the order of their first value of the second axis, not of its text.
   std::vector<std::string> curves;
   std::map<std::string, Rows> rows;
@@ -210,7 +210,7 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
     }
   }
 
-  Figure f{.name = "sweep", .width = 620, .height = 500};
+  analysis::Figure f{.name = "sweep", .width = 620, .height = 500};
   std::string clauses;
   int block = 0;
   const auto add = [&](const std::string& data, const std::string& columns, const std::string& style) {
@@ -231,8 +231,9 @@ Figure results_figure(const std::string& collected, const FigureOptions& options
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const Rows& r = rows[curves[c]];
     const std::string title =
-        curves[c].empty() ? "notitle" : fmt::format("title '{}' noenhanced", gnuplot_plain_text(curves[c]));
-    const char* colour = colours::kCurves[c % colours::kCurves.size()];
+        curves[c].empty() ? "notitle"
+                          : fmt::format("title '{}' noenhanced", analysis::gnuplot_plain_text(curves[c]));
+    const char* colour = analysis::colours::kCurves[c % analysis::colours::kCurves.size()];
     const int symbol = kSymbols[c % kSymbols.size()];
     if (r.points > 1) add(r.whole, "1:2", fmt::format("with lines lc rgb '{}' notitle", colour));
     if (r.points > 0)

@@ -25,6 +25,6 @@ struct FigureOptions {
 /// \param collected text of collected_json()
 /// \throws ConfigError naming the result or axis that does not exist, with those that do; InputError if no
 /// point has the result
-Figure results_figure(const std::string& collected, const FigureOptions& options = {});
+analysis::Figure results_figure(const std::string& collected, const FigureOptions& options = {});
 
 }  // namespace twincell::sweep

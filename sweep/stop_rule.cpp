@@ -74,12 +74,12 @@ bool StopRule::settled(const Frame& frame) {
 }
 
 void StopRule::look() {
-  AnalysisOptions options;
+  analysis::AnalysisOptions options;
   options.only = {"s_b", "s_j"};
-  const auto results = analyze(tracers_, options);
+  const auto results = analysis::analyze(tracers_, options);
   const std::int64_t done = tracers_.frames().back().cycle + 1;
   if (verdict_.result == "s_c") {
-    const Result& s_j = find_result(results, "s_j");
+    const analysis::Result& s_j = analysis::find_result(results, "s_j");
     if (!s_j.present()) return;
     std::vector<double> squares;
     for (const double s : s_j.values)
@@ -95,7 +95,7 @@ void StopRule::look() {
                             done, cycles_, std::sqrt(most), verdict_.above);
     return;
   }
-  const Result& s_b = find_result(results, "s_b");
+  const analysis::Result& s_b = analysis::find_result(results, "s_b");
   const bool clear = s_b.present() && s_b.interval &&
                      (s_b.interval->low > 1.1 * verdict_.above || s_b.interval->high < 0.9 * verdict_.above);
   clear_ = clear ? clear_ + 1 : 0;

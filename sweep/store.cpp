@@ -50,7 +50,7 @@ void require_result(const JsonView& result, const Point& point) {
     (void)failed->text();
   else
     (void)result.at("results");
-  if (const auto results = result.find("results")) (void)results_from_json(*results);
+  if (const auto results = result.find("results")) (void)analysis::results_from_json(*results);
   if (const auto answer = result.find("answer"); answer && !answer->value().is_null())
     (void)answer->boolean();
   if (const auto cycles = result.find("n_cycles")) (void)cycles->integer(0);

@@ -31,8 +31,8 @@ struct Sides {
   std::vector<std::unique_ptr<H5mdReader>> trajectories;
   std::size_t n_experiments = 0;
 
-  [[nodiscard]] Side side_of(std::size_t i) const {
-    return i < n_experiments ? Side::experiment : Side::simulation;
+  [[nodiscard]] analysis::Side side_of(std::size_t i) const {
+    return i < n_experiments ? analysis::Side::experiment : analysis::Side::simulation;
   }
 };
 
@@ -62,12 +62,12 @@ void check_sides(const Sides& sides, const ComparingOptions& options, std::vecto
   const auto dimension = [&](std::size_t i) { return sides.trajectories[i]->info().box.dimension; };
   for (std::size_t i = 0; i < sides.trajectories.size(); ++i) {
     const H5mdReader& run = *sides.trajectories[i];
-    const std::size_t first = sides.side_of(i) == Side::experiment ? 0 : sides.n_experiments;
+    const std::size_t first = sides.side_of(i) == analysis::Side::experiment ? 0 : sides.n_experiments;
     if (dimension(i) != dimension(first))
-      throw ConfigError({.file = run.name(), .key = "--" + side_name(sides.side_of(i))},
+      throw ConfigError({.file = run.name(), .key = "--" + analysis::side_name(sides.side_of(i))},
                         fmt::format("has {} dimensions, and {} has {}; compare them in two calls.",
                                     dimension(i), sides.trajectories[first]->name(), dimension(first)));
-    if (sides.side_of(i) == Side::experiment && run.info().source == "simulation")
+    if (sides.side_of(i) == analysis::Side::experiment && run.info().source == "simulation")
       notes.push_back(fmt::format("{} is a simulation and is given as experiment.", run.name()));
   }
   const std::size_t n = sides.n_experiments;
@@ -111,7 +111,7 @@ fs::path stack_behind(const ComparingOptions& options, const TrajectorySource& t
 }
 
 /// Adds the camera's scale and the frames at the snapshots of an experiment.
-void show_frames(const TrajectoryInfo& info, const fs::path& stack, Run& run,
+void show_frames(const TrajectoryInfo& info, const fs::path& stack, analysis::Run& run,
                  std::vector<std::string>& notes) {
   if (info.tracking_json.empty()) return;  // not made by `track`
   double rotation_deg = 0, distortion = 0;
@@ -135,7 +135,7 @@ void show_frames(const TrajectoryInfo& info, const fs::path& stack, Run& run,
   }
   if (stack.empty()) return;
   std::vector<std::int64_t> numbers;
-  for (const Snapshot& moment : run.show.moments) numbers.push_back(moment.frame.step);
+  for (const analysis::Snapshot& moment : run.show.moments) numbers.push_back(moment.frame.step);
   try {
     const auto frames = open_frames(stack);
     constexpr int kLongest_px = 800;
@@ -146,9 +146,9 @@ void show_frames(const TrajectoryInfo& info, const fs::path& stack, Run& run,
 }
 
 /// Adds the folder to the names of runs whose files have the same name: "gamma-0.9/experiment.h5".
-void tell_apart(std::vector<Run>& runs, const Sides& sides) {
+void tell_apart(std::vector<analysis::Run>& runs, const Sides& sides) {
   std::map<std::string, int> count;
-  for (const Run& run : runs) ++count[run.name];
+  for (const analysis::Run& run : runs) ++count[run.name];
   for (std::size_t i = 0; i < runs.size(); ++i)
     if (count[runs[i].name] > 1) {
       const fs::path file = fs::absolute(sides.trajectories[i]->name());
@@ -157,19 +157,19 @@ void tell_apart(std::vector<Run>& runs, const Sides& sides) {
 }
 
 /// \throws ConfigError if two runs of one side are the same run: their scatter would come out too small
-void refuse_repeated_runs(const std::vector<Run>& runs) {
-  for (const Side side : {Side::experiment, Side::simulation}) {
-    std::vector<std::vector<Result>> results;
-    std::vector<const Run*> of_side;
-    for (const Run& run : runs)
+void refuse_repeated_runs(const std::vector<analysis::Run>& runs) {
+  for (const analysis::Side side : {analysis::Side::experiment, analysis::Side::simulation}) {
+    std::vector<std::vector<analysis::Result>> results;
+    std::vector<const analysis::Run*> of_side;
+    for (const analysis::Run& run : runs)
       if (run.side == side) {
         results.push_back(run.results);
         of_side.push_back(&run);
       }
-    const std::vector<std::size_t> first = repeated_runs(results);
+    const std::vector<std::size_t> first = analysis::repeated_runs(results);
     for (std::size_t i = 0; i < first.size(); ++i)
       if (first[i] != i)
-        throw ConfigError({.file = {}, .key = "--" + side_name(side)},
+        throw ConfigError({.file = {}, .key = "--" + analysis::side_name(side)},
                           fmt::format("{} and {} are the same run, to the last digit; give it only once.",
                                       of_side[first[i]]->name, of_side[i]->name));
   }
@@ -221,9 +221,9 @@ LikeCamera camera_of(const TrajectoryInfo& experiment, const fs::path& stack) {
 }
 
 /// Virtual experiment of a simulation of a match, over as many cycles as the experiment has.
-Checks::Filmed film(const Run& experiment, Run& simulation, std::size_t index,
-                    const TrajectorySource& trajectory, const TrajectoryInfo& of_experiment,
-                    const fs::path& stack, const ComparingOptions& options, Progress& progress) {
+analysis::Checks::Filmed film(const analysis::Run& experiment, analysis::Run& simulation, std::size_t index,
+                              const TrajectorySource& trajectory, const TrajectoryInfo& of_experiment,
+                              const fs::path& stack, const ComparingOptions& options, Progress& progress) {
   const LikeCamera like = options.camera ? LikeCamera{*options.camera, ""} : camera_of(of_experiment, stack);
   const CameraOptions& camera = like.options;
   std::size_t frames = experiment.n_frames;
@@ -236,27 +236,28 @@ Checks::Filmed film(const Run& experiment, Run& simulation, std::size_t index,
   const fs::path tracked = scratch.path / "filmed.h5";
   film_and_track(seen, camera, tracked, options.threads, simulation.show, progress);
   return {.run = index,
-          .seen = analyze(seen, options.analysis),
-          .filmed = analyze(H5mdReader(tracked), options.analysis),
+          .seen = analysis::analyze(seen, options.analysis),
+          .filmed = analysis::analyze(H5mdReader(tracked), options.analysis),
           .camera = fmt::format("{:.4g} px per bead, {} of {} frames{}", camera.pixels_per_sigma,
                                 seen.n_frames(), trajectory.n_frames(), like.origin)};
 }
 
 /// Analyses every trajectory and chooses its snapshots and camera frames for the report.
 /// \param checks receives the tracer lines of all runs
-std::vector<Run> analyse(const Sides& sides, const ComparingOptions& options, const ProgressOf& progress,
-                         std::vector<std::string>& notes, Checks& checks) {
-  std::vector<Run> runs;
+std::vector<analysis::Run> analyse(const Sides& sides, const ComparingOptions& options,
+                                   const ProgressOf& progress, std::vector<std::string>& notes,
+                                   analysis::Checks& checks) {
+  std::vector<analysis::Run> runs;
   const std::size_t most = snapshots_of_each(sides);
   for (std::size_t i = 0; i < sides.trajectories.size(); ++i) {
     const H5mdReader& trajectory = *sides.trajectories[i];
     const auto bar = progress(trajectory.name());
-    Run run = analyze_run(trajectory, sides.side_of(i), options.analysis, *bar);
-    for (const std::size_t f : representative_frames(trajectory, most))
-      run.show.moments.push_back(snapshot(trajectory, f, run.cutoff));
-    if (run.side == Side::experiment)
+    analysis::Run run = analysis::analyze_run(trajectory, sides.side_of(i), options.analysis, *bar);
+    for (const std::size_t f : analysis::representative_frames(trajectory, most))
+      run.show.moments.push_back(analysis::snapshot(trajectory, f, run.cutoff));
+    if (run.side == analysis::Side::experiment)
       show_frames(trajectory.info(), stack_behind(options, trajectory, i), run, notes);
-    for (auto& lines : tracer_lines(trajectory, i, options.analysis))
+    for (auto& lines : analysis::tracer_lines(trajectory, i, options.analysis))
       checks.tracers.push_back(std::move(lines));
     runs.push_back(std::move(run));
   }
@@ -266,11 +267,13 @@ std::vector<Run> analyse(const Sides& sides, const ComparingOptions& options, co
 
 /// Virtual experiments: the first simulation of every match that has both sides, as its experiment's camera
 /// and the tracking would show it. A simulation that cannot be filmed is left out, with a note.
-std::vector<Checks::Filmed> film_matches(const Sides& sides, const ComparingOptions& options,
-                                         const std::vector<Match>& matches, const ProgressOf& progress,
-                                         std::vector<std::string>& notes, std::vector<Run>& runs) {
-  std::vector<Checks::Filmed> filmed;
-  for (const Match& match : matches) {
+std::vector<analysis::Checks::Filmed> film_matches(const Sides& sides, const ComparingOptions& options,
+                                                   const std::vector<analysis::Match>& matches,
+                                                   const ProgressOf& progress,
+                                                   std::vector<std::string>& notes,
+                                                   std::vector<analysis::Run>& runs) {
+  std::vector<analysis::Checks::Filmed> filmed;
+  for (const analysis::Match& match : matches) {
     if (match.experiments.empty() || match.simulations.empty()) continue;
     const std::size_t e = match.experiments.front(), s = match.simulations.front();
     const H5mdReader& experiment = *sides.trajectories[e];
@@ -288,27 +291,28 @@ std::vector<Checks::Filmed> film_matches(const Sides& sides, const ComparingOpti
 }
 
 /// Drops pictures until those of all runs fit into the page, each run with the same share.
-void limit_pictures(std::vector<Run>& runs) {
+void limit_pictures(std::vector<analysis::Run>& runs) {
   std::size_t with_pictures = 0;
-  for (const Run& run : runs) with_pictures += run.show.pictures.empty() ? 0 : 1;
-  for (Run& run : runs) thin(run.show.pictures, kMostPictureBytes / std::max<std::size_t>(1, with_pictures));
+  for (const analysis::Run& run : runs) with_pictures += run.show.pictures.empty() ? 0 : 1;
+  for (analysis::Run& run : runs)
+    thin(run.show.pictures, kMostPictureBytes / std::max<std::size_t>(1, with_pictures));
 }
 
 }  // namespace
 
-Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress,
-                        std::vector<std::string>& notes) {
+analysis::Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress,
+                                  std::vector<std::string>& notes) {
   const Sides sides = read_sides(options);
   check_sides(sides, options, notes);
-  Comparison c;
+  analysis::Comparison c;
   c.runs = analyse(sides, options, progress, notes, c.checks);
   refuse_repeated_runs(c.runs);
-  c.matches = match_runs(c.runs, options.tolerance);
+  c.matches = analysis::match_runs(c.runs, options.tolerance);
   if (options.film) c.checks.filmed = film_matches(sides, options, c.matches, progress, notes, c.runs);
   limit_pictures(c.runs);
-  c.boundaries = find_boundaries(c.runs);
+  c.boundaries = analysis::find_boundaries(c.runs);
   for (const fs::path& file : options.sweeps) add_sweep(file, c);
-  c.differences = find_differences(c.runs, c.matches, c.checks);
+  c.differences = analysis::find_differences(c.runs, c.matches, c.checks);
   return c;
 }
 

@@ -22,7 +22,7 @@ struct ComparingOptions {
   /// still exist.
   std::vector<std::filesystem::path> stacks;
   std::vector<std::filesystem::path> sweeps;  ///< collected results of sweeps
-  AnalysisOptions analysis;
+  analysis::AnalysisOptions analysis;
   double tolerance = 0.02;  ///< of Gamma, as in match_runs
   bool film = true;         ///< run a virtual experiment for one simulation of each match
   /// Camera of the virtual experiment; absent: the defaults at the scale of the experiment, with the noise of
@@ -40,7 +40,7 @@ using ProgressOf = std::function<std::unique_ptr<Progress>(const std::string& st
 /// or beads would make the page larger than about 20 MB.
 /// \param notes sentences for the user: frames that no longer exist, simulations that could not be filmed
 /// \throws InputError, ConfigError, RunError as analyze_run
-Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress,
-                        std::vector<std::string>& notes);
+analysis::Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress,
+                                  std::vector<std::string>& notes);
 
 }  // namespace twincell::twin

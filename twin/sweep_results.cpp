@@ -42,19 +42,19 @@ std::optional<JsonView> value_of(const std::optional<JsonView>& results, const c
 }
 
 /// Phase from the analysis, or from s_b and s_c if the plan's `results` omit the phase.
-BedPhase phase_of(const std::optional<JsonView>& results) {
-  if (const auto phase = value_of(results, "phase")) return phase_named(phase->text());
+analysis::BedPhase phase_of(const std::optional<JsonView>& results) {
+  if (const auto phase = value_of(results, "phase")) return analysis::phase_named(phase->text());
   const auto scalar = [&](const char* name) {
     const auto value = value_of(results, name);
     return value ? value->number() : std::nan("");
   };
-  return bed_phase(scalar("s_b"), scalar("s_c"));
+  return analysis::bed_phase(scalar("s_b"), scalar("s_c"));
 }
 
-void add_points(const JsonView& document, Comparison& comparison) {
+void add_points(const JsonView& document, analysis::Comparison& comparison) {
   for (const JsonView& point : document.at("points").elements()) {
-    const BedPhase phase = phase_of(point.find("results"));
-    if (phase == BedPhase::undetermined) continue;
+    const analysis::BedPhase phase = phase_of(point.find("results"));
+    if (phase == analysis::BedPhase::undetermined) continue;
     const RunConditions at = sweep::conditions_from_json(conditions_of(point));
     if (!at.n_l || !at.gamma) continue;  // no place in the diagram: without gravity, for example
     comparison.sweep.push_back({.n_l = *at.n_l, .gamma = *at.gamma, .start = at.start, .phase = phase});
@@ -66,17 +66,17 @@ bool is_gamma(const std::string& key) {
   return key == "drive.gamma" || key == "drive.peak_acceleration_g";
 }
 
-void add_onsets(const JsonView& document, Comparison& comparison) {
+void add_onsets(const JsonView& document, analysis::Comparison& comparison) {
   const auto onsets = document.find("onsets");
   if (!onsets) return;
   for (const JsonView& onset : onsets->elements()) {
-    const BedPhase phase = phase_named(onset.at("verdict").text());
+    const analysis::BedPhase phase = analysis::phase_named(onset.at("verdict").text());
     const std::string key = onset.at("key").text();
-    if (phase == BedPhase::undetermined || !is_gamma(key)) continue;
+    if (phase == analysis::BedPhase::undetermined || !is_gamma(key)) continue;
     const JsonView at = conditions_of(onset);
     const std::optional<double> n_l = number(at, "n_l");
     if (!n_l) continue;
-    comparison.boundaries.push_back({.side = Side::simulation,
+    comparison.boundaries.push_back({.side = analysis::Side::simulation,
                                      .start = at.at("start").value().is_null() ? "" : at.at("start").text(),
                                      .onset = phase,
                                      .n_l = *n_l,
@@ -90,7 +90,7 @@ void add_onsets(const JsonView& document, Comparison& comparison) {
 
 }  // namespace
 
-void add_sweep(const fs::path& file, Comparison& comparison) {
+void add_sweep(const fs::path& file, analysis::Comparison& comparison) {
   const JsonView document = JsonView::parse(read_text_file(file), file.string());
   if (!document.value().is_object() || document.value().value("format", json()) != "twincell sweep 1")
     throw InputError({.file = file.string()},

@@ -12,6 +12,6 @@ namespace twincell::twin {
 /// onsets of bouncing and convecting, at the N_l, Gamma and start that the file states for each
 /// ("conditions"). \throws InputError if the file has another format, is damaged, or was collected by a
 /// version that did not store the conditions
-void add_sweep(const std::filesystem::path& file, Comparison& comparison);
+void add_sweep(const std::filesystem::path& file, analysis::Comparison& comparison);
 
 }  // namespace twincell::twin

@@ -16,7 +16,7 @@ namespace {
 
 /// Adds the pictures of the snapshots that were filmed, and the camera.
 void add_pictures(const TrajectorySource& filmed, const std::filesystem::path& frames,
-                  const CellDescription& cell, const TrackedStack& stack, Show& show) {
+                  const CellDescription& cell, const TrackedStack& stack, analysis::Show& show) {
   std::map<std::int64_t, std::int64_t> number_of_step;
   Frame frame;
   for (std::size_t f = 0; f < filmed.n_frames(); ++f) {
@@ -46,7 +46,8 @@ void add_pictures(const TrajectorySource& filmed, const std::filesystem::path& f
 }  // namespace
 
 void film_and_track(const TrajectorySource& simulation, const CameraOptions& camera,
-                    const std::filesystem::path& tracked, int threads, Show& show, Progress& progress) {
+                    const std::filesystem::path& tracked, int threads, analysis::Show& show,
+                    Progress& progress) {
   std::filesystem::path place = tracked;
   place += ".frames";
   const AtomicPath film(place, Product::whole_folder("a film"));  // not committed, so removed at the end

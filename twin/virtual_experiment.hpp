@@ -35,7 +35,7 @@ class Beginning : public TrajectorySource {
 /// identifies the frames)
 /// \throws ConfigError, RunError as render(), InputError as track_stack()
 void film_and_track(const TrajectorySource& simulation, const CameraOptions& camera,
-                    const std::filesystem::path& tracked, int threads, Show& show,
+                    const std::filesystem::path& tracked, int threads, analysis::Show& show,
                     Progress& progress = Progress::none());
 
 }  // namespace twincell::twin

@@ -9,7 +9,7 @@
 #include "analysis/observable/observable.hpp"
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 namespace {
 
@@ -124,4 +124,4 @@ const Colouring& colouring_named(const std::string& word, const TrajectorySource
                     fmt::format("is '{}', but must be one of: {}.", word, fmt::join(words, ", ")));
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

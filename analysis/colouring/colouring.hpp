@@ -9,7 +9,7 @@
 
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// A frame and its place in the trajectory.
 struct ColouredFrame {
@@ -36,4 +36,4 @@ const std::vector<Colouring>& colourings();
 const Colouring& colouring_named(const std::string& word, const TrajectorySource& source,
                                  const std::string& option);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -3,7 +3,7 @@
 #include "analysis/observable/ratio_density.hpp"
 #include "analysis/statistics/ratio_average.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"contact_force"},
@@ -104,4 +104,4 @@ class ContactForces : public Observable {
 
 constinit const ObservableEntry contact_force_observable = {kResults, &make_observable<ContactForces>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

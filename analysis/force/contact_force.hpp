@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 inline constexpr double kForceRange = 8;    ///< largest ratio of a force to the mean of its frame
 inline constexpr double kForceWidth = 0.1;  ///< width of a bin
@@ -29,4 +29,4 @@ inline constexpr double kForceWidth = 0.1;  ///< width of a bin
 /// D. M. Mueth, H. M. Jaeger & S. R. Nagel, Phys. Rev. E 57 (1998) 3164.
 extern const ObservableEntry contact_force_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

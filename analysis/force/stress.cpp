@@ -8,7 +8,7 @@
 #include "analysis/neighbours/bed_window.hpp"
 #include "analysis/observable/array_with_interval.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"stress"},      {"stress_kinetic"}, {"pressure"}, {"pressure_kinetic"},
@@ -188,4 +188,4 @@ class Stress : public Observable {
 
 constinit const ObservableEntry stress_observable = {kResults, &make_observable<Stress>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 inline constexpr double kStressSlab = 1;  ///< sigma, thickness of a slab of the profiles
 
@@ -36,4 +36,4 @@ inline constexpr double kStressSlab = 1;  ///< sigma, thickness of a slab of the
 /// I. Goldhirsch, Granular Matter 12 (2010) 239.
 extern const ObservableEntry stress_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -8,7 +8,7 @@
 
 #include "analysis/statistics/ratio_average.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"T_g"},         {"T_x"},     {"T_y"},          {"T_z"},
@@ -285,4 +285,4 @@ double granular_temperature(const Frame& frame, const std::vector<double>& mass)
 constinit const ObservableEntry granular_temperature_observable = {kResults,
                                                                    &make_observable<GranularTemperature>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

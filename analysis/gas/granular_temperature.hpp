@@ -5,7 +5,7 @@
 #include "analysis/observable/observable.hpp"
 #include "trajectory/temperature.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Granular temperature T_g of one frame, in m g sigma:  (1/2) (1/N) sum m_i |v_i - v_cm|^2, which is half
 /// the sum of temperature_components (trajectory/temperature.hpp).
@@ -34,4 +34,4 @@ double granular_temperature(const Frame& frame, const std::vector<double>& mass)
 /// averages over the time between them) and does not replace the velocity.
 extern const ObservableEntry granular_temperature_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -8,7 +8,7 @@
 
 #include "trajectory/centre_of_mass.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"profile_z"}, {"phi_z"},        {"T_z_z"},
@@ -168,4 +168,4 @@ double sphere_below(double radius, double height) {
 
 constinit const ObservableEntry profiles_observable = {kResults, &make_observable<Profiles>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

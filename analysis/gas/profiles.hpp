@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Exact area of the segment of a disc below a horizontal line at `height` above the disc's centre: 0 if
 /// height <= -radius, pi radius^2 if height >= radius.
@@ -34,4 +34,4 @@ inline constexpr std::size_t kProfileSamples = 100;  ///< minimum number of bead
 /// Sharma & Singh 2016, Figs. 12 to 16.
 extern const ObservableEntry profiles_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

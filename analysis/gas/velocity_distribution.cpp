@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"a2_x"}, {"a2_z"}};
@@ -61,4 +61,4 @@ class VelocityDistribution : public Observable {
 constinit const ObservableEntry velocity_distribution_observable = {kResults,
                                                                     &make_observable<VelocityDistribution>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

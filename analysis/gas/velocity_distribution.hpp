@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Second Sonine coefficient of one velocity component c, relative to the mean velocity of the beads of the
 /// frame:
@@ -23,4 +23,4 @@ namespace twincell {
 /// Granular Matter 1, 57 (1998).
 extern const ObservableEntry velocity_distribution_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

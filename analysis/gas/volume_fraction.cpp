@@ -6,7 +6,7 @@
 
 #include "trajectory/centre_of_mass.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"phi_top"}, {"phi_cm"}};
@@ -79,4 +79,4 @@ class VolumeFraction : public Observable {
 
 constinit const ObservableEntry volume_fraction_observable = {kResults, &make_observable<VolumeFraction>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

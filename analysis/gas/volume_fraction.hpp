@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Mean over frames of the volume of the beads (2D: area of the discs) divided by the volume (2D: area) of
 /// the cell from the plate's mean height up to a convention-dependent top. Results:
@@ -17,4 +17,4 @@ namespace twincell {
 /// need more volume than there is below the top (a bed that moves down with the plate).
 extern const ObservableEntry volume_fraction_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

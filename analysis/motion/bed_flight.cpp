@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"flight_time"}, {"flight_share"}};
@@ -247,4 +247,4 @@ class BedFlight : public Observable {
 
 constinit const ObservableEntry bed_flight_observable = {kResults, &make_observable<BedFlight>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

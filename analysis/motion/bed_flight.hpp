@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// The bed is in flight if the plate supports less than this share of its weight.
 inline constexpr double kFlyingSupport = 0.25;
@@ -33,4 +33,4 @@ inline constexpr double kFlyingSupport = 0.25;
 /// absent if the bed does not leave the plate.
 extern const ObservableEntry bed_flight_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

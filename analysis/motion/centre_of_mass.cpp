@@ -8,7 +8,7 @@
 
 #include "analysis/motion/tracers.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"h_cm"}, {"h_cm_k"}, {"h_cm_j"}, {"delta_h_cm"}, {"delta_h_bar"}};
@@ -154,4 +154,4 @@ std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& fr
 
 constinit const ObservableEntry centre_of_mass_observable = {kResults, &make_observable<CentreOfMass>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

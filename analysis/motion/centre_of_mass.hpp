@@ -8,7 +8,7 @@
 #include "analysis/observable/observable.hpp"
 #include "trajectory/centre_of_mass.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Maximum kinetic energy per bead of a bed at rest, m g sigma. The centre of mass can then still rise or
 /// sink by at most this number, in sigma. The limit is not 0, because smooth beds, on which a bead may glide
@@ -33,4 +33,4 @@ std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& fr
 /// Bhateja, Sharma & Singh 2016, Table II and Fig. 7.
 extern const ObservableEntry centre_of_mass_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

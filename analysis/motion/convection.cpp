@@ -8,7 +8,7 @@
 
 #include "analysis/motion/rolls.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"displacement_field"}, {"field_x"},           {"field_z"},
@@ -338,4 +338,4 @@ Circulation circulation_of(const DisplacementField& field) {
 
 constinit const ObservableEntry convection_observable = {kResults, &make_observable<Convection>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -7,7 +7,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Displacements averaged in square cells of the plane (x, z), row-major, with row 0 at the bottom. NaN where
 /// a cell has too few samples.
@@ -54,4 +54,4 @@ inline constexpr double kFieldFilling = 0.75;
 /// In three dimensions the field is the mean over y. Fortini & Huang 2015, sec. V.
 extern const ObservableEntry convection_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

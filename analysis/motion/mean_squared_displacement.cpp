@@ -8,7 +8,7 @@
 #include "analysis/observable/array_with_interval.hpp"
 #include "analysis/statistics/ratio_average.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"msd"}, {"msd_low"}, {"msd_high"}, {"msd_lag"}};
@@ -91,4 +91,4 @@ class MeanSquaredDisplacement : public Observable {
 constinit const ObservableEntry mean_squared_displacement_observable = {
     kResults, &make_observable<MeanSquaredDisplacement>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

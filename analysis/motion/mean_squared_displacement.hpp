@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 inline constexpr std::size_t kLongestLag = 32;  ///< cycles
 
@@ -25,4 +25,4 @@ inline constexpr std::size_t kLongestLag = 32;  ///< cycles
 /// In two dimensions d = 2 (x and z). Absent without drive phases.
 extern const ObservableEntry mean_squared_displacement_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

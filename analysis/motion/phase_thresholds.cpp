@@ -10,7 +10,7 @@
 #include "analysis/motion/tracer_line.hpp"
 #include "analysis/motion/tracers.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"s_k"},
@@ -534,4 +534,4 @@ double s_b_of(const std::vector<double>& s_k, SbForm form, double rest_height) {
 
 constinit const ObservableEntry phase_thresholds_observable = {kResults, &make_observable<PhaseThresholds>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

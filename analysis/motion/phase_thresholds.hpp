@@ -8,7 +8,7 @@
 #include "analysis/observable/observable.hpp"
 #include "core/choice.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Threshold of s_b above which the bed leaves the plate, sigma: half a pixel of paper 1's camera.
 inline constexpr double kBouncingThreshold = 1.0 / 30;
@@ -73,4 +73,4 @@ double s_b_of(const std::vector<double>& s_k, SbForm form, double rest_height);
 /// plate height, or no whole cycle (s_b).
 extern const ObservableEntry phase_thresholds_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

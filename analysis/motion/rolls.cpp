@@ -11,7 +11,7 @@
 #include <optional>
 #include <random>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr std::size_t kDraws = 999;
@@ -159,4 +159,4 @@ std::size_t count_rolls(const CirculationBlocks& blocks, double least) {
   return rolls;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

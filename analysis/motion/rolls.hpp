@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Probability of finding any roll in a bed without steady flow.
 inline constexpr double kRollFalseAlarm = 0.05;
@@ -43,4 +43,4 @@ std::vector<double> stream_function(const std::vector<double>& circulation, std:
 /// \pre blocks.blocks.size() >= kFewestRollBlocks
 std::size_t count_rolls(const CirculationBlocks& blocks, double least);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

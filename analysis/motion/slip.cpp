@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {
@@ -290,4 +290,4 @@ class Slip : public Observable {
 
 constinit const ObservableEntry slip_observable = {kResults, &make_observable<Slip>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// A bond has slipped if its vector changed by more than this within one period, sigma.
 inline constexpr double kSlipDistance = 0.2;
@@ -37,4 +37,4 @@ inline constexpr double kSlipDepth = 10;
 /// beds), the results are absent, not zero, and state the reason.
 extern const ObservableEntry slip_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -7,7 +7,7 @@
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/order/defects.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 /// At most `most` elements of `all`, evenly spread, with the first and the last.
@@ -59,4 +59,4 @@ std::vector<std::size_t> representative_frames(const TrajectorySource& trajector
   return chosen;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -8,7 +8,7 @@
 #include "analysis/neighbours/bond_order.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// One frame of a run with the data that a picture needs.
 struct Snapshot {
@@ -29,4 +29,4 @@ Snapshot snapshot(const TrajectorySource& trajectory, std::size_t index, double 
 /// 2
 std::vector<std::size_t> representative_frames(const TrajectorySource& trajectory, std::size_t most);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

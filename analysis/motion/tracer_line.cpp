@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -156,4 +156,4 @@ DriftVerdict judge_drift(const TracerLine& line, double noise) {
   return verdict;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

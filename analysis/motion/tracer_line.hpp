@@ -11,7 +11,7 @@
 #include "analysis/statistics/statistics.hpp"
 #include "core/choice.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Heights of the tracers at the beginnings of cycles, sigma.
 struct TracerLine {
@@ -80,4 +80,4 @@ struct DriftVerdict {
 /// \param noise standard uncertainty of one height, sigma; 0 if unknown
 DriftVerdict judge_drift(const TracerLine& line, double noise);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

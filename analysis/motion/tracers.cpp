@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 /// Half width of the band that contains a lattice row, sigma. Lattice rows are at least 1/2 apart, and
@@ -146,4 +146,4 @@ std::optional<double> plate_height(const TrajectoryInfo& info, const Frame& fram
   return info.drive->displacement(fraction, info.drive->cycle_at(frame.time, fraction));
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

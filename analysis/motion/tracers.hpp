@@ -10,7 +10,7 @@
 
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Slots of the tracers and how they were chosen.
 struct TracerChoice {
@@ -42,4 +42,4 @@ TracerChoice line_of_tracers(const TrajectoryInfo& info, const Frame& first, dou
 /// drive at the frame's phase (0 for a horizontal drive). Absent if neither is known.
 std::optional<double> plate_height(const TrajectoryInfo& info, const Frame& frame);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -7,7 +7,7 @@
 #include "analysis/observable/array_with_interval.hpp"
 #include "analysis/statistics/ratio_average.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"vacf"}, {"vacf_low"}, {"vacf_high"}, {"vacf_lag"}};
@@ -96,4 +96,4 @@ class VelocityAutocorrelation : public Observable {
 constinit const ObservableEntry velocity_autocorrelation_observable = {
     kResults, &make_observable<VelocityAutocorrelation>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

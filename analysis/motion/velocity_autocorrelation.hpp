@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 inline constexpr std::size_t kLongestVelocityLag = 32;  ///< frames
 
@@ -26,4 +26,4 @@ inline constexpr std::size_t kLongestVelocityLag = 32;  ///< frames
 /// Absent without velocities. Allen & Tildesley, Computer Simulation of Liquids, sec. 2.7.
 extern const ObservableEntry velocity_autocorrelation_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace twincell {
+namespace twincell::analysis {
 
 double BedWindow::depth(const Vec3& r) const {
   double nearest = std::numeric_limits<double>::infinity();
@@ -43,4 +43,4 @@ std::vector<Vec3> present_centres(const Frame& frame) {
   return centres;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

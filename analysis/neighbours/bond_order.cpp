@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -76,4 +76,4 @@ Structure structure_of(const BondOrder& order, std::size_t bead) {
   return Structure::other;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

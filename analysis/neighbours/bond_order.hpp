@@ -6,7 +6,7 @@
 
 #include "analysis/neighbours/neighbours.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Bond order of every bead. NaN where undefined.
 struct BondOrder {
@@ -51,4 +51,4 @@ enum class Structure {
 };
 Structure structure_of(const BondOrder& order, std::size_t bead);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 using Cell = std::array<std::int64_t, 3>;
@@ -157,4 +157,4 @@ Neighbours find_neighbours(const Frame& frame, const Box& box, double cutoff) {
   return result;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -7,7 +7,7 @@
 
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Neighbours of every bead of one frame. The neighbours of bead i are the entries first[i] .. first[i + 1] -
 /// 1.
@@ -32,4 +32,4 @@ struct Neighbours {
 /// is found. \pre cutoff > 0
 Neighbours find_neighbours(const Frame& frame, const Box& box, double cutoff);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

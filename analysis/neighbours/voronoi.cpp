@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 /// Remaining segment of the bisector of a bond: points bond/2 + s m, low <= s <= high, with m the bond
@@ -96,4 +96,4 @@ VoronoiCells voronoi_cells(const Frame& frame, const Box& box, double radius) {
   return cells;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -7,7 +7,7 @@
 
 #include "analysis/neighbours/neighbours.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Two beads are neighbours only if their shared edge is longer than this, sigma. In a square lattice four
 /// cells meet in a point, and rounding may stretch that point into a short edge; such an edge must not create
@@ -41,4 +41,4 @@ struct VoronoiCells {
 /// radius
 VoronoiCells voronoi_cells(const Frame& frame, const Box& box, double radius = kCellRadius);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

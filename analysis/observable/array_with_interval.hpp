@@ -9,7 +9,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Three results with one element per series: `r` with the means, and NAME_low and NAME_high with the ends of
 /// their 95 % intervals. An element of these is NaN where the series has no interval. All three are absent
@@ -47,4 +47,4 @@ std::vector<Result> array_with_interval(const std::vector<Average>& series, cons
   return {value, end("_low", low, "lower"), end("_high", high, "upper")};
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

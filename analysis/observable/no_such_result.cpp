@@ -5,7 +5,7 @@
 #include "analysis/observable/observable.hpp"
 #include "core/nearest_word.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 std::string no_such_result(const std::string& name) {
   const std::string near = nearest_word(name, result_names());
@@ -13,4 +13,4 @@ std::string no_such_result(const std::string& name) {
                      near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near));
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -23,7 +23,7 @@
 #include "core/progress.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// One measured quantity, or the reason why it is absent.
 struct Result {
@@ -193,4 +193,4 @@ const Result& find_result(const std::vector<Result>& results, const std::string&
 /// The result called `name`, or null.
 const Result* seek_result(const std::vector<Result>& results, const std::string& name);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

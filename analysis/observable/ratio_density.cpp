@@ -2,7 +2,7 @@
 
 #include "analysis/observable/array_with_interval.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 RatioDensity::RatioDensity(double range, double width)
     : width_(width), density_(static_cast<std::size_t>(range / width + 0.5)) {}
@@ -43,4 +43,4 @@ std::vector<Result> RatioDensity::results(const std::string& name, const std::st
   return all;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -9,7 +9,7 @@
 #include "analysis/observable/observable.hpp"
 #include "analysis/statistics/statistics.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Probability density of x / <x>, <x> the mean over a frame; mean of the densities of the frames.
 class RatioDensity {
@@ -32,4 +32,4 @@ class RatioDensity {
   std::vector<BlockAverage> density_;
 };
 
-}  // namespace twincell
+}  // namespace twincell::analysis

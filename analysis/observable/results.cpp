@@ -11,7 +11,7 @@
 #include "core/json_text.hpp"
 #include "core/json_view.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 std::string value_text(const Result& r) {
@@ -219,4 +219,4 @@ void write_results(const std::filesystem::path& path, const std::vector<Result>&
   output.commit();
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -9,8 +9,10 @@
 #include "analysis/observable/observable.hpp"
 
 namespace twincell {
-
 class JsonView;
+}
+
+namespace twincell::analysis {
 
 /// Text table: value, interval, unit and count of each scalar, then how each result is computed. For an array
 /// the table gives its shape and range.
@@ -37,4 +39,4 @@ std::vector<Result> results_from_json(const JsonView& results);
 void write_results(const std::filesystem::path& path, const std::vector<Result>& results,
                    const std::string& provenance_json);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

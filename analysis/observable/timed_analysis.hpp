@@ -7,7 +7,7 @@
 #include "analysis/observable/observable.hpp"
 #include "core/stage_times.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// As `analyze` of observable.hpp, with the same results.
 /// \param times receives the times of "reading" and of each observable, in bead-frames, under its name in
@@ -16,4 +16,4 @@ namespace twincell {
 std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOptions& options,
                             Progress& progress, StageTimes* times);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

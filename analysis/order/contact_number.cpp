@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"contact_number"}, {"contact_number_inside"}};
@@ -70,4 +70,4 @@ class ContactNumber : public Observable {
 
 constinit const ObservableEntry contact_number_observable = {kResults, &make_observable<ContactNumber>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Two beads touch if their centres are at most this factor times the sum of their radii apart. Positions
 /// from images scatter by 0.03 sigma, and overlaps of simulated beads are smaller; the same distance on both
@@ -25,4 +25,4 @@ inline constexpr double kContactReach = 1.05;
 /// Intervals: block averages over frames. C. Thornton, Geotechnique 50 (2000) 43.
 extern const ObservableEntry contact_number_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {
@@ -186,4 +186,4 @@ Defects find_defects(const VoronoiCells& cells) {
 
 constinit const ObservableEntry defects_observable = {kResults, &make_observable<DefectsObservable>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

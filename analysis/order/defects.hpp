@@ -7,7 +7,7 @@
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// The defects of one frame. Only enclosed beads (VoronoiCells) are counted: at a wall or a free surface a
 /// bead has fewer neighbours without being a defect.
@@ -42,4 +42,4 @@ Defects find_defects(const VoronoiCells& cells);
 /// by the Delaunay triangulation follows Nelson & Halperin 1979.
 extern const ObservableEntry defects_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"grains"},
@@ -180,4 +180,4 @@ Grains find_grains(const BondOrder& order, const VoronoiCells& cells, bool fill)
 
 constinit const ObservableEntry grains_observable = {kResults, &make_observable<GrainsObservable>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -8,7 +8,7 @@
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 inline constexpr double kGrainOrder = 0.9;     ///< minimum psi6 of a bead in the core of a grain
 inline constexpr double kGrainTurn = 5;        ///< degrees; largest misorientation of neighbours in one grain
@@ -42,4 +42,4 @@ Grains find_grains(const BondOrder& order, const VoronoiCells& cells, bool fill 
 /// cell that is not planar. Fortini & Huang 2015, sec. III.
 extern const ObservableEntry grains_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"q6"},
@@ -97,4 +97,4 @@ class BondOrderObservable : public Observable {
 
 constinit const ObservableEntry bond_order_observable = {kResults, &make_observable<BondOrderObservable>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

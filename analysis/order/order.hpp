@@ -5,7 +5,7 @@
 #include "analysis/neighbours/bond_order.hpp"
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Bond order with the neighbour rule of the analysis; definitions in bond_order.hpp. Results:
 ///
@@ -17,4 +17,4 @@ namespace twincell {
 /// Absent in a cell that is not planar.
 extern const ObservableEntry bond_order_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

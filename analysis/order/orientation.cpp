@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"ordered_fraction"},
@@ -120,4 +120,4 @@ class Orientation : public Observable {
 
 constinit const ObservableEntry orientation_observable = {kResults, &make_observable<Orientation>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// A bead is ordered if its psi6 is larger than this (Fortini & Huang 2015, Fig. 1: "hexagonally ordered").
 inline constexpr double kOrdered = 0.9;
@@ -23,4 +23,4 @@ inline constexpr double kOrientationWidth = 10;
 /// Fortini & Huang 2015, Fig. 2. Absent in a cell that is not planar.
 extern const ObservableEntry orientation_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

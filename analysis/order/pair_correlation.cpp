@@ -7,7 +7,7 @@
 #include "analysis/neighbours/bed_window.hpp"
 #include "analysis/observable/array_with_interval.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"g_r"},          {"g_r_low"}, {"g_r_high"},
@@ -112,4 +112,4 @@ class PairCorrelation : public Observable {
 
 constinit const ObservableEntry pair_correlation_observable = {kResults, &make_observable<PairCorrelation>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

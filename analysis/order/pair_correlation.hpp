@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 inline constexpr double kPairCorrelationRange = 4;     ///< sigma, largest distance of g(r)
 inline constexpr double kPairCorrelationWidth = 0.05;  ///< sigma, width of a bin
@@ -29,4 +29,4 @@ inline constexpr double kPairCorrelationWidth = 0.05;  ///< sigma, width of a bi
 /// B. D. Ripley, Statistical Inference for Spatial Processes, Cambridge 1988, ch. 3.
 extern const ObservableEntry pair_correlation_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -8,7 +8,7 @@
 #include "analysis/neighbours/bed_window.hpp"
 #include "analysis/observable/array_with_interval.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {
@@ -191,4 +191,4 @@ class StructureFactor : public Observable {
 
 constinit const ObservableEntry structure_factor_observable = {kResults, &make_observable<StructureFactor>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

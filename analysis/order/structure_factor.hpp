@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 inline constexpr double kStructureFactorRange = 16;   ///< 1/sigma, largest wavenumber
 inline constexpr double kStructureFactorWidth = 0.2;  ///< 1/sigma, width of a bin
@@ -33,4 +33,4 @@ inline constexpr double kStructureFactorWidth = 0.2;  ///< 1/sigma, width of a b
 /// J.-P. Hansen & I. R. McDonald, Theory of Simple Liquids, sec. 4.1; F. J. Harris, Proc. IEEE 66 (1978) 51.
 extern const ObservableEntry structure_factor_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

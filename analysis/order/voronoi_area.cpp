@@ -4,7 +4,7 @@
 
 #include "analysis/observable/ratio_density.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"voronoi_area"},
@@ -80,4 +80,4 @@ class VoronoiArea : public Observable {
 
 constinit const ObservableEntry voronoi_area_observable = {kResults, &make_observable<VoronoiArea>};
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -4,7 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 inline constexpr double kVoronoiAreaRange = 3;     ///< largest ratio of an area to the mean of its frame
 inline constexpr double kVoronoiAreaWidth = 0.05;  ///< width of a bin
@@ -28,4 +28,4 @@ inline constexpr double kVoronoiAreaWidth = 0.05;  ///< width of a bin
 /// Planar beds only. F. W. Starr et al., Phys. Rev. Lett. 89 (2002) 125501.
 extern const ObservableEntry voronoi_area_observable;
 
-}  // namespace twincell
+}  // namespace twincell::analysis

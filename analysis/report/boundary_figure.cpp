@@ -8,7 +8,7 @@
 
 #include "analysis/report/gnuplot_text.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 /// Symbols of a phase: a small sign for points, a colour of the palette.
@@ -151,4 +151,4 @@ Figure boundary_figure(const Comparison& c) {
   return f;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -5,7 +5,7 @@
 #include "analysis/report/figures.hpp"
 #include "analysis/runs/comparison.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// "boundaries": onsets of bouncing (blue) and of convecting (vermilion) with their intervals over N_l sigma,
 /// of experiment (open circle), simulation (filled circle) and sweep (square, joined by lines for each
@@ -14,4 +14,4 @@ namespace twincell {
 /// a sweep
 Figure boundary_figure(const Comparison& comparison);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

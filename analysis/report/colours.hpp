@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace twincell::colours {
+namespace twincell::analysis::colours {
 
 inline constexpr const char* kBlue = "#0072B2";
 inline constexpr const char* kOrange = "#E69F00";
@@ -36,4 +36,4 @@ inline std::string for_gnuplot() {
   return text;
 }
 
-}  // namespace twincell::colours
+}  // namespace twincell::analysis::colours

@@ -16,14 +16,14 @@ struct SeriesStyle {
   int point;
 };
 /// Each colour has its own shape, so that a print without colours can be read.
-constexpr std::array<SeriesStyle, 8> kSeries = {{{colours::kCurves[0], kCircle},
-                                                 {colours::kCurves[1], kTriangle},
-                                                 {colours::kCurves[2], kSquare},
-                                                 {colours::kCurves[3], kDiamond},
-                                                 {colours::kCurves[4], kDown},
-                                                 {colours::kCurves[5], kPentagon},
-                                                 {colours::kCurves[6], unfilled(kCircle)},
-                                                 {colours::kGrey, unfilled(kSquare)}}};
+constexpr std::array<SeriesStyle, 8> kSeries = {{{analysis::colours::kCurves[0], kCircle},
+                                                 {analysis::colours::kCurves[1], kTriangle},
+                                                 {analysis::colours::kCurves[2], kSquare},
+                                                 {analysis::colours::kCurves[3], kDiamond},
+                                                 {analysis::colours::kCurves[4], kDown},
+                                                 {analysis::colours::kCurves[5], kPentagon},
+                                                 {analysis::colours::kCurves[6], unfilled(kCircle)},
+                                                 {analysis::colours::kGrey, unfilled(kSquare)}}};
 
 constexpr double kMargin = 0.04;
 /// Logarithmic axes shorter than this have tics at 1, 2, 5 times a power of ten.
@@ -107,7 +107,7 @@ std::string terminal(const std::string& kind, int width, int height) {
 }
 
 std::string head() {
-  std::string s = colours::for_gnuplot();
+  std::string s = analysis::colours::for_gnuplot();
   s += "set encoding utf8\n"
        "set border lw 1 lc rgb '#444444'\n"
        "set tics textcolor rgb '#222222'\n"

@@ -21,7 +21,7 @@
 
 extern char** environ;
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 using namespace colours;
@@ -631,4 +631,4 @@ Figure snapshots_figure(const std::vector<Run>& runs, const Match& match, const 
   return f;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -10,7 +10,7 @@
 
 #include "analysis/runs/phase_diagram.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// A figure as text.
 struct Figure {
@@ -55,4 +55,4 @@ Figure beads_figure(const std::vector<BeadPanel>& panels, const std::string& nam
 /// coloured by local structure (Fortini & Huang 2015, Fig. 1).
 Figure snapshots_figure(const std::vector<Run>& runs, const Match& match, const std::string& name);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -8,7 +8,7 @@
 
 #include "core/escape.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 /// `text` without characters that could end a quoted string; the characters in `marks` get a backslash.
@@ -107,4 +107,4 @@ bool is_figure_name(std::string_view name) {
          });
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// `text` for use between single quotes, escaped so that gnuplot's enhanced text mode shows it literally.
 /// Special characters of enhanced text get a backslash. Quotes and backquotes become typographic quotes, so
@@ -28,4 +28,4 @@ std::string gnuplot_formula(std::string_view formula);
 /// beginning with `-` or `.`.
 bool is_figure_name(std::string_view name);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

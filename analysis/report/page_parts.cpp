@@ -5,7 +5,7 @@
 
 #include "core/json_text.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 namespace embedded {  // embedded into the program by cmake/embed.cmake
 extern const std::string_view page_css;
@@ -53,4 +53,4 @@ std::string data_uri(const std::string& type, std::string_view bytes) {
   return "data:" + type + ";base64," + base64(bytes);
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// The style sheet of the program's pages (page.css).
 std::string_view page_style();
@@ -22,4 +22,4 @@ std::string json_script_text(const nlohmann::json& document);
 /// \param type media type, as "image/png"
 std::string data_uri(const std::string& type, std::string_view bytes);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -21,7 +21,7 @@
 #include "core/json_text.hpp"
 #include "core/provenance.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 namespace embedded {  // files of analysis/report/, embedded into the program by cmake/embed.cmake
 extern const std::string_view page_js, plotly_js, plotly_license;
@@ -723,4 +723,4 @@ void write_report(const std::filesystem::path& folder, const Comparison& c,
   output.commit();
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -9,7 +9,7 @@
 #include "core/output_kind.hpp"
 #include "core/progress.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// The comparison as text: the conclusion, the phases of both sides at each drive strength, the phase
 /// boundaries, and all differences with their attribution.
@@ -34,4 +34,4 @@ inline Product report_folder() {
 void write_report(const std::filesystem::path& folder, const Comparison& comparison,
                   const std::string& provenance_json, Progress& progress = Progress::none());
 
-}  // namespace twincell
+}  // namespace twincell::analysis

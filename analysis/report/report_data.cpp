@@ -8,7 +8,7 @@
 #include "analysis/observable/results.hpp"
 #include "analysis/report/page_parts.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 using nlohmann::json;
@@ -164,4 +164,4 @@ std::string report_data(const Comparison& comparison) {
   return json_script_text(document);
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

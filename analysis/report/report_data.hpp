@@ -6,7 +6,7 @@
 
 #include "analysis/runs/comparison.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Text of one JSON object, safe inside a script element, with these members:
 ///
@@ -20,4 +20,4 @@ namespace twincell {
 /// - matches, boundaries, sweep: as in Comparison
 std::string report_data(const Comparison& comparison);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

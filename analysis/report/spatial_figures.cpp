@@ -11,7 +11,7 @@
 #include "analysis/report/colours.hpp"
 #include "analysis/report/figure_style.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 using namespace colours;
@@ -267,4 +267,4 @@ std::vector<Figure> spatial_figures(const std::vector<Result>& results, const Tr
   return figures;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -7,7 +7,7 @@
 #include "analysis/observable/observable.hpp"
 #include "analysis/report/figures.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// The displacement field as arrows (results displacement_field, field_x, field_z), magnified so that the
 /// longest arrow is as long as a cell is wide. The colours distinguish up and down.
@@ -27,4 +27,4 @@ Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const Anal
 std::vector<Figure> spatial_figures(const std::vector<Result>& results, const TrajectorySource& trajectory,
                                     const AnalysisOptions& options);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -9,7 +9,7 @@
 #include "analysis/runs/phase_boundaries.hpp"
 #include "analysis/runs/phase_diagram.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// A point of a sweep, analysed elsewhere; its frames are not kept.
 struct SweepPoint {
@@ -29,4 +29,4 @@ struct Comparison {
   std::vector<SweepPoint> sweep;
 };
 
-}  // namespace twincell
+}  // namespace twincell::analysis

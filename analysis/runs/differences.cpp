@@ -10,7 +10,7 @@
 #include "analysis/motion/tracers.hpp"
 #include "analysis/statistics/statistics.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 /// A difference is significant if it exceeds this many standard errors.
@@ -289,4 +289,4 @@ std::string real_differences_text(const std::vector<Difference>& differences,
          fmt::format("{} other numbers agree within their errors (differences.csv in the report).\n", others);
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

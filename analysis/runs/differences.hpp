@@ -17,7 +17,7 @@
 
 #include "analysis/runs/phase_diagram.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// A number with its standard error; the error is absent if unknown.
 struct Measured {
@@ -90,4 +90,4 @@ std::string differences_text(const std::vector<Difference>& differences, const s
 std::string real_differences_text(const std::vector<Difference>& differences,
                                   const std::vector<Match>& matches);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

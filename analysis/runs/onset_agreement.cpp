@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace twincell {
+namespace twincell::analysis {
 
 OnsetAgreement agreement_of(const PhaseBoundary& a, const PhaseBoundary& b) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -51,4 +51,4 @@ std::vector<std::string> onset_sentences(const std::vector<PhaseBoundary>& bound
   return sentences;
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -7,7 +7,7 @@
 
 #include "analysis/runs/phase_boundaries.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Agreement of two onsets. The interval of an onset reaches from the strongest drive without the phase to
 /// the weakest drive with it; without one of them it is open.
@@ -22,4 +22,4 @@ OnsetAgreement agreement_of(const PhaseBoundary& a, const PhaseBoundary& b);
 /// (within 10 %), with both intervals and their agreement. Empty if no onset has both sides.
 std::vector<std::string> onset_sentences(const std::vector<PhaseBoundary>& boundaries);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

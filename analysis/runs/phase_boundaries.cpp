@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 /// Drive strengths of the runs with and without a phase.
@@ -89,4 +89,4 @@ std::string boundary_text(const PhaseBoundary& boundary) {
                         : fmt::format("below {:.3g}", *boundary.above);
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -8,7 +8,7 @@
 
 #include "analysis/runs/phase_diagram.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// A point on a phase boundary (Fortini & Huang 2015, Fig. 3): bracketed by runs, or fitted by a sweep.
 struct PhaseBoundary {
@@ -41,4 +41,4 @@ std::string boundary_of(const PhaseBoundary& boundary);
 /// Position of a boundary in Gamma: "1.25 ± 0.35", "above 2.5", "below 0.9".
 std::string boundary_text(const PhaseBoundary& boundary);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

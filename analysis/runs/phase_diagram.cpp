@@ -7,7 +7,7 @@
 
 #include "analysis/motion/tracers.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 /// Index of the first (`forward`) or the last frame at phase 0; `start` if there is no such frame. If the
@@ -109,4 +109,4 @@ std::string verdict_word(const std::vector<Run>& runs, const Match& match) {
   return std::string(row_of(kMatchVerdicts, verdict(runs, match)).word);
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

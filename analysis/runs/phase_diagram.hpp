@@ -13,7 +13,7 @@
 #include "analysis/order/order.hpp"
 #include "core/choice.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Origin of a run.
 enum class Side { experiment, simulation };
@@ -92,4 +92,4 @@ MatchVerdict verdict(const std::vector<Run>& runs, const Match& match);
 /// The word of the verdict on a match.
 std::string verdict_word(const std::vector<Run>& runs, const Match& match);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

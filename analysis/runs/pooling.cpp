@@ -18,7 +18,7 @@
 #include "analysis/statistics/statistics.hpp"
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -327,4 +327,4 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
   }
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

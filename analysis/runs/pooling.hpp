@@ -8,7 +8,7 @@
 
 #include "analysis/observable/observable.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// The pooled results of all runs, in the order of the first run.
 ///
@@ -39,4 +39,4 @@ std::vector<std::size_t> repeated_runs(const std::vector<std::vector<Result>>& r
 /// cycle, kind of start; or if both contain the same run, bead for bead \pre every trajectory has frames
 void require_one_condition(const std::vector<const TrajectorySource*>& trajectories);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr std::size_t kMostMeans = 4096;
@@ -49,4 +49,4 @@ std::string RatioAverage::why_no_interval(const std::string& of_what) const {
   return linearised().why_no_interval(of_what);
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

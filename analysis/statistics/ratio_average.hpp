@@ -10,7 +10,7 @@
 
 #include "analysis/statistics/statistics.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// Ratio R = sum a/sum b of a series of pairs (a, b) of any length, in constant memory. To first order, the
 /// scatter of the ratio is that of
@@ -41,4 +41,4 @@ class RatioAverage {
   double a_ = 0, b_ = 0;  ///< sums of all pairs
 };
 
-}  // namespace twincell
+}  // namespace twincell::analysis

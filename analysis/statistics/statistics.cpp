@@ -11,7 +11,7 @@
 #include <numeric>
 #include <random>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -105,7 +105,7 @@ double BlockAverage::variance() const {
 }
 
 double BlockAverage::correlation_time() const {
-  const double coarse = twincell::correlation_time(coarse_);
+  const double coarse = twincell::analysis::correlation_time(coarse_);
   if (coarse_length_ == 1 || !(variance() > 0)) return coarse;
   // The variance of the mean is the same in the coarse and in the full series, which gives tau of the full
   // one.
@@ -343,4 +343,4 @@ Interval wilson_interval(double successes, double trials, const std::string& of_
   return {std::max(0.0, centre - half), std::min(1.0, centre + half), 0.95, "Wilson's over " + of_what};
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

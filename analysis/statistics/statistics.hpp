@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace twincell {
+namespace twincell::analysis {
 
 /// A confidence interval and the method that gave it.
 struct Interval {
@@ -123,4 +123,4 @@ Interval binomial_interval(double successes, double trials, const std::string& o
 /// 95 %. \pre 0 < successes < trials
 Interval wilson_interval(double successes, double trials, const std::string& of_what);
 
-}  // namespace twincell
+}  // namespace twincell::analysis

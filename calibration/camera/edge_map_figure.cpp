@@ -7,8 +7,8 @@
 
 namespace twincell::calibration {
 
-Figure edge_map_figure(const CellGeometry& geometry) {
-  Figure f{.name = "edges", .title = "Residuals of walls and plate", .width = 640, .height = 520};
+analysis::Figure edge_map_figure(const CellGeometry& geometry) {
+  analysis::Figure f{.name = "edges", .title = "Residuals of walls and plate", .width = 640, .height = 520};
   constexpr std::size_t kMost = 4000;
   const std::size_t stride = std::max<std::size_t>(1, geometry.residuals.size() / kMost);
   f.data = "# x, y, residual, px\n";

@@ -8,6 +8,6 @@
 namespace twincell::calibration {
 
 /// "edges": map of the residuals in px over the picture, at most 8000 points.
-Figure edge_map_figure(const CellGeometry& geometry);
+analysis::Figure edge_map_figure(const CellGeometry& geometry);
 
 }  // namespace twincell::calibration

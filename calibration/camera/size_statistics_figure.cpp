@@ -7,8 +7,8 @@
 
 namespace twincell::calibration {
 
-Figure size_statistics_figure(const SizeStatistics& census, double unit_px) {
-  Figure f{.name = "beads", .title = "Diameters of the beads", .width = 560, .height = 400};
+analysis::Figure size_statistics_figure(const SizeStatistics& census, double unit_px) {
+  analysis::Figure f{.name = "beads", .title = "Diameters of the beads", .width = 560, .height = 400};
   const bool px = std::isfinite(unit_px);
   const double unit = px ? unit_px : 1;
   const std::vector<double>& d = census.diameters;

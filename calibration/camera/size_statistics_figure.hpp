@@ -9,6 +9,6 @@ namespace twincell::calibration {
 
 /// "beads": histogram of the diameters. \param unit_px pixels per length unit of `census`; NaN: the axis is
 /// in the unit of `census`, sigma
-Figure size_statistics_figure(const SizeStatistics& census, double unit_px);
+analysis::Figure size_statistics_figure(const SizeStatistics& census, double unit_px);
 
 }  // namespace twincell::calibration

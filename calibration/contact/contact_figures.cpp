@@ -10,8 +10,8 @@
 
 namespace twincell::calibration {
 
-Figure bounce_figure(const BounceFit& fit) {
-  Figure f{.name = "bounce", .title = "Restitution of each impact", .width = 560, .height = 400};
+analysis::Figure bounce_figure(const BounceFit& fit) {
+  analysis::Figure f{.name = "bounce", .title = "Restitution of each impact", .width = 560, .height = 400};
   f.data = "# speed, e_n, error\n";
   figure_style::Axis speed{.label = "impact speed"}, e_n{.label = "e_n"};
   for (const double side : {-1.96, 1.96}) e_n.show(fit.restitution + side * fit.restitution_error);
@@ -33,8 +33,8 @@ Figure bounce_figure(const BounceFit& fit) {
   return f;
 }
 
-Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, double shape) {
-  Figure f{.name = "collisions", .title = "Collisions of two beads", .width = 720, .height = 400};
+analysis::Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, double shape) {
+  analysis::Figure f{.name = "collisions", .title = "Collisions of two beads", .width = 720, .height = 400};
   double largest = 0;
   figure_style::Axis speed{.label = "impact speed, σ/t_0", .low = 0},
       e_n{.label = "e_n", .low = 0, .high = 1}, psi_1{.label = "Ψ_1", .low = 0}, psi_2{.label = "Ψ_2"};
@@ -73,20 +73,20 @@ Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, dou
   return f;
 }
 
-Figure profile_figure(const Inference& inference) {
+analysis::Figure profile_figure(const Inference& inference) {
   const std::size_t n = inference.profiles.size();
   double highest = 0;
   for (const Profile& p : inference.profiles) highest = std::max(highest, p.drop);
-  Figure f{.name = "profile",
-           .title = "Profiles of the parameters",
-           .width = static_cast<int>(420 * n),
-           .height = 400};
+  analysis::Figure f{.name = "profile",
+                     .title = "Profiles of the parameters",
+                     .width = static_cast<int>(420 * n),
+                     .height = 400};
   f.plot = fmt::format(
       "set multiplot layout 1,{}\nset yrange [0:{:.6g}]\nset ylabel 'χ^2 above its minimum'\nunset key\n", n,
       3 * highest);
   for (std::size_t i = 0; i < n; ++i) {
     const Profile& p = inference.profiles[i];
-    f.data += fmt::format("# {}, chi^2 above its least\n", gnuplot_plain_text(p.sought.name));
+    f.data += fmt::format("# {}, chi^2 above its least\n", analysis::gnuplot_plain_text(p.sought.name));
     for (std::size_t k = 0; k < p.at.size(); ++k)
       f.data += fmt::format("{:.6g} {:.6g}\n", p.at[k], p.chi2[k] - inference.chi2);
     f.data += "\n\n";
@@ -96,16 +96,16 @@ Figure profile_figure(const Inference& inference) {
         "set xlabel '{}'\nset xrange [{:.6g}:{:.6g}]\nplot 'profile.dat' index {} using 1:2 with lines lw 2 "
         "lc rgb "
         "blue, {:.6g} with lines dt 2 lc rgb vermilion\n",
-        gnuplot_text(label), p.sought.lower, p.sought.upper, i, p.drop);
+        analysis::gnuplot_text(label), p.sought.lower, p.sought.upper, i, p.drop);
   }
   f.plot += "unset multiplot\n";
   f.caption = "The dashed line marks the 95 % interval";
   return f;
 }
 
-Figure curve_figure(const std::string& name, const std::vector<double>& measured,
-                    const std::vector<double>& predicted) {
-  Figure f{.name = name, .title = name + ", measured and for the best parameters"};
+analysis::Figure curve_figure(const std::string& name, const std::vector<double>& measured,
+                              const std::vector<double>& predicted) {
+  analysis::Figure f{.name = name, .title = name + ", measured and for the best parameters"};
   f.data = "# element, measured, of the best parameters\n";
   for (std::size_t k = 0; k < measured.size(); ++k)
     f.data += fmt::format("{} {:.8g} {:.8g}\n", k, measured[k], predicted[k]);
@@ -115,7 +115,7 @@ Figure curve_figure(const std::string& name, const std::vector<double>& measured
       "set xlabel 'element'\nset ylabel '{0}'\n"
       "plot '{1}.dat' using 1:2 with points pt 7 lc rgb '#222222' title 'measured', '{1}.dat' using 1:3 with "
       "lines lw 2 lc rgb blue title 'best parameters'\n",
-      gnuplot_text(label), name);
+      analysis::gnuplot_text(label), name);
   f.caption =
       "The curve of the best parameters is composed of the principal components of the curves of the runs";
   return f;

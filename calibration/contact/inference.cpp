@@ -337,7 +337,7 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     }
     p.open_low = p.low == sought[i].lower;
     p.open_high = p.high == p.at.back();
-    p.standard_error = p.open_low || p.open_high ? kNaN : (p.high - p.low) / (2 * kStandardErrors);
+    p.standard_error = p.open_low || p.open_high ? kNaN : (p.high - p.low) / (2 * analysis::kStandardErrors);
     if (p.undetermined())
       out.notes.push_back(
           fmt::format("{} is undetermined: all values between {:g} and {:g} agree with the measurement",

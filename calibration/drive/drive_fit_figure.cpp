@@ -9,8 +9,8 @@
 
 namespace twincell::calibration {
 
-Figure drive_fit_figure(const DriveFit& lock) {
-  Figure f{.name = "plate", .title = "The plate's motion", .width = 640, .height = 520};
+analysis::Figure drive_fit_figure(const DriveFit& lock) {
+  analysis::Figure f{.name = "plate", .title = "The plate's motion", .width = 640, .height = 520};
   const auto value = [&](double cycles) {
     const double theta = 2 * std::numbers::pi * cycles;
     double z = lock.z0 + lock.amplitude * std::sin(theta);

@@ -8,6 +8,6 @@
 namespace twincell::calibration {
 
 /// "plate": heights and fit above, residuals below, against the phase of the drive.
-Figure drive_fit_figure(const DriveFit& lock);
+analysis::Figure drive_fit_figure(const DriveFit& lock);
 
 }  // namespace twincell::calibration

@@ -59,7 +59,7 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
     result.n_outside += use == PointUse::outside ? 1 : 0;
     result.n_invalid += use == PointUse::invalid ? 1 : 0;
     if (use == PointUse::zero && p.trials > 0)
-      result.upper_limits.push_back(binomial_interval(0, p.trials, "trials").high);
+      result.upper_limits.push_back(analysis::binomial_interval(0, p.trials, "trials").high);
     if (use != PointUse::used) continue;
     const double error = error_of(p, law.logarithmic);
     errors = errors && error > 0;
@@ -182,7 +182,7 @@ void compare_with_nested(CurveFit& result, const Selected& selected) {
 /// 95 % interval of the bend by profile of the sum of squares: all bends whose sum of squares exceeds the
 /// least one by less than the threshold for one parameter. The covariance would be too small, because the
 /// derivative at a kink jumps at every point.
-Interval interval_of_bend(const CurveFit& result, const Selected& selected, double reach) {
+analysis::Interval interval_of_bend(const CurveFit& result, const Selected& selected, double reach) {
   const Law& law = *result.law;
   const double freedom = static_cast<double>(result.n_used - result.fit.values.size());
   const double least = 2 * result.fit.cost_after, best = result.fit.values.back();
@@ -217,13 +217,13 @@ void add_intervals(CurveFit& result, const Selected& selected) {
   result.intervals.assign(fit.values.size(), std::nullopt);
   if (fit.standard_errors.empty()) return;
   const double freedom = static_cast<double>(result.n_used - fit.values.size());
-  const double reach = result.weighted ? student_t_95(1e9) : student_t_95(freedom);
+  const double reach = result.weighted ? analysis::student_t_95(1e9) : analysis::student_t_95(freedom);
   const std::string method = result.weighted
                                  ? "covariance of the points' own errors"
                                  : fmt::format("covariance and scatter, {} degrees of freedom", freedom);
   for (std::size_t p = 0; p < fit.values.size(); ++p)
-    result.intervals[p] = Interval{fit.values[p] - reach * fit.standard_errors[p],
-                                   fit.values[p] + reach * fit.standard_errors[p], 0.95, method};
+    result.intervals[p] = analysis::Interval{fit.values[p] - reach * fit.standard_errors[p],
+                                             fit.values[p] + reach * fit.standard_errors[p], 0.95, method};
   if (result.law->squares_bent_at && fit.values.back() > 0)
     result.intervals.back() = interval_of_bend(result, selected, reach);
   // Data without scatter would give undetermined parameters an error of 0, so they get no interval.

@@ -46,8 +46,8 @@ struct CurveFit {
   const Law* law = nullptr;
   FitReport fit;
   bool weighted = false;  ///< true: by the points' errors; false: equal weights, error from scatter
-  std::vector<std::optional<Interval>> intervals;  ///< 95 % interval of each parameter
-  std::vector<PointUse> use;                       ///< for each input point
+  std::vector<std::optional<analysis::Interval>> intervals;  ///< 95 % interval of each parameter
+  std::vector<PointUse> use;                                 ///< for each input point
   std::size_t n_used = 0;
   std::size_t n_zero = 0;     ///< in the window, but y = 0 and the law is logarithmic: left out
   std::size_t n_outside = 0;  ///< outside the window

@@ -28,18 +28,19 @@ std::string reading(const std::string& name, std::string plot) {
 
 }  // namespace
 
-Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, const std::string& x_name,
-                  const std::string& y_name, const std::string& name, const std::string& title) {
+analysis::Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points,
+                            const std::string& x_name, const std::string& y_name, const std::string& name,
+                            const std::string& title) {
   const Law& law = *fit.law;
   const auto drawn = [&](double x) { return law.axis == Law::Axis::reciprocal ? 1 / x : x; };
-  Figure f{.name = name, .title = law.formula, .width = 560, .height = 640};
+  analysis::Figure f{.name = name, .title = law.formula, .width = 560, .height = 640};
 
   double low = INFINITY, high = -INFINITY;
   std::string used, left_out, limits;
-  const std::string x_label =
-      law.axis == Law::Axis::reciprocal ? "1/" + gnuplot_symbol(x_name) : gnuplot_symbol(x_name);
+  const std::string x_label = law.axis == Law::Axis::reciprocal ? "1/" + analysis::gnuplot_symbol(x_name)
+                                                                : analysis::gnuplot_symbol(x_name);
   figure_style::Axis x_axis{.label = x_label, .logarithmic = law.axis == Law::Axis::logarithmic},
-      y_axis{.label = gnuplot_symbol(y_name), .logarithmic = law.logarithmic},
+      y_axis{.label = analysis::gnuplot_symbol(y_name), .logarithmic = law.logarithmic},
       off_axis{.label = fit.weighted      ? "residual/error"
                         : law.logarithmic ? "residual in ln y"
                                           : "residual"};
@@ -68,8 +69,9 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
     }
   }
   std::string curve;
-  const double reach = fit.weighted ? student_t_95(1e9)
-                                    : student_t_95(static_cast<double>(fit.n_used - fit.fit.values.size()));
+  const double reach = fit.weighted
+                           ? analysis::student_t_95(1e9)
+                           : analysis::student_t_95(static_cast<double>(fit.n_used - fit.fit.values.size()));
   // A band as wide as the data on either side must not shrink the points.
   const double length = law.logarithmic ? y_axis.high / y_axis.low : y_axis.high - y_axis.low;
   const double floor = law.logarithmic ? y_axis.low / length : y_axis.low - length,
@@ -119,8 +121,8 @@ Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, con
       "plot 0 with lines lw {} lc rgb blue, 'fit.dat' index 0 using 1:5 with impulses lw {} lc rgb grey, "
       "'fit.dat' "
       "index 0 using 1:5 with points pt {} lc rgb '#222222'\nunset multiplot\n",
-      figure_style::axes(x_axis, y_axis), gnuplot_formula(title.empty() ? law.formula : title),
-      figure_style::kCurve, gnuplot_text(law_label), figure_style::kCircle, more,
+      figure_style::axes(x_axis, y_axis), analysis::gnuplot_formula(title.empty() ? law.formula : title),
+      figure_style::kCurve, analysis::gnuplot_text(law_label), figure_style::kCircle, more,
       figure_style::axes(x_axis, off_axis), figure_style::kLine, figure_style::kLine, figure_style::kCircle);
   f.plot = reading(name, f.plot);
   f.caption = law.formula + ", fitted to " + fmt::format("{} points", fit.n_used);

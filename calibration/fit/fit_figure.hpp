@@ -14,7 +14,8 @@ namespace twincell::calibration {
 /// curve with its 95 % band. Lower panel: the residuals in the fitted ordinate, in units of their errors if
 /// the fit is weighted. The axis of x follows Law::axis. \param name base name of the figure's files
 /// \param title above the upper panel; empty: the formula of the law
-Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points, const std::string& x_name,
-                  const std::string& y_name, const std::string& name = "fit", const std::string& title = {});
+analysis::Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& points,
+                            const std::string& x_name, const std::string& y_name,
+                            const std::string& name = "fit", const std::string& title = {});
 
 }  // namespace twincell::calibration

@@ -164,7 +164,7 @@ TEST_F(DamagedRecords, CollectedResults) {
   whole.erase("pooled");
   put_file(file, whole.dump());
   const auto use = [&] {
-    Comparison c;
+    analysis::Comparison c;
     twin::add_sweep(file, c);
   };
   use();
@@ -232,7 +232,7 @@ TEST_F(DamagedRecords, RecordsOfATrajectory) {
     options.experiments = {at("e.h5")};
     options.film = false;
     const auto silent = [](const std::string&) { return std::make_unique<Progress>(); };
-    const Comparison c = twin::compare_runs(options, silent, notes);
+    const analysis::Comparison c = twin::compare_runs(options, silent, notes);
     if (const auto& camera = c.runs.front().show.camera) {
       EXPECT_GT(camera->pixels_per_sigma, 0);
       EXPECT_GT(camera->width, 0);

@@ -39,9 +39,9 @@ inline void add(MemoryTrajectory& t, std::vector<Vec3> position, std::vector<Vec
 
 /// The values of one result.
 inline std::vector<double> values_of(const MemoryTrajectory& t, const std::string& name) {
-  AnalysisOptions options;
+  analysis::AnalysisOptions options;
   options.only = {name};
-  return find_result(analyze(t, options), name).values;
+  return analysis::find_result(analysis::analyze(t, options), name).values;
 }
 
 /// 60 frames of 600 points at random places.

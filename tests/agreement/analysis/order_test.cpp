@@ -10,6 +10,7 @@
 #include <random>
 
 using namespace twincell;
+using namespace twincell::analysis;
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include "analysis/observable/results.hpp"
 
 using namespace twincell;
+using namespace twincell::analysis;
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include "tests/support/rigid_bed.hpp"
 
 using namespace twincell;
+using namespace twincell::analysis;
 
 namespace {
 

@@ -208,8 +208,8 @@ TEST(Run, H36_PeriodTwoIsAveragedOverAnEvenNumberOfCycles) {
       for (Vec3& r : frame.position) r.z() += 1;
     lifted.append(frame);
   }
-  const auto results = analyze(lifted);
-  const Result& s_k = find_result(results, "s_k");
+  const auto results = analysis::analyze(lifted);
+  const analysis::Result& s_k = analysis::find_result(results, "s_k");
   EXPECT_EQ(s_k.n, 2U);
   EXPECT_NEAR(s_k.values[5] - s_k.values[4], 0.5, 1e-12);
 }

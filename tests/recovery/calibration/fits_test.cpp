@@ -216,7 +216,7 @@ TEST(Fits, ScatterGivesTheCoverageItPromises) {
                                    }));
     if (!fit.intervals[0]) continue;
     const double truth = 0.282 * (1 + 2.07 * std::pow(20.0, -0.656));
-    covered += std::abs(fit.at(20) - truth) <= student_t_95(30) * fit.error_at(20) ? 1 : 0;
+    covered += std::abs(fit.at(20) - truth) <= analysis::student_t_95(30) * fit.error_at(20) ? 1 : 0;
   }
   test::validate({"V5.8", "coverage, %, of the band of an algebraic decay at W = 20", 95, 2, "binomial"},
                  100.0 * covered / trials);

@@ -3,7 +3,7 @@
 
 #include "analysis/runs/phase_boundaries.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 Run run(Side side, double gamma, BedPhase phase, double n_l = 20, const std::string& start = {}) {
@@ -75,4 +75,4 @@ TEST(Boundaries, LayersAndStartsAreKeptApartAndTheUndeterminedLeftOut) {
   EXPECT_EQ(boundary_of(*random), "simulation, random");
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 /// Hexagonal flower of 7 touching beads, two frames one cycle apart; all beads move by (0.3, 0, 0.4).
@@ -71,4 +71,4 @@ TEST(Colouring, EveryWordOfTheTableNeedsItsData) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::analysis

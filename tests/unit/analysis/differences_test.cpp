@@ -9,7 +9,7 @@
 #include "tests/support/rigid_bed.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 using Runs = std::vector<Run>;  // in the body of a test `Run` is a name of googletest
@@ -140,4 +140,4 @@ TEST(Differences, WhatTheChoiceOfTracersDoesToBothSidesAlikeIsNoDifference) {
   EXPECT_NEAR(only(runs, apart).tracers.value(), 0.5, 1e-12);
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

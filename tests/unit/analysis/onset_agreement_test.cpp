@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 PhaseBoundary onset(Side side, std::optional<double> below, std::optional<double> above, double n_l = 10) {
@@ -59,4 +59,4 @@ TEST(OnsetAgreement, ASweepIsUsedWithoutTwins) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -12,7 +12,7 @@
 #include "core/json_view.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 Result number(const std::string& name, double value, std::optional<Interval> interval = {}) {
@@ -164,4 +164,4 @@ TEST(Results, ComeBackFromJson) {
   EXPECT_EQ(results_json(results_from_json(JsonView::parse(text, "results.json"))), text);
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

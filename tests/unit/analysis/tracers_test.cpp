@@ -9,6 +9,7 @@
 #include "tests/support/rigid_bed.hpp"
 
 using namespace twincell;
+using namespace twincell::analysis;
 
 TEST(Tracers, OfACrystalAreTheMiddleRow) {
   const MemoryTrajectory bed = test::rigid_bed({.gamma = 1.5, .columns = 20, .rows = 11});
@@ -86,19 +87,19 @@ TEST(PlateHeight, MeasuredBeforeDriveBeforeNothing) {
 
 TEST(MatchRuns, ByGammaWithinTheToleranceAndByLayers) {
   const auto run = [](Side side, double gamma, double n_l, BedPhase phase) {
-    twincell::Run r;
+    twincell::analysis::Run r;
     r.side = side;
     r.gamma = gamma;
     r.n_l = n_l;
     r.phase = phase;
     return r;
   };
-  const std::vector<twincell::Run> runs = {run(Side::experiment, 1.51, 20, BedPhase::bouncing),
-                                           run(Side::simulation, 1.50, 20, BedPhase::bouncing),
-                                           run(Side::simulation, 1.50, 20, BedPhase::convecting),
-                                           run(Side::simulation, 1.50, 40, BedPhase::bouncing),
-                                           run(Side::experiment, 1.20, 20, BedPhase::co_moving),
-                                           run(Side::simulation, 1.54, 20, BedPhase::bouncing)};
+  const std::vector<twincell::analysis::Run> runs = {run(Side::experiment, 1.51, 20, BedPhase::bouncing),
+                                                     run(Side::simulation, 1.50, 20, BedPhase::bouncing),
+                                                     run(Side::simulation, 1.50, 20, BedPhase::convecting),
+                                                     run(Side::simulation, 1.50, 40, BedPhase::bouncing),
+                                                     run(Side::experiment, 1.20, 20, BedPhase::co_moving),
+                                                     run(Side::simulation, 1.54, 20, BedPhase::bouncing)};
   const auto matches = match_runs(runs, 0.02);
   ASSERT_EQ(matches.size(), 4U);
   EXPECT_EQ(matches[0].experiments, std::vector<std::size_t>{4});

@@ -27,7 +27,7 @@ TEST_P(StoredFigures, KeepTheRulesOfFigures) {
   const auto document = nlohmann::json::parse(text_of(kStored / (what.name + ".json")));
   const Reproduction r = what.run({.stored = document.at("measured").dump()});
   ASSERT_FALSE(r.figures.empty());
-  for (const Figure& f : r.figures) {
+  for (const analysis::Figure& f : r.figures) {
     EXPECT_LE(f.width, figure_style::kWidest) << f.name;
     EXPECT_FALSE(f.caption.empty()) << f.name;
     for (const std::string& broken : broken_figure_rules(f.plot)) ADD_FAILURE() << f.name << ": " << broken;
@@ -79,7 +79,7 @@ TEST(PaperFigures, SolidBedsAreDrawnApartFromTheGas) {
                       {"T_bar_z", {{"value", t}, {"interval", {t / 2, 2 * t}}}}});
   const Reproduction r = drawn("p2-fig2", points.dump());
   ASSERT_EQ(r.figures.size(), 1U);
-  const Figure& f = r.figures.front();
+  const analysis::Figure& f = r.figures.front();
   EXPECT_TRUE(
       f.data.starts_with("# 2D rough\n2.74 0.6 0.3 1.2\n10.95 0.4 0.2 0.8\n\n\n"
                          "# 2D rough, solid\n0.503 1e-09 5e-10 2e-09\n"))

@@ -19,7 +19,8 @@ const std::string kGrid = R"({"points": [
              "results": {"s_b": {"value": 0.4, "interval": {"low": 0.25, "high": 0.55}}}}]})";
 
 TEST(ResultsFigure, SeedsArePooledAndCurvesAreSortedAlongTheAxis) {
-  const Figure f = results_figure(kGrid, {.result = "s_b", .over = {"drive.gamma", "beads.layers"}});
+  const analysis::Figure f =
+      results_figure(kGrid, {.result = "s_b", .over = {"drive.gamma", "beads.layers"}});
   // One point of two seeds with its interval, then the curve of the other height: lines, then points.
   EXPECT_EQ(f.data,
             "1.5 0.4 0.25 0.55\n\n\n2 0.7 0.7 0.7\n2.5 0.9 0.8 1\n\n\n2 0.7 0.7 0.7\n2.5 0.9 0.8 1\n");
@@ -29,7 +30,7 @@ TEST(ResultsFigure, SeedsArePooledAndCurvesAreSortedAlongTheAxis) {
 }
 
 TEST(ResultsFigure, OnsetsAreTheDefaultAndLimitsAreTriangles) {
-  const Figure f = results_figure(R"({"points": [], "onsets": [
+  const analysis::Figure f = results_figure(R"({"points": [], "onsets": [
     {"axes": {"beads.layers": 20}, "key": "drive.gamma", "verdict": "convecting", "value": 2.1, "low": 2.0, "high": 2.3},
     {"axes": {"beads.layers": 10}, "key": "drive.gamma", "verdict": "convecting", "value": null, "low": 2.9, "high": null}]})");
   EXPECT_EQ(f.data, "20 2.1 2 2.3\n\n\n10 2.9\n");
@@ -38,7 +39,8 @@ TEST(ResultsFigure, OnsetsAreTheDefaultAndLimitsAreTriangles) {
 }
 
 TEST(ResultsFigure, KeepsTheRulesOfFigures) {
-  const Figure f = results_figure(kGrid, {.result = "s_b", .over = {"drive.gamma", "beads.layers"}});
+  const analysis::Figure f =
+      results_figure(kGrid, {.result = "s_b", .over = {"drive.gamma", "beads.layers"}});
   EXPECT_EQ(broken_figure_rules(f.plot), std::vector<std::string>());
   // The range holds the intervals, 0.25 to 1, and Gamma, 1.5 to 2.5, with a margin of 4 %.
   EXPECT_NE(f.plot.find("set xrange [1.46:2.54]\n"), std::string::npos) << f.plot;

@@ -30,21 +30,21 @@ constexpr const char* kResults = R"({"format": "twincell sweep 1", "plan": "", "
     {"conditions": {"n_l": null, "start": "crystal_a"}, "key": "beads.layers",
      "verdict": "convecting", "value": 7, "low": 6, "high": 8, "runs": 9, "yes": 4}]})";
 
-void check(const Comparison& c) {
+void check(const analysis::Comparison& c) {
   // The failed point has no phase, and neither has the bouncing one, which lacks s_c. The point without N_l
   // and Gamma has no place in the diagram, and the onset in the number of layers has no Gamma.
   ASSERT_EQ(c.sweep.size(), 2U);
   EXPECT_DOUBLE_EQ(c.sweep[0].n_l, 20);
   EXPECT_DOUBLE_EQ(c.sweep[0].gamma, 1.5);
   EXPECT_EQ(c.sweep[0].start, "random");
-  EXPECT_EQ(c.sweep[1].phase, BedPhase::convecting);
+  EXPECT_EQ(c.sweep[1].phase, analysis::BedPhase::convecting);
   ASSERT_EQ(c.boundaries.size(), 2U);
   EXPECT_DOUBLE_EQ(c.boundaries[0].gamma().value(), 2.1);  // as fitted, not the middle of its interval
   EXPECT_NEAR(c.boundaries[0].half_width().value(), 0.15, 1e-12);
   EXPECT_EQ(c.boundaries[0].n_runs, 12U);
-  EXPECT_EQ(boundary_of(c.boundaries[0]), "sweep, random");
+  EXPECT_EQ(analysis::boundary_of(c.boundaries[0]), "sweep, random");
   EXPECT_FALSE(c.boundaries[1].gamma());
-  EXPECT_EQ(boundary_text(c.boundaries[1]), "above 2.9");
+  EXPECT_EQ(analysis::boundary_text(c.boundaries[1]), "above 2.9");
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ void check(const Comparison& c) {
 TEST(SweepResults, PointsAndOnsetsAreWhereTheFileStatesThem) {
   const TemporaryFolder folder;
   put_file(folder / "results.json", kResults);
-  Comparison c;
+  analysis::Comparison c;
   add_sweep(folder / "results.json", c);
   check(c);
 }
@@ -65,7 +65,7 @@ TEST(SweepResults, AFileWithoutConditionsIsToBeCollectedAgain) {
                            R"({"format": "twincell sweep 1", "plan": "", "points": [], "onsets":
             [{"axes": {}, "key": "drive.gamma", "verdict": "bouncing", "runs": 3}]})"}) {
     put_file(folder / "results.json", text);
-    Comparison c;
+    analysis::Comparison c;
     expect_refusal<InputError>([&] { add_sweep(folder / "results.json", c); },
                                "does not state its N_l, Gamma and start",
                                "collect it again with `twincell sweep collect`");
@@ -74,7 +74,7 @@ TEST(SweepResults, AFileWithoutConditionsIsToBeCollectedAgain) {
 
 TEST(SweepResults, AnythingElseIsRefused) {
   const TemporaryFolder folder;
-  Comparison c;
+  analysis::Comparison c;
   for (const char* text : {"", "[]", "{\"format\": \"else\"}", "{\"format\": \"twincell sweep 1\"}",
                            // A key of a point or an onset is missing or has another type.
                            R"({"format": "twincell sweep 1", "plan": "", "points": 3})",

@@ -9,6 +9,7 @@
 #include "tests/support/validation.hpp"
 
 using namespace twincell;
+using namespace twincell::analysis;
 
 TEST(CentreOfMass, OfTheBouncingRigidBed) {
   const test::RigidBed bed{.gamma = 1.5, .columns = 10, .rows = 4, .phases = 40, .cycles = 6};

@@ -78,8 +78,8 @@ TEST(VoronoiArea, FillsTheBox) {
   const auto density = values_of(t, "voronoi_area_density"), ratio = values_of(t, "voronoi_area_ratio");
   double all = 0, mean = 0;
   for (std::size_t b = 0; b < density.size(); ++b) {
-    all += density[b] * kVoronoiAreaWidth;
-    mean += density[b] * ratio[b] * kVoronoiAreaWidth;
+    all += density[b] * analysis::kVoronoiAreaWidth;
+    mean += density[b] * ratio[b] * analysis::kVoronoiAreaWidth;
   }
   validate({"V5.22", "integral of the density of areas", 1, 1e-12, "closed form"}, all);
   validate({"V5.22", "mean of the density of areas", 1, 0.01, "closed form"}, mean);

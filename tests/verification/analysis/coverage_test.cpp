@@ -15,7 +15,7 @@
 #include "analysis/observable/observable.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 using Random = std::mt19937_64;
@@ -584,4 +584,4 @@ TEST(Coverage, OfEveryResultThatHasAnInterval) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -9,6 +9,7 @@
 #include "tests/support/validation.hpp"
 
 using namespace twincell;
+using namespace twincell::analysis;
 
 TEST(GranularTemperature, TranslationDropsOutAndTheFiniteSizeFactorStays) {
   std::mt19937_64 generator(11);

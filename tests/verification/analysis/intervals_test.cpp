@@ -10,7 +10,7 @@
 #include "analysis/observable/observable.hpp"
 #include "sim/run/simulation.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 std::vector<Result> results_of(const std::string& scene, const AnalysisOptions& options) {
@@ -78,4 +78,4 @@ TEST(Intervals, HoldTheirValueAndHaveAWidth) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::analysis

@@ -12,6 +12,7 @@
 #include "tests/support/validation.hpp"
 
 using namespace twincell;
+using namespace twincell::analysis;
 
 namespace {
 

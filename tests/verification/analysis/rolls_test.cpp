@@ -15,7 +15,7 @@
 #include "analysis/motion/convection.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell {
+namespace twincell::analysis {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -115,4 +115,4 @@ TEST(Rolls, WeakOnesAreLeftOut) {
   EXPECT_EQ(count_rolls(blocks, 1e3), 0U);
 }
 
-}  // namespace twincell
+}  // namespace twincell::analysis

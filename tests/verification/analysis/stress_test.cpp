@@ -24,7 +24,7 @@ MemoryTrajectory compressed(double a, const std::function<double()>& force, int 
   t.info().columns.contact_forces = true;
   add(t, triangular_lattice(kColumns, kRows, a));
   Frame frame = t.frames().front();
-  const Neighbours near = find_neighbours(frame, t.info().box, 1.01 * a);
+  const analysis::Neighbours near = analysis::find_neighbours(frame, t.info().box, 1.01 * a);
   MemoryTrajectory out(t.info());
   for (int f = 0; f < frames; ++f) {
     frame.contact_forces.clear();
@@ -63,27 +63,27 @@ TEST(Stress, OfACompressedTriangularLatticeIsIsotropic) {
 TEST(Stress, OfAColumnIsTheWeightAbove) {
   for (const int dimension : {2, 3}) {
     const MemoryTrajectory t = sim::column_at_rest(dimension);
-    AnalysisOptions options;
+    analysis::AnalysisOptions options;
     options.only = {"stress", "wall_force", "stress_zz_z", "mechanical_contact_number", "contact_force"};
-    const auto results = analyze(t, options);
-    const auto& walls = find_result(results, "wall_force").values;
+    const auto results = analysis::analyze(t, options);
+    const auto& walls = analysis::find_result(results, "wall_force").values;
     validate({"V5.24", "force on the floor over the weight", 1, 1e-6, "closed form"},
              walls[0] / sim::kColumnBeads);
     // Virial: contact k carries k beads over a branch of one diameter, the floor all over a radius: N^2/2.
     // The window of a column is one diameter wide.
     validate({"V5.24", "sigma_zz of a column", sim::kColumnBeads / 2.0, 2e-3, "closed form"},
-             find_result(results, "stress").values.back());
-    const auto& profile = find_result(results, "stress_zz_z").values;
+             analysis::find_result(results, "stress").values.back());
+    const auto& profile = analysis::find_result(results, "stress_zz_z").values;
     double worst = 0;  // the middle of slab k is the centre of a bead: half of it is above
     for (int k = 0; k < sim::kColumnBeads; ++k)
       worst =
           std::max(worst, std::abs(profile.at(static_cast<std::size_t>(k)) - (sim::kColumnBeads - k - 0.5)));
     validate({"V5.24", "sigma_zz of the slabs of a column, largest error", 0, 5e-3, "closed form"}, worst);
     validate({"V5.24", "mean force of the contacts", sim::kColumnBeads / 2.0, 1e-5, "closed form"},
-             find_result(results, "contact_force").value());
+             analysis::find_result(results, "contact_force").value());
     // N - 1 beads with two contacts; the top one has one
     validate({"V5.24", "mechanical contact number of a column", 2, 1e-12, "closed form"},
-             find_result(results, "mechanical_contact_number").value());
+             analysis::find_result(results, "mechanical_contact_number").value());
   }
 }
 
@@ -112,8 +112,8 @@ TEST(ContactForce, DistributionIsThatOfTheForces) {
              high = values_of(t, "contact_force_density_high");
   int held = 0;
   for (std::size_t b = 0; b < 40; ++b) {
-    const double x = static_cast<double>(b) * kForceWidth;
-    const double expected = (std::exp(-x) - std::exp(-x - kForceWidth)) / kForceWidth;
+    const double x = static_cast<double>(b) * analysis::kForceWidth;
+    const double expected = (std::exp(-x) - std::exp(-x - analysis::kForceWidth)) / analysis::kForceWidth;
     // 96000 forces; 240 in each frame, whose mean has an error of 6 %
     EXPECT_NEAR(density[b], expected, 0.03) << x;
     held += low[b] <= expected && expected <= high[b] ? 1 : 0;
@@ -127,9 +127,11 @@ TEST(ContactForce, IsAbsentWithoutStoredContacts) {
   add(t, {Vec3(1, 0, 1), Vec3(2, 0, 1)});
   for (const char* name : {"stress", "pressure", "wall_force", "stress_zz_z", "contact_force",
                            "contact_force_density", "mechanical_contact_number"}) {
-    AnalysisOptions options;
+    analysis::AnalysisOptions options;
     options.only = {name};
-    EXPECT_NE(find_result(analyze(t, options), name).absent.find("--contacts"), std::string::npos) << name;
+    EXPECT_NE(analysis::find_result(analysis::analyze(t, options), name).absent.find("--contacts"),
+              std::string::npos)
+        << name;
   }
 }
 

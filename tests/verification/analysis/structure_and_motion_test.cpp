@@ -11,6 +11,7 @@
 #include "tests/support/known_beds.hpp"
 
 using namespace twincell;
+using namespace twincell::analysis;
 using namespace twincell::test;
 
 namespace {

@@ -14,18 +14,19 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-std::vector<Result> structure_factor_of(const MemoryTrajectory& t) {
-  AnalysisOptions options;
+std::vector<analysis::Result> structure_factor_of(const MemoryTrajectory& t) {
+  analysis::AnalysisOptions options;
   options.only = {"S_q", "S_q_low", "S_q_high", "S_q_peak", "S_q_peak_wavenumber"};
-  return analyze(t, options);
+  return analysis::analyze(t, options);
 }
 
 TEST(StructureFactor, OfPointsWithoutInteractionIsOneWithinItsInterval) {
   for (const int dimension : {2, 3})
     for (const bool periodic : {false, true}) {
       const auto results = structure_factor_of(ideal_gas(dimension, periodic));
-      const auto &s = find_result(results, "S_q").values, &low = find_result(results, "S_q_low").values,
-                 &high = find_result(results, "S_q_high").values;
+      const auto &s = analysis::find_result(results, "S_q").values,
+                 &low = analysis::find_result(results, "S_q_low").values,
+                 &high = analysis::find_result(results, "S_q_high").values;
       int held = 0, bins = 0;
       double sum = 0;
       for (std::size_t b = 0; b < s.size(); ++b) {
@@ -51,19 +52,19 @@ TEST(StructureFactor, OfATriangularLatticeIsItsNumberOfBeadsAtTheBraggPeak) {
   const auto results = structure_factor_of(t);
   const double bragg = 4 * kPi / (std::sqrt(3.0) * kSpacing);
   validate({"V5.20", "wavenumber of the Bragg peak", bragg, 1e-9, "4 pi/(sqrt(3) a)"},
-           find_result(results, "S_q_peak_wavenumber").value());
+           analysis::find_result(results, "S_q_peak_wavenumber").value());
   // The peak is the mean of six Bragg vectors with S = N and all others of the bin, whose S is 0.
   const Vec3 size = t.info().box.size();
-  const auto bin = std::floor(bragg / kStructureFactorWidth);
+  const auto bin = std::floor(bragg / analysis::kStructureFactorWidth);
   int vectors = 0;
   for (int nx = -80; nx <= 80; ++nx)
     for (int nz = -80; nz <= 80; ++nz)
       vectors += std::floor(std::hypot(2 * kPi * nx / size.x(), 2 * kPi * nz / size.z()) /
-                            kStructureFactorWidth) == bin
+                            analysis::kStructureFactorWidth) == bin
                      ? 1
                      : 0;
   validate({"V5.20", "S at the Bragg peak times its wave vectors over 6 N", 1, 1e-9, "closed form"},
-           find_result(results, "S_q_peak").value() * vectors / (6.0 * kColumns * kRows));
+           analysis::find_result(results, "S_q_peak").value() * vectors / (6.0 * kColumns * kRows));
 }
 
 TEST(StructureFactor, OfALatticeBetweenWallsHasTheSamePeak) {
@@ -77,7 +78,7 @@ TEST(StructureFactor, OfALatticeBetweenWallsHasTheSamePeak) {
     // the spacing of the wave vectors is 0.3
     validate({"V5.20", "wavenumber of the Bragg peak between walls", 4 * kPi / (std::sqrt(3.0) * kSpacing),
               0.1, "4 pi/(sqrt(3) a)"},
-             find_result(structure_factor_of(t), "S_q_peak_wavenumber").value());
+             analysis::find_result(structure_factor_of(t), "S_q_peak_wavenumber").value());
   }
 }
 
@@ -87,10 +88,11 @@ TEST(StructureFactor, OfHalfTheBoxIsThatOfTheDensity) {
   MemoryTrajectory t = empty(2, Vec3(8, 1, 1), true);
   t.info().box.boundary[2] = Boundary::wall;
   add(t, {Vec3(1, 0, 0.5), Vec3(5, 0, 0.5)});
-  const auto s = find_result(structure_factor_of(t), "S_q").values;
+  const auto s = analysis::find_result(structure_factor_of(t), "S_q").values;
   for (int n = 1; n < 20; ++n) {
     const double q = 2 * kPi * n / 8;
-    EXPECT_NEAR(s[static_cast<std::size_t>(q / kStructureFactorWidth)], n % 2 == 0 ? 2 : 0, 1e-9) << n;
+    EXPECT_NEAR(s[static_cast<std::size_t>(q / analysis::kStructureFactorWidth)], n % 2 == 0 ? 2 : 0, 1e-9)
+        << n;
   }
 }
 

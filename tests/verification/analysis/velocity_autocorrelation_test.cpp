@@ -46,12 +46,12 @@ TEST(VelocityAutocorrelation, OfOscillatorsIsTheCosine) {
     add(t, std::vector<Vec3>(kBeads, Vec3(1, 0, 1)), v);
   }
   const auto c = values_of(t, "vacf"), lag = values_of(t, "vacf_lag");
-  ASSERT_EQ(c.size(), kLongestVelocityLag + 1);
+  ASSERT_EQ(c.size(), analysis::kLongestVelocityLag + 1);
   double worst = 0;
   for (std::size_t m = 0; m < c.size(); ++m)
     worst = std::max(worst, std::abs(c[m] - std::cos(kOmega * static_cast<double>(m))));
   validate({"V5.23", "C(t) of oscillators at 33 lags, largest error", 0, 1e-12, "cos(omega t)"}, worst);
-  EXPECT_DOUBLE_EQ(lag.back(), static_cast<double>(kLongestVelocityLag));
+  EXPECT_DOUBLE_EQ(lag.back(), static_cast<double>(analysis::kLongestVelocityLag));
 }
 
 TEST(VelocityAutocorrelation, OfBrownianBeadsDecaysExponentially) {
@@ -69,11 +69,11 @@ TEST(VelocityAutocorrelation, LiesInItsInterval) {
   constexpr std::size_t kLag = 2;
   int held = 0;
   for (int k = 0; k < kRuns; ++k) {
-    AnalysisOptions options;
+    analysis::AnalysisOptions options;
     options.only = {"vacf_low", "vacf_high"};
-    const auto results = analyze(brownian(0.6, 150, random), options);
-    held += find_result(results, "vacf_low").values[kLag] <= 0.36 &&
-                    0.36 <= find_result(results, "vacf_high").values[kLag]
+    const auto results = analysis::analyze(brownian(0.6, 150, random), options);
+    held += analysis::find_result(results, "vacf_low").values[kLag] <= 0.36 &&
+                    0.36 <= analysis::find_result(results, "vacf_high").values[kLag]
                 ? 1
                 : 0;
   }

@@ -9,6 +9,7 @@
 #include "tests/support/validation.hpp"
 
 using namespace twincell;
+using namespace twincell::analysis;
 
 namespace {
 
